@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace palpate {
+
+/// Which side of a two-sided surface is free: +1 where its normals point to, -1 the other, 0 not
+/// decided yet.
+using Side = int;
+
+/// The implicit function at one place. Free where value > 0, solid where value <= 0.
+struct Sample {
+  double value = 0;                                      ///< length-like, m
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();    ///< d value / d x; points outward
+  double height = 0;     ///< signed by the normals and not by `side`: tells which side x is on, m
+  double support = 0;    ///< sum of weights (1 on a well sampled surface); 0: nothing known here
+  double radius = 0;     ///< support radius R here: the length that steps are measured in, m
+};
+
+/// A closed ball in the world frame.
+struct Ball {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
+  double radius = 0;                                 ///< m
+};
+
+/// What the surface is made of near a place on it.
+struct Surface {
+  double stiffness_factor = 1;  ///< multiplies the proxy's stiffness, 0-1
+  double friction_factor = 1;   ///< multiplies the proxy's friction, 0-1
+  double presence = 1;          ///< 0-1: is the sensor still sure of this surface?
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the surface, m/s
+  int source = -1;              ///< index of the source that contributes most; -1: none
+};
+
+/// Facts that hold for the whole field between two changes of it.
+struct FieldTraits {
+  bool two_sided = false;       ///< does the proxy have to keep a side?
+  double resolution = 0;        ///< sweeps look for solid chords longer than this, m
+  std::uint64_t revision = 0;   ///< grows when the surface may have moved since the last tick
+  double reanchor_reach = 0;    ///< how far the surface may have stepped over the proxy, m
+};
+
+/// All that a proxy knows of a scene: an implicit surface with its exact gradient.
+///
+/// Every member is noexcept, allocation-free, bounded in time, and gives finite results for finite
+/// arguments. A Field belongs to one thread: implementations may cache what they gathered.
+class Field {
+ public:
+  virtual ~Field() = default;
+
+  /// The function at x as seen from `side` (ignored by one-sided fields). Side 0 counts as +1.
+  [[nodiscard]] virtual Sample sample(const Eigen::Vector3d& x, Side side) const noexcept = 0;
+
+  /// True only if the ball certainly holds nothing solid, whatever the side. Two-sided fields
+  /// promise more: then it also lies outside the surface's domain, where sides are forgotten.
+  [[nodiscard]] virtual bool is_free(const Ball& ball) const noexcept = 0;
+
+  /// What is touched at x.
+  [[nodiscard]] virtual Surface surface(const Eigen::Vector3d& x) const noexcept = 0;
+
+  [[nodiscard]] virtual FieldTraits traits() const noexcept = 0;
+
+ protected:
+  Field() = default;
+  Field(const Field&) = default;
+  Field& operator=(const Field&) = default;
+};
+
+}  // namespace palpate

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "palpate/field/kernel.hpp"
+
+namespace palpate {
+
+/// The implicit surfaces that points can be turned into.
+enum class FieldKind {
+  balanced,  ///< mean of point-set surface and IMLS; our default (field_choice.md section 2)
+  pointset,  ///< the paper's point-set surface, eqs. (5)-(7)
+  metaball,  ///< the paper's metaball surface, eq. (3), on density-normalised weights
+};
+
+/// Which vector stands for the gradient.
+enum class GradientKind {
+  exact,    ///< of the function as evaluated
+  normal,   ///< the mean normal n(x): eq. (8), `pointset` of the preset `paper` only
+  printed,  ///< eq. (4) as printed, which points inward: to show that, never to be felt
+};
+
+/// How points become a surface. The defaults are ours; paper_field() gives the paper's.
+struct FieldOptions {
+  FieldKind kind = FieldKind::balanced;
+  Kernel kernel = Kernel::wyvill;
+  GradientKind gradient = GradientKind::exact;
+  double threshold = 0.4;      ///< metaball level T', of the (united) weight sum
+  double minimum_support = 0.3;  ///< Wmin: the surface ends where the weight sum falls below it
+  double tool_radius = 0;      ///< radius of the proxy's ball, m; the surface is pushed out by it
+  bool two_sided = true;       ///< solid from both sides; false: closed objects, normals outward
+  bool capped = true;          ///< cap at Wmin and blend to the metaball where normals are unsure
+  bool raw_weights = false;    ///< ignore density weights (the paper)
+  bool nearest_radius = false; ///< use the R of the point nearest to the proxy for all (the paper)
+};
+
+/// The paper's field: raw weights, T = 0.5, R of the nearest point, no cap.
+[[nodiscard]] FieldOptions paper_field(FieldKind kind = FieldKind::metaball);
+
+}  // namespace palpate

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+
+/// The paper's two compactly supported weights (section III-A).
+enum class Kernel { wyvill, wendland };
+
+/// A weight w and its slope g = (dw/dr) / r, both as functions of q = r^2, r = |x - p| / R.
+/// grad w = g (x - p) / R^2, which is well defined at r = 0 too. Both are 0 for r >= 1.
+struct KernelValue {
+  double w = 0;
+  double g = 0;
+};
+
+/// Eq. (1). No square root.
+[[nodiscard]] constexpr KernelValue wyvill(double q) noexcept {
+  if (q >= 1) return {};
+  return {1 + q * (-22. / 9 + q * (17. / 9 - q * (4. / 9))),
+          2 * (-22. / 9 + q * (34. / 9 - q * (12. / 9)))};
+}
+
+/// Eq. (2).
+[[nodiscard]] inline KernelValue wendland(double q) noexcept {
+  if (q >= 1) return {};
+  const double r = std::sqrt(q);
+  const double s = 1 - r;
+  return {s * s * s * s * (4 * r + 1), -20 * s * s * s};
+}
+
+[[nodiscard]] inline KernelValue evaluate(Kernel kernel, double q) noexcept {
+  return kernel == Kernel::wyvill ? wyvill(q) : wendland(q);
+}
+
+/// The level T' in (0, 1) at which the weight sum of a plane of unit-normalised points, seen at a
+/// height of `eta` support radii, equals T': the metaball's threshold for an offset of eta R
+/// (algorithm.md section 4; Wyvill in closed form, Wendland likewise by integration).
+[[nodiscard]] double plane_threshold(Kernel kernel, double eta) noexcept;
+
+}  // namespace palpate

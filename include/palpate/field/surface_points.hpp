@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "palpate/geometry/cell_grid.hpp"
+
+namespace palpate {
+
+/// Indexed points with all that a field needs of them, immutable once made. Every column is in the
+/// grid's sorted order and either as long as the grid or, where it says so, empty.
+///
+/// A point may move in a straight line while a snapshot lasts: `grid`, `normals` and
+/// `density_weights` hold its start (A), the `end_` columns its end (B), empty when A = B.
+struct SurfacePoints {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< world frame; grid points are relative to it, m
+  CellGrid grid;
+  std::vector<Eigen::Vector3f> normals;      ///< unit, or zero; empty: none (metaball only)
+  std::vector<float> density_weights;        ///< a_i of algorithm.md section 4
+  std::vector<float> radii;                  ///< R_i, m
+  std::vector<float> confidences;            ///< c_i, 0-1
+  std::vector<float> materials;              ///< 0-1; empty: all 1
+  std::vector<Eigen::Vector3f> end_positions;
+  std::vector<Eigen::Vector3f> end_normals;
+  std::vector<float> end_density_weights;
+
+  std::vector<float> cell_reach;  ///< for each cell: the largest R_i plus way to go in it, m
+  double radius = 0;              ///< a typical R (median), m
+  double smallest_radius = 0;     ///< smallest R_i, m
+
+  [[nodiscard]] std::size_t size() const { return grid.size(); }
+};
+
+/// Fills `cell_reach`, `radius` and `smallest_radius` from the other columns.
+void finish(SurfacePoints& points);
+
+}  // namespace palpate

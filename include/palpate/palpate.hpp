@@ -1,0 +1,9 @@
+#pragma once
+
+/// Everything that most programs need.
+#include "palpate/base/error.hpp"
+#include "palpate/contact/proxy.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+#include "palpate/io/read_cloud.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/scene/scene_field.hpp"

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+
+#include "palpate/field/field.hpp"
+#include "palpate/field/implicit.hpp"
+#include "palpate/scene/scene.hpp"
+
+namespace palpate {
+
+/// What update() and the samples since then ran into, as bits.
+enum class FieldNote : std::uint32_t {
+  none = 0,
+  thinned = 1u << 0,   ///< more points than the patch holds: every 2nd, 4th, ... was taken.
+                       ///< Remedy: a smaller radius or a larger voxel
+  no_surface = 1u << 1,  ///< no source has a snapshot yet
+};
+
+/// The scene as one servo sees it: points near the tool, gathered into a contiguous patch, made into
+/// an implicit surface. One thread uses it; any number of fields may look at one scene.
+class SceneField final : public Field {
+ public:
+  /// @throws Error when an option is out of range or the scene has too many readers.
+  explicit SceneField(Scene& scene, const FieldOptions& options = {});
+  ~SceneField() override;
+  SceneField(const SceneField&) = delete;
+  SceneField& operator=(const SceneField&) = delete;
+
+  /// Picks up new snapshots, brings the surface to time `now` (s) and gathers the points around
+  /// the proxy and its way to the hand (m, world). Wait-free, allocation-free.
+  void update(double now, const Eigen::Vector3d& hip, const Eigen::Vector3d& proxy) noexcept;
+
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side side) const noexcept override;
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
+  [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
+  [[nodiscard]] FieldTraits traits() const noexcept override;
+
+  [[nodiscard]] const FieldOptions& options() const noexcept { return options_; }
+
+  /// Notes since the last update().
+  [[nodiscard]] std::uint32_t notes() const noexcept;
+  /// Points in the patch around the proxy.
+  [[nodiscard]] std::size_t patch_points() const noexcept;
+  /// Patches gathered since construction.
+  [[nodiscard]] std::uint64_t gathers() const noexcept;
+
+ private:
+  struct State;
+  FieldOptions options_;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "palpate/field/surface_points.hpp"
+
+namespace palpate {
+
+/// Shared points and how much they count: a weight at the snapshot's start and one at its end.
+struct Layer {
+  std::shared_ptr<const SurfacePoints> points;
+  double weight_start = 1;
+  double weight_end = 1;
+};
+
+/// What crosses from preparation to the servo: one source's surface over a stretch of time.
+/// Immutable, in the world frame. Between start and end everything goes in straight lines; before
+/// and after it stands still. The weights of a source's layers sum to 1 at every time.
+struct Snapshot {
+  double start = 0;  ///< s, on the clock that SceneField::update is given
+  double end = 0;    ///< s; not before start
+  std::vector<Layer> layers;
+};
+
+}  // namespace palpate
