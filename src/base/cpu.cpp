@@ -1,0 +1,16 @@
+#include "base/cpu.hpp"
+
+// The one file that asks the compiler which machine it compiles for.
+
+namespace palpate {
+
+bool cpu_has_v3() noexcept {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+         __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+#else
+  return false;
+#endif
+}
+
+}  // namespace palpate
