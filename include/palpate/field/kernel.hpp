@@ -34,9 +34,15 @@ struct KernelValue {
   return kernel == Kernel::wyvill ? wyvill(q) : wendland(q);
 }
 
-/// The level T' in (0, 1) at which the weight sum of a plane of unit-normalised points, seen at a
-/// height of `eta` support radii, equals T': the metaball's threshold for an offset of eta R
-/// (algorithm.md section 4; Wyvill in closed form, Wendland likewise by integration).
+/// The level at which the density-normalised weight sum of a plane stands at a height of `eta`
+/// support radii, 1 at 0 and 0 from 1 on: the metaball's threshold for an offset of eta R
+/// (docs/architecture.md, Words).
 [[nodiscard]] double plane_threshold(Kernel kernel, double eta) noexcept;
+
+/// d plane_threshold / d eta.
+[[nodiscard]] double plane_threshold_slope(Kernel kernel, double eta) noexcept;
+
+/// The inverse of plane_threshold, by bisection. Not for the servo step.
+[[nodiscard]] double plane_offset(Kernel kernel, double threshold) noexcept;
 
 }  // namespace palpate

@@ -1,0 +1,278 @@
+#include "field/evaluate.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "palpate/base/error.hpp"
+
+// Notation as in docs/architecture.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
+// A = sum v q / sum v, Nb = sum v n / sum v, W the united support, R(x) = sum w R / sum w.
+
+namespace palpate {
+namespace {
+
+using Eigen::Map;
+using Eigen::Vector3d;
+
+/// A function with its gradient.
+struct Value {
+  double f = 0;
+  Vector3d grad = Vector3d::Zero();
+};
+
+/// W, R(x) and what is at hand of the sums.
+struct Support {
+  Value w;
+  Value radius;
+  double plain = 0;                      // sum of w_i over all sources
+  Vector3d plain_grad = Vector3d::Zero();
+};
+
+Vector3d vector(const double v[3]) noexcept { return Map<const Vector3d>(v); }
+
+Value unite(const simd::Sums& sums, int sources) noexcept {
+  if (sources == 1) return {sums.w[0], vector(sums.grad_w[0])};
+  Value result{united(sums.w, sources), Vector3d::Zero()};
+  if (result.f <= 0) return result;
+  for (int s = 0; s < sources; ++s) {
+    const double share = sums.w[s] / result.f;
+    result.grad += share * share * share * vector(sums.grad_w[s]);
+  }
+  return result;
+}
+
+Support support_of(const simd::Sums& sums, int sources) noexcept {
+  Support result;
+  result.w = unite(sums, sources);
+  for (int s = 0; s < sources; ++s) {
+    result.plain += sums.w[s];
+    result.plain_grad += vector(sums.grad_w[s]);
+  }
+  result.radius.f = sums.wr / result.plain;
+  result.radius.grad = (vector(sums.grad_wr) - result.radius.f * result.plain_grad) / result.plain;
+  return result;
+}
+
+/// 0.35 R / Wmin (level - W): a weight sum as a length.
+Value as_length(const FieldOptions& options, const Support& support, const Value& level) noexcept {
+  const double c = 0.35 / options.minimum_support;
+  const double above = level.f - support.w.f;
+  return {c * support.radius.f * above,
+          c * (above * support.radius.grad + support.radius.f * (level.grad - support.w.grad))};
+}
+
+/// The metaball's level T'; a tool of radius r lowers it so far that a plane moves out by r.
+Value level_of(const ImplicitSurface& surface, const Support& support) noexcept {
+  const FieldOptions& options = surface.options;
+  if (options.tool_radius <= 0) return {options.threshold, Vector3d::Zero()};
+  const double eta = surface.offset + options.tool_radius / support.radius.f;
+  const double slope = plane_threshold_slope(options.kernel, eta);
+  const double d_eta = -options.tool_radius / (support.radius.f * support.radius.f);
+  return {plane_threshold(options.kernel, eta), slope * d_eta * support.radius.grad};
+}
+
+/// A surface from normals, with what `simd::gradient` needs to finish its gradient.
+struct Oriented {
+  double f = 0;
+  Vector3d base = Vector3d::Zero();  // the part of the gradient outside the sum
+  simd::Linear b{};
+};
+
+void assign(double to[3], const Vector3d& from) noexcept {
+  for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
+}
+
+/// Half point-set surface, half IMLS: f = 1/2 [-Nb . A - sum v n.q / V].
+Oriented balanced(const simd::Sums& sums) noexcept {
+  const double s = 1 / sums.v;
+  const Vector3d a = s * vector(sums.vq);
+  const Vector3d nb = s * vector(sums.vn);
+  const double imls = -s * sums.vnq;
+  Oriented result;
+  result.f = 0.5 * (imls - nb.dot(a));
+  result.base = nb;
+  assign(result.b.alpha, -0.5 * s * a);
+  assign(result.b.beta, -0.5 * s * nb);
+  result.b.gamma = -0.5 * s;
+  result.b.delta = 0.5 * s * (2 * nb.dot(a) - imls);
+  return result;
+}
+
+/// Eqs. (5)-(7): f = n . (x - a), and its exact gradient.
+Oriented pointset(const simd::Sums& sums) noexcept {
+  const double s = 1 / sums.v;
+  const Vector3d a = s * vector(sums.vq);
+  const double length = vector(sums.vn).norm();
+  const Vector3d n = vector(sums.vn) / length;
+  Oriented result;
+  result.f = -n.dot(a);
+  result.base = n;
+  assign(result.b.alpha, -(a + n * result.f) / length);
+  assign(result.b.beta, -s * n);
+  result.b.gamma = 0;
+  result.b.delta = s * n.dot(a);
+  return result;
+}
+
+/// Can the normals' surface be told here at all?
+bool has_normals(const FieldOptions& options, const simd::Sums& sums, double plain) noexcept {
+  if (options.kind == FieldKind::metaball || !(sums.v > 1e-9 * plain)) return false;
+  return options.kind == FieldKind::balanced ||
+         vector(sums.vn).squaredNorm() > 1e-24 * sums.v * sums.v;
+}
+
+/// Smooth maximum of two lengths over a width k = R / 10 that may vary: C1 (algorithm.md 1.4).
+Value smooth_max(const Value& a, const Value& b, const Value& radius) noexcept {
+  const double k = 0.1 * radius.f;
+  const double d = std::abs(a.f - b.f);
+  const Value& larger = a.f > b.f ? a : b;
+  const Value& smaller = a.f > b.f ? b : a;
+  if (d >= k) return larger;
+  const double h = (k - d) / k;
+  const double by_k = (k - d) * (k + d) / (4 * k * k);
+  return {larger.f + 0.25 * h * h * k, (1 - 0.5 * h) * larger.grad + 0.5 * h * smaller.grad +
+                                           by_k * 0.1 * radius.grad};
+}
+
+/// kappa = u^2 (3 - 2u) of u = clamp((chi - 0.25) / 0.3, 0, 1), chi = sum w c / sum w.
+Value trust_of(const simd::Sums& sums, const Support& support) noexcept {
+  constexpr double kFrom = 0.25;
+  constexpr double kWidth = 0.3;
+  const double chi = sums.v / support.plain;
+  const double u = std::clamp((chi - kFrom) / kWidth, 0.0, 1.0);
+  const Vector3d grad_chi = (vector(sums.grad_v) - chi * support.plain_grad) / support.plain;
+  return {u * u * (3 - 2 * u), 6 * u * (1 - u) / kWidth * grad_chi};
+}
+
+/// Eq. (4) to the letter: its vectors carry w where the derivative has w'.
+Vector3d printed_gradient(const ImplicitSurface& surface, const simd::Columns& c,
+                          const Vector3d& x) noexcept {
+  Vector3d total = Vector3d::Zero();
+  for (std::uint32_t i = 0; i < c.source_begin[c.sources]; ++i) {
+    const Vector3d away = x - Vector3d(c.position[0][i], c.position[1][i], c.position[2][i]);
+    const double r2 = away.squaredNorm();
+    if (r2 <= 0) continue;
+    const double w = evaluate(surface.options.kernel, r2 * c.inverse_r2[i]).w;
+    total -= c.weight[i] * w * away / std::sqrt(r2);
+  }
+  return total;
+}
+
+Sample nothing_here(const Patch& patch) noexcept {
+  Sample sample;
+  sample.radius = patch.mean_radius();
+  sample.value = 0.35 * sample.radius;
+  return sample;
+}
+
+/// The normals' surface at x with its exact gradient.
+Value finish_gradient(const ImplicitSurface& surface, const Patch& patch, const Oriented& oriented,
+                      const double x[3]) noexcept {
+  if (surface.options.gradient == GradientKind::normal) return {oriented.f, oriented.base};
+  double sum[3];
+  surface.sums->gradient(patch.columns(), x, oriented.b, sum);
+  return {oriented.f, oriented.base + vector(sum)};
+}
+
+/// Cap, tool and blend around the normals' surface (algorithm.md 1.4, 1.5).
+Value capped(const ImplicitSurface& surface, const simd::Sums& sums, const Support& support,
+             const Value& height, Side side) noexcept {
+  const FieldOptions& options = surface.options;
+  const double sign = options.two_sided && side < 0 ? -1 : 1;
+  const Value outer{sign * height.f - options.tool_radius, sign * height.grad};
+  if (!options.capped) return outer;
+  const Value floor{options.minimum_support, Vector3d::Zero()};
+  const Value cap =
+      smooth_max(outer, as_length(options, support, floor), support.radius);
+  const Value trust = trust_of(sums, support);
+  if (trust.f >= 1) return cap;
+  const Value blob = as_length(options, support, level_of(surface, support));
+  return {trust.f * cap.f + (1 - trust.f) * blob.f,
+          trust.f * cap.grad + (1 - trust.f) * blob.grad + (cap.f - blob.f) * trust.grad};
+}
+
+void require(bool condition, const char* option, double value, const char* range) {
+  if (condition) return;
+  throw Error(fmt::format("field option {} is {}: it must be {}", option, value, range));
+}
+
+}  // namespace
+
+ImplicitSurface::ImplicitSurface(const FieldOptions& given)
+    : options(given), sums(&simd::best()) {
+  require(given.threshold > 0 && std::isfinite(given.threshold), "threshold", given.threshold,
+          "above 0");
+  require(given.raw_weights || given.threshold < 1, "threshold", given.threshold,
+          "below 1 with density-normalised weights (0.4 unless there is a reason)");
+  require(given.minimum_support > 0 && given.minimum_support < 1, "minimum_support",
+          given.minimum_support, "between 0 and 1");
+  require(given.tool_radius >= 0 && std::isfinite(given.tool_radius), "tool_radius",
+          given.tool_radius, "0 or more, in metres");
+  require(given.tool_radius == 0 || !given.raw_weights, "tool_radius", given.tool_radius,
+          "0 with raw weights (the preset `paper` has a point for a tool)");
+  if (!given.raw_weights) offset = plane_offset(given.kernel, given.threshold);
+}
+
+double united(const double* w, int sources) noexcept {
+  if (sources == 1) return w[0];
+  double sum = 0;
+  for (int s = 0; s < sources; ++s) sum += w[s] * w[s] * w[s] * w[s];
+  return std::sqrt(std::sqrt(sum));
+}
+
+Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector3d& x,
+                Side side) noexcept {
+  if (patch.points() == 0) return nothing_here(patch);
+  const FieldOptions& options = surface.options;
+  const Vector3d local = x - patch.center();
+  const bool wendland = options.kernel == Kernel::wendland;
+  simd::Sums sums;
+  const auto sum = options.kind == FieldKind::metaball ? surface.sums->weights : surface.sums->all;
+  sum(patch.columns(), wendland, local.data(), sums);
+  const Support support = support_of(sums, patch.columns().sources);
+  if (!(support.plain > 1e-12)) return nothing_here(patch);
+
+  Sample sample;
+  sample.support = support.w.f;
+  sample.radius = support.radius.f;
+  Value value;
+  if (has_normals(options, sums, support.plain)) {
+    const Oriented oriented =
+        options.kind == FieldKind::balanced ? balanced(sums) : pointset(sums);
+    const Value height = finish_gradient(surface, patch, oriented, local.data());
+    sample.height = height.f;
+    value = capped(surface, sums, support, height, side);
+  } else {
+    value = as_length(options, support, level_of(surface, support));
+    if (options.gradient == GradientKind::printed) {
+      value.grad = printed_gradient(surface, patch.columns(), local);
+    }
+  }
+  sample.value = value.f;
+  sample.gradient = value.grad;
+  return sample;
+}
+
+double free_level(const ImplicitSurface& surface, double smallest_radius) noexcept {
+  const FieldOptions& options = surface.options;
+  if (options.kind != FieldKind::metaball && !options.capped) return 1e-9;
+  double level = options.threshold;
+  if (options.tool_radius > 0) {
+    const double eta = surface.offset + options.tool_radius / smallest_radius;
+    level = plane_threshold(options.kernel, eta);
+  }
+  return options.kind == FieldKind::metaball ? level : std::min(level, options.minimum_support);
+}
+
+bool is_free(const ImplicitSurface& surface, const Patch& patch, const Ball& ball) noexcept {
+  if (patch.points() == 0) return true;
+  const Vector3d local = ball.center - patch.center();
+  double w[simd::kMaxSources];
+  surface.sums->bound(patch.columns(), surface.options.kernel == Kernel::wendland, local.data(),
+                      ball.radius, w);
+  return united(w, patch.columns().sources) < free_level(surface, patch.smallest_radius());
+}
+
+}  // namespace palpate

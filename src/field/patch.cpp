@@ -1,0 +1,178 @@
+#include "field/patch.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "field/traversal.hpp"
+
+namespace palpate {
+namespace {
+
+double lerp(double a, double b, double u) noexcept { return a + u * (b - a); }
+
+Eigen::Vector3d normal_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  if (points.normals.empty()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d start = points.normals[i].cast<double>();
+  if (points.end_normals.empty()) return start;
+  const Eigen::Vector3d mixed =
+      start + layer.progress * (points.end_normals[i].cast<double>() - start);
+  const double length = mixed.norm();
+  return length > 1e-6 ? Eigen::Vector3d(mixed / length) : start;
+}
+
+Eigen::Vector3d velocity_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  if (points.end_positions.empty()) return Eigen::Vector3d::Zero();
+  return layer.rate * (points.end_positions[i] - points.grid.points()[i]).cast<double>();
+}
+
+}  // namespace
+
+Eigen::Vector3d position_now(const ActiveLayer& layer, std::uint32_t i,
+                             const Eigen::Vector3d& center) noexcept {
+  const SurfacePoints& points = *layer.points;
+  Eigen::Vector3d position = points.grid.points()[i].cast<double>();
+  if (!points.end_positions.empty()) {
+    position += layer.progress * (points.end_positions[i].cast<double>() - position);
+  }
+  return position - (center - points.origin);
+}
+
+double weight_now(const ActiveLayer& layer, std::uint32_t i, bool raw_weights) noexcept {
+  if (raw_weights) return layer.weight;
+  const SurfacePoints& points = *layer.points;
+  const double start = points.density_weights[i];
+  if (points.end_density_weights.empty()) return layer.weight * start;
+  return layer.weight * lerp(start, points.end_density_weights[i], layer.progress);
+}
+
+double squared_distance(const CellGrid::Cell& cell, const Eigen::Vector3d& x) noexcept {
+  const Eigen::Array3d below = cell.lower.cast<double>().array() - x.array();
+  const Eigen::Array3d above = x.array() - cell.upper.cast<double>().array();
+  return below.max(above).max(0).matrix().squaredNorm();
+}
+
+Patch::Patch(std::size_t capacity)
+    : capacity_((capacity + simd::kLanes - 1) / simd::kLanes * simd::kLanes),
+      data_(kColumns * capacity_, 0.0) {
+  for (int axis = 0; axis < 3; ++axis) {
+    columns_.position[axis] = column(kPosition + axis);
+    columns_.normal[axis] = column(kNormal + axis);
+  }
+  columns_.weight = column(kWeight);
+  columns_.confidence = column(kConfidence);
+  columns_.radius = column(kRadius);
+  columns_.inverse_r2 = column(kInverseR2);
+  columns_.slope = column(kSlope);
+}
+
+void Patch::gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
+                   double extra, bool raw_weights) noexcept {
+  center_ = center;
+  extra_ = extra;
+  stride_ = 1;
+  while (!gather_all(layers, sources, raw_weights)) stride_ *= 2;
+  mean_radius_ = count_ > 0 ? radius_sum_ / static_cast<double>(count_) : 0;
+}
+
+bool Patch::gather_all(std::span<const ActiveLayer> layers, int sources,
+                       bool raw_weights) noexcept {
+  used_ = 0;
+  count_ = 0;
+  smallest_radius_ = std::numeric_limits<double>::infinity();
+  radius_sum_ = 0;
+  columns_.sources = sources;
+  columns_.source_begin[0] = 0;
+  std::size_t next = 0;
+  for (int source = 0; source < sources; ++source) {
+    for (; next < layers.size() && layers[next].source == source; ++next) {
+      if (layers[next].weight > 0 && !gather_layer(layers[next], raw_weights)) return false;
+    }
+    pad();
+    columns_.source_begin[source + 1] = used_;
+  }
+  return true;
+}
+
+bool Patch::gather_layer(const ActiveLayer& layer, bool raw_weights) noexcept {
+  const Eigen::Vector3d x = center_ - layer.points->origin;
+  CellStack stack(*layer.points);
+  while (!stack.empty()) {
+    const std::uint32_t index = stack.pop();
+    const CellGrid::Cell& cell = layer.points->grid.cells()[index];
+    const double reach = layer.points->cell_reach[index] + extra_;
+    if (squared_distance(cell, x) > reach * reach) continue;
+    if (cell.children > 0 && cell.end - cell.begin > stride_) {
+      stack.push_children(cell);
+    } else if (!gather_run(layer, cell.begin, cell.end, raw_weights)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool Patch::gather_run(const ActiveLayer& layer, std::uint32_t begin, std::uint32_t end,
+                       bool raw_weights) noexcept {
+  const std::uint32_t first = (begin + stride_ - 1) / stride_ * stride_;
+  for (std::uint64_t i = first; i < end; i += stride_) {
+    const auto k = static_cast<std::uint32_t>(i);
+    const Eigen::Vector3d position = position_now(layer, k, center_);
+    const double reach = layer.points->radii[k] + extra_;
+    if (position.squaredNorm() > reach * reach) continue;
+    if (!put(layer, k, position, raw_weights)) return false;
+  }
+  return true;
+}
+
+bool Patch::put(const ActiveLayer& layer, std::uint32_t i, const Eigen::Vector3d& position,
+                bool raw_weights) noexcept {
+  if (used_ == capacity_) return false;
+  const SurfacePoints& points = *layer.points;
+  const double radius = points.radii[i];
+  const Eigen::Vector3d normal = normal_now(layer, i);
+  const Eigen::Vector3d velocity = velocity_now(layer, i);
+  for (int axis = 0; axis < 3; ++axis) {
+    column(kPosition + axis)[used_] = position[axis];
+    column(kNormal + axis)[used_] = normal[axis];
+    column(kVelocity + axis)[used_] = velocity[axis];
+  }
+  column(kWeight)[used_] = weight_now(layer, i, raw_weights) * stride_;
+  column(kConfidence)[used_] = points.normals.empty() ? 0.0 : points.confidences[i];
+  column(kRadius)[used_] = radius;
+  column(kInverseR2)[used_] = 1 / (radius * radius);
+  column(kMaterial)[used_] = points.materials.empty() ? 1.0 : points.materials[i];
+  smallest_radius_ = std::min(smallest_radius_, radius);
+  radius_sum_ += radius;
+  ++used_;
+  ++count_;
+  return true;
+}
+
+void Patch::pad() noexcept {
+  while (used_ % simd::kLanes != 0) {  // the capacity is a multiple of kLanes
+    for (int c = 0; c < kColumns; ++c) column(c)[used_] = 0;
+    ++used_;
+  }
+}
+
+void Patch::use_nearest_radius(const Eigen::Vector3d& x) noexcept {
+  const Eigen::Vector3d local = x - center_;
+  double nearest = std::numeric_limits<double>::infinity();
+  double radius = 0;
+  for (std::uint32_t i = 0; i < used_; ++i) {
+    const Eigen::Vector3d p(column(0)[i], column(1)[i], column(2)[i]);
+    const double squared = (p - local).squaredNorm();
+    if (columns_.radius[i] <= 0 || squared >= nearest) continue;  // padding has no radius
+    nearest = squared;
+    radius = columns_.radius[i];
+  }
+  if (radius <= 0) return;
+  for (std::uint32_t i = 0; i < used_; ++i) {
+    if (column(kRadius)[i] <= 0) continue;
+    column(kRadius)[i] = radius;
+    column(kInverseR2)[i] = 1 / (radius * radius);
+  }
+}
+
+}  // namespace palpate

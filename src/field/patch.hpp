@@ -1,0 +1,107 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "field/simd/sums.hpp"
+#include "palpate/field/field.hpp"
+#include "palpate/field/surface_points.hpp"
+
+namespace palpate {
+
+/// One layer of points as it counts at the present moment.
+struct ActiveLayer {
+  const SurfacePoints* points = nullptr;
+  int source = 0;
+  double weight = 1;    ///< C_k
+  double progress = 0;  ///< 0 at the points' start (A), 1 at their end (B)
+  double rate = 0;      ///< d progress / dt, 1/s
+};
+
+/// The points around a place, copied into columns relative to that place: what the sums run over.
+///
+/// It holds every point whose support reaches into the ball (center, extra), so a sample anywhere
+/// in that ball is exact. All memory is taken by the constructor. When more points are near than it
+/// holds, every 2nd, 4th, ... of the index's order is taken and weighs as much more.
+class Patch {
+ public:
+  explicit Patch(std::size_t capacity);
+
+  /// `layers` in the order of their sources; `raw_weights` leaves out the density weights.
+  void gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
+              double extra, bool raw_weights) noexcept;
+
+  /// Gives all points the radius of the one nearest to x (the paper's section III-D).
+  void use_nearest_radius(const Eigen::Vector3d& x) noexcept;
+
+  /// Covers nothing until the next gather.
+  void clear() noexcept { extra_ = -1; }
+
+  [[nodiscard]] bool covers(const Ball& ball) const noexcept {
+    return (ball.center - center_).norm() + ball.radius <= extra_;
+  }
+  [[nodiscard]] const Eigen::Vector3d& center() const noexcept { return center_; }
+  [[nodiscard]] std::size_t points() const noexcept { return count_; }
+  [[nodiscard]] bool thinned() const noexcept { return stride_ > 1; }
+  [[nodiscard]] double smallest_radius() const noexcept { return smallest_radius_; }
+  [[nodiscard]] double mean_radius() const noexcept { return mean_radius_; }
+  [[nodiscard]] const simd::Columns& columns() const noexcept { return columns_; }
+
+  /// Plain columns beside those of the sums.
+  [[nodiscard]] const double* material() const noexcept { return column(kMaterial); }
+  [[nodiscard]] const double* velocity(int axis) const noexcept { return column(kVelocity + axis); }
+
+ private:
+  enum Column {
+    kPosition = 0,
+    kNormal = 3,
+    kWeight = 6,
+    kConfidence,
+    kRadius,
+    kInverseR2,
+    kSlope,
+    kMaterial,
+    kVelocity,
+    kColumns = kVelocity + 3
+  };
+
+  [[nodiscard]] double* column(int c) noexcept { return data_.data() + c * capacity_; }
+  [[nodiscard]] const double* column(int c) const noexcept { return data_.data() + c * capacity_; }
+  [[nodiscard]] bool gather_all(std::span<const ActiveLayer> layers, int sources,
+                                bool raw_weights) noexcept;
+  [[nodiscard]] bool gather_layer(const ActiveLayer& layer, bool raw_weights) noexcept;
+  [[nodiscard]] bool gather_run(const ActiveLayer& layer, std::uint32_t begin, std::uint32_t end,
+                                bool raw_weights) noexcept;
+  [[nodiscard]] bool put(const ActiveLayer& layer, std::uint32_t i,
+                         const Eigen::Vector3d& position, bool raw_weights) noexcept;
+  void pad() noexcept;
+
+  std::size_t capacity_;
+  std::vector<double> data_;
+  simd::Columns columns_{};
+  Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
+  double extra_ = -1;
+  std::uint32_t used_ = 0;  // with padding
+  std::size_t count_ = 0;   // without
+  std::uint32_t stride_ = 1;
+  double smallest_radius_ = 0;
+  double radius_sum_ = 0;
+  double mean_radius_ = 0;
+};
+
+/// The position of a layer's point now, relative to `center` (world frame).
+[[nodiscard]] Eigen::Vector3d position_now(const ActiveLayer& layer, std::uint32_t i,
+                                           const Eigen::Vector3d& center) noexcept;
+
+/// a_i C_k now; C_k alone with `raw_weights`.
+[[nodiscard]] double weight_now(const ActiveLayer& layer, std::uint32_t i,
+                                bool raw_weights) noexcept;
+
+/// Squared distance from x to a cell's box, m^2; x relative to the points' origin.
+[[nodiscard]] double squared_distance(const CellGrid::Cell& cell,
+                                      const Eigen::Vector3d& x) noexcept;
+
+}  // namespace palpate

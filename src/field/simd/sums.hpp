@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+
+// The sums over a patch's points that every field is made of: the only code that is compiled once
+// for each level of the instruction set. Plain pointers and numbers alone cross this border.
+
+namespace palpate::simd {
+
+constexpr int kLanes = 4;         // points that are summed side by side, on every level
+constexpr int kMaxSources = 8;
+
+// A patch in columns, relative to its centre. Each source's run is padded to a multiple of kLanes
+// with points of weight 0.
+struct Columns {
+  const double* position[3];      // m
+  const double* normal[3];
+  const double* weight;           // a_i C_k
+  const double* confidence;       // c_i
+  const double* radius;           // R_i, m
+  const double* inverse_r2;       // 1 / R_i^2
+  double* slope;                  // scratch: a_i C_k g_i / R_i^2 of the last call of `all`
+  std::uint32_t source_begin[kMaxSources + 1];
+  int sources;
+};
+
+// q_i = p_i - x, w_i with its weight, v_i = c_i w_i.
+struct Sums {
+  double w[kMaxSources];               // sum w_i, for each source
+  double grad_w[kMaxSources][3];
+  double wr;                           // sum w_i R_i
+  double grad_wr[3];
+  double v;                            // sum v_i
+  double grad_v[3];
+  double vq[3];                        // sum v_i q_i
+  double vn[3];                        // sum v_i n_i
+  double vnq;                          // sum v_i n_i . q_i
+};
+
+// b_i = n_i . alpha + q_i . beta + (n_i . q_i) gamma + delta.
+struct Linear {
+  double alpha[3];
+  double beta[3];
+  double gamma;
+  double delta;
+};
+
+struct Functions {
+  // The weight sums alone (metaball).
+  void (*weights)(const Columns&, bool wendland, const double x[3], Sums&) noexcept;
+  // All sums; leaves the slopes in their scratch column.
+  void (*all)(const Columns&, bool wendland, const double x[3], Sums&) noexcept;
+  // sum grad v_i b_i, with the slopes that `all` left for the same x.
+  void (*gradient)(const Columns&, const double x[3], const Linear&, double out[3]) noexcept;
+  // For each source an upper bound of sum w_i over the ball (x, h).
+  void (*bound)(const Columns&, bool wendland, const double x[3], double h,
+                double out[kMaxSources]) noexcept;
+};
+
+extern const Functions kBaseline;
+extern const Functions kV3;  // x86-64-v3; equals kBaseline elsewhere. The same numbers bit for bit.
+
+// The best that this processor has.
+const Functions& best() noexcept;
+
+}  // namespace palpate::simd

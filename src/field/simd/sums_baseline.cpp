@@ -1,0 +1,7 @@
+#include "field/simd/sums.inl"
+
+namespace palpate::simd {
+
+const Functions kBaseline{&weights_of, &all_of, &gradient, &bound_of};
+
+}  // namespace palpate::simd

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "palpate/field/surface_points.hpp"
+
+namespace palpate {
+
+/// The cells still to visit in a depth-first walk through an index. At every level at most seven
+/// siblings wait, so its size is bounded by the index's depth.
+class CellStack {
+ public:
+  explicit CellStack(const SurfacePoints& points) noexcept {
+    if (!points.grid.cells().empty()) cells_[size_++] = 0;
+  }
+
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  [[nodiscard]] std::uint32_t pop() noexcept { return cells_[--size_]; }
+
+  /// The first child is visited next: points come in sorted order.
+  void push_children(const CellGrid::Cell& cell) noexcept {
+    for (std::uint32_t k = cell.children; k-- > 0;) cells_[size_++] = cell.first_child + k;
+  }
+
+ private:
+  static constexpr std::size_t kCapacity = 8 * (CellGrid::kMaxDepth + 2);
+
+  std::array<std::uint32_t, kCapacity> cells_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace palpate
