@@ -11,32 +11,38 @@ namespace palpate {
 /// The spatial index: points sorted along a Morton curve and cut into cells that follow the local
 /// density, held in flat arrays.
 ///
-/// Cell 0 is the root; the children of a cell lie together, behind their parent. A cell's points
-/// are one contiguous run of the sorted order, and its box is the tight box of those points. The
-/// order depends on the input alone (ties keep the input's order), never on the number of threads.
+/// Cell 0 is the root (an empty index has no cells); the children of a cell lie together, behind
+/// their parent. A cell's points are one contiguous run of the sorted order, and its box is the
+/// tight box of those points. Cells that a division would leave whole are not stored twice, so a
+/// cell has two children or more. The order depends on the input alone (ties keep the input's
+/// order), never on the number of threads.
 class CellGrid {
  public:
   struct Cell {
-    Eigen::Vector3f lower;         ///< tight box of the cell's points
+    Eigen::Vector3f lower;  ///< tight box of the cell's points
     Eigen::Vector3f upper;
-    std::uint32_t begin = 0;       ///< first point, in sorted order
-    std::uint32_t end = 0;         ///< one past the last point
-    std::uint32_t first_child = 0; ///< index of the first child; 0 for a leaf
-    std::uint32_t children = 0;    ///< number of children (0-8); 0 for a leaf
+    std::uint32_t begin = 0;        ///< first point, in sorted order
+    std::uint32_t end = 0;          ///< one past the last point
+    std::uint32_t first_child = 0;  ///< index of the first child; 0 for a leaf
+    std::uint32_t children = 0;     ///< number of children (2-8); 0 for a leaf
+
+    [[nodiscard]] std::uint32_t size() const { return end - begin; }
   };
 
   /// A neighbour in a k-nearest search.
   struct Neighbor {
-    std::uint32_t index = 0;       ///< in sorted order
-    float squared_distance = 0;    ///< m^2
+    std::uint32_t index = 0;     ///< in sorted order
+    float squared_distance = 0;  ///< m^2
   };
 
   static constexpr std::uint32_t kLeafPoints = 16;  ///< a cell with more points is divided ...
-  static constexpr int kMaxDepth = 21;              ///< ... unless its points coincide
+  static constexpr int kMaxDepth = 44;              ///< ... unless its points coincide
+  /// Entries that suffice for the stack of any depth-first walk over cells().
+  static constexpr std::size_t kMaxStack = 7 * kMaxDepth + 1;
 
   CellGrid() = default;
 
-  /// Builds the index. At most 2^32 - 1 points.
+  /// Builds the index. At most 2^31 - 1 points.
   /// @throws Error when there are more points than that, or one is not finite.
   explicit CellGrid(std::span<const Eigen::Vector3f> positions);
 
@@ -49,10 +55,12 @@ class CellGrid {
   /// order()[k] is the place in the input of the k-th sorted point.
   [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
 
-  /// Appends the sorted indices of all points with |p - center| <= radius to `found`.
+  /// Appends the sorted indices of all points with |p - center| <= radius to `found`, in rising
+  /// order. Allocates only when `found` has to grow.
   void within(const Eigen::Vector3f& center, float radius, std::vector<std::uint32_t>& found) const;
 
-  /// The min(k, size()) nearest points to `center`, nearest first; ties by sorted index.
+  /// Replaces `found` by the min(k, size()) nearest points to `center`, nearest first; ties by
+  /// sorted index. Allocates only when `found` has to grow.
   void nearest(const Eigen::Vector3f& center, std::size_t k, std::vector<Neighbor>& found) const;
 
  private:

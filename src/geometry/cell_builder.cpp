@@ -1,0 +1,234 @@
+#include "geometry/cell_builder.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "geometry/parallel.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::detail {
+namespace {
+
+constexpr int kLevels = kKeyBits / 3;
+constexpr std::size_t kGrain = std::size_t{1} << 16;
+
+// Levels that even out a surface of n points: four children a cell, and some to spare.
+int levels_for(std::size_t n) {
+  if (n <= 256) return kLevels;
+  return std::min(kLevels, (static_cast<int>(std::bit_width(n)) + 1) / 2 + 1);
+}
+
+// Puts two zero bits between any two of the lower 11 bits.
+std::uint64_t spread(std::uint32_t v) {
+  std::uint64_t x = v;
+  x = (x | (x << 16)) & 0x70000FF;
+  x = (x | (x << 8)) & 0x700F00F;
+  x = (x | (x << 4)) & 0x430C30C3;
+  x = (x | (x << 2)) & 0x49249249;
+  return x;
+}
+
+[[noreturn]] void refuse_not_finite(std::span<const Eigen::Vector3f> positions) {
+  const auto bad = std::find_if(positions.begin(), positions.end(),
+                                [](const Eigen::Vector3f& p) { return !p.allFinite(); });
+  throw Error(fmt::format(
+      "index: point {} of {} is not finite ({}, {}, {}); drop such points before indexing",
+      bad - positions.begin(), positions.size(), bad->x(), bad->y(), bad->z()));
+}
+
+// Four points at a time: their twelve numbers side by side fill the processor's lanes.
+struct WideBounds {
+  static constexpr std::size_t kLanes = 12;
+  std::array<float, kLanes> lower;
+  std::array<float, kLanes> upper;
+  std::array<std::uint32_t, kLanes> exponents{};
+
+  void take(const float* numbers) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const float v = numbers[l];
+      lower[l] = v < lower[l] ? v : lower[l];
+      upper[l] = upper[l] < v ? v : upper[l];
+      const std::uint32_t exponent = std::bit_cast<std::uint32_t>(v) & 0x7F800000;
+      exponents[l] = exponent < exponents[l] ? exponents[l] : exponent;
+    }
+  }
+};
+
+}  // namespace
+
+CellBuilder::CellBuilder(std::span<const Eigen::Vector3f> positions) : positions_(positions) {
+  const auto count = static_cast<std::uint32_t>(positions.size());
+  if (count == 0) return;
+  const Bounds bounds = bounds_of(0, count);
+  records_.resize(count);
+  scratch_.resize(count);
+  parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) records_[i] = i;
+  });
+  const int levels = levels_for(count);
+  make_keys(0, count, bounds, levels);
+  sort_records(records_, scratch_, 3 * levels);
+  cells_.reserve(count / 4 + 64);
+  cells_.push_back({bounds.lower, bounds.upper, 0, count, 0, 0});
+  depths_.push_back(static_cast<std::uint8_t>(levels));
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) divide(cell);
+  points_.resize(count);
+  parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points_[i] = positions_[records_[i] & kPlaceMask];
+  });
+  fit_boxes();
+}
+
+CellBuilder::Bounds CellBuilder::bounds_of(std::uint32_t begin, std::uint32_t end) const {
+  const bool sorted = !cells_.empty();
+  const auto at = [&](std::size_t i) -> const Eigen::Vector3f& {
+    return positions_[sorted ? records_[i] & kPlaceMask : i];
+  };
+  Bounds bounds{at(begin), at(begin)};
+  if (sorted) {
+    for (std::size_t i = begin; i < end; ++i) {
+      bounds.lower = bounds.lower.cwiseMin(at(i));
+      bounds.upper = bounds.upper.cwiseMax(at(i));
+    }
+    return bounds;
+  }
+  WideBounds wide;
+  for (std::size_t l = 0; l < WideBounds::kLanes; ++l) {
+    wide.lower[l] = wide.upper[l] = bounds.lower[static_cast<Eigen::Index>(l % 3)];
+  }
+  std::size_t i = 0;
+  for (; i + 4 <= end; i += 4) wide.take(positions_[i].data());
+  for (; i < end; ++i) {
+    std::array<float, WideBounds::kLanes> last;
+    for (std::size_t l = 0; l < last.size(); ++l) {
+      last[l] = positions_[i][static_cast<Eigen::Index>(l % 3)];
+    }
+    wide.take(last.data());
+  }
+  for (std::size_t l = 0; l < WideBounds::kLanes; ++l) {
+    const auto axis = static_cast<Eigen::Index>(l % 3);
+    bounds.lower[axis] = std::min(bounds.lower[axis], wide.lower[l]);
+    bounds.upper[axis] = std::max(bounds.upper[axis], wide.upper[l]);
+    if (wide.exponents[l] == 0x7F800000) refuse_not_finite(positions_);
+  }
+  return bounds;
+}
+
+void CellBuilder::make_keys(std::uint32_t begin, std::uint32_t end, const Bounds& bounds,
+                            int levels) {
+  const Eigen::Vector3d lower = bounds.lower.cast<double>();
+  const double extent = (bounds.upper.cast<double>() - lower).maxCoeff();
+  const double steps = std::ldexp(1., levels);
+  const double scale = extent > 0 ? steps / extent : 0;
+  const int shift = kPlaceBits + kKeyBits - 3 * levels;
+  parallel_ranges(end - begin, kGrain, [&](std::size_t from, std::size_t to) {
+    const auto cell = [&](double v, double low) {
+      return static_cast<std::uint32_t>(std::min((v - low) * scale, steps - 1));
+    };
+    for (std::size_t i = begin + from; i < begin + to; ++i) {
+      const std::uint64_t place = records_[i] & kPlaceMask;
+      const Eigen::Vector3f& p = positions_[place];
+      const std::uint64_t key = spread(cell(p.x(), lower.x())) << 2 |
+                                spread(cell(p.y(), lower.y())) << 1 |
+                                spread(cell(p.z(), lower.z()));
+      records_[i] = key << shift | place;
+    }
+  });
+}
+
+void CellBuilder::divide(std::size_t cell) {
+  if (cells_[cell].size() <= CellGrid::kLeafPoints) return;
+  const auto difference = [&] {
+    return (records_[cells_[cell].begin] ^ records_[cells_[cell].end - 1]) >> kPlaceBits;
+  };
+  if (difference() == 0 && !sort_again(cell)) return;
+  const int level = (static_cast<int>(std::bit_width(difference())) - 1) / 3;
+  append_children(cell, kPlaceBits + 3 * level);
+}
+
+// False when the cell's points coincide, or its keys may have no more levels.
+bool CellBuilder::sort_again(std::size_t cell) {
+  const auto [begin, end] = std::pair(cells_[cell].begin, cells_[cell].end);
+  const Bounds bounds = bounds_of(begin, end);
+  const int levels = std::min(levels_for(end - begin), CellGrid::kMaxDepth - depths_[cell]);
+  if (bounds.lower == bounds.upper || levels <= 0) return false;
+  make_keys(begin, end, bounds, levels);
+  sort_records(std::span(records_).subspan(begin, end - begin),
+               std::span(scratch_).subspan(begin, end - begin), 3 * levels);
+  depths_[cell] = static_cast<std::uint8_t>(depths_[cell] + levels);
+  return true;
+}
+
+void CellBuilder::append_children(std::size_t cell, int shift) {
+  const auto first_child = static_cast<std::uint32_t>(cells_.size());
+  const std::uint32_t end = cells_[cell].end;
+  const std::uint8_t depth = depths_[cell];
+  std::uint32_t begin = cells_[cell].begin;
+  while (begin < end) {
+    const Record group = records_[begin] >> shift;
+    std::uint32_t next = end;
+    if (end - begin > 64) {
+      const auto after =
+          std::partition_point(records_.begin() + begin, records_.begin() + end,
+                               [&](Record record) { return (record >> shift) == group; });
+      next = static_cast<std::uint32_t>(after - records_.begin());
+    } else {
+      next = begin + 1;
+      while (next < end && (records_[next] >> shift) == group) ++next;
+    }
+    cells_.push_back({Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), begin, next, 0, 0});
+    depths_.push_back(depth);
+    begin = next;
+  }
+  cells_[cell].first_child = first_child;
+  cells_[cell].children = static_cast<std::uint32_t>(cells_.size()) - first_child;
+}
+
+void CellBuilder::fit_boxes() {
+  parallel_ranges(cells_.size(), kGrain / 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      CellGrid::Cell& cell = cells_[i];
+      if (cell.children != 0) continue;
+      cell.lower = cell.upper = points_[cell.begin];
+      for (std::uint32_t k = cell.begin + 1; k < cell.end; ++k) {
+        cell.lower = cell.lower.cwiseMin(points_[k]);
+        cell.upper = cell.upper.cwiseMax(points_[k]);
+      }
+    }
+  });
+  for (std::size_t i = cells_.size(); i-- > 0;) {
+    CellGrid::Cell& cell = cells_[i];
+    if (cell.children == 0) continue;
+    cell.lower = cells_[cell.first_child].lower;
+    cell.upper = cells_[cell.first_child].upper;
+    for (std::uint32_t c = 1; c < cell.children; ++c) {
+      cell.lower = cell.lower.cwiseMin(cells_[cell.first_child + c].lower);
+      cell.upper = cell.upper.cwiseMax(cells_[cell.first_child + c].upper);
+    }
+  }
+}
+
+std::vector<std::uint32_t> CellBuilder::take_order() {
+  std::vector<std::uint32_t> order(records_.size());
+  parallel_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      order[i] = static_cast<std::uint32_t>(records_[i] & kPlaceMask);
+    }
+  });
+  return order;
+}
+
+std::vector<Eigen::Vector3f> CellBuilder::take_points() {
+  return std::move(points_);
+}
+
+std::vector<CellGrid::Cell> CellBuilder::take_cells() {
+  return std::move(cells_);
+}
+
+}  // namespace palpate::detail

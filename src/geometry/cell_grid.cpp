@@ -1,0 +1,114 @@
+#include "palpate/geometry/cell_grid.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+
+#include "geometry/cell_builder.hpp"
+#include "geometry/distance.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+struct Candidate {
+  float squared_distance;
+  std::uint32_t cell;
+};
+
+bool nearer(const CellGrid::Neighbor& a, const CellGrid::Neighbor& b) {
+  return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
+                                                  : a.index < b.index;
+}
+
+// Keeps the k nearest in a heap with the farthest in front.
+void offer(std::vector<CellGrid::Neighbor>& heap, std::size_t k,
+           const CellGrid::Neighbor& neighbor) {
+  if (heap.size() < k) {
+    heap.push_back(neighbor);
+    std::push_heap(heap.begin(), heap.end(), nearer);
+  } else if (nearer(neighbor, heap.front())) {
+    std::pop_heap(heap.begin(), heap.end(), nearer);
+    heap.back() = neighbor;
+    std::push_heap(heap.begin(), heap.end(), nearer);
+  }
+}
+
+// A walk's open cells. Children go on it farthest first, so that the nearest comes off first.
+class Stack {
+ public:
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  Candidate pop() { return entries_[--count_]; }
+  void push(const Candidate& candidate) { entries_[count_++] = candidate; }
+  void push_sorted(std::span<const CellGrid::Cell> cells, const CellGrid::Cell& cell,
+                   const Eigen::Vector3f& center) {
+    const auto first = entries_.begin() + static_cast<std::ptrdiff_t>(count_);
+    for (std::uint32_t c = 0; c < cell.children; ++c) {
+      const std::uint32_t child = cell.first_child + c;
+      push({detail::squared_distance(cells[child], center), child});
+    }
+    std::sort(first, first + cell.children, [](const Candidate& a, const Candidate& b) {
+      return a.squared_distance > b.squared_distance;
+    });
+  }
+
+ private:
+  std::array<Candidate, CellGrid::kMaxStack> entries_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+CellGrid::CellGrid(std::span<const Eigen::Vector3f> positions) {
+  if (positions.size() > detail::kPlaceMask) {
+    throw Error(fmt::format("index: {} points are more than the {} that it can hold; thin them out",
+                            positions.size(), detail::kPlaceMask));
+  }
+  detail::CellBuilder builder(positions);
+  order_ = builder.take_order();
+  points_ = builder.take_points();
+  cells_ = builder.take_cells();
+}
+
+void CellGrid::within(const Eigen::Vector3f& center, float radius,
+                      std::vector<std::uint32_t>& found) const {
+  if (cells_.empty() || !(radius >= 0)) return;
+  const float squared_radius = radius * radius;
+  std::array<std::uint32_t, kMaxStack> stack;
+  std::size_t open = 0;
+  stack[open++] = 0;
+  while (open > 0) {
+    const Cell& cell = cells_[stack[--open]];
+    if (detail::squared_distance(cell, center) > squared_radius) continue;
+    for (std::uint32_t c = cell.children; c-- > 0;) stack[open++] = cell.first_child + c;
+    if (cell.children != 0) continue;
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+      if (detail::squared_distance(points_[i], center) <= squared_radius) found.push_back(i);
+    }
+  }
+}
+
+void CellGrid::nearest(const Eigen::Vector3f& center, std::size_t k,
+                       std::vector<Neighbor>& found) const {
+  found.clear();
+  k = std::min(k, size());
+  if (k == 0) return;
+  Stack stack;
+  stack.push({detail::squared_distance(cells_.front(), center), 0});
+  while (!stack.empty()) {
+    const Candidate next = stack.pop();
+    if (found.size() == k && next.squared_distance > found.front().squared_distance) continue;
+    const Cell& cell = cells_[next.cell];
+    if (cell.children != 0) {
+      stack.push_sorted(cells_, cell, center);
+      continue;
+    }
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+      offer(found, k, {i, detail::squared_distance(points_[i], center)});
+    }
+  }
+  std::sort_heap(found.begin(), found.end(), nearer);
+}
+
+}  // namespace palpate
