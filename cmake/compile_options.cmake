@@ -1,11 +1,18 @@
 # What every target of ours is compiled with. Warnings become errors in the presets only.
-#
-# -ffp-contract=off: the same input gives the same forces bit for bit, on every level of the
-# instruction set (architecture.md, contract 5).
 set(PALPATE_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
 
+# The oldest x86 processor that runs palpate (2009: SSE4.2). Loops that gain from AVX2 are compiled
+# a second time by their owners and chosen at run time.
+set(PALPATE_BASELINE)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+  set(PALPATE_BASELINE -march=x86-64-v2)
+endif()
+
+# -ffp-contract=off: no fused multiply-add behind our backs, so that the same input gives the same
+# forces bit for bit at every level of the instruction set (docs/architecture.md, contract 5).
 function(palpate_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_compile_options(${target} PRIVATE ${PALPATE_WARNINGS} -ffp-contract=off)
+  target_compile_options(${target} PRIVATE
+    ${PALPATE_WARNINGS} ${PALPATE_BASELINE} -ffp-contract=off)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
 endfunction()
