@@ -29,10 +29,10 @@ struct Contact {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< outward unit normal; 0 when not touching
   double stiffness = 0;                              ///< K used for the force, N/m
   bool touching = false;
-  bool sliding = false;                              ///< friction gave way in this step
-  int iterations = 0;                                ///< constrained sub-steps taken
-  int evaluations = 0;                               ///< field samples and ball tests spent
-  int source = -1;                                   ///< index of the touched source; -1: none
+  bool sliding = false;  ///< friction gave way in this step
+  int iterations = 0;    ///< constrained sub-steps taken
+  int evaluations = 0;   ///< field samples and ball tests spent
+  int source = -1;       ///< index of the touched source; -1: none
   ContactNote notes = ContactNote::none;
 };
 

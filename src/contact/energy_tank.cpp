@@ -1,0 +1,43 @@
+#include "palpate/contact/energy_tank.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+
+void EnergyTank::restart(double stiffness) noexcept {
+  stiffness_ = stiffness;
+  energy_ = 0;
+}
+
+double EnergyTank::follow(double wanted, double stretch, double dissipated, double dt) noexcept {
+  const double half_square = 0.5 * stretch * stretch;
+  fill(dissipated);
+  if (wanted < stiffness_) fall(wanted, half_square, dt);
+  if (wanted > stiffness_) rise(wanted, half_square, dt);
+  return stiffness_;
+}
+
+void EnergyTank::fall(double wanted, double half_square, double dt) noexcept {
+  const double next = std::max(wanted, stiffness_ * std::exp(-dt / kTime));
+  fill((stiffness_ - next) * half_square);
+  stiffness_ = next;
+}
+
+void EnergyTank::rise(double wanted, double half_square, double dt) noexcept {
+  const double step = std::min(wanted - stiffness_, wanted * std::min(1.0, dt / kTime));
+  const double price = step * half_square;
+  const double paid = std::min(price, energy_);
+  if (paid < price) {
+    stiffness_ += step * (paid / price);
+  } else {
+    stiffness_ = step < wanted - stiffness_ ? stiffness_ + step : wanted;
+  }
+  energy_ -= paid;
+}
+
+void EnergyTank::fill(double energy) noexcept {
+  energy_ = std::min(kCapacity, energy_ + energy);
+}
+
+}  // namespace palpate

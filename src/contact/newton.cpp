@@ -1,0 +1,45 @@
+#include "newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr int kSteps = 10;
+constexpr double kClamp = 0.3;       // of R
+constexpr double kTolerance = 1e-6;  // of R
+constexpr double kAccept = 1e-4;     // of R, when the steps have run out
+constexpr double kLeastGradient = 1e-8;
+constexpr double kLeastSupport = 1e-6;
+
+}  // namespace
+
+std::optional<double> first_order_distance(const Sample& sample) noexcept {
+  const double slope = sample.gradient.norm();
+  if (!(slope >= kLeastGradient) || !(sample.support >= kLeastSupport)) return std::nullopt;
+  return sample.value / slope;
+}
+
+std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x) noexcept {
+  return project(probe, x, probe.sample(x));
+}
+
+std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
+                                    const Sample& first) noexcept {
+  Eigen::Vector3d place = x;
+  Sample here = first;
+  for (int step = 0;; ++step) {
+    const std::optional<double> distance = first_order_distance(here);
+    if (!distance) return std::nullopt;
+    const double radius = probe.step_length();
+    const Eigen::Vector3d normal = here.gradient.normalized();
+    const double tolerance = (step < kSteps ? kTolerance : kAccept) * radius;
+    if (std::abs(*distance) < tolerance) return SurfacePoint{place, normal, radius};
+    if (step == kSteps) return std::nullopt;
+    place -= std::clamp(*distance, -kClamp * radius, kClamp * radius) * normal;
+    here = probe.sample(place);
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,32 @@
+#include "probe.hpp"
+
+#include "texture.hpp"
+
+namespace palpate {
+
+Probe::Probe(const Field& field, const Texture& texture, Side seen_from,
+             double step_length) noexcept
+    : side(seen_from),
+      field_(field),
+      texture_(texture),
+      traits_(field.traits()),
+      step_length_(step_length > 0 ? step_length : 16 * traits_.resolution) {}
+
+Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
+  ++evaluations_;
+  Sample sample = field_.sample(x, side);
+  if (sample.radius > 0) step_length_ = sample.radius;
+  if (texture_.amplitude > 0) {
+    const Relief relief = relief_at(texture_, x);
+    sample.value -= relief.height;
+    sample.gradient -= relief.gradient;
+  }
+  return sample;
+}
+
+bool Probe::is_free(const Ball& ball) noexcept {
+  ++evaluations_;
+  return field_.is_free(ball);
+}
+
+}  // namespace palpate

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "palpate/contact/proxy.hpp"
+#include "palpate/field/field.hpp"
+
+namespace palpate {
+
+/// A field as the proxy sees it during one step: with its relief, from its side, and counted.
+class Probe {
+ public:
+  Probe(const Field& field, const Texture& texture, Side seen_from, double step_length) noexcept;
+
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) noexcept;
+  [[nodiscard]] bool is_free(const Ball& ball) noexcept;
+  [[nodiscard]] bool inside(const Eigen::Vector3d& x) noexcept { return !(sample(x).value > 0); }
+
+  [[nodiscard]] const Field& field() const noexcept { return field_; }
+  [[nodiscard]] const FieldTraits& traits() const noexcept { return traits_; }
+
+  /// The support radius R where it was last known, m: what steps are measured in.
+  [[nodiscard]] double step_length() const noexcept { return step_length_; }
+  [[nodiscard]] int evaluations() const noexcept { return evaluations_; }
+
+  Side side = 0;
+  int swept = 0;  ///< evaluations that sweeps have spent
+
+ private:
+  const Field& field_;
+  const Texture& texture_;
+  FieldTraits traits_;
+  double step_length_;
+  int evaluations_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,228 @@
+#include "palpate/contact/proxy.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "anchor.hpp"
+#include "newton.hpp"
+#include "palpate/base/error.hpp"
+#include "probe.hpp"
+#include "slide.hpp"
+#include "sweep.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double kLeastTime = 1e-9;    // s
+constexpr double kKeepLost = 0.02;     // s, for which the force of a lost contact stays
+constexpr double kFadeRate = 300;      // N/s, at which it then goes
+constexpr double kTextureStep = 0.25;  // of the wavelength, the longest sub-step
+constexpr int kMostIterations = 1000;
+
+void require(bool good, const char* name, double value, const char* remedy) {
+  if (!good) throw Error(fmt::format("proxy: {} is {}; {}", name, value, remedy));
+}
+
+void require_at_least_zero(const char* name, double value) {
+  require(std::isfinite(value) && value >= 0, name, value, "give a number that is 0 or more");
+}
+
+void validate(const ProxyOptions& options) {
+  require_at_least_zero("stiffness (N/m)", options.stiffness);
+  const Friction& friction = options.friction;
+  require_at_least_zero("static friction", friction.static_coefficient);
+  require_at_least_zero("dynamic friction", friction.dynamic_coefficient);
+  require_at_least_zero("viscous friction (N s/m)", friction.viscous);
+  require(friction.dynamic_coefficient <= friction.static_coefficient, "dynamic friction",
+          friction.dynamic_coefficient, "give at most the static coefficient, or raise that");
+  require_at_least_zero("texture amplitude (m)", options.texture.amplitude);
+  require(std::isfinite(options.texture.wavelength) && options.texture.wavelength > 0,
+          "texture wavelength (m)", options.texture.wavelength, "give a length above 0");
+  require(options.max_iterations >= 1 && options.max_iterations <= kMostIterations,
+          "max_iterations", options.max_iterations, "give 1 to 1000");
+  require(options.tangent_tolerance >= 1e-6 && options.tangent_tolerance <= 0.1,
+          "tangent_tolerance", options.tangent_tolerance, "give 1e-6 to 0.1 support radii");
+}
+
+bool in_range(const Eigen::Vector3d& place) {
+  return place.allFinite() && place.cwiseAbs().maxCoeff() <= Proxy::kLargestCoordinate;
+}
+
+// What a field says may be rounded, or wrong.
+double factor(double value) {
+  return value >= 0 ? std::min(value, 1.0) : 0.0;
+}
+
+}  // namespace
+
+Proxy::Proxy(const ProxyOptions& options) : options_(options) {
+  validate(options);
+}
+
+void Proxy::reset(const Eigen::Vector3d& position) noexcept {
+  fault_ = !in_range(position);
+  started_ = !fault_;
+  side_ = 0;
+  step_length_ = 0;
+  release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
+}
+
+Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept {
+  if (!in_range(hip) || !std::isfinite(dt) || dt < 0) fault_ = true;
+  if (fault_) return faulted();
+  if (!started_) reset(hip);
+  Contact contact;
+  Probe probe{field, options_.texture, side_, step_length_};
+  if (!touching_) follow(probe, hip, contact);
+  if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
+  side_ = probe.side;
+  step_length_ = probe.step_length();
+  revision_ = probe.traits().revision;
+  contact.proxy = position_;
+  contact.touching = touching_;
+  contact.evaluations = probe.evaluations();
+  if (contact.force.allFinite() && in_range(position_)) return contact;
+  fault_ = true;
+  release(hip);
+  return faulted();
+}
+
+Contact Proxy::faulted() noexcept {
+  touching_ = false;
+  Contact contact;
+  contact.proxy = position_;
+  contact.notes = ContactNote::fault;
+  return contact;
+}
+
+// Free space: to the hand, or to the first contact on the way.
+void Proxy::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept {
+  if (way_is_free(probe, position_, hip)) return release(hip);
+  Sample here = probe.sample(position_);
+  choose_side(probe, here);
+  if (!(here.value > 0)) return touch(probe, position_);
+  const Sweep way = sweep(probe, position_, hip);
+  if (way.end == Sweep::End::hit) return touch(probe, way.position);
+  if (way.end == Sweep::End::truncated)
+    contact.notes = contact.notes | ContactNote::sweep_truncated;
+  release(way.position);
+}
+
+// A two-sided surface that came over a proxy which saw none before is seen from where the proxy is.
+void Proxy::choose_side(Probe& probe, Sample& here) const noexcept {
+  if (!probe.traits().two_sided || probe.side != 0 || here.value > 0) return;
+  probe.side = here.height >= 0 ? 1 : -1;
+  if (probe.side < 0) here = probe.sample(position_);
+}
+
+void Proxy::touch(Probe& probe, const Eigen::Vector3d& place) noexcept {
+  release(place);
+  if (probe.side == 0) probe.side = 1;
+  touching_ = true;
+  surface_ = probe.field().surface(place);
+  tank_.restart(wanted_stiffness());
+}
+
+void Proxy::release(const Eigen::Vector3d& place) noexcept {
+  position_ = place;
+  normal_.setZero();
+  last_force_.setZero();
+  lost_time_ = 0;
+  touching_ = false;
+  sliding_ = false;
+}
+
+void Proxy::hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept {
+  const std::optional<SurfacePoint> at = find_surface(probe, hip, contact);
+  if (!at) {
+    if (touching_) fade(hip, dt, contact);
+    return;
+  }
+  lost_time_ = 0;
+  const FrictionLaw law =
+      friction_law(options_.friction, factor(surface_.friction_factor), tank_.stiffness(), dt);
+  const SlideOptions options{.method = options_.method,
+                             .max_iterations = options_.max_iterations,
+                             .tangent_tolerance = options_.tangent_tolerance,
+                             .longest_step = options_.texture.amplitude > 0
+                                                 ? kTextureStep * options_.texture.wavelength
+                                                 : 0,
+                             .friction = law};
+  const Slide motion = slide(probe, *at, hip, sliding_, options);
+  contact.iterations = motion.iterations;
+  if (settle(motion, contact)) press(probe.field(), hip, motion.dissipated, dt, contact);
+}
+
+// Where the surface is now, near where the proxy touched it. Empty: the contact ended, or is lost.
+std::optional<SurfacePoint> Proxy::find_surface(Probe& probe, const Eigen::Vector3d& hip,
+                                                Contact& contact) noexcept {
+  const Sample here = probe.sample(position_);
+  std::optional<SurfacePoint> at;
+  if (surface_moved(probe, here, normal_, probe.traits().revision != revision_)) {
+    at = reanchor(probe, position_, normal_);
+    if (at) contact.notes = contact.notes | ContactNote::reanchored;
+  }
+  if (!at) at = project(probe, position_, here);
+  if (!at) at = recover(probe, position_, normal_);
+  if (at || !(here.value > 0)) return at;
+  const Sweep way = first_contact(probe, position_, hip);
+  if (way.end == Sweep::End::hit) return project(probe, way.position);
+  if (way.end == Sweep::End::truncated)
+    contact.notes = contact.notes | ContactNote::sweep_truncated;
+  release(way.position);
+  return std::nullopt;
+}
+
+// Takes over where the motion ended. True while the proxy still touches.
+bool Proxy::settle(const Slide& motion, Contact& contact) noexcept {
+  if (motion.end == Slide::End::released || motion.end == Slide::End::interrupted) {
+    if (motion.end == Slide::End::interrupted) {
+      contact.notes = contact.notes | ContactNote::sweep_truncated;
+    }
+    release(motion.at.position);
+    return false;
+  }
+  if (motion.end == Slide::End::unfinished) {
+    contact.notes = contact.notes | ContactNote::not_converged;
+  }
+  position_ = motion.at.position;
+  normal_ = motion.at.normal;
+  sliding_ = motion.sliding;
+  contact.normal = normal_;
+  contact.sliding = sliding_;
+  return true;
+}
+
+void Proxy::press(const Field& field, const Eigen::Vector3d& hip, double dissipated, double dt,
+                  Contact& contact) noexcept {
+  surface_ = field.surface(position_);
+  const Eigen::Vector3d stretch = position_ - hip;
+  contact.stiffness = tank_.follow(wanted_stiffness(), stretch.norm(), dissipated, dt);
+  contact.force = contact.stiffness * stretch;
+  contact.source = surface_.source;
+  last_force_ = contact.force;
+}
+
+double Proxy::wanted_stiffness() const noexcept {
+  return options_.stiffness * factor(surface_.stiffness_factor) * factor(surface_.presence);
+}
+
+// No surface anywhere near: the force stays for a moment, then goes, and the contact with it.
+void Proxy::fade(const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept {
+  contact.notes = contact.notes | ContactNote::lost;
+  lost_time_ += dt;
+  const double size = last_force_.norm();
+  if (lost_time_ > kKeepLost) {
+    const double left = size - kFadeRate * dt;
+    if (!(left > 0)) return release(hip);
+    last_force_ *= left / size;
+  }
+  contact.force = last_force_;
+  contact.normal = normal_;
+  contact.stiffness = tank_.stiffness();
+  contact.source = surface_.source;
+}
+
+}  // namespace palpate

@@ -1,0 +1,156 @@
+#include "slide.hpp"
+
+#include <algorithm>
+
+#include "sweep.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double kStep = 0.25;  // of R, the longest sub-step
+constexpr double kReach = 0.5;  // of R, the farthest that a sub-step may end
+constexpr double kArmijo = 1e-3;
+constexpr double kNormalGate = 0.3;          // cosine: the surface may not turn over
+constexpr double kLift = 2e-3;               // of R, above the surface where a release begins
+constexpr double kStay = 1e-3;               // of R, a release that ends sooner is none
+constexpr double kFirstTolerance = 0.1;      // of the tangent tolerance: worth one cheap try
+constexpr double kFrictionTolerance = 1e-5;  // of R
+constexpr int kReleases = 3;
+constexpr int kHalvings = 6;
+constexpr int kEvaluationsPerIteration = 20;
+
+enum class Turn { stop, go_on };
+
+class Slider {
+ public:
+  Slider(Probe& probe, const SurfacePoint& start, const Eigen::Vector3d& hip, bool sliding,
+         const SlideOptions& options) noexcept
+      : probe_(probe), hip_(hip), options_(options) {
+    result_.at = start;
+    result_.sliding = sliding;
+  }
+
+  [[nodiscard]] Slide run() noexcept {
+    const int limit = options_.method == ProxyMethod::single_step ? 1 : options_.max_iterations;
+    int releases = 0;
+    while (result_.iterations < limit) {
+      if (exhausted()) return unfinished();
+      const Eigen::Vector3d to_hand = hip_ - result_.at.position;
+      const double above = to_hand.dot(result_.at.normal);
+      Turn turn = Turn::stop;
+      if (above >= 0) {
+        turn = ++releases > kReleases ? Turn::stop : try_release();
+      } else {
+        turn = advance(to_hand - above * result_.at.normal, -above);
+        ++result_.iterations;
+      }
+      if (turn == Turn::stop) return result_;
+    }
+    return options_.method == ProxyMethod::single_step ? result_ : unfinished();
+  }
+
+ private:
+  [[nodiscard]] bool exhausted() const noexcept {
+    return probe_.evaluations() - probe_.swept >=
+           kEvaluationsPerIteration * options_.max_iterations;
+  }
+
+  [[nodiscard]] Slide unfinished() noexcept {
+    result_.end = Slide::End::unfinished;
+    return result_;
+  }
+
+  // The hand is above the tangent plane: free to go, unless something else is in the way.
+  [[nodiscard]] Turn try_release() noexcept {
+    const double radius = result_.at.radius;
+    const Side side = probe_.side;
+    const Eigen::Vector3d from = result_.at.position + kLift * radius * result_.at.normal;
+    const Sweep way = first_contact(probe_, from, hip_);
+    if (way.end != Sweep::End::hit) {
+      const bool clear = way.end == Sweep::End::clear;
+      result_.end = clear ? Slide::End::released : Slide::End::interrupted;
+      result_.at.position = clear ? hip_ : way.position;
+      return Turn::stop;
+    }
+    if ((way.position - from).norm() < kStay * radius) return stay(side);
+    const std::optional<SurfacePoint> next = project(probe_, way.position);
+    if (!next) return stay(side);
+    result_.at = *next;
+    return Turn::go_on;
+  }
+
+  [[nodiscard]] Turn stay(Side side) noexcept {
+    probe_.side = side;
+    return Turn::stop;
+  }
+
+  // One sub-step along the surface. `tangent` and `depth`: the way to the hand along and into it.
+  [[nodiscard]] Turn advance(const Eigen::Vector3d& tangent, double depth) noexcept {
+    const double length = tangent.norm();
+    if (sticks(options_.friction, result_.sliding, depth, length)) {
+      if (result_.iterations == 0) result_.sliding = false;
+      return Turn::stop;
+    }
+    const double held = held_stretch(options_.friction, depth, length, moved_);
+    const double wanted = length - held;
+    if (!(wanted > tolerance())) return Turn::stop;
+    const double longest = kStep * result_.at.radius;
+    const double limit =
+        options_.longest_step > 0 ? std::min(longest, options_.longest_step) : longest;
+    const double step = std::min(wanted, limit);
+    result_.sliding = true;
+    const double done = move(tangent / length, step, length);
+    moved_ += done;
+    result_.dissipated += options_.friction.stiffness * held * done;
+    return done > 0 ? Turn::go_on : Turn::stop;
+  }
+
+  // The first sub-step is worth taking well before the others: it costs little, and without it a
+  // hand that creeps would feel the surface hold it (a dead zone of atan(1e-3 R / depth)).
+  [[nodiscard]] double tolerance() const noexcept {
+    if (options_.friction.any()) return kFrictionTolerance * result_.at.radius;
+    const double scale = result_.iterations == 0 ? kFirstTolerance : 1.0;
+    return scale * options_.tangent_tolerance * result_.at.radius;
+  }
+
+  // Returns the length that was accepted; 0: none.
+  [[nodiscard]] double move(const Eigen::Vector3d& direction, double step, double length) noexcept {
+    const bool tiny = step < options_.tangent_tolerance * result_.at.radius;
+    const int halvings = tiny || options_.method == ProxyMethod::single_step ? 0 : kHalvings;
+    double trial = step;
+    for (int i = 0; i <= halvings && !exhausted(); ++i, trial *= 0.5) {
+      const std::optional<SurfacePoint> next =
+          project(probe_, result_.at.position + trial * direction);
+      if (next && acceptable(*next, trial * length)) {
+        result_.at = *next;
+        return trial;
+      }
+    }
+    return 0;
+  }
+
+  // `gain` is |t| L: what the squared distance to the hand should fall in proportion to.
+  [[nodiscard]] bool acceptable(const SurfacePoint& next, double gain) const noexcept {
+    if (options_.method == ProxyMethod::single_step) return true;
+    const SurfacePoint& at = result_.at;
+    return (hip_ - next.position).squaredNorm() <=
+               (hip_ - at.position).squaredNorm() - kArmijo * gain &&
+           next.normal.dot(at.normal) > kNormalGate &&
+           (next.position - at.position).norm() <= kReach * at.radius;
+  }
+
+  Probe& probe_;
+  Eigen::Vector3d hip_;
+  const SlideOptions& options_;
+  Slide result_;
+  double moved_ = 0;  // in this step, m
+};
+
+}  // namespace
+
+Slide slide(Probe& probe, const SurfacePoint& start, const Eigen::Vector3d& hip, bool sliding,
+            const SlideOptions& options) noexcept {
+  return Slider{probe, start, hip, sliding, options}.run();
+}
+
+}  // namespace palpate

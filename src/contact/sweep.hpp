@@ -1,0 +1,34 @@
+#pragma once
+
+#include "probe.hpp"
+
+namespace palpate {
+
+inline constexpr int kSweepBudget = 800;  ///< evaluations of all sweeps in one step
+
+/// Where the way from one place to another ends.
+struct Sweep {
+  enum class End {
+    clear,      ///< free all the way
+    hit,        ///< something solid: `position` is the last free place before it
+    truncated,  ///< the step's budget ran out: free as far as `position`
+  };
+  End end = End::clear;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
+};
+
+/// One ball around the whole way: true if it is certainly free. Forgets the side if so.
+[[nodiscard]] bool way_is_free(Probe& probe, const Eigen::Vector3d& from,
+                               const Eigen::Vector3d& to) noexcept;
+
+/// The first contact on the way (algorithm.md 2.2): bisection into balls that are free for certain
+/// and leaves shorter than the field's resolution, whose ends are sampled. No solid chord longer
+/// than the resolution is missed. `from` is taken to be free. Keeps and updates the probe's side.
+[[nodiscard]] Sweep sweep(Probe& probe, const Eigen::Vector3d& from,
+                          const Eigen::Vector3d& to) noexcept;
+
+/// way_is_free(), and sweep() if it is not.
+[[nodiscard]] Sweep first_contact(Probe& probe, const Eigen::Vector3d& from,
+                                  const Eigen::Vector3d& to) noexcept;
+
+}  // namespace palpate
