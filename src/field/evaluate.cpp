@@ -26,11 +26,13 @@ struct Value {
 struct Support {
   Value w;
   Value radius;
-  double plain = 0;                      // sum of w_i over all sources
+  double plain = 0;  // sum of w_i over all sources
   Vector3d plain_grad = Vector3d::Zero();
 };
 
-Vector3d vector(const double v[3]) noexcept { return Map<const Vector3d>(v); }
+Vector3d vector(const double v[3]) noexcept {
+  return Map<const Vector3d>(v);
+}
 
 Value unite(const simd::Sums& sums, int sources) noexcept {
   if (sources == 1) return {sums.w[0], vector(sums.grad_w[0])};
@@ -132,8 +134,8 @@ Value smooth_max(const Value& a, const Value& b, const Value& radius) noexcept {
   if (d >= k) return larger;
   const double h = (k - d) / k;
   const double by_k = (k - d) * (k + d) / (4 * k * k);
-  return {larger.f + 0.25 * h * h * k, (1 - 0.5 * h) * larger.grad + 0.5 * h * smaller.grad +
-                                           by_k * 0.1 * radius.grad};
+  return {larger.f + 0.25 * h * h * k,
+          (1 - 0.5 * h) * larger.grad + 0.5 * h * smaller.grad + by_k * 0.1 * radius.grad};
 }
 
 /// kappa = u^2 (3 - 2u) of u = clamp((chi - 0.25) / 0.3, 0, 1), chi = sum w c / sum w.
@@ -184,8 +186,7 @@ Value capped(const ImplicitSurface& surface, const simd::Sums& sums, const Suppo
   const Value outer{sign * height.f - options.tool_radius, sign * height.grad};
   if (!options.capped) return outer;
   const Value floor{options.minimum_support, Vector3d::Zero()};
-  const Value cap =
-      smooth_max(outer, as_length(options, support, floor), support.radius);
+  const Value cap = smooth_max(outer, as_length(options, support, floor), support.radius);
   const Value trust = trust_of(sums, support);
   if (trust.f >= 1) return cap;
   const Value blob = as_length(options, support, level_of(surface, support));
@@ -200,8 +201,7 @@ void require(bool condition, const char* option, double value, const char* range
 
 }  // namespace
 
-ImplicitSurface::ImplicitSurface(const FieldOptions& given)
-    : options(given), sums(&simd::best()) {
+ImplicitSurface::ImplicitSurface(const FieldOptions& given) : options(given), sums(&simd::best()) {
   require(given.threshold > 0 && std::isfinite(given.threshold), "threshold", given.threshold,
           "above 0");
   require(given.raw_weights || given.threshold < 1, "threshold", given.threshold,
@@ -239,8 +239,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   sample.radius = support.radius.f;
   Value value;
   if (has_normals(options, sums, support.plain)) {
-    const Oriented oriented =
-        options.kind == FieldKind::balanced ? balanced(sums) : pointset(sums);
+    const Oriented oriented = options.kind == FieldKind::balanced ? balanced(sums) : pointset(sums);
     const Value height = finish_gradient(surface, patch, oriented, local.data());
     sample.height = height.f;
     value = capped(surface, sums, support, height, side);

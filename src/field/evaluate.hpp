@@ -13,7 +13,7 @@ struct ImplicitSurface {
   explicit ImplicitSurface(const FieldOptions& options);
 
   FieldOptions options;
-  double offset = 0;              ///< of the metaball level, in support radii, without a tool
+  double offset = 0;  ///< of the metaball level, in support radii, without a tool
   const simd::Functions* sums;
 };
 

@@ -8,7 +8,9 @@
 namespace palpate {
 namespace {
 
-double lerp(double a, double b, double u) noexcept { return a + u * (b - a); }
+double lerp(double a, double b, double u) noexcept {
+  return a + u * (b - a);
+}
 
 Eigen::Vector3d normal_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
   const SurfacePoints& points = *layer.points;
@@ -73,7 +75,7 @@ void Patch::gather(std::span<const ActiveLayer> layers, int sources, const Eigen
   extra_ = extra;
   stride_ = 1;
   while (!gather_all(layers, sources, raw_weights)) stride_ *= 2;
-  mean_radius_ = count_ > 0 ? radius_sum_ / static_cast<double>(count_) : 0;
+  mean_radius_ = count_ > 0 ? radius_sum_ / static_cast<double>(count_) : extra;
 }
 
 bool Patch::gather_all(std::span<const ActiveLayer> layers, int sources,

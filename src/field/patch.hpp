@@ -47,6 +47,7 @@ class Patch {
   [[nodiscard]] std::size_t points() const noexcept { return count_; }
   [[nodiscard]] bool thinned() const noexcept { return stride_ > 1; }
   [[nodiscard]] double smallest_radius() const noexcept { return smallest_radius_; }
+  /// Mean of the points' radii; of an empty patch, its own reach.
   [[nodiscard]] double mean_radius() const noexcept { return mean_radius_; }
   [[nodiscard]] const simd::Columns& columns() const noexcept { return columns_; }
 
@@ -75,8 +76,8 @@ class Patch {
   [[nodiscard]] bool gather_layer(const ActiveLayer& layer, bool raw_weights) noexcept;
   [[nodiscard]] bool gather_run(const ActiveLayer& layer, std::uint32_t begin, std::uint32_t end,
                                 bool raw_weights) noexcept;
-  [[nodiscard]] bool put(const ActiveLayer& layer, std::uint32_t i,
-                         const Eigen::Vector3d& position, bool raw_weights) noexcept;
+  [[nodiscard]] bool put(const ActiveLayer& layer, std::uint32_t i, const Eigen::Vector3d& position,
+                         bool raw_weights) noexcept;
   void pad() noexcept;
 
   std::size_t capacity_;

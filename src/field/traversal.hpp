@@ -8,8 +8,7 @@
 
 namespace palpate {
 
-/// The cells still to visit in a depth-first walk through an index. At every level at most seven
-/// siblings wait, so its size is bounded by the index's depth.
+/// The cells still to visit in a depth-first walk through an index.
 class CellStack {
  public:
   explicit CellStack(const SurfacePoints& points) noexcept {
@@ -25,9 +24,7 @@ class CellStack {
   }
 
  private:
-  static constexpr std::size_t kCapacity = 8 * (CellGrid::kMaxDepth + 2);
-
-  std::array<std::uint32_t, kCapacity> cells_;
+  std::array<std::uint32_t, CellGrid::kMaxStack> cells_;
   std::size_t size_ = 0;
 };
 

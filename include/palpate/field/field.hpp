@@ -11,11 +11,11 @@ using Side = int;
 
 /// The implicit function at one place. Free where value > 0, solid where value <= 0.
 struct Sample {
-  double value = 0;                                      ///< length-like, m
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();    ///< d value / d x; points outward
-  double height = 0;     ///< signed by the normals and not by `side`: tells which side x is on, m
-  double support = 0;    ///< sum of weights (1 on a well sampled surface); 0: nothing known here
-  double radius = 0;     ///< support radius R here: the length that steps are measured in, m
+  double value = 0;                                    ///< length-like, m
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< d value / d x; points outward
+  double height = 0;   ///< signed by the normals and not by `side`: tells which side x is on, m
+  double support = 0;  ///< sum of weights (1 on a well sampled surface); 0: nothing known here
+  double radius = 0;   ///< support radius R here: the length that steps are measured in, m
 };
 
 /// A closed ball in the world frame.
@@ -30,15 +30,15 @@ struct Surface {
   double friction_factor = 1;   ///< multiplies the proxy's friction, 0-1
   double presence = 1;          ///< 0-1: is the sensor still sure of this surface?
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the surface, m/s
-  int source = -1;              ///< index of the source that contributes most; -1: none
+  int source = -1;  ///< index of the source that contributes most; -1: none
 };
 
 /// Facts that hold for the whole field between two changes of it.
 struct FieldTraits {
-  bool two_sided = false;       ///< does the proxy have to keep a side?
-  double resolution = 0;        ///< sweeps look for solid chords longer than this, m
-  std::uint64_t revision = 0;   ///< grows when the surface may have moved since the last tick
-  double reanchor_reach = 0;    ///< how far the surface may have stepped over the proxy, m
+  bool two_sided = false;      ///< does the proxy have to keep a side?
+  double resolution = 0;       ///< sweeps look for solid chords longer than this, m
+  std::uint64_t revision = 0;  ///< grows when the surface may have moved since the last tick
+  double reanchor_reach = 0;   ///< how far the surface may have stepped over the proxy, m
 };
 
 /// All that a proxy knows of a scene: an implicit surface with its exact gradient.

@@ -23,13 +23,13 @@ struct FieldOptions {
   FieldKind kind = FieldKind::balanced;
   Kernel kernel = Kernel::wyvill;
   GradientKind gradient = GradientKind::exact;
-  double threshold = 0.4;      ///< metaball level T', of the (united) weight sum
+  double threshold = 0.4;        ///< metaball level T', of the (united) weight sum
   double minimum_support = 0.3;  ///< Wmin: the surface ends where the weight sum falls below it
-  double tool_radius = 0;      ///< radius of the proxy's ball, m; the surface is pushed out by it
-  bool two_sided = true;       ///< solid from both sides; false: closed objects, normals outward
-  bool capped = true;          ///< cap at Wmin and blend to the metaball where normals are unsure
-  bool raw_weights = false;    ///< ignore density weights (the paper)
-  bool nearest_radius = false; ///< use the R of the point nearest to the proxy for all (the paper)
+  double tool_radius = 0;        ///< radius of the proxy's ball, m; the surface is pushed out by it
+  bool two_sided = true;         ///< solid from both sides; false: closed objects, normals outward
+  bool capped = true;            ///< cap at Wmin and blend to the metaball where normals are unsure
+  bool raw_weights = false;      ///< ignore density weights (the paper)
+  bool nearest_radius = false;  ///< use the R of the point nearest to the proxy for all (the paper)
 };
 
 /// The paper's field: raw weights, T = 0.5, R of the nearest point, no cap.

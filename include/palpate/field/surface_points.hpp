@@ -14,13 +14,14 @@ namespace palpate {
 /// A point may move in a straight line while a snapshot lasts: `grid`, `normals` and
 /// `density_weights` hold its start (A), the `end_` columns its end (B), empty when A = B.
 struct SurfacePoints {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< world frame; grid points are relative to it, m
+  Eigen::Vector3d origin =
+      Eigen::Vector3d::Zero();  ///< world frame; grid points are relative to it, m
   CellGrid grid;
-  std::vector<Eigen::Vector3f> normals;      ///< unit, or zero; empty: none (metaball only)
-  std::vector<float> density_weights;        ///< a_i of algorithm.md section 4
-  std::vector<float> radii;                  ///< R_i, m
-  std::vector<float> confidences;            ///< c_i, 0-1
-  std::vector<float> materials;              ///< 0-1; empty: all 1
+  std::vector<Eigen::Vector3f> normals;  ///< unit, or zero; empty: none (metaball only)
+  std::vector<float> density_weights;    ///< a_i of algorithm.md section 4
+  std::vector<float> radii;              ///< R_i, m
+  std::vector<float> confidences;        ///< c_i, 0-1
+  std::vector<float> materials;          ///< 0-1; empty: all 1
   std::vector<Eigen::Vector3f> end_positions;
   std::vector<Eigen::Vector3f> end_normals;
   std::vector<float> end_density_weights;

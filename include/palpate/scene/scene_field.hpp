@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "palpate/field/field.hpp"
@@ -11,15 +12,25 @@ namespace palpate {
 /// What update() and the samples since then ran into, as bits.
 enum class FieldNote : std::uint32_t {
   none = 0,
-  thinned = 1u << 0,   ///< more points than the patch holds: every 2nd, 4th, ... was taken.
-                       ///< Remedy: a smaller radius or a larger voxel
-  no_surface = 1u << 1,  ///< no source has a snapshot yet
+  thinned = 1u << 0,     ///< more points than the patch holds: every 2nd, 4th, ... was taken.
+                         ///< Remedy: a smaller radius or a larger voxel
+  no_surface = 1u << 1,  ///< no source has a surface now
 };
 
-/// The scene as one servo sees it: points near the tool, gathered into a contiguous patch, made into
-/// an implicit surface. One thread uses it; any number of fields may look at one scene.
+[[nodiscard]] constexpr FieldNote operator|(FieldNote a, FieldNote b) noexcept {
+  return static_cast<FieldNote>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+[[nodiscard]] constexpr bool has(FieldNote notes, FieldNote bit) noexcept {
+  return (static_cast<std::uint32_t>(notes) & static_cast<std::uint32_t>(bit)) != 0;
+}
+
+/// The scene as one servo sees it: points near the tool, gathered into a contiguous patch, made
+/// into an implicit surface. One thread uses it; up to Handoff::kReaders fields may look at one
+/// scene.
 class SceneField final : public Field {
  public:
+  static constexpr std::size_t kPatchPoints = 2048;  ///< room of a patch
+
   /// @throws Error when an option is out of range or the scene has too many readers.
   explicit SceneField(Scene& scene, const FieldOptions& options = {});
   ~SceneField() override;
@@ -37,8 +48,8 @@ class SceneField final : public Field {
 
   [[nodiscard]] const FieldOptions& options() const noexcept { return options_; }
 
-  /// Notes since the last update().
-  [[nodiscard]] std::uint32_t notes() const noexcept;
+  /// Notes since the last update() began.
+  [[nodiscard]] FieldNote notes() const noexcept;
   /// Points in the patch around the proxy.
   [[nodiscard]] std::size_t patch_points() const noexcept;
   /// Patches gathered since construction.

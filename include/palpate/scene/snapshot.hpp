@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct Layer {
 /// Immutable, in the world frame. Between start and end everything goes in straight lines; before
 /// and after it stands still. The weights of a source's layers sum to 1 at every time.
 struct Snapshot {
+  static constexpr std::size_t kMaxLayers = 8;
+
   double start = 0;  ///< s, on the clock that SceneField::update is given
   double end = 0;    ///< s; not before start
   std::vector<Layer> layers;

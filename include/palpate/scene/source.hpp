@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "palpate/scene/handoff.hpp"
@@ -10,14 +11,23 @@
 
 namespace palpate {
 
+/// What points of material 0 feel like. Material 1 is as stiff and rough as the proxy's options
+/// say, and between the two it goes in a straight line.
+struct SoftMaterial {
+  double stiffness_factor = 1;  ///< 0-1
+  double friction_factor = 1;   ///< 0-1
+};
+
 struct SourceOptions {
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();  ///< pose of the sensor's frame
   PrepareOptions prepare;
+  SoftMaterial soft;  ///< felt where preparation was told to make materials
 };
 
 /// One sensor or file: its pose, and the newest snapshot of what it sees.
 class Source {
  public:
+  /// @throws Error when an option is out of its range.
   Source(std::string name, const SourceOptions& options);
 
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -28,11 +38,13 @@ class Source {
   /// @throws Error as prepare() does.
   void set(const PointCloud& cloud);
 
-  /// Makes `snapshot` the newest. Not real-time.
+  /// Makes `snapshot` the newest; nullptr: there is no surface any more. Not real-time.
+  /// @throws Error when it has more than Snapshot::kMaxLayers layers, an empty one, or ends before
+  /// it starts.
   void publish(std::unique_ptr<const Snapshot> snapshot);
 
-  /// The static or newest surface, for those who draw or explore; may be null. Not real-time.
-  [[nodiscard]] std::shared_ptr<const SurfacePoints> points() const { return points_; }
+  /// The newest surface's first layer, for those who draw or explore; may be null. Not real-time.
+  [[nodiscard]] std::shared_ptr<const SurfacePoints> points() const;
 
  private:
   friend class SceneField;
@@ -40,6 +52,7 @@ class Source {
   std::string name_;
   SourceOptions options_;
   PrepareReport report_;
+  mutable std::mutex points_mutex_;  // whoever draws, and the preparing thread
   std::shared_ptr<const SurfacePoints> points_;
   Handoff<Snapshot> handoff_;
 };

@@ -3,6 +3,8 @@
 
 namespace palpate::simd {
 
-const Functions& best() noexcept { return cpu_has_v3() ? kV3 : kBaseline; }
+const Functions& best() noexcept {
+  return cpu_has_v3() ? kV3 : kBaseline;
+}
 
 }  // namespace palpate::simd

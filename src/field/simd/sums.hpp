@@ -7,34 +7,34 @@
 
 namespace palpate::simd {
 
-constexpr int kLanes = 4;         // points that are summed side by side, on every level
+constexpr int kLanes = 4;  // points that are summed side by side, on every level
 constexpr int kMaxSources = 8;
 
 // A patch in columns, relative to its centre. Each source's run is padded to a multiple of kLanes
 // with points of weight 0.
 struct Columns {
-  const double* position[3];      // m
+  const double* position[3];  // m
   const double* normal[3];
-  const double* weight;           // a_i C_k
-  const double* confidence;       // c_i
-  const double* radius;           // R_i, m
-  const double* inverse_r2;       // 1 / R_i^2
-  double* slope;                  // scratch: a_i C_k g_i / R_i^2 of the last call of `all`
+  const double* weight;      // a_i C_k
+  const double* confidence;  // c_i
+  const double* radius;      // R_i, m
+  const double* inverse_r2;  // 1 / R_i^2
+  double* slope;             // scratch: a_i C_k g_i / R_i^2 of the last call of `all`
   std::uint32_t source_begin[kMaxSources + 1];
   int sources;
 };
 
 // q_i = p_i - x, w_i with its weight, v_i = c_i w_i.
 struct Sums {
-  double w[kMaxSources];               // sum w_i, for each source
+  double w[kMaxSources];  // sum w_i, for each source
   double grad_w[kMaxSources][3];
-  double wr;                           // sum w_i R_i
+  double wr;  // sum w_i R_i
   double grad_wr[3];
-  double v;                            // sum v_i
+  double v;  // sum v_i
   double grad_v[3];
-  double vq[3];                        // sum v_i q_i
-  double vn[3];                        // sum v_i n_i
-  double vnq;                          // sum v_i n_i . q_i
+  double vq[3];  // sum v_i q_i
+  double vn[3];  // sum v_i n_i
+  double vnq;    // sum v_i n_i . q_i
 };
 
 // b_i = n_i . alpha + q_i . beta + (n_i . q_i) gamma + delta.

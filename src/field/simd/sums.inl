@@ -12,17 +12,23 @@ namespace {
 namespace stdx = std::experimental;
 using Lanes = stdx::fixed_size_simd<double, kLanes>;
 
-inline Lanes load(const double* p) { return Lanes(p, stdx::element_aligned); }
+inline Lanes load(const double* p) {
+  return Lanes(p, stdx::element_aligned);
+}
 
 // In a fixed order, so that every level gives the same bits.
-inline double sum(const Lanes& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+inline double sum(const Lanes& v) {
+  return (v[0] + v[1]) + (v[2] + v[3]);
+}
 
 struct Vector {
   Lanes x = 0;
   Lanes y = 0;
   Lanes z = 0;
 };
-inline Lanes dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Lanes dot(const Vector& a, const Vector& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 inline void add(Vector& to, const Lanes& w, const Vector& v) {
   to.x += w * v.x;
   to.y += w * v.y;

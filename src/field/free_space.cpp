@@ -1,0 +1,93 @@
+#include "field/free_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "field/traversal.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kMaxVisits = 8192;  // points and cells
+
+/// What the points of one layer can add to the weight sum anywhere in the ball. Stops at `enough`
+/// or when `visits` has run out.
+double largest_weight(const ImplicitSurface& surface, const ActiveLayer& layer, const Ball& ball,
+                      double enough, int& visits) noexcept {
+  const Vector3d x = ball.center - layer.points->origin;
+  double total = 0;
+  CellStack stack(*layer.points);
+  while (!stack.empty() && visits > 0 && total < enough) {
+    --visits;
+    const std::uint32_t index = stack.pop();
+    const CellGrid::Cell& cell = layer.points->grid.cells()[index];
+    const double reach = layer.points->cell_reach[index] + ball.radius;
+    if (squared_distance(cell, x) > reach * reach) continue;
+    if (cell.children > 0) {
+      stack.push_children(cell);
+      continue;
+    }
+    for (std::uint32_t i = cell.begin; i < cell.end && total < enough; ++i, --visits) {
+      const double distance = position_now(layer, i, ball.center).norm();
+      const double r = std::max(0.0, distance - ball.radius) / layer.points->radii[i];
+      total += weight_now(layer, i, surface.options.raw_weights) *
+               evaluate(surface.options.kernel, r * r).w;
+    }
+  }
+  return total;
+}
+
+}  // namespace
+
+bool is_free_space(const ImplicitSurface& surface, std::span<const ActiveLayer> layers, int sources,
+                   const Ball& ball) noexcept {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const ActiveLayer& layer : layers) {
+    smallest = std::min(smallest, layer.points->smallest_radius);
+  }
+  const double level = free_level(surface, smallest);
+  double w[simd::kMaxSources] = {};
+  int visits = kMaxVisits;
+  for (const ActiveLayer& layer : layers) {
+    if (layer.weight <= 0) continue;
+    w[layer.source] += largest_weight(surface, layer, ball, level - w[layer.source], visits);
+    if (w[layer.source] >= level || visits <= 0) return false;
+  }
+  return united(w, sources) < level;
+}
+
+PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
+                          const Vector3d& x) noexcept {
+  const simd::Columns& c = patch.columns();
+  const Vector3d local = x - patch.center();
+  PatchSurface result;
+  double total = 0;
+  double largest = 0;
+  double material = 0;
+  Vector3d velocity = Vector3d::Zero();
+  for (int s = 0; patch.points() > 0 && s < c.sources; ++s) {
+    double of_source = 0;
+    for (std::uint32_t i = c.source_begin[s]; i < c.source_begin[s + 1]; ++i) {
+      const Vector3d q = Vector3d(c.position[0][i], c.position[1][i], c.position[2][i]) - local;
+      const double w =
+          c.weight[i] * evaluate(surface.options.kernel, q.squaredNorm() * c.inverse_r2[i]).w;
+      of_source += w;
+      material += w * patch.material()[i];
+      velocity += w * Vector3d(patch.velocity(0)[i], patch.velocity(1)[i], patch.velocity(2)[i]);
+    }
+    total += of_source;
+    if (of_source > largest) {
+      largest = of_source;
+      result.source = s;
+    }
+  }
+  if (total <= 0) return result;
+  result.material = material / total;
+  result.velocity = velocity / total;
+  return result;
+}
+
+}  // namespace palpate

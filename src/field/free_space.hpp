@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+
+#include "field/evaluate.hpp"
+#include "field/patch.hpp"
+
+namespace palpate {
+
+/// Does a ball that no patch covers certainly hold nothing? Walks through the index itself and
+/// gives up, with `false`, as soon as the weights could make a surface or after a bounded number
+/// of points. The same bound as is_free() for a patch (algorithm.md section 2.2).
+[[nodiscard]] bool is_free_space(const ImplicitSurface& surface,
+                                 std::span<const ActiveLayer> layers, int sources,
+                                 const Ball& ball) noexcept;
+
+/// Weighted means over a patch's points at a place.
+struct PatchSurface {
+  double material = 1;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
+  int source = -1;                                     ///< that weighs most; -1: no point is near
+};
+
+[[nodiscard]] PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
+                                        const Eigen::Vector3d& x) noexcept;
+
+}  // namespace palpate

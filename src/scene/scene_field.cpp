@@ -1,0 +1,196 @@
+#include "palpate/scene/scene_field.hpp"
+
+#include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <span>
+
+#include "field/evaluate.hpp"
+#include "field/free_space.hpp"
+#include "field/patch.hpp"
+#include "scene/source_view.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+// How far a patch reaches beyond what it was gathered for, and what is left of that before the
+// next one is gathered; in support radii.
+constexpr double kMargin = 0.5;
+constexpr double kReserve = 0.15;
+
+// A surface may rise this fast and still take a resting proxy along (algorithm.md section 2.4).
+constexpr double kReanchorSpeed = 0.5;  // m/s
+
+}  // namespace
+
+static_assert(Scene::kMaxSources <= simd::kMaxSources);
+
+struct SceneField::State {
+  explicit State(Scene& scene, const FieldOptions& options) : surface(options) {
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+      views.emplace_back(scene.source(i).handoff_);
+      soft.push_back(scene.source(i).options().soft);
+    }
+  }
+
+  [[nodiscard]] std::span<const ActiveLayer> active() const noexcept {
+    return {layers.data(), layer_count};
+  }
+  [[nodiscard]] int sources() const noexcept { return static_cast<int>(views.size()); }
+
+  void list_layers() noexcept;
+  void gather(Patch& patch, const Vector3d& center, double extra) const noexcept;
+  void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
+  [[nodiscard]] const Patch& patch_at(const Ball& ball) const noexcept;
+  [[nodiscard]] double radius() const noexcept;
+
+  ImplicitSurface surface;
+  std::deque<SourceView> views;
+  std::vector<SoftMaterial> soft;
+  std::array<ActiveLayer, Scene::kMaxSources * Snapshot::kMaxLayers> layers;
+  std::size_t layer_count = 0;
+  double typical_radius = 0;  // of the layers
+  double snapshot_duration = 0;
+  bool plain = true;  // no materials and no motion: every surface is the same
+  std::uint64_t revision = 0;
+
+  // Samples away from the path are rare and take a patch of their own; that is a cache.
+  Patch near{kPatchPoints};
+  mutable Patch far{kPatchPoints};
+  mutable FieldNote notes = FieldNote::none;
+  mutable std::uint64_t gathers = 0;
+};
+
+void SceneField::State::list_layers() noexcept {
+  layer_count = 0;
+  snapshot_duration = 0;
+  plain = views.size() == 1;
+  typical_radius = std::numeric_limits<double>::infinity();
+  for (std::size_t s = 0; s < views.size(); ++s) {
+    const Snapshot* snapshot = views[s].current();
+    if (!snapshot) continue;
+    snapshot_duration = std::max(snapshot_duration, snapshot->end - snapshot->start);
+    for (std::size_t k = 0; k < snapshot->layers.size(); ++k) {
+      const ActiveLayer layer = views[s].layer(k, static_cast<int>(s));
+      typical_radius = std::min(typical_radius, layer.points->radius);
+      plain = plain && layer.points->materials.empty() && layer.rate == 0;
+      layers[layer_count++] = layer;
+    }
+  }
+  if (layer_count == 0) typical_radius = 0;
+}
+
+void SceneField::State::gather(Patch& patch, const Vector3d& center, double extra) const noexcept {
+  patch.gather(active(), sources(), center, extra, surface.options.raw_weights);
+  if (patch.thinned()) notes = notes | FieldNote::thinned;
+  ++gathers;
+}
+
+double SceneField::State::radius() const noexcept {
+  return near.points() > 0 ? near.mean_radius() : typical_radius;
+}
+
+/// Points around the proxy and the first stretch of its way to the hand.
+void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept {
+  const double r = radius();
+  const Vector3d way = hip - proxy;
+  const double length = way.norm();
+  const double stretch = std::min(length, r);
+  const Vector3d end = length > 0 ? Vector3d(proxy + way * (stretch / length)) : proxy;
+  const bool covered = near.covers({proxy, kReserve * r}) && near.covers({end, kReserve * r});
+  if (covered && !surface.options.nearest_radius) return;
+  gather(near, 0.5 * (proxy + end), 0.5 * stretch + kMargin * r);
+  if (surface.options.nearest_radius) near.use_nearest_radius(proxy);
+}
+
+const Patch& SceneField::State::patch_at(const Ball& ball) const noexcept {
+  if (near.covers(ball)) return near;
+  if (!far.covers(ball)) {
+    gather(far, ball.center, std::max(kMargin * radius(), ball.radius));
+    if (surface.options.nearest_radius) far.use_nearest_radius(ball.center);
+  }
+  return far;
+}
+
+SceneField::SceneField(Scene& scene, const FieldOptions& options)
+    : options_(options), state_(std::make_unique<State>(scene, options)) {}
+
+SceneField::~SceneField() = default;
+
+void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) noexcept {
+  State& state = *state_;
+  bool changed = false;
+  for (SourceView& view : state.views) changed = view.advance(now) || changed;
+  if (changed) {
+    state.list_layers();
+    state.near.clear();
+    state.far.clear();
+    ++state.revision;
+  }
+  state.notes = state.layer_count > 0 ? FieldNote::none : FieldNote::no_surface;
+  if (hip.allFinite() && proxy.allFinite()) state.gather_path(hip, proxy);
+  if (state.near.thinned()) state.notes = state.notes | FieldNote::thinned;
+}
+
+Sample SceneField::sample(const Vector3d& x, Side side) const noexcept {
+  const State& state = *state_;
+  if (state.layer_count == 0 || !x.allFinite()) return {};
+  return evaluate(state.surface, state.patch_at({x, 0}), x, side);
+}
+
+bool SceneField::is_free(const Ball& ball) const noexcept {
+  const State& state = *state_;
+  if (state.layer_count == 0) return true;
+  if (!ball.center.allFinite() || !std::isfinite(ball.radius)) return false;
+  const bool small = ball.radius <= 0.5 * kMargin * state.radius();
+  if (small || state.near.covers(ball) || state.far.covers(ball)) {
+    return palpate::is_free(state.surface, state.patch_at(ball), ball);
+  }
+  return is_free_space(state.surface, state.active(), state.sources(), ball);
+}
+
+Surface SceneField::surface(const Vector3d& x) const noexcept {
+  const State& state = *state_;
+  if (state.layer_count == 0 || !x.allFinite()) return {};
+  Surface result;
+  if (state.plain) {
+    result.source = 0;
+    return result;
+  }
+  const PatchSurface mean = mean_surface(state.surface, state.patch_at({x, 0}), x);
+  if (mean.source < 0) return result;
+  const SoftMaterial& soft = state.soft[static_cast<std::size_t>(mean.source)];
+  result.source = mean.source;
+  result.velocity = mean.velocity;
+  result.stiffness_factor = soft.stiffness_factor + mean.material * (1 - soft.stiffness_factor);
+  result.friction_factor = soft.friction_factor + mean.material * (1 - soft.friction_factor);
+  return result;
+}
+
+FieldTraits SceneField::traits() const noexcept {
+  const State& state = *state_;
+  const bool metaball = options_.kind == FieldKind::metaball;
+  const double smallest =
+      state.near.points() > 0 ? state.near.smallest_radius() : state.typical_radius;
+  FieldTraits traits;
+  traits.two_sided = options_.two_sided && !metaball;
+  traits.resolution = metaball ? 0.002 * smallest : smallest / 16;
+  traits.revision = state.revision;
+  traits.reanchor_reach = std::max(0.5 * state.radius(), kReanchorSpeed * state.snapshot_duration);
+  return traits;
+}
+
+FieldNote SceneField::notes() const noexcept {
+  return state_->notes;
+}
+std::size_t SceneField::patch_points() const noexcept {
+  return state_->near.points();
+}
+std::uint64_t SceneField::gathers() const noexcept {
+  return state_->gathers;
+}
+
+}  // namespace palpate

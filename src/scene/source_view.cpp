@@ -1,0 +1,69 @@
+#include "scene/source_view.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+double progress_at(const Snapshot& snapshot, double now) noexcept {
+  const double duration = snapshot.end - snapshot.start;
+  if (!(duration > 0)) return now < snapshot.start ? 0 : 1;
+  return std::clamp((now - snapshot.start) / duration, 0.0, 1.0);
+}
+
+}  // namespace
+
+SourceView::SourceView(Handoff<Snapshot>& handoff) : handoff_(&handoff), reader_(handoff.join()) {
+  if (reader_ == Handoff<Snapshot>::kReaders) {
+    throw Error(fmt::format("the scene has {} fields already; destroy one before making another",
+                            Handoff<Snapshot>::kReaders));
+  }
+}
+
+SourceView::~SourceView() {
+  handoff_->leave(reader_);
+}
+
+bool SourceView::advance(double now) noexcept {
+  const Snapshot* const snapshot_before = current_;
+  const double progress_before = progress_;
+  look();
+  change_over(now);
+  progress_ = current_ ? progress_at(*current_, now) : 0;
+  return current_ != snapshot_before || progress_ != progress_before;
+}
+
+void SourceView::look() noexcept {
+  if (next_) return;
+  const Snapshot* newest = handoff_->peek();
+  if (newest == current_) return;
+  if (!newest) {
+    handoff_->release(reader_, slot_);
+    current_ = nullptr;
+    return;
+  }
+  next_ = handoff_->acquire(reader_, 1 - slot_);
+}
+
+void SourceView::change_over(double now) noexcept {
+  if (!next_ || (current_ && now < next_->start)) return;
+  handoff_->release(reader_, slot_);
+  slot_ = 1 - slot_;
+  current_ = next_;
+  next_ = nullptr;
+}
+
+ActiveLayer SourceView::layer(std::size_t k, int source) const noexcept {
+  const Layer& layer = current_->layers[k];
+  const double duration = current_->end - current_->start;
+  const bool under_way = progress_ > 0 && progress_ < 1;
+  return {layer.points.get(), source,
+          layer.weight_start + progress_ * (layer.weight_end - layer.weight_start), progress_,
+          duration > 0 && under_way ? 1 / duration : 0};
+}
+
+}  // namespace palpate
