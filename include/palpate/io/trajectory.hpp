@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <istream>
+#include <string>
+
+#include "palpate/geometry/trajectory.hpp"
+
+namespace palpate {
+
+/// Reads a trajectory from CSV: a header line that names the columns `t`, `hip_x`, `hip_y`, `hip_z`
+/// in any order among any others, then one row a step; seconds and metres. Commas, semicolons or
+/// tabs separate; empty lines and lines that begin with # are passed over. "-" is standard input.
+/// @throws Error that names the file, the line and a remedy when a column is missing, a value is
+/// not a finite number, or times do not grow strictly.
+[[nodiscard]] Trajectory read_trajectory(const std::filesystem::path& path);
+
+/// The same from a stream. `name` stands for it in messages.
+[[nodiscard]] Trajectory read_trajectory(std::istream& stream, const std::string& name);
+
+}  // namespace palpate

@@ -1,0 +1,234 @@
+#include "palpate/device/exploration.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/random.hpp"
+#include "device/surface_map.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kClearance = 3;  // R above the felt surface where the hand moves freely
+constexpr double kStep = 0.25;    // R from one place of a stroke to the next
+constexpr double kStroke = 0.6;   // longest stroke, of the region's extent
+constexpr double kLongest = 2.0;  // s that one stroke may take
+constexpr double kDwell = 0.1;    // s at rest before and after a stroke
+constexpr double kRamp = 0.2;     // share of a move spent speeding up, and slowing down
+constexpr int kCandidates = 24;   // places looked at for the beginning of a stroke
+constexpr int kDirections = 4;    // directions tried there
+
+// Share of a move's way that is done after share u of its time: speed rises and falls as a cosine.
+double progress(double u) {
+  const auto ramp = [](double v) {
+    return 0.5 * (v - kRamp / std::numbers::pi * std::sin(std::numbers::pi * v / kRamp));
+  };
+  if (u < kRamp) return ramp(u) / (1 - kRamp);
+  if (u > 1 - kRamp) return 1 - ramp(1 - u) / (1 - kRamp);
+  return (u - kRamp / 2) / (1 - kRamp);
+}
+
+// Writes rows while moves are appended, until the time is over.
+class Player {
+ public:
+  Player(const Vector3d& origin, const ExplorationOptions& options)
+      : origin_(origin), options_(options) {}
+
+  [[nodiscard]] bool over() const { return time() > options_.duration; }
+
+  void dwell(const Vector3d& place, double seconds) {
+    const double end = time() + seconds;
+    while (time() < end && !over()) add(place);
+  }
+
+  void move(const std::vector<Vector3d>& way, double speed) {
+    std::vector<double> lengths(1, 0.0);
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      lengths.push_back(lengths.back() + (way[i] - way[i - 1]).norm());
+    }
+    if (lengths.back() <= 0) return;
+    const double seconds = lengths.back() / (speed * (1 - kRamp));
+    const double start = time();
+    std::size_t k = 1;
+    while (time() < start + seconds && !over()) {
+      const double done = progress((time() - start) / seconds) * lengths.back();
+      while (k + 1 < way.size() && lengths[k] < done) ++k;
+      const double length = lengths[k] - lengths[k - 1];
+      const double part = length > 0 ? std::clamp((done - lengths[k - 1]) / length, 0.0, 1.0) : 1.0;
+      add(way[k - 1] + part * (way[k] - way[k - 1]));
+    }
+  }
+
+  Trajectory take() { return std::move(rows_); }
+
+ private:
+  [[nodiscard]] double time() const { return static_cast<double>(rows_.size()) * options_.period; }
+  void add(const Vector3d& place) { rows_.push_back({time(), origin_ + place}); }
+
+  Vector3d origin_;
+  ExplorationOptions options_;
+  Trajectory rows_;
+};
+
+class Explorer {
+ public:
+  Explorer(const ExploredSurface& surface, const ExplorationOptions& options)
+      : options_(options),
+        map_(surface, options.patch, options.radius),
+        random_(options.seed),
+        player_(surface.origin, options) {}
+
+  Trajectory run() {
+    std::vector<MapSample> stroke = next_stroke();
+    player_.dwell(above(stroke.front()), kDwell);
+    while (!player_.over()) {
+      touch(stroke);
+      const MapSample last = stroke.back();
+      stroke = next_stroke();
+      player_.move(route(last, stroke.front()), options_.travel_speed);
+    }
+    return player_.take();
+  }
+
+ private:
+  [[nodiscard]] double clearance() const { return options_.offset + kClearance * options_.radius; }
+  [[nodiscard]] Vector3d above(const MapSample& s) const {
+    return s.position + clearance() * s.normal;
+  }
+  [[nodiscard]] Vector3d under(const MapSample& s, double depth) const {
+    return s.position + (options_.offset - depth) * s.normal;
+  }
+
+  // Down along the normal, along the stroke with the depth going up and down, and off again.
+  void touch(const std::vector<MapSample>& stroke) {
+    const double depth = options_.depth;
+    player_.move({above(stroke.front()), under(stroke.front(), depth)}, 0.6 * options_.slide_speed);
+    player_.dwell(under(stroke.front(), depth), kDwell);
+    std::vector<Vector3d> way;
+    for (std::size_t i = 0; i < stroke.size(); ++i) {
+      const double phase = static_cast<double>(i) * kStep / 6 * std::numbers::pi;
+      way.push_back(under(stroke[i], depth * (0.75 + 0.25 * std::cos(phase))));
+    }
+    player_.move(way, options_.slide_speed);
+    player_.dwell(way.back(), kDwell / 2);
+    player_.move({way.back(), above(stroke.back())}, options_.slide_speed);
+  }
+
+  std::vector<MapSample> next_stroke() {
+    const MapSample start = next_start();
+    std::vector<MapSample> best(1, start);
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = 2 * std::numbers::pi * (random_.uniform() + i) / kDirections;
+      const Vector3d u = start.normal.unitOrthogonal();
+      const Vector3d direction = std::cos(angle) * u + std::sin(angle) * start.normal.cross(u);
+      std::vector<MapSample> stroke = follow(start, direction);
+      if (stroke.size() > best.size()) best = std::move(stroke);
+    }
+    for (const MapSample& s : best) touched_.push_back(s.position);
+    return best;
+  }
+
+  // Of some places at random, the one farthest from all that was touched before.
+  MapSample next_start() {
+    MapSample best;
+    double farthest = -1;
+    for (int i = 0; i < kCandidates || (farthest < 0 && i < 50 * kCandidates); ++i) {
+      const auto k = static_cast<std::size_t>(random_.uniform() * static_cast<double>(map_.size()));
+      const MapSample sample = map_.at(map_.point(k));
+      if (sample.normal.isZero()) continue;
+      double distance = touched_.empty() ? 1e9 - (sample.position - map_.center()).norm() : 1e9;
+      for (const Vector3d& p : touched_)
+        distance = std::min(distance, (p - sample.position).norm());
+      if (distance > farthest) {
+        farthest = distance;
+        best = sample;
+      }
+    }
+    if (farthest >= 0) return best;
+    // Normals cancel everywhere (noise, leaves): poke at a point from above.
+    return {map_.point(0), Vector3d::UnitZ()};
+  }
+
+  // Along the surface until its points end or the stroke is long enough.
+  [[nodiscard]] std::vector<MapSample> follow(const MapSample& start, Vector3d direction) const {
+    const double step = kStep * options_.radius;
+    const double longest = std::min(kStroke * map_.extent(), kLongest * options_.slide_speed);
+    std::vector<MapSample> way(1, start);
+    for (double length = 0; length < longest; length += step) {
+      MapSample next = map_.at(way.back().position + step * direction);
+      if (next.normal.isZero()) break;
+      if (next.normal.dot(way.back().normal) < 0) next.normal = -next.normal;
+      if ((next.position - way.back().position).norm() > 4 * step) break;
+      way.push_back(next);
+      direction -= direction.dot(next.normal) * next.normal;
+      if (direction.norm() < 1e-3) break;
+      direction.normalize();
+    }
+    return way;
+  }
+
+  // Through free space from over one place to over another: the flattest arc that touches nothing.
+  [[nodiscard]] std::vector<Vector3d> route(const MapSample& from, const MapSample& to) const {
+    constexpr int kPieces = 32;
+    const Vector3d a = above(from);
+    const Vector3d b = above(to);
+    Vector3d up = from.normal + to.normal;
+    if (up.norm() < 0.3) up = 0.5 * (a + b) - map_.center();
+    if (up.norm() < 1e-9) up = from.normal.unitOrthogonal();
+    up.normalize();
+    std::vector<Vector3d> way;
+    for (const double lift : {0.0, 0.25, 0.5, 1.0, 2.0}) {
+      const Vector3d middle = 0.5 * (a + b) + lift * std::max((b - a).norm(), 4 * clearance()) * up;
+      way.clear();
+      bool clear = true;
+      for (int i = 0; i <= kPieces; ++i) {
+        const double u = static_cast<double>(i) / kPieces;
+        way.push_back((1 - u) * (1 - u) * a + 2 * u * (1 - u) * middle + u * u * b);
+        clear = clear && map_.distance(way.back()) > 0.5 * clearance();
+      }
+      if (clear) break;
+    }
+    return way;
+  }
+
+  ExplorationOptions options_;
+  SurfaceMap map_;
+  Random random_;
+  Player player_;
+  std::vector<Vector3d> touched_;
+};
+
+void require(bool good, const char* name, double value) {
+  if (!good) throw Error(fmt::format("exploration: {} = {} is out of range", name, value));
+}
+
+}  // namespace
+
+Trajectory explore(const ExploredSurface& surface, const ExplorationOptions& options) {
+  if (surface.points.empty()) throw Error("exploration: there are no points to explore");
+  if (!surface.normals.empty() && surface.normals.size() != surface.points.size()) {
+    throw Error(fmt::format("exploration: {} normals for {} points", surface.normals.size(),
+                            surface.points.size()));
+  }
+  const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
+  require(positive(options.duration), "duration", options.duration);
+  require(positive(options.period), "period", options.period);
+  require(positive(options.radius), "radius", options.radius);
+  require(positive(options.patch), "patch", options.patch);
+  require(positive(options.slide_speed), "slide_speed", options.slide_speed);
+  require(positive(options.travel_speed), "travel_speed", options.travel_speed);
+  require(std::isfinite(options.depth), "depth", options.depth);
+  require(std::isfinite(options.offset), "offset", options.offset);
+  return Explorer(surface, options).run();
+}
+
+}  // namespace palpate

@@ -1,0 +1,75 @@
+#include "palpate/device/scripted.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+
+void check(const Trajectory& trajectory) {
+  if (trajectory.empty())
+    throw Error("a trajectory without rows cannot be played: give one row at least");
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const TrajectoryRow& row = trajectory[i];
+    if (!std::isfinite(row.time) || !row.position.allFinite()) {
+      throw Error(
+          fmt::format("row {} of the trajectory is not finite: leave it out or repair it", i));
+    }
+    if (i > 0 && !(row.time > trajectory[i - 1].time)) {
+      throw Error(
+          fmt::format("row {} of the trajectory has t = {} s after t = {} s: times must grow", i,
+                      row.time, trajectory[i - 1].time));
+    }
+  }
+}
+
+ScriptedDevice::ScriptedDevice(Trajectory trajectory) : rows_(std::move(trajectory)) {
+  check(rows_);
+  info_.name = "scripted";
+  info_.maximum_force = 0;
+  info_.keeps_time = true;
+  if (rows_.size() > 1) {
+    info_.rate = static_cast<double>(rows_.size() - 1) / (rows_.back().time - rows_.front().time);
+  }
+}
+
+DeviceState ScriptedDevice::read() noexcept {
+  if (failed_) return state_;
+  if (next_ == rows_.size()) {
+    state_.status = DeviceStatus::finished;
+    state_.velocity.setZero();
+    return state_;
+  }
+  const TrajectoryRow& row = rows_[next_];
+  if (next_ > 0) {
+    const TrajectoryRow& before = rows_[next_ - 1];
+    state_.velocity = (row.position - before.position) / (row.time - before.time);
+  }
+  state_.time = row.time;
+  state_.position = row.position;
+  ++next_;
+  return state_;
+}
+
+void ScriptedDevice::write(const Eigen::Vector3d& force) noexcept {
+  if (failed_) return;
+  if (!force.allFinite()) {
+    failed_ = true;
+    state_.status = DeviceStatus::failed;
+    force_.setZero();
+    return;
+  }
+  force_ = force;
+}
+
+std::string ScriptedDevice::reason() const {
+  if (!failed_) return {};
+  return fmt::format(
+      "the force written after t = {} s was not finite; look for the fault in what computed it",
+      state_.time);
+}
+
+}  // namespace palpate

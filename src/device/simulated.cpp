@@ -1,0 +1,210 @@
+#include "palpate/device/simulated.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "palpate/base/error.hpp"
+#include "palpate/device/scripted.hpp"
+
+namespace palpate {
+
+namespace {
+
+constexpr int kParts = 16;         // of a step, for the direction of dry friction
+constexpr int kEvents = 4;         // stops and starts followed in one part
+constexpr int kBisections = 48;    // of a part, to find when the device stops
+constexpr double kAtRest = 1e-12;  // m/s
+
+// e^A by Taylor's series of A / 2^n, squared n times: exact to rounding for these small matrices.
+Eigen::Matrix4d exponential(const Eigen::Matrix4d& a) {
+  const double norm = a.cwiseAbs().rowwise().sum().maxCoeff();
+  const int squarings = norm > 0.5 ? std::ilogb(norm) + 2 : 0;
+  const Eigen::Matrix4d scaled = std::ldexp(1.0, -squarings) * a;
+  Eigen::Matrix4d term = Eigen::Matrix4d::Identity();
+  Eigen::Matrix4d sum = term;
+  for (int i = 1; i <= 16; ++i) {
+    term = Eigen::Matrix4d(term * scaled) / i;
+    sum += term;
+  }
+  for (int i = 0; i < squarings; ++i) sum = Eigen::Matrix4d(sum * sum);
+  return sum;
+}
+
+void require(bool good, const char* name, double value, const char* range) {
+  if (!good) {
+    throw Error(
+        fmt::format("simulated device: {} = {} is out of range: give {}", name, value, range));
+  }
+}
+
+bool positive(double x) {
+  return std::isfinite(x) && x > 0;
+}
+bool not_negative(double x) {
+  return std::isfinite(x) && x >= 0;
+}
+
+void check_options(const SimulatedDeviceOptions& o, std::size_t maximum_delay) {
+  require(positive(o.mass), "mass", o.mass, "a positive number of kilograms");
+  require(not_negative(o.damping), "damping", o.damping, "0 or more N s/m");
+  require(not_negative(o.coulomb), "coulomb", o.coulomb, "0 or more newtons");
+  require(not_negative(o.resolution), "resolution", o.resolution, "0 or more metres");
+  require(o.delay >= 0 && o.delay <= static_cast<int>(maximum_delay), "delay", o.delay,
+          "0 to 16 steps");
+  require(positive(o.rate), "rate", o.rate, "a positive number of steps a second");
+  require(positive(o.maximum_force), "maximum_force", o.maximum_force,
+          "a positive force in newtons");
+  require(not_negative(o.hand.stiffness), "hand.stiffness", o.hand.stiffness, "0 or more N/m");
+  require(not_negative(o.hand.damping), "hand.damping", o.hand.damping, "0 or more N s/m");
+  require(not_negative(o.duration), "duration", o.duration, "0 or more seconds");
+  require(o.position.allFinite(), "position", o.position.norm(), "finite coordinates");
+  require(o.velocity.allFinite(), "velocity", o.velocity.norm(), "a finite velocity");
+}
+
+}  // namespace
+
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, Trajectory target)
+    : options_(options), target_(std::move(target)) {
+  check_options(options_, kMaximumDelay);
+  if (!target_.empty()) check(target_);
+  if (options_.duration == 0 && !target_.empty()) options_.duration = target_.back().time;
+  info_.name = "simulated";
+  info_.maximum_force = options_.maximum_force;
+  info_.rate = options_.rate;
+  info_.workspace_radius = options_.workspace_radius;
+  info_.keeps_time = true;
+  position_ = target_.empty() ? options_.position : target_.front().position;
+  velocity_ = options_.velocity;
+  forces_.fill(Eigen::Vector3d::Zero());
+  generator_.setZero();
+  generator_(0, 1) = 1;
+  generator_(1, 0) = -options_.hand.stiffness / options_.mass;
+  generator_(1, 1) = -(options_.damping + options_.hand.damping) / options_.mass;
+  generator_(1, 2) = 1 / options_.mass;
+  generator_(2, 3) = 1;
+  whole_step_ = exponential(generator_ / options_.rate);
+  part_step_ = exponential(generator_ / (options_.rate * kParts));
+}
+
+DeviceState SimulatedDevice::read() noexcept {
+  if (failed_ || state_.status == DeviceStatus::finished) return state_;
+  if (started_) advance();
+  const Eigen::Vector3d shown = quantised();
+  if (started_) state_.velocity = (shown - state_.position) * options_.rate;
+  state_.position = shown;
+  state_.time = static_cast<double>(steps_) / options_.rate;
+  started_ = true;
+  // Half a step of slack: the end of a target need not be a whole number of steps.
+  if (options_.duration > 0 && state_.time > options_.duration + 0.5 / options_.rate) {
+    state_.status = DeviceStatus::finished;
+  }
+  return state_;
+}
+
+void SimulatedDevice::write(const Eigen::Vector3d& force) noexcept {
+  if (failed_) return;
+  if (!force.allFinite()) {
+    failed_ = true;
+    state_.status = DeviceStatus::failed;
+    return;
+  }
+  const double length = force.norm();
+  const double shorten = length > options_.maximum_force ? options_.maximum_force / length : 1;
+  forces_[steps_ % forces_.size()] = shorten * force;
+}
+
+std::string SimulatedDevice::reason() const {
+  if (!failed_) return {};
+  return fmt::format(
+      "the force written at t = {} s was not finite; look for the fault in what computed it",
+      state_.time);
+}
+
+// Where the hand wants to be. Times are asked for in growing order, so the row is found at once.
+Eigen::Vector3d SimulatedDevice::wanted(double time) noexcept {
+  if (target_.empty()) return options_.position;
+  while (cursor_ + 1 < target_.size() && target_[cursor_ + 1].time <= time) ++cursor_;
+  const TrajectoryRow& a = target_[cursor_];
+  if (cursor_ + 1 == target_.size() || time <= a.time) return a.position;
+  const TrajectoryRow& b = target_[cursor_ + 1];
+  return a.position + (time - a.time) / (b.time - a.time) * (b.position - a.position);
+}
+
+Eigen::Vector3d SimulatedDevice::quantised() const noexcept {
+  if (options_.resolution == 0) return position_;
+  return (position_ / options_.resolution).array().round().matrix() * options_.resolution;
+}
+
+void SimulatedDevice::advance() noexcept {
+  const double now = static_cast<double>(steps_) / options_.rate;
+  const double next = static_cast<double>(steps_ + 1) / options_.rate;
+  const Eigen::Vector3d goal = wanted(now);
+  const Eigen::Vector3d goal_rate = (wanted(next) - goal) * options_.rate;
+  const std::size_t size = forces_.size();
+  const auto delay = static_cast<std::size_t>(options_.delay);
+  const Eigen::Vector3d held = forces_[(steps_ + size - delay) % size];
+  const Eigen::Vector3d push =
+      held + options_.hand.stiffness * goal + options_.hand.damping * goal_rate;
+  const Eigen::Vector3d push_rate = options_.hand.stiffness * goal_rate;
+  if (options_.coulomb > 0) {
+    advance_with_friction(push, push_rate);
+  } else {
+    flow(whole_step_, push, push_rate);
+  }
+  // A step without a write() goes on with the force before it.
+  forces_[(steps_ + 1) % size] = forces_[steps_ % size];
+  ++steps_;
+}
+
+void SimulatedDevice::advance_with_friction(const Eigen::Vector3d& push,
+                                            const Eigen::Vector3d& push_rate) noexcept {
+  const double part = 1 / (options_.rate * kParts);
+  for (int i = 0; i < kParts; ++i) slide(part, push + i * part * push_rate, push_rate);
+}
+
+// One part of a step. The device may stop in it, and start again.
+void SimulatedDevice::slide(double duration, Eigen::Vector3d push,
+                            const Eigen::Vector3d& push_rate) noexcept {
+  const double whole = duration;
+  for (int event = 0; event < kEvents && duration > 0; ++event) {
+    Eigen::Vector3d direction = velocity_;
+    if (velocity_.norm() <= kAtRest) {
+      velocity_.setZero();
+      direction = push - options_.hand.stiffness * position_;
+      if (direction.norm() <= options_.coulomb) return;  // held by dry friction
+    }
+    direction.normalize();
+    const Eigen::Vector3d sliding_push = push - options_.coulomb * direction;
+    const Eigen::Vector3d x = position_;
+    const Eigen::Vector3d v = velocity_;
+    flow(duration == whole ? part_step_ : exponential(generator_ * duration), sliding_push,
+         push_rate);
+    if (velocity_.dot(direction) > 0) return;
+    double moving = 0;
+    double stopped = duration;
+    for (int i = 0; i < kBisections; ++i) {
+      const double middle = 0.5 * (moving + stopped);
+      position_ = x;
+      velocity_ = v;
+      flow(exponential(generator_ * middle), sliding_push, push_rate);
+      (velocity_.dot(direction) > 0 ? moving : stopped) = middle;
+    }
+    velocity_ -= direction.dot(velocity_) * direction;
+    push += stopped * push_rate;
+    duration -= stopped;
+  }
+}
+
+void SimulatedDevice::flow(const Eigen::Matrix4d& transition, const Eigen::Vector3d& push,
+                           const Eigen::Vector3d& push_rate) noexcept {
+  const Eigen::Vector3d x = transition(0, 0) * position_ + transition(0, 1) * velocity_ +
+                            transition(0, 2) * push + transition(0, 3) * push_rate;
+  velocity_ = transition(1, 0) * position_ + transition(1, 1) * velocity_ +
+              transition(1, 2) * push + transition(1, 3) * push_rate;
+  position_ = x;
+}
+
+}  // namespace palpate

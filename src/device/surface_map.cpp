@@ -1,0 +1,113 @@
+#include "device/surface_map.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "palpate/geometry/box.hpp"
+
+namespace palpate {
+
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr std::size_t kFitNeighbors = 12;
+
+Vector3f median(std::span<const Vector3f> points) {
+  Vector3f middle;
+  std::vector<float> values(points.size());
+  const auto half = static_cast<std::ptrdiff_t>(points.size() / 2);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][axis];
+    std::nth_element(values.begin(), values.begin() + half, values.end());
+    middle[axis] = values[points.size() / 2];
+  }
+  return middle;
+}
+
+Vector3f nearest_to(const Vector3f& place, std::span<const Vector3f> points) {
+  const auto closer = [&](const Vector3f& a, const Vector3f& b) {
+    return (a - place).squaredNorm() < (b - place).squaredNorm();
+  };
+  return *std::min_element(points.begin(), points.end(), closer);
+}
+
+}  // namespace
+
+SurfaceMap::SurfaceMap(const ExploredSurface& surface, double patch, double radius)
+    : radius_(radius) {
+  choose(surface, patch);
+  if (!normals_.empty()) return;
+  normals_.resize(grid_.size());
+  for (std::size_t i = 0; i < grid_.size(); ++i) normals_[i] = fitted_normal(i);
+}
+
+void SurfaceMap::choose(const ExploredSurface& surface, double patch) {
+  Box box;
+  for (const Vector3f& p : surface.points) box.extend(p.cast<double>());
+  std::vector<Vector3f> chosen;
+  std::vector<std::uint32_t> places;
+  const bool everything = box.size().maxCoeff() <= patch;
+  const Vector3f middle = everything ? Vector3f(box.center().cast<float>())
+                                     : nearest_to(median(surface.points), surface.points);
+  const auto reach = static_cast<float>(patch / 2);
+  Box kept;
+  for (std::size_t i = 0; i < surface.points.size(); ++i) {
+    const Vector3f& p = surface.points[i];
+    if (!everything && (p - middle).squaredNorm() > reach * reach) continue;
+    chosen.push_back(p);
+    places.push_back(static_cast<std::uint32_t>(i));
+    kept.extend(p.cast<double>());
+  }
+  center_ = kept.center();
+  extent_ = kept.size().norm();
+  grid_ = CellGrid(chosen);
+  if (surface.normals.empty()) return;
+  normals_.reserve(chosen.size());
+  for (const std::uint32_t k : grid_.order()) normals_.push_back(surface.normals[places[k]]);
+}
+
+Vector3f SurfaceMap::fitted_normal(std::size_t i) const {
+  const Vector3f p = grid_.points()[i];
+  nearest_.clear();
+  grid_.nearest(p, kFitNeighbors, nearest_);
+  Vector3d mean = Vector3d::Zero();
+  for (const auto& n : nearest_) mean += grid_.points()[n.index].cast<double>();
+  mean /= static_cast<double>(nearest_.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const auto& n : nearest_) {
+    const Vector3d d = grid_.points()[n.index].cast<double>() - mean;
+    spread += d * d.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  Vector3d normal = solver.eigenvectors().col(0);
+  if (normal.dot(p.cast<double>() - center_) < 0) normal = -normal;
+  return normal.cast<float>();
+}
+
+MapSample SurfaceMap::at(const Vector3d& x) const {
+  near_.clear();
+  grid_.within(x.cast<float>(), static_cast<float>(radius_), near_);
+  double total = 0;
+  Vector3d mean = Vector3d::Zero();
+  Vector3d normal = Vector3d::Zero();
+  for (const std::uint32_t i : near_) {
+    const double weight = 1 - (point(i) - x).squaredNorm() / (radius_ * radius_);
+    total += weight;
+    mean += weight * point(i);
+    normal += weight * normals_[i].cast<double>();
+  }
+  if (total <= 0 || normal.norm() < 0.1 * total) return {};
+  mean /= total;
+  normal.normalize();
+  return {x - normal.dot(x - mean) * normal, normal};
+}
+
+double SurfaceMap::distance(const Vector3d& x) const {
+  nearest_.clear();
+  grid_.nearest(x.cast<float>(), 1, nearest_);
+  return std::sqrt(static_cast<double>(nearest_.front().squared_distance));
+}
+
+}  // namespace palpate

@@ -1,0 +1,74 @@
+#include "palpate/io/trajectory.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+Trajectory parse(const std::string& text) {
+  std::istringstream stream(text);
+  return read_trajectory(stream, "path.csv");
+}
+
+std::string message(const std::string& text) {
+  try {
+    (void)parse(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Trajectory, ReadsColumnsInAnyOrderAmongOthers) {
+  const Trajectory rows =
+      parse("# by hand\nhip_z,note,t,hip_y,hip_x\n3,a,0,2,1\n\n-3e-3,,0.0025,+2.5,1.5,more\n");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].position, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(rows[1].time, 0.0025);
+  EXPECT_EQ(rows[1].position, Eigen::Vector3d(1.5, 2.5, -3e-3));
+}
+
+TEST(Trajectory, ReadsWhatSpreadsheetsWrite) {
+  const Trajectory rows = parse("\xEF\xBB\xBFt;hip_x;hip_y;hip_z\r\n0;\"1\"; 2 ;3\r\n1;1;2;3\r\n");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].position, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(parse("t\thip_x\thip_y\thip_z\n0\t1\t2\t3\n").size(), 1u);
+}
+
+TEST(Trajectory, NumbersKeepEveryBit) {
+  const Trajectory rows = parse("t,hip_x,hip_y,hip_z\n0,0.1,1e-320,637291.12345678912\n");
+  EXPECT_EQ(rows[0].position.x(), 0.1);
+  EXPECT_EQ(rows[0].position.y(), 1e-320);
+  EXPECT_EQ(rows[0].position.z(), 637291.12345678912);
+}
+
+TEST(Trajectory, ErrorsNameFileLineAndRemedy) {
+  const std::string header = "t,hip_x,hip_y,hip_z\n";
+  EXPECT_EQ(message(header + "0,1,2,3\n1,1,x,3\n"),
+            "path.csv, line 3: 'x' in column 'hip_y' is not a finite number: repair or remove the "
+            "row");
+  EXPECT_NE(message(header + "0,nan,2,3\n").find("line 2: 'nan'"), std::string::npos);
+  EXPECT_NE(message(header + "0,1,2,inf\n").find("'inf'"), std::string::npos);
+  EXPECT_NE(message(header + "0,1e999,2,3\n").find("1e999"), std::string::npos);
+  EXPECT_NE(message(header + "0,1,2,\n").find("'hip_z'"), std::string::npos);
+  EXPECT_NE(message(header + "0,1,2\n").find("ends before column 'hip_z'"), std::string::npos);
+  EXPECT_NE(message(header + "0,1,2,3\n0,1,2,3\n").find("line 3: t = 0 s follows t = 0 s"),
+            std::string::npos);
+  EXPECT_NE(message(header + "1,1,2,3\n0.5,1,2,3\n").find("times must grow"), std::string::npos);
+  EXPECT_NE(message("t,x,y,z\n0,1,2,3\n").find("no column 'hip_x'"), std::string::npos);
+  EXPECT_NE(message("").find("is empty"), std::string::npos);
+  EXPECT_NE(message(header).find("no rows"), std::string::npos);
+  EXPECT_NE(message("0,1,2,3\n").find("no column 't'"), std::string::npos);
+}
+
+TEST(Trajectory, FileThatIsNotThereIsNamed) {
+  EXPECT_THROW((void)read_trajectory("/nowhere/path.csv"), Error);
+  EXPECT_THROW((void)read_trajectory("/tmp"), Error);
+}
+
+}  // namespace
+}  // namespace palpate
