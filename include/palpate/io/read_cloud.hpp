@@ -13,26 +13,32 @@
 namespace palpate {
 
 struct ReadOptions {
-  double scale = 1;                   ///< multiplies the file's coordinates to give metres
+  double scale = 1;  ///< multiplies the file's coordinates to give metres; depths too
   std::optional<Pinhole> intrinsics;  ///< of a depth image; needed for one
   double depth_unit = 1e-3;           ///< metres a step of a depth image
-  std::function<void(double)> progress;  ///< called with 0 ... 1 now and then, on this thread
+  /// Called with 0 ... 1 now and then, on this thread; may throw to give up.
+  std::function<void(double)> progress;
 };
 
 /// A cloud and what its file said of itself.
 struct CloudFile {
   PointCloud cloud;
-  std::string format;             ///< such as "PLY, binary little endian"
-  std::size_t declared = 0;       ///< points that the file announces
-  std::size_t dropped = 0;        ///< of them not finite or marked invalid
-  std::size_t width = 0;          ///< columns of an organised cloud, else 0
-  std::size_t height = 0;         ///< rows of an organised cloud, else 0
+  std::string format;        ///< such as "PLY, binary little endian"
+  std::size_t declared = 0;  ///< points that the file announces; of a depth image its pixels
+  std::size_t dropped = 0;   ///< of them not finite, beyond 10^12 m, or marked invalid
+  std::size_t width = 0;     ///< columns of an organised cloud, else 0
+  std::size_t height = 0;    ///< rows of an organised cloud, else 0
 };
 
 /// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS (LAZ through the user's liblaszip), 16-bit depth PNG and
 /// PGM; gzip around any of them. The kind is told from the bytes first and from the name second;
-/// "-" is standard input. Points that are not finite are dropped and counted.
-/// @throws Error that names the file, the place in it and a remedy.
+/// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
+/// depth, and those beyond ten times the image's median depth, likewise.
+///
+/// The cloud's origin stays zero where floats around zero lose at most four bits; otherwise it is
+/// a round point near the median of the cloud.
+/// @throws Error that names the file, the place in it (byte or line) and a remedy: also for a file
+///   that is cut, holds no usable point, or announces more than its bytes can hold.
 [[nodiscard]] CloudFile read_cloud_file(const std::filesystem::path& path,
                                         const ReadOptions& options = {});
 

@@ -1,0 +1,121 @@
+#include "io/cloud_builder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/origin.hpp"
+
+namespace palpate::io {
+namespace {
+
+float finite_float(double v) {
+  const auto narrow = static_cast<float>(v);
+  return std::isfinite(narrow) ? narrow : 0.0F;
+}
+
+Eigen::Vector3d three(const Row& row, Role first) {
+  const auto i = index_of(first);
+  return {row[i], row[i + 1], row[i + 2]};
+}
+
+float color_factor(const std::vector<std::array<float, 3>>& colors, ColorScale scale) {
+  if (scale == ColorScale::kByte) return 1;
+  float largest = 0;
+  for (const auto& c : colors) largest = std::max({largest, c[0], c[1], c[2]});
+  if (largest <= 1 && scale == ColorScale::kGuess) return 255;
+  return largest <= 255 ? 1.0F : 1.0F / 257.0F;
+}
+
+}  // namespace
+
+Eigen::Vector3f unit_normal(const Eigen::Vector3d& normal) {
+  constexpr double kRounding = 4e-6;
+  const double length = normal.norm();
+  if (!(length > 1e-30) || !std::isfinite(length)) return Eigen::Vector3f::Zero();
+  if (std::abs(length - 1) <= kRounding) return normal.cast<float>();
+  return (normal / length).cast<float>();
+}
+
+std::vector<std::array<std::uint8_t, 3>> byte_colors(
+    const std::vector<std::array<float, 3>>& colors, ColorScale scale) {
+  const float factor = color_factor(colors, scale);
+  std::vector<std::array<std::uint8_t, 3>> result(colors.size());
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float v = std::clamp(colors[i][k] * factor + 0.5F, 0.0F, 255.0F);
+      result[i][k] = static_cast<std::uint8_t>(v);
+    }
+  }
+  return result;
+}
+
+void check_options(const Input& input) {
+  const double scale = input.options.scale;
+  if (std::isfinite(scale) && scale > 0) return;
+  fail(input, fmt::format("cannot multiply coordinates by a scale of {}", scale),
+       "Give a scale above zero, such as 0.001 for millimetres or 0.3048 for feet");
+}
+
+void check_not_empty(const Input& input, std::size_t kept, std::size_t dropped) {
+  if (kept > 0) return;
+  if (dropped > 0) {
+    fail(input, fmt::format("none of the {} points is finite and valid", dropped),
+         "Check how the file was made, and its units and scale");
+  }
+  fail(input, "the file holds no points", "Export it again with its points (vertices)");
+}
+
+CloudBuilder::CloudBuilder(const Input& input, const Columns& columns, ColorScale color_scale,
+                           std::size_t expected)
+    : input_(input), columns_(columns), color_scale_(color_scale) {
+  points_.reserve(expected);
+  if (columns.normals) cloud_.normals.reserve(expected);
+  if (columns.colors) colors_.reserve(expected);
+  if (columns.intensities) cloud_.intensities.reserve(expected);
+}
+
+void CloudBuilder::add(const Row& row) {
+  const Eigen::Vector3d point = input_.options.scale * three(row, Role::kX);
+  if (!is_usable(point)) {
+    ++dropped_;
+    return;
+  }
+  points_.push_back(point);
+  if (columns_.normals) cloud_.normals.push_back(unit_normal(three(row, Role::kNormalX)));
+  if (columns_.colors) {
+    const Eigen::Vector3d c = three(row, Role::kRed);
+    colors_.push_back({finite_float(c[0]), finite_float(c[1]), finite_float(c[2])});
+  }
+  if (columns_.intensities) {
+    cloud_.intensities.push_back(finite_float(row[index_of(Role::kIntensity)]));
+  }
+}
+
+CloudFile CloudBuilder::finish(std::string format) {
+  check_not_empty(input_, points_.size(), dropped_);
+  CloudFile file;
+  file.format = std::move(format);
+  file.declared = points_.size() + dropped_;
+  file.dropped = dropped_;
+  split_positions(cloud_);
+  convert_colors(cloud_);
+  file.cloud = std::move(cloud_);
+  return file;
+}
+
+void CloudBuilder::split_positions(PointCloud& cloud) {
+  cloud.origin = choose_origin(points_.size(), [&](std::size_t i) { return points_[i]; });
+  cloud.positions.resize(points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    cloud.positions[i] = (points_[i] - cloud.origin).cast<float>();
+  }
+  points_ = {};
+}
+
+void CloudBuilder::convert_colors(PointCloud& cloud) const {
+  if (columns_.colors) cloud.colors = byte_colors(colors_, color_scale_);
+}
+
+}  // namespace palpate::io

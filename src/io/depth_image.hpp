@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/input.hpp"
+
+namespace palpate::io {
+
+/// Depths along the optical axis, row by row, in steps of options.depth_unit.
+struct DepthImage {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::uint16_t largest = 65535;  ///< the format's largest value; it marks "no depth"
+  std::vector<std::uint16_t> samples;
+  std::string format;
+};
+
+/// Depth pixels as points of the camera's frame (see Pinhole), seen from zero. Left out and
+/// counted as dropped: 0, 65535, the format's largest value and above, and whatever lies beyond
+/// ten times the median depth: sensors that match patterns put false matches there, and a true
+/// surface that far has too few and too coarse points to be touched.
+/// @throws Error when options.intrinsics or depth_unit are absent or senseless.
+[[nodiscard]] CloudFile cloud_of(const Input& input, const DepthImage& image);
+
+/// @throws Error unless `pixels` 16-bit samples could come from `bytes` bytes that deflate packed.
+void check_image_size(const Input& input, std::uint64_t width, std::uint64_t height);
+
+}  // namespace palpate::io

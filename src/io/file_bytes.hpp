@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+namespace palpate::io {
+
+/// Bytes that this object owns, not cleared before they are written.
+class Bytes {
+ public:
+  Bytes() = default;
+  explicit Bytes(std::size_t size)
+      : data_(std::make_unique_for_overwrite<std::byte[]>(size)), size_(size) {}
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::span<std::byte> span() { return {data_.get(), size_}; }
+  [[nodiscard]] std::span<const std::byte> span() const { return {data_.get(), size_}; }
+
+  /// Changes the size; what is there stays.
+  void resize(std::size_t size);
+
+ private:
+  std::unique_ptr<std::byte[]> data_;
+  std::size_t size_ = 0;
+};
+
+/// The whole of a file, or of standard input when `path` is "-". Read, not mapped: a file that
+/// another program cuts short meanwhile gives an error instead of a bus fault.
+/// @throws Error that names the path and the reason: absent, a folder, no permission, a device.
+[[nodiscard]] Bytes read_bytes(const std::filesystem::path& path);
+
+}  // namespace palpate::io

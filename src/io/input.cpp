@@ -1,0 +1,44 @@
+#include "io/input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate::io {
+
+void fail(const Input& input, std::string_view what, std::string_view remedy) {
+  throw Error(fmt::format("{}: {}. {}.", input.name, what, remedy));
+}
+
+void fail_at_byte(const Input& input, std::size_t offset, std::string_view what,
+                  std::string_view remedy) {
+  throw Error(fmt::format("{}, byte {}: {}. {}.", input.name, offset, what, remedy));
+}
+
+void fail_at_line(const Input& input, std::size_t offset, std::string_view what,
+                  std::string_view remedy) {
+  const std::string_view before = input.text().substr(0, offset);
+  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  throw Error(fmt::format("{}, line {}: {}. {}.", input.name, line, what, remedy));
+}
+
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  std::string result{text.substr(0, kLongest)};
+  std::replace_if(
+      result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text.size() > kLongest ? result + "..." : result;
+}
+
+std::string extension(std::string_view name) {
+  const std::size_t dot = name.find_last_of("./");
+  if (dot == std::string_view::npos || name[dot] != '.') return {};
+  std::string result{name.substr(dot)};
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return result;
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "palpate/io/read_cloud.hpp"
+
+namespace palpate::io {
+
+/// What every reader works on: bytes, the name to call them by, and the caller's wishes.
+struct Input {
+  std::span<const std::byte> bytes;
+  std::string name;
+  const ReadOptions& options;
+
+  [[nodiscard]] std::string_view text() const {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+};
+
+/// Throws Error "NAME: what. Remedy."
+[[noreturn]] void fail(const Input& input, std::string_view what, std::string_view remedy);
+
+/// Throws Error "NAME, byte N: what. Remedy."
+[[noreturn]] void fail_at_byte(const Input& input, std::size_t offset, std::string_view what,
+                               std::string_view remedy);
+
+/// Throws Error "NAME, line N: what. Remedy." for the line that holds byte `offset`.
+[[noreturn]] void fail_at_line(const Input& input, std::size_t offset, std::string_view what,
+                               std::string_view remedy);
+
+/// Foreign text made fit for a message: cut to 40 characters, unprintable ones replaced.
+[[nodiscard]] std::string excerpt(std::string_view text);
+
+/// The last extension of a name, lower case, with its dot: ".las"; "" without one.
+[[nodiscard]] std::string extension(std::string_view name);
+
+}  // namespace palpate::io

@@ -1,0 +1,107 @@
+#include "io/laz.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "io/cloud_builder.hpp"
+#include "io/laszip_library.hpp"
+#include "io/memory_file.hpp"
+#include "io/number.hpp"
+#include "io/progress.hpp"
+
+namespace palpate::io {
+namespace {
+
+// Offsets into laszip_point_struct of LASzip 3.
+constexpr std::size_t kIntensity = 12;
+constexpr std::size_t kFlags = 15;          // withheld: bit 7
+constexpr std::size_t kExtendedFlags = 22;  // withheld: bit 6
+constexpr std::size_t kColor = 40;
+
+class LazReader {
+ public:
+  LazReader(const Input& input, const LasHeader& header, const LaszipLibrary& library)
+      : input_(input), header_(header), library_(library), file_(input.bytes) {
+    if (library_.create(&handle_) != 0) fail(input, "LASzip cannot start", "Install it anew");
+  }
+  LazReader(const LazReader&) = delete;
+  LazReader& operator=(const LazReader&) = delete;
+  ~LazReader() {
+    if (open_) library_.close_reader(handle_);
+    library_.destroy(handle_);
+  }
+
+  CloudFile run() {
+    int compressed = 0;
+    check(library_.open_reader(handle_, file_.path().c_str(), &compressed), 0);
+    open_ = true;
+    std::byte* point = nullptr;
+    check(library_.get_point_pointer(handle_, &point), 0);
+    const bool colors = header_.color_offset().has_value();
+    CloudBuilder builder(input_, {.colors = colors, .intensities = true}, ColorScale::kGuessInteger,
+                         std::min(header_.points, input_.bytes.size()));
+    Progress progress(input_.options, header_.points);
+    for (std::size_t i = 0; i < header_.points; ++i) {
+      progress.at(i);
+      check(library_.read_point(handle_), i);
+      if (!is_withheld(point)) builder.add(row_of(point));
+    }
+    CloudFile file = builder.finish(header_.name());
+    file.declared = header_.points;
+    file.dropped = header_.points - file.cloud.size();
+    return file;
+  }
+
+ private:
+  bool is_withheld(const std::byte* point) const {
+    return header_.extended() ? (point[kExtendedFlags] & std::byte{64}) != std::byte{0}
+                              : (point[kFlags] & header_.withheld_mask()) != std::byte{0};
+  }
+
+  Row row_of(const std::byte* point) const {
+    Row row{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<Eigen::Index>(axis);
+      row[axis] = load_as<std::int32_t>(point + 4 * axis) * header_.scale[k] + header_.offset[k];
+      row[index_of(Role::kRed) + axis] = load_as<std::uint16_t>(point + kColor + 2 * axis);
+    }
+    row[index_of(Role::kIntensity)] = load_as<std::uint16_t>(point + kIntensity);
+    return row;
+  }
+
+  void check(int status, std::size_t present) const {
+    if (status == 0) return;
+    char* message = nullptr;
+    library_.get_error(handle_, &message);
+    fail(input_,
+         fmt::format("LASzip stops after {} of {} points: {}", present, header_.points,
+                     excerpt(message == nullptr ? "no reason given" : message)),
+         "Fetch the file again; \"lasinfo\" or \"pdal info\" tests it");
+  }
+
+  const Input& input_;
+  const LasHeader& header_;
+  const LaszipLibrary& library_;
+  MemoryFile file_;
+  LaszipLibrary::Handle handle_ = nullptr;
+  bool open_ = false;
+};
+
+}  // namespace
+
+CloudFile read_laz(const Input& input, const LasHeader& header,
+                   std::span<const std::string> libraries) {
+  const LaszipLibrary library(libraries);
+  if (!library.loaded()) {
+    fail(input,
+         fmt::format("{} points compressed as LAZ, and LASzip (liblaszip.so.8) is not installed",
+                     header.points),
+         "Convert the file with \"pdal translate IN.laz OUT.las\" or \"laszip -i IN.laz -o "
+         "OUT.las\" and read the .las, or install LASzip 3 where the loader finds it "
+         "(LD_LIBRARY_PATH)");
+  }
+  return LazReader(input, header, library).run();
+}
+
+}  // namespace palpate::io

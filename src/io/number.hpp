@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace palpate::io {
+
+/// How a number is kept in a binary file.
+enum class NumberType {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat32,
+  kFloat64
+};
+
+/// Bytes that a number of this type takes.
+[[nodiscard]] constexpr std::size_t size_of(NumberType type) {
+  constexpr std::array<std::size_t, 10> kSizes{1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+  return kSizes[static_cast<std::size_t>(type)];
+}
+
+[[nodiscard]] constexpr bool is_floating(NumberType type) {
+  return type == NumberType::kFloat32 || type == NumberType::kFloat64;
+}
+
+/// A T read from unaligned bytes of the given byte order.
+template <class T>
+[[nodiscard]] T load_as(const std::byte* bytes, std::endian order = std::endian::little) {
+  std::array<std::byte, sizeof(T)> copy;
+  std::memcpy(copy.data(), bytes, sizeof(T));
+  if (order != std::endian::native) std::reverse(copy.begin(), copy.end());
+  return std::bit_cast<T>(copy);
+}
+
+/// The number at `bytes` as a double (64-bit integers beyond 2^53 are rounded).
+[[nodiscard]] double load_number(NumberType type, const std::byte* bytes,
+                                 std::endian order = std::endian::little);
+
+}  // namespace palpate::io

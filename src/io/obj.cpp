@@ -1,0 +1,116 @@
+#include "io/obj.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "io/cloud_builder.hpp"
+#include "io/progress.hpp"
+#include "io/text_scanner.hpp"
+
+namespace palpate::io {
+namespace {
+
+struct Counts {
+  std::size_t vertices = 0;
+  std::size_t normals = 0;
+  std::size_t first_normal = 0;  // byte offset of the first "vn" line
+};
+
+Counts count_lines(const Input& input) {
+  Counts counts;
+  TextScanner scanner(input);
+  while (!scanner.at_end()) {
+    const std::size_t begin = scanner.offset();
+    std::string_view line = scanner.next_line();
+    const std::string_view word = take_word(line);
+    if (word == "v") ++counts.vertices;
+    if (word == "vn" && counts.normals++ == 0) counts.first_normal = begin;
+  }
+  return counts;
+}
+
+class ObjReader {
+ public:
+  explicit ObjReader(const Input& input)
+      : input_(input),
+        counts_(count_lines(input)),
+        vertices_(input),
+        normals_(input, counts_.first_normal) {}
+
+  CloudFile run() {
+    const bool normals = counts_.normals == counts_.vertices && counts_.normals > 0;
+    Progress progress(input_.options, input_.bytes.size());
+    std::optional<CloudBuilder> builder;
+    for (std::size_t i = 0; i < counts_.vertices; ++i) {
+      Row row{};
+      const std::size_t numbers = read_line(vertices_, "v", 7, values_);
+      const bool colors = numbers >= 6;
+      if (!builder) {
+        builder.emplace(input_, Columns{.normals = normals, .colors = colors}, ColorScale::kGuess,
+                        counts_.vertices);
+      }
+      set(row, Role::kX);
+      if (colors) std::copy_n(values_.begin() + 3, 3, row.begin() + index_of(Role::kRed));
+      if (normals) {
+        read_line(normals_, "vn", 3, values_);
+        set(row, Role::kNormalX);
+      }
+      builder->add(row);
+      progress.at(vertices_.offset());
+    }
+    if (!builder)
+      fail(input_, "this OBJ file has no vertices (lines \"v x y z\")", "Export it again");
+    return builder->finish("OBJ");
+  }
+
+ private:
+  using Values = std::array<double, 7>;
+
+  void set(Row& row, Role first) const {
+    std::copy_n(values_.begin(), 3, row.begin() + index_of(first));
+  }
+
+  // The numbers of the next line that starts with `word`, which is known to exist.
+  std::size_t read_line(TextScanner& scanner, std::string_view word, std::size_t most,
+                        Values& values) const {
+    std::size_t begin = 0;
+    std::string_view line;
+    do {
+      begin = scanner.offset();
+      line = scanner.next_line();
+    } while (take_word(line) != word);
+    std::size_t count = 0;
+    for (; count < most; ++count) {
+      const std::string_view cell = take_word(line);
+      if (cell.empty()) break;
+      const std::optional<double> number = parse_number(cell);
+      if (!number) wrong(begin, fmt::format("\"{}\" is not a number", excerpt(cell)));
+      values[count] = *number;
+    }
+    if (count < 3)
+      wrong(begin, fmt::format("{} numbers behind \"{}\" where 3 are needed", count, word));
+    return count;
+  }
+
+  [[noreturn]] void wrong(std::size_t offset, std::string_view what) const {
+    fail_at_line(input_, offset, what, "Correct this line, or export the file again");
+  }
+
+  const Input& input_;
+  Counts counts_;
+  TextScanner vertices_;
+  TextScanner normals_;
+  Values values_{};
+};
+
+}  // namespace
+
+CloudFile read_obj(const Input& input) {
+  return ObjReader(input).run();
+}
+
+}  // namespace palpate::io

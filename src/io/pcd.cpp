@@ -1,0 +1,219 @@
+#include "io/pcd.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "io/cloud_builder.hpp"
+#include "io/file_bytes.hpp"
+#include "io/lzf.hpp"
+#include "io/origin.hpp"
+#include "io/pcd_header.hpp"
+#include "io/progress.hpp"
+#include "io/row.hpp"
+#include "io/text_scanner.hpp"
+
+namespace palpate::io {
+namespace {
+
+struct FieldUse {
+  std::optional<Role> role;
+  bool packed_color = false;
+};
+
+struct FieldUses {
+  std::vector<FieldUse> uses;  // one a field
+  Columns columns;
+};
+
+FieldUses uses_of(const Input& input, const PcdHeader& header) {
+  FieldUses result;
+  std::array<bool, kRoleCount> has{};
+  bool packed = false;
+  for (const PcdField& field : header.fields) {
+    FieldUse use;
+    if (field.count > 0) use.role = role_of(field.name);
+    if (use.role && has[index_of(*use.role)]) use.role.reset();
+    if (use.role) has[index_of(*use.role)] = true;
+    use.packed_color = !packed && field.count > 0 && size_of(field.type) == 4 &&
+                       (field.name == "rgb" || field.name == "rgba");
+    packed = packed || use.packed_color;
+    result.uses.push_back(use);
+  }
+  if (!has[index_of(Role::kX)] || !has[index_of(Role::kY)] || !has[index_of(Role::kZ)]) {
+    fail(input, "the FIELDS of this PCD file lack x, y or z", "Export it again with positions");
+  }
+  result.columns = complete_columns(has);
+  result.columns.colors = result.columns.colors || packed;
+  return result;
+}
+
+void set_packed_color(Row& row, std::uint32_t bits) {
+  row[index_of(Role::kRed)] = static_cast<double>((bits >> 16U) & 255U);
+  row[index_of(Role::kGreen)] = static_cast<double>((bits >> 8U) & 255U);
+  row[index_of(Role::kBlue)] = static_cast<double>(bits & 255U);
+}
+
+// In text a packed colour of type F is the float of its bits, of type U or I the number itself.
+std::uint32_t color_bits(NumberType type, double value) {
+  if (type == NumberType::kFloat32) {
+    return std::isfinite(value) ? std::bit_cast<std::uint32_t>(static_cast<float>(value)) : 0U;
+  }
+  const bool fits = value >= -2147483648.0 && value <= 4294967295.0;
+  return fits ? static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) : 0U;
+}
+
+class PcdReader {
+ public:
+  explicit PcdReader(const Input& input)
+      : input_(input),
+        header_(read_pcd_header(input)),
+        uses_(uses_of(input, header_)),
+        data_(input.bytes.subspan(header_.size)) {}
+
+  CloudFile run() {
+    if (header_.encoding == PcdEncoding::kAscii) return finish(read_ascii(), "PCD, ascii");
+    if (header_.encoding == PcdEncoding::kBinary) return finish(read_binary(), "PCD, binary");
+    return finish(read_compressed(), "PCD, binary compressed");
+  }
+
+ private:
+  CloudBuilder builder(std::size_t room) const {
+    return {input_, uses_.columns, ColorScale::kByte, std::min(header_.points, room)};
+  }
+
+  CloudBuilder read_ascii() {
+    const std::size_t numbers = header_.fields.size();
+    CloudBuilder result = builder((data_.size() + 1) / (2 * numbers) + 1);
+    Progress progress(input_.options, input_.bytes.size());
+    TextScanner scanner(input_, header_.size);
+    Row row{};
+    for (std::size_t i = 0; i < header_.points; ++i) {
+      if (!read_ascii_row(scanner, row)) fail_cut(i);
+      result.add(row);
+      progress.at(scanner.offset());
+    }
+    return result;
+  }
+
+  bool read_ascii_row(TextScanner& scanner, Row& row) {
+    for (std::size_t k = 0; k < header_.fields.size(); ++k) {
+      for (std::size_t j = 0; j < header_.fields[k].count; ++j) {
+        const FieldUse& use = uses_.uses[k];
+        if (j > 0 || !(use.role || use.packed_color)) {
+          if (scanner.next_token().empty()) return false;
+          continue;
+        }
+        const std::optional<double> value = scanner.next_number();
+        if (!value) return false;
+        if (use.role) row[index_of(*use.role)] = *value;
+        if (use.packed_color) set_packed_color(row, color_bits(header_.fields[k].type, *value));
+      }
+    }
+    return true;
+  }
+
+  CloudBuilder read_binary() {
+    const std::size_t present = data_.size() / header_.point_size;
+    if (present < header_.points) fail_cut(present);
+    CloudBuilder result = builder(present);
+    Progress progress(input_.options, header_.points);
+    Row row{};
+    for (std::size_t i = 0; i < header_.points; ++i) {
+      const std::byte* point = data_.data() + i * header_.point_size;
+      for (std::size_t k = 0; k < header_.fields.size(); ++k) {
+        read_field(k, point + header_.fields[k].offset, row);
+      }
+      result.add(row);
+      progress.at(i);
+    }
+    return result;
+  }
+
+  // Compressed points are stored field by field: all of x, then all of y, ...
+  CloudBuilder read_compressed() {
+    const Bytes bytes = unpack();
+    CloudBuilder result = builder(header_.points);
+    Progress progress(input_.options, header_.points);
+    Row row{};
+    for (std::size_t i = 0; i < header_.points; ++i) {
+      for (std::size_t k = 0; k < header_.fields.size(); ++k) {
+        const PcdField& field = header_.fields[k];
+        const std::size_t size = size_of(field.type) * field.count;
+        read_field(k, bytes.span().data() + field.offset * header_.points + i * size, row);
+      }
+      result.add(row);
+      progress.at(i);
+    }
+    return result;
+  }
+
+  void read_field(std::size_t k, const std::byte* at, Row& row) const {
+    const FieldUse& use = uses_.uses[k];
+    if (use.role) row[index_of(*use.role)] = load_number(header_.fields[k].type, at);
+    if (use.packed_color) set_packed_color(row, load_as<std::uint32_t>(at));
+  }
+
+  Bytes unpack() const {
+    constexpr std::size_t kSizes = 8;  // two 32-bit sizes come first: packed, unpacked
+    if (data_.size() < kSizes) fail_cut(0);
+    const std::size_t packed = load_as<std::uint32_t>(data_.data());
+    const std::size_t unpacked = load_as<std::uint32_t>(data_.data() + 4);
+    if (header_.points > unpacked / header_.point_size ||
+        unpacked != header_.points * header_.point_size) {
+      fail_at_byte(input_, header_.size + 4,
+                   fmt::format("{} bytes of data announced for {} points of {} bytes", unpacked,
+                               header_.points, header_.point_size),
+                   "The file is damaged: fetch or export it again");
+    }
+    if (data_.size() - kSizes < packed || unpacked / kLzfLargestRatio > packed) {
+      fail_at_byte(
+          input_, header_.size,
+          fmt::format("{} compressed bytes announced, {} present", packed, data_.size() - kSizes),
+          "The file is cut; compressed data cannot be used in part: fetch it again");
+    }
+    Bytes bytes(unpacked);
+    if (const auto wrong = lzf_unpack(data_.subspan(kSizes, packed), bytes.span())) {
+      fail_at_byte(input_, header_.size + kSizes + *wrong, "the compressed data is damaged",
+                   "Fetch or export the file again");
+    }
+    return bytes;
+  }
+
+  CloudFile finish(CloudBuilder result, std::string format) const {
+    CloudFile file = result.finish(std::move(format));
+    if (header_.organised()) {
+      file.width = header_.width;
+      file.height = header_.height;
+    }
+    const bool is_set = header_.viewpoint != PcdHeader{}.viewpoint;
+    const Eigen::Vector3d stand =
+        input_.options.scale * Eigen::Map<const Eigen::Vector3d>(header_.viewpoint.data());
+    if ((is_set || header_.organised()) && is_usable(stand)) file.cloud.viewpoint = stand;
+    return file;
+  }
+
+  [[noreturn]] void fail_cut(std::size_t present) const {
+    fail_at_byte(input_, input_.bytes.size(),
+                 fmt::format("the file ends after {} of {} points", present, header_.points),
+                 fmt::format("Fetch or export it again; to use the points that are there, write "
+                             "WIDTH {}, HEIGHT 1 and POINTS {} in its header",
+                             present, present));
+  }
+
+  const Input& input_;
+  PcdHeader header_;
+  FieldUses uses_;
+  std::span<const std::byte> data_;
+};
+
+}  // namespace
+
+CloudFile read_pcd(const Input& input) {
+  return PcdReader(input).run();
+}
+
+}  // namespace palpate::io

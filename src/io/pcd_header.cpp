@@ -1,0 +1,169 @@
+#include "io/pcd_header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "io/text_scanner.hpp"
+
+namespace palpate::io {
+namespace {
+
+constexpr std::size_t kMostFields = 4096;
+constexpr std::size_t kLargestCount = 65536;  // numbers in one field of one point
+
+std::vector<std::string_view> words_of(std::string_view rest) {
+  std::vector<std::string_view> words;
+  while (true) {
+    const std::string_view word = take_word(rest);
+    if (word.empty()) return words;
+    words.push_back(word);
+  }
+}
+
+std::optional<NumberType> number_type(std::string_view letter, std::size_t size) {
+  constexpr std::pair<std::string_view, NumberType> kTypes[] = {
+      {"I1", NumberType::kInt8},    {"U1", NumberType::kUint8},  {"I2", NumberType::kInt16},
+      {"U2", NumberType::kUint16},  {"I4", NumberType::kInt32},  {"U4", NumberType::kUint32},
+      {"I8", NumberType::kInt64},   {"U8", NumberType::kUint64}, {"F4", NumberType::kFloat32},
+      {"F8", NumberType::kFloat64},
+  };
+  const std::string wanted = fmt::format("{}{}", letter, size);
+  for (const auto& [name, type] : kTypes) {
+    if (name == wanted) return type;
+  }
+  return {};
+}
+
+class HeaderParser {
+ public:
+  explicit HeaderParser(const Input& input) : input_(input), scanner_(input) {}
+
+  PcdHeader run() {
+    while (!has_data_) {
+      if (scanner_.at_end()) {
+        fail(input_, "the PCD header has no DATA line", "The file is cut: fetch it again");
+      }
+      line_begin_ = scanner_.offset();
+      std::string_view line = scanner_.next_line();
+      const std::string_view keyword = take_word(line);
+      if (keyword.empty() || keyword.front() == '#') continue;
+      take(keyword, words_of(line));
+    }
+    make_fields();
+    make_size();
+    header_.size = scanner_.offset();
+    return std::move(header_);
+  }
+
+ private:
+  using Words = std::vector<std::string_view>;
+
+  void take(std::string_view keyword, Words words) {
+    if (keyword == "VERSION") return;
+    if (keyword == "FIELDS" || keyword == "COLUMNS") return void(names_ = std::move(words));
+    if (keyword == "SIZE") return void(sizes_ = std::move(words));
+    if (keyword == "TYPE") return void(types_ = std::move(words));
+    if (keyword == "COUNT") return void(counts_ = std::move(words));
+    if (keyword == "WIDTH") return void(width_ = count(words));
+    if (keyword == "HEIGHT") return void(header_.height = count(words));
+    if (keyword == "POINTS") return void(points_ = count(words));
+    if (keyword == "VIEWPOINT") return take_viewpoint(words);
+    if (keyword == "DATA") return take_data(words);
+    wrong(fmt::format("unknown word \"{}\" in the PCD header", excerpt(keyword)));
+  }
+
+  std::size_t count(const Words& words) {
+    const std::optional<std::size_t> number =
+        words.size() == 1 ? parse_count(words[0]) : std::nullopt;
+    if (!number) wrong("here a single whole number is expected");
+    return *number;
+  }
+
+  void take_viewpoint(const Words& words) {
+    if (words.size() != 7) wrong("VIEWPOINT needs seven numbers: x y z and qw qx qy qz");
+    for (std::size_t i = 0; i < 7; ++i) {
+      const std::optional<double> number = parse_number(words[i]);
+      if (!number) wrong(fmt::format("\"{}\" is not a number", excerpt(words[i])));
+      header_.viewpoint[i] = *number;
+    }
+  }
+
+  void take_data(const Words& words) {
+    constexpr std::pair<std::string_view, PcdEncoding> kEncodings[] = {
+        {"ascii", PcdEncoding::kAscii},
+        {"binary", PcdEncoding::kBinary},
+        {"binary_compressed", PcdEncoding::kCompressed}};
+    for (const auto& [name, encoding] : kEncodings) {
+      if (words.empty() || words[0] != name) continue;
+      header_.encoding = encoding;
+      has_data_ = true;
+      return;
+    }
+    wrong("DATA is neither ascii, binary nor binary_compressed");
+  }
+
+  void make_fields() {
+    line_begin_ = 0;
+    const std::size_t n = names_.size();
+    if (n == 0 || n > kMostFields) wrong("the header names no FIELDS, or thousands of them");
+    if (sizes_.size() != n || types_.size() != n || (!counts_.empty() && counts_.size() != n)) {
+      wrong(fmt::format("FIELDS names {} columns, but SIZE, TYPE or COUNT have another number", n));
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      PcdField field{.name = std::string(names_[i])};
+      const std::size_t size = parse_count(sizes_[i]).value_or(0);
+      const std::optional<NumberType> type = number_type(types_[i], size);
+      if (!type) {
+        wrong(fmt::format("field \"{}\" has type \"{}\" of {} bytes", excerpt(names_[i]),
+                          excerpt(types_[i]), size));
+      }
+      field.type = *type;
+      field.count = counts_.empty() ? 1 : parse_count(counts_[i]).value_or(kLargestCount + 1);
+      if (field.count > kLargestCount) {
+        wrong(fmt::format("field \"{}\" has no sensible COUNT", excerpt(names_[i])));
+      }
+      field.offset = header_.point_size;
+      header_.point_size += size * field.count;
+      header_.fields.push_back(std::move(field));
+    }
+  }
+
+  void make_size() {
+    if (!width_ && !points_) wrong("neither WIDTH nor POINTS says how many points there are");
+    header_.points = points_.value_or(0);
+    header_.width = width_.value_or(header_.points);
+    std::size_t grid = 0;
+    const bool overflow = __builtin_mul_overflow(header_.width, header_.height, &grid);
+    if (!points_) header_.points = grid;
+    if (overflow || grid != header_.points) {
+      wrong(fmt::format("WIDTH {} times HEIGHT {} is not POINTS {}", header_.width, header_.height,
+                        header_.points));
+    }
+  }
+
+  [[noreturn]] void wrong(std::string_view what) {
+    fail_at_line(input_, line_begin_, what, "Correct the header, or export the file again as PCD");
+  }
+
+  const Input& input_;
+  TextScanner scanner_;
+  PcdHeader header_;
+  Words names_;
+  Words sizes_;
+  Words types_;
+  Words counts_;
+  std::optional<std::size_t> width_;
+  std::optional<std::size_t> points_;
+  std::size_t line_begin_ = 0;
+  bool has_data_ = false;
+};
+
+}  // namespace
+
+PcdHeader read_pcd_header(const Input& input) {
+  return HeaderParser(input).run();
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,195 @@
+#include "io/ply.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "io/cloud_builder.hpp"
+#include "io/ply_header.hpp"
+#include "io/progress.hpp"
+#include "io/row.hpp"
+#include "io/text_scanner.hpp"
+
+namespace palpate::io {
+namespace {
+
+// The two ways to get the next number of an element; false at the end of the bytes.
+class AsciiCursor {
+ public:
+  AsciiCursor(const Input& input, std::size_t offset) : scanner_(input, offset) {}
+  bool next(NumberType, double& value) {
+    const std::optional<double> number = scanner_.next_number();
+    value = number.value_or(0);
+    return number.has_value();
+  }
+  bool skip(NumberType, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (scanner_.next_token().empty()) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] std::size_t offset() const { return scanner_.offset(); }
+  static std::size_t least_size(NumberType) { return 2; }  // a digit and a space
+
+ private:
+  TextScanner scanner_;
+};
+
+class BinaryCursor {
+ public:
+  BinaryCursor(const Input& input, std::size_t offset, std::endian order)
+      : bytes_(input.bytes), offset_(offset), order_(order) {}
+  bool next(NumberType type, double& value) {
+    if (bytes_.size() - offset_ < size_of(type)) return false;
+    value = load_number(type, bytes_.data() + offset_, order_);
+    offset_ += size_of(type);
+    return true;
+  }
+  bool skip(NumberType type, std::size_t count) {
+    if ((bytes_.size() - offset_) / size_of(type) < count) return false;
+    offset_ += count * size_of(type);
+    return true;
+  }
+  [[nodiscard]] std::size_t offset() const { return offset_; }
+  static std::size_t least_size(NumberType type) { return size_of(type); }
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::size_t offset_;
+  std::endian order_;
+};
+
+struct VertexColumns {
+  std::vector<std::optional<Role>> roles;  // one a property
+  Columns columns;
+  ColorScale color_scale = ColorScale::kByte;
+  bool has_point = false;
+};
+
+VertexColumns columns_of(const PlyElement& element) {
+  VertexColumns result;
+  std::array<bool, kRoleCount> has{};
+  for (const PlyProperty& property : element.properties) {
+    std::optional<Role> role = property.list_count ? std::nullopt : role_of(property.name);
+    if (role && has[index_of(*role)]) role.reset();
+    if (role) has[index_of(*role)] = true;
+    if (role == Role::kRed && property.type != NumberType::kUint8) {
+      result.color_scale =
+          is_floating(property.type) ? ColorScale::kGuess : ColorScale::kGuessInteger;
+    }
+    result.roles.push_back(role);
+  }
+  result.columns = complete_columns(has);
+  result.has_point = has[index_of(Role::kX)] && has[index_of(Role::kY)] && has[index_of(Role::kZ)];
+  return result;
+}
+
+template <class Cursor>
+class PlyReader {
+ public:
+  PlyReader(const Input& input, const PlyHeader& header, Cursor cursor)
+      : input_(input), header_(header), cursor_(std::move(cursor)) {}
+
+  CloudFile run(std::string format) {
+    for (const PlyElement& element : header_.elements) {
+      const VertexColumns columns = columns_of(element);
+      if (columns.has_point) return read_vertices(element, columns, std::move(format));
+      skip_element(element);
+    }
+    fail(input_, "no element of this PLY file has the properties x, y and z",
+         "Export it again with its vertices");
+  }
+
+ private:
+  CloudFile read_vertices(const PlyElement& element, const VertexColumns& columns,
+                          std::string format) {
+    const std::size_t room = (input_.bytes.size() - cursor_.offset() + 1) / least_row(element);
+    CloudBuilder builder(input_, columns.columns, columns.color_scale,
+                         std::min(element.count, room));
+    Progress progress(input_.options, input_.bytes.size());
+    Row row{};
+    for (std::size_t i = 0; i < element.count; ++i) {
+      if (!read_row(element, columns, row)) fail_cut(element, i);
+      builder.add(row);
+      progress.at(cursor_.offset());
+    }
+    return builder.finish(std::move(format));
+  }
+
+  bool read_row(const PlyElement& element, const VertexColumns& columns, Row& row) {
+    for (std::size_t k = 0; k < element.properties.size(); ++k) {
+      const PlyProperty& property = element.properties[k];
+      double value = 0;
+      if (property.list_count) {
+        if (!skip_list(property)) return false;
+      } else if (!columns.roles[k]) {
+        if (!cursor_.skip(property.type, 1)) return false;
+      } else if (cursor_.next(property.type, value)) {
+        row[index_of(*columns.roles[k])] = value;
+      } else {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void skip_element(const PlyElement& element) {
+    if (element.properties.empty()) return;
+    for (std::size_t i = 0; i < element.count; ++i) {
+      for (const PlyProperty& property : element.properties) {
+        const bool there =
+            property.list_count ? skip_list(property) : cursor_.skip(property.type, 1);
+        if (!there) fail_cut(element, i);
+      }
+    }
+  }
+
+  bool skip_list(const PlyProperty& property) {
+    const std::size_t begin = cursor_.offset();
+    double length = 0;
+    if (!cursor_.next(*property.list_count, length)) return false;
+    if (!(length >= 0 && length <= 4294967295.0)) {
+      fail_at_byte(input_, begin, fmt::format("a list of {} items", length),
+                   "The file is damaged: export it again");
+    }
+    return cursor_.skip(property.type, static_cast<std::size_t>(length));
+  }
+
+  static std::size_t least_row(const PlyElement& element) {
+    std::size_t size = 0;
+    for (const PlyProperty& p : element.properties) {
+      size += Cursor::least_size(p.list_count.value_or(p.type));
+    }
+    return size;
+  }
+
+  [[noreturn]] void fail_cut(const PlyElement& element, std::size_t present) const {
+    fail_at_byte(input_, input_.bytes.size(),
+                 fmt::format("the file ends after {} of {} rows of \"{}\"", present, element.count,
+                             excerpt(element.name)),
+                 fmt::format("Fetch or export it again; to use the {} rows that are there, write "
+                             "\"element {} {}\" in its header",
+                             present, excerpt(element.name), present));
+  }
+
+  const Input& input_;
+  const PlyHeader& header_;
+  Cursor cursor_;
+};
+
+}  // namespace
+
+CloudFile read_ply(const Input& input) {
+  const PlyHeader header = read_ply_header(input);
+  if (header.encoding == PlyEncoding::kAscii) {
+    return PlyReader(input, header, AsciiCursor(input, header.size)).run("PLY, ascii");
+  }
+  const bool little = header.encoding == PlyEncoding::kLittleEndian;
+  const BinaryCursor cursor(input, header.size, little ? std::endian::little : std::endian::big);
+  return PlyReader(input, header, cursor)
+      .run(little ? "PLY, binary little endian" : "PLY, binary big endian");
+}
+
+}  // namespace palpate::io

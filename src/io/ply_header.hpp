@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/input.hpp"
+#include "io/number.hpp"
+
+namespace palpate::io {
+
+enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
+
+struct PlyProperty {
+  std::string name;
+  NumberType type = NumberType::kFloat32;  ///< of the value, or of a list's items
+  std::optional<NumberType> list_count{};  ///< type of a list's length, if it is a list
+};
+
+struct PlyElement {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::kAscii;
+  std::vector<PlyElement> elements;
+  std::size_t size = 0;  ///< bytes up to the first element
+};
+
+/// @throws Error that names the line of what is wrong.
+[[nodiscard]] PlyHeader read_ply_header(const Input& input);
+
+}  // namespace palpate::io

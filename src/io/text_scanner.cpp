@@ -1,0 +1,90 @@
+#include "io/text_scanner.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <limits>
+
+namespace palpate::io {
+namespace {
+
+constexpr bool is_space(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+// from_chars says only "out of range"; the sign of the exponent tells which way.
+double out_of_range_value(std::string_view token) {
+  const bool tiny = token.find("e-") != std::string_view::npos ||
+                    token.find("E-") != std::string_view::npos || token.find("0.") == 0;
+  if (tiny) return 0;
+  return token.front() == '-' ? -std::numeric_limits<double>::infinity()
+                              : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view token) {
+  if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+  if (end != token.data() + token.size() || token.empty()) return {};
+  if (error == std::errc::result_out_of_range) return out_of_range_value(token);
+  return error == std::errc{} ? std::optional{value} : std::nullopt;
+}
+
+std::optional<std::size_t> parse_count(std::string_view token) {
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+  if (error != std::errc{} || end != token.data() + token.size()) return {};
+  return value;
+}
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string_view take_word(std::string_view& text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  std::size_t length = 0;
+  while (length < text.size() && !is_space(text[length])) ++length;
+  const std::string_view word = text.substr(0, length);
+  text.remove_prefix(length);
+  return word;
+}
+
+std::string_view TextScanner::next_line() {
+  const std::size_t begin = offset_;
+  const std::size_t end = std::min(text_.find('\n', begin), text_.size());
+  offset_ = std::min(end + 1, text_.size());
+  std::string_view line = text_.substr(begin, end - begin);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line;
+}
+
+void TextScanner::skip_space() {
+  while (offset_ < text_.size() && is_space(text_[offset_])) ++offset_;
+}
+
+std::string_view TextScanner::next_token() {
+  skip_space();
+  const std::size_t begin = offset_;
+  while (offset_ < text_.size() && !is_space(text_[offset_])) ++offset_;
+  return text_.substr(begin, offset_ - begin);
+}
+
+std::optional<double> TextScanner::next_number() {
+  skip_space();
+  const std::size_t begin = offset_;
+  const std::string_view token = next_token();
+  if (token.empty()) return {};
+  const std::optional<double> value = parse_number(token);
+  if (!value) {
+    fail_at_line(input_, begin, fmt::format("\"{}\" is not a number", excerpt(token)),
+                 "Correct this line, or export the file again");
+  }
+  return value;
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,77 @@
+#include "io/xyz_columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+namespace palpate::io {
+namespace {
+
+using Rows = std::vector<std::array<double, kMostTextColumns>>;
+
+// "X[m]", "\"x\"", "//X" all mean x.
+std::string_view bare_name(std::string_view name) {
+  constexpr std::string_view kMarks = "\"'/#";
+  while (!name.empty() && kMarks.find(name.front()) != std::string_view::npos) {
+    name.remove_prefix(1);
+  }
+  return name.substr(0, name.find_first_of("[(\"'"));
+}
+
+bool are_unit(const Rows& rows, std::size_t first) {
+  if (rows.empty()) return false;
+  std::size_t unit = 0;
+  for (const auto& row : rows) {
+    const double length = std::hypot(row[first], row[first + 1], row[first + 2]);
+    if (std::abs(length - 1) < 0.01) ++unit;
+  }
+  return 2 * unit > rows.size();
+}
+
+TextColumns make(std::size_t count, std::initializer_list<Role> optional_roles) {
+  TextColumns result{.count = count, .roles = {Role::kX, Role::kY, Role::kZ}, .columns = {}};
+  result.roles.insert(result.roles.end(), optional_roles.begin(), optional_roles.end());
+  result.roles.resize(count);
+  std::array<bool, kRoleCount> has{};
+  for (const auto& role : result.roles) {
+    if (role) has[index_of(*role)] = true;
+  }
+  result.columns = complete_columns(has);
+  return result;
+}
+
+}  // namespace
+
+std::optional<TextColumns> columns_from_names(const TextCells& names) {
+  TextColumns result{.count = names.count, .roles = {}, .columns = {}};
+  std::array<bool, kRoleCount> has{};
+  for (std::size_t i = 0; i < names.count; ++i) {
+    std::optional<Role> role = role_of(bare_name(names.cells[i]));
+    if (role && has[index_of(*role)]) role.reset();
+    if (role) has[index_of(*role)] = true;
+    result.roles.push_back(role);
+  }
+  if (!has[index_of(Role::kX)] || !has[index_of(Role::kY)] || !has[index_of(Role::kZ)]) return {};
+  result.columns = complete_columns(has);
+  return result;
+}
+
+TextColumns columns_from_rows(std::size_t count, const Rows& rows) {
+  using enum Role;
+  switch (count) {
+    case 4:
+      return make(count, {kIntensity});
+    case 6:
+      return are_unit(rows, 3) ? make(count, {kNormalX, kNormalY, kNormalZ})
+                               : make(count, {kRed, kGreen, kBlue});
+    case 7:
+      return make(count, {kIntensity, kRed, kGreen, kBlue});
+    case 9:
+      return are_unit(rows, 3) ? make(count, {kNormalX, kNormalY, kNormalZ, kRed, kGreen, kBlue})
+                               : make(count, {kRed, kGreen, kBlue, kNormalX, kNormalY, kNormalZ});
+    default:
+      return make(count, {});
+  }
+}
+
+}  // namespace palpate::io
