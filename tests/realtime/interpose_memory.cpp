@@ -9,6 +9,7 @@
 using palpate::realtime::note;
 using palpate::realtime::Offence;
 
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): glibc's names
 extern "C" {
 
 void* __libc_malloc(std::size_t);
@@ -54,3 +55,4 @@ void free(void* block) noexcept {
 }
 
 }  // extern "C"
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)

@@ -34,6 +34,7 @@ Function* counted(Offence offence, Function*& next, const char* name) {
 
 }  // namespace
 
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): glibc's names
 extern "C" {
 
 std::size_t fwrite(const void* data, std::size_t size, std::size_t count, FILE* file) {
@@ -98,3 +99,4 @@ int gettimeofday(timeval* time, void* zone) noexcept {
 }
 
 }  // extern "C"
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
