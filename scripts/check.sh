@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# What takes longer than scripts/test.sh: Debug and TSan builds with every test, a minute of fuzzing a
+# target and, for root, the trial of both README commands in a fresh Debian root.
+#
+# --no-fresh-root leaves the last out.
+# shellcheck source=scripts/lib.sh
+source "$(dirname "$0")/lib.sh"
+fresh=yes
+if [ "${1:-}" = --no-fresh-root ]; then fresh=no; fi
+started=$SECONDS
+status=0
+
+say "packages"
+need_packages build test fuzz lint
+find_data
+
+say "Debug"
+configure dev
+build dev
+test_preset dev || status=1
+
+say "thread sanitizer"
+# TBB as packaged is not instrumented: its own hand-overs look like races. The suppressions name it
+# and nothing of ours.
+configure tsan
+build tsan
+TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp" test_preset tsan || status=1
+
+say "fuzz targets, 60 s each"
+configure fuzz
+build fuzz
+fuzz_all 60 || status=1
+
+say "format and tidy, every file"
+scripts/lint.sh --all || status=1
+
+if [ "$fresh" = yes ] && [ "$(id -u)" -eq 0 ]; then
+  say "fresh root"
+  need_packages fresh
+  scripts/fresh_root.sh "${PALPATE_FRESH_ROOT:-/var/tmp/palpate-fresh-root}" || status=1
+else
+  note "fresh root: left out (it needs root, and no --no-fresh-root)"
+fi
+
+say "summary (after $((SECONDS - started)) s)"
+for preset in dev tsan; do summary "$preset"; done
+exit $status

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Builds palpate and touches a cloud with it: scripts/demo.sh [CLOUD]
+#
+# Without CLOUD the cloud is one that palpate makes itself, so nothing is fetched but packages.
+# shellcheck source=scripts/lib.sh
+source "$(dirname "$0")/lib.sh"
+case "${1:-}" in -h | --help)
+  sed -n '2,4s/^# \{0,1\}//p' "$0"
+  exit
+  ;;
+esac
+cloud=${1:-synthetic:bumps}
+if [ -e "$called_from/$cloud" ]; then cloud=$(realpath "$called_from/$cloud"); fi
+started=$SECONDS
+
+say "packages"
+need_packages build
+
+say "build"
+# The first time without the tests, which need more packages.
+if [ -f build/release/CMakeCache.txt ]; then configure release; else configure release -DPALPATE_BUILD_TESTS=OFF; fi
+build release palpate_app
+
+say "touch $cloud"
+mkdir -p build/demo
+build/release/apps/palpate/palpate touch "$cloud" \
+  --picture build/demo/touch.png --log build/demo/touch.csv --json build/demo/touch.json
+
+say "done in $((SECONDS - started)) s"
+note "picture: $PWD/build/demo/touch.png"
+note "log:     $PWD/build/demo/touch.csv (a servo step a row)"
+note "next:    build/release/apps/palpate/palpate touch YOUR_CLOUD --picture touch.png"

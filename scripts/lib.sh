@@ -1,0 +1,165 @@
+# shellcheck shell=bash disable=SC2034
+# Shared by the scripts in this folder; sourced, not run.
+
+set -euo pipefail
+called_from=$PWD
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+say() { printf '\n== %s\n' "$*"; }
+note() { printf '   %s\n' "$*"; }
+fail() {
+  printf 'error: %s\n' "$*" >&2
+  exit 1
+}
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    fail "'$*' needs root and sudo is absent: run it as root, then start this script again"
+  fi
+}
+
+is_installed() {
+  [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
+}
+
+# The alternatives of a group's packages, one "a|b" a line.
+packages_of() {
+  awk -v group="$1" '$1 == group { print $2 }' scripts/packages.txt
+}
+
+# Those of a group for which no alternative is installed.
+missing_of() {
+  local alternatives name
+  for alternatives in $(packages_of "$1"); do
+    for name in ${alternatives//|/ }; do
+      if is_installed "$name"; then continue 2; fi
+    done
+    echo "$alternatives"
+  done
+}
+
+# The first alternative that apt can install.
+choose() {
+  local name
+  for name in ${1//|/ }; do
+    if apt-cache show --no-all-versions "$name" >/dev/null 2>&1; then
+      echo "$name"
+      return
+    fi
+  done
+  fail "apt knows none of: $1"
+}
+
+# need_packages GROUP...: installs what is absent of these groups and nothing else.
+need_packages() {
+  local group alternatives missing=() chosen=()
+  if ! command -v apt-get >/dev/null; then
+    note "no apt here: these packages or their like have to be there already: $*"
+    return
+  fi
+  for group in "$@"; do
+    for alternatives in $(missing_of "$group"); do missing+=("$alternatives"); done
+  done
+  if [ ${#missing[@]} -eq 0 ]; then
+    note "packages ($*): all there, nothing to install"
+    return
+  fi
+  as_root apt-get update -qq
+  for alternatives in "${missing[@]}"; do chosen+=("$(choose "$alternatives")"); done
+  note "packages ($*): installing ${chosen[*]}"
+  as_root env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "${chosen[@]}" >/dev/null
+}
+
+# One compiler a core, but no more than memory holds (about 1.5 GB each).
+jobs_that_fit() {
+  local cores memory
+  cores=$(nproc)
+  memory=$(awk '/MemAvailable/ { print int($2 / 1500000) }' /proc/meminfo)
+  if [ "$memory" -lt 1 ]; then memory=1; fi
+  echo $((memory < cores ? memory : cores))
+}
+
+# configure PRESET [CMAKE OPTION...]
+configure() {
+  local preset=$1
+  shift
+  if command -v ccache >/dev/null; then
+    set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"
+  fi
+  cmake --preset "$preset" "$@" >"build/$preset.configure.log" 2>&1 ||
+    { cat "build/$preset.configure.log" >&2; fail "cmake could not configure preset $preset"; }
+}
+
+# build PRESET [TARGET...]
+build() {
+  local preset=$1 started=$SECONDS
+  shift
+  local target=()
+  if [ $# -gt 0 ]; then target=(--target "$@"); fi
+  cmake --build "build/$preset" -j "$(jobs_that_fit)" "${target[@]}" >"build/$preset.build.log" 2>&1 ||
+    { tail -n 60 "build/$preset.build.log" >&2; fail "preset $preset does not build; all of it: build/$preset.build.log"; }
+  if grep -q 'no work to do' "build/$preset.build.log"; then
+    note "preset $preset: up to date, nothing to build"
+  else
+    note "preset $preset: built in $((SECONDS - started)) s"
+  fi
+}
+
+# Real data for tests, where it is there.
+find_data() {
+  if [ -z "${PALPATE_DATA:-}" ] && [ -d ../shared/data ]; then
+    PALPATE_DATA=$(cd ../shared/data && pwd)
+    export PALPATE_DATA
+  fi
+  note "real data: ${PALPATE_DATA:-none (PALPATE_DATA is not set; those tests are skipped)}"
+}
+
+# test_preset PRESET [CTEST OPTION...]: runs ctest, keeps its log, fails as it fails.
+test_preset() {
+  local preset=$1 started=$SECONDS status=0
+  shift
+  ctest --test-dir "build/$preset" --output-on-failure -j "$(jobs_that_fit)" "$@" \
+    >"build/$preset.test.log" 2>&1 || status=$?
+  if [ $status -ne 0 ]; then grep -vE '^ *[0-9]+/[0-9]+ Test .*Passed|^ +Start ' "build/$preset.test.log" || true; fi
+  note "preset $preset: $(grep -E 'tests passed|No tests' "build/$preset.test.log" || echo 'ctest did not finish') ($((SECONDS - started)) s)"
+  return $status
+}
+
+# The reasons that skipped tests of a preset gave, and how many gave each.
+skipped() {
+  awk '/: Skipped$/ { getline; print }' "build/$1/Testing/Temporary/LastTest.log" | sort | uniq -c |
+    sed "s/^/   $1: /"
+}
+
+# ctest's own last word on a preset.
+summary() {
+  note "$1: $(grep -E 'tests passed' "build/$1.test.log" || echo 'ctest did not finish')"
+}
+
+# fuzz_all SECONDS: each fuzz target over its seeds in fuzz/corpus/NAME. Inputs that are found stay
+# out of the tree; one that breaks something is kept as build/fuzz/found/NAME-*.
+fuzz_all() {
+  local seconds=$1 target name status=0
+  for target in build/fuzz/fuzz/fuzz_*; do
+    if [ ! -f "$target" ] || [ ! -x "$target" ]; then continue; fi
+    name=${target##*/fuzz_}
+    mkdir -p "build/fuzz/found" "build/fuzz/corpus/$name"
+    if "$target" "build/fuzz/corpus/$name" "fuzz/corpus/$name" -max_total_time="$seconds" \
+      -timeout=10 -rss_limit_mb=2048 -artifact_prefix="build/fuzz/found/$name-" \
+      >"build/fuzz/$name.log" 2>&1; then
+      note "$name: $(grep -oE 'Done [0-9]+ runs' "build/fuzz/$name.log" || true), clean"
+    else
+      tail -n 30 "build/fuzz/$name.log" >&2
+      note "$name: BROKEN, see build/fuzz/$name.log"
+      status=1
+    fi
+  done
+  return $status
+}
+
+mkdir -p build
