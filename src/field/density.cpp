@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/neighborhoods.hpp"
 #include "palpate/base/error.hpp"
@@ -15,6 +16,7 @@ using detail::Group;
 using detail::JoinSpace;
 
 constexpr float kShareOfAround = 0.8f;
+constexpr float kLargest = std::numeric_limits<float>::max();
 
 void check(const CellGrid& grid, std::span<const float> radii) {
   if (radii.size() != grid.size()) {
@@ -41,7 +43,7 @@ std::vector<float> sums_of(const CellGrid& grid, std::span<const float> radii, K
     detail::gather_reaching(grid, group, radii, cell_reach, space.candidates);
     for (auto& column : space.values) column.clear();
     for (const std::uint32_t j : space.candidates.indices()) {
-      space.values[0].push_back(1 / (radii[j] * radii[j]));
+      space.values[0].push_back(std::min(1 / (radii[j] * radii[j]), kLargest));
       space.values[1].push_back(values.empty() ? 1 : values[j]);
     }
     sum(space.queries.coordinates(), space.candidates.coordinates(), space.values[0].data(),

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "palpate/geometry/cell_grid.hpp"
+
+namespace palpate {
+
+/// What spacings are when no two points differ: there is nothing to measure, m.
+inline constexpr double kLoneSpacing = 1e-3;
+
+/// The paper's s: the mean over all points of the mean distance to their k nearest other points
+/// (fewer in smaller clouds), m. Exact; neighbours at the same place count with distance zero.
+/// kLoneSpacing when no two points differ.
+/// @throws Error when k < 1.
+[[nodiscard]] double mean_spacing(const CellGrid& grid, int k = 3);
+
+/// Spacing from area for each point, in sorted order, m: the side of the square that a point has to
+/// itself on a surface, from the mean squared distance of its eight nearest others (places taken
+/// already are passed over), exact on a square grid, and averaged over its neighbourhood by area.
+/// Finite and positive always: with fewer than eight others from those there are, with none the
+/// kLoneSpacing.
+///
+/// A point beside a surface that is sampled much more densely gets twice that surface's spacing at
+/// most, so that a stray point does not reach far.
+[[nodiscard]] std::vector<float> local_spacings(const CellGrid& grid);
+
+/// The median; 0 of none. By value: it reorders.
+[[nodiscard]] double median(std::vector<float> values);
+
+}  // namespace palpate
