@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""The rules of the tree that a compiler does not check: rules.py RULE [ROOT]."""
+
+import pathlib
+import re
+import sys
+
+# What each floor may include besides itself: only what lies below it. docs/architecture.md draws it.
+FLOORS = {
+    "base": set(),
+    "geometry": {"base"},
+    "io": {"base", "geometry"},
+    "field": {"base", "geometry"},
+    "contact": {"base"},  # and field/field.hpp: see ALLOWED
+    "scene": {"base", "geometry", "field"},
+    "device": {"base", "geometry", "io", "field", "contact", "scene"},
+    "apps": {"base", "geometry", "io", "field", "contact", "scene", "device"},
+}
+# Single headers that a floor may include of a floor that it may not see otherwise.
+ALLOWED = {("contact", "palpate/field/field.hpp")}
+
+# The one file that asks what machine it is compiled for.
+PLATFORM_FILES = {"src/base/cpu.cpp"}
+
+SOURCE_FOLDERS = ("apps", "bench", "examples", "fuzz", "include", "src", "tests")
+LONGEST_FILE = 300  # lines
+
+
+def sources(root, folders=SOURCE_FOLDERS):
+    for folder in folders:
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix in {".cpp", ".hpp", ".inl"}:
+                yield path
+
+
+def lines(path):
+    return path.read_text(encoding="utf-8").splitlines()
+
+
+def floor_of(parts):
+    """The floor of a file or an include, given its path below the root or as it is written."""
+    if parts[0] in {"include", "src"}:
+        parts = parts[1:]
+    if parts[0] == "palpate":
+        parts = parts[1:]
+    return parts[0] if len(parts) > 1 and parts[0] in FLOORS else None
+
+
+def floors(root):
+    """Includes point down the floors only."""
+    for path in sources(root, ("include", "src", "apps")):
+        name = path.relative_to(root)
+        here = "apps" if name.parts[0] == "apps" else floor_of(name.parts)
+        if here is None:  # palpate.hpp, which gathers
+            continue
+        for number, line in enumerate(lines(path), 1):
+            found = re.match(r'\s*#\s*include\s+["<]([^">]+)[">]', line)
+            there = floor_of(pathlib.PurePosixPath(found[1]).parts) if found else None
+            if there is None or there == here or (here, found[1]) in ALLOWED:
+                continue
+            if there not in FLOORS[here]:
+                yield f"{name}:{number}: {here} must not include {found[1]} of {there}"
+
+
+def public_headers(root):
+    """Public headers show no third party but Eigen, and nothing of src/."""
+    for path in sources(root, ("include",)):
+        for number, line in enumerate(lines(path), 1):
+            found = re.match(r'\s*#\s*include\s+(["<])([^">]+)[">]', line)
+            if not found:
+                continue
+            ours = found[1] == '"' and found[2].startswith("palpate/")
+            standard = found[1] == "<" and re.fullmatch(r"[a-z_]+", found[2])
+            eigen = found[1] == "<" and found[2].startswith("Eigen/")
+            if not (ours or standard or eigen):
+                yield f"{path.relative_to(root)}:{number}: {found[2]} in a public header"
+
+
+def macros(root):
+    """No macros; questions about the machine in one file only."""
+    for path in sources(root):
+        name = path.relative_to(root).as_posix()
+        for number, line in enumerate(lines(path), 1):
+            if re.match(r"\s*#\s*define\b", line):
+                yield f"{name}:{number}: a macro"
+            elif re.match(r"\s*#\s*(if|ifdef|ifndef)\b", line) and name not in PLATFORM_FILES:
+                yield f"{name}:{number}: conditional compilation outside {PLATFORM_FILES}"
+
+
+def marks(root):
+    """No marks of unfinished work: they belong into issues."""
+    mark = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|X" + r"XX|HA" + r"CK)\b")
+    for path in sources(root):
+        for number, line in enumerate(lines(path), 1):
+            if mark.search(line):
+                yield f"{path.relative_to(root)}:{number}: {line.strip()}"
+
+
+def size(root):
+    """Files that fit into one head."""
+    for path in sources(root):
+        count = len(lines(path))
+        if count > LONGEST_FILE:
+            yield f"{path.relative_to(root)}: {count} lines, more than {LONGEST_FILE}"
+
+
+def readme(root):
+    """The README is short, its program is the one that is compiled, its links lead somewhere."""
+    text = (root / "README.md").read_text(encoding="utf-8")
+    count = len(text.splitlines())
+    if count > 120:
+        yield f"README.md: {count} lines, more than 120"
+    program = (root / "examples" / "ten_lines.cpp").read_text(encoding="utf-8").strip()
+    quoted = [block.strip() for block in re.findall(r"```cpp\n(.*?)```", text, re.DOTALL)]
+    if program not in quoted:
+        yield "README.md does not quote examples/ten_lines.cpp word for word"
+
+
+def links(root):
+    """Relative links of the documents lead to files."""
+    for path in [*sorted(root.glob("*.md")), *sorted((root / "docs").rglob("*.md"))]:
+        for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):
+            if "://" not in target and not (path.parent / target).exists():
+                yield f"{path.relative_to(root)}: {target} does not exist"
+
+
+RULES = {rule.__name__: rule
+         for rule in (floors, public_headers, macros, marks, size, readme, links)}
+
+
+def main():
+    if len(sys.argv) < 2 or sys.argv[1] not in RULES:
+        print(__doc__, "Rules:", ", ".join(RULES))
+        return 2
+    default = pathlib.Path(__file__).resolve().parents[2]
+    root = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else default
+    broken = list(RULES[sys.argv[1]](root))
+    print("\n".join(broken) or f"{sys.argv[1]}: kept")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,78 @@
+"""Each rule must find what it is there to find."""
+
+import pathlib
+import tempfile
+import unittest
+
+import rules
+
+
+class Rules(unittest.TestCase):
+    def found(self, rule, files):
+        """What a rule says of a tree with these files."""
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name, text in files.items():
+                path = root / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text, encoding="utf-8")
+            return list(rule(root))
+
+    def test_an_include_that_points_up_is_found(self):
+        up = '#include "palpate/scene/scene.hpp"\n'
+        self.assertEqual(len(self.found(rules.floors, {"src/geometry/a.cpp": up})), 1)
+        self.assertEqual(len(self.found(rules.floors, {"include/palpate/field/a.hpp": up})), 1)
+        self.assertEqual(self.found(rules.floors, {"src/device/a.cpp": up}), [])
+
+    def test_an_include_of_a_private_header_above_is_found(self):
+        up = '#include "io/input.hpp"\n'
+        self.assertEqual(len(self.found(rules.floors, {"src/field/a.cpp": up})), 1)
+
+    def test_contact_sees_one_header_of_field(self):
+        self.assertEqual(
+            self.found(rules.floors,
+                       {"src/contact/a.cpp": '#include "palpate/field/field.hpp"\n'}), [])
+        self.assertEqual(
+            len(self.found(rules.floors,
+                           {"src/contact/a.cpp": '#include "palpate/field/kernel.hpp"\n'})), 1)
+
+    def test_the_gathering_header_and_the_standard_library_are_free(self):
+        files = {"include/palpate/palpate.hpp": '#include "palpate/scene/scene.hpp"\n',
+                 "src/base/a.cpp": "#include <vector>\n"}
+        self.assertEqual(self.found(rules.floors, files), [])
+
+    def test_a_third_party_in_a_public_header_is_found(self):
+        name = "include/palpate/io/a.hpp"
+        for line in ("#include <fmt/format.h>\n", "#include <zlib.h>\n", '#include "io/b.hpp"\n'):
+            self.assertEqual(len(self.found(rules.public_headers, {name: line})), 1, line)
+        for line in ("#include <Eigen/Core>\n", "#include <span>\n",
+                     '#include "palpate/io/b.hpp"\n'):
+            self.assertEqual(self.found(rules.public_headers, {name: line}), [], line)
+
+    def test_macros_are_found(self):
+        self.assertEqual(len(self.found(rules.macros, {"src/io/a.cpp": "#define A 1\n"})), 1)
+        self.assertEqual(len(self.found(rules.macros, {"src/io/a.cpp": "#ifdef A\n#endif\n"})), 1)
+        self.assertEqual(self.found(rules.macros, {"src/base/cpu.cpp": "#if A\n#endif\n"}), [])
+
+    def test_marks_are_found(self):
+        mark = "// TO" + "DO: later\n"
+        self.assertEqual(len(self.found(rules.marks, {"src/io/a.cpp": mark})), 1)
+
+    def test_long_files_are_found(self):
+        self.assertEqual(len(self.found(rules.size, {"src/io/a.cpp": "int a;\n" * 301})), 1)
+        self.assertEqual(self.found(rules.size, {"src/io/a.cpp": "int a;\n" * 300}), [])
+
+    def test_a_readme_that_drifts_from_its_program_is_found(self):
+        files = {"examples/ten_lines.cpp": "int main() {}\n",
+                 "README.md": "```cpp\nint main() { }\n```\n"}
+        self.assertEqual(len(self.found(rules.readme, files)), 1)
+        files["README.md"] = "```cpp\nint main() {}\n```\n"
+        self.assertEqual(self.found(rules.readme, files), [])
+
+    def test_a_dead_link_is_found(self):
+        self.assertEqual(len(self.found(rules.links, {"docs/a.md": "[b](b.md)\n"})), 1)
+        self.assertEqual(self.found(rules.links, {"docs/a.md": "[a](a.md#there)\n"}), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
