@@ -1,9 +1,9 @@
-#include "anchor.hpp"
+#include "contact/anchor.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sweep.hpp"
+#include "contact/sweep.hpp"
 
 namespace palpate {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "newton.hpp"
+#include "contact/newton.hpp"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "friction.hpp"
+#include "contact/friction.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "newton.hpp"
+#include "contact/newton.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "probe.hpp"
+#include "contact/probe.hpp"
 
 namespace palpate {
 

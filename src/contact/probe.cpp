@@ -1,6 +1,6 @@
-#include "probe.hpp"
+#include "contact/probe.hpp"
 
-#include "texture.hpp"
+#include "contact/texture.hpp"
 
 namespace palpate {
 

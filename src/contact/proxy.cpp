@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "anchor.hpp"
-#include "newton.hpp"
+#include "contact/anchor.hpp"
+#include "contact/newton.hpp"
+#include "contact/probe.hpp"
+#include "contact/slide.hpp"
+#include "contact/sweep.hpp"
 #include "palpate/base/error.hpp"
-#include "probe.hpp"
-#include "slide.hpp"
-#include "sweep.hpp"
 
 namespace palpate {
 namespace {

@@ -1,8 +1,8 @@
-#include "slide.hpp"
+#include "contact/slide.hpp"
 
 #include <algorithm>
 
-#include "sweep.hpp"
+#include "contact/sweep.hpp"
 
 namespace palpate {
 namespace {
@@ -66,17 +66,19 @@ class Slider {
     const Side side = probe_.side;
     const Eigen::Vector3d from = result_.at.position + kLift * radius * result_.at.normal;
     const Sweep way = first_contact(probe_, from, hip_);
-    if (way.end != Sweep::End::hit) {
-      const bool clear = way.end == Sweep::End::clear;
-      result_.end = clear ? Slide::End::released : Slide::End::interrupted;
-      result_.at.position = clear ? hip_ : way.position;
-      return Turn::stop;
-    }
+    if (way.end != Sweep::End::hit) return leave(way);
     if ((way.position - from).norm() < kStay * radius) return stay(side);
     const std::optional<SurfacePoint> next = project(probe_, way.position);
     if (!next) return stay(side);
     result_.at = *next;
     return Turn::go_on;
+  }
+
+  [[nodiscard]] Turn leave(const Sweep& way) noexcept {
+    const bool clear = way.end == Sweep::End::clear;
+    result_.end = clear ? Slide::End::released : Slide::End::interrupted;
+    result_.at.position = clear ? hip_ : way.position;
+    return Turn::stop;
   }
 
   [[nodiscard]] Turn stay(Side side) noexcept {
@@ -99,10 +101,34 @@ class Slider {
         options_.longest_step > 0 ? std::min(longest, options_.longest_step) : longest;
     const double step = std::min(wanted, limit);
     result_.sliding = true;
-    const double done = move(tangent / length, step, length);
+    const Eigen::Vector3d direction = tangent / length;
+    const double done = move(direction, step, length);
     moved_ += done;
     result_.dissipated += options_.friction.stiffness * held * done;
-    return done > 0 ? Turn::go_on : Turn::stop;
+    return done > 0 ? Turn::go_on : leap(step * direction);
+  }
+
+  // Along the surface is no way on. At the foot of a wall the tangent plane runs into the wall, and
+  // that is the end; but at a sharp edge it runs into free space, from where the hand may be free,
+  // or nearer to another face.
+  [[nodiscard]] Turn leap(const Eigen::Vector3d& step) noexcept {
+    const SurfacePoint& at = result_.at;
+    if (options_.method == ProxyMethod::single_step) return Turn::stop;
+    if (step.norm() < kStay * at.radius || exhausted()) return Turn::stop;
+    const Side side = probe_.side;
+    const Eigen::Vector3d from = at.position + kLift * at.radius * at.normal;
+    const Eigen::Vector3d over = from + step;
+    if (probe_.inside(over)) return Turn::stop;
+    if (first_contact(probe_, from, over).end != Sweep::End::clear) return stay(side);
+    const Sweep way = first_contact(probe_, over, hip_);
+    if (way.end != Sweep::End::hit) return leave(way);
+    const std::optional<SurfacePoint> next = project(probe_, way.position);
+    if (!next || (hip_ - next->position).squaredNorm() >
+                     (hip_ - at.position).squaredNorm() - kArmijo * step.squaredNorm()) {
+      return stay(side);
+    }
+    result_.at = *next;
+    return Turn::go_on;
   }
 
   // The first sub-step is worth taking well before the others: it costs little, and without it a

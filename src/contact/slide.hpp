@@ -1,7 +1,7 @@
 #pragma once
 
-#include "friction.hpp"
-#include "newton.hpp"
+#include "contact/friction.hpp"
+#include "contact/newton.hpp"
 #include "palpate/contact/proxy.hpp"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "sweep.hpp"
+#include "contact/sweep.hpp"
 
 #include <array>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "probe.hpp"
+#include "contact/probe.hpp"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "texture.hpp"
+#include "contact/texture.hpp"
 
 #include <array>
 #include <cmath>

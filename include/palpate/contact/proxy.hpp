@@ -38,8 +38,8 @@ struct Texture {
 
 struct ProxyOptions {
   double stiffness = 500;  ///< K, N/m
-  Friction friction;
-  Texture texture;
+  Friction friction = {};
+  Texture texture = {};
   ProxyMethod method = ProxyMethod::converged;
   int max_iterations = 20;  ///< constrained sub-steps a step; 1 to 1000
   double tangent_tolerance =

@@ -1,0 +1,79 @@
+#include "palpate/contact/energy_tank.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace palpate {
+namespace {
+
+TEST(EnergyTank, ConstantStiffnessStaysBitForBit) {
+  EnergyTank tank;
+  tank.restart(437.123);
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_EQ(tank.follow(437.123, 1e-3 * (i % 7), 1e-5, 1e-3), 437.123);
+  }
+}
+
+TEST(EnergyTank, EmptyTankPaysForNoRise) {
+  EnergyTank tank;
+  tank.restart(100);
+  EXPECT_EQ(tank.follow(500, 2e-3, 0, 1e-3), 100);
+}
+
+TEST(EnergyTank, RiseIsFreeWhereTheSpringIsSlack) {
+  EnergyTank tank;
+  tank.restart(100);
+  for (int i = 0; i < 20; ++i) tank.follow(500, 0, 0, 1e-3);
+  EXPECT_EQ(tank.stiffness(), 500);
+}
+
+TEST(EnergyTank, FallGoesByTheClockAndFillsTheTank) {
+  EnergyTank tank;
+  tank.restart(500);
+  const double after = tank.follow(0, 3e-3, 0, 1e-3);
+  EXPECT_DOUBLE_EQ(after, 500 * std::exp(-0.05));
+  EXPECT_DOUBLE_EQ(tank.energy(), 0.5 * (500 - after) * 9e-6);
+  EXPECT_EQ(tank.follow(0.99 * after, 3e-3, 0, 1e-3), 0.99 * after);
+}
+
+TEST(EnergyTank, FrictionPaysForARise) {
+  EnergyTank tank;
+  tank.restart(100);
+  // A rise of 2 N/m at 2 mm costs 4e-6 J.
+  EXPECT_NEAR(tank.follow(500, 2e-3, 4e-6, 1e-3), 102, 1e-12);
+  EXPECT_NEAR(tank.energy(), 0, 1e-18);
+}
+
+TEST(EnergyTank, KeepsNoMoreThanItsCapacity) {
+  EnergyTank tank;
+  tank.restart(500);
+  tank.follow(500, 0, 1.0, 1e-3);
+  EXPECT_EQ(tank.energy(), EnergyTank::kCapacity);
+}
+
+TEST(EnergyTank, NeverCreatesEnergyWhateverTheStiffnessDoes) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  EnergyTank tank;
+  tank.restart(300);
+  double created = 0;  // by changes of K
+  double dissipated = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const double before = tank.stiffness();
+    const double stretch = 5e-3 * uniform(random);
+    const double lost = 1e-6 * uniform(random) * (i % 3 == 0 ? 1 : 0);
+    const double wanted = 600 * uniform(random);
+    const double after = tank.follow(wanted, stretch, lost, 1e-3);
+    created += 0.5 * (after - before) * stretch * stretch;
+    dissipated += lost;
+    ASSERT_LE(after, std::max(before, wanted));
+    ASSERT_GE(after, 0);
+    ASSERT_GE(tank.energy(), 0);
+    ASSERT_LE(created, dissipated + 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,157 @@
+// Surfaces that step, vanish or cannot be found (algorithm.md 2.4).
+#include <gtest/gtest.h>
+
+#include "contact/drive.hpp"
+#include "contact/test_fields.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+const Vector3d kHip(0.004, 0, -0.003);
+
+Proxy pressed(const Field& field) {
+  Proxy proxy;
+  proxy.reset({0.004, 0, 0.03});
+  drive(proxy, field, {0.004, 0, 0.03}, kHip, 0.1);
+  return proxy;
+}
+
+class Step : public testing::TestWithParam<double> {};
+
+TEST_P(Step, PlaneTakesTheProxyAlongInOneStep) {
+  const double dz = GetParam();
+  PlaneField plane({.reanchor_reach = 0.02});
+  Proxy proxy = pressed(plane);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate(Vector3d(0, 0, dz));
+  plane.set_pose(pose);
+  const Contact c = proxy.step(plane, kHip, kTick);
+  EXPECT_NEAR(c.force.z(), std::max(0.0, 500 * (dz - kHip.z())), 1e-6);
+}
+
+TEST_P(Step, ThinSheetTakesTheProxyAlongInOneStep) {
+  const double dz = GetParam();
+  SheetField sheet;
+  sheet.reach = 0.02;
+  Proxy proxy = pressed(sheet);
+  sheet.height = dz;
+  ++sheet.revision;
+  const Contact c = proxy.step(sheet, kHip, kTick);
+  EXPECT_NEAR(c.force.z(), std::max(0.0, 500 * (dz - kHip.z())), 1e-6);
+  EXPECT_EQ(c.touching, dz >= kHip.z());
+}
+
+INSTANTIATE_TEST_SUITE_P(Millimetres, Step,
+                         testing::Values(0.5e-3, 1e-3, 2e-3, 4e-3, 6e-3, 10e-3, 15e-3, -0.5e-3,
+                                         -1e-3, -2e-3, -4e-3, -6e-3, -10e-3, -15e-3));
+
+TEST(Moving, SheetThatStepsFartherThanTheReachIsNotGrabbed) {
+  SheetField sheet;
+  Proxy proxy = pressed(sheet);
+  sheet.height = 0.015;
+  ++sheet.revision;
+  (void)proxy.step(sheet, kHip, kTick);
+  const Contact c = proxy.step(sheet, kHip, kTick);
+  EXPECT_FALSE(c.touching);
+  EXPECT_EQ(c.force.norm(), 0);
+}
+
+TEST(Moving, SlowSurfaceNeedsNoReanchoring) {
+  PlaneField plane;
+  Proxy proxy = pressed(plane);
+  for (int i = 0; i < 100; ++i) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translate(Vector3d(0, 0, 5e-6 * i));
+    plane.set_pose(pose);
+    const Contact c = proxy.step(plane, kHip, kTick);
+    EXPECT_FALSE(has(c.notes, ContactNote::reanchored));
+    EXPECT_NEAR(c.force.z(), 500 * (5e-6 * i + 0.003), 1e-6);
+  }
+}
+
+TEST(Moving, SurfaceThatPassesAFreeProxyTakesItAlong) {
+  PlaneField plane;
+  Proxy proxy;
+  proxy.reset({0, 0, 0.001});
+  (void)proxy.step(plane, {0, 0, 0.001}, kTick);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate(Vector3d(0, 0, 0.004));
+  plane.set_pose(pose);
+  EXPECT_NEAR(proxy.step(plane, {0, 0, 0.001}, kTick).force.z(), 1.5, 1e-9);
+}
+
+TEST(Moving, VanishedCloudMeansNoForce) {
+  const PlaneField plane;
+  Proxy proxy = pressed(plane);
+  const Contact c = proxy.step(EmptyField{}, kHip, kTick);
+  EXPECT_FALSE(c.touching);
+  EXPECT_EQ(c.force.norm(), 0);
+  EXPECT_EQ((c.proxy - kHip).norm(), 0);
+}
+
+TEST(Moving, LostContactKeepsItsForceBrieflyThenFades) {
+  const PlaneField plane;
+  const FogField fog;
+  Proxy proxy = pressed(plane);
+  double last = 1.5;
+  for (int i = 1; i < 20; ++i) {
+    const Contact c = proxy.step(fog, kHip, kTick);
+    EXPECT_TRUE(has(c.notes, ContactNote::lost));
+    EXPECT_NEAR(c.force.z(), last, 1e-9);
+  }
+  int steps = 0;
+  for (Contact c = proxy.step(fog, kHip, kTick); c.force.norm() > 0 && steps < 20; ++steps) {
+    EXPECT_LE(std::abs(c.force.norm() - last), 0.6 + 1e-9);
+    last = c.force.norm();
+    c = proxy.step(fog, kHip, kTick);
+  }
+  EXPECT_LE(steps, 6);
+  EXPECT_EQ(proxy.step(fog, kHip, kTick).force.norm(), 0);
+}
+
+TEST(Moving, LostSurfaceThatComesBackIsFoundAgain) {
+  const PlaneField plane;
+  Proxy proxy = pressed(plane);
+  for (int i = 0; i < 5; ++i) (void)proxy.step(FogField{}, kHip, kTick);
+  const Contact c = proxy.step(plane, kHip, kTick);
+  EXPECT_TRUE(c.touching);
+  EXPECT_NEAR(c.force.z(), 1.5, 1e-9);
+}
+
+TEST(Moving, StartEmbeddedGoesToTheNearestFront) {
+  const SphereField sphere(0.04);
+  Proxy proxy;
+  const Contact c = proxy.step(sphere, {0, 0.038, 0}, kTick);
+  EXPECT_TRUE(c.touching);
+  EXPECT_NEAR(c.force.y(), 1, 1e-6);
+}
+
+TEST(Moving, StiffnessFollowsTheMaterialWithoutGivingEnergy) {
+  PlaneField plane;
+  plane.set_surface({.stiffness_factor = 0.5, .source = 3});
+  Proxy proxy = pressed(plane);
+  EXPECT_EQ(proxy.step(plane, kHip, kTick).stiffness, 250);
+  plane.set_surface({.stiffness_factor = 1});
+  EXPECT_EQ(rest(proxy, plane, kHip).stiffness, 250);
+  drive(proxy, plane, kHip, {0.004, 0, 0.001}, 0.1);
+  EXPECT_EQ(drive(proxy, plane, {0.004, 0, 0.001}, kHip, 0.1).stiffness, 500);
+}
+
+TEST(Moving, SurfaceThatIsNoLongerPresentFadesUnderTheHand) {
+  PlaneField plane;
+  Proxy proxy = pressed(plane);
+  plane.set_surface({.presence = 0});
+  double last = 1.5;
+  for (int i = 0; i < 200; ++i) {
+    const double force = proxy.step(plane, kHip, kTick).force.norm();
+    EXPECT_LE(force, last);
+    EXPECT_GT(force, 0.95 * last - 1e-12);
+    last = force;
+  }
+  EXPECT_LT(last, 1e-3);
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cmath>
+
+#include "palpate/field/analytic.hpp"
+
+namespace palpate::test {
+
+/// A flat two-sided sheet z = height, solid for `thickness` behind the side that it is seen from,
+/// with a round domain: what a point-set surface of a disc looks like.
+class SheetField final : public Field {
+ public:
+  double height = 0;
+  double thickness = 5e-3;
+  double disc = 0.05;
+  std::uint64_t revision = 0;
+  double reach = 0;
+  mutable int samples = 0;
+
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side side) const noexcept override {
+    ++samples;
+    const double z = x.z() - height;
+    const double f = (side < 0 ? -1 : 1) * z;
+    const double rim = std::hypot(x.x(), x.y()) - disc;
+    const double cap = std::max(std::abs(z) - thickness, rim);
+    Sample sample{.value = std::max(f, cap), .height = z, .support = 1, .radius = 0.01};
+    if (f >= cap) {
+      sample.gradient = (side < 0 ? -1 : 1) * Eigen::Vector3d::UnitZ();
+    } else if (rim > std::abs(z) - thickness) {
+      sample.gradient = Eigen::Vector3d(x.x(), x.y(), 0).normalized();
+    } else {
+      sample.gradient = std::copysign(1.0, z) * Eigen::Vector3d::UnitZ();
+    }
+    if (cap > 0.02) sample = {.value = 0.02, .radius = 0.01};
+    return sample;
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    ++samples;
+    const Eigen::Vector3d& x = ball.center;
+    return std::max(std::abs(x.z() - height) - thickness, std::hypot(x.x(), x.y()) - disc) >
+           ball.radius;
+  }
+  [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override {
+    return {.source = 0};
+  }
+  [[nodiscard]] FieldTraits traits() const noexcept override {
+    return {
+        .two_sided = true, .resolution = 0.01 / 16, .revision = revision, .reanchor_reach = reach};
+  }
+};
+
+/// Free inside a ball, solid around it: concave everywhere.
+class BowlField final : public Field {
+ public:
+  explicit BowlField(double radius) : radius_(radius) {}
+
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side) const noexcept override {
+    const double length = x.norm();
+    Sample sample{.value = radius_ - length, .support = 1, .radius = 0.01};
+    sample.gradient = length > 0 ? (-x / length).eval() : Eigen::Vector3d::UnitX().eval();
+    sample.height = sample.value;
+    return sample;
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return radius_ - ball.center.norm() > ball.radius;
+  }
+  [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 2e-5}; }
+
+ private:
+  double radius_;
+};
+
+/// Nothing anywhere.
+class EmptyField final : public Field {
+ public:
+  [[nodiscard]] Sample sample(const Eigen::Vector3d&, Side) const noexcept override {
+    return {.value = 1};
+  }
+  [[nodiscard]] bool is_free(const Ball&) const noexcept override { return true; }
+  [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] FieldTraits traits() const noexcept override {
+    return {.resolution = 1e-4, .revision = 1u << 20};
+  }
+};
+
+/// Solid everywhere and without a gradient: nothing can be found.
+class FogField final : public Field {
+ public:
+  [[nodiscard]] Sample sample(const Eigen::Vector3d&, Side) const noexcept override {
+    return {.value = -1, .support = 1, .radius = 0.01};
+  }
+  [[nodiscard]] bool is_free(const Ball&) const noexcept override { return false; }
+  [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-4}; }
+};
+
+}  // namespace palpate::test
