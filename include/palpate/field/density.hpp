@@ -15,19 +15,9 @@ namespace palpate {
 ///   Sbar_i = sum_j w_ij S_j / sum_j w_ij
 ///   a_i = 1 / max(S_i, 0.8 Sbar_i)
 ///
-/// Grid order; radii are the R_i, m. Positive and finite.
+/// Sorted order; radii are the R_i, m. Positive and at most 1.
 /// @throws Error when there are not as many radii as points, or one is not positive and finite.
 [[nodiscard]] std::vector<float> density_weights(const CellGrid& grid, std::span<const float> radii,
                                                  Kernel kernel = Kernel::wyvill);
-
-/// S_i and Sbar_i by themselves.
-struct WeightSums {
-  std::vector<float> own;     ///< S_i, at least 1
-  std::vector<float> around;  ///< Sbar_i
-};
-
-/// @throws Error as density_weights() does.
-[[nodiscard]] WeightSums weight_sums(const CellGrid& grid, std::span<const float> radii,
-                                     Kernel kernel = Kernel::wyvill);
 
 }  // namespace palpate

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "palpate/geometry/box.hpp"
+#include "palpate/geometry/cell_grid.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+
+namespace palpate {
+
+/// The points of `cloud` named by `indices`, in that order, with all their columns. Origin and
+/// viewpoint are kept.
+[[nodiscard]] PointCloud select(const PointCloud& cloud, std::span<const std::uint32_t> indices);
+
+/// The points inside `box`, its faces included (in the cloud's frame, m), in their order.
+[[nodiscard]] PointCloud clip(const PointCloud& cloud, const Box& box);
+
+/// 1 for each point, in sorted order, that noise has put where no surface is: fewer than three
+/// others within 2 R_i, or S_i < 0.35 Sbar_i (algorithm.md section 4; the sums of
+/// density_weights(), with Wyvill's kernel). radii: the R_i, m.
+/// @throws Error when there are not as many radii as points, or one is not positive and finite.
+[[nodiscard]] std::vector<std::uint8_t> speckle_mask(const CellGrid& grid,
+                                                     std::span<const float> radii);
+
+}  // namespace palpate

@@ -1,0 +1,61 @@
+#include "palpate/geometry/support.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "palpate/base/error.hpp"
+#include "palpate/geometry/spacing.hpp"
+
+namespace palpate {
+namespace {
+
+void require(bool good, const char* name, double value, const char* remedy) {
+  if (!good) throw Error(fmt::format("support radius: {} is {}; {}", name, value, remedy));
+}
+
+void check(const SupportOptions& options) {
+  const auto finite_from_zero = [](double v) { return v >= 0 && std::isfinite(v); };
+  if (options.multiple) {
+    require(*options.multiple > 0 && std::isfinite(*options.multiple), "the multiple",
+            *options.multiple, "it must be positive; 2 to 5 are usual");
+  }
+  require(finite_from_zero(options.noise), "the noise", options.noise, "give metres, 0 or more");
+  require(finite_from_zero(options.footprint), "the footprint", options.footprint,
+          "give metres, 0 or more");
+  require(finite_from_zero(options.minimum), "the minimum", options.minimum,
+          "give metres, 0 or more");
+  require(options.normal_error > 0 && std::isfinite(options.normal_error), "the normal error",
+          options.normal_error, "give radians above 0");
+  require(options.maximum > 0 && options.maximum >= options.minimum, "the maximum", options.maximum,
+          "it must be positive and no less than the minimum");
+}
+
+}  // namespace
+
+double support_multiple(double noise, double spacing) {
+  if (noise > 0.4 * spacing) return 4;
+  return noise > 0.15 * spacing ? 3 : 2.5;
+}
+
+double noise_radius(double noise, double footprint, double normal_error) {
+  return std::sqrt(3.2 * noise * footprint / normal_error);
+}
+
+std::vector<float> support_radii(std::span<const float> spacings, const SupportOptions& options) {
+  check(options);
+  const double typical = median({spacings.begin(), spacings.end()});
+  const double multiple = options.multiple.value_or(support_multiple(options.noise, typical));
+  std::vector<float> radii(spacings.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const auto spacing = static_cast<double>(spacings[i]);
+    const double footprint = options.footprint > 0 ? options.footprint : spacing;
+    const double radius = std::max({multiple * spacing, options.minimum,
+                                    noise_radius(options.noise, footprint, options.normal_error)});
+    radii[i] = static_cast<float>(std::min(radius, options.maximum));
+  }
+  return radii;
+}
+
+}  // namespace palpate
