@@ -8,6 +8,8 @@
 namespace palpate {
 namespace {
 
+constexpr std::size_t kCacheLine = 64 / sizeof(double);
+
 double lerp(double a, double b, double u) noexcept {
   return a + u * (b - a);
 }
@@ -57,7 +59,8 @@ double squared_distance(const CellGrid::Cell& cell, const Eigen::Vector3d& x) no
 
 Patch::Patch(std::size_t capacity)
     : capacity_((capacity + simd::kLanes - 1) / simd::kLanes * simd::kLanes),
-      data_(kColumns * capacity_, 0.0) {
+      pitch_(capacity_ + 2 * kCacheLine),
+      data_(kColumns * pitch_, 0.0) {
   for (int axis = 0; axis < 3; ++axis) {
     columns_.position[axis] = column(kPosition + axis);
     columns_.normal[axis] = column(kNormal + axis);
@@ -75,6 +78,7 @@ void Patch::gather(std::span<const ActiveLayer> layers, int sources, const Eigen
   extra_ = extra;
   stride_ = 1;
   while (!gather_all(layers, sources, raw_weights)) stride_ *= 2;
+  columns_.uniform_radius = smallest_radius_ == largest_radius_ ? largest_radius_ : 0;
   mean_radius_ = count_ > 0 ? radius_sum_ / static_cast<double>(count_) : extra;
 }
 
@@ -83,6 +87,7 @@ bool Patch::gather_all(std::span<const ActiveLayer> layers, int sources,
   used_ = 0;
   count_ = 0;
   smallest_radius_ = std::numeric_limits<double>::infinity();
+  largest_radius_ = 0;
   radius_sum_ = 0;
   columns_.sources = sources;
   columns_.source_begin[0] = 0;
@@ -145,6 +150,7 @@ bool Patch::put(const ActiveLayer& layer, std::uint32_t i, const Eigen::Vector3d
   column(kInverseR2)[used_] = 1 / (radius * radius);
   column(kMaterial)[used_] = points.materials.empty() ? 1.0 : points.materials[i];
   smallest_radius_ = std::min(smallest_radius_, radius);
+  largest_radius_ = std::max(largest_radius_, radius);
   radius_sum_ += radius;
   ++used_;
   ++count_;
@@ -170,6 +176,7 @@ void Patch::use_nearest_radius(const Eigen::Vector3d& x) noexcept {
     radius = columns_.radius[i];
   }
   if (radius <= 0) return;
+  columns_.uniform_radius = radius;
   for (std::uint32_t i = 0; i < used_; ++i) {
     if (column(kRadius)[i] <= 0) continue;
     column(kRadius)[i] = radius;

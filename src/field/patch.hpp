@@ -69,8 +69,8 @@ class Patch {
     kColumns = kVelocity + 3
   };
 
-  [[nodiscard]] double* column(int c) noexcept { return data_.data() + c * capacity_; }
-  [[nodiscard]] const double* column(int c) const noexcept { return data_.data() + c * capacity_; }
+  [[nodiscard]] double* column(int c) noexcept { return data_.data() + c * pitch_; }
+  [[nodiscard]] const double* column(int c) const noexcept { return data_.data() + c * pitch_; }
   [[nodiscard]] bool gather_all(std::span<const ActiveLayer> layers, int sources,
                                 bool raw_weights) noexcept;
   [[nodiscard]] bool gather_layer(const ActiveLayer& layer, bool raw_weights) noexcept;
@@ -81,6 +81,7 @@ class Patch {
   void pad() noexcept;
 
   std::size_t capacity_;
+  std::size_t pitch_;  // from column to column; no power of two, or they share cache sets
   std::vector<double> data_;
   simd::Columns columns_{};
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
@@ -89,6 +90,7 @@ class Patch {
   std::size_t count_ = 0;   // without
   std::uint32_t stride_ = 1;
   double smallest_radius_ = 0;
+  double largest_radius_ = 0;
   double radius_sum_ = 0;
   double mean_radius_ = 0;
 };

@@ -15,18 +15,16 @@ struct KernelValue {
   double g = 0;
 };
 
-/// Eq. (1). No square root.
+/// Eq. (1), factored: with s = 1 - q it is s^2 (5 + 4 s) / 9. No square root.
 [[nodiscard]] constexpr KernelValue wyvill(double q) noexcept {
-  if (q >= 1) return {};
-  return {1 + q * (-22. / 9 + q * (17. / 9 - q * (4. / 9))),
-          2 * (-22. / 9 + q * (34. / 9 - q * (12. / 9)))};
+  const double s = std::max(0.0, 1 - q);
+  return {s * s * (5 + 4 * s) / 9, -s * (5 + 6 * s) * (4. / 9)};
 }
 
 /// Eq. (2).
 [[nodiscard]] inline KernelValue wendland(double q) noexcept {
-  if (q >= 1) return {};
   const double r = std::sqrt(q);
-  const double s = 1 - r;
+  const double s = std::max(0.0, 1 - r);
   return {s * s * s * s * (4 * r + 1), -20 * s * s * s};
 }
 

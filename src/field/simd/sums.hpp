@@ -19,6 +19,7 @@ struct Columns {
   const double* confidence;  // c_i
   const double* radius;      // R_i, m
   const double* inverse_r2;  // 1 / R_i^2
+  double uniform_radius;     // R of all points, m; 0: they differ
   double* slope;             // scratch: a_i C_k g_i / R_i^2 of the last call of `all`
   std::uint32_t source_begin[kMaxSources + 1];
   int sources;

@@ -54,46 +54,64 @@ struct Weight {
 
 // Eqs. (1) and (2) with their slopes (field/kernel.hpp), at q = r^2.
 template <bool kWendland>
-inline Weight kernel(Lanes q) {
-  Weight k;
-  if constexpr (kWendland) {
-    const Lanes r = stdx::sqrt(q);
-    const Lanes s = 1.0 - r;
-    k.g = -20.0 * (s * s * s);
-    k.w = s * s * s * s * (4.0 * r + 1.0);
-  } else {
-    k.w = 1.0 + q * (-22. / 9 + q * (17. / 9 - q * (4. / 9)));
-    k.g = 2.0 * (-22. / 9 + q * (34. / 9 - q * (12. / 9)));
-  }
-  stdx::where(q >= 1.0, k.w) = 0.0;
-  stdx::where(q >= 1.0, k.g) = 0.0;
-  return k;
+inline Weight kernel(const Lanes& q) {
+  const Lanes r = kWendland ? Lanes(stdx::sqrt(q)) : q;
+  Lanes s = 1.0 - r;
+  stdx::where(s < 0.0, s) = 0.0;
+  if constexpr (kWendland) return {s * s * s * s * (4.0 * r + 1.0), -20.0 * (s * s * s)};
+  return {s * s * (5.0 + 4.0 * s) * (1. / 9), s * (5.0 + 6.0 * s) * (-4. / 9)};
 }
 
-template <bool kWendland>
-void weights(const Columns& c, const double x[3], Sums& out) noexcept {
+// sum w and sum w R with their gradients. Where all radii are equal, the latter follow.
+template <bool kUneven>
+struct WeightSums {
+  Lanes w = 0;
+  Vector grad_w;
   Lanes wr = 0;
   Vector grad_wr;
+
+  void add_point(const Columns& c, std::uint32_t i, const Vector& q, const Lanes& wi,
+                 const Lanes& slope) {
+    w += wi;
+    add(grad_w, slope, q);
+    if constexpr (kUneven) {
+      const Lanes radius = load(c.radius + i);
+      wr += wi * radius;
+      add(grad_wr, slope * radius, q);
+    }
+  }
+
+  void finish(const Columns& c, int source, Sums& out) const {
+    out.w[source] = sum(w);
+    store(grad_w, out.grad_w[source]);
+    out.wr += kUneven ? sum(wr) : c.uniform_radius * out.w[source];
+    double grad[3];
+    store(kUneven ? grad_wr : grad_w, grad);
+    for (int axis = 0; axis < 3; ++axis) {
+      out.grad_wr[axis] += kUneven ? grad[axis] : c.uniform_radius * grad[axis];
+    }
+  }
+};
+
+inline void clear_radius(Sums& out) {
+  out.wr = 0;
+  for (double& axis : out.grad_wr) axis = 0;
+}
+
+template <bool kWendland, bool kUneven>
+void weights(const Columns& c, const double x[3], Sums& out) noexcept {
+  clear_radius(out);
   for (int s = 0; s < c.sources; ++s) {
-    Lanes w = 0;
-    Vector grad_w;
+    WeightSums<kUneven> sums;
     for (std::uint32_t i = c.source_begin[s]; i < c.source_begin[s + 1]; i += kLanes) {
       const Vector q = offsets(c, i, x);
       const Lanes inverse_r2 = load(c.inverse_r2 + i);
       const Weight k = kernel<kWendland>(dot(q, q) * inverse_r2);
       const Lanes weight = load(c.weight + i);
-      const Lanes radius = load(c.radius + i);
-      const Lanes slope = -(weight * k.g * inverse_r2);
-      w += weight * k.w;
-      wr += weight * k.w * radius;
-      add(grad_w, slope, q);
-      add(grad_wr, slope * radius, q);
+      sums.add_point(c, i, q, weight * k.w, -(weight * k.g * inverse_r2));
     }
-    out.w[s] = sum(w);
-    store(grad_w, out.grad_w[s]);
+    sums.finish(c, s, out);
   }
-  out.wr = sum(wr);
-  store(grad_wr, out.grad_wr);
 }
 
 // Terms that need normals, beside those of `weights`.
@@ -104,7 +122,8 @@ struct NormalSums {
   Vector vq;
   Vector vn;
 
-  void add_point(const Columns& c, std::uint32_t i, const Vector& q, Lanes w, Lanes slope) {
+  void add_point(const Columns& c, std::uint32_t i, const Vector& q, const Lanes& w,
+                 const Lanes& slope) {
     const Lanes confidence = load(c.confidence + i);
     const Vector n = load3(c.normal, i);
     const Lanes vi = w * confidence;
@@ -114,41 +133,35 @@ struct NormalSums {
     add(vq, vi, q);
     add(vn, vi, n);
   }
+
+  void finish(Sums& out) const {
+    out.v = sum(v);
+    out.vnq = sum(vnq);
+    store(grad_v, out.grad_v);
+    store(vq, out.vq);
+    store(vn, out.vn);
+  }
 };
 
-template <bool kWendland>
+template <bool kWendland, bool kUneven>
 void all(const Columns& c, const double x[3], Sums& out) noexcept {
   NormalSums normals;
-  Lanes wr = 0;
-  Vector grad_wr;
+  clear_radius(out);
   for (int s = 0; s < c.sources; ++s) {
-    Lanes w = 0;
-    Vector grad_w;
+    WeightSums<kUneven> sums;
     for (std::uint32_t i = c.source_begin[s]; i < c.source_begin[s + 1]; i += kLanes) {
       const Vector q = offsets(c, i, x);
       const Lanes inverse_r2 = load(c.inverse_r2 + i);
       const Weight k = kernel<kWendland>(dot(q, q) * inverse_r2);
       const Lanes weight = load(c.weight + i);
-      const Lanes radius = load(c.radius + i);
       const Lanes slope = -(weight * k.g * inverse_r2);
-      const Lanes wi = weight * k.w;
       slope.copy_to(c.slope + i, stdx::element_aligned);
-      w += wi;
-      wr += wi * radius;
-      add(grad_w, slope, q);
-      add(grad_wr, slope * radius, q);
-      normals.add_point(c, i, q, wi, slope);
+      sums.add_point(c, i, q, weight * k.w, slope);
+      normals.add_point(c, i, q, weight * k.w, slope);
     }
-    out.w[s] = sum(w);
-    store(grad_w, out.grad_w[s]);
+    sums.finish(c, s, out);
   }
-  out.wr = sum(wr);
-  store(grad_wr, out.grad_wr);
-  out.v = sum(normals.v);
-  out.vnq = sum(normals.vnq);
-  store(normals.grad_v, out.grad_v);
-  store(normals.vq, out.vq);
-  store(normals.vn, out.vn);
+  normals.finish(out);
 }
 
 void gradient(const Columns& c, const double x[3], const Linear& b, double out[3]) noexcept {
@@ -180,10 +193,20 @@ void bound(const Columns& c, const double x[3], double h, double out[kMaxSources
 }
 
 void weights_of(const Columns& c, bool wendland, const double x[3], Sums& out) noexcept {
-  wendland ? weights<true>(c, x, out) : weights<false>(c, x, out);
+  const bool uneven = c.uniform_radius <= 0;
+  if (wendland) {
+    uneven ? weights<true, true>(c, x, out) : weights<true, false>(c, x, out);
+  } else {
+    uneven ? weights<false, true>(c, x, out) : weights<false, false>(c, x, out);
+  }
 }
 void all_of(const Columns& c, bool wendland, const double x[3], Sums& out) noexcept {
-  wendland ? all<true>(c, x, out) : all<false>(c, x, out);
+  const bool uneven = c.uniform_radius <= 0;
+  if (wendland) {
+    uneven ? all<true, true>(c, x, out) : all<true, false>(c, x, out);
+  } else {
+    uneven ? all<false, true>(c, x, out) : all<false, false>(c, x, out);
+  }
 }
 void bound_of(const Columns& c, bool wendland, const double x[3], double h,
               double out[kMaxSources]) noexcept {
