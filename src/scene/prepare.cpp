@@ -1,0 +1,276 @@
+#include "palpate/scene/prepare.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "palpate/base/error.hpp"
+#include "palpate/field/density.hpp"
+#include "palpate/geometry/filters.hpp"
+#include "palpate/geometry/normals.hpp"
+#include "palpate/geometry/orientation.hpp"
+#include "palpate/geometry/spacing.hpp"
+#include "palpate/geometry/support.hpp"
+#include "palpate/geometry/voxel_grid.hpp"
+#include "scene/noise.hpp"
+
+namespace palpate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Normals come from a little further away than the surface: the balanced field adds their noise
+// (field_choice.md section 2).
+constexpr double kNormalsReach = 1.15;
+
+// A cloud this noisy, against its spacing, is thinned to two spacings; a cleaner one is kept whole.
+constexpr double kNoisy = 0.25;
+
+// The paper's multiple m, its k nearest neighbours and the level of its metaball (section V).
+constexpr double kPaperMultiple = 2.5;
+
+/// Adds the time since the last lap to `seconds`.
+class Stopwatch {
+ public:
+  void lap(double& seconds) {
+    const auto now = Clock::now();
+    seconds += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  Clock::time_point last_ = Clock::now();
+};
+
+void require(bool condition, const char* option, double value, const char* range) {
+  if (condition) return;
+  throw Error(fmt::format("preparation option {} is {}: it must be {}", option, value, range));
+}
+
+void check(const PrepareOptions& options, const PointCloud& cloud) {
+  const auto positive = [](double v) { return v > 0 && std::isfinite(v); };
+  if (options.voxel) {
+    require(*options.voxel == 0 || positive(*options.voxel), "voxel", *options.voxel,
+            "0 (keep every point) or a length in metres");
+  }
+  if (options.radius) {
+    require(positive(*options.radius), "radius", *options.radius, "a length above 0, in metres");
+  }
+  if (options.radius_multiple) {
+    require(positive(*options.radius_multiple), "radius_multiple", *options.radius_multiple,
+            "above 0 (2.5 unless there is a reason)");
+  }
+  require(options.minimum_radius >= 0 && std::isfinite(options.minimum_radius), "minimum_radius",
+          options.minimum_radius, "0 or a length in metres");
+  require(positive(options.normal_error), "normal_error", options.normal_error,
+          "an angle above 0, in radians");
+  if (options.orientation == Orientation::viewpoint && !options.viewpoint && !cloud.viewpoint) {
+    throw Error("normals are to point to the viewpoint, but none is known; give one");
+  }
+  if (options.orientation == Orientation::given && cloud.normals.empty()) {
+    throw Error("normals are to be as given, but the cloud has none");
+  }
+  if (options.material_from_intensity && cloud.intensities.empty()) {
+    throw Error("materials are to come from intensities, but the cloud has none");
+  }
+}
+
+/// The same points in the world frame.
+PointCloud placed(PointCloud cloud, const Eigen::Isometry3d& T_world_sensor) {
+  const Eigen::Matrix3f turn = T_world_sensor.linear().cast<float>();
+  cloud.origin = T_world_sensor * cloud.origin;
+  if (!turn.isIdentity(0)) {
+    for (auto& p : cloud.positions) p = turn * p;
+    for (auto& n : cloud.normals) n = turn * n;
+  }
+  if (cloud.viewpoint) cloud.viewpoint = T_world_sensor * *cloud.viewpoint;
+  return cloud;
+}
+
+template <class T>
+std::vector<T> in_grid_order(const CellGrid& grid, const std::vector<T>& column) {
+  std::vector<T> sorted;
+  sorted.reserve(column.size());
+  for (const std::uint32_t i : grid.order()) sorted.push_back(column[i]);
+  return sorted;
+}
+
+/// 0 at the lowest, 1 at the highest intensity.
+std::vector<float> materials_of(const CellGrid& grid, const std::vector<float>& intensities) {
+  auto materials = in_grid_order(grid, intensities);
+  const auto [low, high] = std::minmax_element(materials.begin(), materials.end());
+  const float from = *low;
+  const float range = *high - *low;
+  for (float& m : materials) m = range > 0 ? (m - from) / range : 1.0f;
+  return materials;
+}
+
+/// One cloud on its way to surface points.
+class Preparation {
+ public:
+  Preparation(const PointCloud& cloud, const PrepareOptions& options,
+              const Eigen::Isometry3d& T_world_sensor)
+      : options_(options) {
+    check(options, cloud);
+    report_.points_in = cloud.size();
+    cloud_ = placed(options.clip ? clip(cloud, *options.clip) : cloud, T_world_sensor);
+    if (options.viewpoint) cloud_.viewpoint = T_world_sensor * *options.viewpoint;
+    require_points();
+    watch_.lap(report_.seconds_filter);
+  }
+
+  Prepared run() {
+    index();
+    choose_voxel();
+    choose_radii();
+    if (options_.remove_speckle && !options_.paper) remove_speckle();
+    if (options_.estimate_normals) orient();
+    weigh();
+    finish(points_);
+    report_.points_out = points_.size();
+    report_.radius = points_.radius;
+    report_.radius_smallest = points_.smallest_radius;
+    report_.radius_largest = *std::max_element(points_.radii.begin(), points_.radii.end());
+    return {std::move(points_), report_};
+  }
+
+ private:
+  void require_points() const {
+    if (!cloud_.empty()) return;
+    throw Error(
+        fmt::format("no point is left of {}: check the clip box and the file", report_.points_in));
+  }
+
+  void index() {
+    points_.origin = cloud_.origin;
+    points_.grid = CellGrid(cloud_.positions);
+    watch_.lap(report_.seconds_index);
+  }
+
+  void measure_spacing() {
+    spacings_ = local_spacings(points_.grid);
+    report_.spacing = median(spacings_);
+    watch_.lap(report_.seconds_spacing);
+  }
+
+  /// Noise and footprint are those of the raw points; spacings those of the filtered ones.
+  void choose_voxel() {
+    measure_spacing();
+    footprint_ = report_.spacing;
+    report_.noise = options_.paper ? 0 : plane_noise(points_.grid, footprint_);
+    const bool noisy = report_.noise > kNoisy * footprint_;
+    report_.voxel = options_.voxel.value_or(noisy && !options_.paper ? 2 * footprint_ : 0);
+    watch_.lap(report_.seconds_spacing);
+    if (report_.voxel <= 0) return;
+    cloud_ = voxel_downsample(cloud_, report_.voxel);
+    watch_.lap(report_.seconds_filter);
+    index();
+    measure_spacing();
+    // Centroids stand closer than their voxels on a slanted surface; s is the voxel.
+    const auto leaf = static_cast<float>(report_.voxel);
+    for (float& s : spacings_) s = std::max(s, leaf);
+    report_.spacing = std::max(report_.spacing, report_.voxel);
+  }
+
+  void choose_radii() {
+    if (options_.radius) {
+      points_.radii.assign(points_.size(),
+                           static_cast<float>(std::max(*options_.radius, options_.minimum_radius)));
+    } else if (options_.paper) {
+      report_.spacing = mean_spacing(points_.grid);
+      const double radius = options_.radius_multiple.value_or(kPaperMultiple) * report_.spacing;
+      points_.radii.assign(points_.size(), static_cast<float>(radius));
+    } else {
+      points_.radii = support_radii(spacings_, {.multiple = options_.radius_multiple,
+                                                .noise = report_.noise,
+                                                .footprint = footprint_,
+                                                .normal_error = options_.normal_error,
+                                                .minimum = options_.minimum_radius});
+    }
+    watch_.lap(report_.seconds_spacing);
+  }
+
+  /// Rebuilds the index without the points that noise made.
+  void remove_speckle() {
+    const auto mask = speckle_mask(points_.grid, points_.radii);
+    report_.speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
+    if (report_.speckle > 0 && report_.speckle < points_.size()) {
+      std::vector<float> radii(cloud_.size());
+      std::vector<std::uint32_t> kept;
+      for (std::size_t k = 0; k < mask.size(); ++k) {
+        const std::uint32_t i = points_.grid.order()[k];
+        radii[i] = points_.radii[k];
+        if (mask[k] == 0) kept.push_back(i);
+      }
+      std::sort(kept.begin(), kept.end());
+      cloud_ = select(cloud_, kept);
+      std::vector<float> kept_radii;
+      for (const std::uint32_t i : kept) kept_radii.push_back(radii[i]);
+      index();
+      points_.radii = in_grid_order(points_.grid, kept_radii);
+    } else {
+      report_.speckle = 0;  // nothing, or everything: then it is no speckle
+    }
+    watch_.lap(report_.seconds_filter);
+  }
+
+  void orient() {
+    std::vector<float> reach = points_.radii;
+    for (float& r : reach) r *= static_cast<float>(kNormalsReach);
+    Normals normals = estimate_normals(points_.grid, reach);
+    points_.normals = std::move(normals.normals);
+    points_.confidences = std::move(normals.confidences);
+    give_sign();
+    watch_.lap(report_.seconds_normals);
+  }
+
+  void give_sign() {
+    Orientation how = options_.orientation;
+    if (how == Orientation::automatic) {
+      how = options_.viewpoint        ? Orientation::viewpoint
+            : !cloud_.normals.empty() ? Orientation::given
+            : cloud_.viewpoint        ? Orientation::viewpoint
+                                      : Orientation::outward;
+    }
+    if (how == Orientation::viewpoint) {
+      const Eigen::Vector3d eye = *cloud_.viewpoint - points_.origin;
+      orient_to_viewpoint(points_.grid.points(), eye.cast<float>(), points_.normals);
+    } else if (how == Orientation::given) {
+      const auto given = in_grid_order(points_.grid, cloud_.normals);
+      for (std::size_t i = 0; i < given.size(); ++i) {
+        if (given[i].dot(points_.normals[i]) < 0) points_.normals[i] = -points_.normals[i];
+      }
+    } else {
+      orient_outward(points_.grid, points_.normals);
+    }
+  }
+
+  void weigh() {
+    points_.density_weights = density_weights(points_.grid, points_.radii, options_.kernel);
+    if (points_.confidences.empty()) points_.confidences.assign(points_.size(), 0.0f);
+    if (options_.material_from_intensity) {
+      points_.materials = materials_of(points_.grid, cloud_.intensities);
+    }
+    watch_.lap(report_.seconds_weights);
+  }
+
+  const PrepareOptions& options_;
+  PointCloud cloud_;
+  SurfacePoints points_;
+  PrepareReport report_;
+  std::vector<float> spacings_;
+  double footprint_ = 0;
+  Stopwatch watch_;
+};
+
+}  // namespace
+
+Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,
+                 const Eigen::Isometry3d& T_world_sensor) {
+  return Preparation(cloud, options, T_world_sensor).run();
+}
+
+}  // namespace palpate
