@@ -17,7 +17,8 @@ double median(std::vector<double>& values) {
 Eigen::Vector3d choose_origin(std::size_t count,
                               const std::function<Eigen::Vector3d(std::size_t)>& point_at) {
   constexpr std::size_t kSample = 1000;
-  constexpr double kFarAway = 16;  // times the spread: four bits
+  constexpr double kFarAway = 16;     // times the spread: four bits
+  constexpr double kTiniest = 1e-12;  // m; nothing is measured in less
   std::vector<Eigen::Vector3d> sample;
   for (std::size_t i = 0; i < count; i += count / kSample + 1) {
     const Eigen::Vector3d point = point_at(i);
@@ -36,9 +37,10 @@ Eigen::Vector3d choose_origin(std::size_t count,
     spread = std::max(spread, median(values));
   }
   const double distance = center.cwiseAbs().maxCoeff();
-  if (distance <= kFarAway * spread) return Eigen::Vector3d::Zero();
-  // A single point, or copies of it, has no spread: whole metres then.
-  const double step = spread > 0 ? std::pow(10.0, std::ceil(std::log10(spread))) : 1.0;
+  if (distance <= std::max(kFarAway * spread, kTiniest)) return Eigen::Vector3d::Zero();
+  // A single point, or copies of it, has no spread.
+  const double size = std::max(spread, 1e-9 * distance);
+  const double step = std::pow(10.0, std::ceil(std::log10(size)));
   return ((center / step).array().round() * step).matrix();
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "io/number.hpp"
@@ -14,7 +15,8 @@ namespace {
 // exactly one white-space character follows the last.
 class HeaderParser {
  public:
-  explicit HeaderParser(const Input& input) : input_(input) {}
+  explicit HeaderParser(const Input& input)
+      : input_(input), offset_(std::min<std::size_t>(2, input.bytes.size())) {}
 
   std::size_t number(std::string_view what) {
     const std::string_view text = input_.text();
@@ -38,7 +40,7 @@ class HeaderParser {
   static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
   const Input& input_;
-  std::size_t offset_ = 2;  // behind "P5"
+  std::size_t offset_;  // at first behind "P5"
 };
 
 }  // namespace

@@ -1,0 +1,165 @@
+#!/usr/bin/python3
+"""Writes the seeds of the fuzz targets into corpus/NAME: tiny, synthetic files of every kind and
+encoding that the readers know. Run it again after changing it; inputs that once broke a reader lie
+beside them as found-* and are left alone."""
+
+import gzip
+import pathlib
+import struct
+import zlib
+
+CORPUS = pathlib.Path(__file__).resolve().parent / "corpus"
+POINTS = [(0.0, 0.0, 0.5), (0.25, 0.0, 0.5), (0.0, 0.25, 0.625), (0.25, 0.25, 0.75)]
+COLORS = [(255, 0, 0), (0, 255, 0), (0, 0, 255), (10, 20, 30)]
+
+
+def seed(target, name, data):
+    folder = CORPUS / target
+    folder.mkdir(parents=True, exist_ok=True)
+    data = data.encode() if isinstance(data, str) else data
+    (folder / name).write_bytes(data)
+    if target not in ("any", "trajectory"):
+        seed("any", f"{target}-{name}", data)
+
+
+def ply():
+    head = "ply\nformat {} 1.0\ncomment a seed\nelement vertex 4\n"
+    plain = "property float x\nproperty float y\nproperty float z\n"
+    seed("ply", "ascii", head.format("ascii") + plain + "property float intensity\n"
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         + "".join(f"{x} {y} {z} 0.5\n" for x, y, z in POINTS) + "3 0 1 2\n")
+    rich = ("property uchar red\nproperty double z\nproperty list uchar short extra\n"
+            "property float nx\nproperty float ny\nproperty float nz\nproperty double x\n"
+            "property uchar green\nproperty double y\nproperty uchar blue\nend_header\n")
+    for order, name in (("<", "binary_little_endian"), (">", "binary_big_endian")):
+        rows = b"".join(
+            struct.pack(order + "BdB2hfffdBdB", r, z, 2, 7, 8, 0, 0, 1, x, g, y, b)
+            for (x, y, z), (r, g, b) in zip(POINTS, COLORS))
+        seed("ply", name, (head.format(name) + rich).encode() + rows)
+    rows = b"".join(struct.pack("<BiiB", 2, 0, 1, 9) for _ in range(2))
+    before = head.format("binary_little_endian").replace(
+        "element vertex", "element edge 2\nproperty list uchar int ends\nproperty uchar mark\n"
+        "element vertex")
+    seed("ply", "element_before", (before + plain + "end_header\n").encode() + rows
+         + b"".join(struct.pack("<3f", *p) for p in POINTS))
+    seed("ply", "crlf_utm", (head.format("ascii") + plain.replace("float", "double")
+         + "end_header\n").replace("\n", "\r\n")
+         + "".join(f"{x + 4e5} {y + 5.5e6} {z}\r\n" for x, y, z in POINTS))
+
+
+def lzf(data):
+    """LZF of literals, and a back reference where eight bytes repeat at a distance of eight."""
+    out, i = b"", 0
+    while i < len(data):
+        if i >= 8 and len(data) - i >= 8 and data[i:i + 8] == data[i - 8:i]:
+            out += bytes([6 << 5, 7])
+        else:
+            chunk = data[i:i + 8]
+            out += bytes([len(chunk) - 1]) + chunk
+        i += 8
+    return out
+
+
+def pcd():
+    def head(fields, sizes, types, counts, width, height, data, viewpoint="0 0 0 1 0 0 0"):
+        return (f"# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS {fields}\n"
+                f"SIZE {sizes}\nTYPE {types}\nCOUNT {counts}\nWIDTH {width}\nHEIGHT {height}\n"
+                f"VIEWPOINT {viewpoint}\nPOINTS {width * height}\nDATA {data}\n")
+    xyz = ("x y z", "4 4 4", "F F F", "1 1 1")
+    seed("pcd", "ascii", head(*xyz, 4, 1, "ascii")
+         + "".join(f"{x} {y} {z}\n" for x, y, z in POINTS[:3]) + "nan nan nan\n")
+    seed("pcd", "binary", head(*xyz, 4, 1, "binary").encode()
+         + b"".join(struct.pack("<3f", *p) for p in POINTS))
+    fields = ("x y z rgb normal_x normal_y normal_z intensity _", "4 4 4 4 4 4 4 4 1",
+              "F F F F F F F F U", "1 1 1 1 1 1 1 1 3")
+    rows = [struct.pack("<3fI4f3B", x, y, z, r << 16 | g << 8 | b, 0, 0, 1, 0.5, 1, 2, 3)
+            for (x, y, z), (r, g, b) in zip(POINTS, COLORS)]
+    seed("pcd", "binary_rich", head(*fields, 2, 2, "binary", "0 0 1 0 1 0 0").encode()
+         + b"".join(rows))
+    columns = b"".join(struct.pack("<4f", *[p[k] for p in POINTS]) for k in range(3))
+    packed = lzf(columns)
+    seed("pcd", "compressed", head(*xyz, 2, 2, "binary_compressed").encode()
+         + struct.pack("<2I", len(packed), len(columns)) + packed)
+    seed("pcd", "old", "COLUMNS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F F\nPOINTS 2\nDATA ascii\n"
+         "0 0 1 4.2108e+06\n0 1 1 2.3418052e-38\n")
+
+
+def las_header(minor, point_format, record, count, offset=None):
+    size = 375 if minor == 4 else 235 if minor == 3 else 227
+    head = bytearray(size)
+    head[0:4] = b"LASF"
+    head[24:26] = bytes([1, minor])
+    struct.pack_into("<HII", head, 94, size, offset or size, 0)
+    legacy = 0 if point_format & 63 >= 6 else count
+    struct.pack_into("<BHI", head, 104, point_format, record, legacy)
+    struct.pack_into("<6d", head, 131, 0.01, 0.01, 0.01, 500000, 4600000, 100)
+    if minor == 4:
+        struct.pack_into("<Q", head, 247, count)
+    return bytes(head)
+
+
+LAS_RECORDS = {0: 20, 1: 28, 2: 26, 3: 34, 4: 57, 5: 63, 6: 30, 7: 36, 8: 38, 9: 59, 10: 67}
+LAS_COLORS = {2: 20, 3: 28, 5: 28, 7: 30, 8: 30, 10: 30}
+
+
+def las():
+    for fmt, record in LAS_RECORDS.items():
+        minor = 4 if fmt >= 6 else min(fmt, 3)
+        rows = b""
+        for i, (x, y, z) in enumerate(POINTS):
+            row = bytearray(record)
+            struct.pack_into("<3iH", row, 0, int(x * 100), int(y * 100), int(z * 100), 1000 + i)
+            row[15] = (4 if fmt >= 6 else 128) if i == 3 else 2
+            if fmt in LAS_COLORS:
+                struct.pack_into("<3H", row, LAS_COLORS[fmt], *[257 * c for c in COLORS[i]])
+            rows += row
+        seed("las", f"format_{fmt}", las_header(minor, fmt, record, len(POINTS)) + rows)
+    seed("las", "laz", las_header(2, 128, 20, 4) + bytes(40))
+
+
+def depth():
+    width, height = 4, 3
+    samples = [0, 65535, 500, 510, 520, 530, 540, 550, 560, 570, 580, 60000]
+    rows = struct.pack(">12H", *samples)
+    seed("pgm", "maxval_65535", b"P5\n# a seed\n4 3\n65535\n" + rows)
+    seed("pgm", "maxval_10000", b"P5 4 3 10000\n" + rows)
+
+    def chunk(kind, data):
+        return (struct.pack(">I", len(data)) + kind + data
+                + struct.pack(">I", zlib.crc32(kind + data)))
+    lines = b"".join(b"\0" + rows[8 * i:8 * i + 8] for i in range(height))
+    for name, bits, data in (("depth", 16, lines), ("grey8", 8, bytes(15))):
+        seed("png", name, b"\x89PNG\r\n\x1a\n"
+             + chunk(b"IHDR", struct.pack(">2I5B", width, height, bits, 0, 0, 0, 0))
+             + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
+
+
+def text():
+    seed("xyz", "plain", "".join(f"{x} {y} {z}\n" for x, y, z in POINTS))
+    seed("xyz", "intensity", "# a comment\n" + "".join(f"{x}\t{y}\t{z}\t7\n" for x, y, z in POINTS))
+    seed("xyz", "named", "x,y,z,Intensity,R,G,B\n"
+         + "".join(f"{x},{y},{z},,{r},{g},{b}\n"
+                   for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
+    seed("xyz", "comment_names", "//X Y Z Nx Ny Nz\n"
+         + "".join(f"{x} {y} {z} 0 0 1\n" for x, y, z in POINTS))
+    seed("xyz", "pts", "4\n" + "".join(f"{x} {y} {z} -12 {r} {g} {b}\n"
+                                      for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
+    seed("xyz", "normals_colors", "".join(f"{x};{y};{z};0;0;1;{r};{g};{b}\n"
+                                          for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
+    seed("obj", "plain", "# a seed\nmtllib a.mtl\no thing\n"
+         + "".join(f"v {x} {y} {z}\nvn 0 0 2\n" for x, y, z in POINTS) + "f 1//1 2//2 3//3\n")
+    seed("obj", "colors", "".join(f"v {x} {y} {z} {r / 255} {g / 255} {b / 255}\n"
+                                  for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
+    seed("trajectory", "plain", "t,hip_x,hip_y,hip_z,more\n0,0,0,0.1,a\n0.001,0,0,0.099,b\n")
+
+
+def packed():
+    plain = "".join(f"{x} {y} {z}\n" for x, y, z in POINTS).encode()
+    one = gzip.compress(plain, mtime=0)
+    seed("gzip", "xyz", one)
+    seed("gzip", "two_members", one + gzip.compress(plain, mtime=0))
+    seed("gzip", "stored", gzip.compress(plain, compresslevel=0, mtime=0))
+
+
+for make in (ply, pcd, las, depth, text, packed):
+    make()

@@ -1,0 +1,100 @@
+#include "targets.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "io/depth_image.hpp"
+#include "io/gzip.hpp"
+#include "io/input.hpp"
+#include "io/las.hpp"
+#include "io/obj.hpp"
+#include "io/pcd.hpp"
+#include "io/pgm.hpp"
+#include "io/ply.hpp"
+#include "io/png.hpp"
+#include "io/xyz.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/io/read_cloud.hpp"
+#include "palpate/io/trajectory.hpp"
+#include "palpate/io/write_cloud.hpp"
+
+namespace palpate::fuzz {
+namespace {
+
+constexpr std::array<std::string_view, 10> kNames{"any", "gzip", "las", "obj",        "pcd",
+                                                  "pgm", "ply",  "png", "trajectory", "xyz"};
+
+void expect(bool promise, const char* name) {
+  if (!promise) throw std::logic_error(name);
+}
+
+void check_promises(const CloudFile& file) {
+  const PointCloud& cloud = file.cloud;
+  const std::size_t n = cloud.size();
+  const auto fits = [n](const auto& column) { return column.empty() || column.size() == n; };
+  expect(n > 0, "a cloud without points");
+  expect(fits(cloud.normals) && fits(cloud.colors) && fits(cloud.intensities), "column lengths");
+  expect(file.declared == n + file.dropped, "counts that do not add up");
+  expect(cloud.origin.allFinite(), "origin");
+  expect(!cloud.viewpoint || cloud.viewpoint->allFinite(), "viewpoint");
+  for (const auto& p : cloud.positions) expect(p.allFinite(), "a position that is not finite");
+  for (const float v : cloud.intensities) expect(std::isfinite(v), "intensity");
+  for (const auto& normal : cloud.normals) {
+    const float length = normal.norm();
+    expect(length == 0 || std::abs(length - 1) < 1e-5F, "a normal that is not unit");
+  }
+}
+
+void check_rewriting(const CloudFile& file) {
+  if (file.cloud.size() > 1000) return;
+  for (const CloudFormat format : {CloudFormat::kPly, CloudFormat::kPcd}) {
+    for (const bool ascii : {false, true}) {
+      const std::string text = encode_cloud(file.cloud, format, {.ascii = ascii});
+      const auto again = read_cloud_bytes(std::as_bytes(std::span(text)), "written");
+      expect(again.cloud.size() == file.cloud.size(), "points lost in writing");
+    }
+  }
+}
+
+CloudFile read_as(std::string_view name, const io::Input& input) {
+  if (name == "las") return io::read_las(input);
+  if (name == "obj") return io::read_obj(input);
+  if (name == "pcd") return io::read_pcd(input);
+  if (name == "pgm") return io::cloud_of(input, io::read_pgm(input));
+  if (name == "ply") return io::read_ply(input);
+  if (name == "png") return io::cloud_of(input, io::read_png(input));
+  if (name == "xyz") return io::read_xyz(input);
+  return read_cloud_bytes(input.bytes, input.name, input.options);
+}
+
+}  // namespace
+
+std::span<const std::string_view> target_names() {
+  return kNames;
+}
+
+void run_target(std::string_view name, std::span<const std::byte> bytes) {
+  ReadOptions options;
+  options.intrinsics = Pinhole{.fx = 100, .fy = 100, .cx = 2, .cy = 2};
+  const io::Input input{bytes, "input", options};
+  try {
+    if (name == "gzip") {
+      (void)io::gunzip(input);
+    } else if (name == "trajectory") {
+      std::istringstream stream{std::string(input.text())};
+      (void)read_trajectory(stream, "input");
+    } else {
+      const CloudFile file = read_as(name, input);
+      check_promises(file);
+      check_rewriting(file);
+    }
+  } catch (const Error&) {
+    return;  // what a reader says to bytes that it cannot use
+  }
+}
+
+}  // namespace palpate::fuzz

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace palpate::fuzz {
+
+/// The readers that are fuzzed; each has its seeds in corpus/NAME.
+[[nodiscard]] std::span<const std::string_view> target_names();
+
+/// Gives `bytes` to the reader of that name. An Error is a fair answer; so is a cloud, if it keeps
+/// the promises of PointCloud and survives being written and read again.
+/// @throws std::logic_error for a broken promise.
+void run_target(std::string_view name, std::span<const std::byte> bytes);
+
+}  // namespace palpate::fuzz
