@@ -100,7 +100,7 @@ TEST_P(ServoStepOf, KeepsTheContractInFreeSpaceContactAndOverTheEdge) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ServoStepOf, testing::ValuesIn(cases()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& each) { return std::string(each.param.name); });
 
 TEST_F(ServoStep, KeepsTheContractWhileSlidingWithFriction) {
   scene_.add("ground", ground(), prepared_with(kRadius));
