@@ -1,0 +1,75 @@
+#include "accuracy/contender.hpp"
+
+#include "palpate/scene/scene_field.hpp"
+
+namespace palpate::accuracy {
+namespace {
+
+ProxyOptions proxy_options(ProxyMethod method) {
+  ProxyOptions options;
+  options.stiffness = kStiffness;
+  options.method = method;
+  return options;
+}
+
+Contender ours(std::string name, FieldKind kind, const PrepareOptions& prepare) {
+  FieldOptions field;
+  field.kind = kind;
+  return {std::move(name), prepare, field, proxy_options(ProxyMethod::converged)};
+}
+
+Contender papers(std::string name, FieldKind kind) {
+  PrepareOptions prepare;
+  prepare.paper = true;
+  return {std::move(name), prepare, paper_field(kind), proxy_options(ProxyMethod::single_step)};
+}
+
+void record(Trace& trace, const Contact& contact, const Eigen::Vector3d& hip) {
+  trace.proxy.push_back(contact.proxy);
+  // Not contact.force: that may be faded, and what is scored is the raw K (p - h).
+  trace.force.push_back(kStiffness * (contact.proxy - hip));
+}
+
+}  // namespace
+
+std::vector<Contender> all_contenders(const PrepareOptions& prepare) {
+  return {ours("balanced", FieldKind::balanced, prepare),
+          ours("pointset", FieldKind::pointset, prepare),
+          ours("metaball", FieldKind::metaball, prepare),
+          papers("paper pointset", FieldKind::pointset),
+          papers("paper metaball", FieldKind::metaball)};
+}
+
+std::unique_ptr<Scene> make_scene(const PointCloud& cloud, const TruthScene& truth,
+                                  const PrepareOptions& prepare) {
+  auto scene = std::make_unique<Scene>();
+  SourceOptions options;
+  options.T_world_sensor = truth.camera.T_world_camera;
+  options.prepare = prepare;
+  scene->add("frame", cloud, options);
+  return scene;
+}
+
+Trace rendered_trace(Scene& scene, const Contender& contender, const Path& path) {
+  Trace trace;
+  SceneField field(scene, contender.field);
+  Proxy proxy(contender.proxy);
+  proxy.reset(path.hip.front());
+  for (std::size_t i = 0; i < path.hip.size(); ++i) {
+    field.update(static_cast<double>(i) * kTick, path.hip[i], proxy.position());
+    record(trace, proxy.step(field, path.hip[i], kTick), path.hip[i]);
+  }
+  return trace;
+}
+
+Trace rendered_trace(const Field& field, const ProxyOptions& options, const Path& path) {
+  Trace trace;
+  Proxy proxy(options);
+  proxy.reset(path.hip.front());
+  for (const Eigen::Vector3d& hip : path.hip) {
+    record(trace, proxy.step(field, hip, kTick), hip);
+  }
+  return trace;
+}
+
+}  // namespace palpate::accuracy

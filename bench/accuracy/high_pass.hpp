@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+namespace palpate::accuracy {
+
+/// A signal without what is slower than `cutoff` (Hz): Butterworth of second order, run forwards
+/// and backwards, so that nothing is delayed. `rate` in Hz.
+[[nodiscard]] std::vector<double> high_pass(const std::vector<double>& signal, double cutoff,
+                                            double rate);
+
+}  // namespace palpate::accuracy
