@@ -1,0 +1,111 @@
+// algorithm.md section 10: closed paths of the hand on static scenes give it no energy.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "palpate/contact/proxy.hpp"
+#include "support/point_field.hpp"
+#include "support/point_shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A closed path of the hand: the angle goes round once.
+struct Loop {
+  Vector3d center = Vector3d::Zero();
+  Vector3d first = Vector3d::Zero();  // from the center, m
+  Vector3d second = Vector3d::Zero();
+  [[nodiscard]] Vector3d at(double turns) const {
+    const double angle = 2 * std::numbers::pi * turns;
+    return center + std::cos(angle) * first + std::sin(angle) * second;
+  }
+};
+
+struct EnergyScene {
+  const char* name;
+  std::vector<TestPoint> points;
+  Vector3d start;  // in free space
+  std::vector<Loop> loops;
+};
+
+std::vector<EnergyScene> energy_scenes() {
+  const Sampling regular;
+  const Sampling jittered{.jitter = 0.2};
+  const Sampling noisy{.jitter = 0.2, .noise = 0.25, .tilt = 0.1};
+  const Vector3d x(0.012, 0, 0);
+  const Vector3d y(0, 0.012, 0);
+  const Vector3d z(0, 0, 0.006);
+  const std::vector<Loop> flat{{{0, 0, -0.003}, x, y}, {{0, 0, 0}, x, z}};
+  const std::vector<Loop> round{{{0, 0, 0}, 0.037 * Vector3d::UnitX(), 0.037 * Vector3d::UnitZ()},
+                                {{0, 0, 0.04}, x, z}};
+  const Vector3d corner(-0.003, 0, -0.003);
+  const std::vector<Loop> concave{{{0.01, 0, 0.001}, x, z}, {corner, 0.5 * x, z}, {corner, y, z}};
+  const std::vector<Loop> thin{{{0, 0, 0.002}, x, y / 10}, {{0, 0, 0.004}, x, z / 3}};
+  return {{"plane", sheet(regular, 0.04), {0, 0, 0.03}, flat},
+          {"jittered_plane", sheet(jittered, 0.04), {0, 0, 0.03}, flat},
+          {"noisy_plane", sheet(noisy, 0.04), {0, 0, 0.03}, flat},
+          {"sphere", ball(regular, 0.04), {0.08, 0, 0}, round},
+          {"noisy_sphere", ball(noisy, 0.04), {0.08, 0, 0}, round},
+          {"corner_90", wedge(noisy, std::numbers::pi / 2, 0.03), {0.02, 0, 0.02}, concave},
+          {"corner_45", wedge(noisy, std::numbers::pi / 4, 0.03), {0.03, 0, 0.012}, concave},
+          {"line", line(noisy, 0.04), {0, 0, 0.03}, thin}};
+}
+
+/// Energy given to the hand in the second of two laps, J (trapezoid, at least 250 ticks a lap).
+double energy_of_lap(PointField& points, const Vector3d& start, const Loop& loop, double speed) {
+  const double length = std::numbers::pi * (loop.first.norm() + loop.second.norm());
+  const int ticks = std::max(250, static_cast<int>(length / speed / 1e-3));
+  const double dt = length / speed / ticks;
+  Proxy proxy;
+  proxy.reset(start);
+  const auto step = [&](const Vector3d& hip) {
+    return proxy.step(points.at(hip, proxy.position()), hip, dt).force;
+  };
+  for (int i = 0; i <= 300; ++i) (void)step(start + (loop.at(0) - start) * (i / 300.0));
+  for (int i = 0; i <= ticks; ++i) (void)step(loop.at(static_cast<double>(i) / ticks));
+  double given = 0;
+  Vector3d force = step(loop.at(0));
+  for (int i = 1; i <= ticks; ++i) {
+    const Vector3d before = loop.at(static_cast<double>(i - 1) / ticks);
+    const Vector3d hip = loop.at(static_cast<double>(i) / ticks);
+    const Vector3d next = step(hip);
+    given += 0.5 * (force + next).dot(hip - before);
+    force = next;
+  }
+  return given;
+}
+
+using EnergyCase = std::tuple<int, FieldKind>;
+class AcceptanceEnergy : public testing::TestWithParam<EnergyCase> {};
+
+TEST_P(AcceptanceEnergy, ClosedLoopsGiveNothing) {
+  const auto& [index, kind] = GetParam();
+  const EnergyScene scene = energy_scenes()[static_cast<std::size_t>(index)];
+  PointField points(scene.points, {.kind = kind});
+  double most = -1;
+  for (std::size_t i = 0; i < scene.loops.size(); ++i) {
+    for (const double speed : {0.05, 0.2, 1.0}) {
+      const double given = energy_of_lap(points, scene.start, scene.loops[i], speed);
+      EXPECT_LE(given, 0.05e-3) << "loop " << i << " at " << speed << " m/s";
+      most = std::max(most, given);
+    }
+  }
+  RecordProperty("most_mJ", std::to_string(1e3 * most));
+}
+
+std::string energy_name(const testing::TestParamInfo<EnergyCase>& tested) {
+  const auto& [index, kind] = tested.param;
+  return std::string(energy_scenes()[static_cast<std::size_t>(index)].name) +
+         (kind == FieldKind::metaball ? "_metaball" : "_balanced");
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, AcceptanceEnergy,
+                         testing::Combine(testing::Range(0, 8),
+                                          testing::Values(FieldKind::metaball,
+                                                          FieldKind::balanced)),
+                         energy_name);
+
+}  // namespace
+}  // namespace palpate::test

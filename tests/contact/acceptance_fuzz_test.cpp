@@ -1,0 +1,158 @@
+// algorithm.md section 10: a random hand on point surfaces: never NaN, inside, or on the wrong
+// side.
+#include <gtest/gtest.h>
+
+#include "palpate/contact/proxy.hpp"
+#include "support/effort.hpp"
+#include "support/point_field.hpp"
+#include "support/point_shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kTick = 1e-3;
+
+struct FuzzScene {
+  const char* name;
+  std::vector<TestPoint> points;
+  double size;  // the hand stays within about this, m
+  bool two_sided;
+  // Where a proxy stands as geometry sees it: +1, -1, or 0 where that cannot be told.
+  int (*stands)(const Contact& contact);
+};
+
+int outside_ball(const Contact& contact) {
+  return contact.proxy.norm() > 0.03 - 0.002 ? 1 : -1;
+}
+
+int faces(const Contact& contact) {
+  const bool rim = contact.proxy.head<2>().cwiseAbs().maxCoeff() > 0.018;
+  if (rim || std::abs(contact.normal.z()) < 0.5) return 0;
+  return contact.normal.z() > 0 ? 1 : -1;
+}
+
+// Between the sheets of a plate a hand may rightly go from one to the other.
+int outside_plate(const Contact& contact) {
+  const int side = faces(contact);
+  return side * (contact.proxy.z() + 0.004) > 0 ? side : 0;
+}
+
+std::vector<FuzzScene> fuzz_scenes() {
+  const Sampling clean;
+  const Sampling noisy{.jitter = 0.2, .noise = 0.25, .tilt = 0.1};
+  return {{"sphere", ball(clean, 0.03), 0.045, false, outside_ball},
+          {"noisy_sphere", ball(noisy, 0.03), 0.045, false, outside_ball},
+          {"sheet", sheet(noisy, 0.03), 0.045, true, faces},
+          {"plate", plate(noisy, 0.03, 0.008), 0.045, true, outside_plate}};
+}
+
+/// A hand that goes from one random place to the next, each way at its own speed up to 2 m/s, and
+/// jitters: some of its ways end in the solid, some go through everything.
+class RandomHand {
+ public:
+  RandomHand(unsigned seed, double size) : random_(seed), size_(size), place_(0, 0, 2 * size) {}
+
+  [[nodiscard]] Vector3d next() {
+    if ((goal_ - place_).norm() < 1e-3) {
+      goal_ = size_ * vector();
+      speed_ = std::pow(10.0, -2 + 1.15 * (1 + uniform_(random_)));
+    }
+    const Vector3d way = goal_ - place_;
+    place_ += way * std::min(1.0, speed_ * kTick / way.norm());
+    return place_ + 2e-5 * vector();
+  }
+
+ private:
+  Vector3d vector() {
+    const double x = uniform_(random_);
+    const double y = uniform_(random_);
+    return {x, y, uniform_(random_)};
+  }
+  std::mt19937 random_;
+  std::uniform_real_distribution<double> uniform_{-1, 1};
+  double size_;
+  double speed_ = 0.1;
+  Vector3d place_;
+  Vector3d goal_ = Vector3d::Zero();
+};
+
+struct FuzzTally {
+  int touching = 0;
+  int inside = 0;
+  int wrong_side = 0;
+  int not_finite = 0;
+  int lost = 0;
+  int unfinished = 0;
+  int most_evaluations = 0;
+  long evaluations = 0;
+  double deepest = 0;  // of R
+};
+
+void check(const Field& field, const Proxy& proxy, const Contact& contact, FuzzTally& tally) {
+  tally.evaluations += contact.evaluations;
+  tally.most_evaluations = std::max(tally.most_evaluations, contact.evaluations);
+  if (!contact.force.allFinite() || !contact.proxy.allFinite()) ++tally.not_finite;
+  if (has(contact.notes, ContactNote::lost)) ++tally.lost;
+  if (has(contact.notes, ContactNote::not_converged)) ++tally.unfinished;
+  if (!contact.touching) return;
+  ++tally.touching;
+  const Sample here = field.sample(contact.proxy, proxy.side());
+  const double depth = -here.value / std::max(here.gradient.norm(), 1e-9) / here.radius;
+  tally.deepest = std::max(tally.deepest, depth);
+  if (depth > 0.002) ++tally.inside;
+}
+
+using FuzzCase = std::tuple<int, FieldKind>;
+class AcceptanceFuzz : public testing::TestWithParam<FuzzCase> {};
+
+TEST_P(AcceptanceFuzz, NeverNaNNeverInsideNeverOnTheWrongSide) {
+  const auto& [index, kind] = GetParam();
+  const FuzzScene scene = fuzz_scenes()[static_cast<std::size_t>(index)];
+  PointField points(scene.points, {.kind = kind, .two_sided = scene.two_sided});
+  RandomHand hand(7 * static_cast<unsigned>(index) + static_cast<unsigned>(kind), scene.size);
+  Proxy proxy;
+  proxy.reset({0, 0, 2 * scene.size});
+  FuzzTally tally;
+  int stood = 0;
+  const int ticks = effort(60000);
+  for (int i = 0; i < ticks; ++i) {
+    const Vector3d hip = hand.next();
+    const Field& field = points.at(hip, proxy.position());
+    const Contact contact = proxy.step(field, hip, kTick);
+    check(field, proxy, contact, tally);
+    // A proxy that touches stays on its side, and nothing is inside a ball but what went in.
+    const int stands = contact.touching ? scene.stands(contact) : 0;
+    if (stands * stood < 0 || (!scene.two_sided && stands < 0)) ++tally.wrong_side;
+    stood = stands;
+  }
+  RecordProperty("touching", tally.touching);
+  RecordProperty("lost", tally.lost);
+  RecordProperty("unfinished", tally.unfinished);
+  RecordProperty("most_evaluations", tally.most_evaluations);
+  RecordProperty("mean_evaluations", std::to_string(double(tally.evaluations) / ticks));
+  RecordProperty("deepest_R", std::to_string(tally.deepest));
+  RecordProperty("wrong", tally.wrong_side);
+  EXPECT_EQ(tally.not_finite, 0);
+  EXPECT_EQ(tally.inside, 0);
+  EXPECT_EQ(tally.wrong_side, 0);
+  EXPECT_GT(tally.touching, ticks / 20);
+  EXPECT_LE(tally.most_evaluations, proxy.max_evaluations());
+}
+
+std::string fuzz_name(const testing::TestParamInfo<FuzzCase>& tested) {
+  constexpr const char* kKinds[] = {"balanced", "pointset", "metaball"};
+  const auto& [index, kind] = tested.param;
+  return std::string(fuzz_scenes()[static_cast<std::size_t>(index)].name) + "_" +
+         kKinds[static_cast<int>(kind)];
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, AcceptanceFuzz,
+                         testing::Combine(testing::Range(0, 4),
+                                          testing::Values(FieldKind::metaball, FieldKind::pointset,
+                                                          FieldKind::balanced)),
+                         fuzz_name);
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,160 @@
+// algorithm.md section 10: sweeps against brute-force sampling, 0 missed contacts.
+#include <gtest/gtest.h>
+
+#include "contact/sweep.hpp"
+#include "support/effort.hpp"
+#include "support/point_field.hpp"
+#include "support/point_shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+struct SweepScene {
+  const char* name;
+  std::vector<TestPoint> (*make)(const Sampling& sampling);
+  double extent;  // of the points in x and y, m
+};
+
+std::vector<TestPoint> noisy_sheet(Sampling sampling) {
+  sampling.jitter = 0.2;
+  sampling.noise = 0.25;
+  sampling.tilt = 0.1;
+  return sheet(sampling, 0.05);
+}
+
+std::vector<TestPoint> single(const Sampling& sampling) {
+  return {{Vector3d::Zero(), Vector3d::UnitZ(), sampling.radius, 0}};
+}
+
+std::vector<TestPoint> two_sheets(const Sampling& sampling) {
+  std::vector<TestPoint> points = sheet(sampling, 0.05, 0.01);
+  const auto more = sheet(sampling, 0.05, -0.01);
+  points.insert(points.end(), more.begin(), more.end());
+  return points;
+}
+
+const SweepScene kScenes[] = {
+    {"sheet", [](const Sampling& s) { return sheet(s, 0.05); }, 0.05},
+    {"noisy_sheet", [](const Sampling& s) { return noisy_sheet(s); }, 0.05},
+    {"line", [](const Sampling& s) { return line(s, 0.05); }, 0.05},
+    {"single_point", single, 0.008},
+    {"two_sheets", two_sheets, 0.05},
+};
+
+/// Where brute force first finds something solid along the way, and how long the chord is.
+struct Truth {
+  double first = -1;  // m from the start; -1: free all the way
+  double chord = 0;   // m
+};
+
+Truth brute_force(const Field& field, const Vector3d& from, const Vector3d& to, double step) {
+  const bool two_sided = field.traits().two_sided;
+  const double length = (to - from).norm();
+  const int count = static_cast<int>(std::ceil(length / step));
+  Side side = 0;
+  Truth truth;
+  for (int i = 0; i <= count; ++i) {
+    const Vector3d x = from + (to - from) * (static_cast<double>(i) / count);
+    const Sample here = field.sample(x, side);
+    if (two_sided && here.support < FieldOptions{}.minimum_support) {
+      side = 0;
+      if (truth.first >= 0) return truth;
+      continue;
+    }
+    if (two_sided && side == 0) side = here.height >= 0 ? 1 : -1;
+    const double value = two_sided ? field.sample(x, side).value : here.value;
+    if (value <= 0) {
+      if (truth.first < 0) truth.first = i * length / count;
+      truth.chord = i * length / count - truth.first + step;
+      if (truth.chord > 0.2 * here.radius) return truth;
+    } else if (truth.first >= 0) {
+      return truth;
+    }
+  }
+  return truth;
+}
+
+bool starts_free(const Field& field, const Vector3d& x) {
+  const Sample here = field.sample(x, 1);
+  return (here.height >= 0 ? here.value : field.sample(x, -1).value) > 0;
+}
+
+struct Tally {
+  int contacts = 0;
+  int missed = 0;   // chords longer than the field's resolution
+  int grazing = 0;  // shorter ones that were not found
+  int late = 0;
+  int phantom = 0;
+  int truncated = 0;
+};
+
+void compare(PointField& scene, const Vector3d& from, const Vector3d& to, double radius,
+             Tally& tally) {
+  const Field& field = scene.at(to, from);
+  if (!starts_free(field, from)) return;
+  const double step = 0.002 * radius;
+  const Truth truth = brute_force(field, from, to, step);
+  const Texture none;
+  Probe probe(field, none, 0, radius);
+  const Sweep found = first_contact(probe, from, to);
+  const double reached = (found.position - from).norm();
+  tally.contacts += truth.first >= 0 ? 1 : 0;
+  if (found.end == Sweep::End::truncated) ++tally.truncated;
+  if (truth.first < 0) {
+    // Brute force may step over a corner cut that the sweep finds.
+    tally.phantom += found.end == Sweep::End::hit ? 1 : 0;
+  } else if (found.end == Sweep::End::clear) {
+    ++(truth.chord > field.traits().resolution ? tally.missed : tally.grazing);
+  } else if (reached > truth.first + step && truth.chord > field.traits().resolution) {
+    ++tally.late;
+  }
+}
+
+using SweepCase = std::tuple<int, FieldKind>;
+class AcceptanceSweep : public testing::TestWithParam<SweepCase> {};
+
+TEST_P(AcceptanceSweep, MissesNothingThatBruteForceFinds) {
+  const auto& [index, kind] = GetParam();
+  Tally tally;
+  std::mt19937 random(17 + static_cast<unsigned>(index));
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const double m : {1.5, 2.0, 3.0}) {
+    const double radius = 4e-3 * m;
+    PointField scene(kScenes[index].make({.radius = radius}), {.kind = kind});
+    for (const auto& [length, repeats] :
+         {std::pair{1e-3, 4000}, {2e-3, 3000}, {20e-3, 500}, {100e-3, 100}}) {
+      for (int i = 0; i < effort(repeats); ++i) {
+        // Through a place near the points, in any direction.
+        const double wide = 1.1 * kScenes[index].extent;
+        const Vector3d center(wide * uniform(random), std::min(wide, 0.02) * uniform(random),
+                              std::min(wide, 0.014) * uniform(random));
+        const Vector3d way =
+            length * Vector3d(uniform(random), uniform(random), uniform(random)).normalized();
+        const double share = length < 0.01 ? 0.5 : 0.5 * (1 + uniform(random));
+        compare(scene, center - share * way, center + (1 - share) * way, radius, tally);
+      }
+    }
+  }
+  RecordProperty("contacts", tally.contacts);
+  RecordProperty("grazing", tally.grazing);
+  RecordProperty("phantom", tally.phantom);
+  RecordProperty("truncated", tally.truncated);
+  EXPECT_EQ(tally.missed, 0) << "of " << tally.contacts << " contacts";
+  EXPECT_EQ(tally.late, 0) << "of " << tally.contacts << " contacts";
+  EXPECT_GT(tally.contacts, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, AcceptanceSweep,
+                         testing::Combine(testing::Range(0, 5),
+                                          testing::Values(FieldKind::metaball,
+                                                          FieldKind::balanced)),
+                         [](const auto& tested) {
+                           return std::string(kScenes[std::get<0>(tested.param)].name) +
+                                  (std::get<1>(tested.param) == FieldKind::metaball ? "_metaball"
+                                                                                    : "_balanced");
+                         });
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "palpate/scene/scene_field.hpp"
+#include "support/make_points.hpp"
+
+namespace palpate::test {
+
+/// A scene of points and the field over it, without any preparation in between.
+class PointField {
+ public:
+  explicit PointField(const std::vector<TestPoint>& points, const FieldOptions& options = {})
+      : points_(std::make_shared<SurfacePoints>(make_points(points, options.kernel))) {
+    auto snapshot = std::make_unique<Snapshot>();
+    snapshot->layers.push_back({points_});
+    scene_.add("points").publish(std::move(snapshot));
+    field_ = std::make_unique<SceneField>(scene_, options);
+    field_->update(0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+  }
+
+  /// The field, ready for a step from `proxy` towards `hip`.
+  [[nodiscard]] const Field& at(const Eigen::Vector3d& hip, const Eigen::Vector3d& proxy) {
+    field_->update(0, hip, proxy);
+    return *field_;
+  }
+  [[nodiscard]] const Field& get() const { return *field_; }
+  [[nodiscard]] const SurfacePoints& points() const { return *points_; }
+
+ private:
+  std::shared_ptr<const SurfacePoints> points_;
+  Scene scene_;
+  std::unique_ptr<SceneField> field_;
+};
+
+}  // namespace palpate::test

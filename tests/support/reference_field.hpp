@@ -1,0 +1,219 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "palpate/field/field.hpp"
+#include "palpate/field/implicit.hpp"
+#include "palpate/field/kernel.hpp"
+#include "palpate/field/surface_points.hpp"
+
+namespace palpate::test {
+
+/// A number and its gradient with respect to the place x. The product rule does the rest, so the
+/// formulas below carry no gradient of their own that could share a mistake with the fast ones.
+struct Dual {
+  double v = 0;
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+};
+inline Dual constant(double v) {
+  return {v, Eigen::Vector3d::Zero()};
+}
+inline Dual operator+(const Dual& a, const Dual& b) {
+  return {a.v + b.v, a.g + b.g};
+}
+inline Dual operator-(const Dual& a, const Dual& b) {
+  return {a.v - b.v, a.g - b.g};
+}
+inline Dual operator*(const Dual& a, const Dual& b) {
+  return {a.v * b.v, a.v * b.g + b.v * a.g};
+}
+inline Dual operator*(double a, const Dual& b) {
+  return {a * b.v, a * b.g};
+}
+inline Dual operator/(const Dual& a, const Dual& b) {
+  return {a.v / b.v, (a.g - (a.v / b.v) * b.g) / b.v};
+}
+inline Dual sqrt(const Dual& a) {
+  const double root = std::sqrt(a.v);
+  return {root, a.g / (2 * root)};
+}
+using DualVector = std::array<Dual, 3>;
+inline Dual dot(const DualVector& a, const DualVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline DualVector operator/(const DualVector& a, const Dual& b) {
+  return {a[0] / b, a[1] / b, a[2] / b};
+}
+
+struct ReferencePoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  double radius = 0;      // R_i, m
+  double weight = 1;      // C_k a_i
+  double confidence = 1;  // c_i
+  int source = 0;
+};
+
+/// The field of algorithm.md 1.2-1.5, field_choice.md 2 and architecture.md ("Words") over all
+/// points, in double, without an index: slow, obvious, and the judge of the fast one. Normal tools
+/// only (no tool radius for the metaball, none of the paper's variants).
+class ReferenceField final : public Field {
+ public:
+  ReferenceField(std::vector<ReferencePoint> points, const FieldOptions& options)
+      : points_(std::move(points)), options_(options) {
+    for (const ReferencePoint& p : points_) sources_ = std::max(sources_, p.source + 1);
+  }
+
+  /// The points of one source each.
+  ReferenceField(const std::vector<const SurfacePoints*>& sources, const FieldOptions& options)
+      : ReferenceField(points_of(sources), options) {}
+
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side side) const noexcept override {
+    const Sums s = sums_at(x);
+    Sample result{.value = 0.35 * typical_radius(), .radius = typical_radius()};
+    if (!(s.plain.v > 1e-12)) return result;
+    const Dual support = united(s.by_source);
+    const Dual radius = s.radius / s.plain;
+    const Dual blob = as_length(radius, options_.threshold, support);
+    Dual value = blob;
+    if (s.trusted.v > 1e-9 * s.plain.v && options_.kind != FieldKind::metaball) {
+      const Dual height = height_of(s);
+      result.height = height.v;
+      value = blend(s, capped(height, radius, support, side), blob);
+    }
+    result.value = value.v;
+    result.gradient = value.g;
+    result.support = support.v;
+    result.radius = radius.v;
+    return result;
+  }
+
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    std::vector<Dual> most(static_cast<std::size_t>(sources_));
+    for (const ReferencePoint& p : points_) {
+      const double r = std::max(0.0, (ball.center - p.position).norm() - ball.radius) / p.radius;
+      most[static_cast<std::size_t>(p.source)].v += p.weight * evaluate(options_.kernel, r * r).w;
+    }
+    const double level = options_.kind == FieldKind::metaball
+                             ? options_.threshold
+                             : std::min(options_.threshold, options_.minimum_support);
+    return united(most).v < level;
+  }
+
+  [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override {
+    return {.source = 0};
+  }
+
+  [[nodiscard]] FieldTraits traits() const noexcept override {
+    const bool metaball = options_.kind == FieldKind::metaball;
+    return {.two_sided = options_.two_sided && !metaball,
+            .resolution = (metaball ? 0.002 : 1.0 / 16) * typical_radius()};
+  }
+
+ private:
+  struct Sums {
+    std::vector<Dual> by_source;
+    Dual plain, radius;  // sum w, sum w R
+    Dual trusted;        // sum v, v = w c
+    DualVector q, n;     // sum v (p - x), sum v n
+    Dual nq;             // sum v n . (p - x)
+  };
+
+  static std::vector<ReferencePoint> points_of(const std::vector<const SurfacePoints*>& sources) {
+    std::vector<ReferencePoint> all;
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      const SurfacePoints& from = *sources[s];
+      for (std::size_t i = 0; i < from.size(); ++i) {
+        all.push_back({from.origin + from.grid.points()[i].cast<double>(),
+                       from.normals.empty() ? Eigen::Vector3d::Zero().eval()
+                                            : from.normals[i].cast<double>().eval(),
+                       from.radii[i], from.density_weights[i], from.confidences[i],
+                       static_cast<int>(s)});
+      }
+    }
+    return all;
+  }
+
+  [[nodiscard]] double typical_radius() const {
+    return points_.empty() ? 0 : points_[points_.size() / 2].radius;
+  }
+
+  [[nodiscard]] Sums sums_at(const Eigen::Vector3d& x) const {
+    Sums s;
+    s.by_source.resize(static_cast<std::size_t>(sources_));
+    for (const ReferencePoint& p : points_) {
+      const Eigen::Vector3d away = x - p.position;
+      const double r2 = p.radius * p.radius;
+      const KernelValue kernel = evaluate(options_.kernel, away.squaredNorm() / r2);
+      const Dual w{p.weight * kernel.w, (p.weight * kernel.g / r2) * away};
+      if (w.v <= 0) continue;
+      const Dual v = p.confidence * w;
+      Dual& own = s.by_source[static_cast<std::size_t>(p.source)];
+      own = own + w;
+      s.plain = s.plain + w;
+      s.radius = s.radius + p.radius * w;
+      s.trusted = s.trusted + v;
+      for (int k = 0; k < 3; ++k) {
+        const auto axis = static_cast<std::size_t>(k);
+        const Dual q{-away[k], -Eigen::Vector3d::Unit(k)};
+        s.q[axis] = s.q[axis] + v * q;
+        s.n[axis] = s.n[axis] + p.normal[k] * v;
+        s.nq = s.nq + p.normal[k] * (v * q);
+      }
+    }
+    return s;
+  }
+
+  [[nodiscard]] static Dual united(const std::vector<Dual>& by_source) {
+    if (by_source.size() == 1) return by_source[0];
+    Dual sum;
+    for (const Dual& w : by_source) sum = sum + w * w * w * w;
+    return sum.v > 0 ? sqrt(sqrt(sum)) : Dual{};
+  }
+
+  [[nodiscard]] Dual height_of(const Sums& s) const {
+    const DualVector a = s.q / s.trusted;
+    const DualVector mean_normal = s.n / s.trusted;
+    if (options_.kind == FieldKind::pointset) {
+      return -1.0 * (dot(mean_normal, a) / sqrt(dot(mean_normal, mean_normal)));
+    }
+    return -0.5 * (dot(mean_normal, a) + s.nq / s.trusted);
+  }
+
+  [[nodiscard]] Dual as_length(const Dual& radius, double level, const Dual& support) const {
+    return (0.35 / options_.minimum_support) * (radius * (constant(level) - support));
+  }
+
+  [[nodiscard]] Dual capped(const Dual& height, const Dual& radius, const Dual& support,
+                            Side side) const {
+    const double sign = options_.two_sided && side < 0 ? -1 : 1;
+    const Dual outer = sign * height - constant(options_.tool_radius);
+    if (!options_.capped) return outer;
+    const Dual cap = as_length(radius, options_.minimum_support, support);
+    const Dual width = 0.1 * radius;
+    const Dual difference = outer.v > cap.v ? outer - cap : cap - outer;
+    const Dual& larger = outer.v > cap.v ? outer : cap;
+    if (difference.v >= width.v) return larger;
+    const Dual h = (width - difference) / width;
+    return larger + 0.25 * (h * h * width);
+  }
+
+  [[nodiscard]] Dual blend(const Sums& s, const Dual& cap, const Dual& blob) const {
+    if (!options_.capped) return cap;
+    const Dual chi = s.trusted / s.plain;
+    Dual u = (1 / 0.3) * (chi - constant(0.25));
+    if (u.v <= 0) u = constant(0);
+    if (u.v >= 1) u = constant(1);
+    const Dual kappa = u * u * (constant(3) - 2 * u);
+    return kappa * cap + (constant(1) - kappa) * blob;
+  }
+
+  std::vector<ReferencePoint> points_;
+  FieldOptions options_;
+  int sources_ = 1;
+};
+
+}  // namespace palpate::test
