@@ -14,7 +14,7 @@ if [ -e "$called_from/$cloud" ]; then cloud=$(realpath "$called_from/$cloud"); f
 started=$SECONDS
 
 say "packages"
-need_packages build
+need_packages build picture
 
 say "build"
 # The first time without the tests, which need more packages.

@@ -141,23 +141,38 @@ summary() {
   note "$1: $(grep -E 'tests passed' "build/$1.test.log" || echo 'ctest did not finish')"
 }
 
-# fuzz_all SECONDS: each fuzz target over its seeds in fuzz/corpus/NAME. Inputs that are found stay
+# fuzz_one NAME SECONDS: a fuzz target over its seeds in fuzz/corpus/NAME. Inputs that are found stay
 # out of the tree; one that breaks something is kept as build/fuzz/found/NAME-*.
+fuzz_one() {
+  local name=$1 seconds=$2 seeds=()
+  mkdir -p build/fuzz/found "build/fuzz/corpus/$name"
+  if [ -d "fuzz/corpus/$name" ]; then seeds=("fuzz/corpus/$name"); fi
+  if "build/fuzz/fuzz/fuzz_$name" "build/fuzz/corpus/$name" "${seeds[@]}" \
+    -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+    -artifact_prefix="build/fuzz/found/$name-" >"build/fuzz/$name.log" 2>&1; then
+    note "$name: $(grep -oE 'Done [0-9]+ runs' "build/fuzz/$name.log" || true), clean"
+  else
+    tail -n 30 "build/fuzz/$name.log" >&2
+    note "$name: BROKEN; all of it: build/fuzz/$name.log"
+    return 1
+  fi
+}
+
+# fuzz_all SECONDS: every target, a few at a time; all of them even if one breaks.
 fuzz_all() {
-  local seconds=$1 target name status=0
+  local target status=0 running=0
   for target in build/fuzz/fuzz/fuzz_*; do
     if [ ! -f "$target" ] || [ ! -x "$target" ]; then continue; fi
-    name=${target##*/fuzz_}
-    mkdir -p "build/fuzz/found" "build/fuzz/corpus/$name"
-    if "$target" "build/fuzz/corpus/$name" "fuzz/corpus/$name" -max_total_time="$seconds" \
-      -timeout=10 -rss_limit_mb=2048 -artifact_prefix="build/fuzz/found/$name-" \
-      >"build/fuzz/$name.log" 2>&1; then
-      note "$name: $(grep -oE 'Done [0-9]+ runs' "build/fuzz/$name.log" || true), clean"
-    else
-      tail -n 30 "build/fuzz/$name.log" >&2
-      note "$name: BROKEN, see build/fuzz/$name.log"
-      status=1
+    fuzz_one "${target##*/fuzz_}" "$1" &
+    running=$((running + 1))
+    if [ "$running" -ge "$(jobs_that_fit)" ]; then
+      wait -n || status=1
+      running=$((running - 1))
     fi
+  done
+  while [ "$running" -gt 0 ]; do
+    wait -n || status=1
+    running=$((running - 1))
   done
   return $status
 }
