@@ -41,20 +41,21 @@ PointCloud clip(const PointCloud& cloud, const Box& box) {
 
 std::vector<std::uint8_t> speckle_mask(const CellGrid& grid, std::span<const float> radii) {
   const detail::WeightSums sums = detail::weight_sums(grid, radii, simd::best_joins().wyvill_sums);
+  const detail::Columns columns(grid);
+  std::vector<float> diameters(radii.begin(), radii.end());
+  for (float& diameter : diameters) diameter *= 2;
   std::vector<std::uint8_t> mask(grid.size());
-  detail::for_each_group(grid, [&](const detail::Group& group, detail::JoinSpace& space) {
-    float largest = 0;
-    for (std::uint32_t i = group.begin; i < group.end; ++i) largest = std::max(largest, radii[i]);
-    space.ask_for(grid, group);
-    detail::gather(grid, group, 2 * largest, space.candidates);
-    simd::best_joins().nearest4(space.queries.coordinates(), space.candidates.coordinates(),
-                                space.rows.data());
-    for (std::uint32_t q = 0; q < group.size(); ++q) {
-      const std::uint32_t i = group.begin + q;
-      const bool alone = space.results[kFewestOthers][q] > 4 * radii[i] * radii[i];
-      mask[i] = alone || sums.own[i] < kShareOfAround * sums.around[i] ? 1 : 0;
-    }
-  });
+  detail::for_each_neighborhood(
+      grid, {.of_points = diameters, .of_cells = {}},
+      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+        simd::Row nearest[kFewestOthers + 1];
+        simd::best_joins().nearest4(columns.join(first, runs), nearest);
+        for (std::uint32_t q = 0; q < count; ++q) {
+          const std::uint32_t i = first + q;
+          const bool alone = nearest[kFewestOthers][q] > diameters[i] * diameters[i];
+          mask[i] = alone || sums.own[i] < kShareOfAround * sums.around[i] ? 1 : 0;
+        }
+      });
   return mask;
 }
 

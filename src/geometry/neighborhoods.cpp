@@ -1,135 +1,55 @@
 #include "geometry/neighborhoods.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "geometry/distance.hpp"
 
 namespace palpate::detail {
-namespace {
 
-static_assert(kGroupPoints % simd::kQueryStep == 0);
-
-Group group_of(const CellGrid& grid, std::uint32_t begin, std::uint32_t end) {
-  Group group{begin, end, grid.points()[begin], grid.points()[begin]};
+Block make_block(const CellGrid& grid, std::uint32_t begin, std::uint32_t end) {
+  Block block{begin, end, grid.points()[begin], grid.points()[begin]};
   for (std::uint32_t i = begin + 1; i < end; ++i) {
-    group.lower = group.lower.cwiseMin(grid.points()[i]);
-    group.upper = group.upper.cwiseMax(grid.points()[i]);
+    block.lower = block.lower.cwiseMin(grid.points()[i]);
+    block.upper = block.upper.cwiseMax(grid.points()[i]);
   }
-  return group;
+  return block;
 }
 
-// Calls visit(cell) for the leaves that `wanted` lets through, in sorted order.
-template <class Wanted, class Visit>
-void walk(const CellGrid& grid, const Wanted& wanted, const Visit& visit) {
+std::vector<Block> make_blocks(const CellGrid& grid, std::uint32_t most) {
   const std::span<const CellGrid::Cell> cells = grid.cells();
-  std::array<std::uint32_t, CellGrid::kMaxStack> stack;
-  std::size_t open = 0;
-  if (!cells.empty()) stack[open++] = 0;
-  while (open > 0) {
-    const std::uint32_t index = stack[--open];
-    const CellGrid::Cell& cell = cells[index];
-    if (!wanted(index)) continue;
-    if (cell.children == 0) visit(cell);
-    for (std::uint32_t c = cell.children; c-- > 0;) stack[open++] = cell.first_child + c;
-  }
-}
-
-float squared_gap(const Group& group, const Eigen::Vector3f& p) {
-  const float x = gap(group.lower.x(), group.upper.x(), p.x(), p.x());
-  const float y = gap(group.lower.y(), group.upper.y(), p.y(), p.y());
-  const float z = gap(group.lower.z(), group.upper.z(), p.z(), p.z());
-  return x * x + y * y + z * z;
-}
-
-}  // namespace
-
-std::vector<Group> make_groups(const CellGrid& grid) {
-  const std::span<const CellGrid::Cell> cells = grid.cells();
-  std::vector<Group> groups;
-  groups.reserve(grid.size() / (kGroupPoints / 2) + 8);
+  std::vector<Block> blocks;
   std::array<std::uint32_t, CellGrid::kMaxStack> stack;
   std::size_t open = 0;
   if (!cells.empty()) stack[open++] = 0;
   while (open > 0) {
     const CellGrid::Cell& cell = cells[stack[--open]];
-    if (cell.size() <= kGroupPoints) {
-      groups.push_back({cell.begin, cell.end, cell.lower, cell.upper});
+    if (cell.size() <= most) {
+      blocks.push_back({cell.begin, cell.end, cell.lower, cell.upper});
       continue;
     }
     for (std::uint32_t c = cell.children; c-- > 0;) stack[open++] = cell.first_child + c;
     if (cell.children != 0) continue;
-    for (std::uint32_t i = cell.begin; i < cell.end; i += kGroupPoints) {
-      groups.push_back(group_of(grid, i, std::min(i + kGroupPoints, cell.end)));
+    for (std::uint32_t i = cell.begin; i < cell.end; i += most) {
+      blocks.push_back(make_block(grid, i, std::min(i + most, cell.end)));
     }
   }
-  return groups;
+  return blocks;
 }
 
-void Columns::reserve(std::size_t count) {
-  if (count <= x_.size()) return;
-  count = std::max(count, 2 * x_.size());
-  indices_.reserve(count);
-  x_.resize(count);
-  y_.resize(count);
-  z_.resize(count);
+std::vector<float> make_column(std::size_t size) {
+  return std::vector<float>(size + simd::kQueries, 0.f);
 }
 
-void Columns::push_back(std::uint32_t index, const Eigen::Vector3f& p) {
-  const std::size_t i = indices_.size();
-  reserve(i + 1);
-  indices_.push_back(index);
-  x_[i] = p.x();
-  y_[i] = p.y();
-  z_[i] = p.z();
-}
-
-void Columns::pad() {
-  while (size() % simd::kQueryStep != 0) {
-    const std::size_t last = size() - 1;
-    push_back(indices_[last], {x_[last], y_[last], z_[last]});
-  }
-}
-
-simd::Coordinates Columns::coordinates() const {
-  return {x_.data(), y_.data(), z_.data(), size()};
-}
-
-bool gather(const CellGrid& grid, const Group& group, float radius, Columns& found,
-            std::size_t limit) {
-  const float squared_radius = radius * radius;
-  found.clear();
-  walk(
-      grid,
-      [&](std::uint32_t cell) {
-        return found.size() <= limit &&
-               squared_distance(grid.cells()[cell], group.lower, group.upper) <= squared_radius;
-      },
-      [&](const CellGrid::Cell& leaf) {
-        found.reserve(found.size() + leaf.size());
-        for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
-          const Eigen::Vector3f& p = grid.points()[i];
-          if (squared_gap(group, p) <= squared_radius) found.push_back(i, p);
-        }
-      });
-  return found.size() <= limit;
-}
-
-void gather_reaching(const CellGrid& grid, const Group& group, std::span<const float> radii,
-                     std::span<const float> cell_reach, Columns& found) {
-  found.clear();
-  walk(
-      grid,
-      [&](std::uint32_t cell) {
-        return squared_distance(grid.cells()[cell], group.lower, group.upper) <=
-               cell_reach[cell] * cell_reach[cell];
-      },
-      [&](const CellGrid::Cell& leaf) {
-        found.reserve(found.size() + leaf.size());
-        for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
-          const Eigen::Vector3f& p = grid.points()[i];
-          if (squared_gap(group, p) <= radii[i] * radii[i]) found.push_back(i, p);
-        }
-      });
+Columns::Columns(const CellGrid& grid)
+    : x_(make_column(grid.size())), y_(make_column(grid.size())), z_(make_column(grid.size())) {
+  parallel_ranges(grid.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      x_[i] = grid.points()[i].x();
+      y_[i] = grid.points()[i].y();
+      z_[i] = grid.points()[i].z();
+    }
+  });
 }
 
 std::vector<float> largest_in_cells(const CellGrid& grid, std::span<const float> values) {
@@ -145,14 +65,60 @@ std::vector<float> largest_in_cells(const CellGrid& grid, std::span<const float>
   return largest;
 }
 
-JoinSpace::JoinSpace() {
-  for (std::size_t k = 0; k < kRows; ++k) rows[k] = results[k].data();
+void Surroundings::find(const CellGrid& grid, const Block& block, float radius,
+                        std::span<const float> reach_of_cells) {
+  for (auto* column :
+       {&lower_x_, &lower_y_, &lower_z_, &upper_x_, &upper_y_, &upper_z_, &squared_reach_}) {
+    column->clear();
+  }
+  leaves_.clear();
+  points_ = 0;
+  const std::span<const CellGrid::Cell> cells = grid.cells();
+  std::array<std::uint32_t, CellGrid::kMaxStack> stack;
+  std::size_t open = 0;
+  if (!cells.empty()) stack[open++] = 0;
+  while (open > 0) {
+    const std::uint32_t index = stack[--open];
+    const CellGrid::Cell& cell = cells[index];
+    const float own = reach_of_cells.empty() ? 0 : reach_of_cells[index];
+    const float reach = std::max(radius, own);
+    if (squared_distance(cell, block.lower, block.upper) > reach * reach) continue;
+    for (std::uint32_t c = cell.children; c-- > 0;) stack[open++] = cell.first_child + c;
+    if (cell.children != 0) continue;
+    lower_x_.push_back(cell.lower.x());
+    lower_y_.push_back(cell.lower.y());
+    lower_z_.push_back(cell.lower.z());
+    upper_x_.push_back(cell.upper.x());
+    upper_y_.push_back(cell.upper.y());
+    upper_z_.push_back(cell.upper.z());
+    squared_reach_.push_back(own * own);
+    leaves_.push_back({cell.begin, cell.end});
+    points_ += cell.size();
+  }
 }
 
-void JoinSpace::ask_for(const CellGrid& grid, const Group& group) {
-  queries.clear();
-  for (std::uint32_t i = group.begin; i < group.end; ++i) queries.push_back(i, grid.points()[i]);
-  queries.pad();
+std::span<const simd::Run> Surroundings::near(const Block& part, float radius) {
+  const float squared_radius = radius * radius;
+  const Eigen::Vector3f lower = part.lower;
+  const Eigen::Vector3f upper = part.upper;
+  near_.resize(leaves_.size());
+  for (std::size_t k = 0; k < near_.size(); ++k) {
+    const float x = gap(lower_x_[k], upper_x_[k], lower.x(), upper.x());
+    const float y = gap(lower_y_[k], upper_y_[k], lower.y(), upper.y());
+    const float z = gap(lower_z_[k], upper_z_[k], lower.z(), upper.z());
+    const float reach = std::max(squared_radius, squared_reach_[k]);
+    near_[k] = x * x + y * y + z * z <= reach ? 1 : 0;
+  }
+  runs_.clear();
+  for (std::size_t k = 0; k < near_.size(); ++k) {
+    if (near_[k] == 0) continue;
+    if (!runs_.empty() && runs_.back().end == leaves_[k].begin) {
+      runs_.back().end = leaves_[k].end;
+    } else {
+      runs_.push_back(leaves_[k]);
+    }
+  }
+  return runs_;
 }
 
 }  // namespace palpate::detail

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,81 +12,107 @@
 
 namespace palpate::detail {
 
-/// Neighbouring points in sorted order whose neighbourhoods are looked up together.
-struct Group {
+/// Points [begin, end) of the sorted order and their tight box, m.
+struct Block {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
-  Eigen::Vector3f lower = Eigen::Vector3f::Zero();  ///< tight box, m
+  Eigen::Vector3f lower = Eigen::Vector3f::Zero();
   Eigen::Vector3f upper = Eigen::Vector3f::Zero();
 
   [[nodiscard]] std::uint32_t size() const { return end - begin; }
 };
 
-inline constexpr std::uint32_t kGroupPoints = 32;
+/// The block of these points.
+[[nodiscard]] Block make_block(const CellGrid& grid, std::uint32_t begin, std::uint32_t end);
 
-/// All points once, in sorted order, in groups of at most kGroupPoints.
-[[nodiscard]] std::vector<Group> make_groups(const CellGrid& grid);
+/// All points once, in sorted order: the largest cells with at most `most` points, and pieces of
+/// leaves that hold more.
+[[nodiscard]] std::vector<Block> make_blocks(const CellGrid& grid, std::uint32_t most);
 
-/// Points side by side as the joins want them.
+/// The sorted points' coordinates side by side, as joins want them.
 class Columns {
  public:
-  void clear() { indices_.clear(); }
-  void reserve(std::size_t count);
-  void push_back(std::uint32_t index, const Eigen::Vector3f& p);
+  explicit Columns(const CellGrid& grid);
 
-  /// Repeats the last point up to a multiple of simd::kQueryStep.
-  void pad();
-
-  [[nodiscard]] std::size_t size() const { return indices_.size(); }
-  [[nodiscard]] std::span<const std::uint32_t> indices() const { return indices_; }
-  [[nodiscard]] simd::Coordinates coordinates() const;
+  [[nodiscard]] simd::Join join(std::uint32_t query, std::span<const simd::Run> runs) const {
+    return {x_.data(), y_.data(), z_.data(), query, runs.data(), runs.size()};
+  }
 
  private:
-  std::vector<std::uint32_t> indices_;
   std::vector<float> x_, y_, z_;
 };
 
-/// Replaces `found` by all points within `radius` of the group's box, in sorted order. False as
-/// soon as there are more than `limit`.
-bool gather(const CellGrid& grid, const Group& group, float radius, Columns& found,
-            std::size_t limit = ~std::size_t{0});
+/// A column beside them, with room for the last queries.
+[[nodiscard]] std::vector<float> make_column(std::size_t size);
 
-/// Replaces `found` by all points within whose own radius the group's box lies, in sorted order.
-/// cell_reach: for each cell the largest radius in it.
-void gather_reaching(const CellGrid& grid, const Group& group, std::span<const float> radii,
-                     std::span<const float> cell_reach, Columns& found);
+/// How far to look. Each is in metres, sorted, and may be empty for 0.
+struct Reach {
+  std::span<const float> of_points;  ///< a point asks for all candidates within its own radius
+  std::span<const float>
+      of_cells;  ///< largest radius within which the points of a cell are asked for
+};
 
 /// For each cell the largest of its points' values.
 [[nodiscard]] std::vector<float> largest_in_cells(const CellGrid& grid,
                                                   std::span<const float> values);
 
-/// What a thread needs to work through groups: queries, candidates and room for kRows results of
-/// every query.
-struct JoinSpace {
-  static constexpr std::size_t kRows = simd::kMoments;
+/// The leaves around a block, found once, and which of their points may be near a part of it.
+class Surroundings {
+ public:
+  /// Finds the leaves within `radius` of the block, or within the cells' own reach.
+  void find(const CellGrid& grid, const Block& block, float radius,
+            std::span<const float> reach_of_cells = {});
 
-  Columns queries;
-  Columns candidates;
-  std::array<std::vector<float>, 2> values;  ///< columns beside the candidates
-  std::vector<float> query_values;           ///< a column beside the queries
-  std::array<std::array<float, kGroupPoints>, kRows> results;
-  std::array<float*, kRows> rows;
+  /// The points of all leaves within `radius` of `part`, or within their own reach, in sorted
+  /// order. No longer valid after the next call.
+  [[nodiscard]] std::span<const simd::Run> near(const Block& part, float radius);
 
-  JoinSpace();
-  JoinSpace(const JoinSpace&) = delete;
-  JoinSpace& operator=(const JoinSpace&) = delete;
+  /// Points in all leaves found.
+  [[nodiscard]] std::size_t points() const { return points_; }
 
-  /// Makes the group's points the queries.
-  void ask_for(const CellGrid& grid, const Group& group);
+ private:
+  std::vector<float> lower_x_, lower_y_, lower_z_, upper_x_, upper_y_, upper_z_, squared_reach_;
+  std::vector<std::uint32_t> near_;
+  std::vector<simd::Run> leaves_;
+  std::vector<simd::Run> runs_;
+  std::size_t points_ = 0;
 };
 
-/// Calls body(group, space) for all groups, on every core when there are many.
+inline constexpr std::uint32_t kBlockPoints = 256;
+
+/// Calls body(block, surroundings) for all blocks, on every core when there are many.
 template <class Body>
-void for_each_group(const CellGrid& grid, const Body& body) {
-  const std::vector<Group> groups = make_groups(grid);
-  parallel_ranges(groups.size(), 64, [&](std::size_t begin, std::size_t end) {
-    JoinSpace space;
-    for (std::size_t g = begin; g < end; ++g) body(groups[g], space);
+void for_each_block(const CellGrid& grid, const Body& body) {
+  const std::vector<Block> blocks = make_blocks(grid, kBlockPoints);
+  parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
+    Surroundings surroundings;
+    for (std::size_t b = begin; b < end; ++b) body(blocks[b], surroundings);
+  });
+}
+
+/// Calls body(first, count, runs) for all points of a block, at most simd::kQueries at a time:
+/// every point within reach of points [first, first + count) is in `runs`.
+template <class Body>
+void for_each_part(const CellGrid& grid, const Reach& reach, const Block& block,
+                   Surroundings& surroundings, const Body& body) {
+  const auto largest = [&](const Block& part) {
+    if (reach.of_points.empty()) return 0.f;
+    const auto own = reach.of_points.subspan(part.begin, part.size());
+    return *std::max_element(own.begin(), own.end());
+  };
+  surroundings.find(grid, block, largest(block), reach.of_cells);
+  for (std::uint32_t first = block.begin; first < block.end; first += simd::kQueries) {
+    const std::uint32_t last = std::min<std::uint32_t>(first + simd::kQueries, block.end);
+    const Block part = make_block(grid, first, last);
+    body(first, last - first, surroundings.near(part, largest(part)));
+  }
+}
+
+/// The same for all points, on every core when there are many.
+template <class Body>
+void for_each_neighborhood(const CellGrid& grid, const Reach& reach, const Body& body) {
+  for_each_block(grid, [&](const Block& block, Surroundings& surroundings) {
+    for_each_part(grid, reach, block, surroundings, body);
   });
 }
 

@@ -12,8 +12,7 @@
 namespace palpate {
 namespace {
 
-using detail::Group;
-using detail::JoinSpace;
+using Moments = simd::Row[simd::kMoments];
 
 constexpr float kFewestPoints = 5;  // below: no confidence
 
@@ -23,11 +22,11 @@ struct Neighborhood {
 };
 
 // From sums about the point itself: small numbers, so float sums keep their digits.
-Neighborhood neighborhood_of(const JoinSpace& space, std::size_t query) {
-  const auto row = [&](std::size_t k) { return static_cast<double>(space.results[k][query]); };
+Neighborhood neighborhood_of(const Moments& moments, std::size_t query) {
+  const auto row = [&](std::size_t k) { return static_cast<double>(moments[k][query]); };
   const double n = row(0);
   const Eigen::Vector3d mean(row(1) / n, row(2) / n, row(3) / n);
-  return {space.results[0][query],
+  return {moments[0][query],
           {.xx = row(4) / n - mean.x() * mean.x(),
            .xy = row(5) / n - mean.x() * mean.y(),
            .xz = row(6) / n - mean.x() * mean.z(),
@@ -58,32 +57,6 @@ void write(const Neighborhood& neighborhood, std::size_t i, Normals& result) {
       n > 3 ? static_cast<float>(std::sqrt(std::max(0., fit.smallest) * n / (n - 3))) : 0;
 }
 
-// radius_of(i): the radius of point i, m.
-template <class RadiusOf>
-Normals estimate(const CellGrid& grid, const RadiusOf& radius_of) {
-  Normals result;
-  result.normals.resize(grid.size());
-  result.confidences.resize(grid.size());
-  result.residuals.resize(grid.size());
-  detail::for_each_group(grid, [&](const Group& group, JoinSpace& space) {
-    space.ask_for(grid, group);
-    space.query_values.clear();
-    float largest = 0;
-    for (const std::uint32_t i : space.queries.indices()) {
-      const float radius = radius_of(i);
-      largest = std::max(largest, radius);
-      space.query_values.push_back(radius * radius);
-    }
-    detail::gather(grid, group, largest, space.candidates);
-    simd::best_joins().moments(space.queries.coordinates(), space.query_values.data(),
-                               space.candidates.coordinates(), space.rows.data());
-    for (std::uint32_t q = 0; q < group.size(); ++q) {
-      write(neighborhood_of(space, q), group.begin + q, result);
-    }
-  });
-  return result;
-}
-
 void check_radius(float radius) {
   if (!(radius > 0) || !std::isfinite(radius)) {
     throw Error(fmt::format("normals: a radius of {} m; it must be positive and finite", radius));
@@ -94,7 +67,7 @@ void check_radius(float radius) {
 
 Normals estimate_normals(const CellGrid& grid, float radius) {
   check_radius(radius);
-  return estimate(grid, [radius](std::uint32_t) { return radius; });
+  return estimate_normals(grid, std::vector<float>(grid.size(), radius));
 }
 
 Normals estimate_normals(const CellGrid& grid, std::span<const float> radii) {
@@ -103,7 +76,23 @@ Normals estimate_normals(const CellGrid& grid, std::span<const float> radii) {
                             grid.size()));
   }
   for (const float radius : radii) check_radius(radius);
-  return estimate(grid, [radii](std::uint32_t i) { return radii[i]; });
+  Normals result;
+  result.normals.resize(grid.size());
+  result.confidences.resize(grid.size());
+  result.residuals.resize(grid.size());
+  const detail::Columns columns(grid);
+  std::vector<float> squared_radii = detail::make_column(grid.size());
+  std::transform(radii.begin(), radii.end(), squared_radii.begin(), [](float r) { return r * r; });
+  detail::for_each_neighborhood(
+      grid, {.of_points = radii, .of_cells = {}},
+      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+        Moments moments;
+        simd::best_joins().moments(columns.join(first, runs), squared_radii.data(), moments);
+        for (std::uint32_t q = 0; q < count; ++q) {
+          write(neighborhood_of(moments, q), first + q, result);
+        }
+      });
+  return result;
 }
 
 }  // namespace palpate

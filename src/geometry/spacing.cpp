@@ -14,82 +14,69 @@
 namespace palpate {
 namespace {
 
-using detail::Group;
-using detail::JoinSpace;
+using detail::Block;
+using detail::Surroundings;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kLargest = std::numeric_limits<float>::max();
-constexpr std::size_t kNearest = 8;           // others that a spacing is measured from
-constexpr float kSmoothing = 2.5f;            // spacings that it is averaged over
-constexpr float kMaxGrowth = 1.5f;            // of a spacing by averaging
-constexpr float kMaxRatio = 2;                // to the spacing around it
-constexpr float kMaxScale = 1e9f;             // of spacings in one neighbourhood
-constexpr std::size_t kMaxCandidates = 4096;  // more mean that a stray point looks at a surface
+constexpr std::size_t kNearest = 8;  // others that a spacing is measured from
+constexpr float kSmoothing = 2.5f;   // spacings that it is averaged over
+constexpr float kMaxGrowth = 1.5f;   // of a spacing by averaging
+constexpr float kMaxRatio = 2;       // to the spacing around it
+constexpr float kMaxScale = 1e9f;    // of spacings in one neighbourhood
+constexpr float kStray = 8;          // times the spacing of its block: a stray point
 
-using Nearest = void (*)(const simd::Coordinates&, const simd::Coordinates&, float* const*);
+using Nearest = void (*)(const simd::Join&, simd::Row*);
 
-// A first guess of the spacing in a group, from its extent.
-float guess_spacing(const Group& group) {
-  const Eigen::Vector3f extent = group.upper - group.lower;
+// A first guess of the spacing in a block, from its extent.
+float guess_spacing(const Block& block) {
+  const Eigen::Vector3f extent = block.upper - block.lower;
   const float longest = extent.maxCoeff();
   const float middle = extent.sum() - longest - extent.minCoeff();
-  const auto count = static_cast<float>(group.size());
+  const auto count = static_cast<float>(block.size());
   return std::max(std::sqrt(longest * middle / count), longest / count);
 }
 
-// Hands out the queries whose nearest are certain; the others, whose last slot may belong to a
-// point outside the radius, stay as queries.
-template <class Result>
-void settle(const CellGrid& grid, std::size_t slots, float squared_radius, JoinSpace& space,
-            const Result& result) {
-  std::array<std::uint32_t, detail::kGroupPoints> open;
-  std::size_t count = 0;
-  const std::span<const std::uint32_t> asked = space.queries.indices();
-  for (std::size_t q = 0; q < asked.size(); ++q) {
-    if (q > 0 && asked[q] == asked[q - 1]) break;  // padding
-    if (space.results[slots - 1][q] <= squared_radius) {
-      result(asked[q], q);
-    } else {
-      open[count++] = asked[q];
-    }
-  }
-  space.queries.clear();
-  for (std::size_t k = 0; k < count; ++k) space.queries.push_back(open[k], grid.points()[open[k]]);
-  if (count > 0) space.queries.pad();
-}
-
-// Finds the `slots` nearest of each point of the group and calls result(point, query) with their
-// squared distances in space.results[0 ... slots - 1][query].
-template <class Result>
-void find_nearest(const CellGrid& grid, const Group& group, Nearest nearest, std::size_t slots,
-                  JoinSpace& space, const Result& result) {
+// For every point its kSlots nearest: calls result(point, query, rows) with their squared distances
+// in rows[0 ... kSlots - 1][query].
+template <std::size_t kSlots, class Result>
+void find_nearest(const CellGrid& grid, Nearest nearest, const Result& result) {
+  const detail::Columns columns(grid);
   const float extent = (grid.cells()[0].upper - grid.cells()[0].lower).maxCoeff();
-  float radius = guess_spacing(group) * std::sqrt(static_cast<float>(slots));
-  space.ask_for(grid, group);
-  while (space.queries.size() > 0) {
-    detail::gather(grid, group, radius, space.candidates);
-    nearest(space.queries.coordinates(), space.candidates.coordinates(), space.rows.data());
-    const bool all = space.candidates.size() == grid.size();
-    settle(grid, slots, all ? kInfinity : radius * radius, space, result);
-    radius = std::max(1.6f * radius, 1e-6f * extent);
-  }
+  detail::for_each_block(grid, [&](const Block& block, Surroundings& surroundings) {
+    const float start = std::sqrt(static_cast<float>(kSlots)) * guess_spacing(block);
+    float around = start;
+    surroundings.find(grid, block, around);
+    for (std::uint32_t first = block.begin; first < block.end; first += simd::kQueries) {
+      const Block part = detail::make_block(
+          grid, first, std::min<std::uint32_t>(first + simd::kQueries, block.end));
+      simd::Row rows[kSlots];
+      for (float radius = start;; radius = std::max(1.6f * radius, 1e-6f * extent)) {
+        if (radius > around) surroundings.find(grid, block, around = radius);
+        const auto runs = surroundings.near(part, radius);
+        nearest(columns.join(first, runs), rows);
+        // All closer than any point that was not looked at?
+        const float* last = rows[kSlots - 1];
+        if (*std::max_element(last, last + part.size()) <= radius * radius) break;
+        if (runs.size() == 1 && runs[0].end - runs[0].begin == grid.size()) break;
+      }
+      for (std::uint32_t q = 0; q < part.size(); ++q) result(first + q, q, rows);
+    }
+  });
 }
 
 // The mean distance of each point to its three nearest others.
 std::vector<float> mean_distances_to_three(const CellGrid& grid) {
   std::vector<float> means(grid.size());
   const auto others = static_cast<float>(std::min<std::size_t>(3, grid.size() - 1));
-  detail::for_each_group(grid, [&](const Group& group, JoinSpace& space) {
-    find_nearest(grid, group, simd::best_joins().nearest4, 4, space,
-                 [&](std::uint32_t point, std::size_t query) {
-                   float sum = 0;  // slot 0 is the point itself, or another at its place
-                   for (std::size_t k = 1; k < 4; ++k) {
-                     const float d = space.results[k][query];
-                     if (d < kInfinity) sum += std::sqrt(d);
-                   }
-                   means[point] = sum / others;
-                 });
-  });
+  find_nearest<4>(grid, simd::best_joins().nearest4,
+                  [&](std::uint32_t point, std::uint32_t query, const simd::Row* rows) {
+                    float sum = 0;  // row 0 is the point itself, or another at its place
+                    for (std::size_t k = 1; k < 4; ++k) {
+                      if (rows[k][query] < kInfinity) sum += std::sqrt(rows[k][query]);
+                    }
+                    means[point] = sum / others;
+                  });
   return means;
 }
 
@@ -109,12 +96,12 @@ std::vector<float> mean_distances(const CellGrid& grid, std::size_t k) {
 
 // On a uniform plane the mean of k r^2's is (k + 1) / (2 pi) of the area per point; the factor
 // makes a square grid exact (its eight nearest: four at s, four at sqrt(2) s).
-float spacing_from(const JoinSpace& space, std::size_t query) {
+float spacing_from(const simd::Row* rows, std::uint32_t query) {
   float sum = 0;
   float count = 0;
   for (std::size_t k = 0; k < kNearest; ++k) {
-    if (!(space.results[k][query] < kInfinity)) break;
-    sum += space.results[k][query];
+    if (!(rows[k][query] < kInfinity)) break;
+    sum += rows[k][query];
     ++count;
   }
   return count > 0 ? std::sqrt(6 * sum / (count * (count + 1))) : 0;
@@ -122,71 +109,78 @@ float spacing_from(const JoinSpace& space, std::size_t query) {
 
 std::vector<float> raw_spacings(const CellGrid& grid) {
   std::vector<float> spacings(grid.size());
-  detail::for_each_group(grid, [&](const Group& group, JoinSpace& space) {
-    find_nearest(grid, group, simd::best_joins().nearest8_apart, kNearest, space,
-                 [&](std::uint32_t point, std::size_t query) {
-                   const float s = spacing_from(space, query);
-                   spacings[point] = s > 0 ? s : static_cast<float>(kLoneSpacing);
-                 });
-  });
+  find_nearest<kNearest>(grid, simd::best_joins().nearest8_apart,
+                         [&](std::uint32_t point, std::uint32_t query, const simd::Row* rows) {
+                           const float s = spacing_from(rows, query);
+                           spacings[point] = s > 0 ? s : static_cast<float>(kLoneSpacing);
+                         });
   return spacings;
 }
 
-// own: the point's spacing; area and volume: sums of w s^2 and w s^3 over its neighbours.
+// own: the point's spacing; area, volume: sums of w s^2 and w s^3 over its neighbours.
 float smoothed(float own, float area, float volume) {
   if (!(area > 0)) return own;
-  const float among_others = volume / area;
   const float mean = (volume + own * own * own) / (area + own * own);
-  return std::min({mean, kMaxGrowth * own, kMaxRatio * among_others});
+  return std::min({mean, kMaxGrowth * own, kMaxRatio * volume / area});
 }
 
-// For a group whose neighbourhoods hold too many points: each point with its nearest alone.
-void smooth_one_by_one(const CellGrid& grid, const Group& group, std::span<const float> spacings,
-                       std::span<float> result) {
+// With its nearest alone. Spacings in units that keep cubes in float's range.
+float smoothed_alone(const CellGrid& grid, std::span<const float> spacings, std::uint32_t i) {
   std::vector<CellGrid::Neighbor> found;
-  for (std::uint32_t i = group.begin; i < group.end; ++i) {
-    grid.nearest(grid.points()[i], kNearest + 1, found);
-    float area = 0;
-    float volume = 0;
-    for (const CellGrid::Neighbor& neighbor : found) {
-      if (neighbor.squared_distance == 0) continue;
-      const float s = std::min(spacings[neighbor.index] / spacings[i], kMaxScale);
-      area += s * s;
-      volume += s * s * s;
-    }
-    result[i] = spacings[i] * smoothed(1, area, volume);
+  grid.nearest(grid.points()[i], kNearest + 1, found);
+  float area = 0;
+  float volume = 0;
+  for (const CellGrid::Neighbor& neighbor : found) {
+    if (neighbor.squared_distance == 0) continue;
+    const float s = spacings[neighbor.index];
+    area += s * s;
+    volume += s * s * s;
   }
+  return smoothed(spacings[i], area, volume);
 }
 
-void smooth_group(const CellGrid& grid, const Group& group, std::span<const float> spacings,
-                  JoinSpace& space, std::span<float> result) {
-  const auto own = spacings.subspan(group.begin, group.size());
-  const auto [smallest, largest] = std::minmax_element(own.begin(), own.end());
-  if (!detail::gather(grid, group, kSmoothing * *largest, space.candidates, kMaxCandidates)) {
-    smooth_one_by_one(grid, group, spacings, result);
-    return;
+// Within how much of its surroundings each point is averaged, m; 0 for stray points, whose
+// surroundings at their scale may hold a whole surface.
+std::vector<float> smoothing_radii(const CellGrid& grid, std::span<const float> spacings) {
+  std::vector<float> radii(grid.size());
+  detail::for_each_block(grid, [&](const Block& block, Surroundings&) {
+    const auto own = spacings.subspan(block.begin, block.size());
+    const auto stray = kStray * static_cast<float>(median({own.begin(), own.end()}));
+    for (std::uint32_t i = block.begin; i < block.end; ++i) {
+      radii[i] = spacings[i] > stray ? 0 : kSmoothing * spacings[i];
+    }
+  });
+  return radii;
+}
+
+std::vector<float> smooth(const CellGrid& grid, std::span<const float> spacings) {
+  const detail::Columns columns(grid);
+  const std::vector<float> radii = smoothing_radii(grid, spacings);
+  const auto unit = static_cast<float>(median({spacings.begin(), spacings.end()}));
+  std::vector<float> scaled = detail::make_column(grid.size());
+  std::vector<float> inverse = scaled;
+  std::vector<float> squares = scaled;
+  std::vector<float> cubes = scaled;
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const float s = scaled[i] = std::clamp(spacings[i] / unit, 1 / kMaxScale, kMaxScale);
+    inverse[i] = radii[i] > 0 ? std::min(1 / (radii[i] * radii[i]), kLargest) : kLargest;
+    squares[i] = s * s;
+    cubes[i] = s * s * s;
   }
-  const float scale = *smallest;  // keeps cubes within float's range
-  space.ask_for(grid, group);
-  space.query_values.clear();
-  for (const std::uint32_t i : space.queries.indices()) {
-    const float reach = kSmoothing * spacings[i];
-    space.query_values.push_back(std::min(1 / (reach * reach), kLargest));
-  }
-  for (auto& column : space.values) column.clear();
-  for (const std::uint32_t i : space.candidates.indices()) {
-    const float s = std::min(spacings[i] / scale, kMaxScale);
-    space.values[0].push_back(s * s);
-    space.values[1].push_back(s * s * s);
-  }
-  const std::array<const float*, 2> columns{space.values[0].data(), space.values[1].data()};
-  simd::best_joins().wyvill_means(space.queries.coordinates(), space.query_values.data(),
-                                  space.candidates.coordinates(), columns.data(),
-                                  space.rows.data());
-  for (std::uint32_t q = 0; q < group.size(); ++q) {
-    result[group.begin + q] = scale * smoothed(std::min(own[q] / scale, kMaxScale),
-                                               space.results[0][q], space.results[1][q]);
-  }
+  std::vector<float> result(grid.size());
+  detail::for_each_neighborhood(
+      grid, {.of_points = radii, .of_cells = {}},
+      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+        simd::Row sums[2];
+        simd::best_joins().wyvill_pairs(columns.join(first, runs), inverse.data(), squares.data(),
+                                        cubes.data(), sums);
+        for (std::uint32_t q = 0; q < count; ++q) {
+          const std::uint32_t i = first + q;
+          result[i] = unit * (radii[i] > 0 ? smoothed(scaled[i], sums[0][q], sums[1][q])
+                                           : smoothed_alone(grid, scaled, i));
+        }
+      });
+  return result;
 }
 
 }  // namespace
@@ -202,12 +196,8 @@ double mean_spacing(const CellGrid& grid, int k) {
 }
 
 std::vector<float> local_spacings(const CellGrid& grid) {
-  const std::vector<float> raw = raw_spacings(grid);
-  std::vector<float> spacings(raw.size());
-  detail::for_each_group(grid, [&](const Group& group, JoinSpace& space) {
-    smooth_group(grid, group, raw, space, spacings);
-  });
-  return spacings;
+  if (grid.size() == 0) return {};
+  return smooth(grid, raw_spacings(grid));
 }
 
 double median(std::vector<float> values) {

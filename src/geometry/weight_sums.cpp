@@ -27,23 +27,30 @@ void check(const CellGrid& grid, std::span<const float> radii) {
   }
 }
 
-// For each point i the sum of w_ij values_j over all points j; no values: of w_ij.
-std::vector<float> sums_of(const CellGrid& grid, std::span<const float> radii,
-                           std::span<const float> cell_reach, WeightSum sum,
-                           std::span<const float> values) {
-  std::vector<float> sums(grid.size());
-  for_each_group(grid, [&](const Group& group, JoinSpace& space) {
-    space.ask_for(grid, group);
-    gather_reaching(grid, group, radii, cell_reach, space.candidates);
-    for (auto& column : space.values) column.clear();
-    for (const std::uint32_t j : space.candidates.indices()) {
-      space.values[0].push_back(std::min(1 / (radii[j] * radii[j]), kLargest));
-      space.values[1].push_back(values.empty() ? 1 : values[j]);
-    }
-    sum(space.queries.coordinates(), space.candidates.coordinates(), space.values[0].data(),
-        space.values[1].data(), space.rows[0]);
-    std::copy_n(space.rows[0], group.size(), sums.begin() + group.begin);
-  });
+struct Input {
+  const CellGrid& grid;
+  Columns columns;
+  std::vector<float> inverse;     // 1 / R_i^2
+  std::vector<float> cell_reach;  // m
+};
+
+Input make_input(const CellGrid& grid, std::span<const float> radii) {
+  Input input{grid, Columns(grid), make_column(grid.size()), largest_in_cells(grid, radii)};
+  std::transform(radii.begin(), radii.end(), input.inverse.begin(),
+                 [](float radius) { return std::min(1 / (radius * radius), kLargest); });
+  return input;
+}
+
+// For each point i the sum of w_ij values_j over all points j.
+std::vector<float> sums_of(const Input& input, WeightSum sum, std::span<const float> values) {
+  std::vector<float> sums(input.grid.size());
+  for_each_neighborhood(
+      input.grid, {.of_points = {}, .of_cells = input.cell_reach},
+      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+        simd::Row row;
+        sum(input.columns.join(first, runs), input.inverse.data(), values.data(), &row);
+        std::copy_n(row, count, sums.begin() + first);
+      });
   return sums;
 }
 
@@ -51,10 +58,10 @@ std::vector<float> sums_of(const CellGrid& grid, std::span<const float> radii,
 
 WeightSums weight_sums(const CellGrid& grid, std::span<const float> radii, WeightSum sum) {
   check(grid, radii);
-  const std::vector<float> cell_reach = largest_in_cells(grid, radii);
+  const Input input = make_input(grid, radii);
   WeightSums sums;
-  sums.own = sums_of(grid, radii, cell_reach, sum, {});
-  sums.around = sums_of(grid, radii, cell_reach, sum, sums.own);
+  sums.own = sums_of(input, sum, std::vector<float>(grid.size(), 1.f));
+  sums.around = sums_of(input, sum, sums.own);
   for (std::size_t i = 0; i < sums.own.size(); ++i) sums.around[i] /= sums.own[i];
   return sums;
 }

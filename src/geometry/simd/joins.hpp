@@ -5,49 +5,55 @@
 
 namespace palpate::simd {
 
-/// Sums over neighbourhoods, for many query points at a time against one list of candidates.
+/// Sums over neighbourhoods, for eight points at a time.
 ///
-/// Lanes are queries and candidates come one by one in the order given, so that a sum's rounding
-/// depends neither on the number of lanes nor on the instruction set. Plain pointers alone cross
-/// this border: code for newer processors must not leak into what older ones run.
+/// Lanes are the eight points asked about; candidates come one by one, in rising order, so that a
+/// sum's rounding depends neither on the number of lanes nor on the instruction set. Plain pointers
+/// alone cross this border: code for newer processors must not leak into what older ones run.
 
-/// Arrays of queries hold a multiple of this many entries.
-inline constexpr std::size_t kQueryStep = 8;
+/// Points asked about at a time. Columns have this many entries more than there are points.
+inline constexpr std::size_t kQueries = 8;
 
-/// Coordinates, m.
-struct Coordinates {
-  const float* x;
-  const float* y;
-  const float* z;
-  std::size_t count;
+/// Points [begin, end).
+struct Run {
+  std::uint32_t begin;
+  std::uint32_t end;
 };
 
-/// Rows of moments(): number of neighbours, then the sums of d, dd' (upper triangle, row by row)
-/// over them, d = neighbour - query.
+/// The points [query, query + kQueries) and the runs of points that may be near one of them.
+struct Join {
+  const float* x;  ///< columns of all points, m
+  const float* y;
+  const float* z;
+  std::size_t query;
+  const Run* runs;
+  std::size_t run_count;
+};
+
+/// A result for each of the points asked about.
+using Row = float[kQueries];
+
+/// Rows of moments(): number of neighbours, then the sums of d and of dd' (upper triangle, row by
+/// row) over them, d = neighbour - query.
 inline constexpr std::size_t kMoments = 10;
 
 struct JoinFunctions {
-  /// rows[k][query]: the moments of all candidates within squared_radii[query].
-  void (*moments)(const Coordinates& queries, const float* squared_radii,
-                  const Coordinates& candidates, float* const* rows);
+  /// The moments of all candidates within squared_radii[query].
+  void (*moments)(const Join& join, const float* squared_radii, Row* rows);
 
-  /// rows[k][query]: the four (eight) smallest squared distances, rising; infinity where there are
-  /// fewer candidates. nearest8_apart passes over candidates at distance zero.
-  void (*nearest4)(const Coordinates& queries, const Coordinates& candidates, float* const* rows);
-  void (*nearest8_apart)(const Coordinates& queries, const Coordinates& candidates,
-                         float* const* rows);
+  /// The four (eight) smallest squared distances, rising; infinity where there are fewer
+  /// candidates. The second passes over candidates at distance zero.
+  void (*nearest4)(const Join& join, Row* rows);
+  void (*nearest8_apart)(const Join& join, Row* rows);
 
-  /// sums[query] = sum of w(|d| / R) * values[candidate], R = 1 / sqrt(inverse[candidate]).
-  void (*wyvill_sums)(const Coordinates& queries, const Coordinates& candidates,
-                      const float* inverse, const float* values, float* sums);
-  void (*wendland_sums)(const Coordinates& queries, const Coordinates& candidates,
-                        const float* inverse, const float* values, float* sums);
+  /// The sum of w(|d| / R) * values[candidate], R = 1 / sqrt(inverse[candidate]).
+  void (*wyvill_sums)(const Join& join, const float* inverse, const float* values, Row* sum);
+  void (*wendland_sums)(const Join& join, const float* inverse, const float* values, Row* sum);
 
   /// The same for two columns of values, with the R of the query: 1 / sqrt(inverse[query]), passing
   /// over candidates at distance zero.
-  void (*wyvill_means)(const Coordinates& queries, const float* inverse,
-                       const Coordinates& candidates, const float* const* values,
-                       float* const* sums);
+  void (*wyvill_pairs)(const Join& join, const float* inverse, const float* first,
+                       const float* second, Row* sums);
 };
 
 extern const JoinFunctions kJoinsBaseline;

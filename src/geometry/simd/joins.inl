@@ -1,4 +1,5 @@
 // The body of both copies of the joins. Everything in it has internal linkage.
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -10,7 +11,7 @@ namespace {
 
 template <std::size_t kLanes>
 struct Joins {
-  static_assert(kQueryStep % kLanes == 0);
+  static_assert(kQueries % kLanes == 0);
   typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
   typedef std::int32_t Mask __attribute__((vector_size(kLanes * sizeof(float))));
 
@@ -21,34 +22,35 @@ struct Joins {
   }
   static inline void store(float* to, const Floats& v) { std::memcpy(to, &v, sizeof v); }
   static inline Floats keep(const Mask& mask, const Floats& v) { return (Floats)(mask & (Mask)v); }
-  static inline Floats less(const Floats& a, const Floats& b) { return a < b ? a : b; }
-  static inline Floats more(const Floats& a, const Floats& b) { return a < b ? b : a; }
 
-  struct Offsets {
+  static inline Mask same(std::int32_t value) { return value - Mask{}; }
+
+  struct Offset {
     Floats x, y, z;
     Floats squared() const { return x * x + y * y + z * z; }
   };
 
-  struct Queries {
-    Floats x, y, z;
-    Queries(const Coordinates& from, std::size_t q)
-        : x(load(from.x + q)), y(load(from.y + q)), z(load(from.z + q)) {}
-    Offsets to(const Coordinates& candidates, std::size_t c) const {
-      return {candidates.x[c] - x, candidates.y[c] - y, candidates.z[c] - z};
+  // Calls visit(offset, candidate) for all candidates, offsets from the queries [query, + kLanes).
+  template <class Visit>
+  static inline void each(const Join& join, std::size_t query, const Visit& visit) {
+    const Floats x = load(join.x + query);
+    const Floats y = load(join.y + query);
+    const Floats z = load(join.z + query);
+    for (std::size_t r = 0; r < join.run_count; ++r) {
+      for (std::size_t c = join.runs[r].begin; c < join.runs[r].end; ++c) {
+        visit(Offset{join.x[c] - x, join.y[c] - y, join.z[c] - z}, c);
+      }
     }
-  };
+  }
 
-  static void moments(const Coordinates& queries, const float* squared_radii,
-                      const Coordinates& candidates, float* const* rows) {
-    for (std::size_t q = 0; q < queries.count; q += kLanes) {
-      const Queries from(queries, q);
-      const Floats squared_radius = load(squared_radii + q);
+  static void moments(const Join& join, const float* squared_radii, Row* rows) {
+    for (std::size_t q = 0; q < kQueries; q += kLanes) {
+      const Floats squared_radius = load(squared_radii + join.query + q);
       const Floats one = Floats{} + 1.f;
       Floats n{}, x{}, y{}, z{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
-      for (std::size_t c = 0; c < candidates.count; ++c) {
-        Offsets d = from.to(candidates, c);
-        const Mask near = d.squared() <= squared_radius;
-        d = {keep(near, d.x), keep(near, d.y), keep(near, d.z)};
+      each(join, join.query + q, [&](const Offset& offset, std::size_t) {
+        const Mask near = offset.squared() <= squared_radius;
+        const Offset d{keep(near, offset.x), keep(near, offset.y), keep(near, offset.z)};
         n += keep(near, one);
         x += d.x;
         y += d.y;
@@ -59,30 +61,30 @@ struct Joins {
         yy += d.y * d.y;
         yz += d.y * d.z;
         zz += d.z * d.z;
-      }
+      });
       const Floats sums[kMoments] = {n, x, y, z, xx, xy, xz, yy, yz, zz};
       for (std::size_t k = 0; k < kMoments; ++k) store(rows[k] + q, sums[k]);
     }
   }
 
+  // Squared distances are never negative: as bit patterns they have the same order, and integers
+  // have a minimum and a maximum in one instruction each.
   template <std::size_t kSlots, bool kApart>
-  static void nearest(const Coordinates& queries, const Coordinates& candidates,
-                      float* const* rows) {
-    const Floats infinite = Floats{} + std::numeric_limits<float>::infinity();
-    for (std::size_t q = 0; q < queries.count; q += kLanes) {
-      const Queries from(queries, q);
-      Floats slots[kSlots];
-      for (Floats& slot : slots) slot = infinite;
-      for (std::size_t c = 0; c < candidates.count; ++c) {
-        Floats d = from.to(candidates, c).squared();
+  static void nearest(const Join& join, Row* rows) {
+    const Mask infinite = same(std::bit_cast<std::int32_t>(std::numeric_limits<float>::infinity()));
+    for (std::size_t q = 0; q < kQueries; q += kLanes) {
+      Mask slots[kSlots];
+      for (Mask& slot : slots) slot = infinite;
+      each(join, join.query + q, [&](const Offset& offset, std::size_t) {
+        Mask d = (Mask)offset.squared();
         if constexpr (kApart) d = d > 0 ? d : infinite;
-        for (Floats& slot : slots) {
-          const Floats lower = less(d, slot);
-          d = more(d, slot);
+        for (Mask& slot : slots) {
+          const Mask lower = d < slot ? d : slot;
+          d = d < slot ? slot : d;
           slot = lower;
         }
-      }
-      for (std::size_t k = 0; k < kSlots; ++k) store(rows[k] + q, slots[k]);
+      });
+      for (std::size_t k = 0; k < kSlots; ++k) store(rows[k] + q, (Floats)slots[k]);
     }
   }
 
@@ -104,38 +106,35 @@ struct Joins {
   };
 
   template <class Kernel>
-  static void sums(const Coordinates& queries, const Coordinates& candidates, const float* inverse,
-                   const float* values, float* sums) {
-    for (std::size_t q = 0; q < queries.count; q += kLanes) {
-      const Queries from(queries, q);
-      Floats sum{};
-      for (std::size_t c = 0; c < candidates.count; ++c) {
-        sum += Kernel::weight(from.to(candidates, c).squared() * inverse[c]) * values[c];
-      }
-      store(sums + q, sum);
+  static void sums(const Join& join, const float* inverse, const float* values, Row* sum) {
+    for (std::size_t q = 0; q < kQueries; q += kLanes) {
+      Floats total{};
+      each(join, join.query + q, [&](const Offset& offset, std::size_t c) {
+        total += Kernel::weight(offset.squared() * inverse[c]) * values[c];
+      });
+      store(*sum + q, total);
     }
   }
 
-  static void means(const Coordinates& queries, const float* inverse, const Coordinates& candidates,
-                    const float* const* values, float* const* sums) {
-    for (std::size_t q = 0; q < queries.count; q += kLanes) {
-      const Queries from(queries, q);
-      const Floats scale = load(inverse + q);
-      Floats first{}, second{};
-      for (std::size_t c = 0; c < candidates.count; ++c) {
-        const Floats r2 = from.to(candidates, c).squared() * scale;
+  static void pairs(const Join& join, const float* inverse, const float* first, const float* second,
+                    Row* sums) {
+    for (std::size_t q = 0; q < kQueries; q += kLanes) {
+      const Floats scale = load(inverse + join.query + q);
+      Floats a{}, b{};
+      each(join, join.query + q, [&](const Offset& offset, std::size_t c) {
+        const Floats r2 = offset.squared() * scale;
         const Floats w = keep(r2 > 0.f, Wyvill::weight(r2));
-        first += w * values[0][c];
-        second += w * values[1][c];
-      }
-      store(sums[0] + q, first);
-      store(sums[1] + q, second);
+        a += w * first[c];
+        b += w * second[c];
+      });
+      store(sums[0] + q, a);
+      store(sums[1] + q, b);
     }
   }
 
   static constexpr JoinFunctions functions() {
     return {&moments,      &nearest<4, false>, &nearest<8, true>,
-            &sums<Wyvill>, &sums<Wendland>,    &means};
+            &sums<Wyvill>, &sums<Wendland>,    &pairs};
   }
 };
 
