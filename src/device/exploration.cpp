@@ -21,10 +21,11 @@ using Eigen::Vector3d;
 constexpr double kClearance = 3;  // R above the felt surface where the hand moves freely
 constexpr double kStep = 0.25;    // R from one place of a stroke to the next
 constexpr double kStroke = 0.6;   // longest stroke, of the region's extent
-constexpr double kLongest = 2.0;  // s that one stroke may take
+constexpr double kLongest = 1.2;  // s that one stroke may take
 constexpr double kDwell = 0.1;    // s at rest before and after a stroke
 constexpr double kRamp = 0.2;     // share of a move spent speeding up, and slowing down
 constexpr int kCandidates = 24;   // places looked at for the beginning of a stroke
+constexpr int kTries = 4;         // of strokes to which no free way leads
 constexpr int kDirections = 4;    // directions tried there
 
 // Share of a move's way that is done after share u of its time: speed rises and falls as a cosine.
@@ -93,19 +94,33 @@ class Explorer {
     while (!player_.over()) {
       touch(stroke);
       const MapSample last = stroke.back();
-      stroke = next_stroke();
-      player_.move(route(last, stroke.front()), options_.travel_speed);
+      Route way;
+      for (int i = 0; i < kTries && !way.clear; ++i) {
+        stroke = next_stroke();
+        way = route(last, stroke.front());
+      }
+      player_.move(way.places, options_.travel_speed);
     }
     return player_.take();
   }
 
  private:
+  struct Route {
+    std::vector<Vector3d> places;
+    bool clear = false;
+  };
+
   [[nodiscard]] double clearance() const { return options_.offset + kClearance * options_.radius; }
   [[nodiscard]] Vector3d above(const MapSample& s) const {
     return s.position + clearance() * s.normal;
   }
   [[nodiscard]] Vector3d under(const MapSample& s, double depth) const {
     return s.position + (options_.offset - depth) * s.normal;
+  }
+
+  // Can the hand leave the surface here without meeting it again?
+  [[nodiscard]] bool open(const MapSample& s) const {
+    return map_.distance(above(s)) > 0.8 * kClearance * options_.radius;
   }
 
   // Down along the normal, along the stroke with the depth going up and down, and off again.
@@ -144,7 +159,7 @@ class Explorer {
     for (int i = 0; i < kCandidates || (farthest < 0 && i < 50 * kCandidates); ++i) {
       const auto k = static_cast<std::size_t>(random_.uniform() * static_cast<double>(map_.size()));
       const MapSample sample = map_.at(map_.point(k));
-      if (sample.normal.isZero()) continue;
+      if (sample.normal.isZero() || (i < kCandidates && !open(sample))) continue;
       double distance = touched_.empty() ? 1e9 - (sample.position - map_.center()).norm() : 1e9;
       for (const Vector3d& p : touched_)
         distance = std::min(distance, (p - sample.position).norm());
@@ -158,7 +173,8 @@ class Explorer {
     return {map_.point(0), Vector3d::UnitZ()};
   }
 
-  // Along the surface until its points end or the stroke is long enough.
+  // Along the surface until its points end or the stroke is long enough, and back to a place where
+  // the hand can leave.
   [[nodiscard]] std::vector<MapSample> follow(const MapSample& start, Vector3d direction) const {
     const double step = kStep * options_.radius;
     const double longest = std::min(kStroke * map_.extent(), kLongest * options_.slide_speed);
@@ -173,29 +189,38 @@ class Explorer {
       if (direction.norm() < 1e-3) break;
       direction.normalize();
     }
+    while (way.size() > 1 && !open(way.back())) way.pop_back();
     return way;
   }
 
   // Through free space from over one place to over another: the flattest arc that touches nothing.
-  [[nodiscard]] std::vector<Vector3d> route(const MapSample& from, const MapSample& to) const {
-    constexpr int kPieces = 32;
+  [[nodiscard]] Route route(const MapSample& from, const MapSample& to) const {
     const Vector3d a = above(from);
     const Vector3d b = above(to);
     Vector3d up = from.normal + to.normal;
     if (up.norm() < 0.3) up = 0.5 * (a + b) - map_.center();
     if (up.norm() < 1e-9) up = from.normal.unitOrthogonal();
     up.normalize();
-    std::vector<Vector3d> way;
+    Route way;
     for (const double lift : {0.0, 0.25, 0.5, 1.0, 2.0}) {
-      const Vector3d middle = 0.5 * (a + b) + lift * std::max((b - a).norm(), 4 * clearance()) * up;
-      way.clear();
-      bool clear = true;
-      for (int i = 0; i <= kPieces; ++i) {
-        const double u = static_cast<double>(i) / kPieces;
-        way.push_back((1 - u) * (1 - u) * a + 2 * u * (1 - u) * middle + u * u * b);
-        clear = clear && map_.distance(way.back()) > 0.5 * clearance();
-      }
-      if (clear) break;
+      const double height = lift * std::max((b - a).norm(), 4 * clearance());
+      way = arc(a, 0.5 * (a + b) + height * up, b);
+      if (way.clear) break;
+    }
+    return way;
+  }
+
+  // From a to b, drawn towards `middle`.
+  [[nodiscard]] Route arc(const Vector3d& a, const Vector3d& middle, const Vector3d& b) const {
+    const double length = (middle - a).norm() + (b - middle).norm();
+    const double piece = 0.5 * kClearance * options_.radius;
+    const int pieces = static_cast<int>(std::clamp(length / piece, 16.0, 200.0));
+    Route way;
+    way.clear = true;
+    for (int i = 0; i <= pieces; ++i) {
+      const double u = static_cast<double>(i) / pieces;
+      way.places.push_back((1 - u) * (1 - u) * a + 2 * u * (1 - u) * middle + u * u * b);
+      way.clear = way.clear && map_.distance(way.places.back()) > piece;
     }
     return way;
   }

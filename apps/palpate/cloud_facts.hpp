@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "palpate/geometry/box.hpp"
+#include "palpate/io/read_cloud.hpp"
+#include "palpate/scene/prepare.hpp"
+
+namespace palpate::app {
+
+/// What the units of a file probably are, and why.
+struct UnitsGuess {
+  std::string units;
+  std::string reason;
+  std::string advice;  ///< empty: nothing to do
+};
+
+/// Guesses from coordinates as read, in what is taken for metres.
+[[nodiscard]] UnitsGuess guess_units(const Box& bounds, const std::string& format);
+
+/// How far points are from one another, m; medians over a sample that is spread over the cloud.
+struct SpacingFacts {
+  double nearest_three = 0;  ///< mean distance to the three nearest others
+  double from_area = 0;      ///< side of the square that a point has to itself
+  double tenth = 0;          ///< a tenth of the points have a smaller one from area ...
+  double nine_tenths = 0;    ///< ... and a tenth a larger one
+};
+
+[[nodiscard]] SpacingFacts measure_spacing(const CellGrid& grid);
+
+/// Share of points, 0-1, at a rim: a border of the cloud or of a hole in it. A point is at a rim if
+/// the mean of its neighbours within R lies more than R / 4 away from it: 0 inside an even surface,
+/// 0.42 R at a straight border.
+[[nodiscard]] double rim_share(const SurfacePoints& points);
+
+/// The tight box of all points, m.
+[[nodiscard]] Box bounds_of(const PointCloud& cloud);
+
+}  // namespace palpate::app

@@ -1,0 +1,130 @@
+#include "apps/palpate/exploration_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "apps/palpate/touch_surface.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/device/exploration.hpp"
+#include "palpate/geometry/box.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr double kReach = 0.3;       // m that a hand on a desk explores without magnification
+constexpr double kPatch = 60;        // R: largest patch, so that strokes meet new surface
+constexpr double kDepth = 0.75;      // R under the surface
+constexpr double kLargestForce = 4;  // N
+constexpr double kStiffest = 2000;   // N/m that the simulated hand holds without humming
+
+// All sources' points, relative to one origin. A single source's are not copied: it may be large.
+struct Union {
+  std::vector<std::shared_ptr<const SurfacePoints>> sources;
+  Vector3d origin = Vector3d::Zero();
+  std::vector<Vector3f> points;
+  std::vector<Vector3f> normals;
+  Box box;
+  double radius = 0;  // of the source with most points
+
+  [[nodiscard]] ExploredSurface view() const {
+    if (sources.size() > 1) return {origin, points, normals};
+    return {origin, sources.front()->grid.points(), sources.front()->normals};
+  }
+};
+
+void append(Union& all, const SurfacePoints& source) {
+  const Vector3f shift = (source.origin - all.origin).cast<float>();
+  for (const Vector3f& p : source.grid.points()) all.points.push_back(p + shift);
+  if (source.normals.empty()) {
+    all.normals.resize(all.points.size(), Vector3f::Zero());
+  } else {
+    all.normals.insert(all.normals.end(), source.normals.begin(), source.normals.end());
+  }
+}
+
+Union unite(const Scene& scene) {
+  Union all;
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const std::shared_ptr<const SurfacePoints> source = scene.source(i).points();
+    if (!source || source->size() == 0) continue;
+    if (all.sources.empty()) all.origin = source->origin;
+    all.sources.push_back(source);
+    const CellGrid::Cell& root = source->grid.cells().front();
+    const Vector3d shift = source->origin - all.origin;
+    all.box.extend(root.lower.cast<double>() + shift);
+    all.box.extend(root.upper.cast<double>() + shift);
+    if (source->size() > most) all.radius = source->radius;
+    most = std::max(most, source->size());
+  }
+  if (all.sources.empty()) throw Error("there is nothing to explore: no cloud has a point");
+  if (all.sources.size() > 1) {
+    for (const auto& source : all.sources) append(all, *source);
+  }
+  return all;
+}
+
+// How far the felt surface lies above the points.
+double offset(const FieldOptions& field, double radius, double tool_radius) {
+  if (field.kind != FieldKind::metaball) return tool_radius;
+  return (field.raw_weights ? 0.7 : 0.49) * radius + tool_radius;
+}
+
+double choose_scale(double patch, double stiffness) {
+  const double scale = workspace_scale(patch);
+  if (stiffness == 0 || scale * stiffness <= kStiffest) return scale;
+  return std::min(scale, std::max(1.0, kStiffest / stiffness));
+}
+
+}  // namespace
+
+double workspace_scale(double extent) {
+  const double wanted = extent / kReach;
+  if (wanted >= 0.2 && wanted <= 10) return 1;
+  const double decade = std::pow(10, std::floor(std::log10(wanted)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (wanted <= step * decade) return step * decade;
+  }
+  return 10 * decade;
+}
+
+ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
+                                 const PlanOptions& options) {
+  const Union all = unite(scene);
+  ExplorationPlan plan;
+  plan.patch = std::max(std::min(all.box.size().maxCoeff(), kPatch * all.radius), all.radius);
+  plan.workspace.scale = choose_scale(plan.patch, options.stiffness);
+  const double scale = plan.workspace.scale;
+  plan.stiffness = options.stiffness > 0 ? options.stiffness : kStiffness / scale;
+  plan.depth = std::min(kDepth * all.radius, kLargestForce / plan.stiffness);
+
+  ExplorationOptions explore_options;
+  explore_options.duration = options.duration;
+  explore_options.period = 1 / options.rate;
+  explore_options.radius = all.radius;
+  // Hand and surface are springs in a row: the hand has to want more than it gets.
+  const double felt = plan.workspace.felt_stiffness(plan.stiffness);
+  explore_options.depth = plan.depth * (1 + felt / options.hand.stiffness);
+  explore_options.offset = offset(field, all.radius, options.tool_radius);
+  explore_options.patch = plan.patch;
+  explore_options.slide_speed = scale * std::clamp(0.5 * plan.patch / scale, 0.05, 0.15);
+  explore_options.travel_speed = scale * std::clamp(plan.patch / scale, 0.1, 0.25);
+  explore_options.seed = options.seed;
+  plan.target = explore(all.view(), explore_options);
+
+  Box way;
+  for (const TrajectoryRow& row : plan.target) way.extend(row.position);
+  plan.workspace.T_world_device.translation() = way.center();
+  for (TrajectoryRow& row : plan.target) {
+    row.position = plan.workspace.position_to_device(row.position);
+  }
+  return plan;
+}
+
+}  // namespace palpate::app

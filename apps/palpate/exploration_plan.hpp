@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "palpate/device/simulated.hpp"
+#include "palpate/device/workspace.hpp"
+#include "palpate/field/implicit.hpp"
+#include "palpate/geometry/trajectory.hpp"
+#include "palpate/scene/scene.hpp"
+
+namespace palpate::app {
+
+/// How a hand on a desk explores a scene of any size.
+struct ExplorationPlan {
+  Workspace workspace;   ///< magnified so that what is explored fits a hand's reach
+  double stiffness = 0;  ///< of the surface, N/m in the world
+  double patch = 0;      ///< largest extent of what is explored, m
+  double depth = 0;      ///< that the hand is meant to reach under the surface, m
+  Trajectory target;     ///< where the hand wants to be, device frame
+};
+
+struct PlanOptions {
+  double duration = 10;    ///< s
+  double stiffness = 0;    ///< N/m in the world; 0: 500 at the hand
+  double tool_radius = 0;  ///< m
+  std::uint64_t seed = 1;
+  SimulatedHand hand;
+  double rate = 1000;  ///< steps a second
+};
+
+/// Chooses scale, patch, depth and speeds from the scene's extent and support radius, and plans the
+/// hand's way. @throws Error when the scene has no points.
+[[nodiscard]] ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
+                                               const PlanOptions& options);
+
+/// 1 where a hand can explore `extent` metres as they are, else the fitting one of
+/// ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ...
+[[nodiscard]] double workspace_scale(double extent);
+
+}  // namespace palpate::app

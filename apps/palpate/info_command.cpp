@@ -1,0 +1,62 @@
+#include "apps/palpate/info_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "apps/palpate/info_report.hpp"
+#include "apps/palpate/load.hpp"
+#include "apps/palpate/output.hpp"
+#include "apps/palpate/progress.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  palpate info bunny.ply
+  palpate info depth.png --intrinsics 525,525,319.5,239.5
+  palpate info - < scan.pcd
+
+Exit codes: 0 done, 1 the input is at fault, 2 the command line is wrong.)";
+
+InfoReport study(const CloudArgument& argument, const LoadOptions& options) {
+  InfoReport report;
+  report.loaded = load(argument, options);
+  const PointCloud& cloud = report.loaded.file.cloud;
+  Progress progress("studying " + argument.name);
+  if (cloud.size() > 1'000'000) progress.update(-1);
+  report.bounds = bounds_of(cloud);
+  report.units = guess_units(report.bounds, report.loaded.file.format);
+  report.spacing = measure_spacing(CellGrid(cloud.positions));
+  const Prepared prepared = prepare(cloud);
+  report.prepared = prepared.report;
+  report.rim = rim_share(prepared.points);
+  return report;
+}
+
+}  // namespace
+
+void add_info_options(CLI::App& command, InfoOptions& options) {
+  add_load_options(command, options.load);
+  command.add_option("--json", options.json, "the same as data; - is standard output")
+      ->type_name("FILE")
+      ->group("Output");
+  command.footer(kFooter);
+}
+
+void info(const InfoOptions& options) {
+  if (!options.load.intrinsics.empty()) (void)parse_intrinsics(options.load.intrinsics);
+  nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
+  for (const CloudArgument& argument : parse_clouds(options.load.clouds)) {
+    const InfoReport report = study(argument, options.load);
+    print_report(report, options.json == "-" ? stderr : stdout);
+    clouds.push_back(json_report(report));
+  }
+  if (options.json.empty()) return;
+  OutputFile file(options.json);
+  file.write(clouds.dump(2));
+  file.write("\n");
+  file.close();
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+
+#include "apps/palpate/cloud_facts.hpp"
+#include "apps/palpate/load.hpp"
+
+namespace palpate::app {
+
+/// Everything that `palpate info` tells of one cloud.
+struct InfoReport {
+  LoadedCloud loaded;
+  Box bounds;
+  UnitsGuess units;
+  SpacingFacts spacing;
+  PrepareReport prepared;  ///< with the defaults: the advice
+  double rim = 0;          ///< share of points at a border or a hole
+};
+
+void print_report(const InfoReport& report, std::FILE* stream);
+[[nodiscard]] nlohmann::ordered_json json_report(const InfoReport& report);
+
+}  // namespace palpate::app

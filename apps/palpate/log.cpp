@@ -1,0 +1,42 @@
+#include "apps/palpate/log.hpp"
+
+#include <iterator>
+
+namespace palpate::app {
+
+namespace {
+
+constexpr std::size_t kFlush = 1 << 16;  // bytes
+
+}  // namespace
+
+TouchLog::TouchLog(const std::string& path) : file_(path) {
+  buffer_.reserve(kFlush + 1024);
+  file_.write(
+      "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,fx,fy,fz,us,touching,sliding,nx,ny,nz,"
+      "stiffness,iterations,evaluations,patch_points,source,notes,field_notes\n");
+}
+
+void TouchLog::add(const TouchStep& step) {
+  const Contact& c = step.contact;
+  const Eigen::Vector3d& h = step.hip;
+  fmt::format_to(std::back_inserter(buffer_),
+                 "{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{},", step.time, h.x(), h.y(),
+                 h.z(), c.proxy.x(), c.proxy.y(), c.proxy.z(), c.force.x(), c.force.y(),
+                 c.force.z(), step.microseconds, c.touching ? 1 : 0, c.sliding ? 1 : 0,
+                 c.normal.x(), c.normal.y(), c.normal.z());
+  fmt::format_to(std::back_inserter(buffer_), "{},{},{},{},{},{},{}\n", c.stiffness, c.iterations,
+                 c.evaluations, step.patch_points, c.source, static_cast<unsigned>(c.notes),
+                 static_cast<unsigned>(step.notes));
+  if (buffer_.size() < kFlush) return;
+  file_.write({buffer_.data(), buffer_.size()});
+  buffer_.clear();
+}
+
+void TouchLog::close() {
+  file_.write({buffer_.data(), buffer_.size()});
+  buffer_.clear();
+  file_.close();
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "apps/palpate/output.hpp"
+#include "apps/palpate/touch_statistics.hpp"
+
+namespace palpate::app {
+
+/// The CSV log of a run: a header, then a row a step. Numbers are the shortest that read back to
+/// the same bits; `us` alone differs from run to run.
+class TouchLog {
+ public:
+  explicit TouchLog(const std::string& path);
+  void add(const TouchStep& step);
+  void close();
+
+ private:
+  OutputFile file_;
+  fmt::memory_buffer buffer_;
+};
+
+}  // namespace palpate::app

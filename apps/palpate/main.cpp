@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+
+#include "apps/palpate/errors.hpp"
+#include "apps/palpate/info_command.hpp"
+#include "apps/palpate/picture_script.hpp"
+#include "apps/palpate/touch_command.hpp"
+#include "apps/palpate/words.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr const char* kAbout =
+    "palpate lets a hand feel a point cloud: it makes an implicit surface of the points and "
+    "computes "
+    "the force on the hand a thousand times a second.";
+
+int complain(const std::string& what, int code) {
+  fmt::print(stderr, "{} {}\n", Style(stderr).error("palpate:"), what);
+  return code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App program(kAbout, "palpate");
+  program.set_version_flag("--version", fmt::format("palpate {}", version()));
+  program.require_subcommand(1);
+  program.get_formatter()->column_width(34);
+  program.footer("'palpate COMMAND --help' tells more, with examples.");
+  TouchOptions touch_options;
+  CLI::App* touch_command =
+      program.add_subcommand("touch", "Touch clouds in simulated time and report the forces");
+  add_touch_options(*touch_command, touch_options);
+  InfoOptions info_options;
+  CLI::App* info_command =
+      program.add_subcommand("info", "Say what is in a cloud and how it will feel");
+  add_info_options(*info_command, info_options);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& done) {  // --help, --version
+    return program.exit(done);
+  } catch (const CLI::ParseError& error) {
+    return complain(
+        fmt::format("{}\n'palpate --help' and 'palpate COMMAND --help' tell more.", error.what()),
+        kUsage);
+  }
+  if (touch_command->parsed()) touch(touch_options);
+  if (info_command->parsed()) info(info_options);
+  return kSuccess;
+}
+
+}  // namespace
+}  // namespace palpate::app
+
+int main(int argc, char** argv) {
+  using namespace palpate::app;
+  try {
+    return run(argc, argv);
+  } catch (const UsageError& error) {
+    return complain(error.what(), kUsage);
+  } catch (const std::bad_alloc&) {
+    return complain("there is not enough memory; give a smaller cloud or a larger --voxel",
+                    kFailure);
+  } catch (const std::exception& error) {
+    return complain(error.what(), kFailure);
+  }
+}

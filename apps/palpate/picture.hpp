@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/palpate/touch_statistics.hpp"
+#include "palpate/scene/scene.hpp"
+
+namespace palpate::app {
+
+/// Collects the steps of a run and draws them with the clouds, by a script for Python with
+/// matplotlib that travels inside the program.
+class Picture {
+ public:
+  explicit Picture(std::string path) : path_(std::move(path)) {}
+
+  void add(const TouchStep& step) { steps_.push_back(step); }
+
+  /// @throws Error when Python or matplotlib is missing, naming the package, or drawing fails.
+  void draw(const Scene& scene, const std::string& title, const std::string& subtitle) const;
+
+ private:
+  std::string path_;
+  std::vector<TouchStep> steps_;
+};
+
+}  // namespace palpate::app

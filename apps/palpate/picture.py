@@ -1,0 +1,255 @@
+"""Draws a run of palpate: the cloud, the ways of hand and proxy, the force.
+
+Usage: picture.py FOLDER PICTURE. FOLDER holds cloud.f32 (x, y, z, normal, source), steps.f32 (t, hip,
+proxy, force, touching, us) and facts.json. Ends with 3 where matplotlib is missing.
+"""
+
+import json
+import os
+import sys
+
+try:
+    import matplotlib
+    import numpy as np
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.collections import LineCollection
+except ImportError as error:
+    print(error, file=sys.stderr)
+    sys.exit(3)
+
+INK = "#1f2933"
+FAINT = "#8492a6"
+GRID = "#e4e7eb"
+HAND = "#2b6cb0"
+PROXY = "#c53030"
+FORCE = "#dd8a00"
+
+
+def load(folder):
+    """The facts, the cloud and the steps that the program left in a folder."""
+    with open(os.path.join(folder, "facts.json"), encoding="utf-8") as file:
+        facts = json.load(file)
+    cloud = np.fromfile(os.path.join(folder, "cloud.f32"), np.float32).reshape(-1, 7).astype(float)
+    steps = np.fromfile(os.path.join(folder, "steps.f32"), np.float32).reshape(-1, 12).astype(float)
+    return facts, cloud, steps
+
+
+class Run:
+    """The steps by name, lengths in the picture's unit."""
+
+    def __init__(self, steps, unit):
+        self.t = steps[:, 0]
+        self.hip = steps[:, 1:4] / unit
+        self.proxy = steps[:, 4:7] / unit
+        self.force = steps[:, 7:10]
+        self.touching = steps[:, 10] > 0
+        self.size = np.linalg.norm(self.force, axis=1)
+
+
+def unit_of(extent):
+    """A length unit in which `extent` metres is an easy number."""
+    if extent < 1:
+        return 1e-3, "mm"
+    return (1.0, "m") if extent < 5000 else (1e3, "km")
+
+
+def normalised(v):
+    """v with length one; z where it has none."""
+    length = np.linalg.norm(v)
+    return v / length if length > 1e-12 else np.array([0.0, 0.0, 1.0])
+
+
+def viewpoint(points, run):
+    """Rows right, up, towards the viewer; and the direction that counts as height."""
+    pushes = run.force[run.touching]
+    mean = pushes.sum(axis=0) / max(run.size[run.touching].sum(), 1e-9) if len(pushes) else np.zeros(3)
+    open_surface = np.linalg.norm(mean) > 0.5
+    height = normalised(mean) if open_surface else np.array([0.0, 0.0, 1.0])
+    # A camera's cloud has y down and z ahead; axes that nearly fit are easier to read.
+    for axis in np.vstack([np.eye(3), -np.eye(3)]):
+        if axis @ height > 0.85:
+            height = axis
+    flat = points - np.outer(points @ height, height)
+    flat = flat - flat.mean(axis=0)
+    _, _, axes = np.linalg.svd(flat[:: max(1, len(flat) // 4000)], full_matrices=False)
+    side = normalised(axes[0] - (axes[0] @ height) * height)
+    if side @ np.array([1.0, 0.3, 0.1]) < 0:
+        side = -side
+    ahead = np.cross(height, side)
+    turn, tilt = np.radians(28), np.radians(42 if open_surface else 24)
+    across = np.cos(turn) * side + np.sin(turn) * ahead
+    back = np.cross(across, height)
+    towards = np.cos(tilt) * back + np.sin(tilt) * height
+    return np.vstack([across, np.cross(towards, across), towards]), height
+
+
+def hidden(path, points, cell):
+    """Which places of a path, in view coordinates, lie well behind the points."""
+    lowest = np.minimum(points[:, :2].min(axis=0), path[:, :2].min(axis=0))
+    size = (np.maximum(points[:, :2].max(axis=0), path[:, :2].max(axis=0)) - lowest) / cell
+    nearest = np.full(np.ceil(size).astype(int) + 1, -np.inf)
+    place = ((points[:, :2] - lowest) / cell).astype(int)
+    np.maximum.at(nearest, (place[:, 0], place[:, 1]), points[:, 2])
+    at = ((path[:, :2] - lowest) / cell).astype(int)
+    return path[:, 2] < nearest[at[:, 0], at[:, 1]] - 2 * cell
+
+
+def draw_path(axes, path, behind, color, width, label):
+    """A path, fainter where it is behind the cloud."""
+    pieces = np.stack([path[:-1, :2], path[1:, :2]], axis=1)
+    for mask, alpha in ((behind[1:], 0.25), (~behind[1:], 0.95)):
+        axes.add_collection(LineCollection(pieces[mask], colors=color, linewidths=width, alpha=alpha,
+                                           capstyle="round"))
+    axes.plot([], [], color=color, linewidth=width, label=label)
+
+
+def scale_bar(axes, unit_name):
+    """A bar of a round length in the lower left corner."""
+    left, right = axes.get_xlim()
+    low, high = axes.get_ylim()
+    wanted = 0.2 * (right - left)
+    decade = 10 ** np.floor(np.log10(wanted))
+    size = max(s * decade for s in (1, 2, 5) if s * decade <= wanted)
+    x, y = left + 0.03 * (right - left), low + 0.035 * (high - low)
+    axes.plot([x, x + size], [y, y], color=INK, linewidth=3, solid_capstyle="butt")
+    axes.text(x + size / 2, y + 0.012 * (high - low), f"{size:g} {unit_name}", ha="center",
+              va="bottom", color=INK)
+
+
+def draw_overview(axes, cloud, normals, run, unit_name):
+    """The cloud as seen from where it was touched, with paths and forces."""
+    if len(cloud) == 0:
+        cloud, normals = run.proxy, np.zeros_like(run.proxy)
+    view, height = viewpoint(cloud, run)
+    seen, order = cloud @ view.T, np.argsort(cloud @ view[2])
+    tall = cloud @ height
+    low, high = np.percentile(tall, [1, 99])
+    color = plt.get_cmap("viridis")(np.clip((tall - low) / max(high - low, 1e-9), 0, 1) * 0.92)
+    light = normalised(view[2] + 0.5 * view[1] - 0.5 * view[0])
+    lit = np.where(np.linalg.norm(normals, axis=1) > 0.5, np.abs(normals @ light), 0.8)
+    color[:, :3] = 0.25 + 0.75 * color[:, :3] * (0.45 + 0.55 * lit)[:, None]
+    area = np.ptp(seen[:, 0]) * np.ptp(seen[:, 1])
+    cell = 2.5 * np.sqrt(max(area, 1e-12) / max(len(cloud), 1))
+    points_a_unit = min(590 / max(np.ptp(seen[:, 0]), 1e-9), 520 / max(np.ptp(seen[:, 1]), 1e-9))
+    dot = np.clip((0.5 * cell * points_a_unit) ** 2, 1.5, 60)
+    axes.scatter(seen[order, 0], seen[order, 1], s=dot, c=color[order], linewidths=0, rasterized=True)
+    hip, proxy = run.hip @ view.T, run.proxy @ view.T
+    draw_path(axes, hip, hidden(hip, seen, cell), HAND, 1.1, "hand")
+    touched = np.where(run.touching[:, None], proxy, np.nan)
+    draw_path(axes, touched, hidden(proxy, seen, cell), PROXY, 2.0, "proxy, touching")
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    draw_arrows(axes, proxy, run, view)
+    axes.set_axis_off()
+    scale_bar(axes, unit_name)
+    axes.figure.legend(loc="upper left", bbox_to_anchor=(0.014, 0.915), frameon=False, ncol=3,
+                       handlelength=1.6)
+
+
+def draw_arrows(axes, proxy, run, view):
+    """The force on the hand at some steps with touch."""
+    touching = np.flatnonzero(run.touching & (run.size > 0.02 * max(run.size.max(), 1e-9)))
+    if len(touching) == 0:
+        return
+    picked = touching[:: max(1, len(touching) // 70)]
+    left, right = axes.get_xlim()
+    length = 0.09 * (right - left) / run.size.max()
+    arrows = (run.force @ view.T)[picked, :2] * length
+    axes.quiver(proxy[picked, 0], proxy[picked, 1], arrows[:, 0], arrows[:, 1], color=FORCE,
+                angles="xy", scale_units="xy", scale=1, width=0.0028, headwidth=3.5, zorder=5)
+    axes.plot([], [], color=FORCE, linewidth=2, label=f"force, up to {run.size.max():.2g} N")
+
+
+def busiest_contact(run):
+    """First and last step of the contact that lasted longest."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], run.touching.astype(int), [0]])))
+    starts, ends = edges[::2], edges[1::2]
+    longest = np.argmax(ends - starts)
+    return starts[longest], ends[longest]
+
+
+def draw_section(axes, cloud, run, unit_name):
+    """A cut through the cloud along a piece of the longest contact."""
+    axes.set_title("close by, in section", loc="left", color=INK)
+    if not run.touching.any():
+        axes.text(0.5, 0.5, "the hand never touched", ha="center", color=FAINT,
+                  transform=axes.transAxes)
+        axes.set_axis_off()
+        return
+    first, last = busiest_contact(run)
+    at = first + int(np.argmax(run.size[first:last]))
+    deep = np.linalg.norm(run.proxy - run.hip, axis=1)[first:last].max()
+    center = run.proxy[at]
+    up = normalised(run.force[at])
+    moved = run.proxy[first:last] - center
+    moved = moved - np.outer(moved @ up, up)
+    _, _, directions = np.linalg.svd(moved - moved.mean(axis=0), full_matrices=False)
+    along = normalised(directions[0] - (directions[0] @ up) * up)
+    across = np.cross(up, along)
+    half = max(6 * deep, 0.3 * np.ptp(moved @ along), 1e-9)
+    flat = cloud - center
+    near = (np.abs(flat @ across) < 0.06 * half) & (np.abs(flat @ along) < 1.1 * half)
+    axes.scatter((flat @ along)[near], (flat @ up)[near], s=7, color=FAINT, linewidths=0,
+                 label="points")
+    hip, proxy = run.hip - center, run.proxy - center
+    span = slice(max(first - 150, 0), last + 150)
+    inside = np.zeros(len(hip), bool)
+    inside[span] = np.abs((hip @ across)[span]) < 0.5 * half
+    x_hip, y_hip = np.where(inside, hip @ along, np.nan), hip @ up
+    touching = inside & run.touching
+    axes.plot(x_hip, y_hip, color=HAND, linewidth=1.4, label="hand")
+    axes.plot(np.where(touching, proxy @ along, np.nan), proxy @ up, color=PROXY, linewidth=2,
+              label="proxy")
+    picked = np.flatnonzero(touching)[:: max(1, touching.sum() // 40)]
+    springs = np.stack([hip[picked] @ np.stack([along, up], axis=1),
+                        proxy[picked] @ np.stack([along, up], axis=1)], axis=1)
+    axes.add_collection(LineCollection(springs, colors=FORCE, linewidths=0.8, alpha=0.8))
+    axes.set_aspect("equal")
+    axes.set_xlim(-half, half)
+    axes.set_ylim(-0.62 * half, 0.62 * half)
+    axes.set_xlabel(unit_name)
+    axes.legend(loc="upper right", frameon=False, ncol=3, handlelength=1.4)
+
+
+def draw_force(axes, run):
+    """The force over time, with contacts shaded."""
+    axes.fill_between(run.t, 0, 1, where=run.touching, transform=axes.get_xaxis_transform(),
+                      color="#f1f4f8", linewidth=0)
+    axes.fill_between(run.t, 0, run.size, color=FORCE, alpha=0.25, linewidth=0)
+    axes.plot(run.t, run.size, color=FORCE, linewidth=1.1)
+    axes.set_title("force on the hand", loc="left", color=INK)
+    axes.set_xlabel("time, s")
+    axes.set_ylabel("N")
+    axes.set_xlim(run.t[0], max(run.t[-1], run.t[0] + 1e-3))
+    axes.set_ylim(0, 1.15 * max(run.size.max(), 1e-3))
+    if run.size.max() > 0:
+        top = int(np.argmax(run.size))
+        axes.annotate(f"{run.size[top]:.2f} N", (run.t[top], run.size[top]), xytext=(0, 5),
+                      textcoords="offset points", ha="center", color=INK)
+
+
+def main(folder, picture):
+    facts, cloud, steps = load(folder)
+    extent = np.ptp(np.vstack([steps[:, 1:4], steps[:, 4:7]]), axis=0).max()
+    unit, unit_name = unit_of(extent)
+    run = Run(steps, unit)
+    plt.rcParams.update({"font.size": 10.5, "font.family": "DejaVu Sans", "text.color": INK,
+                         "axes.labelcolor": INK, "axes.edgecolor": FAINT, "xtick.color": INK,
+                         "ytick.color": INK, "axes.grid": True, "grid.color": GRID,
+                         "axes.axisbelow": True, "axes.spines.top": False,
+                         "axes.spines.right": False})
+    figure = plt.figure(figsize=(14.4, 8.6), dpi=150, facecolor="white")
+    cells = figure.add_gridspec(2, 2, width_ratios=[1.55, 1], height_ratios=[1.25, 1], left=0.02,
+                                right=0.985, top=0.895, bottom=0.07, wspace=0.09, hspace=0.3)
+    draw_overview(figure.add_subplot(cells[:, 0]), cloud[:, :3] / unit, cloud[:, 3:6], run, unit_name)
+    draw_section(figure.add_subplot(cells[0, 1]), cloud[:, :3] / unit, run, unit_name)
+    draw_force(figure.add_subplot(cells[1, 1]), run)
+    figure.text(0.02, 0.955, facts["title"], fontsize=17, fontweight="bold", color=INK)
+    figure.text(0.02, 0.925, facts["subtitle"], fontsize=11, color=FAINT)
+    figure.savefig(picture, format="png")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2])

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string_view>
+
+namespace palpate::app {
+
+/// picture.py, as CMake found it.
+[[nodiscard]] std::string_view picture_script();
+
+/// The project's version.
+[[nodiscard]] std::string_view version();
+
+}  // namespace palpate::app

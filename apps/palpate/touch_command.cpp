@@ -1,0 +1,178 @@
+#include "apps/palpate/touch_command.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "apps/palpate/errors.hpp"
+#include "apps/palpate/log.hpp"
+#include "apps/palpate/output.hpp"
+#include "apps/palpate/picture.hpp"
+#include "apps/palpate/progress.hpp"
+#include "apps/palpate/touch_report.hpp"
+#include "apps/palpate/touch_run.hpp"
+#include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/words.hpp"
+#include "palpate/device/scripted.hpp"
+#include "palpate/device/simulated.hpp"
+#include "palpate/io/trajectory.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+// What moves the hand: a device, where it stands, and the surface's stiffness that goes with it.
+struct Hand {
+  std::unique_ptr<Device> device;
+  Workspace workspace;
+  double stiffness = kStiffness;
+  double duration = 0;  // s
+  std::size_t steps = 0;
+  std::optional<ExplorationPlan> plan;
+};
+
+void check_usage(const TouchOptions& options) {
+  if (options.device == "scripted" && options.trajectory.empty()) {
+    throw UsageError("--device scripted plays a trajectory; give one with --trajectory FILE.csv");
+  }
+  const auto clouds = parse_clouds(options.load.clouds);
+  for (const CloudArgument& cloud : clouds) {
+    if (cloud.path == "-" && options.trajectory == "-") {
+      throw UsageError("standard input (-) can be read only once");
+    }
+  }
+  if (options.log == "-" && options.json == "-") {
+    throw UsageError("--log and --json cannot both go to standard output");
+  }
+  if (!options.viewpoint.empty()) (void)parse_point(options.viewpoint, "--viewpoint");
+  if (!options.load.intrinsics.empty()) (void)parse_intrinsics(options.load.intrinsics);
+  if (options.friction_static > 0 && options.friction_static < options.friction_dynamic) {
+    throw UsageError(
+        fmt::format("--friction-static {} is below --friction-dynamic {}; it must not be",
+                    options.friction_static, options.friction_dynamic));
+  }
+}
+
+Hand scripted(const TouchOptions& options, Trajectory trajectory) {
+  Hand hand;
+  hand.stiffness = options.stiffness.value_or(kStiffness);
+  hand.duration = trajectory.back().time - trajectory.front().time;
+  hand.steps = trajectory.size();
+  hand.device = std::make_unique<ScriptedDevice>(std::move(trajectory));
+  return hand;
+}
+
+// The hand is pulled along `target`, whose times begin at 0.
+void simulate(Hand& hand, Trajectory target) {
+  const SimulatedDeviceOptions options;
+  hand.duration = target.back().time;
+  hand.steps = static_cast<std::size_t>(hand.duration * options.rate) + 2;
+  hand.device = std::make_unique<SimulatedDevice>(options, std::move(target));
+}
+
+Hand simulated(const TouchOptions& options, Trajectory trajectory) {
+  Hand hand;
+  hand.stiffness = options.stiffness.value_or(kStiffness);
+  const double start = trajectory.front().time;
+  for (TrajectoryRow& row : trajectory) row.time -= start;
+  // Encoders count from where the hand begins, so that far from the origin nothing is lost.
+  hand.workspace.T_world_device.translation() = trajectory.front().position;
+  for (TrajectoryRow& row : trajectory) {
+    row.position = hand.workspace.position_to_device(row.position);
+  }
+  simulate(hand, std::move(trajectory));
+  return hand;
+}
+
+Hand exploring(const TouchOptions& options, const Scene& scene, const FieldOptions& field) {
+  Hand hand;
+  PlanOptions plan;
+  plan.duration = options.duration;
+  plan.stiffness = options.stiffness.value_or(0);
+  plan.tool_radius = options.tool_radius;
+  plan.seed = options.seed;
+  hand.plan = plan_exploration(scene, field, plan);
+  hand.workspace = hand.plan->workspace;
+  hand.stiffness = hand.plan->stiffness;
+  simulate(hand, hand.plan->target);
+  return hand;
+}
+
+std::string title(const TouchReport& report) {
+  std::string text;
+  for (const TouchedCloud& cloud : report.clouds) {
+    text += fmt::format("{}{}", text.empty() ? "" : " + ", cloud.argument.name);
+  }
+  return text;
+}
+
+std::string subtitle(const TouchReport& report) {
+  const TouchStatistics& s = report.statistics;
+  return fmt::format(
+      "{} field, K = {:.4g} N/m, {} steps in {:.3g} s, {} contacts, energy given to the "
+      "hand {}",
+      name_of(report.field.kind), report.proxy.stiffness, grouped(s.steps()), s.duration(),
+      grouped(s.contacts()), energy(s.energy()));
+}
+
+// Steps the run and hands each step to what keeps or sums it.
+void play(Hand& hand, SceneField& field, Proxy& proxy, TouchStatistics& statistics,
+          std::optional<TouchLog>& log, std::optional<Picture>& picture) {
+  Progress progress("touching");
+  run_touch(*hand.device, hand.workspace, field, proxy, [&](const TouchStep& step) {
+    statistics.add(step);
+    if (log) log->add(step);
+    if (picture) picture->add(step);
+    if (statistics.steps() % 256 == 0) {
+      progress.update(static_cast<double>(statistics.steps()) / static_cast<double>(hand.steps));
+    }
+  });
+}
+
+void write_json(const TouchReport& report, const std::string& path) {
+  OutputFile file(path);
+  file.write(json_report(report).dump(2));
+  file.write("\n");
+  file.close();
+}
+
+}  // namespace
+
+void touch(const TouchOptions& options) {
+  check_usage(options);
+  Trajectory trajectory;
+  if (!options.trajectory.empty()) trajectory = read_trajectory(options.trajectory);
+  std::optional<TouchLog> log;
+  if (!options.log.empty()) log.emplace(options.log);
+  std::optional<Picture> picture;
+  if (!options.picture.empty()) picture.emplace(options.picture);
+
+  Scene scene;
+  const std::vector<TouchedCloud> clouds = fill(scene, options);
+  const FieldOptions field_choice = field_options(options);
+  SceneField field(scene, field_choice);
+  Hand hand = trajectory.empty()              ? exploring(options, scene, field_choice)
+              : options.device == "simulated" ? simulated(options, std::move(trajectory))
+                                              : scripted(options, std::move(trajectory));
+  Proxy proxy(proxy_options(options, hand.stiffness));
+  TouchStatistics statistics(hand.steps);
+  play(hand, field, proxy, statistics, log, picture);
+  if (log) log->close();
+
+  const TouchReport report{scene,
+                           clouds,
+                           options,
+                           statistics,
+                           field_choice,
+                           proxy.options(),
+                           hand.device->info().name,
+                           hand.plan ? &*hand.plan : nullptr};
+  const bool stdout_taken = options.log == "-" || options.json == "-";
+  print_report(report, stdout_taken ? stderr : stdout);
+  if (!options.json.empty()) write_json(report, options.json);
+  if (picture) picture->draw(scene, title(report), subtitle(report));
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,208 @@
+#include "apps/palpate/touch_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <functional>
+
+#include "palpate/io/synthetic.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+// A check that says which numbers an option takes.
+CLI::Validator number(const std::string& range, std::function<bool(double)> good) {
+  const auto check = [range, good = std::move(good)](const std::string& text) -> std::string {
+    double value = 0;
+    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && good(value)) return "";
+    return fmt::format("'{}' is not {}", text, range);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator positive() {
+  return number("a number above 0", [](double x) { return x > 0; });
+}
+CLI::Validator not_negative() {
+  return number("a number of 0 or more", [](double x) { return x >= 0; });
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  return CLI::IsMember(words);
+}
+
+// Help in lines that fit beside the options' names.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kWidth = 66;
+  std::string result;
+  std::size_t begin = 0;
+  while (text.size() - begin > kWidth) {
+    const std::size_t space = text.rfind(' ', begin + kWidth);
+    if (space == std::string::npos || space <= begin) break;
+    result += text.substr(begin, space - begin) + '\n';
+    begin = space + 1;
+  }
+  return result + text.substr(begin);
+}
+
+std::string synthetic_list() {
+  std::string list;
+  for (const SyntheticName& each : synthetic_names()) {
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", each.name);
+  }
+  return list;
+}
+
+void add_surface_options(CLI::App& command, TouchOptions& o) {
+  const std::string group = "Surface (chosen from the data unless given)";
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, wrapped(help))->group(group);
+  };
+  add("--field", o.field, "balanced (default), pointset or metaball")
+      ->check(one_of({"balanced", "pointset", "metaball"}))
+      ->type_name("NAME");
+  add("--preset", o.preset,
+      "default, or paper: the method of Leeper, Chan and Salisbury 2012 as they ran it")
+      ->check(one_of({"default", "paper"}))
+      ->type_name("NAME");
+  add("--kernel", o.kernel, "wyvill (default) or wendland")
+      ->check(one_of({"wyvill", "wendland"}))
+      ->type_name("NAME");
+  add("--gradient", o.gradient,
+      "exact (default), normal (eq. 8) or printed (eq. 4 as printed, which points inward)")
+      ->check(one_of({"exact", "normal", "printed"}))
+      ->type_name("NAME");
+  add("--radius", o.radius, "support radius R of every point: larger is smoother")
+      ->check(positive())
+      ->type_name("METRES");
+  add("--voxel", o.voxel, "edge of the voxel filter; 0 keeps every point")
+      ->check(not_negative())
+      ->type_name("METRES");
+  add("--threshold", o.threshold, "level of the metaball, 0 to 1; lower is farther out (0.4)")
+      ->check(number("between 0 and 1", [](double x) { return x > 0 && x < 1; }))
+      ->type_name("LEVEL");
+  add("--tool-radius", o.tool_radius, "radius of the ball that touches; 0: a point")
+      ->check(not_negative())
+      ->type_name("METRES");
+  command
+      .add_flag("--one-sided", o.one_sided,
+                "solid behind the surface: for closed objects, normals outward")
+      ->group(group);
+}
+
+void add_feel_options(CLI::App& command, TouchOptions& o) {
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, wrapped(help))->group("Feel");
+  };
+  add("--stiffness", o.stiffness,
+      "K of the surface, in the cloud's metres (500; less where a large cloud is explored)")
+      ->check(positive())
+      ->type_name("N/M");
+  add("--soft-stiffness", o.soft_stiffness,
+      "K where the cloud's intensity is lowest; it grows to --stiffness where that is highest")
+      ->check(not_negative())
+      ->type_name("N/M");
+  add("--friction-static", o.friction_static, "coefficient while the proxy sticks (0)")
+      ->check(not_negative())
+      ->type_name("MU");
+  add("--friction-dynamic", o.friction_dynamic, "coefficient while it slides (0)")
+      ->check(not_negative())
+      ->type_name("MU");
+  add("--friction-viscous", o.friction_viscous, "grows with the speed of sliding (0)")
+      ->check(not_negative())
+      ->type_name("N S/M");
+  add("--texture-amplitude", o.texture_amplitude, "of a fine relief on the surface (0: none)")
+      ->check(not_negative())
+      ->type_name("METRES");
+  add("--texture-wavelength", o.texture_wavelength, "of that relief (0.004)")
+      ->check(positive())
+      ->type_name("METRES");
+}
+
+void add_hand_options(CLI::App& command, TouchOptions& o) {
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, wrapped(help))->group("Hand");
+  };
+  add("--trajectory", o.trajectory,
+      "CSV with columns t,hip_x,hip_y,hip_z (s, m): one servo step a row; a log will do")
+      ->type_name("FILE");
+  add("--device", o.device,
+      "scripted: the hand is where the trajectory says; simulated: a hand pulls a device with "
+      "mass and friction there. Default: scripted with --trajectory, else simulated")
+      ->check(one_of({"scripted", "simulated"}))
+      ->type_name("NAME");
+  add("--duration", o.duration, "of the built-in exploration, in simulated time (10)")
+      ->check(number("between 0.01 and 3600 s", [](double x) { return x >= 0.01 && x <= 3600; }))
+      ->type_name("SECONDS");
+  add("--seed", o.seed, "of the exploration: another one touches other places (1)")->type_name("N");
+}
+
+void add_output_options(CLI::App& command, TouchOptions& o) {
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, wrapped(help))->group("Output");
+  };
+  add("--log", o.log, "every servo step as a row of CSV; - is standard output")->type_name("FILE");
+  add("--json", o.json, "the report as data; - is standard output")->type_name("FILE");
+  add("--picture", o.picture, "cloud, path, proxy and force as PNG (needs python3-matplotlib)")
+      ->type_name("FILE.png");
+}
+
+constexpr const char* kFooter = R"(Examples:
+  palpate touch bunny.ply --picture bunny.png
+  palpate touch synthetic:torus --friction-static 0.4 --friction-dynamic 0.3
+  palpate touch scan.pcd --trajectory hand.csv --log forces.csv
+  palpate touch left=a.ply right=b.ply --pose right=0.1,0,0,0,0,0,1
+  palpate touch depth.png --intrinsics 525,525,319.5,239.5
+  gunzip -c dragon.ply.gz | palpate touch -
+
+The log begins with t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,fx,fy,fz,us: seconds, metres in the
+world frame, newtons on the hand (K (proxy - hip), before any guard), microseconds of computing. The
+same input gives the same log but for us.
+
+Exit codes: 0 done, 1 the input or the run failed, 2 the command line is wrong.)";
+
+}  // namespace
+
+void add_load_options(CLI::App& command, LoadOptions& o) {
+  command
+      .add_option(
+          "clouds", o.clouds,
+          fmt::format("[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, depth PNG or "
+                      "PGM, any of them gzipped; - for standard input; or synthetic:NAME "
+                      "with NAME one of {}",
+                      synthetic_list()))
+      ->required()
+      ->type_name("CLOUD");
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, wrapped(help))->group("Reading");
+  };
+  add("--scale", o.scale, "metres a unit of the file: 0.001 for millimetres, 0.3048 for feet (1)")
+      ->check(positive())
+      ->type_name("FACTOR");
+  add("--intrinsics", o.intrinsics, "of a depth image, in pixels; needed for one")
+      ->type_name("FX,FY,CX,CY");
+  add("--depth-unit", o.depth_unit, "metres a step of a depth image (0.001)")
+      ->check(positive())
+      ->type_name("METRES");
+}
+
+void add_touch_options(CLI::App& command, TouchOptions& o) {
+  add_load_options(command, o.load);
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, wrapped(help))->group("Reading");
+  };
+  add("--viewpoint", o.viewpoint, "where the sensor stood, in the cloud's frame: orients normals")
+      ->type_name("X,Y,Z");
+  add("--pose", o.poses, "where a cloud's frame is in the world; once for each cloud that moves")
+      ->type_name("NAME=X,Y,Z,QX,QY,QZ,QW")
+      ->allow_extra_args(false);
+  add_surface_options(command, o);
+  add_feel_options(command, o);
+  add_hand_options(command, o);
+  add_output_options(command, o);
+  command.footer(kFooter);
+}
+
+}  // namespace palpate::app

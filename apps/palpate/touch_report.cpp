@@ -1,0 +1,171 @@
+#include "apps/palpate/touch_report.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/palpate/picture_script.hpp"
+#include "apps/palpate/words.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string range(double smallest, double middle, double largest) {
+  if (largest <= 1.001 * smallest) return length(middle);
+  return fmt::format("{} ({} to {})", length(middle), length(smallest), length(largest));
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+void print_cloud(const TouchedCloud& cloud, const PrepareReport& r, const Style& style,
+                 std::FILE* out) {
+  fmt::print(out, "{} {} ({})\n", style.heading(cloud.argument.name), cloud.argument.path,
+             cloud.format);
+  fmt::print(out, "  points     {} read, {} felt", grouped(r.points_in), grouped(r.points_out));
+  if (r.speckle > 0) fmt::print(out, ", {} dropped as speckle", grouped(r.speckle));
+  if (cloud.dropped > 0) fmt::print(out, ", {} invalid", grouped(cloud.dropped));
+  fmt::print(out, "\n  spacing    {}, noise {}, voxel {}\n", length(r.spacing), length(r.noise),
+             r.voxel > 0 ? length(r.voxel) : "none");
+  fmt::print(out, "  R          {}\n", range(r.radius_smallest, r.radius, r.radius_largest));
+  fmt::print(out,
+             "  prepared   {} after {} of reading: filter {}, index {}, spacing {}, normals {}, "
+             "weights {}\n",
+             duration(cloud.prepare_seconds), duration(cloud.read_seconds),
+             duration(r.seconds_filter), duration(r.seconds_index), duration(r.seconds_spacing),
+             duration(r.seconds_normals), duration(r.seconds_weights));
+}
+
+void print_plan(const ExplorationPlan& plan, std::FILE* out) {
+  fmt::print(out, "  explored   up to {} across, pressing about {} deep\n", length(plan.patch),
+             length(plan.depth));
+  const double scale = plan.workspace.scale;
+  if (scale == 1) return;
+  fmt::print(out,
+             "  scale      1 m of the hand is {} m of the cloud; {:.4g} N/m there is {:.4g} N/m to "
+             "the hand\n",
+             scale, plan.stiffness, plan.workspace.felt_stiffness(plan.stiffness));
+}
+
+void print_notes(const TouchStatistics& s, const Style& style, std::FILE* out) {
+  bool any = false;
+  for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
+    if (s.notes()[i] == 0) continue;
+    fmt::print(out, "  {} {} ({:.2g} % of steps): {}\n",
+               style.warning(any ? "          " : "notes     "), grouped(s.notes()[i]),
+               100 * share(s.notes()[i], s.steps()), note_text(i).text);
+    any = true;
+  }
+  if (!any) fmt::print(out, "  notes      none\n");
+}
+
+Json json_cloud(const TouchedCloud& cloud, const PrepareReport& r) {
+  return {{"name", cloud.argument.name},
+          {"file", cloud.argument.path},
+          {"format", cloud.format},
+          {"points_declared", cloud.declared},
+          {"points_invalid", cloud.dropped},
+          {"points_read", r.points_in},
+          {"points_felt", r.points_out},
+          {"points_speckle", r.speckle},
+          {"spacing_m", r.spacing},
+          {"noise_m", r.noise},
+          {"voxel_m", r.voxel},
+          {"radius_m",
+           {{"median", r.radius}, {"smallest", r.radius_smallest}, {"largest", r.radius_largest}}},
+          {"seconds",
+           {{"read", cloud.read_seconds},
+            {"prepare", cloud.prepare_seconds},
+            {"filter", r.seconds_filter},
+            {"index", r.seconds_index},
+            {"spacing", r.seconds_spacing},
+            {"normals", r.seconds_normals},
+            {"weights", r.seconds_weights}}}};
+}
+
+Json json_notes(const TouchStatistics& s) {
+  Json notes = Json::array();
+  for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
+    if (s.notes()[i] == 0) continue;
+    notes.push_back(
+        {{"note", note_text(i).name}, {"steps", s.notes()[i]}, {"text", note_text(i).text}});
+  }
+  return notes;
+}
+
+Json json_device(const TouchReport& report) {
+  Json device = {{"name", report.device}};
+  if (report.plan == nullptr) return device;
+  device["scale"] = report.plan->workspace.scale;
+  device["explored_m"] = report.plan->patch;
+  device["depth_m"] = report.plan->depth;
+  device["felt_stiffness_N_per_m"] = report.plan->workspace.felt_stiffness(report.plan->stiffness);
+  return device;
+}
+
+}  // namespace
+
+const char* name_of(FieldKind kind) {
+  if (kind == FieldKind::metaball) return "metaball";
+  return kind == FieldKind::pointset ? "pointset" : "balanced";
+}
+
+void print_report(const TouchReport& report, std::FILE* out) {
+  const Style style(out);
+  for (std::size_t i = 0; i < report.clouds.size(); ++i) {
+    print_cloud(report.clouds[i], report.scene.source(i).report(), style, out);
+  }
+  const TouchStatistics& s = report.statistics;
+  const StepTimes times = s.times();
+  fmt::print(out, "{} {} field, {:.4g} N/m, {} device\n", style.heading("touched"),
+             name_of(report.field.kind), report.proxy.stiffness, report.device);
+  if (report.plan != nullptr) print_plan(*report.plan, out);
+  fmt::print(out, "  steps      {} in {:.4g} s of simulated time\n", grouped(s.steps()),
+             s.duration());
+  fmt::print(out, "  computing  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} us a step\n",
+             times.p50, times.p99, times.p999, times.maximum);
+  fmt::print(out, "  contacts   {}, {:.3g} % of the time\n", grouped(s.contacts()),
+             100 * share(s.touching(), s.steps()));
+  fmt::print(out, "  force      {:.3g} N at most, changing by {:.2g} N a step at most\n",
+             s.largest_force(), s.largest_jump());
+  fmt::print(out, "  energy     {} given to the hand{}\n", energy(s.energy()),
+             s.energy() < 0 ? " (negative: taken from it)" : "");
+  print_notes(s, style, out);
+  if (s.touching() == 0) {
+    fmt::print(out,
+               "  {} the hand never met the surface: is the trajectory in metres and in the "
+               "cloud's frame, and --scale right?\n",
+               style.warning("advice    "));
+  }
+}
+
+Json json_report(const TouchReport& report) {
+  Json clouds = Json::array();
+  for (std::size_t i = 0; i < report.clouds.size(); ++i) {
+    clouds.push_back(json_cloud(report.clouds[i], report.scene.source(i).report()));
+  }
+  const TouchStatistics& s = report.statistics;
+  const StepTimes times = s.times();
+  return {{"palpate", std::string(version())},
+          {"clouds", clouds},
+          {"preset", report.options.preset},
+          {"field", name_of(report.field.kind)},
+          {"stiffness_N_per_m", report.proxy.stiffness},
+          {"device", json_device(report)},
+          {"steps", s.steps()},
+          {"simulated_s", s.duration()},
+          {"computing_us",
+           {{"p50", times.p50}, {"p99", times.p99}, {"p99.9", times.p999}, {"max", times.maximum}}},
+          {"contacts", s.contacts()},
+          {"contact_share", share(s.touching(), s.steps())},
+          {"largest_force_N", s.largest_force()},
+          {"largest_force_step_N", s.largest_jump()},
+          {"energy_given_to_hand_J", s.energy()},
+          {"notes", json_notes(s)}};
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/palpate/exploration_plan.hpp"
+#include "apps/palpate/touch_statistics.hpp"
+#include "apps/palpate/touch_surface.hpp"
+
+namespace palpate::app {
+
+/// Everything that a run's report tells.
+struct TouchReport {
+  const Scene& scene;
+  const std::vector<TouchedCloud>& clouds;
+  const TouchOptions& options;
+  const TouchStatistics& statistics;
+  FieldOptions field;
+  ProxyOptions proxy;
+  std::string device;                     ///< its name
+  const ExplorationPlan* plan = nullptr;  ///< of the built-in exploration, if it was that
+};
+
+/// As on the command line.
+[[nodiscard]] const char* name_of(FieldKind kind);
+
+/// For a person.
+void print_report(const TouchReport& report, std::FILE* stream);
+
+/// The same as data: SI units, named in the keys.
+[[nodiscard]] nlohmann::ordered_json json_report(const TouchReport& report);
+
+}  // namespace palpate::app

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+
+#include "apps/palpate/touch_statistics.hpp"
+#include "palpate/contact/proxy.hpp"
+#include "palpate/device/device.hpp"
+#include "palpate/device/workspace.hpp"
+#include "palpate/scene/scene_field.hpp"
+
+namespace palpate::app {
+
+/// Steps a device, a field and a proxy together in the device's time until the device is finished,
+/// and hands every step to `each`. Computing time is update() and step() alone.
+/// @throws Error when the device fails.
+void run_touch(Device& device, const Workspace& workspace, SceneField& field, Proxy& proxy,
+               const std::function<void(const TouchStep&)>& each);
+
+}  // namespace palpate::app

@@ -1,0 +1,74 @@
+#include "apps/palpate/touch_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::app {
+
+namespace {
+
+constexpr std::array<ContactNote, 5> kContactNotes = {ContactNote::sweep_truncated,
+                                                      ContactNote::lost, ContactNote::not_converged,
+                                                      ContactNote::reanchored, ContactNote::fault};
+constexpr std::array<FieldNote, 2> kFieldNotes = {FieldNote::thinned, FieldNote::no_surface};
+
+constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
+    {"sweep_truncated",
+     "the hand moved too far for one step, so the proxy caught up in the next ones; move slower or "
+     "give shorter steps"},
+    {"lost",
+     "no surface could be found near the proxy, so the force faded; a larger --radius closes "
+     "holes"},
+    {"not_converged",
+     "the proxy's iterations ran out before the closest point; it goes on in the next step"},
+    {"reanchored", "the surface had moved over the proxy, which was taken along"},
+    {"fault",
+     "an input was not finite, so the force was zero from there on; repair the trajectory"},
+    {"thinned",
+     "more points than the patch holds lay near the tool, so some were left out; give a smaller "
+     "--radius or a larger --voxel"},
+    {"no_surface", "no cloud had a surface"},
+}};
+
+}  // namespace
+
+void TouchStatistics::add(const TouchStep& step) {
+  const Contact& contact = step.contact;
+  const bool first = times_.empty();
+  if (first) first_time_ = step.time;
+  if (!first) {
+    energy_ += 0.5 * (last_.contact.force + contact.force).dot(step.hip - last_.hip);
+    largest_jump_ = std::max(largest_jump_, (contact.force - last_.contact.force).norm());
+  }
+  if (contact.touching) {
+    ++touching_;
+    if (first || !last_.contact.touching) ++contacts_;
+  }
+  largest_force_ = std::max(largest_force_, contact.force.norm());
+  for (std::size_t i = 0; i < kContactNotes.size(); ++i) {
+    if (has(contact.notes, kContactNotes[i])) ++notes_[i];
+  }
+  for (std::size_t i = 0; i < kFieldNotes.size(); ++i) {
+    if (has(step.notes, kFieldNotes[i])) ++notes_[kContactNotes.size() + i];
+  }
+  times_.push_back(step.microseconds);
+  last_ = step;
+}
+
+StepTimes TouchStatistics::times() const {
+  if (times_.empty()) return {};
+  std::vector<double> sorted = times_;
+  std::sort(sorted.begin(), sorted.end());
+  const auto percentile = [&](double share) {
+    const auto rank =
+        static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+    return sorted[std::max<std::size_t>(rank, 1) - 1];
+  };
+  return {percentile(0.5), percentile(0.99), percentile(0.999), sorted.back()};
+}
+
+const NoteText& note_text(std::size_t note) {
+  return kTexts[note];
+}
+
+}  // namespace palpate::app

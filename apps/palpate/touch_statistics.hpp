@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "palpate/contact/contact.hpp"
+#include "palpate/scene/scene_field.hpp"
+
+namespace palpate::app {
+
+/// One servo step as the program saw it. World frame.
+struct TouchStep {
+  double time = 0;                                ///< s
+  Eigen::Vector3d hip = Eigen::Vector3d::Zero();  ///< m
+  Contact contact;
+  double microseconds = 0;       ///< of computing: update() and step()
+  std::size_t patch_points = 0;  ///< gathered around the tool
+  FieldNote notes = FieldNote::none;
+};
+
+/// Computing times, us.
+struct StepTimes {
+  double p50 = 0;
+  double p99 = 0;
+  double p999 = 0;
+  double maximum = 0;
+};
+
+/// Sums up a run, step by step.
+class TouchStatistics {
+ public:
+  static constexpr std::size_t kNotes = 7;  ///< five of ContactNote, two of FieldNote
+
+  /// Room for `steps`, so that adding does not disturb the run.
+  explicit TouchStatistics(std::size_t steps = 0) { times_.reserve(steps); }
+
+  void add(const TouchStep& step);
+
+  [[nodiscard]] std::size_t steps() const { return times_.size(); }
+  /// Simulated time from the first to the last step, s.
+  [[nodiscard]] double duration() const { return last_.time - first_time_; }
+  /// Times that touching began.
+  [[nodiscard]] std::size_t contacts() const { return contacts_; }
+  /// Steps with touch.
+  [[nodiscard]] std::size_t touching() const { return touching_; }
+  /// Longest force, N.
+  [[nodiscard]] double largest_force() const { return largest_force_; }
+  /// Largest change of the force from one step to the next, N.
+  [[nodiscard]] double largest_jump() const { return largest_jump_; }
+  /// Integral of F . dh by trapezoids, J: positive = given to the hand.
+  [[nodiscard]] double energy() const { return energy_; }
+  /// Steps with each note, in the order of note_text().
+  [[nodiscard]] const std::array<std::size_t, kNotes>& notes() const { return notes_; }
+  /// By nearest rank. Zero without steps.
+  [[nodiscard]] StepTimes times() const;
+
+ private:
+  std::vector<double> times_;
+  TouchStep last_;
+  double first_time_ = 0;
+  std::size_t contacts_ = 0;
+  std::size_t touching_ = 0;
+  double largest_force_ = 0;
+  double largest_jump_ = 0;
+  double energy_ = 0;
+  std::array<std::size_t, kNotes> notes_{};
+};
+
+/// A note's short name, for data, and what it means and what to do, for people.
+struct NoteText {
+  const char* name;
+  const char* text;
+};
+[[nodiscard]] const NoteText& note_text(std::size_t note);
+
+}  // namespace palpate::app

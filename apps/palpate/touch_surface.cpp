@@ -1,0 +1,141 @@
+#include "apps/palpate/touch_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include "apps/palpate/errors.hpp"
+#include "apps/palpate/progress.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+FieldKind field_kind(const TouchOptions& options) {
+  if (options.field == "pointset") return FieldKind::pointset;
+  if (options.field == "metaball") return FieldKind::metaball;
+  if (options.field.empty() && options.preset == "paper") return FieldKind::metaball;
+  return FieldKind::balanced;
+}
+
+Kernel kernel(const TouchOptions& options) {
+  return options.kernel == "wendland" ? Kernel::wendland : Kernel::wyvill;
+}
+
+PrepareOptions prepare_options(const TouchOptions& options) {
+  PrepareOptions result;
+  result.voxel = options.voxel;
+  result.radius = options.radius;
+  result.minimum_radius = options.tool_radius / 0.3;
+  result.kernel = kernel(options);
+  result.paper = options.preset == "paper";
+  result.material_from_intensity = options.soft_stiffness.has_value();
+  if (options.one_sided && options.viewpoint.empty()) result.orientation = Orientation::outward;
+  if (!options.viewpoint.empty()) {
+    result.viewpoint = parse_point(options.viewpoint, "--viewpoint");
+    result.orientation = Orientation::viewpoint;
+  }
+  return result;
+}
+
+std::map<std::string, Eigen::Isometry3d> poses(const TouchOptions& options,
+                                               const std::vector<CloudArgument>& clouds) {
+  std::map<std::string, Eigen::Isometry3d> result;
+  for (const std::string& text : options.poses) {
+    const PoseArgument pose = parse_pose(text);
+    const bool known = std::ranges::any_of(
+        clouds, [&](const CloudArgument& cloud) { return cloud.name == pose.name; });
+    if (!known) {
+      std::string names;
+      for (const CloudArgument& cloud : clouds) names += fmt::format(" {}", cloud.name);
+      throw UsageError(
+          fmt::format("--pose: no cloud is named '{}'; the names are{}", pose.name, names));
+    }
+    if (!result.emplace(pose.name, pose.pose).second) {
+      throw UsageError(fmt::format("--pose: '{}' has two poses; give one", pose.name));
+    }
+  }
+  return result;
+}
+
+// The stiffness of the softest points as a share of the hardest ones'.
+double soft_factor(const TouchOptions& options) {
+  const double hard = options.stiffness.value_or(kStiffness);
+  if (*options.soft_stiffness > hard) {
+    throw UsageError(fmt::format("--soft-stiffness {} is above --stiffness {}; it must not be",
+                                 *options.soft_stiffness, hard));
+  }
+  return *options.soft_stiffness / hard;
+}
+
+void check_intensities(const LoadedCloud& loaded) {
+  if (!loaded.file.cloud.intensities.empty()) return;
+  throw Error(
+      fmt::format("--soft-stiffness needs a scalar for each point, but {} has no intensity column; "
+                  "leave the option out or give a file with one",
+                  loaded.argument.path));
+}
+
+TouchedCloud add(Scene& scene, const LoadedCloud& loaded, const SourceOptions& options) {
+  TouchedCloud result{loaded.argument,     loaded.file.format, loaded.file.declared,
+                      loaded.file.dropped, loaded.seconds,     0};
+  Progress progress(
+      fmt::format("preparing {} ({} points)", loaded.argument.name, loaded.file.cloud.size()));
+  if (loaded.file.cloud.size() > 1'000'000) progress.update(-1);
+  const auto start = std::chrono::steady_clock::now();
+  scene.add(loaded.argument.name, loaded.file.cloud, options);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  result.prepare_seconds = taken.count();
+  return result;
+}
+
+}  // namespace
+
+FieldOptions field_options(const TouchOptions& options) {
+  const FieldKind kind = field_kind(options);
+  FieldOptions result;
+  result.kind = kind;
+  if (options.preset == "paper") result = paper_field(kind);
+  if (!options.kernel.empty()) result.kernel = kernel(options);
+  if (options.gradient == "exact") result.gradient = GradientKind::exact;
+  if (options.gradient == "normal") result.gradient = GradientKind::normal;
+  if (options.gradient == "printed") result.gradient = GradientKind::printed;
+  if (options.threshold) result.threshold = *options.threshold;
+  result.tool_radius = options.tool_radius;
+  if (options.one_sided) result.two_sided = false;
+  return result;
+}
+
+ProxyOptions proxy_options(const TouchOptions& options, double stiffness) {
+  ProxyOptions result;
+  result.stiffness = stiffness;
+  result.friction.static_coefficient = std::max(options.friction_static, options.friction_dynamic);
+  result.friction.dynamic_coefficient = options.friction_dynamic;
+  result.friction.viscous = options.friction_viscous;
+  result.texture.amplitude = options.texture_amplitude;
+  result.texture.wavelength = options.texture_wavelength;
+  if (options.preset == "paper") result.method = ProxyMethod::single_step;
+  return result;
+}
+
+std::vector<TouchedCloud> fill(Scene& scene, const TouchOptions& options) {
+  const std::vector<CloudArgument> arguments = parse_clouds(options.load.clouds);
+  const std::map<std::string, Eigen::Isometry3d> placed = poses(options, arguments);
+  SourceOptions source;
+  source.prepare = prepare_options(options);
+  if (options.soft_stiffness) source.soft.stiffness_factor = soft_factor(options);
+  std::vector<TouchedCloud> clouds;
+  for (const CloudArgument& argument : arguments) {
+    const LoadedCloud loaded = load(argument, options.load);
+    if (options.soft_stiffness) check_intensities(loaded);
+    const auto pose = placed.find(argument.name);
+    source.T_world_sensor = pose == placed.end() ? Eigen::Isometry3d::Identity() : pose->second;
+    clouds.push_back(add(scene, loaded, source));
+  }
+  return clouds;
+}
+
+}  // namespace palpate::app

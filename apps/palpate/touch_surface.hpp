@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "apps/palpate/load.hpp"
+#include "apps/palpate/touch_options.hpp"
+#include "palpate/contact/proxy.hpp"
+#include "palpate/field/implicit.hpp"
+#include "palpate/scene/scene.hpp"
+
+namespace palpate::app {
+
+/// The paper's K and ours, N/m.
+inline constexpr double kStiffness = 500;
+
+/// The field that the command line asks for.
+[[nodiscard]] FieldOptions field_options(const TouchOptions& options);
+
+/// The proxy that it asks for, with a surface of `stiffness` N/m.
+[[nodiscard]] ProxyOptions proxy_options(const TouchOptions& options, double stiffness);
+
+/// What one cloud of a run is, for the report. Points themselves live in the scene.
+struct TouchedCloud {
+  CloudArgument argument;
+  std::string format;
+  std::size_t declared = 0;
+  std::size_t dropped = 0;
+  double read_seconds = 0;
+  double prepare_seconds = 0;  ///< wall time of everything between reading and touching
+};
+
+/// Reads every cloud, prepares it and puts it into `scene`.
+/// @throws UsageError when a pose names no cloud; Error as reading and preparing do.
+[[nodiscard]] std::vector<TouchedCloud> fill(Scene& scene, const TouchOptions& options);
+
+}  // namespace palpate::app
