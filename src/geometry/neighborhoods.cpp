@@ -65,18 +65,28 @@ std::vector<float> largest_in_cells(const CellGrid& grid, std::span<const float>
   return largest;
 }
 
+void Surroundings::push_back(const CellGrid::Cell& leaf, float reach) {
+  if (count_ == leaves_.size()) {
+    const std::size_t room = 2 * count_ + 8 * simd::kQueries;
+    for (auto& column : columns_) column.resize(room);
+    leaves_.resize(room);
+    runs_.resize(room + 1);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    columns_[axis][count_] = leaf.lower[static_cast<Eigen::Index>(axis)];
+    columns_[axis + 3][count_] = leaf.upper[static_cast<Eigen::Index>(axis)];
+  }
+  columns_[6][count_] = reach * reach;
+  leaves_[count_++] = {leaf.begin, leaf.end};
+}
+
 void Surroundings::find(const CellGrid& grid, const Block& block, float radius,
                         std::span<const float> reach_of_cells) {
-  for (auto* column :
-       {&lower_x_, &lower_y_, &lower_z_, &upper_x_, &upper_y_, &upper_z_, &squared_reach_}) {
-    column->clear();
-  }
-  leaves_.clear();
-  points_ = 0;
   const std::span<const CellGrid::Cell> cells = grid.cells();
   std::array<std::uint32_t, CellGrid::kMaxStack> stack;
   std::size_t open = 0;
   if (!cells.empty()) stack[open++] = 0;
+  count_ = 0;
   while (open > 0) {
     const std::uint32_t index = stack[--open];
     const CellGrid::Cell& cell = cells[index];
@@ -84,41 +94,22 @@ void Surroundings::find(const CellGrid& grid, const Block& block, float radius,
     const float reach = std::max(radius, own);
     if (squared_distance(cell, block.lower, block.upper) > reach * reach) continue;
     for (std::uint32_t c = cell.children; c-- > 0;) stack[open++] = cell.first_child + c;
-    if (cell.children != 0) continue;
-    lower_x_.push_back(cell.lower.x());
-    lower_y_.push_back(cell.lower.y());
-    lower_z_.push_back(cell.lower.z());
-    upper_x_.push_back(cell.upper.x());
-    upper_y_.push_back(cell.upper.y());
-    upper_z_.push_back(cell.upper.z());
-    squared_reach_.push_back(own * own);
-    leaves_.push_back({cell.begin, cell.end});
-    points_ += cell.size();
+    if (cell.children == 0) push_back(cell, own);
   }
 }
 
 std::span<const simd::Run> Surroundings::near(const Block& part, float radius) {
-  const float squared_radius = radius * radius;
-  const Eigen::Vector3f lower = part.lower;
-  const Eigen::Vector3f upper = part.upper;
-  near_.resize(leaves_.size());
-  for (std::size_t k = 0; k < near_.size(); ++k) {
-    const float x = gap(lower_x_[k], upper_x_[k], lower.x(), upper.x());
-    const float y = gap(lower_y_[k], upper_y_[k], lower.y(), upper.y());
-    const float z = gap(lower_z_[k], upper_z_[k], lower.z(), upper.z());
-    const float reach = std::max(squared_radius, squared_reach_[k]);
-    near_[k] = x * x + y * y + z * z <= reach ? 1 : 0;
-  }
-  runs_.clear();
-  for (std::size_t k = 0; k < near_.size(); ++k) {
-    if (near_[k] == 0) continue;
-    if (!runs_.empty() && runs_.back().end == leaves_[k].begin) {
-      runs_.back().end = leaves_[k].end;
-    } else {
-      runs_.push_back(leaves_[k]);
-    }
-  }
-  return runs_;
+  if (count_ == 0) return {};
+  const simd::Leaves leaves{
+      .lower = {columns_[0].data(), columns_[1].data(), columns_[2].data()},
+      .upper = {columns_[3].data(), columns_[4].data(), columns_[5].data()},
+      .squared_reach = columns_[6].data(),
+      .points = leaves_.data(),
+      .count = count_,
+  };
+  const std::size_t runs = simd::best_joins().near(leaves, part.lower.data(), part.upper.data(),
+                                                   radius * radius, runs_.data());
+  return std::span<const simd::Run>(runs_).subspan(1, runs);
 }
 
 }  // namespace palpate::detail

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -67,15 +68,15 @@ class Surroundings {
   /// order. No longer valid after the next call.
   [[nodiscard]] std::span<const simd::Run> near(const Block& part, float radius);
 
-  /// Points in all leaves found.
-  [[nodiscard]] std::size_t points() const { return points_; }
-
  private:
-  std::vector<float> lower_x_, lower_y_, lower_z_, upper_x_, upper_y_, upper_z_, squared_reach_;
-  std::vector<std::uint32_t> near_;
+  void push_back(const CellGrid::Cell& leaf, float reach);
+
+  static constexpr std::size_t kColumns = 7;
+
+  std::array<std::vector<float>, kColumns> columns_;  // lower x, y, z, upper x, y, z, squared reach
   std::vector<simd::Run> leaves_;
   std::vector<simd::Run> runs_;
-  std::size_t points_ = 0;
+  std::size_t count_ = 0;
 };
 
 inline constexpr std::uint32_t kBlockPoints = 256;

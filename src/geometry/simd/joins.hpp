@@ -37,9 +37,39 @@ using Row = float[kQueries];
 /// row) over them, d = neighbour - query.
 inline constexpr std::size_t kMoments = 10;
 
+/// Planes fitted to neighbourhoods. Eigenvalues in m^2; the normal, the eigenvector of the
+/// smallest, is a unit vector, or zero where undefined.
+struct Planes {
+  double normal_x[kQueries];
+  double normal_y[kQueries];
+  double normal_z[kQueries];
+  double smallest[kQueries];
+  double middle[kQueries];
+  double largest[kQueries];
+};
+
+/// Leaves' tight boxes side by side, how far from each its points are asked for, and their points.
+/// The columns are as long as `count` rounded up to kQueries.
+struct Leaves {
+  const float* lower[3];  ///< x, y, z, m
+  const float* upper[3];
+  const float* squared_reach;  ///< m^2
+  const Run* points;
+  std::size_t count;
+};
+
 struct JoinFunctions {
+  /// Finds the leaves whose box is within their own reach, or root of squared_radius, of the box
+  /// [lower, upper], and joins their points to runs. Leaves are in rising order. `runs` has room
+  /// for count + 1; the result is runs[1] ... runs[n], and n is returned.
+  std::size_t (*near)(const Leaves& leaves, const float* lower, const float* upper,
+                      float squared_radius, Run* runs);
+
   /// The moments of all candidates within squared_radii[query].
   void (*moments)(const Join& join, const float* squared_radii, Row* rows);
+
+  /// Least-squares planes from moments. Finite whenever these are.
+  void (*planes)(const Row* moments, Planes* planes);
 
   /// The four (eight) smallest squared distances, rising; infinity where there are fewer
   /// candidates. The second passes over candidates at distance zero.

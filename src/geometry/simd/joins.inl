@@ -10,6 +10,114 @@ namespace palpate::simd {
 namespace {
 
 template <std::size_t kLanes>
+struct PlaneFits {
+  static_assert(kQueries % kLanes == 0);
+  typedef double Doubles __attribute__((vector_size(kLanes * sizeof(double))));
+
+  struct Vector {
+    Doubles x, y, z;
+    Doubles dot(const Vector& v) const { return x * v.x + y * v.y + z * v.z; }
+    Vector cross(const Vector& v) const {
+      return {y * v.z - z * v.y, z * v.x - x * v.z, x * v.y - y * v.x};
+    }
+  };
+
+  struct Symmetric {
+    Doubles xx, xy, xz, yy, yz, zz;
+  };
+
+  static inline Doubles load(const float* from) {
+    double numbers[kLanes];
+    for (std::size_t l = 0; l < kLanes; ++l) numbers[l] = static_cast<double>(from[l]);
+    Doubles v;
+    std::memcpy(&v, numbers, sizeof v);
+    return v;
+  }
+  static inline void store(double* to, const Doubles& v) { std::memcpy(to, &v, sizeof v); }
+  static inline Doubles same(double value) { return value - Doubles{}; }
+  static inline Doubles greater(const Doubles& a, const Doubles& b) { return a < b ? b : a; }
+  static inline Doubles root(const Doubles& v) {
+    double numbers[kLanes];
+    store(numbers, v);
+    for (double& number : numbers) number = std::sqrt(number);
+    Doubles roots;
+    std::memcpy(&roots, numbers, sizeof roots);
+    return roots;
+  }
+
+  // Scaled to a trace of 1; `trace` is what it was.
+  static Symmetric covariance(const Row* moments, std::size_t q, Doubles& trace) {
+    const Doubles n = greater(load(moments[0] + q), same(1));
+    const Vector mean{load(moments[1] + q) / n, load(moments[2] + q) / n, load(moments[3] + q) / n};
+    Symmetric c{
+        load(moments[4] + q) / n - mean.x * mean.x, load(moments[5] + q) / n - mean.x * mean.y,
+        load(moments[6] + q) / n - mean.x * mean.z, load(moments[7] + q) / n - mean.y * mean.y,
+        load(moments[8] + q) / n - mean.y * mean.z, load(moments[9] + q) / n - mean.z * mean.z};
+    trace = greater(c.xx + c.yy + c.zz, same(0));
+    const Doubles scale = 1. / greater(trace, same(1e-300));
+    return {c.xx * scale, c.xy * scale, c.xz * scale, c.yy * scale, c.yz * scale, c.zz * scale};
+  }
+
+  // The smallest root of x^3 - x^2 + c x - d, the characteristic polynomial, whose roots are all
+  // real and not negative: Laguerre's method from zero rises to it and triples the digits each
+  // time.
+  static Doubles smallest_root(const Doubles& c, const Doubles& d) {
+    Doubles x{};
+    for (int i = 0; i < 5; ++i) {
+      const Doubles value = d - x * (c + x * (x - 1.));
+      const Doubles slope = greater(c + x * (3. * x - 2.), same(0));
+      const Doubles bend = value * (6. * x - 2.);
+      const Doubles radicand = greater(2. * (2. * slope * slope + 3. * bend), same(0));
+      const Doubles step = 3. * value / greater(slope + root(radicand), same(1e-30));
+      x = greater(x + step, same(0));
+    }
+    return x > 1. / 3 ? same(1. / 3) : x;
+  }
+
+  static inline Vector longer(const Vector& a, const Vector& b) {
+    const auto a_is = a.dot(a) >= b.dot(b);
+    return {a_is ? a.x : b.x, a_is ? a.y : b.y, a_is ? a.z : b.z};
+  }
+
+  // The direction that all rows of the singular matrix c - value are normal to: the longest of
+  // their cross products, or zero if the rows are parallel.
+  static Vector null_direction(const Symmetric& c, const Doubles& value) {
+    const Vector a{c.xx - value, c.xy, c.xz};
+    const Vector b{c.xy, c.yy - value, c.yz};
+    const Vector e{c.xz, c.yz, c.zz - value};
+    const Vector v = longer(longer(a.cross(b), b.cross(e)), e.cross(a));
+    const Doubles squared = v.dot(v);
+    const Doubles scale = 1. / root(greater(squared, same(1e-300)));
+    const Doubles defined = squared > 1e-24 ? scale : Doubles{};
+    return {v.x * defined, v.y * defined, v.z * defined};
+  }
+
+  static void fit(const Row* moments, Planes* planes) {
+    for (std::size_t q = 0; q < kQueries; q += kLanes) {
+      Doubles trace;
+      const Symmetric c = covariance(moments, q, trace);
+      const Doubles minors =
+          c.xx * c.yy - c.xy * c.xy + (c.xx * c.zz - c.xz * c.xz) + (c.yy * c.zz - c.yz * c.yz);
+      const Doubles determinant = c.xx * (c.yy * c.zz - c.yz * c.yz) -
+                                  c.xy * (c.xy * c.zz - c.yz * c.xz) +
+                                  c.xz * (c.xy * c.yz - c.yy * c.xz);
+      const Doubles smallest = smallest_root(minors, determinant);
+      // The other two from their sum and product.
+      const Doubles half_sum = 0.5 * (1. - smallest);
+      const Doubles product = minors - smallest * (1. - smallest);
+      const Doubles half_gap = root(greater(half_sum * half_sum - product, same(0)));
+      const Vector normal = null_direction(c, smallest);
+      store(planes->normal_x + q, normal.x);
+      store(planes->normal_y + q, normal.y);
+      store(planes->normal_z + q, normal.z);
+      store(planes->smallest + q, trace * smallest);
+      store(planes->middle + q, trace * greater(half_sum - half_gap, smallest));
+      store(planes->largest + q, trace * (half_sum + half_gap));
+    }
+  }
+};
+
+template <std::size_t kLanes>
 struct Joins {
   static_assert(kQueries % kLanes == 0);
   typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
@@ -65,6 +173,44 @@ struct Joins {
       const Floats sums[kMoments] = {n, x, y, z, xx, xy, xz, yy, yz, zz};
       for (std::size_t k = 0; k < kMoments; ++k) store(rows[k] + q, sums[k]);
     }
+  }
+
+  static inline Floats gap(float lower_a, float upper_a, const Floats& lower, const Floats& upper) {
+    const Floats below = lower - upper_a;
+    const Floats above = lower_a - upper;
+    const Floats outside = below < above ? above : below;
+    return keep(outside > 0.f, outside);
+  }
+
+  static std::size_t near(const Leaves& leaves, const float* lower, const float* upper,
+                          float squared_radius, Run* runs) {
+    constexpr std::uint32_t kNowhere = ~0u;
+    Run open{kNowhere, kNowhere};
+    std::size_t count = 0;
+    for (std::size_t first = 0; first < leaves.count; first += kLanes) {
+      Floats squared{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Floats d = gap(lower[axis], upper[axis], load(leaves.lower[axis] + first),
+                             load(leaves.upper[axis] + first));
+        squared += d * d;
+      }
+      const Mask mask =
+          (squared <= squared_radius) | (squared <= load(leaves.squared_reach + first));
+      std::int32_t hits[kLanes];
+      std::memcpy(hits, &mask, sizeof mask);
+      // No branches: whether a leaf is near cannot be foretold.
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        const Run& leaf = leaves.points[first + l];
+        const bool hit = hits[l] != 0 && first + l < leaves.count;
+        const bool fresh = hit && leaf.begin != open.end;
+        runs[count] = open;
+        count += fresh ? 1 : 0;
+        open.begin = fresh ? leaf.begin : open.begin;
+        open.end = hit ? leaf.end : open.end;
+      }
+    }
+    runs[count] = open;
+    return count;
   }
 
   // Squared distances are never negative: as bit patterns they have the same order, and integers
@@ -133,8 +279,14 @@ struct Joins {
   }
 
   static constexpr JoinFunctions functions() {
-    return {&moments,      &nearest<4, false>, &nearest<8, true>,
-            &sums<Wyvill>, &sums<Wendland>,    &pairs};
+    return {&near,
+            &moments,
+            &PlaneFits<kLanes / 2>::fit,
+            &nearest<4, false>,
+            &nearest<8, true>,
+            &sums<Wyvill>,
+            &sums<Wendland>,
+            &pairs};
   }
 };
 
