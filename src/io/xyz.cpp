@@ -107,6 +107,7 @@ class XyzReader {
     std::vector<std::array<double, kMostTextColumns>> rows;
     std::size_t count = 0;
     while (rows.size() < kSample && next_cells()) {
+      if (count == 0) refuse_decimal_commas();
       if (count == 0) count = cells_.count;
       if (cells_.count != count) break;  // told with its line when it is read
       rows.emplace_back();
@@ -122,11 +123,7 @@ class XyzReader {
   bool read_row(Row& row) {
     if (!next_cells()) return false;
     if (cells_.count != columns_.count || cells_.too_many) {
-      if (has_decimal_commas(line_)) {
-        fail_at_line(input_, line_begin_, "commas inside numbers",
-                     "Write decimal points: sed "
-                     "'s/,/./g' does so where semicolons separate the columns");
-      }
+      refuse_decimal_commas();
       fail_at_line(input_, line_begin_,
                    fmt::format("{} columns where the first line has {}: \"{}\"", cells_.count,
                                columns_.count, excerpt(line_)),
@@ -136,6 +133,12 @@ class XyzReader {
       if (columns_.roles[i]) row[index_of(*columns_.roles[i])] = cell_number(cells_.cells[i]);
     }
     return true;
+  }
+
+  void refuse_decimal_commas() const {
+    if (!has_decimal_commas(line_)) return;
+    fail_at_line(input_, line_begin_, "commas inside numbers",
+                 "Write decimal points: sed 's/,/./g' does so where semicolons separate columns");
   }
 
   // An empty cell is a missing value.

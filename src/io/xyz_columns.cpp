@@ -4,6 +4,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "io/text_scanner.hpp"
+
 namespace palpate::io {
 namespace {
 
@@ -15,7 +17,7 @@ std::string_view bare_name(std::string_view name) {
   while (!name.empty() && kMarks.find(name.front()) != std::string_view::npos) {
     name.remove_prefix(1);
   }
-  return name.substr(0, name.find_first_of("[(\"'"));
+  return trim(name.substr(0, name.find_first_of("[(\"'")));
 }
 
 bool are_unit(const Rows& rows, std::size_t first) {

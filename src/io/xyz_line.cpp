@@ -1,37 +1,42 @@
 #include "io/xyz_line.hpp"
 
+#include <algorithm>
+
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {
 namespace {
 
-constexpr bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r';
-}
-constexpr bool is_mark(char c) {
-  return c == ',' || c == ';';
-}
+constexpr std::string_view kMarks = ",;";
 
-std::size_t skip_blanks(std::string_view line, std::size_t i) {
-  while (i < line.size() && is_blank(line[i])) ++i;
-  return i;
+// The next cell and the rest of the line behind it and its separator.
+std::string_view take_cell(std::string_view& rest, bool marked) {
+  if (!marked) {
+    const std::string_view word = take_word(rest);
+    rest = trim(rest);
+    return word;
+  }
+  const std::size_t end = std::min(rest.find_first_of(kMarks), rest.size());
+  const std::string_view cell = trim(rest.substr(0, end));
+  rest.remove_prefix(end);
+  return cell;
 }
 
 }  // namespace
 
 TextCells split_cells(std::string_view line) {
   TextCells result;
-  std::size_t i = skip_blanks(line, 0);
-  while (i < line.size()) {
-    const std::size_t begin = i;
-    while (i < line.size() && !is_blank(line[i]) && !is_mark(line[i])) ++i;
+  std::string_view rest = trim(line);
+  const bool marked = rest.find_first_of(kMarks) != std::string_view::npos;
+  bool more = !rest.empty();
+  while (more) {
     if (result.count == kMostTextColumns) {
       result.too_many = true;
-      return result;
+      break;
     }
-    result.cells[result.count++] = line.substr(begin, i - begin);
-    i = skip_blanks(line, i);
-    if (i < line.size() && is_mark(line[i])) i = skip_blanks(line, i + 1);
+    result.cells[result.count++] = take_cell(rest, marked);
+    more = !rest.empty();
+    if (more && marked) rest.remove_prefix(1);
   }
   return result;
 }

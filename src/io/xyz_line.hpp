@@ -16,8 +16,8 @@ struct TextCells {
   bool too_many = false;
 };
 
-/// Cuts at blanks, tabs, commas and semicolons; several blanks count as one, and so do a comma and
-/// the blanks beside it. Two commas in a row enclose an empty cell.
+/// Cuts at commas and semicolons where the line has any, blanks around the cells left out; two in
+/// a row enclose an empty cell. Otherwise cuts at blanks and tabs, several counting as one.
 [[nodiscard]] TextCells split_cells(std::string_view line);
 
 /// Blank, or a comment: starts with #, // or %.

@@ -14,10 +14,10 @@ namespace palpate {
 
 struct ReadOptions {
   double scale = 1;  ///< multiplies the file's coordinates to give metres; depths too
-  std::optional<Pinhole> intrinsics;  ///< of a depth image; needed for one
-  double depth_unit = 1e-3;           ///< metres a step of a depth image
+  std::optional<Pinhole> intrinsics{};  ///< of a depth image; needed for one
+  double depth_unit = 1e-3;             ///< metres a step of a depth image
   /// Called with 0 ... 1 now and then, on this thread; may throw to give up.
-  std::function<void(double)> progress;
+  std::function<void(double)> progress{};
 };
 
 /// A cloud and what its file said of itself.

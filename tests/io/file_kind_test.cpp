@@ -1,0 +1,51 @@
+#include "io/file_kind.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/reading.hpp"
+
+namespace palpate {
+namespace {
+
+using testing::HasSubstr;
+
+io::FileKind kind(std::string_view bytes, const std::string& name = "file") {
+  const ReadOptions options;
+  return io::kind_of({std::as_bytes(std::span(bytes)), name, options});
+}
+
+TEST(FileKind, GoesByTheBytesBeforeTheName) {
+  EXPECT_EQ(kind("ply\nformat", "a.pcd"), io::FileKind::kPly);
+  EXPECT_EQ(kind("LASF", "a.txt"), io::FileKind::kLas);
+  EXPECT_EQ(kind("# .PCD v0.7\n", "a.xyz"), io::FileKind::kPcd);
+  EXPECT_EQ(kind("# a comment\nVERSION 0.7\n"), io::FileKind::kPcd);
+  EXPECT_EQ(kind("v 1 2 3\n", "a.txt"), io::FileKind::kObj);
+  EXPECT_EQ(kind("1 2 3\n", "a.obj"), io::FileKind::kObj);
+  EXPECT_EQ(kind("1 2 3\n", "a.ply"), io::FileKind::kText);
+}
+
+TEST(FileKind, SaysWhatToDoAboutKindsThatAreNotRead) {
+  using namespace std::string_view_literals;
+  EXPECT_THAT(refusal("\xfd"
+                      "7zXZ\0data"sv),
+              HasSubstr("xz -dk"));
+  EXPECT_THAT(refusal("(\xb5/\xfd"), HasSubstr("zstd -d"));
+  EXPECT_THAT(refusal("PK\x03\x04zip"), HasSubstr("ZIP archive"));
+  EXPECT_THAT(refusal("\xff\xd8\xff\xe0 JFIF"), HasSubstr("a JPEG picture"));
+  EXPECT_THAT(refusal("ASTM-E57"), HasSubstr("CloudCompare"));
+  EXPECT_THAT(refusal("solid cube\n"), HasSubstr("STL"));
+  EXPECT_THAT(refusal(std::string(84, '\0'), "a.stl"), HasSubstr("STL"));
+  EXPECT_THAT(refusal("{\"width\": 640}"), HasSubstr("JSON"));
+  EXPECT_THAT(refusal("<!DOCTYPE html>"), HasSubstr("web page"));
+  EXPECT_THAT(refusal("version https://git-lfs.github.com/spec/v1\n"), HasSubstr("git lfs pull"));
+}
+
+TEST(FileKind, ShowsTheFirstBytesOfWhatItDoesNotKnow) {
+  EXPECT_THAT(refusal(std::string("\x01\x02\x00\xff", 4), "a.bin"),
+              HasSubstr("a.bin: no known kind of file (it starts with 01 02 00 ff)"));
+  EXPECT_THAT(refusal(""), HasSubstr("the file is empty"));
+}
+
+}  // namespace
+}  // namespace palpate

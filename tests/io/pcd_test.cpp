@@ -1,0 +1,189 @@
+#include "io/pcd.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/reading.hpp"
+
+namespace palpate {
+namespace {
+
+using testing::HasSubstr;
+
+struct Head {
+  std::string fields = "x y z";
+  std::string sizes = "4 4 4";
+  std::string types = "F F F";
+  std::string counts = "1 1 1";
+  std::string width = "2";
+  std::string height = "1";
+  std::string viewpoint = "0 0 0 1 0 0 0";
+  std::string points = "2";
+  std::string data = "ascii";
+
+  [[nodiscard]] std::string text() const {
+    return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " +
+           sizes + "\nTYPE " + types + "\nCOUNT " + counts + "\nWIDTH " + width + "\nHEIGHT " +
+           height + "\nVIEWPOINT " + viewpoint + "\nPOINTS " + points + "\nDATA " + data + "\n";
+  }
+};
+
+Head rich(std::string data) {
+  Head head;
+  head.fields = "_ intensity x y z rgba normal_x normal_y normal_z label";
+  head.sizes = "1 2 8 4 4 4 4 4 4 8";
+  head.types = "U U F F F U F F F I";
+  head.counts = "3 1 1 1 1 1 1 1 1 2";
+  head.data = std::move(data);
+  return head;
+}
+
+struct RichPoint {
+  std::uint16_t intensity;
+  double x;
+  float y;
+  float z;
+  std::uint32_t rgba;
+};
+constexpr RichPoint kRich[] = {{700, 0.5, 1, 2, 0xff0a141e}, {800, 0.75, 3, 4, 0x01020304}};
+
+std::string rich_rows() {
+  std::string rows;
+  for (const RichPoint& p : kRich) {
+    rows += "abc";
+    append(rows, p.intensity);
+    append(rows, p.x);
+    append(rows, p.y);
+    append(rows, p.z);
+    append(rows, p.rgba);
+    for (const float n : {0.0F, 0.0F, 1.0F}) append(rows, n);
+    for (const std::int64_t label : {1, 2}) append(rows, label);
+  }
+  return rows;
+}
+
+// The same, field by field, as literals of LZF.
+std::string rich_compressed() {
+  std::string columns;
+  for (int i = 0; i < 2; ++i) columns += "abc";
+  for (const RichPoint& p : kRich) append(columns, p.intensity);
+  for (const RichPoint& p : kRich) append(columns, p.x);
+  for (const RichPoint& p : kRich) append(columns, p.y);
+  for (const RichPoint& p : kRich) append(columns, p.z);
+  for (const RichPoint& p : kRich) append(columns, p.rgba);
+  for (const float n : {0.0F, 0.0F, 0.0F, 0.0F, 1.0F, 1.0F}) append(columns, n);
+  for (const std::int64_t label : {1, 2, 1, 2}) append(columns, label);
+  std::string packed;
+  for (std::size_t i = 0; i < columns.size(); i += 32) {
+    const std::string run = columns.substr(i, 32);
+    packed += static_cast<char>(run.size() - 1) + run;
+  }
+  std::string data;
+  append(data, static_cast<std::uint32_t>(packed.size()));
+  append(data, static_cast<std::uint32_t>(columns.size()));
+  return data + packed;
+}
+
+void expect_rich(const CloudFile& file) {
+  ASSERT_EQ(file.cloud.size(), 2u);
+  EXPECT_EQ(file.cloud.positions[1], Eigen::Vector3f(0.75F, 3, 4));
+  EXPECT_EQ(file.cloud.colors[0], (std::array<std::uint8_t, 3>{10, 20, 30}));
+  EXPECT_EQ(file.cloud.colors[1], (std::array<std::uint8_t, 3>{2, 3, 4}));
+  EXPECT_EQ(file.cloud.normals[1], Eigen::Vector3f(0, 0, 1));
+  EXPECT_EQ(file.cloud.intensities, (std::vector<float>{700, 800}));
+}
+
+TEST(Pcd, ReadsAsciiWithNan) {
+  const CloudFile file = read_text(Head{}.text() + "1 2 3\nnan nan nan\n");
+  EXPECT_EQ(file.format, "PCD, ascii");
+  EXPECT_EQ(first_point(file), Eigen::Vector3f(1, 2, 3));
+  EXPECT_EQ(file.declared, 2u);
+  EXPECT_EQ(file.dropped, 1u);
+  EXPECT_EQ(file.width, 0u);
+  EXPECT_FALSE(file.cloud.viewpoint);
+}
+
+TEST(Pcd, ReadsBinaryAndCompressedAlike) {
+  expect_rich(read_text(rich("binary").text() + rich_rows()));
+  expect_rich(read_text(rich("binary_compressed").text() + rich_compressed()));
+}
+
+TEST(Pcd, ReadsPackedColoursInText) {
+  Head head;
+  head.fields += " rgb";
+  head.sizes += " 4";
+  head.counts += " 1";
+  head.types = "F F F U";
+  EXPECT_EQ(read_text(head.text() + "0 0 0 660510\n0 0 1 4278190335\n").cloud.colors[0],
+            (std::array<std::uint8_t, 3>{10, 20, 30}));
+  head.types = "F F F F";  // the float whose bits are 0x0a141e
+  EXPECT_EQ(read_text(head.text() + "0 0 0 9.255716e-40\n0 0 1 nan\n").cloud.colors,
+            (std::vector<std::array<std::uint8_t, 3>>{{10, 20, 30}, {0, 0, 0}}));
+}
+
+TEST(Pcd, KeepsTheViewpointWhenOrganisedOrSet) {
+  Head head{.viewpoint = "1 2 3 1 0 0 0"};
+  const std::string rows = "0 0 1\n0 1 1\n";
+  EXPECT_EQ(read_text(head.text() + rows, "c", {.scale = 2}).cloud.viewpoint,
+            Eigen::Vector3d(2, 4, 6));
+  head.viewpoint = "0 0 0 0 1 0 0";  // what camera drivers write
+  EXPECT_EQ(read_text(head.text() + rows).cloud.viewpoint, Eigen::Vector3d(0, 0, 0));
+  head.viewpoint = "nan 0 0 1 0 0 0";
+  EXPECT_FALSE(read_text(head.text() + rows).cloud.viewpoint);
+  const CloudFile grid = read_text(Head{.width = "1", .height = "2"}.text() + rows);
+  EXPECT_EQ(grid.cloud.viewpoint, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(grid.width, 1u);
+  EXPECT_EQ(grid.height, 2u);
+}
+
+TEST(Pcd, ReadsOldHeadersWithoutCountOrWidth) {
+  EXPECT_EQ(read_text("COLUMNS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n")
+                .cloud.size(),
+            1u);
+  EXPECT_EQ(read_text("VERSION .5\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\n"
+                      "DATA ascii\n1 2 3\n")
+                .cloud.size(),
+            1u);
+}
+
+TEST(Pcd, SaysHowManyPointsOfACutFileAreThere) {
+  EXPECT_THAT(refusal(Head{}.text() + "1 2 3\n4 5"), HasSubstr("after 1 of 2 points"));
+  std::string binary = Head{.data = "binary"}.text();
+  for (int i = 0; i < 5; ++i) append<float>(binary, 1.0F);
+  EXPECT_THAT(refusal(binary), HasSubstr("after 1 of 2 points"));
+  EXPECT_THAT(refusal(binary), HasSubstr("WIDTH 1, HEIGHT 1 and POINTS 1"));
+  const std::string packed = rich("binary_compressed").text() + rich_compressed();
+  EXPECT_THAT(refusal(packed.substr(0, packed.size() - 1)),
+              HasSubstr("compressed bytes announced"));
+}
+
+TEST(Pcd, RefusesHostileCounts) {
+  const Head most{.width = "18446744073709551615", .points = "18446744073709551615"};
+  EXPECT_THAT(refusal(most.text() + "1 2 3\n"), HasSubstr("after 1 of 18446744073709551615"));
+  const Head overflow{.width = "4294967296", .height = "4294967296", .points = "0"};
+  EXPECT_THAT(refusal(overflow.text() + "1 2 3\n"), HasSubstr("is not POINTS"));
+  Head wide;
+  wide.counts = "1 1 99999999999";
+  EXPECT_THAT(refusal(wide.text()), HasSubstr("no sensible COUNT"));
+  Head bomb{.width = "300000000", .points = "300000000", .data = "binary_compressed"};
+  std::string data = bomb.text();
+  append<std::uint32_t>(data, 2);
+  append<std::uint32_t>(data, 3600000000U);
+  EXPECT_THAT(refusal(data + "ab"), HasSubstr("compressed bytes announced"));
+}
+
+TEST(Pcd, SaysWhatIsWrongInAHeader) {
+  EXPECT_THAT(refusal(Head{.points = "3"}.text()), HasSubstr("is not POINTS 3"));
+  EXPECT_THAT(refusal(Head{.types = "F F G"}.text()), HasSubstr("field \"z\" has type \"G\""));
+  EXPECT_THAT(refusal(Head{.sizes = "4 4 3"}.text()), HasSubstr("of 3 bytes"));
+  EXPECT_THAT(refusal(Head{.types = "F F"}.text()), HasSubstr("another number"));
+  EXPECT_THAT(refusal(Head{.fields = "x y w"}.text()), HasSubstr("lack x, y or z"));
+  EXPECT_THAT(refusal(Head{.viewpoint = "0 0 0"}.text()), HasSubstr("line 9: VIEWPOINT"));
+  EXPECT_THAT(refusal(Head{.data = "zip"}.text()), HasSubstr("line 11: DATA"));
+  EXPECT_THAT(refusal(Head{.width = "two"}.text()), HasSubstr("line 7"));
+  EXPECT_THAT(refusal("# .PCD v0.7\nVERSION 0.7\n"), HasSubstr("no DATA line"));
+  EXPECT_THAT(refusal("# .PCD v0.7\nHELLO\n"), HasSubstr("unknown word \"HELLO\""));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,161 @@
+#include "io/ply.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/reading.hpp"
+
+namespace palpate {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::string_view kXyz = "property float x\nproperty float y\nproperty float z\n";
+
+std::string header(std::string_view format, std::size_t count, std::string_view properties) {
+  return "ply\nformat " + std::string(format) + " 1.0\nelement vertex " + std::to_string(count) +
+         "\n" + std::string(properties) + "end_header\n";
+}
+
+std::string rich_rows(std::endian order) {
+  std::string rows;
+  for (const double x : {0.125, 637291.5}) {
+    append<std::uint8_t>(rows, 10, order);  // blue
+    append<double>(rows, x, order);
+    append<std::uint8_t>(rows, 2, order);  // a list of two
+    append<std::int16_t>(rows, 7, order);
+    append<std::int16_t>(rows, 8, order);
+    append<std::int32_t>(rows, 851210, order);  // y
+    append<float>(rows, 1.5F, order);           // z
+    append<float>(rows, 3.0F, order);           // nx ny nz
+    append<float>(rows, 0.0F, order);
+    append<float>(rows, 4.0F, order);
+    append<std::uint8_t>(rows, 200, order);  // red
+    append<std::uint8_t>(rows, 100, order);  // green
+    append<std::uint16_t>(rows, 513, order);
+  }
+  return rows;
+}
+
+constexpr std::string_view kRich =
+    "property uchar blue\nproperty double x\nproperty list uchar short more\nproperty int32 y\n"
+    "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+    "property uint8 red\nproperty uchar green\nproperty ushort quality\n";
+
+void expect_rich(const CloudFile& file) {
+  ASSERT_EQ(file.cloud.size(), 2u);
+  EXPECT_NEAR(file.cloud.point(0).x(), 0.125, 0.05);
+  EXPECT_NEAR(file.cloud.point(1).x(), 637291.5, 0.05);
+  EXPECT_NEAR(file.cloud.point(1).y(), 851210, 0.05);
+  EXPECT_EQ(file.cloud.normals[0], Eigen::Vector3f(0.6F, 0, 0.8F));
+  EXPECT_EQ(file.cloud.colors[1], (std::array<std::uint8_t, 3>{200, 100, 10}));
+  EXPECT_EQ(file.cloud.intensities[0], 513);
+}
+
+TEST(Ply, ReadsAsciiAndSkipsOtherElements) {
+  const CloudFile file = read_text(
+      "ply\nformat ascii 1.0\ncomment hello\nobj_info num_cols 512\n"
+      "element edge 2\nproperty list uchar int ends\nproperty float weight\n"
+      "element vertex 2\n" +
+      std::string(kXyz) +
+      "property float confidence\n"
+      "property float intensity\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "end_header\n2 0 1 0.5\n0 9\n0.1 0.2 0.3 1 0.7\n-1e-2 +2 3 1 0.8\n3 0 1 0\n");
+  EXPECT_EQ(file.format, "PLY, ascii");
+  ASSERT_EQ(file.cloud.size(), 2u);
+  EXPECT_EQ(file.cloud.positions[0], Eigen::Vector3f(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(file.cloud.positions[1], Eigen::Vector3f(-0.01F, 2, 3));
+  EXPECT_EQ(file.cloud.intensities[1], 0.8F);
+  EXPECT_EQ(file.cloud.origin, Eigen::Vector3d::Zero());
+}
+
+TEST(Ply, ReadsBothByteOrdersWithPropertiesInAnyOrder) {
+  expect_rich(read_text(header("binary_little_endian", 2, kRich) + rich_rows(std::endian::little)));
+  expect_rich(read_text(header("binary_big_endian", 2, kRich) + rich_rows(std::endian::big)));
+}
+
+TEST(Ply, ReadsWindowsAndOldMacintoshLineEnds) {
+  const std::string body = header("ascii", 1, kXyz) + "1 2 3\n";
+  for (const std::string_view end : {"\r\n", "\r"}) {
+    std::string text;
+    for (const char c : body) c == '\n' ? text += end : text += c;
+    EXPECT_EQ(first_point(read_text(text)), Eigen::Vector3f(1, 2, 3));
+  }
+}
+
+TEST(Ply, BringsColoursOfEveryScaleToBytes) {
+  const auto color = [](std::string_view type, std::string_view row) {
+    std::string properties{kXyz};
+    for (const std::string_view name : {"red", "green", "blue"}) {
+      properties += "property " + std::string(type) + " " + std::string(name) + "\n";
+    }
+    return read_text(header("ascii", 1, properties) + "0 0 0 " + std::string(row)).cloud.colors[0];
+  };
+  using Color = std::array<std::uint8_t, 3>;
+  EXPECT_EQ(color("uchar", "0 1 255\n"), (Color{0, 1, 255}));
+  EXPECT_EQ(color("float", "0 0.5 1\n"), (Color{0, 128, 255}));
+  EXPECT_EQ(color("float", "0 1 255\n"), (Color{0, 1, 255}));
+  EXPECT_EQ(color("ushort", "0 257 65535\n"), (Color{0, 1, 255}));
+  EXPECT_EQ(color("float", "nan -1 1e300\n"), (Color{0, 0, 0}));
+}
+
+TEST(Ply, DropsAndCountsPointsThatAreNotFinite) {
+  const CloudFile file =
+      read_text(header("ascii", 4, kXyz) + "nan 0 0\n0 inf 0\n1 2 3\n1e400 0 0\n");
+  EXPECT_EQ(file.cloud.size(), 1u);
+  EXPECT_EQ(file.declared, 4u);
+  EXPECT_EQ(file.dropped, 3u);
+  EXPECT_THAT(refusal(header("ascii", 1, kXyz) + "nan 0 0\n"), HasSubstr("none of the 1 points"));
+}
+
+TEST(Ply, SaysWhereAFileIsCutAndHowManyPointsAreThere) {
+  const std::string ascii = header("ascii", 3, kXyz) + "0 0 0\n1 1 1\n2 2";
+  EXPECT_THAT(refusal(ascii, "a.ply"), HasSubstr("a.ply, byte"));
+  EXPECT_THAT(refusal(ascii), HasSubstr("ends after 2 of 3 rows"));
+  EXPECT_THAT(refusal(ascii), HasSubstr("\"element vertex 2\""));
+  std::string binary = header("binary_little_endian", 1000, kXyz);
+  for (int i = 0; i < 7; ++i) append<float>(binary, 1.0F);
+  EXPECT_THAT(refusal(binary), HasSubstr("ends after 2 of 1000 rows"));
+}
+
+TEST(Ply, RefusesCountsThatTheBytesCannotHoldWithoutAskingForMemory) {
+  const std::string most = "18446744073709551615";
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex " + most + "\n" + std::string(kXyz) +
+                      "end_header\n1 2 3\n"),
+              HasSubstr("ends after 1 of " + most));
+  EXPECT_THAT(refusal("ply\nformat binary_little_endian 1.0\nelement empty " + most +
+                      "\nelement vertex 1\n" + std::string(kXyz) + "end_header\n"),
+              HasSubstr("ends after 0 of 1 rows"));
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement face 1\nproperty list int int v\n"
+                      "element vertex 1\n" +
+                      std::string(kXyz) + "end_header\n-3 1 2 3\n"),
+              HasSubstr("a list of -3 items"));
+}
+
+TEST(Ply, NamesTheLineOfWhatIsWrong) {
+  EXPECT_THAT(refusal(header("ascii", 2, kXyz) + "0 0 0\n1 zwei 1\n"),
+              testing::AllOf(HasSubstr("line 9"), HasSubstr("\"zwei\" is not a number")));
+  EXPECT_THAT(refusal("ply\nformat utf8 1.0\n"), HasSubstr("line 2: unknown PLY format \"utf8\""));
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex -3\n"), HasSubstr("line 3"));
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\nproperty float x\n"),
+              HasSubstr("before any element"));
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n"),
+              HasSubstr("unknown type \"half\""));
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int x\n"),
+              HasSubstr("no whole number"));
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 1\n"), HasSubstr("no end_header"));
+  EXPECT_THAT(refusal("ply\nelement vertex 1\nend_header\n"), HasSubstr("no format line"));
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\nhello\n"), HasSubstr("unknown word \"hello\""));
+  EXPECT_THAT(refusal(header("ascii", 1, "property float x\nproperty float y\n") + "1 2\n"),
+              HasSubstr("x, y and z"));
+  EXPECT_THAT(refusal(header("ascii", 0, kXyz)), HasSubstr("holds no points"));
+}
+
+TEST(Ply, ManyColumnsAreRefused) {
+  std::string text = "ply\nformat ascii 1.0\n";
+  for (int i = 0; i < 5000; ++i) text += "element e" + std::to_string(i) + " 0\n";
+  EXPECT_THAT(refusal(text), HasSubstr("more than 4096"));
+}
+
+}  // namespace
+}  // namespace palpate

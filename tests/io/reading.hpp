@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "palpate/base/error.hpp"
+#include "palpate/io/read_cloud.hpp"
+
+namespace palpate {
+
+inline CloudFile read_text(std::string_view bytes, const std::string& name = "cloud",
+                           const ReadOptions& options = {}) {
+  return read_cloud_bytes(std::as_bytes(std::span(bytes)), name, options);
+}
+
+/// What the reader says to bytes that it refuses; "no error" if it takes them.
+inline std::string refusal(std::string_view bytes, const std::string& name = "cloud",
+                           const ReadOptions& options = {}) {
+  try {
+    (void)read_text(bytes, name, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// The first point; the origin of a cloud of one point is that point.
+inline Eigen::Vector3f first_point(const CloudFile& file) {
+  return file.cloud.point(0).cast<float>();
+}
+
+template <class T>
+void append(std::string& out, T value, std::endian order = std::endian::little) {
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), &value, sizeof(T));
+  if (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
+  out.append(bytes.data(), bytes.size());
+}
+
+/// Writes a number over the bytes from `offset` on.
+template <class T>
+void overwrite(std::string& out, std::size_t offset, T value) {
+  std::string bytes;
+  append(bytes, value);
+  out.replace(offset, bytes.size(), bytes);
+}
+
+}  // namespace palpate
