@@ -56,11 +56,11 @@ double spacing_of(std::size_t count) {
   return kRadiusOfSphere * std::sqrt(4 * M_PI / static_cast<double>(count));
 }
 
-/// Places that a proxy visits: a path along the surface, 0.1 mm a step.
+/// Where a proxy asks: along the surface at 10 cm/s, four evaluations in a step of 1 ms.
 std::vector<Vector3d> path() {
   std::vector<Vector3d> places;
-  for (int k = 0; k < 1000; ++k) {
-    const double a = 1e-3 * k;
+  for (int k = 0; k < 4000; ++k) {
+    const double a = 0.25e-3 * k;
     places.push_back(kRadiusOfSphere * Vector3d(std::cos(a), std::sin(a), 0));
   }
   return places;
@@ -103,33 +103,65 @@ SurfacePoints surface_points(std::size_t count) {
   points.radii.assign(count, static_cast<float>(2.5 * spacing_of(count)));
   points.density_weights.assign(count, 1.0f);
   points.confidences.assign(count, 1.0f);
+  for (const auto& p : points.grid.points()) points.normals.push_back(p.normalized());
   finish(points);
   return points;
 }
 
-/// `gather_always`: search in every evaluation; else once and while the patch is valid, as a field
-/// does it.
-void palpate_sum(benchmark::State& state, bool gather_always) {
-  const auto count = static_cast<std::size_t>(state.range(0));
-  const SurfacePoints points = surface_points(count);
-  const std::vector<ActiveLayer> layers{{&points}};
-  const ImplicitSurface surface{
-      FieldOptions{.kind = FieldKind::metaball, .threshold = 0.5, .raw_weights = true}};
-  Patch patch(2048);
-  const double radius = 2.5 * spacing_of(count);
+/// A patch as a field keeps it: gathered anew when the path has left it.
+class Walk {
+ public:
+  explicit Walk(std::size_t count)
+      : points_(surface_points(count)), margin_(0.35 * 2.5 * spacing_of(count)) {}
+
+  const Patch& at(const Vector3d& x) {
+    if (!patch_.covers({x, 0})) {
+      patch_.gather(layers_, 1, x, margin_, true);
+      ++gathers_;
+    }
+    return patch_;
+  }
+
+  void report(benchmark::State& state) const {
+    state.counters["patch"] = static_cast<double>(patch_.points());
+    state.counters["gathers"] = gathers_ / static_cast<double>(state.iterations());
+  }
+
+ private:
+  SurfacePoints points_;
+  std::vector<ActiveLayer> layers_{{&points_}};
+  Patch patch_{2048};
+  double margin_;
+  double gathers_ = 0;
+};
+
+/// The sum and its gradient, as nanoflann_sum has them.
+void palpate_sum(benchmark::State& state) {
+  Walk walk(static_cast<std::size_t>(state.range(0)));
   const auto places = path();
   std::size_t k = 0;
-  double gathers = 0;
+  simd::Sums sums;
   for (auto _ : state) {
     const Vector3d& x = places[k++ % places.size()];
-    if (gather_always || !patch.covers({x, 0})) {
-      patch.gather(layers, 1, x, gather_always ? 0 : 0.5 * radius, true);
-      ++gathers;
-    }
-    benchmark::DoNotOptimize(evaluate(surface, patch, x, 1));
+    const Patch& patch = walk.at(x);
+    const Vector3d local = x - patch.center();
+    simd::best().weights(patch.columns(), false, local.data(), sums);
+    benchmark::DoNotOptimize(sums);
   }
-  state.counters["patch"] = static_cast<double>(patch.points());
-  state.counters["gathers"] = gathers / static_cast<double>(state.iterations());
+  walk.report(state);
+}
+
+/// A whole sample of a field.
+void palpate_sample(benchmark::State& state, FieldKind kind) {
+  Walk walk(static_cast<std::size_t>(state.range(0)));
+  const ImplicitSurface surface{FieldOptions{.kind = kind}};
+  const auto places = path();
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Vector3d& x = places[k++ % places.size()];
+    benchmark::DoNotOptimize(evaluate(surface, walk.at(x), x, 1));
+  }
+  walk.report(state);
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {
@@ -137,8 +169,9 @@ void sizes(benchmark::internal::Benchmark* bench) {
 }
 
 BENCHMARK(nanoflann_sum)->Apply(sizes);
-BENCHMARK_CAPTURE(palpate_sum, patch, false)->Apply(sizes);
-BENCHMARK_CAPTURE(palpate_sum, search_every_time, true)->Apply(sizes);
+BENCHMARK(palpate_sum)->Apply(sizes);
+BENCHMARK_CAPTURE(palpate_sample, metaball, FieldKind::metaball)->Apply(sizes);
+BENCHMARK_CAPTURE(palpate_sample, balanced, FieldKind::balanced)->Apply(sizes);
 
 }  // namespace
 

@@ -52,8 +52,9 @@ Support support_of(const simd::Sums& sums, int sources) noexcept {
     result.plain += sums.w[s];
     result.plain_grad += vector(sums.grad_w[s]);
   }
-  result.radius.f = sums.wr / result.plain;
-  result.radius.grad = (vector(sums.grad_wr) - result.radius.f * result.plain_grad) / result.plain;
+  const double inverse = 1 / result.plain;
+  result.radius.f = sums.wr * inverse;
+  result.radius.grad = inverse * (vector(sums.grad_wr) - result.radius.f * result.plain_grad);
   return result;
 }
 

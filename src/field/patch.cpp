@@ -147,7 +147,7 @@ bool Patch::put(const ActiveLayer& layer, std::uint32_t i, const Eigen::Vector3d
   column(kWeight)[used_] = weight_now(layer, i, raw_weights) * stride_;
   column(kConfidence)[used_] = points.normals.empty() ? 0.0 : points.confidences[i];
   column(kRadius)[used_] = radius;
-  column(kInverseR2)[used_] = 1 / (radius * radius);
+  column(kInverseR2)[used_] = inverse_square(radius);
   column(kMaterial)[used_] = points.materials.empty() ? 1.0 : points.materials[i];
   smallest_radius_ = std::min(smallest_radius_, radius);
   largest_radius_ = std::max(largest_radius_, radius);
@@ -155,6 +155,15 @@ bool Patch::put(const ActiveLayer& layer, std::uint32_t i, const Eigen::Vector3d
   ++used_;
   ++count_;
   return true;
+}
+
+/// Neighbours mostly share their radius, and a division is what a gather would spend most time on.
+double Patch::inverse_square(double radius) noexcept {
+  if (radius != last_radius_) {
+    last_radius_ = radius;
+    last_inverse_r2_ = 1 / (radius * radius);
+  }
+  return last_inverse_r2_;
 }
 
 void Patch::pad() noexcept {

@@ -78,6 +78,7 @@ class Patch {
                                 bool raw_weights) noexcept;
   [[nodiscard]] bool put(const ActiveLayer& layer, std::uint32_t i, const Eigen::Vector3d& position,
                          bool raw_weights) noexcept;
+  [[nodiscard]] double inverse_square(double radius) noexcept;
   void pad() noexcept;
 
   std::size_t capacity_;
@@ -93,6 +94,8 @@ class Patch {
   double largest_radius_ = 0;
   double radius_sum_ = 0;
   double mean_radius_ = 0;
+  double last_radius_ = 0;
+  double last_inverse_r2_ = 0;
 };
 
 /// The position of a layer's point now, relative to `center` (world frame).

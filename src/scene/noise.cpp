@@ -3,7 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "palpate/geometry/spacing.hpp"
 
 namespace palpate {
 namespace {
@@ -11,8 +14,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kSamples = 1000;
-constexpr double kReach = 5;         // spacings: wide enough to tell noise from a thick sheet
-constexpr std::size_t kEnough = 20;  // neighbours
+// In spacings: narrow, so that fine shape is no noise. Wider only where coarse depth steps make
+// every narrow neighbourhood flat.
+constexpr double kReaches[] = {3, 6, 12};
+constexpr double kFlat = 1e-3;       // of the spacing
+constexpr std::size_t kEnough = 12;  // neighbours
 constexpr int kTerms = 6;            // of a quadratic height
 
 struct Frame {
@@ -50,22 +56,29 @@ double quadratic_residual(const CellGrid& grid, const std::vector<std::uint32_t>
   return std::sqrt((heights - fitted).squaredNorm() / static_cast<double>(rows - kTerms));
 }
 
-}  // namespace
-
-double plane_noise(const CellGrid& grid, double spacing) {
+/// The median residual over samples of the grid; 0 where none has enough neighbours.
+double noise_within(const CellGrid& grid, double reach) {
   const std::size_t step = std::max<std::size_t>(1, grid.size() / kSamples);
-  const double reach = kReach * spacing;
-  std::vector<double> residuals;
+  std::vector<float> residuals;
   std::vector<std::uint32_t> near;
   for (std::size_t i = step / 2; i < grid.size(); i += step) {
     near.clear();
     grid.within(grid.points()[i], static_cast<float>(reach), near);
-    if (near.size() >= kEnough) residuals.push_back(quadratic_residual(grid, near, reach));
+    if (near.size() < kEnough) continue;
+    residuals.push_back(static_cast<float>(quadratic_residual(grid, near, reach)));
   }
-  if (residuals.empty()) return 0;
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return *middle;
+  return median(std::move(residuals));
+}
+
+}  // namespace
+
+double plane_noise(const CellGrid& grid, double spacing) {
+  double noise = 0;
+  for (const double reach : kReaches) {
+    noise = noise_within(grid, reach * spacing);
+    if (noise > kFlat * spacing) break;
+  }
+  return noise;
 }
 
 }  // namespace palpate

@@ -186,7 +186,7 @@ class Preparation {
     } else {
       points_.radii = support_radii(spacings_, {.multiple = options_.radius_multiple,
                                                 .noise = report_.noise,
-                                                .footprint = footprint_,
+                                                .footprint = report_.voxel > 0 ? footprint_ : 0,
                                                 .normal_error = options_.normal_error,
                                                 .minimum = options_.minimum_radius});
     }
@@ -209,6 +209,7 @@ class Preparation {
       cloud_ = select(cloud_, kept);
       std::vector<float> kept_radii;
       for (const std::uint32_t i : kept) kept_radii.push_back(radii[i]);
+      watch_.lap(report_.seconds_filter);
       index();
       points_.radii = in_grid_order(points_.grid, kept_radii);
     } else {

@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 
 // How far a patch reaches beyond what it was gathered for, and what is left of that before the
 // next one is gathered; in support radii.
-constexpr double kMargin = 0.5;
-constexpr double kReserve = 0.15;
+constexpr double kMargin = 0.35;
+constexpr double kReserve = 0.1;
 
 // A surface may rise this fast and still take a resting proxy along (algorithm.md section 2.4).
 constexpr double kReanchorSpeed = 0.5;  // m/s
