@@ -16,6 +16,7 @@ Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   ++evaluations_;
   Sample sample = field_.sample(x, side);
   if (sample.radius > 0) step_length_ = sample.radius;
+  if (sample.support <= 0 && sample.value <= 0) sample.value = step_length_;  // nothing known
   if (texture_.amplitude > 0) {
     const Relief relief = relief_at(texture_, x);
     sample.value -= relief.height;

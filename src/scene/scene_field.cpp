@@ -137,7 +137,8 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
 
 Sample SceneField::sample(const Vector3d& x, Side side) const noexcept {
   const State& state = *state_;
-  if (state.layer_count == 0 || !x.allFinite()) return {};
+  if (!x.allFinite()) return {};
+  if (state.layer_count == 0) return {.value = 1};  // free; there is no length to measure it in
   return evaluate(state.surface, state.patch_at({x, 0}), x, side);
 }
 

@@ -59,6 +59,7 @@ TEST(SceneField, WithoutASurfaceEverythingIsFree) {
   EXPECT_TRUE(has(field.notes(), FieldNote::no_surface));
   EXPECT_TRUE(field.is_free({Vector3d::Zero(), 1}));
   EXPECT_EQ(field.sample(Vector3d::Zero(), 1).support, 0);
+  EXPECT_GT(field.sample(Vector3d::Zero(), 1).value, 0);
   EXPECT_EQ(field.surface(Vector3d::Zero()).source, -1);
 }
 
