@@ -48,6 +48,12 @@ struct WideBounds {
   std::array<float, kLanes> upper;
   std::array<std::uint32_t, kLanes> exponents{};
 
+  explicit WideBounds(const Eigen::Vector3f& first) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      lower[l] = upper[l] = first[static_cast<Eigen::Index>(l % 3)];
+    }
+  }
+
   void take(const float* numbers) {
     for (std::size_t l = 0; l < kLanes; ++l) {
       const float v = numbers[l];
@@ -59,57 +65,61 @@ struct WideBounds {
   }
 };
 
+// Twice what a surface of n points makes; room that is not used costs nothing.
+std::size_t expected_cells(std::size_t n) {
+  return n / 2 + 64;
+}
+
+std::size_t bytes_for(std::size_t n) {
+  return 2 * n * sizeof(Record) + expected_cells(n) * (sizeof(CellGrid::Cell) + 1) + 64;
+}
+
 }  // namespace
 
-CellBuilder::CellBuilder(std::span<const Eigen::Vector3f> positions) : positions_(positions) {
+CellBuilder::CellBuilder(std::span<const Eigen::Vector3f> positions)
+    : positions_(positions),
+      memory_(bytes_for(positions.size())),
+      cells_(&memory_),
+      depths_(&memory_) {
   const auto count = static_cast<std::uint32_t>(positions.size());
   if (count == 0) return;
-  const Bounds bounds = bounds_of(0, count);
-  records_.resize(count);
-  scratch_.resize(count);
-  parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) records_[i] = i;
-  });
+  const Bounds bounds = bounds_of_all();
+  records_ = allocate(count);
+  scratch_ = allocate(count);
   const int levels = levels_for(count);
-  make_keys(0, count, bounds, levels);
+  make_keys(0, count, bounds, levels, [](std::size_t i) { return i; });
   sort_records(records_, scratch_, 3 * levels);
-  cells_.reserve(count / 4 + 64);
+  cells_.reserve(expected_cells(count));
+  depths_.reserve(expected_cells(count));
   cells_.push_back({bounds.lower, bounds.upper, 0, count, 0, 0});
   depths_.push_back(static_cast<std::uint8_t>(levels));
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) divide(cell);
-  points_.resize(count);
-  parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points_[i] = positions_[records_[i] & kPlaceMask];
-  });
-  fit_boxes();
 }
 
-CellBuilder::Bounds CellBuilder::bounds_of(std::uint32_t begin, std::uint32_t end) const {
-  const bool sorted = !cells_.empty();
-  const auto at = [&](std::size_t i) -> const Eigen::Vector3f& {
-    return positions_[sorted ? records_[i] & kPlaceMask : i];
-  };
-  Bounds bounds{at(begin), at(begin)};
-  if (sorted) {
-    for (std::size_t i = begin; i < end; ++i) {
-      bounds.lower = bounds.lower.cwiseMin(at(i));
-      bounds.upper = bounds.upper.cwiseMax(at(i));
-    }
-    return bounds;
+std::span<Record> CellBuilder::allocate(std::size_t count) {
+  return {static_cast<Record*>(memory_.allocate(count * sizeof(Record), alignof(Record))), count};
+}
+
+CellBuilder::Bounds CellBuilder::bounds_of(const CellGrid::Cell& cell) const {
+  const auto at = [&](std::size_t i) { return positions_[records_[i] & kPlaceMask]; };
+  Bounds bounds{at(cell.begin), at(cell.begin)};
+  for (std::size_t i = cell.begin + 1; i < cell.end; ++i) {
+    bounds.lower = bounds.lower.cwiseMin(at(i));
+    bounds.upper = bounds.upper.cwiseMax(at(i));
   }
-  WideBounds wide;
-  for (std::size_t l = 0; l < WideBounds::kLanes; ++l) {
-    wide.lower[l] = wide.upper[l] = bounds.lower[static_cast<Eigen::Index>(l % 3)];
-  }
+  return bounds;
+}
+
+CellBuilder::Bounds CellBuilder::bounds_of_all() const {
+  WideBounds wide(positions_.front());
   std::size_t i = 0;
-  for (; i + 4 <= end; i += 4) wide.take(positions_[i].data());
-  for (; i < end; ++i) {
-    std::array<float, WideBounds::kLanes> last;
-    for (std::size_t l = 0; l < last.size(); ++l) {
-      last[l] = positions_[i][static_cast<Eigen::Index>(l % 3)];
-    }
-    wide.take(last.data());
+  for (; i + 4 <= positions_.size(); i += 4) wide.take(positions_[i].data());
+  for (; i < positions_.size(); ++i) {
+    const std::array<Eigen::Vector3f, 4> last{positions_[i], positions_[i], positions_[i],
+                                              positions_[i]};
+    wide.take(last.front().data());
   }
+  Bounds bounds{positions_.front(), positions_.front()};
   for (std::size_t l = 0; l < WideBounds::kLanes; ++l) {
     const auto axis = static_cast<Eigen::Index>(l % 3);
     bounds.lower[axis] = std::min(bounds.lower[axis], wide.lower[l]);
@@ -119,8 +129,9 @@ CellBuilder::Bounds CellBuilder::bounds_of(std::uint32_t begin, std::uint32_t en
   return bounds;
 }
 
+template <class PlaceOf>
 void CellBuilder::make_keys(std::uint32_t begin, std::uint32_t end, const Bounds& bounds,
-                            int levels) {
+                            int levels, const PlaceOf& place_of) {
   const Eigen::Vector3d lower = bounds.lower.cast<double>();
   const double extent = (bounds.upper.cast<double>() - lower).maxCoeff();
   const double steps = std::ldexp(1., levels);
@@ -131,7 +142,7 @@ void CellBuilder::make_keys(std::uint32_t begin, std::uint32_t end, const Bounds
       return static_cast<std::uint32_t>(std::min((v - low) * scale, steps - 1));
     };
     for (std::size_t i = begin + from; i < begin + to; ++i) {
-      const std::uint64_t place = records_[i] & kPlaceMask;
+      const std::uint64_t place = place_of(i);
       const Eigen::Vector3f& p = positions_[place];
       const std::uint64_t key = spread(cell(p.x(), lower.x())) << 2 |
                                 spread(cell(p.y(), lower.y())) << 1 |
@@ -154,12 +165,12 @@ void CellBuilder::divide(std::size_t cell) {
 // False when the cell's points coincide, or its keys may have no more levels.
 bool CellBuilder::sort_again(std::size_t cell) {
   const auto [begin, end] = std::pair(cells_[cell].begin, cells_[cell].end);
-  const Bounds bounds = bounds_of(begin, end);
+  const Bounds bounds = bounds_of(cells_[cell]);
   const int levels = std::min(levels_for(end - begin), CellGrid::kMaxDepth - depths_[cell]);
   if (bounds.lower == bounds.upper || levels <= 0) return false;
-  make_keys(begin, end, bounds, levels);
-  sort_records(std::span(records_).subspan(begin, end - begin),
-               std::span(scratch_).subspan(begin, end - begin), 3 * levels);
+  make_keys(begin, end, bounds, levels, [this](std::size_t i) { return records_[i] & kPlaceMask; });
+  sort_records(records_.subspan(begin, end - begin), scratch_.subspan(begin, end - begin),
+               3 * levels);
   depths_[cell] = static_cast<std::uint8_t>(depths_[cell] + levels);
   return true;
 }
@@ -189,31 +200,7 @@ void CellBuilder::append_children(std::size_t cell, int shift) {
   cells_[cell].children = static_cast<std::uint32_t>(cells_.size()) - first_child;
 }
 
-void CellBuilder::fit_boxes() {
-  parallel_ranges(cells_.size(), kGrain / 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      CellGrid::Cell& cell = cells_[i];
-      if (cell.children != 0) continue;
-      cell.lower = cell.upper = points_[cell.begin];
-      for (std::uint32_t k = cell.begin + 1; k < cell.end; ++k) {
-        cell.lower = cell.lower.cwiseMin(points_[k]);
-        cell.upper = cell.upper.cwiseMax(points_[k]);
-      }
-    }
-  });
-  for (std::size_t i = cells_.size(); i-- > 0;) {
-    CellGrid::Cell& cell = cells_[i];
-    if (cell.children == 0) continue;
-    cell.lower = cells_[cell.first_child].lower;
-    cell.upper = cells_[cell.first_child].upper;
-    for (std::uint32_t c = 1; c < cell.children; ++c) {
-      cell.lower = cell.lower.cwiseMin(cells_[cell.first_child + c].lower);
-      cell.upper = cell.upper.cwiseMax(cells_[cell.first_child + c].upper);
-    }
-  }
-}
-
-std::vector<std::uint32_t> CellBuilder::take_order() {
+std::vector<std::uint32_t> CellBuilder::order() const {
   std::vector<std::uint32_t> order(records_.size());
   parallel_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -223,12 +210,40 @@ std::vector<std::uint32_t> CellBuilder::take_order() {
   return order;
 }
 
-std::vector<Eigen::Vector3f> CellBuilder::take_points() {
-  return std::move(points_);
+std::vector<Eigen::Vector3f> CellBuilder::points() const {
+  std::vector<Eigen::Vector3f> points(records_.size());
+  parallel_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points[i] = positions_[records_[i] & kPlaceMask];
+  });
+  return points;
 }
 
-std::vector<CellGrid::Cell> CellBuilder::take_cells() {
-  return std::move(cells_);
+std::vector<CellGrid::Cell> CellBuilder::cells() const {
+  return {cells_.begin(), cells_.end()};
+}
+
+void fit_boxes(std::span<const Eigen::Vector3f> points, std::span<CellGrid::Cell> cells) {
+  parallel_ranges(cells.size(), kGrain / 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      CellGrid::Cell& cell = cells[i];
+      if (cell.children != 0) continue;
+      cell.lower = cell.upper = points[cell.begin];
+      for (std::uint32_t k = cell.begin + 1; k < cell.end; ++k) {
+        cell.lower = cell.lower.cwiseMin(points[k]);
+        cell.upper = cell.upper.cwiseMax(points[k]);
+      }
+    }
+  });
+  for (std::size_t i = cells.size(); i-- > 0;) {
+    CellGrid::Cell& cell = cells[i];
+    if (cell.children == 0) continue;
+    cell.lower = cells[cell.first_child].lower;
+    cell.upper = cells[cell.first_child].upper;
+    for (std::uint32_t c = 1; c < cell.children; ++c) {
+      cell.lower = cell.lower.cwiseMin(cells[cell.first_child + c].lower);
+      cell.upper = cell.upper.cwiseMax(cells[cell.first_child + c].upper);
+    }
+  }
 }
 
 }  // namespace palpate::detail

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -19,9 +20,11 @@ class CellBuilder {
   /// @throws Error when a position is not finite.
   explicit CellBuilder(std::span<const Eigen::Vector3f> positions);
 
-  [[nodiscard]] std::vector<std::uint32_t> take_order();
-  [[nodiscard]] std::vector<Eigen::Vector3f> take_points();
-  [[nodiscard]] std::vector<CellGrid::Cell> take_cells();
+  [[nodiscard]] std::vector<std::uint32_t> order() const;
+  [[nodiscard]] std::vector<Eigen::Vector3f> points() const;
+
+  /// Without their boxes.
+  [[nodiscard]] std::vector<CellGrid::Cell> cells() const;
 
  private:
   struct Bounds {
@@ -29,19 +32,27 @@ class CellBuilder {
     Eigen::Vector3f upper;
   };
 
-  void make_keys(std::uint32_t begin, std::uint32_t end, const Bounds& bounds, int levels);
+  [[nodiscard]] std::span<Record> allocate(std::size_t count);
+  template <class PlaceOf>
+  void make_keys(std::uint32_t begin, std::uint32_t end, const Bounds& bounds, int levels,
+                 const PlaceOf& place_of);
   void divide(std::size_t cell);
   bool sort_again(std::size_t cell);
   void append_children(std::size_t cell, int shift);
-  void fit_boxes();
-  [[nodiscard]] Bounds bounds_of(std::uint32_t begin, std::uint32_t end) const;
+  [[nodiscard]] Bounds bounds_of_all() const;
+  [[nodiscard]] Bounds bounds_of(const CellGrid::Cell& cell) const;
 
   std::span<const Eigen::Vector3f> positions_;
-  std::vector<Record> records_;
-  std::vector<Record> scratch_;
-  std::vector<CellGrid::Cell> cells_;
-  std::vector<std::uint8_t> depths_;  ///< levels used up by the keys of each cell's points
-  std::vector<Eigen::Vector3f> points_;
+  // One block for all that goes when the index is built: small indices built again and again then
+  // get the same warm memory each time, where freed pieces would go back to the system.
+  std::pmr::monotonic_buffer_resource memory_;
+  std::span<Record> records_;
+  std::span<Record> scratch_;
+  std::pmr::vector<CellGrid::Cell> cells_;
+  std::pmr::vector<std::uint8_t> depths_;  // levels used up by the keys of each cell's points
 };
+
+/// Fits the boxes of leaves to their points and those of other cells to their children's.
+void fit_boxes(std::span<const Eigen::Vector3f> points, std::span<CellGrid::Cell> cells);
 
 }  // namespace palpate::detail

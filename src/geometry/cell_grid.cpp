@@ -65,10 +65,11 @@ CellGrid::CellGrid(std::span<const Eigen::Vector3f> positions) {
     throw Error(fmt::format("index: {} points are more than the {} that it can hold; thin them out",
                             positions.size(), detail::kPlaceMask));
   }
-  detail::CellBuilder builder(positions);
-  order_ = builder.take_order();
-  points_ = builder.take_points();
-  cells_ = builder.take_cells();
+  const detail::CellBuilder builder(positions);
+  order_ = builder.order();
+  points_ = builder.points();
+  cells_ = builder.cells();
+  detail::fit_boxes(points_, cells_);
 }
 
 void CellGrid::within(const Eigen::Vector3f& center, float radius,
