@@ -51,7 +51,7 @@ void check_promises(const CloudFile& file) {
 
 void check_rewriting(const CloudFile& file) {
   if (file.cloud.size() > 1000) return;
-  for (const CloudFormat format : {CloudFormat::kPly, CloudFormat::kPcd}) {
+  for (const CloudFormat format : {CloudFormat::ply, CloudFormat::pcd}) {
     for (const bool ascii : {false, true}) {
       const std::string text = encode_cloud(file.cloud, format, {.ascii = ascii});
       const auto again = read_cloud_bytes(std::as_bytes(std::span(text)), "written");

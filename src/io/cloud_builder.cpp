@@ -21,10 +21,10 @@ Eigen::Vector3d three(const Row& row, Role first) {
 }
 
 float color_factor(const std::vector<std::array<float, 3>>& colors, ColorScale scale) {
-  if (scale == ColorScale::kByte) return 1;
+  if (scale == ColorScale::byte) return 1;
   float largest = 0;
   for (const auto& c : colors) largest = std::max({largest, c[0], c[1], c[2]});
-  if (largest <= 1 && scale == ColorScale::kGuess) return 255;
+  if (largest <= 1 && scale == ColorScale::guess) return 255;
   return largest <= 255 ? 1.0F : 1.0F / 257.0F;
 }
 
@@ -77,19 +77,19 @@ CloudBuilder::CloudBuilder(const Input& input, const Columns& columns, ColorScal
 }
 
 void CloudBuilder::add(const Row& row) {
-  const Eigen::Vector3d point = input_.options.scale * three(row, Role::kX);
+  const Eigen::Vector3d point = input_.options.scale * three(row, Role::x);
   if (!is_usable(point)) {
     ++dropped_;
     return;
   }
   points_.push_back(point);
-  if (columns_.normals) cloud_.normals.push_back(unit_normal(three(row, Role::kNormalX)));
+  if (columns_.normals) cloud_.normals.push_back(unit_normal(three(row, Role::normal_x)));
   if (columns_.colors) {
-    const Eigen::Vector3d c = three(row, Role::kRed);
+    const Eigen::Vector3d c = three(row, Role::red);
     colors_.push_back({finite_float(c[0]), finite_float(c[1]), finite_float(c[2])});
   }
   if (columns_.intensities) {
-    cloud_.intensities.push_back(finite_float(row[index_of(Role::kIntensity)]));
+    cloud_.intensities.push_back(finite_float(row[index_of(Role::intensity)]));
   }
 }
 

@@ -14,9 +14,9 @@ namespace palpate::io {
 
 /// In what measure colours are given.
 enum class ColorScale {
-  kByte,   ///< 0 ... 255
-  kGuess,  ///< by the largest: 0 ... 1 (of numbers that may have fractions), 0 ... 255, or 65535
-  kGuessInteger  ///< by the largest: 0 ... 255, or 65535
+  byte,   ///< 0 ... 255
+  guess,  ///< by the largest: 0 ... 1 (of numbers that may have fractions), 0 ... 255, or 65535
+  guess_integer  ///< by the largest: 0 ... 255, or 65535
 };
 
 /// Collects rows and makes a cloud of them: scales, drops what is not finite, chooses the origin,

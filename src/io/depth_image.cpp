@@ -63,7 +63,7 @@ CloudFile cloud_of(const Input& input, const DepthImage& image) {
   const Pinhole camera = checked_intrinsics(input, image);
   const double unit = checked_unit(input);
   const std::size_t farthest = kFarBeyond * median_depth(image);
-  CloudBuilder builder(input, {}, ColorScale::kByte, image.samples.size());
+  CloudBuilder builder(input, {}, ColorScale::byte, image.samples.size());
   Progress progress(input.options, image.samples.size());
   Row row{};
   for (std::size_t i = 0; i < image.samples.size(); ++i) {

@@ -110,7 +110,7 @@ void put_position(RowWriter& row, const PointCloud& cloud, std::size_t i) {
 }
 
 void put_color(RowWriter& row, const std::array<std::uint8_t, 3>& color, CloudFormat format) {
-  if (format == CloudFormat::kPly) {
+  if (format == CloudFormat::ply) {
     for (const std::uint8_t c : color) row.put(c);
     return;
   }
@@ -121,8 +121,8 @@ void put_color(RowWriter& row, const std::array<std::uint8_t, 3>& color, CloudFo
 
 std::string encode_cloud(const PointCloud& cloud, CloudFormat format, const WriteOptions& options) {
   check_columns(cloud);
-  std::string text = format == CloudFormat::kPly ? ply_header(cloud, options.ascii)
-                                                 : pcd_header(cloud, options.ascii);
+  std::string text = format == CloudFormat::ply ? ply_header(cloud, options.ascii)
+                                                : pcd_header(cloud, options.ascii);
   RowWriter row(text, options.ascii);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     put_position(row, cloud, i);

@@ -24,14 +24,14 @@ struct Known {
 };
 
 constexpr Known kKnown[] = {
-    {"ply\n", FileKind::kPly},
-    {"ply\r", FileKind::kPly},
-    {"ply ", FileKind::kPly},
-    {"LASF", FileKind::kLas},
-    {"\x89PNG\r\n\x1a\n", FileKind::kPng},
-    {"P5", FileKind::kPgm},
-    {"\x1f\x8b", FileKind::kGzip},
-    {"# .PCD", FileKind::kPcd},
+    {"ply\n", FileKind::ply},
+    {"ply\r", FileKind::ply},
+    {"ply ", FileKind::ply},
+    {"LASF", FileKind::las},
+    {"\x89PNG\r\n\x1a\n", FileKind::png},
+    {"P5", FileKind::pgm},
+    {"\x1f\x8b", FileKind::gzip},
+    {"# .PCD", FileKind::pcd},
 };
 
 struct Refused {
@@ -99,12 +99,12 @@ FileKind text_kind(const Input& input) {
   constexpr std::string_view kPcdWords[] = {"VERSION", "FIELDS", "COLUMNS"};
   constexpr std::string_view kObjWords[] = {"v", "vn", "vt", "mtllib", "o", "g", "s", "usemtl"};
   if (std::find(std::begin(kPcdWords), std::end(kPcdWords), word) != std::end(kPcdWords)) {
-    return FileKind::kPcd;
+    return FileKind::pcd;
   }
   const bool is_obj =
       std::find(std::begin(kObjWords), std::end(kObjWords), word) != std::end(kObjWords);
-  if (is_obj || extension(input.name) == ".obj") return FileKind::kObj;
-  return FileKind::kText;
+  if (is_obj || extension(input.name) == ".obj") return FileKind::obj;
+  return FileKind::text;
 }
 
 void refuse_known(const Input& input) {

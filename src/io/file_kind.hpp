@@ -4,7 +4,7 @@
 
 namespace palpate::io {
 
-enum class FileKind { kPly, kPcd, kLas, kObj, kText, kPng, kPgm, kGzip };
+enum class FileKind { ply, pcd, las, obj, text, png, pgm, gzip };
 
 /// What the bytes are: by their first bytes, for text also by its first words, and by the name
 /// last.

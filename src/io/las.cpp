@@ -83,7 +83,7 @@ class LasReader {
       }
     }
     if (brightest == 0) cloud.intensities = {};
-    if (most_color > 0) cloud.colors = byte_colors(colors, ColorScale::kGuessInteger);
+    if (most_color > 0) cloud.colors = byte_colors(colors, ColorScale::guess_integer);
   }
 
   static std::array<float, 3> color(const std::byte* at) {

@@ -39,7 +39,7 @@ class LazReader {
     std::byte* point = nullptr;
     check(library_.get_point_pointer(handle_, &point), 0);
     const bool colors = header_.color_offset().has_value();
-    CloudBuilder builder(input_, {.colors = colors, .intensities = true}, ColorScale::kGuessInteger,
+    CloudBuilder builder(input_, {.colors = colors, .intensities = true}, ColorScale::guess_integer,
                          std::min(header_.points, input_.bytes.size()));
     Progress progress(input_.options, header_.points);
     for (std::size_t i = 0; i < header_.points; ++i) {
@@ -64,9 +64,9 @@ class LazReader {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto k = static_cast<Eigen::Index>(axis);
       row[axis] = load_as<std::int32_t>(point + 4 * axis) * header_.scale[k] + header_.offset[k];
-      row[index_of(Role::kRed) + axis] = load_as<std::uint16_t>(point + kColor + 2 * axis);
+      row[index_of(Role::red) + axis] = load_as<std::uint16_t>(point + kColor + 2 * axis);
     }
-    row[index_of(Role::kIntensity)] = load_as<std::uint16_t>(point + kIntensity);
+    row[index_of(Role::intensity)] = load_as<std::uint16_t>(point + kIntensity);
     return row;
   }
 

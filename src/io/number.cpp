@@ -4,25 +4,25 @@ namespace palpate::io {
 
 double load_number(NumberType type, const std::byte* bytes, std::endian order) {
   switch (type) {
-    case NumberType::kInt8:
+    case NumberType::int8:
       return load_as<std::int8_t>(bytes, order);
-    case NumberType::kUint8:
+    case NumberType::uint8:
       return load_as<std::uint8_t>(bytes, order);
-    case NumberType::kInt16:
+    case NumberType::int16:
       return load_as<std::int16_t>(bytes, order);
-    case NumberType::kUint16:
+    case NumberType::uint16:
       return load_as<std::uint16_t>(bytes, order);
-    case NumberType::kInt32:
+    case NumberType::int32:
       return load_as<std::int32_t>(bytes, order);
-    case NumberType::kUint32:
+    case NumberType::uint32:
       return load_as<std::uint32_t>(bytes, order);
-    case NumberType::kInt64:
+    case NumberType::int64:
       return static_cast<double>(load_as<std::int64_t>(bytes, order));
-    case NumberType::kUint64:
+    case NumberType::uint64:
       return static_cast<double>(load_as<std::uint64_t>(bytes, order));
-    case NumberType::kFloat32:
+    case NumberType::float32:
       return static_cast<double>(load_as<float>(bytes, order));
-    case NumberType::kFloat64:
+    case NumberType::float64:
       return load_as<double>(bytes, order);
   }
   return 0;

@@ -11,16 +11,16 @@ namespace palpate::io {
 
 /// How a number is kept in a binary file.
 enum class NumberType {
-  kInt8,
-  kUint8,
-  kInt16,
-  kUint16,
-  kInt32,
-  kUint32,
-  kInt64,
-  kUint64,
-  kFloat32,
-  kFloat64
+  int8,
+  uint8,
+  int16,
+  uint16,
+  int32,
+  uint32,
+  int64,
+  uint64,
+  float32,
+  float64
 };
 
 /// Bytes that a number of this type takes.
@@ -30,7 +30,7 @@ enum class NumberType {
 }
 
 [[nodiscard]] constexpr bool is_floating(NumberType type) {
-  return type == NumberType::kFloat32 || type == NumberType::kFloat64;
+  return type == NumberType::float32 || type == NumberType::float64;
 }
 
 /// A T read from unaligned bytes of the given byte order.

@@ -50,14 +50,14 @@ class ObjReader {
       const std::size_t numbers = read_line(vertices_, "v", 7, values_);
       const bool colors = numbers >= 6;
       if (!builder) {
-        builder.emplace(input_, Columns{.normals = normals, .colors = colors}, ColorScale::kGuess,
+        builder.emplace(input_, Columns{.normals = normals, .colors = colors}, ColorScale::guess,
                         counts_.vertices);
       }
-      set(row, Role::kX);
-      if (colors) std::copy_n(values_.begin() + 3, 3, row.begin() + index_of(Role::kRed));
+      set(row, Role::x);
+      if (colors) std::copy_n(values_.begin() + 3, 3, row.begin() + index_of(Role::red));
       if (normals) {
         read_line(normals_, "vn", 3, values_);
-        set(row, Role::kNormalX);
+        set(row, Role::normal_x);
       }
       builder->add(row);
       progress.at(vertices_.offset());

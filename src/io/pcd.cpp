@@ -43,7 +43,7 @@ FieldUses uses_of(const Input& input, const PcdHeader& header) {
     packed = packed || use.packed_color;
     result.uses.push_back(use);
   }
-  if (!has[index_of(Role::kX)] || !has[index_of(Role::kY)] || !has[index_of(Role::kZ)]) {
+  if (!has[index_of(Role::x)] || !has[index_of(Role::y)] || !has[index_of(Role::z)]) {
     fail(input, "the FIELDS of this PCD file lack x, y or z", "Export it again with positions");
   }
   result.columns = complete_columns(has);
@@ -52,14 +52,14 @@ FieldUses uses_of(const Input& input, const PcdHeader& header) {
 }
 
 void set_packed_color(Row& row, std::uint32_t bits) {
-  row[index_of(Role::kRed)] = static_cast<double>((bits >> 16U) & 255U);
-  row[index_of(Role::kGreen)] = static_cast<double>((bits >> 8U) & 255U);
-  row[index_of(Role::kBlue)] = static_cast<double>(bits & 255U);
+  row[index_of(Role::red)] = static_cast<double>((bits >> 16U) & 255U);
+  row[index_of(Role::green)] = static_cast<double>((bits >> 8U) & 255U);
+  row[index_of(Role::blue)] = static_cast<double>(bits & 255U);
 }
 
 // In text a packed colour of type F is the float of its bits, of type U or I the number itself.
 std::uint32_t color_bits(NumberType type, double value) {
-  if (type == NumberType::kFloat32) {
+  if (type == NumberType::float32) {
     return std::isfinite(value) ? std::bit_cast<std::uint32_t>(static_cast<float>(value)) : 0U;
   }
   const bool fits = value >= -2147483648.0 && value <= 4294967295.0;
@@ -75,14 +75,14 @@ class PcdReader {
         data_(input.bytes.subspan(header_.size)) {}
 
   CloudFile run() {
-    if (header_.encoding == PcdEncoding::kAscii) return finish(read_ascii(), "PCD, ascii");
-    if (header_.encoding == PcdEncoding::kBinary) return finish(read_binary(), "PCD, binary");
+    if (header_.encoding == PcdEncoding::ascii) return finish(read_ascii(), "PCD, ascii");
+    if (header_.encoding == PcdEncoding::binary) return finish(read_binary(), "PCD, binary");
     return finish(read_compressed(), "PCD, binary compressed");
   }
 
  private:
   CloudBuilder builder(std::size_t room) const {
-    return {input_, uses_.columns, ColorScale::kByte, std::min(header_.points, room)};
+    return {input_, uses_.columns, ColorScale::byte, std::min(header_.points, room)};
   }
 
   CloudBuilder read_ascii() {

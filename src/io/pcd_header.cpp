@@ -24,10 +24,10 @@ std::vector<std::string_view> words_of(std::string_view rest) {
 
 std::optional<NumberType> number_type(std::string_view letter, std::size_t size) {
   constexpr std::pair<std::string_view, NumberType> kTypes[] = {
-      {"I1", NumberType::kInt8},    {"U1", NumberType::kUint8},  {"I2", NumberType::kInt16},
-      {"U2", NumberType::kUint16},  {"I4", NumberType::kInt32},  {"U4", NumberType::kUint32},
-      {"I8", NumberType::kInt64},   {"U8", NumberType::kUint64}, {"F4", NumberType::kFloat32},
-      {"F8", NumberType::kFloat64},
+      {"I1", NumberType::int8},    {"U1", NumberType::uint8},  {"I2", NumberType::int16},
+      {"U2", NumberType::uint16},  {"I4", NumberType::int32},  {"U4", NumberType::uint32},
+      {"I8", NumberType::int64},   {"U8", NumberType::uint64}, {"F4", NumberType::float32},
+      {"F8", NumberType::float64},
   };
   const std::string wanted = fmt::format("{}{}", letter, size);
   for (const auto& [name, type] : kTypes) {
@@ -92,9 +92,9 @@ class HeaderParser {
 
   void take_data(const Words& words) {
     constexpr std::pair<std::string_view, PcdEncoding> kEncodings[] = {
-        {"ascii", PcdEncoding::kAscii},
-        {"binary", PcdEncoding::kBinary},
-        {"binary_compressed", PcdEncoding::kCompressed}};
+        {"ascii", PcdEncoding::ascii},
+        {"binary", PcdEncoding::binary},
+        {"binary_compressed", PcdEncoding::compressed}};
     for (const auto& [name, encoding] : kEncodings) {
       if (words.empty() || words[0] != name) continue;
       header_.encoding = encoding;

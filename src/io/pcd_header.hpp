@@ -11,11 +11,11 @@
 
 namespace palpate::io {
 
-enum class PcdEncoding { kAscii, kBinary, kCompressed };
+enum class PcdEncoding { ascii, binary, compressed };
 
 struct PcdField {
   std::string name;
-  NumberType type = NumberType::kFloat32;
+  NumberType type = NumberType::float32;
   std::size_t count = 1;   ///< numbers a point
   std::size_t offset = 0;  ///< bytes from the start of a point
 };
@@ -27,7 +27,7 @@ struct PcdHeader {
   std::size_t height = 1;
   std::size_t points = 0;
   std::array<double, 7> viewpoint{0, 0, 0, 1, 0, 0, 0};  ///< position, quaternion w x y z
-  PcdEncoding encoding = PcdEncoding::kAscii;
+  PcdEncoding encoding = PcdEncoding::ascii;
   std::size_t size = 0;  ///< bytes up to the data
 
   [[nodiscard]] bool organised() const { return height > 1; }

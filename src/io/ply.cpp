@@ -64,7 +64,7 @@ class BinaryCursor {
 struct VertexColumns {
   std::vector<std::optional<Role>> roles;  // one a property
   Columns columns;
-  ColorScale color_scale = ColorScale::kByte;
+  ColorScale color_scale = ColorScale::byte;
   bool has_point = false;
 };
 
@@ -75,14 +75,14 @@ VertexColumns columns_of(const PlyElement& element) {
     std::optional<Role> role = property.list_count ? std::nullopt : role_of(property.name);
     if (role && has[index_of(*role)]) role.reset();
     if (role) has[index_of(*role)] = true;
-    if (role == Role::kRed && property.type != NumberType::kUint8) {
+    if (role == Role::red && property.type != NumberType::uint8) {
       result.color_scale =
-          is_floating(property.type) ? ColorScale::kGuess : ColorScale::kGuessInteger;
+          is_floating(property.type) ? ColorScale::guess : ColorScale::guess_integer;
     }
     result.roles.push_back(role);
   }
   result.columns = complete_columns(has);
-  result.has_point = has[index_of(Role::kX)] && has[index_of(Role::kY)] && has[index_of(Role::kZ)];
+  result.has_point = has[index_of(Role::x)] && has[index_of(Role::y)] && has[index_of(Role::z)];
   return result;
 }
 
@@ -183,10 +183,10 @@ class PlyReader {
 
 CloudFile read_ply(const Input& input) {
   const PlyHeader header = read_ply_header(input);
-  if (header.encoding == PlyEncoding::kAscii) {
+  if (header.encoding == PlyEncoding::ascii) {
     return PlyReader(input, header, AsciiCursor(input, header.size)).run("PLY, ascii");
   }
-  const bool little = header.encoding == PlyEncoding::kLittleEndian;
+  const bool little = header.encoding == PlyEncoding::little_endian;
   const BinaryCursor cursor(input, header.size, little ? std::endian::little : std::endian::big);
   return PlyReader(input, header, cursor)
       .run(little ? "PLY, binary little endian" : "PLY, binary big endian");

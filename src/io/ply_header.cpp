@@ -11,15 +11,15 @@ namespace palpate::io {
 namespace {
 
 constexpr std::pair<std::string_view, NumberType> kTypes[] = {
-    {"char", NumberType::kInt8},       {"uchar", NumberType::kUint8},
-    {"short", NumberType::kInt16},     {"ushort", NumberType::kUint16},
-    {"int", NumberType::kInt32},       {"uint", NumberType::kUint32},
-    {"float", NumberType::kFloat32},   {"double", NumberType::kFloat64},
-    {"int8", NumberType::kInt8},       {"uint8", NumberType::kUint8},
-    {"int16", NumberType::kInt16},     {"uint16", NumberType::kUint16},
-    {"int32", NumberType::kInt32},     {"uint32", NumberType::kUint32},
-    {"int64", NumberType::kInt64},     {"uint64", NumberType::kUint64},
-    {"float32", NumberType::kFloat32}, {"float64", NumberType::kFloat64},
+    {"char", NumberType::int8},       {"uchar", NumberType::uint8},
+    {"short", NumberType::int16},     {"ushort", NumberType::uint16},
+    {"int", NumberType::int32},       {"uint", NumberType::uint32},
+    {"float", NumberType::float32},   {"double", NumberType::float64},
+    {"int8", NumberType::int8},       {"uint8", NumberType::uint8},
+    {"int16", NumberType::int16},     {"uint16", NumberType::uint16},
+    {"int32", NumberType::int32},     {"uint32", NumberType::uint32},
+    {"int64", NumberType::int64},     {"uint64", NumberType::uint64},
+    {"float32", NumberType::float32}, {"float64", NumberType::float64},
 };
 
 constexpr std::size_t kMostColumns = 4096;  // elements and properties: no honest file has more
@@ -67,9 +67,9 @@ class HeaderParser {
 
   void take_format(std::string_view word) {
     constexpr std::pair<std::string_view, PlyEncoding> kEncodings[] = {
-        {"ascii", PlyEncoding::kAscii},
-        {"binary_little_endian", PlyEncoding::kLittleEndian},
-        {"binary_big_endian", PlyEncoding::kBigEndian}};
+        {"ascii", PlyEncoding::ascii},
+        {"binary_little_endian", PlyEncoding::little_endian},
+        {"binary_big_endian", PlyEncoding::big_endian}};
     for (const auto& [name, encoding] : kEncodings) {
       if (name != word) continue;
       header_.encoding = encoding;

@@ -10,11 +10,11 @@
 
 namespace palpate::io {
 
-enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
+enum class PlyEncoding { ascii, little_endian, big_endian };
 
 struct PlyProperty {
   std::string name;
-  NumberType type = NumberType::kFloat32;  ///< of the value, or of a list's items
+  NumberType type = NumberType::float32;   ///< of the value, or of a list's items
   std::optional<NumberType> list_count{};  ///< type of a list's length, if it is a list
 };
 
@@ -25,7 +25,7 @@ struct PlyElement {
 };
 
 struct PlyHeader {
-  PlyEncoding encoding = PlyEncoding::kAscii;
+  PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<PlyElement> elements;
   std::size_t size = 0;  ///< bytes up to the first element
 };

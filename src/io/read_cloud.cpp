@@ -25,21 +25,21 @@ using namespace io;
 
 CloudFile read_kind(const Input& input, FileKind kind) {
   switch (kind) {
-    case FileKind::kPly:
+    case FileKind::ply:
       return read_ply(input);
-    case FileKind::kPcd:
+    case FileKind::pcd:
       return read_pcd(input);
-    case FileKind::kLas:
+    case FileKind::las:
       return read_las(input);
-    case FileKind::kObj:
+    case FileKind::obj:
       return read_obj(input);
-    case FileKind::kText:
+    case FileKind::text:
       return read_xyz(input);
-    case FileKind::kPng:
+    case FileKind::png:
       return cloud_of(input, read_png(input));
-    case FileKind::kPgm:
+    case FileKind::pgm:
       return cloud_of(input, read_pgm(input));
-    case FileKind::kGzip:
+    case FileKind::gzip:
       break;
   }
   fail(input, "packed with gzip twice", "Unpack it once with gunzip");
@@ -66,7 +66,7 @@ CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& 
   check_options(input);
   try {
     const FileKind kind = kind_of(input);
-    CloudFile file = kind == FileKind::kGzip ? read_packed(input) : read_kind(input, kind);
+    CloudFile file = kind == FileKind::gzip ? read_packed(input) : read_kind(input, kind);
     if (options.progress) options.progress(1.0);
     return file;
   } catch (const std::bad_alloc&) {

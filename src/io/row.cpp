@@ -8,34 +8,34 @@ namespace palpate::io {
 namespace {
 
 constexpr std::pair<std::string_view, Role> kNames[] = {
-    {"x", Role::kX},
-    {"y", Role::kY},
-    {"z", Role::kZ},
-    {"nx", Role::kNormalX},
-    {"ny", Role::kNormalY},
-    {"nz", Role::kNormalZ},
-    {"normal_x", Role::kNormalX},
-    {"normal_y", Role::kNormalY},
-    {"normal_z", Role::kNormalZ},
-    {"normalx", Role::kNormalX},
-    {"normaly", Role::kNormalY},
-    {"normalz", Role::kNormalZ},
-    {"red", Role::kRed},
-    {"green", Role::kGreen},
-    {"blue", Role::kBlue},
-    {"r", Role::kRed},
-    {"g", Role::kGreen},
-    {"b", Role::kBlue},
-    {"diffuse_red", Role::kRed},
-    {"diffuse_green", Role::kGreen},
-    {"diffuse_blue", Role::kBlue},
-    {"intensity", Role::kIntensity},
-    {"scalar_intensity", Role::kIntensity},
-    {"i", Role::kIntensity},
-    {"reflectance", Role::kIntensity},
-    {"reflectivity", Role::kIntensity},
-    {"quality", Role::kIntensity},
-    {"scalar", Role::kIntensity},
+    {"x", Role::x},
+    {"y", Role::y},
+    {"z", Role::z},
+    {"nx", Role::normal_x},
+    {"ny", Role::normal_y},
+    {"nz", Role::normal_z},
+    {"normal_x", Role::normal_x},
+    {"normal_y", Role::normal_y},
+    {"normal_z", Role::normal_z},
+    {"normalx", Role::normal_x},
+    {"normaly", Role::normal_y},
+    {"normalz", Role::normal_z},
+    {"red", Role::red},
+    {"green", Role::green},
+    {"blue", Role::blue},
+    {"r", Role::red},
+    {"g", Role::green},
+    {"b", Role::blue},
+    {"diffuse_red", Role::red},
+    {"diffuse_green", Role::green},
+    {"diffuse_blue", Role::blue},
+    {"intensity", Role::intensity},
+    {"scalar_intensity", Role::intensity},
+    {"i", Role::intensity},
+    {"reflectance", Role::intensity},
+    {"reflectivity", Role::intensity},
+    {"quality", Role::intensity},
+    {"scalar", Role::intensity},
 };
 
 }  // namespace
@@ -53,9 +53,9 @@ Columns complete_columns(const std::array<bool, kRoleCount>& has) {
   const auto all = [&](Role a, Role b, Role c) {
     return has[index_of(a)] && has[index_of(b)] && has[index_of(c)];
   };
-  return {.normals = all(Role::kNormalX, Role::kNormalY, Role::kNormalZ),
-          .colors = all(Role::kRed, Role::kGreen, Role::kBlue),
-          .intensities = has[index_of(Role::kIntensity)]};
+  return {.normals = all(Role::normal_x, Role::normal_y, Role::normal_z),
+          .colors = all(Role::red, Role::green, Role::blue),
+          .intensities = has[index_of(Role::intensity)]};
 }
 
 }  // namespace palpate::io

@@ -8,7 +8,7 @@
 namespace palpate::io {
 
 /// What a column of a file means to us.
-enum class Role { kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kRed, kGreen, kBlue, kIntensity };
+enum class Role { x, y, z, normal_x, normal_y, normal_z, red, green, blue, intensity };
 inline constexpr std::size_t kRoleCount = 10;
 
 /// One point as read: a value for each role; what the file lacks stays 0.

@@ -13,8 +13,8 @@ namespace {
 
 CloudFormat format_of(const std::filesystem::path& path) {
   const std::string ending = io::extension(path.string());
-  if (ending == ".ply") return CloudFormat::kPly;
-  if (ending == ".pcd") return CloudFormat::kPcd;
+  if (ending == ".ply") return CloudFormat::ply;
+  if (ending == ".pcd") return CloudFormat::pcd;
   throw Error(fmt::format("{}: clouds are written as .ply or .pcd. Choose one of these extensions.",
                           path.string()));
 }

@@ -27,7 +27,7 @@ class XyzReader {
     find_columns();
     // A column takes two characters at least.
     const std::size_t room = (input_.bytes.size() - scanner_.offset()) / (2 * columns_.count) + 1;
-    CloudBuilder builder(input_, columns_.columns, ColorScale::kGuess, std::min(room, expected()));
+    CloudBuilder builder(input_, columns_.columns, ColorScale::guess, std::min(room, expected()));
     Progress progress(input_.options, input_.bytes.size());
     Row row{};
     std::size_t rows = 0;

@@ -31,7 +31,7 @@ bool are_unit(const Rows& rows, std::size_t first) {
 }
 
 TextColumns make(std::size_t count, std::initializer_list<Role> optional_roles) {
-  TextColumns result{.count = count, .roles = {Role::kX, Role::kY, Role::kZ}, .columns = {}};
+  TextColumns result{.count = count, .roles = {Role::x, Role::y, Role::z}, .columns = {}};
   result.roles.insert(result.roles.end(), optional_roles.begin(), optional_roles.end());
   result.roles.resize(count);
   std::array<bool, kRoleCount> has{};
@@ -53,24 +53,25 @@ std::optional<TextColumns> columns_from_names(const TextCells& names) {
     if (role) has[index_of(*role)] = true;
     result.roles.push_back(role);
   }
-  if (!has[index_of(Role::kX)] || !has[index_of(Role::kY)] || !has[index_of(Role::kZ)]) return {};
+  if (!has[index_of(Role::x)] || !has[index_of(Role::y)] || !has[index_of(Role::z)]) return {};
   result.columns = complete_columns(has);
   return result;
 }
 
 TextColumns columns_from_rows(std::size_t count, const Rows& rows) {
-  using enum Role;
   switch (count) {
     case 4:
-      return make(count, {kIntensity});
+      return make(count, {Role::intensity});
     case 6:
-      return are_unit(rows, 3) ? make(count, {kNormalX, kNormalY, kNormalZ})
-                               : make(count, {kRed, kGreen, kBlue});
+      return are_unit(rows, 3) ? make(count, {Role::normal_x, Role::normal_y, Role::normal_z})
+                               : make(count, {Role::red, Role::green, Role::blue});
     case 7:
-      return make(count, {kIntensity, kRed, kGreen, kBlue});
+      return make(count, {Role::intensity, Role::red, Role::green, Role::blue});
     case 9:
-      return are_unit(rows, 3) ? make(count, {kNormalX, kNormalY, kNormalZ, kRed, kGreen, kBlue})
-                               : make(count, {kRed, kGreen, kBlue, kNormalX, kNormalY, kNormalZ});
+      return are_unit(rows, 3) ? make(count, {Role::normal_x, Role::normal_y, Role::normal_z,
+                                              Role::red, Role::green, Role::blue})
+                               : make(count, {Role::red, Role::green, Role::blue, Role::normal_x,
+                                              Role::normal_y, Role::normal_z});
     default:
       return make(count, {});
   }

@@ -16,13 +16,13 @@ io::FileKind kind(std::string_view bytes, const std::string& name = "file") {
 }
 
 TEST(FileKind, GoesByTheBytesBeforeTheName) {
-  EXPECT_EQ(kind("ply\nformat", "a.pcd"), io::FileKind::kPly);
-  EXPECT_EQ(kind("LASF", "a.txt"), io::FileKind::kLas);
-  EXPECT_EQ(kind("# .PCD v0.7\n", "a.xyz"), io::FileKind::kPcd);
-  EXPECT_EQ(kind("# a comment\nVERSION 0.7\n"), io::FileKind::kPcd);
-  EXPECT_EQ(kind("v 1 2 3\n", "a.txt"), io::FileKind::kObj);
-  EXPECT_EQ(kind("1 2 3\n", "a.obj"), io::FileKind::kObj);
-  EXPECT_EQ(kind("1 2 3\n", "a.ply"), io::FileKind::kText);
+  EXPECT_EQ(kind("ply\nformat", "a.pcd"), io::FileKind::ply);
+  EXPECT_EQ(kind("LASF", "a.txt"), io::FileKind::las);
+  EXPECT_EQ(kind("# .PCD v0.7\n", "a.xyz"), io::FileKind::pcd);
+  EXPECT_EQ(kind("# a comment\nVERSION 0.7\n"), io::FileKind::pcd);
+  EXPECT_EQ(kind("v 1 2 3\n", "a.txt"), io::FileKind::obj);
+  EXPECT_EQ(kind("1 2 3\n", "a.obj"), io::FileKind::obj);
+  EXPECT_EQ(kind("1 2 3\n", "a.ply"), io::FileKind::text);
 }
 
 TEST(FileKind, SaysWhatToDoAboutKindsThatAreNotRead) {

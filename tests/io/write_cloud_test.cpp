@@ -58,7 +58,7 @@ class WrittenCloud : public testing::Test {
 TEST_F(WrittenCloud, IsReadBackExactly) {
   EXPECT_TRUE(rc::check([] {
     PointCloud cloud = any_cloud();
-    const auto format = *rc::gen::element(CloudFormat::kPly, CloudFormat::kPcd);
+    const auto format = *rc::gen::element(CloudFormat::ply, CloudFormat::pcd);
     const WriteOptions options{.ascii = *rc::gen::arbitrary<bool>()};
     const CloudFile file = read_text(encode_cloud(cloud, format, options));
     // Where the reader moves the origin, it rounds anew: to floats of up to 2 km.
@@ -70,7 +70,7 @@ TEST_F(WrittenCloud, KeepsSurveyCoordinates) {
   EXPECT_TRUE(rc::check([] {
     PointCloud cloud = any_cloud();
     cloud.origin = Eigen::Vector3d(637000, 4851000, 500);
-    const auto format = *rc::gen::element(CloudFormat::kPly, CloudFormat::kPcd);
+    const auto format = *rc::gen::element(CloudFormat::ply, CloudFormat::pcd);
     const WriteOptions options{.ascii = *rc::gen::arbitrary<bool>()};
     expect_same(read_text(encode_cloud(cloud, format, options)).cloud, cloud, 2.5e-4);
   }));
@@ -81,10 +81,10 @@ TEST(WriteCloud, PcdKeepsTheViewpoint) {
   cloud.positions = {{1, 2, 3}};
   for (const auto& viewpoint : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 2, 3)}) {
     cloud.viewpoint = viewpoint;
-    EXPECT_EQ(read_text(encode_cloud(cloud, CloudFormat::kPcd)).cloud.viewpoint, viewpoint);
+    EXPECT_EQ(read_text(encode_cloud(cloud, CloudFormat::pcd)).cloud.viewpoint, viewpoint);
   }
   cloud.viewpoint.reset();
-  EXPECT_FALSE(read_text(encode_cloud(cloud, CloudFormat::kPcd)).cloud.viewpoint);
+  EXPECT_FALSE(read_text(encode_cloud(cloud, CloudFormat::pcd)).cloud.viewpoint);
 }
 
 TEST(WriteCloud, WritesFilesByTheirExtension) {

@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-enum class CloudFormat { kPly, kPcd };
+enum class CloudFormat { ply, pcd };
 
 struct WriteOptions {
   bool ascii = false;  ///< text instead of binary (little endian); digits enough to lose none
