@@ -18,12 +18,12 @@ constexpr std::string_view kShades = ".:-=+*#%@";
 // From dark blue to yellow in the terminal's palette of 256.
 constexpr std::array<int, 9> kColors = {17, 18, 24, 30, 36, 71, 106, 142, 220};
 
-// A count's step on a logarithmic scale from 1 to the largest.
+// A count's step: each is a factor of about 1.6 below the next, and the last holds the largest.
 std::size_t shade(std::size_t count, std::size_t largest) {
-  if (largest <= 1) return kShades.size() - 1;
-  const double share =
-      std::log(static_cast<double>(count)) / std::log(static_cast<double>(largest));
-  return std::min(static_cast<std::size_t>(share * kShades.size()), kShades.size() - 1);
+  const double share = static_cast<double>(count) / static_cast<double>(largest);
+  const double below = -2 * std::log2(share) / std::log2(2.5);
+  const auto steps = static_cast<std::size_t>(below);
+  return steps >= kShades.size() ? 0 : kShades.size() - 1 - steps;
 }
 
 }  // namespace

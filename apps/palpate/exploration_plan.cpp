@@ -17,8 +17,9 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kReach = 0.3;       // m that a hand on a desk explores without magnification
-constexpr double kPatch = 60;        // R: largest patch, so that strokes meet new surface
+constexpr double kReach = 0.3;       // m across that a hand on a desk reaches
+constexpr double kPatch = 0.6;       // m across that a hand explores in some seconds ...
+constexpr double kPatchRadii = 20;   // ... or, where that is more, as many R
 constexpr double kDepth = 0.75;      // R under the surface
 constexpr double kLargestForce = 4;  // N
 constexpr double kStiffest = 2000;   // N/m that the simulated hand holds without humming
@@ -86,7 +87,7 @@ double choose_scale(double patch, double stiffness) {
 
 double workspace_scale(double extent) {
   const double wanted = extent / kReach;
-  if (wanted >= 0.2 && wanted <= 10) return 1;
+  if (wanted >= 0.2 && wanted <= 4) return 1;
   const double decade = std::pow(10, std::floor(std::log10(wanted)));
   for (const double step : {1.0, 2.0, 5.0}) {
     if (wanted <= step * decade) return step * decade;
@@ -98,7 +99,8 @@ ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
                                  const PlanOptions& options) {
   const Union all = unite(scene);
   ExplorationPlan plan;
-  plan.patch = std::max(std::min(all.box.size().maxCoeff(), kPatch * all.radius), all.radius);
+  const double widest = std::max(kPatch, kPatchRadii * all.radius);
+  plan.patch = std::max(std::min(all.box.size().maxCoeff(), widest), all.radius);
   plan.workspace.scale = choose_scale(plan.patch, options.stiffness);
   const double scale = plan.workspace.scale;
   plan.stiffness = options.stiffness > 0 ? options.stiffness : kStiffness / scale;
@@ -113,8 +115,8 @@ ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
   explore_options.depth = plan.depth * (1 + felt / options.hand.stiffness);
   explore_options.offset = offset(field, all.radius, options.tool_radius);
   explore_options.patch = plan.patch;
-  explore_options.slide_speed = scale * std::clamp(0.5 * plan.patch / scale, 0.05, 0.15);
-  explore_options.travel_speed = scale * std::clamp(plan.patch / scale, 0.1, 0.25);
+  explore_options.slide_speed = scale * std::clamp(0.5 * plan.patch / scale, 0.05, 0.2);
+  explore_options.travel_speed = scale * std::clamp(plan.patch / scale, 0.1, 0.3);
   explore_options.seed = options.seed;
   plan.target = explore(all.view(), explore_options);
 

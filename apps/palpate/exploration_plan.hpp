@@ -24,7 +24,7 @@ struct PlanOptions {
   double stiffness = 0;    ///< N/m in the world; 0: 500 at the hand
   double tool_radius = 0;  ///< m
   std::uint64_t seed = 1;
-  SimulatedHand hand;
+  SimulatedHand hand = {};
   double rate = 1000;  ///< steps a second
 };
 

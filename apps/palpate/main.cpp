@@ -25,7 +25,7 @@ int complain(const std::string& what, int code) {
 int run(int argc, char** argv) {
   CLI::App program(kAbout, "palpate");
   program.set_version_flag("--version", fmt::format("palpate {}", version()));
-  program.require_subcommand(1);
+  program.require_subcommand(0, 1);
   program.get_formatter()->column_width(34);
   program.footer("'palpate COMMAND --help' tells more, with examples.");
   TouchOptions touch_options;
@@ -44,6 +44,9 @@ int run(int argc, char** argv) {
     return complain(
         fmt::format("{}\n'palpate --help' and 'palpate COMMAND --help' tell more.", error.what()),
         kUsage);
+  }
+  if (program.get_subcommands().empty()) {
+    throw UsageError("a command is missing: touch or info; 'palpate --help' tells more");
   }
   if (touch_command->parsed()) touch(touch_options);
   if (info_command->parsed()) info(info_options);

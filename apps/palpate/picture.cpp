@@ -29,6 +29,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kCloudPoints = 60'000;
 constexpr std::size_t kSteps = 20'000;
+constexpr double kWhole = 2.5;  // times the way: show a cloud up to this size whole
 constexpr std::size_t kCloudColumns = 7;
 
 // A folder of our own that vanishes with its contents.
@@ -66,12 +67,24 @@ void write_floats(const std::string& path, const std::vector<float>& values) {
   write_file(path, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
 }
 
-// What the picture shows: the way of hand and proxy, and some of what is around it.
-Box view(const std::vector<TouchStep>& steps) {
+// What the picture shows: the way of hand and proxy, and some of what is around it or, unless that
+// is much larger, the whole cloud.
+Box view(const std::vector<TouchStep>& steps, const Scene& scene) {
   Box box;
   for (const TouchStep& step : steps) {
     box.extend(step.hip);
     box.extend(step.contact.proxy);
+  }
+  Box all;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const std::shared_ptr<const SurfacePoints> source = scene.source(i).points();
+    if (!source || source->size() == 0) continue;
+    all.extend(source->origin + source->grid.cells().front().lower.cast<double>());
+    all.extend(source->origin + source->grid.cells().front().upper.cast<double>());
+  }
+  if (!all.empty() && all.size().maxCoeff() < kWhole * box.size().maxCoeff()) {
+    box.extend(all.lower);
+    box.extend(all.upper);
   }
   const double margin = 0.15 * box.size().maxCoeff() + 1e-3;
   box.extend(box.lower - Vector3d::Constant(margin));
@@ -180,7 +193,7 @@ void Picture::draw(const Scene& scene, const std::string& title,
   Progress progress("drawing the picture");
   progress.update(-1);
   const TemporaryFolder folder;
-  const Box box = view(steps_);
+  const Box box = view(steps_, scene);
   write_floats(folder.file("cloud.f32"), visible_points(scene, box));
   write_floats(folder.file("steps.f32"), step_rows(steps_, box));
   write_file(folder.file("draw.py"), picture_script());

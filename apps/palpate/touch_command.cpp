@@ -114,7 +114,7 @@ std::string subtitle(const TouchReport& report) {
       "{} field, K = {:.4g} N/m, {} steps in {:.3g} s, {} contacts, energy given to the "
       "hand {}",
       name_of(report.field.kind), report.proxy.stiffness, grouped(s.steps()), s.duration(),
-      grouped(s.contacts()), energy(s.energy()));
+      grouped(s.contacts()), energy(energy_at_hand(report)));
 }
 
 // Steps the run and hands each step to what keeps or sums it.

@@ -22,14 +22,19 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-void print_cloud(const TouchedCloud& cloud, const PrepareReport& r, const Style& style,
-                 std::FILE* out) {
+void print_cloud(const TouchedCloud& cloud, const PrepareReport& r, double scale,
+                 const Style& style, std::FILE* out) {
   fmt::print(out, "{} {} ({})\n", style.heading(cloud.argument.name), cloud.argument.path,
              cloud.format);
   fmt::print(out, "  points     {} read, {} felt", grouped(r.points_in), grouped(r.points_out));
   if (r.speckle > 0) fmt::print(out, ", {} dropped as speckle", grouped(r.speckle));
   if (cloud.dropped > 0) fmt::print(out, ", {} invalid", grouped(cloud.dropped));
-  fmt::print(out, "\n  spacing    {}, noise {}, voxel {}\n", length(r.spacing), length(r.noise),
+  fmt::print(out, "\n");
+  if (!cloud.units.advice.empty() && scale == 1) {
+    fmt::print(out, "  {} probably {}: {}; {}\n", style.warning("units     "), cloud.units.units,
+               cloud.units.reason, cloud.units.advice);
+  }
+  fmt::print(out, "  spacing     {}, noise {}, voxel {}\n", length(r.spacing), length(r.noise),
              r.voxel > 0 ? length(r.voxel) : "none");
   fmt::print(out, "  R          {}\n", range(r.radius_smallest, r.radius, r.radius_largest));
   fmt::print(out,
@@ -109,6 +114,11 @@ Json json_device(const TouchReport& report) {
 
 }  // namespace
 
+double energy_at_hand(const TouchReport& report) {
+  const double scale = report.plan == nullptr ? 1 : report.plan->workspace.scale;
+  return report.statistics.energy() / scale;
+}
+
 const char* name_of(FieldKind kind) {
   if (kind == FieldKind::metaball) return "metaball";
   return kind == FieldKind::pointset ? "pointset" : "balanced";
@@ -117,7 +127,8 @@ const char* name_of(FieldKind kind) {
 void print_report(const TouchReport& report, std::FILE* out) {
   const Style style(out);
   for (std::size_t i = 0; i < report.clouds.size(); ++i) {
-    print_cloud(report.clouds[i], report.scene.source(i).report(), style, out);
+    print_cloud(report.clouds[i], report.scene.source(i).report(), report.options.load.scale, style,
+                out);
   }
   const TouchStatistics& s = report.statistics;
   const StepTimes times = s.times();
@@ -132,7 +143,7 @@ void print_report(const TouchReport& report, std::FILE* out) {
              100 * share(s.touching(), s.steps()));
   fmt::print(out, "  force      {:.3g} N at most, changing by {:.2g} N a step at most\n",
              s.largest_force(), s.largest_jump());
-  fmt::print(out, "  energy     {} given to the hand{}\n", energy(s.energy()),
+  fmt::print(out, "  energy     {} given to the hand{}\n", energy(energy_at_hand(report)),
              s.energy() < 0 ? " (negative: taken from it)" : "");
   print_notes(s, style, out);
   if (s.touching() == 0) {
@@ -164,7 +175,8 @@ Json json_report(const TouchReport& report) {
           {"contact_share", share(s.touching(), s.steps())},
           {"largest_force_N", s.largest_force()},
           {"largest_force_step_N", s.largest_jump()},
-          {"energy_given_to_hand_J", s.energy()},
+          {"energy_given_to_hand_J", energy_at_hand(report)},
+          {"integral_of_force_over_log_J", s.energy()},
           {"notes", json_notes(s)}};
 }
 

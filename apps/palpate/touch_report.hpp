@@ -24,6 +24,9 @@ struct TouchReport {
   const ExplorationPlan* plan = nullptr;  ///< of the built-in exploration, if it was that
 };
 
+/// Work done on the hand, J: in its own metres, where the cloud is magnified (workspace.hpp).
+[[nodiscard]] double energy_at_hand(const TouchReport& report);
+
 /// As on the command line.
 [[nodiscard]] const char* name_of(FieldKind kind);
 

@@ -80,8 +80,14 @@ void check_intensities(const LoadedCloud& loaded) {
 }
 
 TouchedCloud add(Scene& scene, const LoadedCloud& loaded, const SourceOptions& options) {
-  TouchedCloud result{loaded.argument,     loaded.file.format, loaded.file.declared,
-                      loaded.file.dropped, loaded.seconds,     0};
+  TouchedCloud result{loaded.argument,
+                      loaded.file.format,
+                      loaded.file.declared,
+                      loaded.file.dropped,
+                      loaded.seconds,
+                      {},
+                      0};
+  result.units = guess_units(bounds_of(loaded.file.cloud), loaded.file.format);
   Progress progress(
       fmt::format("preparing {} ({} points)", loaded.argument.name, loaded.file.cloud.size()));
   if (loaded.file.cloud.size() > 1'000'000) progress.update(-1);

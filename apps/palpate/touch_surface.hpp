@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "apps/palpate/cloud_facts.hpp"
 #include "apps/palpate/load.hpp"
 #include "apps/palpate/touch_options.hpp"
 #include "palpate/contact/proxy.hpp"
@@ -27,6 +28,7 @@ struct TouchedCloud {
   std::size_t declared = 0;
   std::size_t dropped = 0;
   double read_seconds = 0;
+  UnitsGuess units;            ///< of a file that was read without --scale
   double prepare_seconds = 0;  ///< wall time of everything between reading and touching
 };
 

@@ -18,15 +18,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kClearance = 3;  // R above the felt surface where the hand moves freely
-constexpr double kStep = 0.25;    // R from one place of a stroke to the next
-constexpr double kStroke = 0.6;   // longest stroke, of the region's extent
-constexpr double kLongest = 1.2;  // s that one stroke may take
-constexpr double kDwell = 0.1;    // s at rest before and after a stroke
-constexpr double kRamp = 0.2;     // share of a move spent speeding up, and slowing down
-constexpr int kCandidates = 24;   // places looked at for the beginning of a stroke
-constexpr int kTries = 4;         // of strokes to which no free way leads
-constexpr int kDirections = 4;    // directions tried there
+constexpr double kClearance = 2.5;  // R above the felt surface where the hand moves freely
+constexpr double kStep = 0.25;      // R from one place of a stroke to the next
+constexpr double kStroke = 0.6;     // longest stroke, of the region's extent
+constexpr double kLongest = 1.2;    // s that one stroke may take
+constexpr double kDwell = 0.1;      // s at rest before and after a stroke
+constexpr double kRamp = 0.2;       // share of a move spent speeding up, and slowing down
+constexpr int kCandidates = 24;     // places looked at for the beginning of a stroke
+constexpr int kTries = 8;           // of strokes to which no free way leads
+constexpr int kDirections = 4;      // directions tried there
 
 // Share of a move's way that is done after share u of its time: speed rises and falls as a cosine.
 double progress(double u) {
@@ -89,17 +89,21 @@ class Explorer {
         player_(surface.origin, options) {}
 
   Trajectory run() {
-    std::vector<MapSample> stroke = next_stroke();
+    std::vector<MapSample> stroke = next_stroke(next_start());
     player_.dwell(above(stroke.front()), kDwell);
     while (!player_.over()) {
       touch(stroke);
       const MapSample last = stroke.back();
       Route way;
       for (int i = 0; i < kTries && !way.clear; ++i) {
-        stroke = next_stroke();
+        stroke = next_stroke(next_start());
         way = route(last, stroke.front());
       }
-      player_.move(way.places, options_.travel_speed);
+      if (way.clear) {
+        player_.move(way.places, options_.travel_speed);
+      } else {
+        stroke = next_stroke(last);  // walled in: go on from here
+      }
     }
     return player_.take();
   }
@@ -126,7 +130,7 @@ class Explorer {
   // Down along the normal, along the stroke with the depth going up and down, and off again.
   void touch(const std::vector<MapSample>& stroke) {
     const double depth = options_.depth;
-    player_.move({above(stroke.front()), under(stroke.front(), depth)}, 0.6 * options_.slide_speed);
+    player_.move({above(stroke.front()), under(stroke.front(), depth)}, options_.slide_speed);
     player_.dwell(under(stroke.front(), depth), kDwell);
     std::vector<Vector3d> way;
     for (std::size_t i = 0; i < stroke.size(); ++i) {
@@ -138,8 +142,7 @@ class Explorer {
     player_.move({way.back(), above(stroke.back())}, options_.slide_speed);
   }
 
-  std::vector<MapSample> next_stroke() {
-    const MapSample start = next_start();
+  std::vector<MapSample> next_stroke(const MapSample& start) {
     std::vector<MapSample> best(1, start);
     for (int i = 0; i < kDirections; ++i) {
       const double angle = 2 * std::numbers::pi * (random_.uniform() + i) / kDirections;
@@ -148,7 +151,7 @@ class Explorer {
       std::vector<MapSample> stroke = follow(start, direction);
       if (stroke.size() > best.size()) best = std::move(stroke);
     }
-    for (const MapSample& s : best) touched_.push_back(s.position);
+    for (std::size_t i = 0; i < best.size(); i += 4) touched_.push_back(best[i].position);
     return best;
   }
 
@@ -156,10 +159,13 @@ class Explorer {
   MapSample next_start() {
     MapSample best;
     double farthest = -1;
-    for (int i = 0; i < kCandidates || (farthest < 0 && i < 50 * kCandidates); ++i) {
+    int seen = 0;
+    for (int i = 0; seen < kCandidates && i < 50 * kCandidates; ++i) {
       const auto k = static_cast<std::size_t>(random_.uniform() * static_cast<double>(map_.size()));
       const MapSample sample = map_.at(map_.point(k));
-      if (sample.normal.isZero() || (i < kCandidates && !open(sample))) continue;
+      if (sample.normal.isZero() || !map_.inside(sample.position)) continue;
+      if (i < 4 * kCandidates && !open(sample)) continue;
+      ++seen;
       double distance = touched_.empty() ? 1e9 - (sample.position - map_.center()).norm() : 1e9;
       for (const Vector3d& p : touched_)
         distance = std::min(distance, (p - sample.position).norm());
@@ -181,7 +187,7 @@ class Explorer {
     std::vector<MapSample> way(1, start);
     for (double length = 0; length < longest; length += step) {
       MapSample next = map_.at(way.back().position + step * direction);
-      if (next.normal.isZero()) break;
+      if (next.normal.isZero() || !map_.inside(next.position)) break;
       if (next.normal.dot(way.back().normal) < 0) next.normal = -next.normal;
       if ((next.position - way.back().position).norm() > 4 * step) break;
       way.push_back(next);

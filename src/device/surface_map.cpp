@@ -46,22 +46,20 @@ SurfaceMap::SurfaceMap(const ExploredSurface& surface, double patch, double radi
 void SurfaceMap::choose(const ExploredSurface& surface, double patch) {
   Box box;
   for (const Vector3f& p : surface.points) box.extend(p.cast<double>());
-  std::vector<Vector3f> chosen;
-  std::vector<std::uint32_t> places;
   const bool everything = box.size().maxCoeff() <= patch;
   const Vector3f middle = everything ? Vector3f(box.center().cast<float>())
                                      : nearest_to(median(surface.points), surface.points);
-  const auto reach = static_cast<float>(patch / 2);
-  Box kept;
+  center_ = middle.cast<double>();
+  reach_ = everything ? box.size().norm() : patch / 2;
+  extent_ = std::min(box.size().maxCoeff(), patch);
+  const auto kept = static_cast<float>(2 * reach_);
+  std::vector<Vector3f> chosen;
+  std::vector<std::uint32_t> places;
   for (std::size_t i = 0; i < surface.points.size(); ++i) {
-    const Vector3f& p = surface.points[i];
-    if (!everything && (p - middle).squaredNorm() > reach * reach) continue;
-    chosen.push_back(p);
+    if ((surface.points[i] - middle).squaredNorm() > kept * kept) continue;
+    chosen.push_back(surface.points[i]);
     places.push_back(static_cast<std::uint32_t>(i));
-    kept.extend(p.cast<double>());
   }
-  center_ = kept.center();
-  extent_ = kept.size().norm();
   grid_ = CellGrid(chosen);
   if (surface.normals.empty()) return;
   normals_.reserve(chosen.size());

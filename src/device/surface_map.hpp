@@ -14,16 +14,21 @@ struct MapSample {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< unit, or zero: nothing is near
 };
 
-/// The region of a surface that is explored: points near its middle with normals, indexed.
-/// Coordinates are relative to the surface's origin.
+/// The region of a surface that is explored, and as much again around it, which is only looked out
+/// for: points with normals, indexed. Coordinates are relative to the surface's origin.
 class SurfaceMap {
  public:
-  /// Keeps what lies within patch / 2 of the median point, or everything if it is smaller.
+  /// What lies within patch / 2 of the median point, or everything if that is smaller.
   SurfaceMap(const ExploredSurface& surface, double patch, double radius);
 
   [[nodiscard]] std::size_t size() const { return grid_.size(); }
   [[nodiscard]] const Eigen::Vector3d& center() const { return center_; }
-  [[nodiscard]] double extent() const { return extent_; }  ///< of the region's diagonal, m
+  [[nodiscard]] double extent() const {
+    return extent_;
+  }  ///< of the region, along its longest axis, m
+  [[nodiscard]] bool inside(const Eigen::Vector3d& x) const {
+    return (x - center_).squaredNorm() <= reach_ * reach_;
+  }
   [[nodiscard]] Eigen::Vector3d point(std::size_t i) const {
     return grid_.points()[i].cast<double>();
   }
@@ -41,6 +46,7 @@ class SurfaceMap {
   double radius_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double extent_ = 0;
+  double reach_ = 0;
   CellGrid grid_;
   std::vector<Eigen::Vector3f> normals_;  // in the grid's order
   mutable std::vector<std::uint32_t> near_;

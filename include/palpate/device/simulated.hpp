@@ -24,7 +24,7 @@ struct SimulatedDeviceOptions {
   double rate = 1000;         ///< steps a second, Hz
   double maximum_force = 20;  ///< N; longer forces are shortened to it
   double workspace_radius = 0.1;  ///< m; only told, never enforced
-  SimulatedHand hand;
+  SimulatedHand hand = {};
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< at time 0, m; a target's start wins
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< at time 0, m/s
   double duration = 0;  ///< s after which the status is `finished`; 0: at the end of the target

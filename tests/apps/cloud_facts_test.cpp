@@ -1,0 +1,55 @@
+#include "apps/palpate/cloud_facts.hpp"
+
+#include <gtest/gtest.h>
+
+#include "palpate/io/synthetic.hpp"
+
+namespace palpate::app {
+namespace {
+
+Box box(const Eigen::Vector3d& lower, const Eigen::Vector3d& size) {
+  Box result;
+  result.extend(lower);
+  result.extend(lower + size);
+  return result;
+}
+
+TEST(CloudFacts, UnitsAreGuessedWithAReason) {
+  EXPECT_EQ(guess_units(box({0, 0, 0}, {0.15, 0.15, 0.12}), "PLY").units, "metres");
+  EXPECT_EQ(guess_units(box({0, 0, 0}, {5200, 7660, 1900}), "PCD").units, "millimetres");
+  EXPECT_EQ(guess_units(box({0, 0, 0}, {120, 80, 60}), "PLY").units, "metres or millimetres");
+  const UnitsGuess feet = guess_units(box({635600, 848900, 400}, {3400, 4600, 200}), "LAS 1.2");
+  EXPECT_EQ(feet.units, "metres or feet");
+  EXPECT_NE(feet.advice.find("0.3048"), std::string::npos);
+  EXPECT_EQ(guess_units(box({515380, 4918340, 2300}, {40, 40, 20}), "LAS 1.4").units, "metres");
+  EXPECT_EQ(guess_units(box({1, 2, 3}, {0, 0, 0}), "XYZ").units, "unknown");
+}
+
+TEST(CloudFacts, SpacingIsTheSquareGridsOwn) {
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 10000; ++i) {
+    points.emplace_back(0.01f * static_cast<float>(i % 100), 0.01f * static_cast<float>(i / 100),
+                        0.f);
+  }
+  const SpacingFacts facts = measure_spacing(CellGrid(points));
+  EXPECT_NEAR(facts.nearest_three, 0.01, 1e-5);
+  EXPECT_NEAR(facts.from_area, 0.01, 1e-5);
+  EXPECT_NEAR(facts.tenth, 0.01, 1e-5);
+}
+
+TEST(CloudFacts, ClosedSurfaceHasNoRimAndASheetHasOne) {
+  EXPECT_LT(rim_share(prepare(synthetic_cloud("sphere")).points), 0.002);
+  const double sheet = rim_share(prepare(synthetic_cloud("sheet")).points);
+  EXPECT_GT(sheet, 0.01);
+  EXPECT_LT(sheet, 0.12);
+}
+
+TEST(CloudFacts, OnePointIsAllRim) {
+  PointCloud cloud;
+  cloud.positions = {{0, 0, 0}};
+  EXPECT_EQ(measure_spacing(CellGrid(cloud.positions)).from_area, 0);
+  EXPECT_EQ(rim_share(prepare(cloud).points), 1);
+}
+
+}  // namespace
+}  // namespace palpate::app

@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace palpate::app {
+namespace {
+
+TEST(Info, TellsPointsBoundsUnitsSpacingHolesAndAdvice) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  const Outcome outcome = shell.run("info plane.xyz --json info.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* word : {"points", "961", "units", "metres", "spacing", "noise", "holes",
+                           "--voxel", "--radius", "density"}) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+  }
+  const auto info = nlohmann::json::parse(shell.read("info.json"))[0];
+  EXPECT_EQ(info["points"], 961);
+  EXPECT_NEAR(info["spacing_m"]["nearest_three"].get<double>(), 2e-3, 1e-5);
+  EXPECT_NEAR(info["spacing_m"]["from_area"].get<double>(), 2e-3, 1e-5);
+  EXPECT_NEAR(info["bounds_m"]["upper"][0].get<double>(), 0.03, 1e-6);
+}
+
+TEST(Info, ReadsStandardInput) {
+  Shell shell;
+  const Outcome outcome = shell.run("info -", plane_xyz());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("961"), std::string::npos);
+}
+
+TEST(Info, SuspectsMillimetres) {
+  Shell shell;
+  std::string text;
+  for (int i = 0; i < 900; ++i) text += fmt::format("{} {} 10\n", 100 * (i % 30), 100 * (i / 30));
+  shell.write("mm.xyz", text);
+  const Outcome outcome = shell.run("info mm.xyz");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("--scale 0.001"), std::string::npos);
+}
+
+TEST(Info, OnePointIsACloud) {
+  Shell shell;
+  const Outcome outcome = shell.run("info -", "1 2 3\n");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+}  // namespace
+}  // namespace palpate::app

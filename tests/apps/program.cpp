@@ -1,0 +1,104 @@
+#include "apps/program.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace palpate::app {
+
+namespace {
+
+constexpr int kSide = 31;
+
+double coordinate(int i) {
+  return 2e-3 * (i - kSide / 2);
+}
+
+}  // namespace
+
+Shell::Shell() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "palpate-test-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  folder_ = pattern;
+}
+
+Shell::~Shell() {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+Outcome Shell::run(const std::string& arguments, const std::string& standard_input) {
+  write("stdin", standard_input);
+  const std::string command = fmt::format("cd '{}' && '{}' {} < stdin > stdout 2> stderr", folder_,
+                                          PALPATE_PROGRAM, arguments);
+  const int status = std::system(command.c_str());
+  Outcome outcome;
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.out = read("stdout");
+  outcome.err = read("stderr");
+  return outcome;
+}
+
+void Shell::write(const std::string& name, const std::string& text) const {
+  std::ofstream(path(name), std::ios::binary) << text;
+}
+
+std::string Shell::read(const std::string& name) const {
+  std::ostringstream text;
+  text << std::ifstream(path(name), std::ios::binary).rdbuf();
+  return text.str();
+}
+
+std::map<std::string, std::vector<std::string>> columns(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  std::vector<std::string> names;
+  std::istringstream header(line);
+  for (std::string name; std::getline(header, name, ',');) names.push_back(name);
+  std::map<std::string, std::vector<std::string>> result;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::size_t place = 0;
+    for (std::string cell; std::getline(cells, cell, ',');)
+      result[names.at(place++)].push_back(cell);
+  }
+  return result;
+}
+
+std::string plane_xyz() {
+  std::string text;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    text += fmt::format("{} {} 0\n", coordinate(i % kSide), coordinate(i / kSide));
+  }
+  return text;
+}
+
+std::string plane_ply_with_intensity() {
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float intensity\nend_header\n",
+      kSide * kSide);
+  for (int i = 0; i < kSide * kSide; ++i) {
+    text += fmt::format("{} {} 0 {}\n", coordinate(i % kSide), coordinate(i / kSide), i % kSide);
+  }
+  return text;
+}
+
+std::string press_and_slide() {
+  std::string text = "t,hip_x,hip_y,hip_z\n";
+  for (int i = 0; i < 400; ++i) {
+    const double z = i < 100 ? 0.01 - 1.3e-4 * i : i < 300 ? -3e-3 : -3e-3 + 1.3e-4 * (i - 300);
+    const double x = 1e-4 * std::clamp(i - 200, -100, 100);
+    text += fmt::format("{},{},0.0003,{}\n", 1e-3 * i, x, z);
+  }
+  return text;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace palpate::app {
+
+/// What a run of the built program left behind.
+struct Outcome {
+  int code = -1;  ///< exit code; 128 and more: ended by a signal
+  std::string out;
+  std::string err;
+};
+
+/// A folder of its own in which the built program is run as a user does, removed at the end.
+class Shell {
+ public:
+  Shell();
+  ~Shell();
+  Shell(const Shell&) = delete;
+  Shell& operator=(const Shell&) = delete;
+
+  /// Runs `palpate ARGUMENTS` by the system's shell.
+  [[nodiscard]] Outcome run(const std::string& arguments, const std::string& standard_input = "");
+
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  void write(const std::string& name, const std::string& text) const;
+  [[nodiscard]] std::string read(const std::string& name) const;
+
+ private:
+  std::string folder_;
+};
+
+/// A CSV file's columns by name, as text.
+[[nodiscard]] std::map<std::string, std::vector<std::string>> columns(const std::string& csv);
+
+/// A 6 x 6 cm plane of points at z = 0, 2 mm apart, as XYZ text; with an intensity that grows along
+/// x if wanted.
+[[nodiscard]] std::string plane_xyz();
+[[nodiscard]] std::string plane_ply_with_intensity();
+
+/// A trajectory that comes down onto that plane, slides 3 mm deep and leaves.
+[[nodiscard]] std::string press_and_slide();
+
+}  // namespace palpate::app

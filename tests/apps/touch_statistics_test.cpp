@@ -1,0 +1,87 @@
+#include "apps/palpate/touch_statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace palpate::app {
+namespace {
+
+using Eigen::Vector3d;
+
+TouchStep step(double time, const Vector3d& hip, const Vector3d& force) {
+  TouchStep result;
+  result.time = time;
+  result.hip = hip;
+  result.contact.force = force;
+  result.contact.touching = !force.isZero();
+  return result;
+}
+
+TEST(TouchStatistics, EnergyOfAConstantForceIsForceTimesWay) {
+  TouchStatistics statistics;
+  for (int i = 0; i <= 10; ++i) statistics.add(step(i, {0.01 * i, 0, 0}, {2, 5, 0}));
+  EXPECT_NEAR(statistics.energy(), 0.2, 1e-15);
+}
+
+TEST(TouchStatistics, SpringGivesBackWhatItTook) {
+  TouchStatistics statistics;
+  for (int i = 0; i <= 1000; ++i) {
+    const double depth = 1e-3 * std::sin(std::numbers::pi * i / 1000);
+    statistics.add(step(1e-3 * i, {0, 0, -depth}, {0, 0, 500 * depth}));
+  }
+  EXPECT_NEAR(statistics.energy(), 0, 1e-18);
+}
+
+TEST(TouchStatistics, PressingInTakesEnergyFromTheHand) {
+  TouchStatistics statistics;
+  for (int i = 0; i <= 100; ++i) {
+    const double depth = 1e-5 * i;
+    statistics.add(step(1e-3 * i, {0, 0, -depth}, {0, 0, 500 * depth}));
+  }
+  EXPECT_NEAR(statistics.energy(), -0.5 * 500 * 1e-6, 1e-15);
+}
+
+TEST(TouchStatistics, CountsContactsAndKeepsTheLargest) {
+  TouchStatistics statistics;
+  for (const double force : {1., 0., 0., 2., 3., 0., 1.}) {
+    statistics.add(step(static_cast<double>(statistics.steps()), Vector3d::Zero(), {force, 0, 0}));
+  }
+  EXPECT_EQ(statistics.contacts(), 3u);
+  EXPECT_EQ(statistics.touching(), 4u);
+  EXPECT_EQ(statistics.largest_force(), 3);
+  EXPECT_EQ(statistics.largest_jump(), 3);
+  EXPECT_EQ(statistics.duration(), 6);
+}
+
+TEST(TouchStatistics, PercentilesAreByNearestRank) {
+  TouchStatistics statistics(1000);
+  for (int i = 1; i <= 1000; ++i) {
+    TouchStep each;
+    each.microseconds = 1001 - i;
+    statistics.add(each);
+  }
+  const StepTimes times = statistics.times();
+  EXPECT_EQ(times.p50, 500);
+  EXPECT_EQ(times.p99, 990);
+  EXPECT_EQ(times.p999, 999);
+  EXPECT_EQ(times.maximum, 1000);
+  EXPECT_EQ(TouchStatistics().times().maximum, 0);
+}
+
+TEST(TouchStatistics, CountsEveryNoteUnderItsOwnName) {
+  TouchStatistics statistics;
+  TouchStep each;
+  each.contact.notes = ContactNote::lost | ContactNote::fault;
+  each.notes = FieldNote::thinned;
+  statistics.add(each);
+  std::string names;
+  for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
+    if (statistics.notes()[i] > 0) names += std::string(note_text(i).name) + " ";
+  }
+  EXPECT_EQ(names, "lost fault thinned ");
+}
+
+}  // namespace
+}  // namespace palpate::app

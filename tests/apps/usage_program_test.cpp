@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include "apps/program.hpp"
+
+namespace palpate::app {
+namespace {
+
+TEST(Usage, HelpAndVersionSucceed) {
+  Shell shell;
+  const Outcome help = shell.run("--help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_NE(help.out.find("touch"), std::string::npos);
+  const Outcome touch = shell.run("touch --help");
+  EXPECT_EQ(touch.code, 0);
+  for (const char* word : {"--trajectory", "--pose", "Examples:", "Exit codes", "torus", "N/M"}) {
+    EXPECT_NE(touch.out.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(shell.run("info --help").code, 0);
+  const Outcome version = shell.run("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.out.find("palpate "), 0u);
+}
+
+TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
+  Shell shell;
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "touch or info"},
+      {"tuch synthetic:torus", "tuch"},
+      {"touch", "clouds"},
+      {"touch synthetic:torus --colour red", "--colour"},
+      {"touch synthetic:torus --field mesh", "mesh"},
+      {"touch synthetic:torus --radius -1", "above 0"},
+      {"touch synthetic:torus --radius nan", "above 0"},
+      {"touch synthetic:torus --stiffness stiff", "stiff"},
+      {"touch synthetic:torus --viewpoint 1,2", "x,y,z"},
+      {"touch synthetic:torus --pose ring=0,0,0,0,0,0,1", "torus"},
+      {"touch synthetic:torus --pose torus=0,0,0,0,0,0,2", "quaternion"},
+      {"touch synthetic:torus --pose torus=0,0,0", "qx,qy,qz,qw"},
+      {"touch synthetic:torus --intrinsics 1,2,3", "fx,fy,cx,cy"},
+      {"touch synthetic:torus --device scripted", "--trajectory"},
+      {"touch synthetic:torus --friction-static 0.1 --friction-dynamic 0.3", "--friction-static"},
+      {"touch synthetic:torus --soft-stiffness 900", "--soft-stiffness"},
+      {"touch a=synthetic:torus a=synthetic:sheet", "'a'"},
+      {"touch - -", "only once"},
+      {"touch synthetic:torus --log - --json -", "standard output"},
+      {"info", "clouds"},
+  };
+  for (const auto& [arguments, word] : cases) {
+    const Outcome outcome = shell.run(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.out, "") << arguments;
+  }
+}
+
+TEST(Usage, InputAtFaultEndsWithOneAndNamesIt) {
+  Shell shell;
+  shell.write("empty.ply", "");
+  shell.write("text.ply", "this is no cloud\n");
+  shell.write("plane.xyz", plane_xyz());
+  shell.write("bad.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n0,1,1,1\n");
+  const std::pair<const char*, const char*> cases[] = {
+      {"touch missing.ply", "missing.ply"},
+      {"touch empty.ply", "empty.ply"},
+      {"touch text.ply", "text.ply"},
+      {"touch synthetic:horse", "torus"},
+      {"touch plane.xyz --trajectory missing.csv", "missing.csv"},
+      {"touch plane.xyz --trajectory bad.csv", "line 3"},
+      {"touch plane.xyz --soft-stiffness 100", "intensity"},
+      {"touch plane.xyz --log nowhere/log.csv", "nowhere/log.csv"},
+      {"touch plane.xyz --duration 0.1 --picture nowhere/a.png", "nowhere/a.png"},
+      {"info missing.ply", "missing.ply"},
+  };
+  for (const auto& [arguments, word] : cases) {
+    const Outcome outcome = shell.run(arguments);
+    EXPECT_EQ(outcome.code, 1) << arguments << "\n" << outcome.err;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << arguments << "\n" << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::app
