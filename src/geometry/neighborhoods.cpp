@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "geometry/distance.hpp"
 
@@ -96,6 +97,9 @@ void Surroundings::find(const CellGrid& grid, const Block& block, float radius,
     for (std::uint32_t c = cell.children; c-- > 0;) stack[open++] = cell.first_child + c;
     if (cell.children == 0) push_back(cell, own);
   }
+  CellGrid::Cell nowhere;
+  nowhere.lower = nowhere.upper = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());
+  while (count_ % simd::kQueries != 0) push_back(nowhere, 0);
 }
 
 std::span<const simd::Run> Surroundings::near(const Block& part, float radius) {

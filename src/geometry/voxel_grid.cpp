@@ -161,7 +161,8 @@ void average(const PointCloud& cloud, std::span<const std::uint32_t> places, std
 
 }  // namespace
 
-PointCloud voxel_downsample(const PointCloud& cloud, double leaf) {
+PointCloud voxel_downsample(const PointCloud& cloud, double leaf,
+                            std::vector<std::uint32_t>* counts) {
   PointCloud result;
   result.origin = cloud.origin;
   result.viewpoint = cloud.viewpoint;
@@ -173,6 +174,12 @@ PointCloud voxel_downsample(const PointCloud& cloud, double leaf) {
   const std::vector<std::uint32_t> places = sort_places(cloud, lattice);
   const std::vector<std::uint32_t> starts = find_cubes(cloud, lattice, places);
   const std::size_t cubes = starts.size() - 1;
+  if (counts) {
+    counts->resize(cubes);
+    for (std::size_t cube = 0; cube < cubes; ++cube) {
+      (*counts)[cube] = starts[cube + 1] - starts[cube];
+    }
+  }
   result.positions.resize(cubes);
   result.normals.resize(cloud.normals.empty() ? 0 : cubes);
   result.colors.resize(cloud.colors.empty() ? 0 : cubes);

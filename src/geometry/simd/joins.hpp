@@ -49,7 +49,7 @@ struct Planes {
 };
 
 /// Leaves' tight boxes side by side, how far from each its points are asked for, and their points.
-/// The columns are as long as `count` rounded up to kQueries.
+/// `count` is a multiple of kQueries; entries that fill it up have a lower bound of infinity.
 struct Leaves {
   const float* lower[3];  ///< x, y, z, m
   const float* upper[3];

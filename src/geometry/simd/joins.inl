@@ -48,11 +48,11 @@ struct PlaneFits {
   // Scaled to a trace of 1; `trace` is what it was.
   static Symmetric covariance(const Row* moments, std::size_t q, Doubles& trace) {
     const Doubles n = greater(load(moments[0] + q), same(1));
-    const Vector mean{load(moments[1] + q) / n, load(moments[2] + q) / n, load(moments[3] + q) / n};
-    Symmetric c{
-        load(moments[4] + q) / n - mean.x * mean.x, load(moments[5] + q) / n - mean.x * mean.y,
-        load(moments[6] + q) / n - mean.x * mean.z, load(moments[7] + q) / n - mean.y * mean.y,
-        load(moments[8] + q) / n - mean.y * mean.z, load(moments[9] + q) / n - mean.z * mean.z};
+    const Doubles per = 1. / n;
+    const auto row = [&](std::size_t k) { return load(moments[k] + q) * per; };
+    const Vector mean{row(1), row(2), row(3)};
+    const Symmetric c{row(4) - mean.x * mean.x, row(5) - mean.x * mean.y, row(6) - mean.x * mean.z,
+                      row(7) - mean.y * mean.y, row(8) - mean.y * mean.z, row(9) - mean.z * mean.z};
     trace = greater(c.xx + c.yy + c.zz, same(0));
     const Doubles scale = 1. / greater(trace, same(1e-300));
     return {c.xx * scale, c.xy * scale, c.xz * scale, c.yy * scale, c.yz * scale, c.zz * scale};
@@ -63,7 +63,7 @@ struct PlaneFits {
   // time.
   static Doubles smallest_root(const Doubles& c, const Doubles& d) {
     Doubles x{};
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < 4; ++i) {
       const Doubles value = d - x * (c + x * (x - 1.));
       const Doubles slope = greater(c + x * (3. * x - 2.), same(0));
       const Doubles bend = value * (6. * x - 2.);
@@ -200,13 +200,13 @@ struct Joins {
       std::memcpy(hits, &mask, sizeof mask);
       // No branches: whether a leaf is near cannot be foretold.
       for (std::size_t l = 0; l < kLanes; ++l) {
-        const Run& leaf = leaves.points[first + l];
-        const bool hit = hits[l] != 0 && first + l < leaves.count;
-        const bool fresh = hit && leaf.begin != open.end;
+        const Run leaf = leaves.points[first + l];
+        const auto hit = static_cast<std::uint32_t>(hits[l]);
+        const std::uint32_t fresh = hit & (0u - static_cast<std::uint32_t>(leaf.begin != open.end));
         runs[count] = open;
-        count += fresh ? 1 : 0;
-        open.begin = fresh ? leaf.begin : open.begin;
-        open.end = hit ? leaf.end : open.end;
+        count += fresh & 1;
+        open.begin ^= (open.begin ^ leaf.begin) & fresh;
+        open.end ^= (open.end ^ leaf.end) & hit;
       }
     }
     runs[count] = open;
