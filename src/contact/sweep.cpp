@@ -70,16 +70,15 @@ class Sweeper {
     while (!pending.empty()) {
       if (spent()) return {Sweep::End::truncated, at(free_until)};
       const Interval interval = pending.pop();
-      if (!known_busy && ball_is_free(interval)) {
-        free_until = interval.end;
-      } else if (half_length(interval) >= leaf_ && !pending.full()) {
-        pending.push_halves(interval);
-      } else if (const double solid = solid_end(interval); solid >= 0) {
-        return {Sweep::End::hit, at(last_free(free_until, solid))};
-      } else {
-        free_until = interval.end;
-      }
+      const bool certain = !known_busy && ball_is_free(interval);
       known_busy = false;
+      if (!certain && half_length(interval) >= leaf_ && !pending.full()) {
+        pending.push_halves(interval);
+        continue;
+      }
+      const double solid = certain ? -1 : solid_end(interval);
+      if (solid >= 0) return {Sweep::End::hit, at(last_free(free_until, solid))};
+      free_until = interval.end;
     }
     return {Sweep::End::clear, at(1)};
   }

@@ -104,6 +104,10 @@ class HostileField final : public Field {
     sample.gradient = Vector3d(hash(2 * x) - 0.5, hash(3 * x) - 0.5, hash(5 * x) - 0.5);
     if (broken_ && h > 0.98) sample.gradient.x() = kNaN;
     if (broken_ && h < 0.02) sample.value = kInf;
+    if (broken_ && h > 0.2 && h < 0.22) {
+      sample.value = -1e300;
+      sample.radius = 1e300;
+    }
     return sample;
   }
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
