@@ -1,6 +1,7 @@
 // Stands in for LASzip in the tests: the functions of its C interface that we call, over a file
 // whose records are not compressed at all. Fills laszip_point_struct as LASzip 3 lays it out.
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -54,8 +55,8 @@ int laszip_close_reader(void* handle) {
   return std::fclose(reader_of(handle)->file);
 }
 
-int laszip_get_point_pointer(void* handle, unsigned char** point) {
-  *point = reader_of(handle)->point.data();
+int laszip_get_point_pointer(void* handle, std::byte** point) {
+  *point = reinterpret_cast<std::byte*>(reader_of(handle)->point.data());
   return 0;
 }
 
