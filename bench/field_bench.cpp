@@ -111,12 +111,14 @@ SurfacePoints surface_points(std::size_t count) {
 /// A patch as a field keeps it: gathered anew when the path has left it.
 class Walk {
  public:
-  explicit Walk(std::size_t count)
-      : points_(surface_points(count)), margin_(0.35 * 2.5 * spacing_of(count)) {}
+  Walk(std::size_t count, bool normals)
+      : points_(surface_points(count)),
+        margin_(0.35 * 2.5 * spacing_of(count)),
+        gather_{.raw_weights = true, .normals = normals} {}
 
   const Patch& at(const Vector3d& x) {
     if (!patch_.covers({x, 0})) {
-      patch_.gather(layers_, 1, x, margin_, true);
+      patch_.gather(layers_, 1, x, margin_, gather_);
       ++gathers_;
     }
     return patch_;
@@ -132,12 +134,13 @@ class Walk {
   std::vector<ActiveLayer> layers_{{&points_}};
   Patch patch_{2048};
   double margin_;
+  GatherOptions gather_;
   double gathers_ = 0;
 };
 
 /// The sum and its gradient, as nanoflann_sum has them.
 void palpate_sum(benchmark::State& state) {
-  Walk walk(static_cast<std::size_t>(state.range(0)));
+  Walk walk(static_cast<std::size_t>(state.range(0)), false);
   const auto places = path();
   std::size_t k = 0;
   simd::Sums sums;
@@ -153,7 +156,7 @@ void palpate_sum(benchmark::State& state) {
 
 /// A whole sample of a field.
 void palpate_sample(benchmark::State& state, FieldKind kind) {
-  Walk walk(static_cast<std::size_t>(state.range(0)));
+  Walk walk(static_cast<std::size_t>(state.range(0)), kind != FieldKind::metaball);
   const ImplicitSurface surface{FieldOptions{.kind = kind}};
   const auto places = path();
   std::size_t k = 0;

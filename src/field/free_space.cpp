@@ -17,15 +17,14 @@ constexpr int kMaxVisits = 8192;  // points and cells
 /// or when `visits` has run out.
 double largest_weight(const ImplicitSurface& surface, const ActiveLayer& layer, const Ball& ball,
                       double enough, int& visits) noexcept {
-  const Vector3d x = ball.center - layer.points->origin;
+  const CellTest test(ball.center - layer.points->origin);
   double total = 0;
   CellStack stack(*layer.points);
   while (!stack.empty() && visits > 0 && total < enough) {
     --visits;
     const std::uint32_t index = stack.pop();
     const CellGrid::Cell& cell = layer.points->grid.cells()[index];
-    const double reach = layer.points->cell_reach[index] + ball.radius;
-    if (squared_distance(cell, x) > reach * reach) continue;
+    if (!test.near(cell, layer.points->cell_reach[index] + ball.radius)) continue;
     if (cell.children > 0) {
       stack.push_children(cell);
       continue;
@@ -75,8 +74,8 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
       const double w =
           c.weight[i] * evaluate(surface.options.kernel, q.squaredNorm() * c.inverse_r2[i]).w;
       of_source += w;
-      material += w * patch.material()[i];
-      velocity += w * Vector3d(patch.velocity(0)[i], patch.velocity(1)[i], patch.velocity(2)[i]);
+      material += w * patch.material(i);
+      velocity += w * patch.velocity(i);
     }
     total += of_source;
     if (of_source > largest) {

@@ -51,16 +51,11 @@ double weight_now(const ActiveLayer& layer, std::uint32_t i, bool raw_weights) n
   return layer.weight * lerp(start, points.end_density_weights[i], layer.progress);
 }
 
-double squared_distance(const CellGrid::Cell& cell, const Eigen::Vector3d& x) noexcept {
-  const Eigen::Array3d below = cell.lower.cast<double>().array() - x.array();
-  const Eigen::Array3d above = x.array() - cell.upper.cast<double>().array();
-  return below.max(above).max(0).matrix().squaredNorm();
-}
-
 Patch::Patch(std::size_t capacity)
     : capacity_((capacity + simd::kLanes - 1) / simd::kLanes * simd::kLanes),
       pitch_(capacity_ + 2 * kCacheLine),
-      data_(kColumns * pitch_, 0.0) {
+      data_(kColumns * pitch_, 0.0),
+      index_(capacity_, 0) {
   for (int axis = 0; axis < 3; ++axis) {
     columns_.position[axis] = column(kPosition + axis);
     columns_.normal[axis] = column(kNormal + axis);
@@ -73,17 +68,21 @@ Patch::Patch(std::size_t capacity)
 }
 
 void Patch::gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
-                   double extra, bool raw_weights) noexcept {
+                   double extra, const GatherOptions& options) noexcept {
   center_ = center;
   extra_ = extra;
+  options_ = options;
+  has_materials_ = std::ranges::any_of(
+      layers, [](const ActiveLayer& layer) { return !layer.points->materials.empty(); });
+  has_motion_ =
+      std::ranges::any_of(layers, [](const ActiveLayer& layer) { return layer.rate > 0; });
   stride_ = 1;
-  while (!gather_all(layers, sources, raw_weights)) stride_ *= 2;
+  while (!gather_all(layers, sources)) stride_ *= 2;
   columns_.uniform_radius = smallest_radius_ == largest_radius_ ? largest_radius_ : 0;
   mean_radius_ = count_ > 0 ? radius_sum_ / static_cast<double>(count_) : extra;
 }
 
-bool Patch::gather_all(std::span<const ActiveLayer> layers, int sources,
-                       bool raw_weights) noexcept {
+bool Patch::gather_all(std::span<const ActiveLayer> layers, int sources) noexcept {
   used_ = 0;
   count_ = 0;
   smallest_radius_ = std::numeric_limits<double>::infinity();
@@ -94,7 +93,7 @@ bool Patch::gather_all(std::span<const ActiveLayer> layers, int sources,
   std::size_t next = 0;
   for (int source = 0; source < sources; ++source) {
     for (; next < layers.size() && layers[next].source == source; ++next) {
-      if (layers[next].weight > 0 && !gather_layer(layers[next], raw_weights)) return false;
+      if (layers[next].weight > 0 && !gather_layer(layers[next])) return false;
     }
     pad();
     columns_.source_begin[source + 1] = used_;
@@ -102,59 +101,69 @@ bool Patch::gather_all(std::span<const ActiveLayer> layers, int sources,
   return true;
 }
 
-bool Patch::gather_layer(const ActiveLayer& layer, bool raw_weights) noexcept {
-  const Eigen::Vector3d x = center_ - layer.points->origin;
+bool Patch::gather_layer(const ActiveLayer& layer) noexcept {
+  const std::uint32_t first = used_;
+  const CellTest test(center_ - layer.points->origin);
   CellStack stack(*layer.points);
   while (!stack.empty()) {
     const std::uint32_t index = stack.pop();
     const CellGrid::Cell& cell = layer.points->grid.cells()[index];
-    const double reach = layer.points->cell_reach[index] + extra_;
-    if (squared_distance(cell, x) > reach * reach) continue;
+    if (!test.near(cell, layer.points->cell_reach[index] + extra_)) continue;
     if (cell.children > 0 && cell.end - cell.begin > stride_) {
       stack.push_children(cell);
-    } else if (!gather_run(layer, cell.begin, cell.end, raw_weights)) {
+    } else if (!take_near(layer, cell.begin, cell.end)) {
       return false;
     }
   }
+  fill(layer, first);
   return true;
 }
 
-bool Patch::gather_run(const ActiveLayer& layer, std::uint32_t begin, std::uint32_t end,
-                       bool raw_weights) noexcept {
+/// Notes the places of a run's points that are near enough, every stride_-th of them.
+bool Patch::take_near(const ActiveLayer& layer, std::uint32_t begin, std::uint32_t end) noexcept {
   const std::uint32_t first = (begin + stride_ - 1) / stride_ * stride_;
   for (std::uint64_t i = first; i < end; i += stride_) {
     const auto k = static_cast<std::uint32_t>(i);
     const Eigen::Vector3d position = position_now(layer, k, center_);
     const double reach = layer.points->radii[k] + extra_;
     if (position.squaredNorm() > reach * reach) continue;
-    if (!put(layer, k, position, raw_weights)) return false;
+    if (used_ == capacity_) return false;
+    for (int axis = 0; axis < 3; ++axis) column(kPosition + axis)[used_] = position[axis];
+    index_[used_++] = k;
   }
   return true;
 }
 
-bool Patch::put(const ActiveLayer& layer, std::uint32_t i, const Eigen::Vector3d& position,
-                bool raw_weights) noexcept {
-  if (used_ == capacity_) return false;
+/// Copies what the surface needs of the points noted since `first`, column by column.
+void Patch::fill(const ActiveLayer& layer, std::uint32_t first) noexcept {
   const SurfacePoints& points = *layer.points;
-  const double radius = points.radii[i];
-  const Eigen::Vector3d normal = normal_now(layer, i);
-  const Eigen::Vector3d velocity = velocity_now(layer, i);
-  for (int axis = 0; axis < 3; ++axis) {
-    column(kPosition + axis)[used_] = position[axis];
-    column(kNormal + axis)[used_] = normal[axis];
-    column(kVelocity + axis)[used_] = velocity[axis];
+  for (std::uint32_t k = first; k < used_; ++k) {
+    const double radius = points.radii[index_[k]];
+    column(kRadius)[k] = radius;
+    column(kInverseR2)[k] = inverse_square(radius);
+    column(kWeight)[k] = weight_now(layer, index_[k], options_.raw_weights) * stride_;
+    smallest_radius_ = std::min(smallest_radius_, radius);
+    largest_radius_ = std::max(largest_radius_, radius);
+    radius_sum_ += radius;
   }
-  column(kWeight)[used_] = weight_now(layer, i, raw_weights) * stride_;
-  column(kConfidence)[used_] = points.normals.empty() ? 0.0 : points.confidences[i];
-  column(kRadius)[used_] = radius;
-  column(kInverseR2)[used_] = inverse_square(radius);
-  column(kMaterial)[used_] = points.materials.empty() ? 1.0 : points.materials[i];
-  smallest_radius_ = std::min(smallest_radius_, radius);
-  largest_radius_ = std::max(largest_radius_, radius);
-  radius_sum_ += radius;
-  ++used_;
-  ++count_;
-  return true;
+  count_ += used_ - first;
+  if (options_.normals) fill_normals(layer, first);
+  for (std::uint32_t k = first; has_materials_ && k < used_; ++k) {
+    column(kMaterial)[k] = points.materials.empty() ? 1.0 : points.materials[index_[k]];
+  }
+  for (std::uint32_t k = first; has_motion_ && k < used_; ++k) {
+    const Eigen::Vector3d velocity = velocity_now(layer, index_[k]);
+    for (int axis = 0; axis < 3; ++axis) column(kVelocity + axis)[k] = velocity[axis];
+  }
+}
+
+void Patch::fill_normals(const ActiveLayer& layer, std::uint32_t first) noexcept {
+  const SurfacePoints& points = *layer.points;
+  for (std::uint32_t k = first; k < used_; ++k) {
+    const Eigen::Vector3d normal = normal_now(layer, index_[k]);
+    for (int axis = 0; axis < 3; ++axis) column(kNormal + axis)[k] = normal[axis];
+    column(kConfidence)[k] = points.normals.empty() ? 0.0 : points.confidences[index_[k]];
+  }
 }
 
 /// Neighbours mostly share their radius, and a division is what a gather would spend most time on.

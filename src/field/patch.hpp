@@ -21,6 +21,11 @@ struct ActiveLayer {
   double rate = 0;      ///< d progress / dt, 1/s
 };
 
+struct GatherOptions {
+  bool raw_weights = false;  ///< leave out the density weights
+  bool normals = true;       ///< copy normals and confidences; metaballs need none
+};
+
 /// The points around a place, copied into columns relative to that place: what the sums run over.
 ///
 /// It holds every point whose support reaches into the ball (center, extra), so a sample anywhere
@@ -30,9 +35,9 @@ class Patch {
  public:
   explicit Patch(std::size_t capacity);
 
-  /// `layers` in the order of their sources; `raw_weights` leaves out the density weights.
+  /// `layers` in the order of their sources.
   void gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
-              double extra, bool raw_weights) noexcept;
+              double extra, const GatherOptions& options = {}) noexcept;
 
   /// Gives all points the radius of the one nearest to x (the paper's section III-D).
   void use_nearest_radius(const Eigen::Vector3d& x) noexcept;
@@ -51,9 +56,14 @@ class Patch {
   [[nodiscard]] double mean_radius() const noexcept { return mean_radius_; }
   [[nodiscard]] const simd::Columns& columns() const noexcept { return columns_; }
 
-  /// Plain columns beside those of the sums.
-  [[nodiscard]] const double* material() const noexcept { return column(kMaterial); }
-  [[nodiscard]] const double* velocity(int axis) const noexcept { return column(kVelocity + axis); }
+  /// Of the k-th column entry; 1 and 0 where no layer has any.
+  [[nodiscard]] double material(std::uint32_t k) const noexcept {
+    return has_materials_ ? column(kMaterial)[k] : 1;
+  }
+  [[nodiscard]] Eigen::Vector3d velocity(std::uint32_t k) const noexcept {
+    if (!has_motion_) return Eigen::Vector3d::Zero();
+    return {column(kVelocity)[k], column(kVelocity + 1)[k], column(kVelocity + 2)[k]};
+  }
 
  private:
   enum Column {
@@ -71,22 +81,25 @@ class Patch {
 
   [[nodiscard]] double* column(int c) noexcept { return data_.data() + c * pitch_; }
   [[nodiscard]] const double* column(int c) const noexcept { return data_.data() + c * pitch_; }
-  [[nodiscard]] bool gather_all(std::span<const ActiveLayer> layers, int sources,
-                                bool raw_weights) noexcept;
-  [[nodiscard]] bool gather_layer(const ActiveLayer& layer, bool raw_weights) noexcept;
-  [[nodiscard]] bool gather_run(const ActiveLayer& layer, std::uint32_t begin, std::uint32_t end,
-                                bool raw_weights) noexcept;
-  [[nodiscard]] bool put(const ActiveLayer& layer, std::uint32_t i, const Eigen::Vector3d& position,
-                         bool raw_weights) noexcept;
+  [[nodiscard]] bool gather_all(std::span<const ActiveLayer> layers, int sources) noexcept;
+  [[nodiscard]] bool gather_layer(const ActiveLayer& layer) noexcept;
+  [[nodiscard]] bool take_near(const ActiveLayer& layer, std::uint32_t begin,
+                               std::uint32_t end) noexcept;
+  void fill(const ActiveLayer& layer, std::uint32_t first) noexcept;
+  void fill_normals(const ActiveLayer& layer, std::uint32_t first) noexcept;
   [[nodiscard]] double inverse_square(double radius) noexcept;
   void pad() noexcept;
 
   std::size_t capacity_;
   std::size_t pitch_;  // from column to column; no power of two, or they share cache sets
   std::vector<double> data_;
+  std::vector<std::uint32_t> index_;  // in its layer, for each entry of a column
   simd::Columns columns_{};
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double extra_ = -1;
+  GatherOptions options_;
+  bool has_materials_ = false;
+  bool has_motion_ = false;
   std::uint32_t used_ = 0;  // with padding
   std::size_t count_ = 0;   // without
   std::uint32_t stride_ = 1;
@@ -105,9 +118,5 @@ class Patch {
 /// a_i C_k now; C_k alone with `raw_weights`.
 [[nodiscard]] double weight_now(const ActiveLayer& layer, std::uint32_t i,
                                 bool raw_weights) noexcept;
-
-/// Squared distance from x to a cell's box, m^2; x relative to the points' origin.
-[[nodiscard]] double squared_distance(const CellGrid::Cell& cell,
-                                      const Eigen::Vector3d& x) noexcept;
 
 }  // namespace palpate

@@ -84,7 +84,9 @@ void SceneField::State::list_layers() noexcept {
 }
 
 void SceneField::State::gather(Patch& patch, const Vector3d& center, double extra) const noexcept {
-  patch.gather(active(), sources(), center, extra, surface.options.raw_weights);
+  patch.gather(active(), sources(), center, extra,
+               {.raw_weights = surface.options.raw_weights,
+                .normals = surface.options.kind != FieldKind::metaball});
   if (patch.thinned()) notes = notes | FieldNote::thinned;
   ++gathers;
 }

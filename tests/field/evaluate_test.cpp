@@ -36,7 +36,7 @@ class GradientTest : public testing::TestWithParam<Case> {
       layers_.push_back({&points_[s], s});
     }
     patch_.gather(layers_, GetParam().sources, Vector3d::Zero(), 20e-3,
-                  GetParam().options.raw_weights);
+                  {.raw_weights = GetParam().options.raw_weights});
   }
 
   std::array<SurfacePoints, 2> points_;
@@ -111,7 +111,7 @@ std::vector<TestPoint> plane_points(double spacing, double radius, int half = 15
 
 Patch patch_of(const SurfacePoints& points) {
   Patch patch(4096);
-  patch.gather(std::vector<ActiveLayer>{{&points}}, 1, Vector3d::Zero(), 10e-3, false);
+  patch.gather(std::vector<ActiveLayer>{{&points}}, 1, Vector3d::Zero(), 10e-3);
   return patch;
 }
 
@@ -163,7 +163,7 @@ TEST(Evaluate, FourSourcesThatAgreeRaiseAMetaballByLittle) {
     std::vector<ActiveLayer> layers;
     for (int s = 0; s < sources; ++s) layers.push_back({&points, s});
     Patch patch(8192);
-    patch.gather(layers, sources, Vector3d::Zero(), 12e-3, false);
+    patch.gather(layers, sources, Vector3d::Zero(), 12e-3);
     const ImplicitSurface surface{FieldOptions{.kind = FieldKind::metaball}};
     double low = 0;
     double high = 10e-3;

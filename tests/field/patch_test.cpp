@@ -31,7 +31,7 @@ TEST(Patch, HoldsEveryPointWhoseSupportReachesTheBall) {
     if (distance <= points.radii[i] + kExtra) ++expected;
   }
   Patch patch(2048);
-  patch.gather(one_layer(points), 1, center, kExtra, false);
+  patch.gather(one_layer(points), 1, center, kExtra);
   EXPECT_EQ(patch.points(), expected);
   EXPECT_FALSE(patch.thinned());
   EXPECT_TRUE(patch.covers({center + Vector3d(4e-3, 0, 0), 0.9e-3}));
@@ -44,8 +44,8 @@ TEST(Patch, SamplesDoNotDependOnWhereItWasGathered) {
   Patch here(2048);
   Patch there(2048);
   const Vector3d x(1e-3, 2e-3, 1e-3);
-  here.gather(one_layer(points), 1, x, 1e-3, false);
-  there.gather(one_layer(points), 1, x + Vector3d(6e-3, -4e-3, 2e-3), 12e-3, false);
+  here.gather(one_layer(points), 1, x, 1e-3);
+  there.gather(one_layer(points), 1, x + Vector3d(6e-3, -4e-3, 2e-3), 12e-3);
   const Sample a = evaluate(surface, here, x, 1);
   const Sample b = evaluate(surface, there, x, 1);
   EXPECT_NEAR(a.value, b.value, 1e-15);
@@ -63,8 +63,8 @@ TEST(Patch, ThinsDeterministicallyAndKeepsTheWeight) {
   const ImplicitSurface surface{FieldOptions{}};
   Patch full(8192);
   Patch small(512);
-  full.gather(one_layer(points), 1, Vector3d::Zero(), 4e-3, false);
-  small.gather(one_layer(points), 1, Vector3d::Zero(), 4e-3, false);
+  full.gather(one_layer(points), 1, Vector3d::Zero(), 4e-3);
+  small.gather(one_layer(points), 1, Vector3d::Zero(), 4e-3);
   ASSERT_GT(full.points(), 512u);
   EXPECT_TRUE(small.thinned());
   EXPECT_LE(small.points(), 512u);
@@ -77,7 +77,7 @@ TEST(Patch, AnEmptyOneIsFree) {
   const SurfacePoints points = make_points(wavy_sheet(3));
   const ImplicitSurface surface{FieldOptions{}};
   Patch patch(64);
-  patch.gather(one_layer(points), 1, Vector3d(1, 1, 1), 1e-2, false);
+  patch.gather(one_layer(points), 1, Vector3d(1, 1, 1), 1e-2);
   EXPECT_EQ(patch.points(), 0u);
   EXPECT_TRUE(is_free(surface, patch, {Vector3d(1, 1, 1), 1e-2}));
   EXPECT_EQ(evaluate(surface, patch, Vector3d(1, 1, 1), 1).support, 0);
@@ -97,8 +97,8 @@ TEST(Patch, MovingPointsAreWhereTheyAreNow) {
   Patch a(2048);
   Patch b(2048);
   const Vector3d x(2e-3, 1e-3, 2e-3);
-  a.gather(std::vector<ActiveLayer>{{&points, 0, 1, 0.25, 30}}, 1, x, 2e-3, false);
-  b.gather(one_layer(expected), 1, x, 2e-3, false);
+  a.gather(std::vector<ActiveLayer>{{&points, 0, 1, 0.25, 30}}, 1, x, 2e-3);
+  b.gather(one_layer(expected), 1, x, 2e-3);
   EXPECT_EQ(a.points(), b.points());
   EXPECT_NEAR(evaluate(surface, a, x, 1).value, evaluate(surface, b, x, 1).value, 1e-8);
   const PatchSurface mean = mean_surface(surface, a, x);
@@ -121,7 +121,7 @@ TEST(FreeSpace, IsNeverFreeWhereTheFieldIsSolid) {
       const Vector3d inside =
           ball.center +
           ball.radius * Vector3d(place(random), place(random), place(random)).normalized();
-      patch.gather(layers, 1, inside, 1e-3, false);
+      patch.gather(layers, 1, inside, 1e-3);
       EXPECT_GT(evaluate(surface, patch, inside, 1).value, 0);
       EXPECT_GT(evaluate(surface, patch, inside, -1).value, 0);
     }
@@ -138,7 +138,7 @@ TEST(FreeSpace, AgreesWithThePatchBound) {
   std::uniform_real_distribution<double> place(-30e-3, 30e-3);
   for (int k = 0; k < 2000; ++k) {
     const Ball ball{{place(random), place(random), place(random)}, std::abs(place(random)) / 3};
-    patch.gather(layers, 1, ball.center, ball.radius, false);
+    patch.gather(layers, 1, ball.center, ball.radius);
     EXPECT_EQ(is_free(surface, patch, ball), is_free_space(surface, layers, 1, ball));
   }
 }
