@@ -104,10 +104,7 @@ class HostileField final : public Field {
     sample.gradient = Vector3d(hash(2 * x) - 0.5, hash(3 * x) - 0.5, hash(5 * x) - 0.5);
     if (broken_ && h > 0.98) sample.gradient.x() = kNaN;
     if (broken_ && h < 0.02) sample.value = kInf;
-    if (broken_ && h > 0.2 && h < 0.22) {
-      sample.value = -1e300;
-      sample.radius = 1e300;
-    }
+    if (broken_ && h > 0.2 && h < 0.22) sample.radius = 1e300;
     return sample;
   }
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
@@ -155,6 +152,29 @@ TEST(Input, HostileFieldsCostABoundedNumberOfEvaluationsAndGiveFiniteForces) {
     }
   }
   RecordProperty("most_evaluations", most);
+}
+
+/// Solid at the origin, with its surface beyond the end of the world.
+class AbyssField final : public Field {
+ public:
+  [[nodiscard]] Sample sample(const Vector3d& x, Side) const noexcept override {
+    const bool near = x.norm() < 1;
+    return {.value = near ? -1e300 : 0,
+            .gradient = Vector3d::UnitX(),
+            .support = 1,
+            .radius = near ? 1e300 : 1};
+  }
+  [[nodiscard]] bool is_free(const Ball&) const noexcept override { return false; }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-3}; }
+};
+
+TEST(Input, AProxyThatAFieldThrowsOutOfTheWorldIsAFault) {
+  Proxy proxy;
+  const Contact c = proxy.step(AbyssField{}, {0, 0, 0}, kTick);
+  EXPECT_TRUE(has(c.notes, ContactNote::fault));
+  EXPECT_EQ(c.force.norm(), 0);
+  EXPECT_EQ(c.proxy.norm(), 0);
 }
 
 TEST(Input, SameInputGivesTheSameForcesBitForBit) {
