@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,15 +29,12 @@ struct Hand {
   std::unique_ptr<Device> device;
   Workspace workspace;
   double stiffness = kStiffness;
-  double duration = 0;  // s
+
   std::size_t steps = 0;
   std::optional<ExplorationPlan> plan;
 };
 
 void check_usage(const TouchOptions& options) {
-  if (options.device == "scripted" && options.trajectory.empty()) {
-    throw UsageError("--device scripted plays a trajectory; give one with --trajectory FILE.csv");
-  }
   const auto clouds = parse_clouds(options.load.clouds);
   for (const CloudArgument& cloud : clouds) {
     if (cloud.path == "-" && options.trajectory == "-") {
@@ -55,20 +53,23 @@ void check_usage(const TouchOptions& options) {
   }
 }
 
+// The hand is where `way` says, whatever the force.
+void play_back(Hand& hand, Trajectory way) {
+  hand.steps = way.size();
+  hand.device = std::make_unique<ScriptedDevice>(std::move(way));
+}
+
 Hand scripted(const TouchOptions& options, Trajectory trajectory) {
   Hand hand;
   hand.stiffness = options.stiffness.value_or(kStiffness);
-  hand.duration = trajectory.back().time - trajectory.front().time;
-  hand.steps = trajectory.size();
-  hand.device = std::make_unique<ScriptedDevice>(std::move(trajectory));
+  play_back(hand, std::move(trajectory));
   return hand;
 }
 
 // The hand is pulled along `target`, whose times begin at 0.
 void simulate(Hand& hand, Trajectory target) {
   const SimulatedDeviceOptions options;
-  hand.duration = target.back().time;
-  hand.steps = static_cast<std::size_t>(hand.duration * options.rate) + 2;
+  hand.steps = static_cast<std::size_t>(target.back().time * options.rate) + 2;
   hand.device = std::make_unique<SimulatedDevice>(options, std::move(target));
 }
 
@@ -93,10 +94,16 @@ Hand exploring(const TouchOptions& options, const Scene& scene, const FieldOptio
   plan.stiffness = options.stiffness.value_or(0);
   plan.tool_radius = options.tool_radius;
   plan.seed = options.seed;
+  const bool pulled = options.device != "scripted";
+  if (!pulled) plan.hand.stiffness = std::numeric_limits<double>::infinity();
   hand.plan = plan_exploration(scene, field, plan);
   hand.workspace = hand.plan->workspace;
   hand.stiffness = hand.plan->stiffness;
-  simulate(hand, hand.plan->target);
+  if (pulled) {
+    simulate(hand, hand.plan->target);
+  } else {
+    play_back(hand, hand.plan->target);
+  }
   return hand;
 }
 

@@ -129,8 +129,9 @@ void add_hand_options(CLI::App& command, TouchOptions& o) {
       "CSV with columns t,hip_x,hip_y,hip_z (s, m): one servo step a row; a log will do")
       ->type_name("FILE");
   add("--device", o.device,
-      "scripted: the hand is where the trajectory says; simulated: a hand pulls a device with "
-      "mass and friction there. Default: scripted with --trajectory, else simulated")
+      "scripted: the hand is where the trajectory or exploration says, whatever the force; "
+      "simulated: a hand pulls a device with mass and friction there. Default: scripted with "
+      "--trajectory, else simulated")
       ->check(one_of({"scripted", "simulated"}))
       ->type_name("NAME");
   add("--duration", o.duration, "of the built-in exploration, in simulated time (10)")

@@ -34,7 +34,7 @@ void print_cloud(const TouchedCloud& cloud, const PrepareReport& r, double scale
     fmt::print(out, "  {} probably {}: {}; {}\n", style.warning("units     "), cloud.units.units,
                cloud.units.reason, cloud.units.advice);
   }
-  fmt::print(out, "  spacing     {}, noise {}, voxel {}\n", length(r.spacing), length(r.noise),
+  fmt::print(out, "  spacing    {}, noise {}, voxel {}\n", length(r.spacing), length(r.noise),
              r.voxel > 0 ? length(r.voxel) : "none");
   fmt::print(out, "  R          {}\n", range(r.radius_smallest, r.radius, r.radius_largest));
   fmt::print(out,

@@ -122,9 +122,14 @@ class Explorer {
     return s.position + (options_.offset - depth) * s.normal;
   }
 
-  // Can the hand leave the surface here without meeting it again?
+  // Can the hand leave the surface here without meeting it again? Not from inside a closed object.
   [[nodiscard]] bool open(const MapSample& s) const {
-    return map_.distance(above(s)) > 0.8 * kClearance * options_.radius;
+    const double step = 0.5 * kClearance * options_.radius;
+    const double farthest = std::max(map_.extent(), 3 * step);
+    for (double d = 2 * step; d <= farthest; d += step) {
+      if (map_.distance(s.position + d * s.normal) < 1.6 * step) return false;
+    }
+    return true;
   }
 
   // Down along the normal, along the stroke with the depth going up and down, and off again.
@@ -188,7 +193,7 @@ class Explorer {
     for (double length = 0; length < longest; length += step) {
       MapSample next = map_.at(way.back().position + step * direction);
       if (next.normal.isZero() || !map_.inside(next.position)) break;
-      if (next.normal.dot(way.back().normal) < 0) next.normal = -next.normal;
+      if (next.normal.dot(way.back().normal) < 0.2) break;
       if ((next.position - way.back().position).norm() > 4 * step) break;
       way.push_back(next);
       direction -= direction.dot(next.normal) * next.normal;

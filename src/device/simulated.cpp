@@ -59,6 +59,8 @@ void check_options(const SimulatedDeviceOptions& o, std::size_t maximum_delay) {
           "a positive force in newtons");
   require(not_negative(o.hand.stiffness), "hand.stiffness", o.hand.stiffness, "0 or more N/m");
   require(not_negative(o.hand.damping), "hand.damping", o.hand.damping, "0 or more N s/m");
+  require(positive(o.hand.maximum_force), "hand.maximum_force", o.hand.maximum_force,
+          "a positive force in newtons");
   require(not_negative(o.duration), "duration", o.duration, "0 or more seconds");
   require(o.position.allFinite(), "position", o.position.norm(), "finite coordinates");
   require(o.velocity.allFinite(), "velocity", o.velocity.norm(), "a finite velocity");
@@ -133,6 +135,14 @@ Eigen::Vector3d SimulatedDevice::wanted(double time) noexcept {
   return a.position + (time - a.time) / (b.time - a.time) * (b.position - a.position);
 }
 
+// The goal that pulls no harder than the hand does.
+Eigen::Vector3d SimulatedDevice::within_reach(const Eigen::Vector3d& goal) const noexcept {
+  const Eigen::Vector3d stretch = goal - position_;
+  const double pull = options_.hand.stiffness * stretch.norm();
+  if (pull <= options_.hand.maximum_force) return goal;
+  return position_ + options_.hand.maximum_force / pull * stretch;
+}
+
 Eigen::Vector3d SimulatedDevice::quantised() const noexcept {
   if (options_.resolution == 0) return position_;
   return (position_ / options_.resolution).array().round().matrix() * options_.resolution;
@@ -141,8 +151,9 @@ Eigen::Vector3d SimulatedDevice::quantised() const noexcept {
 void SimulatedDevice::advance() noexcept {
   const double now = static_cast<double>(steps_) / options_.rate;
   const double next = static_cast<double>(steps_ + 1) / options_.rate;
-  const Eigen::Vector3d goal = wanted(now);
-  const Eigen::Vector3d goal_rate = (wanted(next) - goal) * options_.rate;
+  const Eigen::Vector3d place = wanted(now);
+  const Eigen::Vector3d goal_rate = (wanted(next) - place) * options_.rate;
+  const Eigen::Vector3d goal = within_reach(place);
   const std::size_t size = forces_.size();
   const auto delay = static_cast<std::size_t>(options_.delay);
   const Eigen::Vector3d held = forces_[(steps_ + size - delay) % size];

@@ -96,7 +96,7 @@ MapSample SurfaceMap::at(const Vector3d& x) const {
     mean += weight * point(i);
     normal += weight * normals_[i].cast<double>();
   }
-  if (total <= 0 || normal.norm() < 0.1 * total) return {};
+  if (total <= 0 || normal.norm() < 0.4 * total) return {};
   mean /= total;
   normal.normalize();
   return {x - normal.dot(x - mean) * normal, normal};

@@ -127,6 +127,17 @@ TEST(Touch, PoseAndScalePlaceACloudInTheWorld) {
   EXPECT_NEAR(largest_push(shell, "mm.csv"), 500 * 3e-3, 0.02);
 }
 
+TEST(Touch, ExplorationCanBeScripted) {
+  Shell shell;
+  const Outcome outcome =
+      shell.run("touch synthetic:sphere --duration 2 --device scripted --json r.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto report = nlohmann::json::parse(shell.read("r.json"));
+  EXPECT_EQ(report["device"]["name"], "scripted");
+  EXPECT_NEAR(report["largest_force_N"].get<double>(),
+              500 * report["device"]["depth_m"].get<double>(), 0.3);
+}
+
 TEST(Touch, SeveralCloudsAreOneScene) {
   Shell shell;
   shell.write("plane.xyz", plane_xyz());

@@ -37,7 +37,6 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"touch synthetic:torus --pose torus=0,0,0,0,0,0,2", "quaternion"},
       {"touch synthetic:torus --pose torus=0,0,0", "qx,qy,qz,qw"},
       {"touch synthetic:torus --intrinsics 1,2,3", "fx,fy,cx,cy"},
-      {"touch synthetic:torus --device scripted", "--trajectory"},
       {"touch synthetic:torus --friction-static 0.1 --friction-dynamic 0.3", "--friction-static"},
       {"touch synthetic:torus --soft-stiffness 900", "--soft-stiffness"},
       {"touch a=synthetic:torus a=synthetic:sheet", "'a'"},

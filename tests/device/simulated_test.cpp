@@ -75,6 +75,16 @@ TEST(SimulatedDevice, HandRingsAtItsFrequencyAndDampingRatio) {
   EXPECT_NEAR(device.true_position().y(), expected, 1e-11);
 }
 
+TEST(SimulatedDevice, HandGivesWayAboveItsForce) {
+  SimulatedDeviceOptions options = bare();
+  options.damping = 0.5;
+  options.hand = {300, 3, 6};
+  SimulatedDevice device(options, {{0, {0, 0, 0}}, {0.5, {0, 0, -0.2}}, {5, {0, 0, -0.2}}});
+  run(device, 3000,
+      [&](const DeviceState& s) { return Vector3d(0, 0, -500 * std::min(0.0, s.position.z())); });
+  EXPECT_NEAR(device.true_position().z(), -6. / 500, 1e-6);
+}
+
 TEST(SimulatedDevice, HandFollowsARampWithTheLagOfItsSpring) {
   SimulatedDeviceOptions options = bare();
   options.damping = 2;

@@ -11,8 +11,9 @@ namespace palpate {
 /// A hand as a spring and a damper that pull the device after the place where the hand wants to be.
 /// The defaults are a light grip (algorithm.md section 8).
 struct SimulatedHand {
-  double stiffness = 300;  ///< N/m; 0 and no damping: nobody holds the device
-  double damping = 3;      ///< N s/m
+  double stiffness = 300;    ///< N/m; 0 and no damping: nobody holds the device
+  double damping = 3;        ///< N s/m
+  double maximum_force = 8;  ///< N; a hand that is held back harder gives way: it pulls no more
 };
 
 struct SimulatedDeviceOptions {
@@ -60,6 +61,7 @@ class SimulatedDevice final : public Device {
   static constexpr std::size_t kMaximumDelay = 16;
 
   [[nodiscard]] Eigen::Vector3d wanted(double time) noexcept;
+  [[nodiscard]] Eigen::Vector3d within_reach(const Eigen::Vector3d& goal) const noexcept;
   [[nodiscard]] Eigen::Vector3d quantised() const noexcept;
   void advance() noexcept;
   void advance_with_friction(const Eigen::Vector3d& push,
