@@ -31,7 +31,7 @@ void print_cloud(const TouchedCloud& cloud, const PrepareReport& r, double scale
   if (cloud.dropped > 0) fmt::print(out, ", {} invalid", grouped(cloud.dropped));
   fmt::print(out, "\n");
   if (!cloud.units.advice.empty() && scale == 1) {
-    fmt::print(out, "  {} probably {}: {}; {}\n", style.warning("units     "), cloud.units.units,
+    fmt::print(out, "  {} {}? {}; {}\n", style.warning("units     "), cloud.units.units,
                cloud.units.reason, cloud.units.advice);
   }
   fmt::print(out, "  spacing    {}, noise {}, voxel {}\n", length(r.spacing), length(r.noise),
