@@ -1,83 +1,108 @@
 #include "scene/noise.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
+#include "scene/window_fit.hpp"
 
 namespace palpate {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr std::size_t kSamples = 1000;
 // In spacings: narrow, so that fine shape is no noise. Wider only where coarse depth steps make
 // every narrow neighbourhood flat.
 constexpr double kReaches[] = {3, 6, 12};
-constexpr double kFlat = 1e-3;       // of the spacing
-constexpr std::size_t kEnough = 12;  // neighbours
-constexpr int kTerms = 6;            // of a quadratic height
+constexpr double kFlat = 1e-3;  // of the spacing
 
-struct Frame {
-  Vector3d mean;
-  Eigen::Matrix3d axes;  // columns by rising variance: the first is the normal
-};
+// Windows, in spacings, that noise and shape are told apart with: shape that a quadratic misses
+// grows with the third power of the window or faster.
+constexpr std::size_t kWideSamples = 400;
+constexpr double kMapReach = 5;
+constexpr double kMiddleReach = 10;
+constexpr double kWideReach = 20;
+constexpr double kTile = 4;
+constexpr double kFlattest = 0.25;    // share of the windows that are believed
+constexpr double kShapeGrowth = 1.5;  // from the middle to the wide window: no longer noise alone
+constexpr double kNoteworthy = 1.2;
+constexpr double kMostExcess = 4;  // R at most doubles
 
-Frame frame_of(const CellGrid& grid, const std::vector<std::uint32_t>& near) {
-  Vector3d mean = Vector3d::Zero();
-  for (const auto i : near) mean += grid.points()[i].cast<double>();
-  mean /= static_cast<double>(near.size());
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const auto i : near) {
-    const Vector3d d = grid.points()[i].cast<double>() - mean;
-    scatter += d * d.transpose();
-  }
-  return {mean, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors()};
-}
-
-/// Rms residual of a quadratic height over the neighbourhood's plane: curvature is no noise.
-double quadratic_residual(const CellGrid& grid, const std::vector<std::uint32_t>& near,
-                          double scale) {
-  const Frame frame = frame_of(grid, near);
-  const auto rows = static_cast<Eigen::Index>(near.size());
-  Eigen::Matrix<double, Eigen::Dynamic, kTerms> terms(rows, kTerms);
-  Eigen::VectorXd heights(rows);
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    const Vector3d d = grid.points()[near[static_cast<std::size_t>(k)]].cast<double>() - frame.mean;
-    const double u = frame.axes.col(1).dot(d) / scale;
-    const double v = frame.axes.col(2).dot(d) / scale;
-    terms.row(k) << 1, u, v, u * u, u * v, v * v;
-    heights[k] = frame.axes.col(0).dot(d);
-  }
-  const Eigen::VectorXd fitted = terms * terms.colPivHouseholderQr().solve(heights);
-  return std::sqrt((heights - fitted).squaredNorm() / static_cast<double>(rows - kTerms));
+std::size_t step_for(const CellGrid& grid, std::size_t samples) {
+  return std::max<std::size_t>(1, grid.size() / samples);
 }
 
 /// The median residual over samples of the grid; 0 where none has enough neighbours.
 double noise_within(const CellGrid& grid, double reach) {
-  const std::size_t step = std::max<std::size_t>(1, grid.size() / kSamples);
+  const std::size_t step = step_for(grid, kSamples);
   std::vector<float> residuals;
-  std::vector<std::uint32_t> near;
+  WindowFitter fitter;
   for (std::size_t i = step / 2; i < grid.size(); i += step) {
-    near.clear();
-    grid.within(grid.points()[i], static_cast<float>(reach), near);
-    if (near.size() < kEnough) continue;
-    residuals.push_back(static_cast<float>(quadratic_residual(grid, near, reach)));
+    const WindowFit fit = fitter.fit(grid, grid.points()[i], reach);
+    if (fit.points > 0) residuals.push_back(static_cast<float>(fit.sigma));
   }
   return median(std::move(residuals));
 }
 
-}  // namespace
-
-double plane_noise(const CellGrid& grid, double spacing) {
+double narrow_noise(const CellGrid& grid, double spacing) {
   double noise = 0;
   for (const double reach : kReaches) {
     noise = noise_within(grid, reach * spacing);
     if (noise > kFlat * spacing) break;
   }
+  return noise;
+}
+
+/// What windows of several widths round one place say.
+struct Widths {
+  float growth = 0;  // of sigma, from the middle to the wide window
+  float sigma = 0;   // of the wide one against the narrowest, that of narrow_noise()
+  float excess = 0;
+};
+
+std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
+  const std::size_t step = step_for(grid, kWideSamples);
+  std::vector<Widths> all((grid.size() + step - 1) / step);
+  detail::parallel_ranges(all.size(), 16, [&](std::size_t begin, std::size_t end) {
+    WindowFitter fitter;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Eigen::Vector3f& at = grid.points()[std::min(k * step + step / 2, grid.size() - 1)];
+      const WindowFit narrow = fitter.fit(grid, at, kReaches[0] * spacing);
+      const WindowFit map = fitter.fit(grid, at, kMapReach * spacing);
+      const WindowFit middle = fitter.fit(grid, at, kMiddleReach * spacing);
+      const WindowFit wide = fitter.fit(grid, at, kWideReach * spacing, kTile * spacing);
+      if (!(narrow.sigma > 0 && map.sigma > 0 && middle.sigma > 0)) continue;
+      all[k] = {static_cast<float>(wide.sigma / middle.sigma),
+                static_cast<float>(wide.sigma / narrow.sigma),
+                static_cast<float>(wide.sigma / map.sigma * std::sqrt(std::max(1.0, wide.shared)))};
+    }
+  });
+  std::erase_if(all, [](const Widths& w) { return w.growth == 0; });
+  return all;
+}
+
+template <class Value>
+double median_of(const std::vector<Widths>& all, const Value& value) {
+  std::vector<float> values;
+  for (const Widths& w : all) values.push_back(value(w));
+  return median(std::move(values));
+}
+
+}  // namespace
+
+Noise measure_noise(const CellGrid& grid, double spacing) {
+  Noise noise{narrow_noise(grid, spacing), 1};
+  std::vector<Widths> all = compare_widths(grid, spacing);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Widths& a, const Widths& b) { return a.growth < b.growth; });
+  all.resize(static_cast<std::size_t>(kFlattest * static_cast<double>(all.size())));
+  if (all.empty() || all.back().growth > kShapeGrowth) return noise;
+  const double excess = median_of(all, [](const Widths& w) { return w.excess; });
+  if (excess < kNoteworthy) return noise;
+  noise.excess = std::min(excess, kMostExcess);
+  noise.sigma *= std::max(1.0, median_of(all, [](const Widths& w) { return w.sigma; }));
   return noise;
 }
 

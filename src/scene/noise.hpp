@@ -4,8 +4,20 @@
 
 namespace palpate {
 
-/// The noise of raw points: the median over a sample of them of the rms distance from a smooth
-/// surface fitted to the neighbourhood, m. `spacing`: of the points, m.
-[[nodiscard]] double plane_noise(const CellGrid& grid, double spacing);
+/// The noise of raw points.
+struct Noise {
+  double sigma = 0;  ///< median rms distance from a smooth surface, m
+  double excess =
+      1;  ///< by how much sigma_n delta of narrow windows (NoiseMap) falls short of what
+          ///< averaging has to cope with, because neighbours err together; 1: they do not
+};
+
+/// Measures it on a sample of the points. `spacing`: of the points, m.
+///
+/// Noise that neighbours share (a depth camera's, mostly) is mistaken for shape in narrow windows
+/// and does not average out as fast as its variance says. Wide windows tell, as long as they see
+/// noise and no shape: on the flattest of them the residuals no longer grow with the window
+/// (field_choice.md section 5; nss_fast.md section 2).
+[[nodiscard]] Noise measure_noise(const CellGrid& grid, double spacing);
 
 }  // namespace palpate

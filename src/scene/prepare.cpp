@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "palpate/base/error.hpp"
 #include "palpate/field/density.hpp"
@@ -15,7 +18,11 @@
 #include "palpate/geometry/spacing.hpp"
 #include "palpate/geometry/support.hpp"
 #include "palpate/geometry/voxel_grid.hpp"
+#include "scene/check_options.hpp"
+#include "scene/merge_slivers.hpp"
 #include "scene/noise.hpp"
+#include "scene/noise_map.hpp"
+#include "scene/noisy_radii.hpp"
 
 namespace palpate {
 namespace {
@@ -28,6 +35,9 @@ constexpr double kNormalsReach = 1.15;
 
 // A cloud this noisy, against its spacing, is thinned to two spacings; a cleaner one is kept whole.
 constexpr double kNoisy = 0.25;
+
+// Centroids closer than this, in leaves, are one piece of surface that a face of the voxels cuts.
+constexpr double kSliver = 0.7;
 
 // The paper's multiple m, its k nearest neighbours and the level of its metaball (section V).
 constexpr double kPaperMultiple = 2.5;
@@ -44,39 +54,6 @@ class Stopwatch {
  private:
   Clock::time_point last_ = Clock::now();
 };
-
-void require(bool condition, const char* option, double value, const char* range) {
-  if (condition) return;
-  throw Error(fmt::format("preparation option {} is {}: it must be {}", option, value, range));
-}
-
-void check(const PrepareOptions& options, const PointCloud& cloud) {
-  const auto positive = [](double v) { return v > 0 && std::isfinite(v); };
-  if (options.voxel) {
-    require(*options.voxel == 0 || positive(*options.voxel), "voxel", *options.voxel,
-            "0 (keep every point) or a length in metres");
-  }
-  if (options.radius) {
-    require(positive(*options.radius), "radius", *options.radius, "a length above 0, in metres");
-  }
-  if (options.radius_multiple) {
-    require(positive(*options.radius_multiple), "radius_multiple", *options.radius_multiple,
-            "above 0 (2.5 unless there is a reason)");
-  }
-  require(options.minimum_radius >= 0 && std::isfinite(options.minimum_radius), "minimum_radius",
-          options.minimum_radius, "0 or a length in metres");
-  require(positive(options.normal_error), "normal_error", options.normal_error,
-          "an angle above 0, in radians");
-  if (options.orientation == Orientation::viewpoint && !options.viewpoint && !cloud.viewpoint) {
-    throw Error("normals are to point to the viewpoint, but none is known; give one");
-  }
-  if (options.orientation == Orientation::given && cloud.normals.empty()) {
-    throw Error("normals are to be as given, but the cloud has none");
-  }
-  if (options.material_from_intensity && cloud.intensities.empty()) {
-    throw Error("materials are to come from intensities, but the cloud has none");
-  }
-}
 
 /// The same points in the world frame.
 PointCloud placed(PointCloud cloud, const Eigen::Isometry3d& T_world_sensor) {
@@ -160,12 +137,17 @@ class Preparation {
   void choose_voxel() {
     measure_spacing();
     footprint_ = report_.spacing;
-    report_.noise = options_.paper ? 0 : plane_noise(points_.grid, footprint_);
+    noise_ = options_.paper ? Noise{} : measure_noise(points_.grid, footprint_);
+    report_.noise = noise_.sigma;
     const bool noisy = report_.noise > kNoisy * footprint_;
     report_.voxel = options_.voxel.value_or(noisy && !options_.paper ? 2 * footprint_ : 0);
     watch_.lap(report_.seconds_spacing);
     if (report_.voxel <= 0) return;
-    cloud_ = voxel_downsample(cloud_, report_.voxel);
+    if (noisy && !options_.radius) noise_map_.emplace(points_.grid, spacings_);
+    watch_.lap(report_.seconds_spacing);
+    std::vector<std::uint32_t> counts;
+    cloud_ = voxel_downsample(cloud_, report_.voxel, &counts);
+    if (noisy) cloud_ = merge_slivers(cloud_, counts, kSliver * report_.voxel);
     watch_.lap(report_.seconds_filter);
     index();
     measure_spacing();
@@ -184,13 +166,25 @@ class Preparation {
       const double radius = options_.radius_multiple.value_or(kPaperMultiple) * report_.spacing;
       points_.radii.assign(points_.size(), static_cast<float>(radius));
     } else {
-      points_.radii = support_radii(spacings_, {.multiple = options_.radius_multiple,
-                                                .noise = report_.noise,
-                                                .footprint = report_.voxel > 0 ? footprint_ : 0,
-                                                .normal_error = options_.normal_error,
-                                                .minimum = options_.minimum_radius});
+      choose_radii_by_noise();
     }
     watch_.lap(report_.seconds_spacing);
+  }
+
+  /// Where the cloud is noisy, R follows the noise from place to place.
+  void choose_radii_by_noise() {
+    SupportOptions support{.multiple = options_.radius_multiple,
+                           .noise = report_.noise,
+                           .footprint = report_.voxel > 0 ? footprint_ : 0,
+                           .normal_error = options_.normal_error,
+                           .minimum = options_.minimum_radius};
+    if (!noise_map_) {
+      points_.radii = support_radii(spacings_, support);
+      return;
+    }
+    support.noise = 0;
+    points_.radii = noisy_radii(points_.grid, *noise_map_, noise_.excess, options_.normal_error,
+                                support_radii(spacings_, support));
   }
 
   /// Rebuilds the index without the points that noise made.
@@ -264,6 +258,8 @@ class Preparation {
   PrepareReport report_;
   std::vector<float> spacings_;
   double footprint_ = 0;
+  Noise noise_;
+  std::optional<NoiseMap> noise_map_;
   Stopwatch watch_;
 };
 
