@@ -1,5 +1,8 @@
 #include "palpate/geometry/filters.hpp"
 
+#include <algorithm>
+
+#include "geometry/distance.hpp"
 #include "geometry/neighborhoods.hpp"
 #include "geometry/weight_sums.hpp"
 
@@ -16,6 +19,20 @@ std::vector<T> select(const std::vector<T>& column, std::span<const std::uint32_
   selected.reserve(indices.size());
   for (const std::uint32_t i : indices) selected.push_back(column[i]);
   return selected;
+}
+
+// Are there enough others within the smaller of both points' diameters?
+bool has_company(const CellGrid& grid, std::span<const float> diameters, std::uint32_t i,
+                 std::span<const simd::Run> runs) {
+  std::size_t others = 0;
+  for (const simd::Run& run : runs) {
+    for (std::uint32_t j = run.begin; j < run.end; ++j) {
+      const float reach = std::min(diameters[i], diameters[j]);
+      const float squared = detail::squared_distance(grid.points()[i], grid.points()[j]);
+      if (squared <= reach * reach && j != i && ++others == kFewestOthers) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -41,18 +58,14 @@ PointCloud clip(const PointCloud& cloud, const Box& box) {
 
 std::vector<std::uint8_t> speckle_mask(const CellGrid& grid, std::span<const float> radii) {
   const detail::WeightSums sums = detail::weight_sums(grid, radii, simd::best_joins().wyvill_sums);
-  const detail::Columns columns(grid);
   std::vector<float> diameters(radii.begin(), radii.end());
   for (float& diameter : diameters) diameter *= 2;
   std::vector<std::uint8_t> mask(grid.size());
   detail::for_each_neighborhood(
       grid, {.of_points = diameters, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-        simd::Row nearest[kFewestOthers + 1];
-        simd::best_joins().nearest4(columns.join(first, runs), nearest);
-        for (std::uint32_t q = 0; q < count; ++q) {
-          const std::uint32_t i = first + q;
-          const bool alone = nearest[kFewestOthers][q] > diameters[i] * diameters[i];
+        for (std::uint32_t i = first; i < first + count; ++i) {
+          const bool alone = !has_company(grid, diameters, i, runs);
           mask[i] = alone || sums.own[i] < kShareOfAround * sums.around[i] ? 1 : 0;
         }
       });

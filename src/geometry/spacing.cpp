@@ -21,10 +21,11 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kLargest = std::numeric_limits<float>::max();
 constexpr std::size_t kNearest = 8;  // others that a spacing is measured from
 constexpr float kSmoothing = 2.5f;   // spacings that it is averaged over
-constexpr float kMaxGrowth = 1.5f;   // of a spacing by averaging
-constexpr float kMaxRatio = 2;       // to the spacing around it
-constexpr float kMaxScale = 1e9f;    // of spacings in one neighbourhood
-constexpr float kStray = 8;          // times the spacing of its block: a stray point
+constexpr float kMinChange = 0.75f;  // of a spacing by averaging
+constexpr float kMaxChange = 1.5f;
+constexpr float kMaxRatio = 2;            // to the spacing around it
+constexpr float kLargestSpacing = 1e18f;  // m; its sums stay in float's range
+constexpr float kStray = 8;               // times the spacing of its block: a stray point
 
 using Nearest = void (*)(const simd::Join&, simd::Row*);
 
@@ -117,26 +118,25 @@ std::vector<float> raw_spacings(const CellGrid& grid) {
   return spacings;
 }
 
-// own: the point's spacing; area, volume: sums of w s^2 and w s^3 over its neighbours.
-float smoothed(float own, float area, float volume) {
-  if (!(area > 0)) return own;
-  const float mean = (volume + own * own * own) / (area + own * own);
-  return std::min({mean, kMaxGrowth * own, kMaxRatio * volume / area});
+// own: the point's spacing; weight, sum: of w and w s over its neighbours.
+float smoothed(float own, float weight, float sum) {
+  if (!(weight > 0)) return own;
+  const float mean = (sum + own) / (weight + 1);
+  return std::min(std::clamp(mean, kMinChange * own, kMaxChange * own), kMaxRatio * sum / weight);
 }
 
-// With its nearest alone. Spacings in units that keep cubes in float's range.
+// With its nearest alone.
 float smoothed_alone(const CellGrid& grid, std::span<const float> spacings, std::uint32_t i) {
   std::vector<CellGrid::Neighbor> found;
   grid.nearest(grid.points()[i], kNearest + 1, found);
-  float area = 0;
-  float volume = 0;
+  float weight = 0;
+  float sum = 0;
   for (const CellGrid::Neighbor& neighbor : found) {
     if (neighbor.squared_distance == 0) continue;
-    const float s = spacings[neighbor.index];
-    area += s * s;
-    volume += s * s * s;
+    ++weight;
+    sum += spacings[neighbor.index];
   }
-  return smoothed(spacings[i], area, volume);
+  return smoothed(spacings[i], weight, sum);
 }
 
 // Within how much of its surroundings each point is averaged, m; 0 for stray points, whose
@@ -156,28 +156,24 @@ std::vector<float> smoothing_radii(const CellGrid& grid, std::span<const float> 
 std::vector<float> smooth(const CellGrid& grid, std::span<const float> spacings) {
   const detail::Columns columns(grid);
   const std::vector<float> radii = smoothing_radii(grid, spacings);
-  const auto unit = static_cast<float>(median({spacings.begin(), spacings.end()}));
-  std::vector<float> scaled = detail::make_column(grid.size());
-  std::vector<float> inverse = scaled;
-  std::vector<float> squares = scaled;
-  std::vector<float> cubes = scaled;
+  std::vector<float> inverse = detail::make_column(grid.size());
+  std::vector<float> values = inverse;
   for (std::size_t i = 0; i < radii.size(); ++i) {
-    const float s = scaled[i] = std::clamp(spacings[i] / unit, 1 / kMaxScale, kMaxScale);
     inverse[i] = radii[i] > 0 ? std::min(1 / (radii[i] * radii[i]), kLargest) : kLargest;
-    squares[i] = s * s;
-    cubes[i] = s * s * s;
+    values[i] = std::min(spacings[i], kLargestSpacing);
   }
+  const std::vector<float> ones(grid.size(), 1.f);
   std::vector<float> result(grid.size());
   detail::for_each_neighborhood(
       grid, {.of_points = radii, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         simd::Row sums[2];
-        simd::best_joins().wyvill_pairs(columns.join(first, runs), inverse.data(), squares.data(),
-                                        cubes.data(), sums);
+        simd::best_joins().wyvill_pairs(columns.join(first, runs), inverse.data(), ones.data(),
+                                        values.data(), sums);
         for (std::uint32_t q = 0; q < count; ++q) {
           const std::uint32_t i = first + q;
-          result[i] = unit * (radii[i] > 0 ? smoothed(scaled[i], sums[0][q], sums[1][q])
-                                           : smoothed_alone(grid, scaled, i));
+          result[i] = radii[i] > 0 ? smoothed(values[i], sums[0][q], sums[1][q])
+                                   : smoothed_alone(grid, values, i);
         }
       });
   return result;

@@ -1,0 +1,149 @@
+// Both copies of the joins give the same bits, and the sums that their header says.
+#include "geometry/simd/joins.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "base/cpu.hpp"
+#include "geometry/clouds.hpp"
+#include "geometry/neighborhoods.hpp"
+#include "geometry/weight_sums.hpp"
+#include "palpate/field/density.hpp"
+#include "palpate/field/kernel.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+using test::Clouds;
+
+struct Results {
+  simd::Row moments[simd::kMoments];
+  simd::Row nearest4[4];
+  simd::Row nearest8[8];
+  simd::Row wyvill[1];
+  simd::Row wendland[1];
+  simd::Row pairs[2];
+  simd::Planes planes;
+};
+
+Results run(const simd::JoinFunctions& joins, const simd::Join& join, const std::vector<float>& a,
+            const std::vector<float>& b) {
+  Results results;
+  joins.moments(join, a.data(), results.moments);
+  joins.nearest4(join, results.nearest4);
+  joins.nearest8_apart(join, results.nearest8);
+  joins.wyvill_sums(join, a.data(), b.data(), results.wyvill);
+  joins.wendland_sums(join, a.data(), b.data(), results.wendland);
+  joins.wyvill_pairs(join, a.data(), b.data(), a.data(), results.pairs);
+  joins.planes(results.moments, &results.planes);
+  return results;
+}
+
+TEST(Joins, AreTheSameBitForBitOnEveryProcessor) {
+  if (!cpu_has_v3()) GTEST_SKIP() << "this processor lacks AVX2";
+  Clouds clouds;
+  const CellGrid grid(clouds.sphere(3000, 1));
+  const detail::Columns columns(grid);
+  std::vector<float> a = detail::make_column(grid.size());
+  std::vector<float> b = a;
+  for (float& v : a) v = static_cast<float>(clouds.uniform(0.01, 0.3));
+  for (float& v : b) v = static_cast<float>(clouds.uniform(0.5, 2));
+  detail::for_each_neighborhood(
+      grid, {.of_points = a, .of_cells = {}},
+      [&](std::uint32_t first, std::uint32_t, std::span<const simd::Run> runs) {
+        const simd::Join join = columns.join(first, runs);
+        const Results old = run(simd::kJoinsBaseline, join, a, b);
+        const Results now = run(simd::kJoinsV3, join, a, b);
+        EXPECT_EQ(std::memcmp(&old, &now, sizeof old), 0);
+      });
+}
+
+TEST(Joins, FindTheRunsThatATestOfEveryLeafFinds) {
+  Clouds clouds;
+  const CellGrid grid(clouds.sphere(5000, 1));
+  std::vector<float> radii(grid.size());
+  for (float& r : radii) r = static_cast<float>(clouds.uniform(0.01, 0.3));
+  const std::vector<float> reach = detail::largest_in_cells(grid, radii);
+  const auto covered = [](std::span<const simd::Run> runs, std::uint32_t i) {
+    for (const simd::Run& run : runs) {
+      if (run.begin <= i && i < run.end) return true;
+    }
+    return false;
+  };
+  const auto check = [&](const detail::Reach& how, auto&& wanted) {
+    detail::for_each_neighborhood(
+        grid, how, [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+          for (std::uint32_t j = 0; j < grid.size(); j += 7) {
+            const float d = (grid.points()[j] - grid.points()[first + count / 2]).norm();
+            EXPECT_TRUE(d > wanted(first + count / 2, j) || covered(runs, j));
+          }
+          for (std::size_t r = 1; r < runs.size(); ++r) EXPECT_GT(runs[r].begin, runs[r - 1].end);
+        });
+  };
+  check({.of_points = radii, .of_cells = {}},
+        [&](std::uint32_t i, std::uint32_t) { return radii[i]; });
+  check({.of_points = {}, .of_cells = reach},
+        [&](std::uint32_t, std::uint32_t j) { return radii[j]; });
+}
+
+// S_i and Sbar_i in double precision over all pairs.
+void expect_sums(const CellGrid& grid, const std::vector<float>& radii, Kernel kernel) {
+  const auto weight = [&](std::size_t i, std::size_t j) {
+    const double d = (grid.points()[i] - grid.points()[j]).cast<double>().norm() / radii[j];
+    return evaluate(kernel, d * d).w;
+  };
+  std::vector<double> own(grid.size(), 0);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    for (std::size_t j = 0; j < own.size(); ++j) own[i] += weight(i, j);
+  }
+  const std::vector<float> weights = density_weights(grid, radii, kernel);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    double around = 0;
+    for (std::size_t j = 0; j < own.size(); ++j) around += weight(i, j) * own[j];
+    EXPECT_NEAR(weights[i] * std::max(own[i], 0.8 * around / own[i]), 1, 1e-4);
+  }
+}
+
+TEST(DensityWeights, EqualBruteForceWithUnevenRadii) {
+  Clouds clouds;
+  const CellGrid grid(clouds.sphere(800, 1));
+  std::vector<float> radii(grid.size());
+  for (float& r : radii) r = static_cast<float>(clouds.uniform(0.1, 0.4));
+  expect_sums(grid, radii, Kernel::wyvill);
+  expect_sums(grid, radii, Kernel::wendland);
+}
+
+TEST(DensityWeights, MakeAPlaneWeighAboutOneHoweverDense) {
+  for (const double spacing : {1e-3, 4e-3}) {
+    for (const double multiple : {2., 2.5, 4.}) {
+      const CellGrid grid(Clouds(3).plane(40, spacing, 0.2));
+      const auto radius = static_cast<float>(multiple * spacing);
+      const std::vector<float> radii(grid.size(), radius);
+      const std::vector<float> weights = density_weights(grid, radii);
+      std::vector<std::uint32_t> near;
+      const auto middle = static_cast<float>(19.5 * spacing);
+      grid.within(Vector3f(middle, middle, 0), radius, near);
+      double sum = 0;
+      for (const auto i : near) {
+        const double r = (grid.points()[i] - Vector3f(middle, middle, 0)).norm() / radius;
+        sum += static_cast<double>(weights[i]) * wyvill(r * r).w;
+      }
+      EXPECT_NEAR(sum, 1, 0.08) << spacing << " " << multiple;
+    }
+  }
+}
+
+TEST(DensityWeights, AreFiniteForCoincidentPointsAndTinyRadii) {
+  const CellGrid grid(std::vector<Vector3f>(300, Vector3f(1, 2, 3)));
+  for (const float radius : {1e-30f, 1e-3f, 1e18f}) {
+    for (const float w : density_weights(grid, std::vector<float>(300, radius))) {
+      EXPECT_NEAR(w, 1. / 300, 1e-6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate
