@@ -133,7 +133,7 @@ def draw_overview(axes, cloud, normals, run, unit_name):
     area = np.ptp(seen[:, 0]) * np.ptp(seen[:, 1])
     cell = 2.5 * np.sqrt(max(area, 1e-12) / max(len(cloud), 1))
     points_a_unit = min(590 / max(np.ptp(seen[:, 0]), 1e-9), 520 / max(np.ptp(seen[:, 1]), 1e-9))
-    dot = np.clip((0.5 * cell * points_a_unit) ** 2, 1.5, 60)
+    dot = np.clip((0.62 * cell * points_a_unit) ** 2, 1.5, 60)
     axes.scatter(seen[order, 0], seen[order, 1], s=dot, c=color[order], linewidths=0, rasterized=True)
     hip, proxy = run.hip @ view.T, run.proxy @ view.T
     draw_path(axes, hip, hidden(hip, seen, cell), HAND, 1.1, "hand")

@@ -24,6 +24,8 @@ constexpr double kStroke = 0.6;     // longest stroke, of the region's extent
 constexpr double kLongest = 1.2;    // s that one stroke may take
 constexpr double kDwell = 0.1;      // s at rest before and after a stroke
 constexpr double kRamp = 0.2;       // share of a move spent speeding up, and slowing down
+constexpr double kFresh = 0.3;      // of the extent from all that was touched is far enough ...
+constexpr double kNear = 0.3;       // ... and weighs against the way there
 constexpr int kCandidates = 24;     // places looked at for the beginning of a stroke
 constexpr int kTries = 8;           // of strokes to which no free way leads
 constexpr int kDirections = 4;      // directions tried there
@@ -89,14 +91,14 @@ class Explorer {
         player_(surface.origin, options) {}
 
   Trajectory run() {
-    std::vector<MapSample> stroke = next_stroke(next_start());
+    std::vector<MapSample> stroke = next_stroke(next_start(map_.center()));
     player_.dwell(above(stroke.front()), kDwell);
     while (!player_.over()) {
       touch(stroke);
       const MapSample last = stroke.back();
       Route way;
       for (int i = 0; i < kTries && !way.clear; ++i) {
-        stroke = next_stroke(next_start());
+        stroke = next_stroke(next_start(last.position));
         way = route(last, stroke.front());
       }
       if (way.clear) {
@@ -160,10 +162,10 @@ class Explorer {
     return best;
   }
 
-  // Of some places at random, the one farthest from all that was touched before.
-  MapSample next_start() {
+  // Of some places at random one that is far from all that was touched before but not from here.
+  MapSample next_start(const Vector3d& here) {
     MapSample best;
-    double farthest = -1;
+    double highest = -1e300;
     int seen = 0;
     for (int i = 0; seen < kCandidates && i < 50 * kCandidates; ++i) {
       const auto k = static_cast<std::size_t>(random_.uniform() * static_cast<double>(map_.size()));
@@ -171,15 +173,15 @@ class Explorer {
       if (sample.normal.isZero() || !map_.inside(sample.position)) continue;
       if (i < 4 * kCandidates && !open(sample)) continue;
       ++seen;
-      double distance = touched_.empty() ? 1e9 - (sample.position - map_.center()).norm() : 1e9;
-      for (const Vector3d& p : touched_)
-        distance = std::min(distance, (p - sample.position).norm());
-      if (distance > farthest) {
-        farthest = distance;
+      double fresh = kFresh * map_.extent();
+      for (const Vector3d& p : touched_) fresh = std::min(fresh, (p - sample.position).norm());
+      const double score = fresh - kNear * (sample.position - here).norm();
+      if (score > highest) {
+        highest = score;
         best = sample;
       }
     }
-    if (farthest >= 0) return best;
+    if (seen > 0) return best;
     // Normals cancel everywhere (noise, leaves): poke at a point from above.
     return {map_.point(0), Vector3d::UnitZ()};
   }
