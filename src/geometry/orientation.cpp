@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kOpen = 0.6;     // |sum a n| / sum a above which a part does not close
+constexpr double kOpen = 0.3;     // |sum a n| / sum a above which a part does not close
 constexpr double kUpright = 0.2;  // sine of the lean that makes an open part have an upper side
 
 // Sums over the points of one part.

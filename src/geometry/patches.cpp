@@ -11,6 +11,7 @@ namespace palpate::detail {
 namespace {
 
 constexpr float kSure = 0.7f;         // agreement that makes one patch of two points
+constexpr std::size_t kLate = 8;      // votes looked back at
 constexpr float kReach = 2;           // spacings within which neighbours vote
 constexpr std::uint32_t kBlock = 32;  // points that are divided at once
 
@@ -57,6 +58,19 @@ std::uint32_t divide(const Input& input, const Block& block, Patches& patches) {
   return count;
 }
 
+// Adds to a vote of late on the same two patches, or appends. Those that are missed are added up
+// later; from `mine` on they are this part's, whatever thread works on it.
+void add(const Vote& vote, std::size_t mine, std::vector<Vote>& votes) {
+  const std::size_t oldest = votes.size() > mine + kLate ? votes.size() - kLate : mine;
+  for (std::size_t k = votes.size(); k-- > oldest;) {
+    if (votes[k].a == vote.a && votes[k].b == vote.b) {
+      votes[k].value += vote.value;
+      return;
+    }
+  }
+  votes.push_back(vote);
+}
+
 // Adds what point i says about its neighbours in other patches to `votes`, from `mine` on.
 void vote(const Input& input, const Patches& patches, std::uint32_t i,
           std::span<const simd::Run> runs, std::size_t mine, std::vector<Vote>& votes) {
@@ -66,18 +80,14 @@ void vote(const Input& input, const Patches& patches, std::uint32_t i,
   for (const simd::Run& run : runs) {
     for (std::uint32_t j = run.begin; j < run.end; ++j) {
       const std::uint32_t other = patches.patch[j];
+      if (other == own) continue;
       const float squared = squared_distance(p, input.grid.points()[j]);
-      if (other == own || squared > reach * reach) continue;
+      if (squared > reach * reach) continue;
+      const float reach_of_other = kReach * input.spacings[j];
+      if (j < i && squared <= reach_of_other * reach_of_other) continue;  // j has said so
       const float near = 1 - squared / (reach * reach);
       const float value = input.agreement_of(i, j) * near * patches.sign[i] * patches.sign[j];
-      const auto known =
-          std::find_if(votes.begin() + static_cast<std::ptrdiff_t>(mine), votes.end(),
-                       [&](const Vote& v) { return v.a == own && v.b == other; });
-      if (known != votes.end()) {
-        known->value += value;
-      } else {
-        votes.push_back({own, other, value});
-      }
+      add({std::min(own, other), std::max(own, other), value}, mine, votes);
     }
   }
 }
