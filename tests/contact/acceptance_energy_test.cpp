@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "palpate/contact/proxy.hpp"
+#include "support/effort.hpp"
 #include "support/point_field.hpp"
 #include "support/point_shapes.hpp"
 
@@ -87,6 +88,7 @@ TEST_P(AcceptanceEnergy, ClosedLoopsGiveNothing) {
   double most = -1;
   for (std::size_t i = 0; i < scene.loops.size(); ++i) {
     for (const double speed : {0.05, 0.2, 1.0}) {
+      if (speed < 0.1 && effort(10) < 10) continue;  // three quarters of all ticks
       const double given = energy_of_lap(points, scene.start, scene.loops[i], speed);
       EXPECT_LE(given, 0.05e-3) << "loop " << i << " at " << speed << " m/s";
       most = std::max(most, given);
