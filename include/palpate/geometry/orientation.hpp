@@ -26,7 +26,7 @@ void orient_to_viewpoint(std::span<const Eigen::Vector3f> points, const Eigen::V
 ///   turned up (+z) where it leans more than 12 degrees from the horizontal, and else away from the
 ///   centre of all points.
 ///
-/// `spacings` are the points' own, as local_spacings() gives them, m: parts further apart than two
+/// `spacings` are the points' own, as local_spacings() gives them, m: parts further apart than 1.6
 /// of them are not connected. Zero normals stay zero. Takes time in proportion to the points (a
 /// second for two million on one core) and is the same for any number of threads.
 /// @throws Error when there are not as many normals or spacings as points.
