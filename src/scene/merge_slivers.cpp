@@ -1,8 +1,10 @@
 #include "scene/merge_slivers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
@@ -64,8 +66,8 @@ std::array<std::uint8_t, 3> to_color(const Eigen::Vector3d& mean) {
 
 }  // namespace
 
-PointCloud merge_slivers(const PointCloud& cloud, std::span<const std::uint32_t> counts,
-                         double distance) {
+PointCloud merge_slivers(const PointCloud& cloud, double distance,
+                         std::vector<std::uint32_t>& counts) {
   const std::vector<std::uint32_t> hosts = choose_hosts(cloud, counts, distance);
   PointCloud merged = cloud;
   const auto widen = [](const Eigen::Vector3f& v) -> Eigen::Vector3d { return v.cast<double>(); };
@@ -81,9 +83,14 @@ PointCloud merge_slivers(const PointCloud& cloud, std::span<const std::uint32_t>
   average(
       merged.intensities, hosts, counts, [](float v) { return Eigen::Vector3d(v, 0, 0); },
       [](const Eigen::Vector3d& v) { return static_cast<float>(v.x()); });
+  std::vector<std::uint32_t> sums(counts.size());
+  for (std::size_t i = 0; i < hosts.size(); ++i) sums[hosts[i]] += counts[i];
   std::vector<std::uint32_t> kept;
+  counts.clear();
   for (std::uint32_t i = 0; i < hosts.size(); ++i) {
-    if (hosts[i] == i) kept.push_back(i);
+    if (hosts[i] != i) continue;
+    kept.push_back(i);
+    counts.push_back(sums[i]);
   }
   return select(merged, kept);
 }

@@ -19,6 +19,7 @@
 #include "palpate/geometry/support.hpp"
 #include "palpate/geometry/voxel_grid.hpp"
 #include "scene/check_options.hpp"
+#include "scene/count_weights.hpp"
 #include "scene/merge_slivers.hpp"
 #include "scene/noise.hpp"
 #include "scene/noise_map.hpp"
@@ -145,9 +146,8 @@ class Preparation {
     if (report_.voxel <= 0) return;
     if (noisy && !options_.radius) noise_map_.emplace(points_.grid, spacings_);
     watch_.lap(report_.seconds_spacing);
-    std::vector<std::uint32_t> counts;
-    cloud_ = voxel_downsample(cloud_, report_.voxel, &counts);
-    if (noisy) cloud_ = merge_slivers(cloud_, counts, kSliver * report_.voxel);
+    cloud_ = voxel_downsample(cloud_, report_.voxel, &counts_);
+    if (noisy) cloud_ = merge_slivers(cloud_, kSliver * report_.voxel, counts_);
     watch_.lap(report_.seconds_filter);
     index();
     measure_spacing();
@@ -201,6 +201,10 @@ class Preparation {
       }
       std::sort(kept.begin(), kept.end());
       cloud_ = select(cloud_, kept);
+      if (!counts_.empty()) {
+        for (std::size_t k = 0; k < kept.size(); ++k) counts_[k] = counts_[kept[k]];
+        counts_.resize(kept.size());
+      }
       std::vector<float> kept_radii;
       for (const std::uint32_t i : kept) kept_radii.push_back(radii[i]);
       watch_.lap(report_.seconds_filter);
@@ -245,6 +249,10 @@ class Preparation {
 
   void weigh() {
     points_.density_weights = density_weights(points_.grid, points_.radii, options_.kernel);
+    if (!counts_.empty()) {
+      weigh_by_counts(points_.grid, in_grid_order(points_.grid, counts_), points_.radii,
+                      points_.density_weights);
+    }
     if (points_.confidences.empty()) points_.confidences.assign(points_.size(), 0.0f);
     if (options_.material_from_intensity) {
       points_.materials = materials_of(points_.grid, cloud_.intensities);
@@ -257,6 +265,7 @@ class Preparation {
   SurfacePoints points_;
   PrepareReport report_;
   std::vector<float> spacings_;
+  std::vector<std::uint32_t> counts_;  // points that each voxel's stands for; empty: one each
   double footprint_ = 0;
   Noise noise_;
   std::optional<NoiseMap> noise_map_;
