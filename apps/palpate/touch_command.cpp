@@ -124,25 +124,54 @@ std::string subtitle(const TouchReport& report) {
       grouped(s.contacts()), energy(energy_at_hand(report)));
 }
 
+// Every file is made before the work: a place that does not exist is told at once.
+struct Outputs {
+  std::optional<TouchLog> log;
+  std::optional<OutputFile> json;
+  std::optional<Picture> picture;
+
+  explicit Outputs(const TouchOptions& options) {
+    if (!options.log.empty()) log.emplace(options.log);
+    if (!options.json.empty()) json.emplace(options.json);
+    if (options.picture.empty()) return;
+    OutputFile(options.picture).close();
+    picture.emplace(options.picture);
+  }
+};
+
 // Steps the run and hands each step to what keeps or sums it.
 void play(Hand& hand, SceneField& field, Proxy& proxy, TouchStatistics& statistics,
-          std::optional<TouchLog>& log, std::optional<Picture>& picture) {
+          Outputs& outputs) {
   Progress progress("touching");
   run_touch(*hand.device, hand.workspace, field, proxy, [&](const TouchStep& step) {
     statistics.add(step);
-    if (log) log->add(step);
-    if (picture) picture->add(step);
+    if (outputs.log) outputs.log->add(step);
+    if (outputs.picture) outputs.picture->add(step);
     if (statistics.steps() % 256 == 0) {
       progress.update(static_cast<double>(statistics.steps()) / static_cast<double>(hand.steps));
     }
   });
+  if (outputs.log) outputs.log->close();
 }
 
-void write_json(const TouchReport& report, const std::string& path) {
-  OutputFile file(path);
-  file.write(json_report(report).dump(2));
-  file.write("\n");
-  file.close();
+// The picture comes last: everything else is there if it cannot be drawn.
+void tell(const TouchReport& report, Outputs& outputs) {
+  const TouchOptions& options = report.options;
+  const bool stdout_taken = options.log == "-" || options.json == "-";
+  print_report(report, stdout_taken ? stderr : stdout);
+  if (outputs.json) {
+    outputs.json->write(json_report(report).dump(2));
+    outputs.json->write("\n");
+    outputs.json->close();
+  }
+  if (outputs.picture) outputs.picture->draw(report.scene, title(report), subtitle(report));
+}
+
+Hand make_hand(const TouchOptions& options, const Scene& scene, const FieldOptions& field,
+               Trajectory trajectory) {
+  if (trajectory.empty()) return exploring(options, scene, field);
+  if (options.device == "simulated") return simulated(options, std::move(trajectory));
+  return scripted(options, std::move(trajectory));
 }
 
 }  // namespace
@@ -151,35 +180,19 @@ void touch(const TouchOptions& options) {
   check_usage(options);
   Trajectory trajectory;
   if (!options.trajectory.empty()) trajectory = read_trajectory(options.trajectory);
-  std::optional<TouchLog> log;
-  if (!options.log.empty()) log.emplace(options.log);
-  std::optional<Picture> picture;
-  if (!options.picture.empty()) picture.emplace(options.picture);
-
+  Outputs outputs(options);
   Scene scene;
   const std::vector<TouchedCloud> clouds = fill(scene, options);
   const FieldOptions field_choice = field_options(options);
   SceneField field(scene, field_choice);
-  Hand hand = trajectory.empty()              ? exploring(options, scene, field_choice)
-              : options.device == "simulated" ? simulated(options, std::move(trajectory))
-                                              : scripted(options, std::move(trajectory));
+  Hand hand = make_hand(options, scene, field_choice, std::move(trajectory));
   Proxy proxy(proxy_options(options, hand.stiffness));
   TouchStatistics statistics(hand.steps);
-  play(hand, field, proxy, statistics, log, picture);
-  if (log) log->close();
-
-  const TouchReport report{scene,
-                           clouds,
-                           options,
-                           statistics,
-                           field_choice,
-                           proxy.options(),
-                           hand.device->info().name,
-                           hand.plan ? &*hand.plan : nullptr};
-  const bool stdout_taken = options.log == "-" || options.json == "-";
-  print_report(report, stdout_taken ? stderr : stdout);
-  if (!options.json.empty()) write_json(report, options.json);
-  if (picture) picture->draw(scene, title(report), subtitle(report));
+  play(hand, field, proxy, statistics, outputs);
+  const ExplorationPlan* plan = hand.plan ? &*hand.plan : nullptr;
+  tell({scene, clouds, options, statistics, field_choice, proxy.options(), hand.device->info().name,
+        plan},
+       outputs);
 }
 
 }  // namespace palpate::app

@@ -147,10 +147,10 @@ void print_report(const TouchReport& report, std::FILE* out) {
              s.energy() < 0 ? " (negative: taken from it)" : "");
   print_notes(s, style, out);
   if (s.touching() == 0) {
-    fmt::print(out,
-               "  {} the hand never met the surface: is the trajectory in metres and in the "
-               "cloud's frame, and --scale right?\n",
-               style.warning("advice    "));
+    fmt::print(out, "  {} the hand never met the surface: {}\n", style.warning("advice    "),
+               report.plan != nullptr
+                   ? "give it more time (--duration)"
+                   : "is the trajectory in metres and in the cloud's frame, and --scale right?");
   }
 }
 
