@@ -86,7 +86,7 @@ Box view(const std::vector<TouchStep>& steps, const Scene& scene) {
     box.extend(all.lower);
     box.extend(all.upper);
   }
-  const double margin = 0.15 * box.size().maxCoeff() + 1e-3;
+  const double margin = 0.35 * box.size().maxCoeff() + 1e-3;
   box.extend(box.lower - Vector3d::Constant(margin));
   box.extend(box.upper + Vector3d::Constant(margin));
   return box;

@@ -98,11 +98,9 @@ def hidden(path, points, cell):
 
 def draw_path(axes, path, behind, color, width, label):
     """A path, fainter where it is behind the cloud."""
-    pieces = np.stack([path[:-1, :2], path[1:, :2]], axis=1)
-    for mask, alpha in ((behind[1:], 0.25), (~behind[1:], 0.95)):
-        axes.add_collection(LineCollection(pieces[mask], colors=color, linewidths=width, alpha=alpha,
-                                           capstyle="round"))
-    axes.plot([], [], color=color, linewidth=width, label=label)
+    for mask, alpha, name in ((behind, 0.3, None), (~behind, 0.95, label)):
+        places = np.where(mask[:, None], path, np.nan)
+        axes.plot(places[:, 0], places[:, 1], color=color, linewidth=width, alpha=alpha, label=name)
 
 
 def scale_bar(axes, unit_name):
@@ -138,17 +136,18 @@ def draw_overview(axes, cloud, normals, run, unit_name):
     hip, proxy = run.hip @ view.T, run.proxy @ view.T
     draw_path(axes, hip, hidden(hip, seen, cell), HAND, 1.1, "hand")
     touched = np.where(run.touching[:, None], proxy, np.nan)
-    draw_path(axes, touched, hidden(proxy, seen, cell), PROXY, 2.0, "proxy, touching")
+    behind = hidden(proxy, seen, cell)
+    draw_path(axes, touched, behind, PROXY, 2.0, "proxy, touching")
     axes.set_aspect("equal")
     axes.autoscale_view()
-    draw_arrows(axes, proxy, run, view)
+    draw_arrows(axes, proxy, behind, run, view)
     axes.set_axis_off()
     scale_bar(axes, unit_name)
     axes.figure.legend(loc="upper left", bbox_to_anchor=(0.014, 0.915), frameon=False, ncol=3,
                        handlelength=1.6)
 
 
-def draw_arrows(axes, proxy, run, view):
+def draw_arrows(axes, proxy, behind, run, view):
     """The force on the hand at some steps with touch."""
     touching = np.flatnonzero(run.touching & (run.size > 0.02 * max(run.size.max(), 1e-9)))
     if len(touching) == 0:
@@ -156,9 +155,11 @@ def draw_arrows(axes, proxy, run, view):
     picked = touching[:: max(1, len(touching) // 70)]
     left, right = axes.get_xlim()
     length = 0.09 * (right - left) / run.size.max()
-    arrows = (run.force @ view.T)[picked, :2] * length
-    axes.quiver(proxy[picked, 0], proxy[picked, 1], arrows[:, 0], arrows[:, 1], color=FORCE,
-                angles="xy", scale_units="xy", scale=1, width=0.0028, headwidth=3.5, zorder=5)
+    for some, alpha in ((picked[behind[picked]], 0.25), (picked[~behind[picked]], 1.0)):
+        arrows = (run.force @ view.T)[some, :2] * length
+        axes.quiver(proxy[some, 0], proxy[some, 1], arrows[:, 0], arrows[:, 1], color=FORCE,
+                    angles="xy", scale_units="xy", scale=1, width=0.0028, headwidth=3.5, zorder=5,
+                    alpha=alpha)
     axes.plot([], [], color=FORCE, linewidth=2, label=f"force, up to {run.size.max():.2g} N")
 
 
@@ -170,6 +171,19 @@ def busiest_contact(run):
     return starts[longest], ends[longest]
 
 
+def section_plane(run, first, last):
+    """Centre, directions along, up and across, and half the width of a cut through a contact."""
+    at = first + int(np.argmax(run.size[first:last]))
+    deep = np.linalg.norm(run.proxy - run.hip, axis=1)[first:last].max()
+    up = normalised(run.force[at])
+    moved = run.proxy[first:last] - run.proxy[at]
+    moved = moved - np.outer(moved @ up, up)
+    _, _, directions = np.linalg.svd(moved - moved.mean(axis=0), full_matrices=False)
+    along = normalised(directions[0] - (directions[0] @ up) * up)
+    half = max(6 * deep, 0.3 * np.ptp(moved @ along), 1e-9)
+    return run.proxy[at], np.stack([along, up, np.cross(up, along)], axis=1), half
+
+
 def draw_section(axes, cloud, run, unit_name):
     """A cut through the cloud along a piece of the longest contact."""
     axes.set_title("close by, in section", loc="left", color=INK)
@@ -179,32 +193,20 @@ def draw_section(axes, cloud, run, unit_name):
         axes.set_axis_off()
         return
     first, last = busiest_contact(run)
-    at = first + int(np.argmax(run.size[first:last]))
-    deep = np.linalg.norm(run.proxy - run.hip, axis=1)[first:last].max()
-    center = run.proxy[at]
-    up = normalised(run.force[at])
-    moved = run.proxy[first:last] - center
-    moved = moved - np.outer(moved @ up, up)
-    _, _, directions = np.linalg.svd(moved - moved.mean(axis=0), full_matrices=False)
-    along = normalised(directions[0] - (directions[0] @ up) * up)
-    across = np.cross(up, along)
-    half = max(6 * deep, 0.3 * np.ptp(moved @ along), 1e-9)
-    flat = cloud - center
-    near = (np.abs(flat @ across) < 0.06 * half) & (np.abs(flat @ along) < 1.1 * half)
-    axes.scatter((flat @ along)[near], (flat @ up)[near], s=7, color=FAINT, linewidths=0,
-                 label="points")
-    hip, proxy = run.hip - center, run.proxy - center
-    span = slice(max(first - 150, 0), last + 150)
+    center, directions, half = section_plane(run, first, last)
+    points, hip, proxy = ((p - center) @ directions for p in (cloud, run.hip, run.proxy))
+    near = (np.abs(points[:, 2]) < 0.06 * half) & (np.abs(points[:, 0]) < 1.1 * half)
+    axes.scatter(points[near, 0], points[near, 1], s=7, color=FAINT, linewidths=0, label="points")
     inside = np.zeros(len(hip), bool)
-    inside[span] = np.abs((hip @ across)[span]) < 0.5 * half
-    x_hip, y_hip = np.where(inside, hip @ along, np.nan), hip @ up
+    span = slice(max(first - 150, 0), last + 150)
+    inside[span] = np.abs(hip[span, 2]) < 0.5 * half
     touching = inside & run.touching
-    axes.plot(x_hip, y_hip, color=HAND, linewidth=1.4, label="hand")
-    axes.plot(np.where(touching, proxy @ along, np.nan), proxy @ up, color=PROXY, linewidth=2,
+    axes.plot(np.where(inside, hip[:, 0], np.nan), hip[:, 1], color=HAND, linewidth=1.4,
+              label="hand")
+    axes.plot(np.where(touching, proxy[:, 0], np.nan), proxy[:, 1], color=PROXY, linewidth=2,
               label="proxy")
     picked = np.flatnonzero(touching)[:: max(1, touching.sum() // 40)]
-    springs = np.stack([hip[picked] @ np.stack([along, up], axis=1),
-                        proxy[picked] @ np.stack([along, up], axis=1)], axis=1)
+    springs = np.stack([hip[picked, :2], proxy[picked, :2]], axis=1)
     axes.add_collection(LineCollection(springs, colors=FORCE, linewidths=0.8, alpha=0.8))
     axes.set_aspect("equal")
     axes.set_xlim(-half, half)
@@ -226,8 +228,10 @@ def draw_force(axes, run):
     axes.set_ylim(0, 1.15 * max(run.size.max(), 1e-3))
     if run.size.max() > 0:
         top = int(np.argmax(run.size))
+        share = (run.t[top] - run.t[0]) / max(run.t[-1] - run.t[0], 1e-9)
+        side = "left" if share < 0.06 else "right" if share > 0.94 else "center"
         axes.annotate(f"{run.size[top]:.2f} N", (run.t[top], run.size[top]), xytext=(0, 5),
-                      textcoords="offset points", ha="center", color=INK)
+                      textcoords="offset points", ha=side, color=INK)
 
 
 def main(folder, picture):
