@@ -16,13 +16,17 @@ for argument in "$@"; do
       ;;
   esac
 done
-if [ "$fuzz" = yes ]; then sanitized=fuzz; else sanitized=asan; fi
 started=$SECONDS
 status=0
 
 say "packages"
 need_packages build test
 if [ "$fuzz" = yes ]; then need_packages fuzz; fi
+if [ "$fuzz" = yes ] && ! command -v clang++ >/dev/null; then
+  note "clang++ is absent: no fuzz targets"
+  fuzz=no
+fi
+if [ "$fuzz" = yes ]; then sanitized=fuzz; else sanitized=asan; fi
 find_data
 
 say "build"
