@@ -6,7 +6,7 @@
 #include "apps/palpate/info_report.hpp"
 #include "apps/palpate/load.hpp"
 #include "apps/palpate/output.hpp"
-#include "apps/palpate/progress.hpp"
+#include "apps/palpate/waiting.hpp"
 
 namespace palpate::app {
 
@@ -23,8 +23,7 @@ InfoReport study(const CloudArgument& argument, const LoadOptions& options) {
   InfoReport report;
   report.loaded = load(argument, options);
   const PointCloud& cloud = report.loaded.file.cloud;
-  Progress progress("studying " + argument.name);
-  if (cloud.size() > 1'000'000) progress.update(-1);
+  const Waiting waiting("studying " + argument.name);
   report.bounds = bounds_of(cloud);
   report.units = guess_units(report.bounds, report.loaded.file.format);
   report.spacing = measure_spacing(CellGrid(cloud.positions));

@@ -17,7 +17,7 @@
 
 #include "apps/palpate/output.hpp"
 #include "apps/palpate/picture_script.hpp"
-#include "apps/palpate/progress.hpp"
+#include "apps/palpate/waiting.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/box.hpp"
 
@@ -190,8 +190,7 @@ std::string last_line(const std::string& text) {
 void Picture::draw(const Scene& scene, const std::string& title,
                    const std::string& subtitle) const {
   if (steps_.empty()) throw Error("there is no picture of a run without steps");
-  Progress progress("drawing the picture");
-  progress.update(-1);
+  const Waiting waiting("drawing the picture");
   const TemporaryFolder folder;
   const Box box = view(steps_, scene);
   write_floats(folder.file("cloud.f32"), visible_points(scene, box));

@@ -14,7 +14,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done`: 0 to 1; negative: not known.
+  /// `done`: 0 to 1.
   void update(double done);
 
  private:

@@ -7,7 +7,8 @@
 #include <map>
 
 #include "apps/palpate/errors.hpp"
-#include "apps/palpate/progress.hpp"
+#include "apps/palpate/waiting.hpp"
+#include "apps/palpate/words.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
@@ -88,9 +89,8 @@ TouchedCloud add(Scene& scene, const LoadedCloud& loaded, const SourceOptions& o
                       {},
                       0};
   result.units = guess_units(bounds_of(loaded.file.cloud), loaded.file.format);
-  Progress progress(
-      fmt::format("preparing {} ({} points)", loaded.argument.name, loaded.file.cloud.size()));
-  if (loaded.file.cloud.size() > 1'000'000) progress.update(-1);
+  const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
+                                    grouped(loaded.file.cloud.size())));
   const auto start = std::chrono::steady_clock::now();
   scene.add(loaded.argument.name, loaded.file.cloud, options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
