@@ -38,7 +38,8 @@ void Scorer::add_tick(const Vector3d& ideal, const Vector3d& rendered) {
     ++angles_;
   }
   const bool lost = rendered.norm() < kLostShare * ideal.norm();
-  lost_run_ = lost ? lost_run_ + 1 : 0;
+  felt_ = felt_ || !lost;
+  lost_run_ = lost && felt_ ? lost_run_ + 1 : 0;
   if (lost) ++lost_;
   if (lost_run_ == kPopTicks) ++worst_.pops;
 }
@@ -68,6 +69,7 @@ void Scorer::add_steps(const Path& path, const std::vector<Vector3d>& force) {
 void Scorer::add(const Path& path, const Trace& ideal, const Trace& rendered,
                  const TruthScene& scene) {
   lost_run_ = 0;
+  felt_ = false;
   for (std::size_t i = path.begin; i < path.end; ++i) {
     if (ideal.force[i].norm() < kNoForce) continue;
     add_tick(ideal.force[i], rendered.force[i]);

@@ -22,7 +22,7 @@ struct Score {
   double ripple = 0;  ///< RMS of the force above 20 Hz, N; 0 for paths shorter than 0.3 s
   double height = 0;  ///< signed distance of the proxy from the true surface, mean, mm
   double lost = 0;    ///< share of ticks with less than 20 % of the ideal force
-  double pops = 0;    ///< times that three ticks in a row were lost
+  double pops = 0;    ///< times that three ticks in a row were lost, once the surface was felt
   double step = 0;    ///< largest change of force from one tick to the next, N
   double peak = 0;    ///< largest force, N
   double energy = 0;  ///< integral of F . dh over the whole path, J; positive: given to the hand
@@ -50,6 +50,7 @@ class Scorer {
   double ripples_ = 0;
   double lost_ = 0;
   int lost_run_ = 0;
+  bool felt_ = false;
 };
 
 /// The ideal proxy's trace on a path.

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <cmath>
 
 namespace palpate::accuracy {
 namespace {
@@ -23,8 +23,9 @@ std::vector<double> values_of(const BenchResults& results, const std::string& co
 // Three significant digits, never an exponent.
 std::string number(double value) {
   if (value == 0) return "0";
-  if (value < 0.01) return fmt::format("{:.4f}", value);
-  if (value < 1) return fmt::format("{:.3f}", value);
+  const double size = std::abs(value);
+  if (size < 0.01) return fmt::format("{:.4f}", value);
+  if (size < 1) return fmt::format("{:.3f}", value);
   return fmt::format("{:.2f}", value);
 }
 
@@ -58,11 +59,12 @@ Spread spread(const BenchResults& results, const std::string& contender, const T
   const std::size_t half = values.size() / 2;
   const double median =
       values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-  return {median, values.back()};
+  return {median,
+          std::abs(values.front()) > std::abs(values.back()) ? values.front() : values.back()};
 }
 
 bool met(const BenchResults& results, const std::string& contender, const Target& target) {
-  return target.limit < 0 || spread(results, contender, target).median <= target.limit;
+  return target.limit < 0 || std::abs(spread(results, contender, target).median) <= target.limit;
 }
 
 std::string markdown_table(const BenchResults& results, const std::vector<Contender>& contenders,

@@ -13,7 +13,8 @@ struct Target {
   std::string row;
   std::string metric;  ///< for the reader, with its unit
   double (*of)(const Score&) = nullptr;
-  double limit = 0;    ///< the median over the frames must not be above; < 0: no target
+  double limit = 0;    ///< the median over the frames must not be above, as an absolute
+                       ///< value; < 0: no target
   std::string quoted;  ///< empty: not quoted
 };
 
@@ -23,7 +24,7 @@ struct Target {
 /// A metric over the frames.
 struct Spread {
   double median = 0;
-  double worst = 0;
+  double worst = 0;  ///< the largest in absolute value
 };
 
 [[nodiscard]] Spread spread(const BenchResults& results, const std::string& contender,

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "accuracy/table.hpp"
 
 namespace palpate::accuracy {
@@ -15,7 +13,7 @@ double ripple(const Score& s) {
   return s.ripple;
 }
 double height(const Score& s) {
-  return std::abs(s.height);
+  return s.height;
 }
 double lost(const Score& s) {
   return 100 * s.lost;
@@ -37,7 +35,7 @@ constexpr double kNone = -1;
 constexpr const char* kNormal = "normal, deg";
 constexpr const char* kForce = "force, N";
 constexpr const char* kRipple = "ripple, N";
-constexpr const char* kHeight = "abs height, mm";
+constexpr const char* kHeight = "height, mm";
 constexpr const char* kLost = "lost, %";
 constexpr const char* kPops = "pops";
 constexpr const char* kStep = "step, N";
@@ -54,7 +52,7 @@ std::vector<Target> independent_targets() {
       {"sphere slide", kNormal, normal, 2.2, "2.2"},
       {"sphere slide", kForce, force, 0.115, "0.218"},
       {"sphere slide", kRipple, ripple, 0.001, "0.0063"},
-      {"sphere slide", kHeight, height, 0.05, "0.30"},
+      {"sphere slide", kHeight, height, 0.05, "-0.30"},
       {"box edge", kNormal, normal, 15.5, "10.2"},
       {"box edge", kForce, force, 0.42, "0.390"},
       {"box edge", kLost, lost, 3, "2-15"},

@@ -10,9 +10,8 @@
 namespace palpate {
 namespace {
 
-// Noise tilts normals by 3.2 sigma_n delta / R^2 (field_choice.md section 5); a quarter is added,
-// for what edges take back and for the half of all frames that are worse than the median.
-constexpr double kNoiseToTilt = 4.0;
+// Noise tilts normals by 3.2 sigma_n delta / R^2 (field_choice.md section 5).
+constexpr double kNoiseToTilt = 3.2;
 
 // No R is above this many floors (2.5 spacings each): more smoothing would cost shape and time, and
 // noise that needs it is the sensor's to filter.

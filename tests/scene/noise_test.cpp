@@ -1,0 +1,168 @@
+#include "scene/noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "palpate/geometry/spacing.hpp"
+#include "scene/count_weights.hpp"
+#include "scene/merge_slivers.hpp"
+#include "scene/noise_map.hpp"
+#include "scene/noisy_radii.hpp"
+#include "scene/window_fit.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kSpacing = 0.002f;
+
+// A square sheet of side x side points, bent to z = bend x^2 / 2, with noise along z that is
+// averaged over (2 blur + 1)^2 neighbours and scaled back to `sigma` in the mean.
+std::vector<Vector3f> sheet(int side, double sigma, int blur = 0, float bend = 0) {
+  std::mt19937 engine(3);
+  std::normal_distribution<float> normal;
+  const int wide = side + 2 * blur;
+  std::vector<float> white(static_cast<std::size_t>(wide * wide));
+  for (float& value : white) value = normal(engine);
+  std::vector<Vector3f> points;
+  for (int v = 0; v < side; ++v) {
+    for (int u = 0; u < side; ++u) {
+      float sum = 0;
+      for (int dv = 0; dv <= 2 * blur; ++dv) {
+        for (int du = 0; du <= 2 * blur; ++du) {
+          sum += white[static_cast<std::size_t>((v + dv) * wide + u + du)];
+        }
+      }
+      const auto x = static_cast<float>(u - side / 2) * kSpacing;
+      const float noise = static_cast<float>(sigma) * sum / static_cast<float>(2 * blur + 1);
+      points.emplace_back(x, static_cast<float>(v - side / 2) * kSpacing,
+                          0.5f * bend * x * x + noise);
+    }
+  }
+  return points;
+}
+
+TEST(WindowFit, SeesNoNoiseInACurvedSurface) {
+  const CellGrid grid(sheet(40, 0, 0, 15));
+  WindowFitter fitter;
+  const WindowFit fit = fitter.fit(grid, Vector3f::Zero(), 0.012);
+  EXPECT_NEAR(fit.footprint, kSpacing, 0.1 * kSpacing);
+  EXPECT_LT(fit.sigma, 1e-5);
+}
+
+TEST(WindowFit, MeasuresWhiteNoiseWithoutBias) {
+  const CellGrid grid(sheet(80, 0.001));
+  WindowFitter fitter;
+  double variance = 0;
+  double shared = 0;
+  for (int i = 0; i < 49; ++i) {
+    const Vector3f at(0.015f * static_cast<float>(i % 7 - 3),
+                      0.015f * static_cast<float>(i / 7 - 3), 0);
+    const WindowFit fit = fitter.fit(grid, at, 0.03, 0.008);
+    variance += fit.sigma * fit.sigma / 49;
+    shared += fit.shared / 49;
+  }
+  EXPECT_NEAR(std::sqrt(variance), 0.001, 5e-5);
+  EXPECT_NEAR(shared, 1, 0.2);
+}
+
+TEST(WindowFit, StaysFiniteOnDegeneratePoints) {
+  WindowFitter fitter;
+  const std::vector<Vector3f> same(30, Vector3f(1, 2, 3));
+  const WindowFit point = fitter.fit(CellGrid(same), Vector3f(1, 2, 3), 0.1, 0.02);
+  EXPECT_EQ(point.sigma, 0);
+  std::vector<Vector3f> line;
+  for (int i = 0; i < 30; ++i) line.emplace_back(0.01f * static_cast<float>(i), 0, 0);
+  const WindowFit fit = fitter.fit(CellGrid(line), Vector3f(0.15f, 0, 0), 0.2, 0.02);
+  EXPECT_TRUE(std::isfinite(fit.sigma) && std::isfinite(fit.shared));
+  EXPECT_LT(fit.sigma, 1e-6);
+  EXPECT_EQ(fitter.fit(CellGrid(line), Vector3f(9, 9, 9), 0.2).points, 0u);
+}
+
+TEST(Noise, IsItsDeviationWhereNeighboursErrIndependently) {
+  const Noise noise = measure_noise(CellGrid(sheet(150, 0.0008)), 0.002);
+  EXPECT_NEAR(noise.sigma, 0.0008, 5e-5);
+  EXPECT_EQ(noise.excess, 1);
+}
+
+TEST(Noise, IsKnownToBeSharedWhereNeighboursErrTogether) {
+  const Noise noise = measure_noise(CellGrid(sheet(150, 0.0008, 2)), 0.002);
+  EXPECT_NEAR(noise.sigma, 0.0008, 0.00012);  // narrow windows alone see half of it
+  EXPECT_GT(noise.excess, 2.5);
+}
+
+TEST(Noise, IsNotSeenInAShape) {
+  // Waves of 60 mm: far from a quadratic in wide windows, close to one in narrow ones.
+  std::vector<Vector3f> waves = sheet(150, 0);
+  for (Vector3f& p : waves) p.z() = 0.004f * std::sin(105 * p.x()) * std::cos(105 * p.y());
+  const Noise noise = measure_noise(CellGrid(waves), 0.002);
+  EXPECT_EQ(noise.excess, 1);
+  EXPECT_LT(noise.sigma, 5e-5);
+}
+
+TEST(NoiseMap, TellsNoisyPlacesFromQuietOnes) {
+  std::vector<Vector3f> points = sheet(150, 0.001);
+  for (Vector3f& p : points) {
+    if (p.x() < 0) p.z() *= 0.25f;
+  }
+  const CellGrid grid(points);
+  const NoiseMap map(grid, local_spacings(grid));
+  const std::vector<Vector3f> places = {{-0.08f, 0, 0}, {0.08f, 0, 0}, {5, 5, 5}};
+  const std::vector<float> found = map.at(places);
+  EXPECT_NEAR(found[0], 0.25e-3 * 2e-3, 0.08e-6);
+  EXPECT_NEAR(found[1], 1e-3 * 2e-3, 0.3e-6);
+  EXPECT_GT(found[2], 0);  // where nothing is known, what is typical
+}
+
+TEST(NoisyRadii, ShrinkAtAnEdgeAndKeepTheirFloor) {
+  std::vector<Vector3f> points;
+  for (const Vector3f& p : sheet(60, 0)) {
+    points.push_back(p.x() <= 0 ? p : Vector3f(0, p.y(), -p.x()));  // bent down by a right angle
+  }
+  const CellGrid grid(points);
+  std::vector<float> radii(grid.size(), 0.012f);
+  shrink_at_edges(grid, std::vector<float>(grid.size(), 0.0095f), radii);
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const float from_edge = std::max(-grid.points()[i].x(), -grid.points()[i].z());
+    if (std::abs(grid.points()[i].y()) > 0.04f) continue;  // the sheet's own end
+    if (from_edge > 0.02f) {
+      EXPECT_FLOAT_EQ(radii[i], 0.012f);
+    }
+    if (from_edge < 0.002f) {
+      EXPECT_LT(radii[i], 0.0105f);
+    }
+    EXPECT_GE(radii[i], 0.0095f);
+  }
+}
+
+TEST(MergeSlivers, AveragesByCountsAndKeepsTheRest) {
+  PointCloud cloud;
+  cloud.positions = {{0, 0, 0}, {0, 0, 0.001f}, {0.01f, 0, 0}};
+  cloud.intensities = {10, 20, 30};
+  std::vector<std::uint32_t> counts = {3, 1, 5};
+  const PointCloud merged = merge_slivers(cloud, 0.002, counts);
+  ASSERT_EQ(merged.size(), 2u);
+  EXPECT_NEAR(merged.positions[0].z(), 0.00025f, 1e-9f);
+  EXPECT_FLOAT_EQ(merged.intensities[0], 12.5f);
+  EXPECT_EQ(merged.positions[1], cloud.positions[2]);
+  EXPECT_EQ(counts, (std::vector<std::uint32_t>{4, 5}));
+}
+
+TEST(CountWeights, KeepTheSumOfWeights) {
+  const CellGrid grid(sheet(30, 0));
+  std::vector<std::uint32_t> counts(grid.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = 2 + i % 5;
+  const std::vector<float> radii(grid.size(), 0.01f);
+  std::vector<float> weights(grid.size(), 1.0f);
+  weigh_by_counts(grid, counts, radii, weights);
+  const float sum = std::accumulate(weights.begin(), weights.end(), 0.0f);
+  EXPECT_NEAR(sum / static_cast<float>(weights.size()), 1, 0.05);
+  EXPECT_GT(weights[4], 2 * weights[0]);
+}
+
+}  // namespace
+}  // namespace palpate
