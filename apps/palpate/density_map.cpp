@@ -41,12 +41,12 @@ DensityMap map_density(const PointCloud& cloud, int columns) {
   map.cell = std::max({width / columns, height / (2 * kMostRows), 1e-12});
   map.columns = std::clamp(static_cast<int>(std::ceil(width / map.cell)), 1, columns);
   map.rows = std::clamp(static_cast<int>(std::ceil(height / (2 * map.cell))), 1, kMostRows);
-  map.counts.resize(static_cast<std::size_t>(map.columns * map.rows));
+  map.counts.resize(map.place(map.rows, 0));
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d p = cloud.point(i) - box.lower;
     const int column = std::min(static_cast<int>(p[map.horizontal] / map.cell), map.columns - 1);
     const int row = std::min(static_cast<int>(p[map.vertical] / (2 * map.cell)), map.rows - 1);
-    ++map.counts[static_cast<std::size_t>((map.rows - 1 - row) * map.columns + column)];
+    ++map.counts[map.place(map.rows - 1 - row, column)];
   }
   return map;
 }
@@ -57,7 +57,7 @@ std::string draw(const DensityMap& map, bool colored) {
   for (int row = 0; row < map.rows; ++row) {
     text += "  ";
     for (int column = 0; column < map.columns; ++column) {
-      const std::size_t count = map.counts[static_cast<std::size_t>(row * map.columns + column)];
+      const std::size_t count = map.counts[map.place(row, column)];
       if (count == 0) {
         text += ' ';
       } else if (colored) {

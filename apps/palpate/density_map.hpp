@@ -15,6 +15,11 @@ struct DensityMap {
   int vertical = 0;                 ///< axis that runs upwards
   double cell = 0;                  ///< width of a cell, m; it is twice as high, like a letter
   std::vector<std::size_t> counts;  ///< row by row, the top one first
+
+  [[nodiscard]] std::size_t place(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(column);
+  }
 };
 
 [[nodiscard]] DensityMap map_density(const PointCloud& cloud, int columns);

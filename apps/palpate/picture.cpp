@@ -156,6 +156,7 @@ std::string python() {
 // Runs a program, with its complaints in a file, and returns its exit code; 127: it is not there.
 int run(const std::vector<std::string>& words, const std::string& complaints) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
