@@ -45,7 +45,7 @@ double height_of(const SceneField& field) {
   for (int i = 0; i < 60; ++i) {
     const double z = 0.5 * (low + high);
     const Sample sample = field.sample({0.3e-3, 0.4e-3, z}, 1);
-    const bool below = sample.support > 0.3 ? sample.height < 0 : z < 0;
+    const bool below = sample.support > 0.05 ? sample.height < 0 : z < 0;
     (below ? low : high) = z;
   }
   return 0.5 * (low + high);

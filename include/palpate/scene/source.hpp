@@ -20,8 +20,8 @@ struct SoftMaterial {
 
 struct SourceOptions {
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();  ///< pose of the sensor's frame
-  PrepareOptions prepare;
-  SoftMaterial soft;  ///< felt where preparation was told to make materials
+  PrepareOptions prepare = {};
+  SoftMaterial soft = {};  ///< felt where preparation was told to make materials
 };
 
 /// One sensor or file: its pose, and the newest snapshot of what it sees.
