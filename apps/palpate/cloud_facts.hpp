@@ -5,7 +5,7 @@
 
 #include "palpate/geometry/box.hpp"
 #include "palpate/io/read_cloud.hpp"
-#include "palpate/scene/prepare.hpp"
+#include "palpate/prepare/prepare.hpp"
 
 namespace palpate::app {
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "geometry/distance.hpp"
-#include "geometry/neighborhoods.hpp"
+#include "geometry/parallel.hpp"
+#include "geometry/speckle.hpp"
 #include "geometry/weight_sums.hpp"
 
 namespace palpate {
@@ -21,18 +22,18 @@ std::vector<T> select(const std::vector<T>& column, std::span<const std::uint32_
   return selected;
 }
 
-// Are there enough others within the smaller of both points' diameters?
-bool has_company(const CellGrid& grid, std::span<const float> diameters, std::uint32_t i,
-                 std::span<const simd::Run> runs) {
-  std::size_t others = 0;
-  for (const simd::Run& run : runs) {
-    for (std::uint32_t j = run.begin; j < run.end; ++j) {
-      const float reach = std::min(diameters[i], diameters[j]);
-      const float squared = detail::squared_distance(grid.points()[i], grid.points()[j]);
-      if (squared <= reach * reach && j != i && ++others == kFewestOthers) return true;
-    }
-  }
-  return false;
+// Are there enough others within the smaller of both points' diameters? Whoever weighs as much as
+// that many others within their radii has company without a look.
+bool has_company(const CellGrid& grid, std::span<const float> radii, float own_sum, std::uint32_t i,
+                 std::vector<std::uint32_t>& near) {
+  if (own_sum >= kFewestOthers) return true;
+  near.clear();
+  grid.within(grid.points()[i], 2 * radii[i], near);
+  const auto others = std::ranges::count_if(near, [&](std::uint32_t j) {
+    const float squared = detail::squared_distance(grid.points()[i], grid.points()[j]);
+    return j != i && squared <= 4 * radii[j] * radii[j];
+  });
+  return static_cast<std::size_t>(others) >= kFewestOthers;
 }
 
 }  // namespace
@@ -57,18 +58,21 @@ PointCloud clip(const PointCloud& cloud, const Box& box) {
 }
 
 std::vector<std::uint8_t> speckle_mask(const CellGrid& grid, std::span<const float> radii) {
-  const detail::WeightSums sums = detail::weight_sums(grid, radii, simd::best_joins().wyvill_sums);
-  std::vector<float> diameters(radii.begin(), radii.end());
-  for (float& diameter : diameters) diameter *= 2;
+  return detail::speckle_mask(grid, radii,
+                              detail::weight_sums(grid, radii, simd::best_joins().wyvill_sums));
+}
+
+std::vector<std::uint8_t> detail::speckle_mask(const CellGrid& grid, std::span<const float> radii,
+                                               const WeightSums& sums) {
   std::vector<std::uint8_t> mask(grid.size());
-  detail::for_each_neighborhood(
-      grid, {.of_points = diameters, .of_cells = {}},
-      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-        for (std::uint32_t i = first; i < first + count; ++i) {
-          const bool alone = !has_company(grid, diameters, i, runs);
-          mask[i] = alone || sums.own[i] < kShareOfAround * sums.around[i] ? 1 : 0;
-        }
-      });
+  parallel_ranges(grid.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> near;
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto i = static_cast<std::uint32_t>(k);
+      const bool faint = sums.own[i] < kShareOfAround * sums.around[i];
+      mask[i] = faint || !has_company(grid, radii, sums.own[i], i, near) ? 1 : 0;
+    }
+  });
   return mask;
 }
 

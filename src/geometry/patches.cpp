@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kSure = 0.7f;         // agreement that makes one patch of two points
 constexpr std::size_t kLate = 8;      // votes looked back at
-constexpr float kReach = 1.6f;           // spacings within which neighbours vote
+constexpr float kReach = 1.6f;        // spacings within which neighbours vote
 constexpr std::uint32_t kBlock = 32;  // points that are divided at once
 
 struct Input {

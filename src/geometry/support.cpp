@@ -28,8 +28,10 @@ void check(const SupportOptions& options) {
           "give metres, 0 or more");
   require(options.normal_error > 0 && std::isfinite(options.normal_error), "the normal error",
           options.normal_error, "give radians above 0");
-  require(options.maximum > 0 && options.maximum >= options.minimum, "the maximum", options.maximum,
-          "it must be positive and no less than the minimum");
+  require(options.most_spacings > 0, "the most spacings", options.most_spacings,
+          "it must be positive; 6 is usual");
+  require(options.finest_shape > 0, "the finest shape", options.finest_shape,
+          "give metres above 0");
 }
 
 }  // namespace
@@ -51,9 +53,9 @@ std::vector<float> support_radii(std::span<const float> spacings, const SupportO
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const auto spacing = static_cast<double>(spacings[i]);
     const double footprint = options.footprint > 0 ? options.footprint : spacing;
-    const double radius = std::max({multiple * spacing, options.minimum,
-                                    noise_radius(options.noise, footprint, options.normal_error)});
-    radii[i] = static_cast<float>(std::min(radius, options.maximum));
+    const double smoothing = std::min({noise_radius(options.noise, footprint, options.normal_error),
+                                       options.most_spacings * spacing, options.finest_shape});
+    radii[i] = static_cast<float>(std::max({multiple * spacing, options.minimum, smoothing}));
   }
   return radii;
 }

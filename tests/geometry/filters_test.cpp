@@ -85,9 +85,6 @@ TEST(SupportRadii, AreTheLargestOfSpacingNoiseAndMinimum) {
   options.minimum = 6e-3;
   expect(options, 0, 6e-3);
   options = {};
-  options.maximum = 6e-3;
-  expect(options, 2, 6e-3);
-  options = {};
   options.multiple = 4;
   expect(options, 1, 8e-3);
   options = {};
@@ -97,7 +94,12 @@ TEST(SupportRadii, AreTheLargestOfSpacingNoiseAndMinimum) {
   options.normal_error = 0.02;
   expect(options, 1, std::sqrt(3.2 * 0.35e-3 * 2e-3 / 0.02));
   options.footprint = 8e-3;
+  expect(options, 0, 6e-3);  // six spacings of its own and no more
+  options.most_spacings = 100;
   expect(options, 1, std::sqrt(3.2 * 0.35e-3 * 8e-3 / 0.02));
+  options.finest_shape = 7e-3;
+  expect(options, 1, 7e-3);
+  expect(options, 2, 12e-3);  // its spacing needs more
 }
 
 TEST(SupportRadii, FollowFieldChoiceSection5) {
@@ -117,8 +119,7 @@ TEST(SupportRadii, RefuseOptionsWithoutSense) {
   bad[0].multiple = 0;
   bad[1].noise = -1;
   bad[2].normal_error = 0;
-  bad[3].minimum = 2;
-  bad[3].maximum = 1;
+  bad[3].finest_shape = 0;
   for (const SupportOptions& options : bad) {
     EXPECT_THROW((void)support_radii(spacings, options), Error);
   }

@@ -12,9 +12,10 @@ FLOORS = {
     "io": {"base", "geometry"},
     "field": {"base", "geometry"},
     "contact": {"base"},  # and field/field.hpp: see ALLOWED
-    "scene": {"base", "geometry", "field"},
-    "device": {"base", "geometry", "io", "field", "contact", "scene"},
-    "apps": {"base", "geometry", "io", "field", "contact", "scene", "device"},
+    "prepare": {"base", "geometry", "field"},
+    "scene": {"base", "geometry", "field", "prepare"},
+    "device": {"base", "geometry", "io", "field", "contact", "prepare", "scene"},
+    "apps": {"base", "geometry", "io", "field", "contact", "prepare", "scene", "device"},
 }
 # Single headers that a floor may include of a floor that it may not see otherwise.
 ALLOWED = {("contact", "palpate/field/field.hpp")}

@@ -15,7 +15,8 @@ struct SupportOptions {
                                    ///< 0: each point's own spacing
   double normal_error = 0.02;      ///< theta, wanted error of normals, rad
   double minimum = 0;              ///< no R below, m
-  double maximum = std::numeric_limits<double>::infinity();  ///< no R above, m
+  double most_spacings = 6;        ///< no R above, for noise's sake; more would cost time and shape
+  double finest_shape = std::numeric_limits<double>::infinity();  ///< likewise, m
 };
 
 /// m in R = m s: 2.5; 3 when the noise is above 0.15 s, 4 above 0.4 s (algorithm.md section 4).
@@ -25,7 +26,7 @@ struct SupportOptions {
 /// (field_choice.md section 5), m.
 [[nodiscard]] double noise_radius(double noise, double footprint, double normal_error);
 
-/// R_i = max(m s_i, the noise's R, minimum), at most `maximum`, for each of `spacings` (smooth
+/// R_i = max(m s_i, the noise's R, minimum) for each of `spacings` (smooth
 /// ones, as local_spacings() gives them), m. Where m is not given, one that suits the median
 /// spacing is used for all points.
 /// @throws Error when an option is negative, not a number, or without sense.

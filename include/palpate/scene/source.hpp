@@ -6,7 +6,7 @@
 #include <string>
 
 #include "palpate/scene/handoff.hpp"
-#include "palpate/scene/prepare.hpp"
+#include "palpate/prepare/prepare.hpp"
 #include "palpate/scene/snapshot.hpp"
 
 namespace palpate {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "palpate/geometry/point_cloud.hpp"
-#include "palpate/scene/prepare.hpp"
+#include "palpate/prepare/prepare.hpp"
 
 namespace palpate {
 

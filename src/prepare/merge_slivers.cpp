@@ -1,4 +1,4 @@
-#include "scene/merge_slivers.hpp"
+#include "prepare/merge_slivers.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "palpate/scene/prepare.hpp"
+#include "palpate/prepare/prepare.hpp"
 
 #include <fmt/core.h>
 
@@ -10,20 +10,22 @@
 #include <utility>
 #include <vector>
 
+#include "field/density_sums.hpp"
+#include "geometry/speckle.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/field/density.hpp"
 #include "palpate/geometry/filters.hpp"
 #include "palpate/geometry/normals.hpp"
 #include "palpate/geometry/orientation.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "palpate/geometry/support.hpp"
 #include "palpate/geometry/voxel_grid.hpp"
-#include "scene/check_options.hpp"
-#include "scene/count_weights.hpp"
-#include "scene/merge_slivers.hpp"
-#include "scene/noise.hpp"
-#include "scene/noise_map.hpp"
-#include "scene/noisy_radii.hpp"
+#include "prepare/check_options.hpp"
+#include "prepare/count_weights.hpp"
+#include "prepare/limit_growth.hpp"
+#include "prepare/merge_slivers.hpp"
+#include "prepare/noise.hpp"
+#include "prepare/noise_map.hpp"
+#include "prepare/noisy_radii.hpp"
 
 namespace palpate {
 namespace {
@@ -42,6 +44,9 @@ constexpr double kSliver = 0.7;
 
 // The paper's multiple m, its k nearest neighbours and the level of its metaball (section V).
 constexpr double kPaperMultiple = 2.5;
+
+// Noise is not smoothed away at the price of shape of this part of the cloud's size.
+constexpr double kFinestShape = 25;
 
 /// Adds the time since the last lap to `seconds`.
 class Stopwatch {
@@ -104,11 +109,11 @@ class Preparation {
     index();
     choose_voxel();
     choose_radii();
-    if (options_.remove_speckle && !options_.paper) remove_speckle();
-    if (options_.estimate_normals) orient();
     weigh();
+    if (options_.estimate_normals) orient();
+    if (options_.remove_speckle && !options_.paper) silence_speckle();
     finish(points_);
-    report_.points_out = points_.size();
+    report_.points_out = points_.size() - report_.speckle;
     report_.radius = points_.radius;
     report_.radius_smallest = points_.smallest_radius;
     report_.radius_largest = *std::max_element(points_.radii.begin(), points_.radii.end());
@@ -167,8 +172,15 @@ class Preparation {
       points_.radii.assign(points_.size(), static_cast<float>(radius));
     } else {
       choose_radii_by_noise();
+      limit_growth(points_.grid, points_.radii);
     }
     watch_.lap(report_.seconds_spacing);
+  }
+
+  /// The diagonal of the cloud's box, m; never 0.
+  [[nodiscard]] double extent() const {
+    const CellGrid::Cell& root = points_.grid.cells().front();
+    return std::max(static_cast<double>((root.upper - root.lower).norm()), kLoneSpacing);
   }
 
   /// Where the cloud is noisy, R follows the noise from place to place.
@@ -177,7 +189,8 @@ class Preparation {
                            .noise = report_.noise,
                            .footprint = report_.voxel > 0 ? footprint_ : 0,
                            .normal_error = options_.normal_error,
-                           .minimum = options_.minimum_radius};
+                           .minimum = options_.minimum_radius,
+                           .finest_shape = extent() / kFinestShape};
     if (!noise_map_) {
       points_.radii = support_radii(spacings_, support);
       return;
@@ -185,35 +198,6 @@ class Preparation {
     support.noise = 0;
     points_.radii = noisy_radii(points_.grid, *noise_map_, noise_.excess, options_.normal_error,
                                 support_radii(spacings_, support));
-  }
-
-  /// Rebuilds the index without the points that noise made.
-  void remove_speckle() {
-    const auto mask = speckle_mask(points_.grid, points_.radii);
-    report_.speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
-    if (report_.speckle > 0 && report_.speckle < points_.size()) {
-      std::vector<float> radii(cloud_.size());
-      std::vector<std::uint32_t> kept;
-      for (std::size_t k = 0; k < mask.size(); ++k) {
-        const std::uint32_t i = points_.grid.order()[k];
-        radii[i] = points_.radii[k];
-        if (mask[k] == 0) kept.push_back(i);
-      }
-      std::sort(kept.begin(), kept.end());
-      cloud_ = select(cloud_, kept);
-      if (!counts_.empty()) {
-        for (std::size_t k = 0; k < kept.size(); ++k) counts_[k] = counts_[kept[k]];
-        counts_.resize(kept.size());
-      }
-      std::vector<float> kept_radii;
-      for (const std::uint32_t i : kept) kept_radii.push_back(radii[i]);
-      watch_.lap(report_.seconds_filter);
-      index();
-      points_.radii = in_grid_order(points_.grid, kept_radii);
-    } else {
-      report_.speckle = 0;  // nothing, or everything: then it is no speckle
-    }
-    watch_.lap(report_.seconds_filter);
   }
 
   void orient() {
@@ -243,21 +227,35 @@ class Preparation {
         if (given[i].dot(points_.normals[i]) < 0) points_.normals[i] = -points_.normals[i];
       }
     } else {
-      orient_outward(points_.grid, points_.normals);
+      orient_outward(points_.grid, spacings_, points_.normals);
     }
   }
 
   void weigh() {
-    points_.density_weights = density_weights(points_.grid, points_.radii, options_.kernel);
+    sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
+    points_.density_weights = density_weights(sums_);
     if (!counts_.empty()) {
       weigh_by_counts(points_.grid, in_grid_order(points_.grid, counts_), points_.radii,
                       points_.density_weights);
     }
-    if (points_.confidences.empty()) points_.confidences.assign(points_.size(), 0.0f);
+    points_.confidences.assign(points_.size(), 0.0f);
     if (options_.material_from_intensity) {
       points_.materials = materials_of(points_.grid, cloud_.intensities);
     }
     watch_.lap(report_.seconds_weights);
+  }
+
+  /// Points that noise made stay in the index and weigh nothing.
+  void silence_speckle() {
+    const auto mask = detail::speckle_mask(points_.grid, points_.radii, sums_);
+    const auto speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
+    if (speckle < points_.size()) {  // a cloud of nothing else is a sparse one
+      report_.speckle = speckle;
+      for (std::size_t i = 0; i < mask.size(); ++i) {
+        if (mask[i] != 0) points_.density_weights[i] = points_.confidences[i] = 0;
+      }
+    }
+    watch_.lap(report_.seconds_filter);
   }
 
   const PrepareOptions& options_;
@@ -266,6 +264,7 @@ class Preparation {
   PrepareReport report_;
   std::vector<float> spacings_;
   std::vector<std::uint32_t> counts_;  // points that each voxel's stands for; empty: one each
+  detail::WeightSums sums_;
   double footprint_ = 0;
   Noise noise_;
   std::optional<NoiseMap> noise_map_;

@@ -20,29 +20,28 @@ enum class Orientation {
 
 /// How a cloud becomes surface points. What is not set is chosen from the data.
 struct PrepareOptions {
-  std::optional<double> voxel;               ///< leaf of the voxel filter, m; 0: keep every point
-  std::optional<double> radius;              ///< one support radius R for all points, m
-  std::optional<double> radius_multiple;     ///< m in R = m s; 2.5 unless noise asks for more
-  double minimum_radius = 0;                 ///< no R below this, m (a tool's radius / 0.3)
-  double normal_error = 0.02;                ///< wanted error of normals, rad (theta: 1.15 degrees)
-  std::optional<Eigen::Vector3d> viewpoint;  ///< of the sensor, in the cloud's frame, m
+  std::optional<double> voxel = {};            ///< leaf of the voxel filter, m; 0: keep every point
+  std::optional<double> radius = {};           ///< one support radius R for all points, m
+  std::optional<double> radius_multiple = {};  ///< m in R = m s; 2.5 unless noise asks for more
+  double minimum_radius = 0;                   ///< no R below this, m (a tool's radius / 0.3)
+  double normal_error = 0.02;  ///< wanted error of normals, rad (theta: 1.15 degrees)
+  std::optional<Eigen::Vector3d> viewpoint = {};  ///< of the sensor, in the cloud's frame, m
   Orientation orientation = Orientation::automatic;
-  std::optional<Box> clip;       ///< keep points inside only, in the cloud's frame, m
-  bool remove_speckle = true;    ///< drop isolated points that noise made
-  bool estimate_normals = true;  ///< false: metaball only
-  bool material_from_intensity =
-      false;                       ///< per-point material from `intensities`, 0-1 over its range
-  bool paper = false;              ///< raw weights' world: s = mean of k = 3 neighbours, R = 2.5 s
-  Kernel kernel = Kernel::wyvill;  ///< that the density weights are made for
+  std::optional<Box> clip = {};          ///< keep points inside only, in the cloud's frame, m
+  bool remove_speckle = true;            ///< let isolated points that noise made weigh nothing
+  bool estimate_normals = true;          ///< false: metaball only
+  bool material_from_intensity = false;  ///< from `intensities`, 0-1 over their range
+  bool paper = false;                    ///< the paper's s (mean of k = 3 neighbours), R = 2.5 s
+  Kernel kernel = Kernel::wyvill;        ///< that the density weights are made for
 };
 
 /// What preparation found and how long it took (wall time, s).
 struct PrepareReport {
   std::size_t points_in = 0;
-  std::size_t points_out = 0;  ///< after clip, voxel filter and speckle removal
-  std::size_t speckle = 0;     ///< points dropped as speckle
+  std::size_t points_out = 0;  ///< that are felt: after clip, voxel filter, speckle
+  std::size_t speckle = 0;     ///< points that weigh nothing as speckle
   double spacing = 0;          ///< s, median, m
-  double noise = 0;            ///< rms distance from the local plane, median, m
+  double noise = 0;            ///< rms distance from a smooth surface, m
   double voxel = 0;            ///< leaf used, m; 0: none
   double radius = 0;           ///< R, median, m
   double radius_smallest = 0;

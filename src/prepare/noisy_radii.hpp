@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
-#include "scene/noise_map.hpp"
+#include "prepare/noise_map.hpp"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "scene/count_weights.hpp"
+#include "prepare/count_weights.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "scene/check_options.hpp"
+#include "prepare/check_options.hpp"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "scene/noise.hpp"
+#include "prepare/noise.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <random>
 
 #include "palpate/geometry/spacing.hpp"
-#include "scene/count_weights.hpp"
-#include "scene/merge_slivers.hpp"
-#include "scene/noise_map.hpp"
-#include "scene/noisy_radii.hpp"
-#include "scene/window_fit.hpp"
+#include "prepare/count_weights.hpp"
+#include "prepare/merge_slivers.hpp"
+#include "prepare/noise_map.hpp"
+#include "prepare/noisy_radii.hpp"
+#include "prepare/window_fit.hpp"
 
 namespace palpate {
 namespace {

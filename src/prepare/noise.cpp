@@ -1,4 +1,4 @@
-#include "scene/noise.hpp"
+#include "prepare/noise.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "scene/window_fit.hpp"
+#include "prepare/window_fit.hpp"
 
 namespace palpate {
 namespace {
@@ -17,6 +17,9 @@ constexpr std::size_t kSamples = 1000;
 // every narrow neighbourhood flat.
 constexpr double kReaches[] = {3, 6, 12};
 constexpr double kFlat = 1e-3;  // of the spacing
+
+// Of the residuals that noise alone gives in windows of about 28 points.
+constexpr double kQuarterToMedian = 1.1;
 
 // Windows, in spacings, that noise and shape are told apart with: shape that a quadratic misses
 // grows with the third power of the window or faster.
@@ -29,12 +32,14 @@ constexpr double kFlattest = 0.25;    // share of the windows that are believed
 constexpr double kShapeGrowth = 1.5;  // from the middle to the wide window: no longer noise alone
 constexpr double kNoteworthy = 1.2;
 constexpr double kMostExcess = 4;  // R at most doubles
+constexpr double kMostRise = 5;    // more than neighbours that err together explain
 
 std::size_t step_for(const CellGrid& grid, std::size_t samples) {
   return std::max<std::size_t>(1, grid.size() / samples);
 }
 
-/// The median residual over samples of the grid; 0 where none has enough neighbours.
+/// The residual over samples of the grid, as the flatter quarter has it: where shape is finer than
+/// the window it passes for noise. 0 where no sample has enough neighbours.
 double noise_within(const CellGrid& grid, double reach) {
   const std::size_t step = step_for(grid, kSamples);
   std::vector<float> residuals;
@@ -43,7 +48,10 @@ double noise_within(const CellGrid& grid, double reach) {
     const WindowFit fit = fitter.fit(grid, grid.points()[i], reach);
     if (fit.points > 0) residuals.push_back(static_cast<float>(fit.sigma));
   }
-  return median(std::move(residuals));
+  if (residuals.empty()) return 0;
+  const auto quarter = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 4);
+  std::nth_element(residuals.begin(), quarter, residuals.end());
+  return kQuarterToMedian * *quarter;
 }
 
 double narrow_noise(const CellGrid& grid, double spacing) {
@@ -58,7 +66,8 @@ double narrow_noise(const CellGrid& grid, double spacing) {
 /// What windows of several widths round one place say.
 struct Widths {
   float growth = 0;  // of sigma, from the middle to the wide window
-  float sigma = 0;   // of the wide one against the narrowest, that of narrow_noise()
+  float rise = 0;    // of sigma, from the narrowest to the wide window
+  float sigma = 0;   // in the wide window, m
   float excess = 0;
 };
 
@@ -75,7 +84,7 @@ std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
       const WindowFit wide = fitter.fit(grid, at, kWideReach * spacing, kTile * spacing);
       if (!(narrow.sigma > 0 && map.sigma > 0 && middle.sigma > 0)) continue;
       all[k] = {static_cast<float>(wide.sigma / middle.sigma),
-                static_cast<float>(wide.sigma / narrow.sigma),
+                static_cast<float>(wide.sigma / narrow.sigma), static_cast<float>(wide.sigma),
                 static_cast<float>(wide.sigma / map.sigma * std::sqrt(std::max(1.0, wide.shared)))};
     }
   });
@@ -101,8 +110,10 @@ Noise measure_noise(const CellGrid& grid, double spacing) {
   if (all.empty() || all.back().growth > kShapeGrowth) return noise;
   const double excess = median_of(all, [](const Widths& w) { return w.excess; });
   if (excess < kNoteworthy) return noise;
+  const double rise = median_of(all, [](const Widths& w) { return w.rise; });
+  if (rise > kMostRise) return noise;  // shape that is as wavy in all wide windows
   noise.excess = std::min(excess, kMostExcess);
-  noise.sigma *= std::max(1.0, median_of(all, [](const Widths& w) { return w.sigma; }));
+  noise.sigma = std::max(noise.sigma, median_of(all, [](const Widths& w) { return w.sigma; }));
   return noise;
 }
 

@@ -1,4 +1,4 @@
-#include "scene/noisy_radii.hpp"
+#include "prepare/noisy_radii.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "scene/noise_map.hpp"
+#include "prepare/noise_map.hpp"
 
 #include <algorithm>
 
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "scene/window_fit.hpp"
+#include "prepare/window_fit.hpp"
 
 namespace palpate {
 namespace {

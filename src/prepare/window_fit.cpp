@@ -1,4 +1,4 @@
-#include "scene/window_fit.hpp"
+#include "prepare/window_fit.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
