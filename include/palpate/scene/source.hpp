@@ -5,8 +5,8 @@
 #include <mutex>
 #include <string>
 
-#include "palpate/scene/handoff.hpp"
 #include "palpate/prepare/prepare.hpp"
+#include "palpate/scene/handoff.hpp"
 #include "palpate/scene/snapshot.hpp"
 
 namespace palpate {

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Computing time of servo steps and of preparation on real clouds, as a Markdown table.
+
+    bench/step_times.py PALPATE FILE[,OPTION...] ... [--runs N]
+
+Explores each FILE for ten simulated seconds, N times (5), with `palpate touch FILE OPTION...`, and
+prints the medians over the runs. Step times are the processor time of SceneField::update and
+Proxy::step together; `patch` is the median number of points in the patch while touching.
+"""
+
+import argparse
+import csv
+import json
+import pathlib
+import statistics
+import subprocess
+import tempfile
+
+
+def one_run(program, file, options, folder):
+    log = folder / "log.csv"
+    report = folder / "report.json"
+    command = [program, "touch", file, *options, "--log", str(log), "--json", str(report)]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    patches = []
+    with log.open(encoding="utf-8", newline="") as rows:
+        for row in csv.DictReader(rows):
+            if row["touching"] == "1":
+                patches.append(int(row["patch_points"]))
+    return json.loads(report.read_text(encoding="utf-8")), statistics.median(patches or [0])
+
+
+def summary(program, file, options, runs, folder):
+    found = [one_run(program, file, options, folder) for _ in range(runs)]
+    reports = [report for report, _ in found]
+    cloud = reports[0]["clouds"][0]
+
+    def middle(value):
+        return statistics.median(value(report) for report in reports)
+
+    seconds = middle(lambda r: sum(r["clouds"][0]["seconds"][k] for k in ("read", "prepare")))
+    times = [middle(lambda r, p=p: r["computing_us"][p]) for p in ("p50", "p99", "p99.9", "max")]
+    return [
+        pathlib.Path(file).name,
+        f"{cloud['points_felt']:,}".replace(",", " "),
+        f"{cloud['radius_m']['median'] / cloud['spacing_m']:.1f}",
+        f"{found[0][1]:.0f}",
+        f"{seconds:.2f}",
+        *(f"{t:.1f}" for t in times),
+        f"{reports[0]['contact_share']:.0%}",
+    ]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program")
+    parser.add_argument("files", nargs="+", help="FILE or FILE,OPTION,...")
+    parser.add_argument("--runs", type=int, default=5)
+    arguments = parser.parse_args()
+    print("| cloud | points felt | R / s | patch | read and ready, s | p50, us | p99 | p99.9 | max |"
+          " touching |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        for entry in arguments.files:
+            file, *options = entry.split(",")
+            row = summary(arguments.program, file, options, arguments.runs, pathlib.Path(folder))
+            print("| " + " | ".join(row) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
