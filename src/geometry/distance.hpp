@@ -15,18 +15,31 @@ namespace palpate::detail {
   return x * x + y * y + z * z;
 }
 
-[[nodiscard]] inline float gap(float lower_a, float upper_a, float lower_b, float upper_b) {
-  return std::max(0.f, std::max(lower_a - upper_b, lower_b - upper_a));
-}
+/// Three numbers in one register: compilers turn a scalar maximum into a branch, and whether boxes
+/// overlap cannot be foretold.
+struct Lanes {
+  typedef float Floats __attribute__((vector_size(16)));
+
+  Floats v;
+
+  explicit Lanes(const Floats& floats) : v(floats) {}
+  explicit Lanes(const Eigen::Vector3f& p) : v{p.x(), p.y(), p.z(), 0.f} {}
+
+  [[nodiscard]] Lanes operator-(const Lanes& other) const { return Lanes(v - other.v); }
+  [[nodiscard]] Lanes larger(const Lanes& other) const { return Lanes(v < other.v ? other.v : v); }
+  [[nodiscard]] float squared_norm() const {
+    const Floats squares = v * v;
+    return squares[0] + squares[1] + squares[2];
+  }
+};
 
 /// Between the boxes [lower, upper] and the cell's.
 [[nodiscard]] inline float squared_distance(const CellGrid::Cell& cell,
                                             const Eigen::Vector3f& lower,
                                             const Eigen::Vector3f& upper) {
-  const float x = gap(cell.lower.x(), cell.upper.x(), lower.x(), upper.x());
-  const float y = gap(cell.lower.y(), cell.upper.y(), lower.y(), upper.y());
-  const float z = gap(cell.lower.z(), cell.upper.z(), lower.z(), upper.z());
-  return x * x + y * y + z * z;
+  const Lanes below = Lanes(cell.lower) - Lanes(upper);
+  const Lanes above = Lanes(lower) - Lanes(cell.upper);
+  return below.larger(above).larger(Lanes(Lanes::Floats{})).squared_norm();
 }
 
 [[nodiscard]] inline float squared_distance(const CellGrid::Cell& cell,

@@ -42,17 +42,6 @@ std::vector<float> make_column(std::size_t size) {
   return std::vector<float>(size + simd::kQueries, 0.f);
 }
 
-Columns::Columns(const CellGrid& grid)
-    : x_(make_column(grid.size())), y_(make_column(grid.size())), z_(make_column(grid.size())) {
-  parallel_ranges(grid.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      x_[i] = grid.points()[i].x();
-      y_[i] = grid.points()[i].y();
-      z_[i] = grid.points()[i].z();
-    }
-  });
-}
-
 std::vector<float> largest_in_cells(const CellGrid& grid, std::span<const float> values) {
   const std::span<const CellGrid::Cell> cells = grid.cells();
   std::vector<float> largest(cells.size());
@@ -84,6 +73,9 @@ void Surroundings::push_back(const CellGrid::Cell& leaf, float reach) {
 void Surroundings::find(const CellGrid& grid, const Block& block, float radius,
                         std::span<const float> reach_of_cells) {
   const std::span<const CellGrid::Cell> cells = grid.cells();
+  const auto reach_of = [&](std::uint32_t cell) {
+    return reach_of_cells.empty() ? 0.f : reach_of_cells[cell];
+  };
   std::array<std::uint32_t, CellGrid::kMaxStack> stack;
   std::size_t open = 0;
   if (!cells.empty()) stack[open++] = 0;
@@ -91,11 +83,13 @@ void Surroundings::find(const CellGrid& grid, const Block& block, float radius,
   while (open > 0) {
     const std::uint32_t index = stack[--open];
     const CellGrid::Cell& cell = cells[index];
-    const float own = reach_of_cells.empty() ? 0 : reach_of_cells[index];
-    const float reach = std::max(radius, own);
-    if (squared_distance(cell, block.lower, block.upper) > reach * reach) continue;
-    for (std::uint32_t c = cell.children; c-- > 0;) stack[open++] = cell.first_child + c;
-    if (cell.children == 0) push_back(cell, own);
+    if (cell.children == 0) push_back(cell, reach_of(index));
+    for (std::uint32_t c = cell.children; c-- > 0;) {
+      const std::uint32_t child = cell.first_child + c;
+      const float reach = std::max(radius, reach_of(child));
+      stack[open] = child;  // no branch: whether a cell is near cannot be foretold
+      open += squared_distance(cells[child], block.lower, block.upper) <= reach * reach ? 1 : 0;
+    }
   }
   CellGrid::Cell nowhere;
   nowhere.lower = nowhere.upper = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());

@@ -30,20 +30,13 @@ struct Block {
 /// leaves that hold more.
 [[nodiscard]] std::vector<Block> make_blocks(const CellGrid& grid, std::uint32_t most);
 
-/// The sorted points' coordinates side by side, as joins want them.
-class Columns {
- public:
-  explicit Columns(const CellGrid& grid);
+/// The points [first, first + count) and what may be near them.
+[[nodiscard]] inline simd::Join make_join(const CellGrid& grid, std::uint32_t first,
+                                          std::uint32_t count, std::span<const simd::Run> runs) {
+  return {grid.points().front().data(), first, count, runs.data(), runs.size()};
+}
 
-  [[nodiscard]] simd::Join join(std::uint32_t query, std::span<const simd::Run> runs) const {
-    return {x_.data(), y_.data(), z_.data(), query, runs.data(), runs.size()};
-  }
-
- private:
-  std::vector<float> x_, y_, z_;
-};
-
-/// A column beside them, with room for the last queries.
+/// A column of values beside the points, with room for the last queries.
 [[nodiscard]] std::vector<float> make_column(std::size_t size);
 
 /// How far to look. Each is in metres, sorted, and may be empty for 0.

@@ -7,6 +7,7 @@
 
 #include "geometry/parallel.hpp"
 #include "geometry/patches.hpp"
+#include "geometry/votes.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/spacing.hpp"
 
@@ -52,8 +53,10 @@ void orient_to_viewpoint(std::span<const Eigen::Vector3f> points, const Eigen::V
 void orient_outward(const CellGrid& grid, std::span<const float> spacings,
                     std::span<Eigen::Vector3f> normals) {
   check(grid.size(), normals.size(), spacings.size());
-  detail::Patches patches = detail::make_patches(grid, spacings, normals);
-  const detail::SignedParts parts = detail::merge_by_votes(patches.count, std::move(patches.votes));
+  const detail::PatchInput input{grid, spacings, normals};
+  const detail::Patches patches = detail::make_patches(input);
+  const detail::SignedParts parts =
+      detail::merge_by_votes(patches.count, detail::collect_votes(input, patches));
   std::vector<PartSums> sums(parts.count);
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   double area_of_all = 0;

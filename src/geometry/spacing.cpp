@@ -42,7 +42,6 @@ float guess_spacing(const Block& block) {
 // in rows[0 ... kSlots - 1][query].
 template <std::size_t kSlots, class Result>
 void find_nearest(const CellGrid& grid, Nearest nearest, const Result& result) {
-  const detail::Columns columns(grid);
   const float extent = (grid.cells()[0].upper - grid.cells()[0].lower).maxCoeff();
   detail::for_each_block(grid, [&](const Block& block, Surroundings& surroundings) {
     const float start = std::sqrt(static_cast<float>(kSlots)) * guess_spacing(block);
@@ -55,7 +54,7 @@ void find_nearest(const CellGrid& grid, Nearest nearest, const Result& result) {
       for (float radius = start;; radius = std::max(1.6f * radius, 1e-6f * extent)) {
         if (radius > around) surroundings.find(grid, block, around = radius);
         const auto runs = surroundings.near(part, radius);
-        nearest(columns.join(first, runs), rows);
+        nearest(detail::make_join(grid, first, part.size(), runs), rows);
         // All closer than any point that was not looked at?
         const float* last = rows[kSlots - 1];
         if (*std::max_element(last, last + part.size()) <= radius * radius) break;
@@ -154,7 +153,6 @@ std::vector<float> smoothing_radii(const CellGrid& grid, std::span<const float> 
 }
 
 std::vector<float> smooth(const CellGrid& grid, std::span<const float> spacings) {
-  const detail::Columns columns(grid);
   const std::vector<float> radii = smoothing_radii(grid, spacings);
   std::vector<float> inverse = detail::make_column(grid.size());
   std::vector<float> values = inverse;
@@ -168,8 +166,8 @@ std::vector<float> smooth(const CellGrid& grid, std::span<const float> spacings)
       grid, {.of_points = radii, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         simd::Row sums[2];
-        simd::best_joins().wyvill_pairs(columns.join(first, runs), inverse.data(), ones.data(),
-                                        values.data(), sums);
+        simd::best_joins().wyvill_pairs(detail::make_join(grid, first, count, runs), inverse.data(),
+                                        ones.data(), values.data(), sums);
         for (std::uint32_t q = 0; q < count; ++q) {
           const std::uint32_t i = first + q;
           result[i] = radii[i] > 0 ? smoothed(values[i], sums[0][q], sums[1][q])

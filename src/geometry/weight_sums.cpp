@@ -29,13 +29,12 @@ void check(const CellGrid& grid, std::span<const float> radii) {
 
 struct Input {
   const CellGrid& grid;
-  Columns columns;
   std::vector<float> inverse;     // 1 / R_i^2
   std::vector<float> cell_reach;  // m
 };
 
 Input make_input(const CellGrid& grid, std::span<const float> radii) {
-  Input input{grid, Columns(grid), make_column(grid.size()), largest_in_cells(grid, radii)};
+  Input input{grid, make_column(grid.size()), largest_in_cells(grid, radii)};
   std::transform(radii.begin(), radii.end(), input.inverse.begin(),
                  [](float radius) { return std::min(1 / (radius * radius), kLargest); });
   return input;
@@ -48,7 +47,7 @@ std::vector<float> sums_of(const Input& input, WeightSum sum, std::span<const fl
       input.grid, {.of_points = {}, .of_cells = input.cell_reach},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         simd::Row row;
-        sum(input.columns.join(first, runs), input.inverse.data(), values.data(), &row);
+        sum(make_join(input.grid, first, count, runs), input.inverse.data(), values.data(), &row);
         std::copy_n(row, count, sums.begin() + first);
       });
   return sums;

@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 
-#include "geometry/parallel.hpp"
+#include "geometry/distance.hpp"
+#include "geometry/neighborhoods.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr float kSlope = 0.5f;    // of R over distance
 constexpr float kMatters = 0.8f;  // of the own R: a smaller limit is worth looking for
+constexpr std::uint32_t kBlockPoints = 64;
 
 std::vector<float> smallest_in_cells(const CellGrid& grid, const std::vector<float>& radii) {
   const auto cells = grid.cells();
@@ -26,32 +30,70 @@ std::vector<float> smallest_in_cells(const CellGrid& grid, const std::vector<flo
   return smallest;
 }
 
-float distance_to(const CellGrid::Cell& cell, const Eigen::Vector3f& p) {
-  const Eigen::Array3f outside = (cell.lower - p).array().max((p - cell.upper).array()).max(0.0f);
-  return outside.matrix().norm();
-}
+/// The limits of one block after another.
+class Limiter {
+ public:
+  Limiter(const CellGrid& grid, const std::vector<float>& radii, const std::vector<float>& smallest)
+      : grid_(grid), radii_(radii), smallest_(smallest) {}
 
-/// min_j (R_j + distance / 2), by branch and bound over the cells.
-float limit_at(const CellGrid& grid, const std::vector<float>& radii,
-               const std::vector<float>& smallest, std::uint32_t i) {
-  const Eigen::Vector3f p = grid.points()[i];
-  float limit = kMatters * radii[i];
-  std::array<std::uint32_t, CellGrid::kMaxStack> stack;
-  std::size_t size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const std::uint32_t index = stack[--size];
-    const CellGrid::Cell& cell = grid.cells()[index];
-    if (smallest[index] >= limit) continue;
-    if (smallest[index] + kSlope * distance_to(cell, p) >= limit) continue;
-    for (std::uint32_t k = 0; k < cell.children; ++k) stack[size++] = cell.first_child + k;
-    if (cell.children > 0) continue;
-    for (std::uint32_t j = cell.begin; j < cell.end; ++j) {
-      limit = std::min(limit, radii[j] + kSlope * (grid.points()[j] - p).norm());
-    }
+  /// limits: of all points; those of the block are written.
+  void limit(const detail::Block& block, std::vector<float>& limits) {
+    find_leaves(block);
+    for (std::uint32_t i = block.begin; i < block.end; ++i) limits[i] = limit_at(i);
   }
-  return limit < kMatters * radii[i] ? limit : radii[i];
-}
+
+ private:
+  /// A leaf and the least that its points can limit those of the block to, m.
+  struct Leaf {
+    float bound;
+    std::uint32_t cell;
+  };
+
+  /// The leaves that may limit a point of the block, the strictest first.
+  void find_leaves(const detail::Block& block) {
+    const auto own = radii_.begin();
+    const float largest = kMatters * *std::max_element(own + block.begin, own + block.end);
+    leaves_.clear();
+    std::array<std::uint32_t, CellGrid::kMaxStack> stack;
+    std::size_t open = 0;
+    stack[open++] = 0;
+    while (open > 0) {
+      const std::uint32_t index = stack[--open];
+      if (smallest_[index] >= largest) continue;
+      const CellGrid::Cell& cell = grid_.cells()[index];
+      const float squared = detail::squared_distance(cell, block.lower, block.upper);
+      const float bound = smallest_[index] + kSlope * std::sqrt(squared);
+      if (bound >= largest) continue;
+      for (std::uint32_t k = 0; k < cell.children; ++k) stack[open++] = cell.first_child + k;
+      if (cell.children == 0) leaves_.push_back({bound, index});
+    }
+    std::sort(leaves_.begin(), leaves_.end(),
+              [](const Leaf& a, const Leaf& b) { return a.bound < b.bound; });
+  }
+
+  /// min_j (R_j + distance / 2).
+  [[nodiscard]] float limit_at(std::uint32_t i) const {
+    const Eigen::Vector3f& p = grid_.points()[i];
+    const float matters = kMatters * radii_[i];
+    float limit = matters;
+    for (const Leaf& leaf : leaves_) {
+      if (leaf.bound >= limit) break;
+      const CellGrid::Cell& cell = grid_.cells()[leaf.cell];
+      const float bound = kSlope * std::sqrt(detail::squared_distance(cell, p));
+      if (smallest_[leaf.cell] + bound >= limit) continue;
+      for (std::uint32_t j = cell.begin; j < cell.end; ++j) {
+        const float distance = std::sqrt(detail::squared_distance(grid_.points()[j], p));
+        limit = std::min(limit, radii_[j] + kSlope * distance);
+      }
+    }
+    return limit < matters ? limit : radii_[i];
+  }
+
+  const CellGrid& grid_;
+  const std::vector<float>& radii_;
+  const std::vector<float>& smallest_;
+  std::vector<Leaf> leaves_;
+};
 
 }  // namespace
 
@@ -60,11 +102,11 @@ void limit_growth(const CellGrid& grid, std::vector<float>& radii) {
   const auto [low, high] = std::minmax_element(radii.begin(), radii.end());
   if (*low >= kMatters * *high) return;
   const std::vector<float> smallest = smallest_in_cells(grid, radii);
+  const std::vector<detail::Block> blocks = detail::make_blocks(grid, kBlockPoints);
   std::vector<float> limited(radii.size());
-  detail::parallel_ranges(radii.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      limited[i] = limit_at(grid, radii, smallest, static_cast<std::uint32_t>(i));
-    }
+  detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
+    Limiter limiter(grid, radii, smallest);
+    for (std::size_t b = begin; b < end; ++b) limiter.limit(blocks[b], limited);
   });
   radii = std::move(limited);
 }

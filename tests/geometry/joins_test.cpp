@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -20,6 +22,8 @@ using Eigen::Vector3f;
 using test::Clouds;
 
 struct Results {
+  std::array<simd::Hit, 3001> hits{};
+  std::size_t hit_count = 0;
   simd::Row moments[simd::kMoments];
   simd::Row nearest4[4];
   simd::Row nearest8[8];
@@ -32,6 +36,7 @@ struct Results {
 Results run(const simd::JoinFunctions& joins, const simd::Join& join, const std::vector<float>& a,
             const std::vector<float>& b) {
   Results results;
+  results.hit_count = joins.within(join, a.data(), results.hits.data());
   joins.moments(join, a.data(), results.moments);
   joins.nearest4(join, results.nearest4);
   joins.nearest8_apart(join, results.nearest8);
@@ -46,18 +51,46 @@ TEST(Joins, AreTheSameBitForBitOnEveryProcessor) {
   if (!cpu_has_v3()) GTEST_SKIP() << "this processor lacks AVX2";
   Clouds clouds;
   const CellGrid grid(clouds.sphere(3000, 1));
-  const detail::Columns columns(grid);
   std::vector<float> a = detail::make_column(grid.size());
   std::vector<float> b = a;
   for (float& v : a) v = static_cast<float>(clouds.uniform(0.01, 0.3));
   for (float& v : b) v = static_cast<float>(clouds.uniform(0.5, 2));
   detail::for_each_neighborhood(
       grid, {.of_points = a, .of_cells = {}},
-      [&](std::uint32_t first, std::uint32_t, std::span<const simd::Run> runs) {
-        const simd::Join join = columns.join(first, runs);
+      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+        const simd::Join join = detail::make_join(grid, first, count, runs);
         const Results old = run(simd::kJoinsBaseline, join, a, b);
         const Results now = run(simd::kJoinsV3, join, a, b);
         EXPECT_EQ(std::memcmp(&old, &now, sizeof old), 0);
+      });
+}
+
+TEST(Joins, FindAllHitsInRisingOrder) {
+  Clouds clouds;
+  const CellGrid grid(clouds.sphere(2001, 1));  // no multiple of the queries
+  std::vector<float> radii(grid.size());
+  std::vector<float> squared = detail::make_column(grid.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    radii[i] = static_cast<float>(clouds.uniform(0.01, 0.3));
+    squared[i] = radii[i] * radii[i];
+  }
+  detail::for_each_neighborhood(
+      grid, {.of_points = radii, .of_cells = {}},
+      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+        const simd::Join join = detail::make_join(grid, first, count, runs);
+        std::vector<simd::Hit> hits(grid.size() + 1);
+        const std::size_t found = simd::best_joins().within(join, squared.data(), hits.data());
+        std::size_t pairs = 0;
+        for (std::size_t h = 0; h < found; ++h) {
+          EXPECT_TRUE(h == 0 || hits[h].candidate > hits[h - 1].candidate);
+          EXPECT_LT(hits[h].queries, 1u << count);
+          pairs += static_cast<std::size_t>(std::popcount(hits[h].queries));
+        }
+        std::vector<std::uint32_t> near;
+        for (std::uint32_t i = first; i < first + count; ++i) {
+          grid.within(grid.points()[i], radii[i], near);
+        }
+        EXPECT_EQ(pairs, near.size());
       });
 }
 

@@ -20,12 +20,11 @@ struct Run {
   std::uint32_t end;
 };
 
-/// The points [query, query + kQueries) and the runs of points that may be near one of them.
+/// The points [query, query + count) and the runs of points that may be near one of them.
 struct Join {
-  const float* x;  ///< columns of all points, m
-  const float* y;
-  const float* z;
+  const float* points;  ///< x, y, z of all points, m
   std::size_t query;
+  std::size_t count;  ///< points asked about, 1 ... kQueries
   const Run* runs;
   std::size_t run_count;
 };
@@ -58,12 +57,22 @@ struct Leaves {
   std::size_t count;
 };
 
+/// A candidate that is near queries: bit l stands for the point query + l.
+struct Hit {
+  std::uint32_t candidate;
+  std::uint32_t queries;
+};
+
 struct JoinFunctions {
   /// Finds the leaves whose box is within their own reach, or root of squared_radius, of the box
   /// [lower, upper], and joins their points to runs. Leaves are in rising order. `runs` has room
   /// for count + 1; the result is runs[1] ... runs[n], and n is returned.
   std::size_t (*near)(const Leaves& leaves, const float* lower, const float* upper,
                       float squared_radius, Run* runs);
+
+  /// The candidates within squared_radii[query] of a query, in rising order. `hits` has room for
+  /// all candidates and one more; returns how many there are.
+  std::size_t (*within)(const Join& join, const float* squared_radii, Hit* hits);
 
   /// The moments of all candidates within squared_radii[query].
   void (*moments)(const Join& join, const float* squared_radii, Row* rows);
