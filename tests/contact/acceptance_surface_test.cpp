@@ -13,7 +13,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kTick = 1e-3;
-constexpr double kStiffness = 500;
 
 /// What the hand felt on its way.
 struct Ride {
