@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "palpate/geometry/spacing.hpp"
+
 namespace palpate {
 namespace {
 
@@ -28,11 +30,8 @@ void finish(SurfacePoints& points) {
     }
   }
   if (points.radii.empty()) return;
-  auto sorted = points.radii;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  points.radius = *middle;
-  points.smallest_radius = *std::min_element(sorted.begin(), sorted.end());
+  points.radius = median(points.radii);
+  points.smallest_radius = *std::min_element(points.radii.begin(), points.radii.end());
 }
 
 }  // namespace palpate

@@ -38,10 +38,6 @@ std::vector<Block> make_blocks(const CellGrid& grid, std::uint32_t most) {
   return blocks;
 }
 
-std::vector<float> make_column(std::size_t size) {
-  return std::vector<float>(size + simd::kQueries, 0.f);
-}
-
 std::vector<float> largest_in_cells(const CellGrid& grid, std::span<const float> values) {
   const std::span<const CellGrid::Cell> cells = grid.cells();
   std::vector<float> largest(cells.size());

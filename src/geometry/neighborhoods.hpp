@@ -36,12 +36,10 @@ struct Block {
   return {grid.points().front().data(), first, count, runs.data(), runs.size()};
 }
 
-/// A column of values beside the points, with room for the last queries.
-[[nodiscard]] std::vector<float> make_column(std::size_t size);
-
 /// How far to look. Each is in metres, sorted, and may be empty for 0.
 struct Reach {
-  std::span<const float> of_points;  ///< a point asks for all candidates within its own radius
+  std::span<const float> of_points;  ///< a point asks for all candidates within its own radius ...
+  float times = 1;                   ///< ... times this
   std::span<const float>
       of_cells;  ///< largest radius within which the points of a cell are asked for
 };
@@ -92,7 +90,7 @@ void for_each_part(const CellGrid& grid, const Reach& reach, const Block& block,
   const auto largest = [&](const Block& part) {
     if (reach.of_points.empty()) return 0.f;
     const auto own = reach.of_points.subspan(part.begin, part.size());
-    return *std::max_element(own.begin(), own.end());
+    return reach.times * *std::max_element(own.begin(), own.end());
   };
   surroundings.find(grid, block, largest(block), reach.of_cells);
   for (std::uint32_t first = block.begin; first < block.end; first += simd::kQueries) {

@@ -62,14 +62,15 @@ Normals estimate_normals(const CellGrid& grid, std::span<const float> radii) {
   result.confidences.resize(grid.size(), 0);
   result.residuals.resize(grid.size(), 0);
   const simd::JoinFunctions& joins = simd::best_joins();
-  std::vector<float> squared_radii = detail::make_column(grid.size());
-  std::transform(radii.begin(), radii.end(), squared_radii.begin(), [](float r) { return r * r; });
   detail::for_each_neighborhood(
-      grid, {.of_points = radii, .of_cells = {}},
+      grid, {.of_points = radii, .times = 1, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         simd::Row moments[simd::kMoments];
         simd::Planes planes;
-        joins.moments(detail::make_join(grid, first, count, runs), squared_radii.data(), moments);
+        simd::Row squared_radii = {};
+        std::transform(radii.begin() + first, radii.begin() + first + count, squared_radii,
+                       [](float r) { return r * r; });
+        joins.moments(detail::make_join(grid, first, count, runs), squared_radii, moments);
         joins.planes(moments, &planes);
         for (std::uint32_t q = 0; q < count; ++q) {
           write(moments[0][q], planes, q, first + q, result);

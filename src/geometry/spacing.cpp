@@ -144,7 +144,7 @@ std::vector<float> smoothing_radii(const CellGrid& grid, std::span<const float> 
   std::vector<float> radii(grid.size());
   detail::for_each_block(grid, [&](const Block& block, Surroundings&) {
     const auto own = spacings.subspan(block.begin, block.size());
-    const auto stray = kStray * static_cast<float>(median({own.begin(), own.end()}));
+    const auto stray = kStray * static_cast<float>(median(own));
     for (std::uint32_t i = block.begin; i < block.end; ++i) {
       radii[i] = spacings[i] > stray ? 0 : kSmoothing * spacings[i];
     }
@@ -152,26 +152,25 @@ std::vector<float> smoothing_radii(const CellGrid& grid, std::span<const float> 
   return radii;
 }
 
-std::vector<float> smooth(const CellGrid& grid, std::span<const float> spacings) {
+std::vector<float> smooth(const CellGrid& grid, std::vector<float> spacings) {
   const std::vector<float> radii = smoothing_radii(grid, spacings);
-  std::vector<float> inverse = detail::make_column(grid.size());
-  std::vector<float> values = inverse;
-  for (std::size_t i = 0; i < radii.size(); ++i) {
-    inverse[i] = radii[i] > 0 ? std::min(1 / (radii[i] * radii[i]), kLargest) : kLargest;
-    values[i] = std::min(spacings[i], kLargestSpacing);
-  }
-  const std::vector<float> ones(grid.size(), 1.f);
+  for (float& s : spacings) s = std::min(s, kLargestSpacing);
   std::vector<float> result(grid.size());
   detail::for_each_neighborhood(
-      grid, {.of_points = radii, .of_cells = {}},
+      grid, {.of_points = radii, .times = 1, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+        simd::Row inverse = {};
+        for (std::uint32_t q = 0; q < count; ++q) {
+          const float radius = radii[first + q];
+          inverse[q] = radius > 0 ? std::min(1 / (radius * radius), kLargest) : kLargest;
+        }
         simd::Row sums[2];
-        simd::best_joins().wyvill_pairs(detail::make_join(grid, first, count, runs), inverse.data(),
-                                        ones.data(), values.data(), sums);
+        simd::best_joins().wyvill_means(detail::make_join(grid, first, count, runs), inverse,
+                                        spacings.data(), sums);
         for (std::uint32_t q = 0; q < count; ++q) {
           const std::uint32_t i = first + q;
-          result[i] = radii[i] > 0 ? smoothed(values[i], sums[0][q], sums[1][q])
-                                   : smoothed_alone(grid, values, i);
+          result[i] = radii[i] > 0 ? smoothed(spacings[i], sums[0][q], sums[1][q])
+                                   : smoothed_alone(grid, spacings, i);
         }
       });
   return result;
@@ -192,13 +191,6 @@ double mean_spacing(const CellGrid& grid, int k) {
 std::vector<float> local_spacings(const CellGrid& grid) {
   if (grid.size() == 0) return {};
   return smooth(grid, raw_spacings(grid));
-}
-
-double median(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
 }
 
 }  // namespace palpate

@@ -47,7 +47,7 @@ double noise_radius(double noise, double footprint, double normal_error) {
 
 std::vector<float> support_radii(std::span<const float> spacings, const SupportOptions& options) {
   check(options);
-  const double typical = median({spacings.begin(), spacings.end()});
+  const double typical = median(spacings);
   const double multiple = options.multiple.value_or(support_multiple(options.noise, typical));
   std::vector<float> radii(spacings.size());
   for (std::size_t i = 0; i < radii.size(); ++i) {

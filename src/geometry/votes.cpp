@@ -15,15 +15,16 @@ constexpr std::size_t kLate = 8;  // votes looked back at
 /// The votes of one block.
 class Ballot {
  public:
-  Ballot(const PatchInput& input, const Patches& patches, std::span<const float> squared_reach)
-      : input_(input), patches_(patches), squared_reach_(squared_reach) {}
+  Ballot(const PatchInput& input, const Patches& patches) : input_(input), patches_(patches) {}
 
   /// Adds what the points [first, first + count) say about points of other patches.
   void take(std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
     keep_others(first, count, runs);
     if (others_.empty()) return;
     const simd::Join join = make_join(input_.grid, first, count, others_);
-    const std::size_t found = simd::best_joins().within(join, squared_reach_.data(), hits_.data());
+    simd::Row squared_reach = {};
+    for (std::uint32_t q = 0; q < count; ++q) squared_reach[q] = squared_reach_of(first + q);
+    const std::size_t found = simd::best_joins().within(join, squared_reach, hits_.data());
     for (std::size_t h = 0; h < found; ++h) {
       const simd::Hit& hit = hits_[h];
       for (std::uint32_t queries = hit.queries; queries != 0; queries &= queries - 1) {
@@ -36,6 +37,11 @@ class Ballot {
   std::vector<Vote> hand_over() { return std::exchange(votes_, {}); }
 
  private:
+  [[nodiscard]] float squared_reach_of(std::uint32_t i) const {
+    const float reach = kVoteReach * input_.spacings[i];
+    return reach * reach;
+  }
+
   // The points of one patch round the given ones; none if these are of several.
   [[nodiscard]] simd::Run patch_around(std::uint32_t first, std::uint32_t last) const {
     const std::vector<std::uint32_t>& patch = patches_.patch;
@@ -70,8 +76,8 @@ class Ballot {
     const std::uint32_t other = patches_.patch[j];
     if (other == own) return;
     const float squared = squared_distance(input_.grid.points()[i], input_.grid.points()[j]);
-    if (j < i && squared <= squared_reach_[j]) return;
-    const float near = 1 - squared / squared_reach_[i];
+    if (j < i && squared <= squared_reach_of(j)) return;
+    const float near = 1 - squared / squared_reach_of(i);
     const float signs = patches_.sign[i] * patches_.sign[j];
     add({std::min(own, other), std::max(own, other), input_.agreement_of(i, j) * near * signs});
   }
@@ -91,7 +97,6 @@ class Ballot {
 
   const PatchInput& input_;
   const Patches& patches_;
-  std::span<const float> squared_reach_;
   simd::Run own_{0, 0};
   std::vector<simd::Run> others_;
   std::vector<simd::Hit> hits_;
@@ -101,19 +106,14 @@ class Ballot {
 }  // namespace
 
 std::vector<Vote> collect_votes(const PatchInput& input, const Patches& patches) {
-  std::vector<float> reach(input.spacings.begin(), input.spacings.end());
-  std::vector<float> squared_reach = make_column(reach.size());
-  for (std::size_t i = 0; i < reach.size(); ++i) {
-    reach[i] *= kVoteReach;
-    squared_reach[i] = reach[i] * reach[i];
-  }
+  const Reach reach{.of_points = input.spacings, .times = kVoteReach, .of_cells = {}};
   const std::vector<Block> blocks = make_blocks(input.grid, kBlockPoints);
   std::vector<std::vector<Vote>> votes(blocks.size());
   parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
     Surroundings surroundings;
-    Ballot ballot(input, patches, squared_reach);
+    Ballot ballot(input, patches);
     for (std::size_t b = begin; b < end; ++b) {
-      for_each_part(input.grid, {.of_points = reach, .of_cells = {}}, blocks[b], surroundings,
+      for_each_part(input.grid, reach, blocks[b], surroundings,
                     [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
                       ballot.take(first, count, runs);
                     });

@@ -34,17 +34,17 @@ struct Input {
 };
 
 Input make_input(const CellGrid& grid, std::span<const float> radii) {
-  Input input{grid, make_column(grid.size()), largest_in_cells(grid, radii)};
+  Input input{grid, std::vector<float>(grid.size()), largest_in_cells(grid, radii)};
   std::transform(radii.begin(), radii.end(), input.inverse.begin(),
                  [](float radius) { return std::min(1 / (radius * radius), kLargest); });
   return input;
 }
 
-// For each point i the sum of w_ij values_j over all points j.
+// For each point i the sum of w_ij values_j over all points j; no values: all 1.
 std::vector<float> sums_of(const Input& input, WeightSum sum, std::span<const float> values) {
   std::vector<float> sums(input.grid.size());
   for_each_neighborhood(
-      input.grid, {.of_points = {}, .of_cells = input.cell_reach},
+      input.grid, {.of_points = {}, .times = 1, .of_cells = input.cell_reach},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         simd::Row row;
         sum(make_join(input.grid, first, count, runs), input.inverse.data(), values.data(), &row);
@@ -59,9 +59,11 @@ WeightSums weight_sums(const CellGrid& grid, std::span<const float> radii, Weigh
   check(grid, radii);
   const Input input = make_input(grid, radii);
   WeightSums sums;
-  sums.own = sums_of(input, sum, std::vector<float>(grid.size(), 1.f));
+  sums.own = sums_of(input, sum, {});
   sums.around = sums_of(input, sum, sums.own);
-  for (std::size_t i = 0; i < sums.own.size(); ++i) sums.around[i] /= sums.own[i];
+  parallel_ranges(grid.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sums.around[i] /= sums.own[i];
+  });
   return sums;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "geometry/parallel.hpp"
@@ -96,7 +95,7 @@ template <class Value>
 double median_of(const std::vector<Widths>& all, const Value& value) {
   std::vector<float> values;
   for (const Widths& w : all) values.push_back(value(w));
-  return median(std::move(values));
+  return median(values);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
     places.push_back(raw.points()[k * step + step / 2]);
     values.push_back(found[k]);
   }
-  reach_ = kSurroundings * static_cast<float>(median({spacings.begin(), spacings.end()}));
+  reach_ = kSurroundings * static_cast<float>(median(spacings));
   places_ = CellGrid(places);
   for (const std::uint32_t k : places_.order()) values_.push_back(values[k]);
   typical_ = static_cast<float>(median(values_));

@@ -28,21 +28,23 @@ struct Results {
   simd::Row nearest4[4];
   simd::Row nearest8[8];
   simd::Row wyvill[1];
+  simd::Row unit[1];
   simd::Row wendland[1];
-  simd::Row pairs[2];
+  simd::Row means[2];
   simd::Planes planes;
 };
 
 Results run(const simd::JoinFunctions& joins, const simd::Join& join, const std::vector<float>& a,
             const std::vector<float>& b) {
   Results results;
-  results.hit_count = joins.within(join, a.data(), results.hits.data());
-  joins.moments(join, a.data(), results.moments);
+  results.hit_count = joins.within(join, a.data() + join.query, results.hits.data());
+  joins.moments(join, a.data() + join.query, results.moments);
   joins.nearest4(join, results.nearest4);
   joins.nearest8_apart(join, results.nearest8);
   joins.wyvill_sums(join, a.data(), b.data(), results.wyvill);
+  joins.wyvill_sums(join, a.data(), nullptr, results.unit);
   joins.wendland_sums(join, a.data(), b.data(), results.wendland);
-  joins.wyvill_pairs(join, a.data(), b.data(), a.data(), results.pairs);
+  joins.wyvill_means(join, a.data() + join.query, b.data(), results.means);
   joins.planes(results.moments, &results.planes);
   return results;
 }
@@ -51,12 +53,12 @@ TEST(Joins, AreTheSameBitForBitOnEveryProcessor) {
   if (!cpu_has_v3()) GTEST_SKIP() << "this processor lacks AVX2";
   Clouds clouds;
   const CellGrid grid(clouds.sphere(3000, 1));
-  std::vector<float> a = detail::make_column(grid.size());
+  std::vector<float> a(grid.size() + simd::kQueries);
   std::vector<float> b = a;
   for (float& v : a) v = static_cast<float>(clouds.uniform(0.01, 0.3));
   for (float& v : b) v = static_cast<float>(clouds.uniform(0.5, 2));
   detail::for_each_neighborhood(
-      grid, {.of_points = a, .of_cells = {}},
+      grid, {.of_points = a, .times = 1, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         const simd::Join join = detail::make_join(grid, first, count, runs);
         const Results old = run(simd::kJoinsBaseline, join, a, b);
@@ -69,17 +71,18 @@ TEST(Joins, FindAllHitsInRisingOrder) {
   Clouds clouds;
   const CellGrid grid(clouds.sphere(2001, 1));  // no multiple of the queries
   std::vector<float> radii(grid.size());
-  std::vector<float> squared = detail::make_column(grid.size());
+  std::vector<float> squared(grid.size() + simd::kQueries);
   for (std::size_t i = 0; i < radii.size(); ++i) {
     radii[i] = static_cast<float>(clouds.uniform(0.01, 0.3));
     squared[i] = radii[i] * radii[i];
   }
   detail::for_each_neighborhood(
-      grid, {.of_points = radii, .of_cells = {}},
+      grid, {.of_points = radii, .times = 1, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         const simd::Join join = detail::make_join(grid, first, count, runs);
         std::vector<simd::Hit> hits(grid.size() + 1);
-        const std::size_t found = simd::best_joins().within(join, squared.data(), hits.data());
+        const std::size_t found =
+            simd::best_joins().within(join, squared.data() + first, hits.data());
         std::size_t pairs = 0;
         for (std::size_t h = 0; h < found; ++h) {
           EXPECT_TRUE(h == 0 || hits[h].candidate > hits[h - 1].candidate);
@@ -116,9 +119,9 @@ TEST(Joins, FindTheRunsThatATestOfEveryLeafFinds) {
           for (std::size_t r = 1; r < runs.size(); ++r) EXPECT_GT(runs[r].begin, runs[r - 1].end);
         });
   };
-  check({.of_points = radii, .of_cells = {}},
+  check({.of_points = radii, .times = 1, .of_cells = {}},
         [&](std::uint32_t i, std::uint32_t) { return radii[i]; });
-  check({.of_points = {}, .of_cells = reach},
+  check({.of_points = {}, .times = 1, .of_cells = reach},
         [&](std::uint32_t, std::uint32_t j) { return radii[j]; });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
@@ -26,6 +27,6 @@ inline constexpr double kLoneSpacing = 1e-3;
 [[nodiscard]] std::vector<float> local_spacings(const CellGrid& grid);
 
 /// The median; 0 of none. By value: it reorders.
-[[nodiscard]] double median(std::vector<float> values);
+[[nodiscard]] double median(std::span<const float> values);
 
 }  // namespace palpate

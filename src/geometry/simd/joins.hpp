@@ -11,7 +11,7 @@ namespace palpate::simd {
 /// sum's rounding depends neither on the number of lanes nor on the instruction set. Plain pointers
 /// alone cross this border: code for newer processors must not leak into what older ones run.
 
-/// Points asked about at a time. Columns have this many entries more than there are points.
+/// Points asked about at a time.
 inline constexpr std::size_t kQueries = 8;
 
 /// Points [begin, end).
@@ -70,11 +70,11 @@ struct JoinFunctions {
   std::size_t (*near)(const Leaves& leaves, const float* lower, const float* upper,
                       float squared_radius, Run* runs);
 
-  /// The candidates within squared_radii[query] of a query, in rising order. `hits` has room for
-  /// all candidates and one more; returns how many there are.
+  /// The candidates within squared_radii[l], m^2, of the point query + l, in rising order. `hits`
+  /// has room for all candidates and one more; returns how many there are.
   std::size_t (*within)(const Join& join, const float* squared_radii, Hit* hits);
 
-  /// The moments of all candidates within squared_radii[query].
+  /// The moments of all candidates within squared_radii[l], m^2, of the point query + l.
   void (*moments)(const Join& join, const float* squared_radii, Row* rows);
 
   /// Least-squares planes from moments. Finite whenever these are.
@@ -85,14 +85,13 @@ struct JoinFunctions {
   void (*nearest4)(const Join& join, Row* rows);
   void (*nearest8_apart)(const Join& join, Row* rows);
 
-  /// The sum of w(|d| / R) * values[candidate], R = 1 / sqrt(inverse[candidate]).
+  /// The sum of w(|d| / R) * values[candidate], R = 1 / sqrt(inverse[candidate]). No values: all 1.
   void (*wyvill_sums)(const Join& join, const float* inverse, const float* values, Row* sum);
   void (*wendland_sums)(const Join& join, const float* inverse, const float* values, Row* sum);
 
-  /// The same for two columns of values, with the R of the query: 1 / sqrt(inverse[query]), passing
-  /// over candidates at distance zero.
-  void (*wyvill_pairs)(const Join& join, const float* inverse, const float* first,
-                       const float* second, Row* sums);
+  /// The sums of w(|d| / R) and of w(|d| / R) * values[candidate], R = 1 / sqrt(inverse[l]) of the
+  /// point query + l, passing over candidates at distance zero.
+  void (*wyvill_means)(const Join& join, const float* inverse, const float* values, Row* sums);
 };
 
 extern const JoinFunctions kJoinsBaseline;

@@ -82,7 +82,7 @@ struct Joins {
       std::int32_t bits_of_group[kLanes];
       for (std::size_t l = 0; l < kLanes; ++l) bits_of_group[l] = 1 << (g * kLanes + l);
       std::memcpy(&bit_of_lane[g], bits_of_group, sizeof bits_of_group);
-      squared_radius[g] = load(squared_radii + join.query + g * kLanes);
+      squared_radius[g] = load(squared_radii + g * kLanes);
     }
     const auto queries = [&]<std::size_t... kGroup>(std::index_sequence<kGroup...>) {
       return std::array<Queries, kGroups>{Queries(join, join.query + kGroup * kLanes)...};
@@ -103,7 +103,7 @@ struct Joins {
 
   static void moments(const Join& join, const float* squared_radii, Row* rows) {
     for (std::size_t q = 0; q < kQueries; q += kLanes) {
-      const Floats squared_radius = load(squared_radii + join.query + q);
+      const Floats squared_radius = load(squared_radii + q);
       const Floats one = Floats{} + 1.f;
       Floats n{}, x{}, y{}, z{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
       each(join, join.query + q, [&](const Offset& offset, std::size_t) {
@@ -203,28 +203,34 @@ struct Joins {
 
   template <class Kernel>
   static void sums(const Join& join, const float* inverse, const float* values, Row* sum) {
-    for (std::size_t q = 0; q < kQueries; q += kLanes) {
-      Floats total{};
-      each(join, join.query + q, [&](const Offset& offset, std::size_t c) {
-        total += Kernel::weight(offset.squared() * inverse[c]) * values[c];
-      });
-      store(*sum + q, total);
+    const auto add_up = [&](const auto& value) {
+      for (std::size_t q = 0; q < kQueries; q += kLanes) {
+        Floats total{};
+        each(join, join.query + q, [&](const Offset& offset, std::size_t c) {
+          total += Kernel::weight(offset.squared() * inverse[c]) * value(c);
+        });
+        store(*sum + q, total);
+      }
+    };
+    if (values == nullptr) {
+      add_up([](std::size_t) { return 1.f; });
+    } else {
+      add_up([values](std::size_t c) { return values[c]; });
     }
   }
 
-  static void pairs(const Join& join, const float* inverse, const float* first, const float* second,
-                    Row* sums) {
+  static void means(const Join& join, const float* inverse, const float* values, Row* sums) {
     for (std::size_t q = 0; q < kQueries; q += kLanes) {
-      const Floats scale = load(inverse + join.query + q);
-      Floats a{}, b{};
+      const Floats scale = load(inverse + q);
+      Floats weights{}, total{};
       each(join, join.query + q, [&](const Offset& offset, std::size_t c) {
         const Floats r2 = offset.squared() * scale;
         const Floats w = keep(r2 > 0.f, Wyvill::weight(r2));
-        a += w * first[c];
-        b += w * second[c];
+        weights += w;
+        total += w * values[c];
       });
-      store(sums[0] + q, a);
-      store(sums[1] + q, b);
+      store(sums[0] + q, weights);
+      store(sums[1] + q, total);
     }
   }
 
@@ -237,7 +243,7 @@ struct Joins {
             &nearest<8, true>,
             &sums<Wyvill>,
             &sums<Wendland>,
-            &pairs};
+            &means};
   }
 };
 
