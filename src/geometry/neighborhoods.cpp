@@ -38,19 +38,6 @@ std::vector<Block> make_blocks(const CellGrid& grid, std::uint32_t most) {
   return blocks;
 }
 
-std::vector<float> largest_in_cells(const CellGrid& grid, std::span<const float> values) {
-  const std::span<const CellGrid::Cell> cells = grid.cells();
-  std::vector<float> largest(cells.size());
-  for (std::size_t c = cells.size(); c-- > 0;) {
-    const CellGrid::Cell& cell = cells[c];
-    const auto inside = cell.children == 0 ? values.subspan(cell.begin, cell.size())
-                                           : std::span<const float>(largest).subspan(
-                                                 cell.first_child, cell.children);
-    largest[c] = *std::max_element(inside.begin(), inside.end());
-  }
-  return largest;
-}
-
 void Surroundings::push_back(const CellGrid::Cell& leaf, float reach) {
   if (count_ == leaves_.size()) {
     const std::size_t room = 2 * count_ + 8 * simd::kQueries;

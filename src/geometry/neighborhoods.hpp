@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -44,9 +45,38 @@ struct Reach {
       of_cells;  ///< largest radius within which the points of a cell are asked for
 };
 
-/// For each cell the largest of its points' values.
-[[nodiscard]] std::vector<float> largest_in_cells(const CellGrid& grid,
-                                                  std::span<const float> values);
+/// For each cell the one of its points' values that pick(a, b) leaves of any two.
+template <class Pick>
+[[nodiscard]] std::vector<float> pick_in_cells(const CellGrid& grid, std::span<const float> values,
+                                               const Pick& pick) {
+  const std::span<const CellGrid::Cell> cells = grid.cells();
+  std::vector<float> picked(cells.size());
+  const auto pick_of = [&](std::span<const float> some) {
+    return std::accumulate(some.begin() + 1, some.end(), some.front(), pick);
+  };
+  parallel_ranges(cells.size(), std::size_t{1} << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const CellGrid::Cell& cell = cells[c];
+      if (cell.children == 0) picked[c] = pick_of(values.subspan(cell.begin, cell.size()));
+    }
+  });
+  for (std::size_t c = cells.size(); c-- > 0;) {  // children stand behind their parents
+    const CellGrid::Cell& cell = cells[c];
+    if (cell.children == 0) continue;
+    picked[c] = pick_of(std::span<const float>(picked).subspan(cell.first_child, cell.children));
+  }
+  return picked;
+}
+
+[[nodiscard]] inline std::vector<float> largest_in_cells(const CellGrid& grid,
+                                                         std::span<const float> values) {
+  return pick_in_cells(grid, values, [](float a, float b) { return a < b ? b : a; });
+}
+
+[[nodiscard]] inline std::vector<float> smallest_in_cells(const CellGrid& grid,
+                                                          std::span<const float> values) {
+  return pick_in_cells(grid, values, [](float a, float b) { return b < a ? b : a; });
+}
 
 /// The leaves around a block, found once, and which of their points may be near a part of it.
 class Surroundings {

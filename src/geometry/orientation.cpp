@@ -77,9 +77,9 @@ void orient_outward(const CellGrid& grid, std::span<const float> spacings,
   const Eigen::Vector3d center = area_of_all > 0 ? Eigen::Vector3d(moment / area_of_all) : moment;
   std::vector<float> turn(parts.count);
   for (std::size_t k = 0; k < sums.size(); ++k) turn[k] = is_inside_out(sums[k], center) ? -1 : 1;
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    normals[i] *= turn[parts.part[patches.patch[i]]];
-  }
+  detail::parallel_ranges(normals.size(), std::size_t{1} << 16, [&](auto begin, auto end) {
+    for (std::size_t i = begin; i < end; ++i) normals[i] *= turn[parts.part[patches.patch[i]]];
+  });
 }
 
 void orient_outward(const CellGrid& grid, std::span<Eigen::Vector3f> normals) {

@@ -15,21 +15,6 @@ constexpr float kSlope = 0.5f;    // of R over distance
 constexpr float kMatters = 0.8f;  // of the own R: a smaller limit is worth looking for
 constexpr std::uint32_t kBlockPoints = 64;
 
-std::vector<float> smallest_in_cells(const CellGrid& grid, const std::vector<float>& radii) {
-  const auto cells = grid.cells();
-  std::vector<float> smallest(cells.size());
-  for (std::size_t c = cells.size(); c-- > 0;) {  // children stand behind their parents
-    const CellGrid::Cell& cell = cells[c];
-    smallest[c] = cell.children > 0
-                      ? smallest[cell.first_child]
-                      : *std::min_element(radii.begin() + cell.begin, radii.begin() + cell.end);
-    for (std::uint32_t k = 1; k < cell.children; ++k) {
-      smallest[c] = std::min(smallest[c], smallest[cell.first_child + k]);
-    }
-  }
-  return smallest;
-}
-
 /// The limits of one block after another.
 class Limiter {
  public:
@@ -101,7 +86,7 @@ void limit_growth(const CellGrid& grid, std::vector<float>& radii) {
   if (radii.empty()) return;
   const auto [low, high] = std::minmax_element(radii.begin(), radii.end());
   if (*low >= kMatters * *high) return;
-  const std::vector<float> smallest = smallest_in_cells(grid, radii);
+  const std::vector<float> smallest = detail::smallest_in_cells(grid, radii);
   const std::vector<detail::Block> blocks = detail::make_blocks(grid, kBlockPoints);
   std::vector<float> limited(radii.size());
   detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {

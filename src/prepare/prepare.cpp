@@ -96,11 +96,14 @@ class Preparation {
  public:
   Preparation(const PointCloud& cloud, const PrepareOptions& options,
               const Eigen::Isometry3d& T_world_sensor)
-      : options_(options) {
+      : options_(options), cloud_(&cloud) {
     check(options, cloud);
     report_.points_in = cloud.size();
-    cloud_ = placed(options.clip ? clip(cloud, *options.clip) : cloud, T_world_sensor);
-    if (options.viewpoint) cloud_.viewpoint = T_world_sensor * *options.viewpoint;
+    if (options.clip || !T_world_sensor.matrix().isIdentity(0)) {
+      own_ = placed(options.clip ? clip(cloud, *options.clip) : cloud, T_world_sensor);
+      cloud_ = &own_;
+    }
+    viewpoint_ = options.viewpoint ? T_world_sensor * *options.viewpoint : cloud_->viewpoint;
     require_points();
     watch_.lap(report_.seconds_filter);
   }
@@ -122,14 +125,14 @@ class Preparation {
 
  private:
   void require_points() const {
-    if (!cloud_.empty()) return;
+    if (!cloud_->empty()) return;
     throw Error(
         fmt::format("no point is left of {}: check the clip box and the file", report_.points_in));
   }
 
   void index() {
-    points_.origin = cloud_.origin;
-    points_.grid = CellGrid(cloud_.positions);
+    points_.origin = cloud_->origin;
+    points_.grid = CellGrid(cloud_->positions);
     watch_.lap(report_.seconds_index);
   }
 
@@ -151,8 +154,9 @@ class Preparation {
     if (report_.voxel <= 0) return;
     if (noisy && !options_.radius) noise_map_.emplace(points_.grid, spacings_);
     watch_.lap(report_.seconds_spacing);
-    cloud_ = voxel_downsample(cloud_, report_.voxel, &counts_);
-    if (noisy) cloud_ = merge_slivers(cloud_, kSliver * report_.voxel, counts_);
+    own_ = voxel_downsample(*cloud_, report_.voxel, &counts_);
+    if (noisy) own_ = merge_slivers(own_, kSliver * report_.voxel, counts_);
+    cloud_ = &own_;
     watch_.lap(report_.seconds_filter);
     index();
     measure_spacing();
@@ -213,16 +217,16 @@ class Preparation {
   void give_sign() {
     Orientation how = options_.orientation;
     if (how == Orientation::automatic) {
-      how = options_.viewpoint        ? Orientation::viewpoint
-            : !cloud_.normals.empty() ? Orientation::given
-            : cloud_.viewpoint        ? Orientation::viewpoint
-                                      : Orientation::outward;
+      how = options_.viewpoint         ? Orientation::viewpoint
+            : !cloud_->normals.empty() ? Orientation::given
+            : viewpoint_               ? Orientation::viewpoint
+                                       : Orientation::outward;
     }
     if (how == Orientation::viewpoint) {
-      const Eigen::Vector3d eye = *cloud_.viewpoint - points_.origin;
+      const Eigen::Vector3d eye = *viewpoint_ - points_.origin;
       orient_to_viewpoint(points_.grid.points(), eye.cast<float>(), points_.normals);
     } else if (how == Orientation::given) {
-      const auto given = in_grid_order(points_.grid, cloud_.normals);
+      const auto given = in_grid_order(points_.grid, cloud_->normals);
       for (std::size_t i = 0; i < given.size(); ++i) {
         if (given[i].dot(points_.normals[i]) < 0) points_.normals[i] = -points_.normals[i];
       }
@@ -240,7 +244,7 @@ class Preparation {
     }
     points_.confidences.assign(points_.size(), 0.0f);
     if (options_.material_from_intensity) {
-      points_.materials = materials_of(points_.grid, cloud_.intensities);
+      points_.materials = materials_of(points_.grid, cloud_->intensities);
     }
     watch_.lap(report_.seconds_weights);
   }
@@ -259,7 +263,9 @@ class Preparation {
   }
 
   const PrepareOptions& options_;
-  PointCloud cloud_;
+  PointCloud own_;           // clipped, turned or thinned
+  const PointCloud* cloud_;  // that, or what was given
+  std::optional<Eigen::Vector3d> viewpoint_;
   SurfacePoints points_;
   PrepareReport report_;
   std::vector<float> spacings_;
