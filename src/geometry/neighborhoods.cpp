@@ -20,6 +20,7 @@ Block make_block(const CellGrid& grid, std::uint32_t begin, std::uint32_t end) {
 std::vector<Block> make_blocks(const CellGrid& grid, std::uint32_t most) {
   const std::span<const CellGrid::Cell> cells = grid.cells();
   std::vector<Block> blocks;
+  blocks.reserve(2 * (grid.size() / most) + 1);
   std::array<std::uint32_t, CellGrid::kMaxStack> stack;
   std::size_t open = 0;
   if (!cells.empty()) stack[open++] = 0;

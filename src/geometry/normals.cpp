@@ -51,25 +51,25 @@ Normals estimate_normals(const CellGrid& grid, float radius) {
   return estimate_normals(grid, std::vector<float>(grid.size(), radius));
 }
 
-Normals estimate_normals(const CellGrid& grid, std::span<const float> radii) {
+Normals estimate_normals(const CellGrid& grid, std::span<const float> radii, float times) {
   if (radii.size() != grid.size()) {
     throw Error(fmt::format("normals: {} radii for {} points; give one for each", radii.size(),
                             grid.size()));
   }
-  for (const float radius : radii) check_radius(radius);
+  for (const float radius : radii) check_radius(times * radius);
   Normals result;
   result.normals.resize(grid.size(), Eigen::Vector3f::Zero());
   result.confidences.resize(grid.size(), 0);
   result.residuals.resize(grid.size(), 0);
   const simd::JoinFunctions& joins = simd::best_joins();
   detail::for_each_neighborhood(
-      grid, {.of_points = radii, .times = 1, .of_cells = {}},
+      grid, {.of_points = radii, .times = times, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         simd::Row moments[simd::kMoments];
         simd::Planes planes;
         simd::Row squared_radii = {};
         std::transform(radii.begin() + first, radii.begin() + first + count, squared_radii,
-                       [](float r) { return r * r; });
+                       [times](float r) { return times * r * (times * r); });
         joins.moments(detail::make_join(grid, first, count, runs), squared_radii, moments);
         joins.planes(moments, &planes);
         for (std::uint32_t q = 0; q < count; ++q) {

@@ -120,7 +120,10 @@ std::vector<Vote> collect_votes(const PatchInput& input, const Patches& patches)
       votes[b] = ballot.hand_over();
     }
   });
+  std::size_t count = 0;
+  for (const auto& list : votes) count += list.size();
   std::vector<Vote> all;
+  all.reserve(count);
   for (const auto& list : votes) all.insert(all.end(), list.begin(), list.end());
   return all;
 }

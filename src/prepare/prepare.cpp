@@ -34,7 +34,7 @@ using Clock = std::chrono::steady_clock;
 
 // Normals come from a little further away than the surface: the balanced field adds their noise
 // (field_choice.md section 2).
-constexpr double kNormalsReach = 1.15;
+constexpr float kNormalsReach = 1.15f;
 
 // A cloud this noisy, against its spacing, is thinned to two spacings; a cleaner one is kept whole.
 constexpr double kNoisy = 0.25;
@@ -113,7 +113,11 @@ class Preparation {
     choose_voxel();
     choose_radii();
     weigh();
-    if (options_.estimate_normals) orient();
+    if (options_.estimate_normals) {
+      orient();
+    } else {
+      points_.confidences.assign(points_.size(), 0.0f);
+    }
     if (options_.remove_speckle && !options_.paper) silence_speckle();
     finish(points_);
     report_.points_out = points_.size() - report_.speckle;
@@ -205,9 +209,7 @@ class Preparation {
   }
 
   void orient() {
-    std::vector<float> reach = points_.radii;
-    for (float& r : reach) r *= static_cast<float>(kNormalsReach);
-    Normals normals = estimate_normals(points_.grid, reach);
+    Normals normals = estimate_normals(points_.grid, points_.radii, kNormalsReach);
     points_.normals = std::move(normals.normals);
     points_.confidences = std::move(normals.confidences);
     give_sign();
@@ -242,7 +244,6 @@ class Preparation {
       weigh_by_counts(points_.grid, in_grid_order(points_.grid, counts_), points_.radii,
                       points_.density_weights);
     }
-    points_.confidences.assign(points_.size(), 0.0f);
     if (options_.material_from_intensity) {
       points_.materials = materials_of(points_.grid, cloud_->intensities);
     }

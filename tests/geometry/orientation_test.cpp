@@ -179,7 +179,7 @@ TEST(Orientation, OfTheBunnyIsThatOfItsMesh) {
   double all = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector3f& direction = directions[oriented.grid.order()[i]];
-    if (direction.isZero()) continue;  // in no face
+    if (direction.isZero(0)) continue;  // in no face
     ++all;
     if (direction.dot(oriented.normals[i]) > 0) ++right;
   }

@@ -29,8 +29,9 @@ struct Normals {
 /// @throws Error when the radius is not positive and finite.
 [[nodiscard]] Normals estimate_normals(const CellGrid& grid, float radius);
 
-/// The same with a radius for each point, in sorted order.
+/// The same within `times` times a radius for each point, in sorted order.
 /// @throws Error likewise, or when there are not as many radii as points.
-[[nodiscard]] Normals estimate_normals(const CellGrid& grid, std::span<const float> radii);
+[[nodiscard]] Normals estimate_normals(const CellGrid& grid, std::span<const float> radii,
+                                       float times = 1);
 
 }  // namespace palpate
