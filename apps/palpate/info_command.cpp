@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "apps/palpate/distinct_files.hpp"
 #include "apps/palpate/info_report.hpp"
 #include "apps/palpate/load.hpp"
 #include "apps/palpate/output.hpp"
@@ -46,7 +47,9 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
 void info(const InfoOptions& options) {
   if (!options.load.intrinsics.empty()) (void)parse_intrinsics(options.load.intrinsics);
   nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
-  for (const CloudArgument& argument : parse_clouds(options.load.clouds)) {
+  const std::vector<CloudArgument> arguments = parse_clouds(options.load.clouds);
+  check_distinct(inputs(arguments), {{"--json", options.json}});
+  for (const CloudArgument& argument : arguments) {
     const InfoReport report = study(argument, options.load);
     print_report(report, options.json == "-" ? stderr : stdout);
     clouds.push_back(json_report(report));

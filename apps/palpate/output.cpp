@@ -1,22 +1,59 @@
 #include "apps/palpate/output.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool as_it_is(const std::string& path) {
+  std::error_code ignored;
+  return path == "-" || (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored));
+}
+
+std::string where_links_lead(const std::string& path) {
+  std::error_code failed;
+  const fs::path place = fs::weakly_canonical(path, failed);
+  return failed ? path : place.string();
+}
+
+// A file that may not be written must not be replaced either.
+bool protects_itself(const std::string& place) {
+  return access(place.c_str(), F_OK) == 0 && access(place.c_str(), W_OK) != 0;
+}
+
+}  // namespace
 
 void OutputFile::Closer::operator()(std::FILE* file) const {
   if (file != stdout) std::fclose(file);
 }
 
 OutputFile::OutputFile(const std::string& path)
-    : path_(path == "-" ? "standard output" : path),
-      file_(path == "-" ? stdout : std::fopen(path.c_str(), "wb")) {
+    : path_(path == "-" ? "standard output" : path), place_(path), growing_(path) {
+  if (path == "-") {
+    file_.reset(stdout);
+    return;
+  }
+  if (!as_it_is(path)) {
+    place_ = where_links_lead(path);
+    if (protects_itself(place_)) fail("cannot be written");
+    growing_ = fmt::format("{}.part-{}", place_, getpid());
+  }
+  file_.reset(std::fopen(growing_.c_str(), growing_ == place_ ? "wb" : "wbx"));
   if (!file_) fail("cannot be made");
+}
+
+OutputFile::~OutputFile() {
+  if (file_ && growing_ != place_) std::remove(growing_.c_str());
 }
 
 void OutputFile::write(std::string_view text) {
@@ -28,7 +65,16 @@ void OutputFile::write(std::string_view text) {
 void OutputFile::close() {
   if (std::fflush(file_.get()) != 0) fail("cannot be written");
   if (file_.get() == stdout) return;
-  if (std::fclose(file_.release()) != 0) fail("cannot be written");
+  const bool closed = std::fclose(file_.release()) == 0;
+  if (growing_ == place_) {
+    if (!closed) fail("cannot be written");
+    return;
+  }
+  if (closed && std::rename(growing_.c_str(), place_.c_str()) == 0) return;
+  const int reason = errno;
+  std::remove(growing_.c_str());
+  errno = reason;
+  fail("cannot be written");
 }
 
 void OutputFile::fail(const char* what) const {

@@ -7,16 +7,25 @@
 
 namespace palpate::app {
 
-/// A text file that is being written; "-" is standard output. Whatever goes wrong, a full disk
+/// A file that appears when it is complete: until close() it grows beside its place under another
+/// name, so that a run that fails leaves what was there as it was. "-" is standard output; what is
+/// no plain file (/dev/null, a pipe) is written as it is. Whatever goes wrong, a full disk
 /// included, is told as an Error that names the file.
 class OutputFile {
  public:
   /// @throws Error when the file cannot be made.
   explicit OutputFile(const std::string& path);
+  /// Leaves nothing behind unless it was closed.
+  ~OutputFile();
+  OutputFile(OutputFile&&) = default;
+  OutputFile& operator=(OutputFile&&) = delete;
   /// @throws Error when it cannot be written.
   void write(std::string_view text);
-  /// Brings everything to the disk. @throws Error likewise.
+  /// Brings everything to the disk and to its place. @throws Error likewise.
   void close();
+
+  /// Where it grows, for others to write to; what they write there comes to its place as well.
+  [[nodiscard]] const std::string& growing() const { return growing_; }
 
  private:
   struct Closer {
@@ -25,6 +34,8 @@ class OutputFile {
   [[noreturn]] void fail(const char* what) const;
 
   std::string path_;
+  std::string place_;    // where links lead
+  std::string growing_;  // the same where it is written as it is
   std::unique_ptr<std::FILE, Closer> file_;
 };
 

@@ -15,7 +15,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "apps/palpate/output.hpp"
 #include "apps/palpate/picture_script.hpp"
 #include "apps/palpate/waiting.hpp"
 #include "palpate/base/error.hpp"
@@ -188,8 +187,7 @@ std::string last_line(const std::string& text) {
 
 }  // namespace
 
-void Picture::draw(const Scene& scene, const std::string& title,
-                   const std::string& subtitle) const {
+void Picture::draw(const Scene& scene, const std::string& title, const std::string& subtitle) {
   if (steps_.empty()) throw Error("there is no picture of a run without steps");
   const Waiting waiting("drawing the picture");
   const TemporaryFolder folder;
@@ -201,8 +199,8 @@ void Picture::draw(const Scene& scene, const std::string& title,
   write_file(folder.file("facts.json"), facts.dump());
   const std::string complaints = folder.file("complaints.txt");
   const int code =
-      run({python(), "-B", folder.file("draw.py"), folder.file(""), path_}, complaints);
-  if (code == 0) return;
+      run({python(), "-B", folder.file("draw.py"), folder.file(""), file_.growing()}, complaints);
+  if (code == 0) return file_.close();
   if (code == 127 || code == 3) {
     throw Error(
         fmt::format("{} was not drawn: Python 3 with matplotlib is missing; install it with "

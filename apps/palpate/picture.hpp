@@ -1,9 +1,9 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "apps/palpate/output.hpp"
 #include "apps/palpate/touch_statistics.hpp"
 #include "palpate/scene/scene.hpp"
 
@@ -13,15 +13,17 @@ namespace palpate::app {
 /// matplotlib that travels inside the program.
 class Picture {
  public:
-  explicit Picture(std::string path) : path_(std::move(path)) {}
+  /// @throws Error when the file cannot be made.
+  explicit Picture(const std::string& path) : path_(path), file_(path) {}
 
   void add(const TouchStep& step) { steps_.push_back(step); }
 
   /// @throws Error when Python or matplotlib is missing, naming the package, or drawing fails.
-  void draw(const Scene& scene, const std::string& title, const std::string& subtitle) const;
+  void draw(const Scene& scene, const std::string& title, const std::string& subtitle);
 
  private:
   std::string path_;
+  OutputFile file_;
   std::vector<TouchStep> steps_;
 };
 

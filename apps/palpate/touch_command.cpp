@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/palpate/distinct_files.hpp"
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/log.hpp"
 #include "apps/palpate/output.hpp"
@@ -34,6 +35,13 @@ struct Hand {
   std::optional<ExplorationPlan> plan;
 };
 
+void check_files(const TouchOptions& options, const std::vector<CloudArgument>& clouds) {
+  std::vector<NamedFile> read = inputs(clouds);
+  read.push_back({"--trajectory", options.trajectory});
+  check_distinct(
+      read, {{"--log", options.log}, {"--json", options.json}, {"--picture", options.picture}});
+}
+
 void check_usage(const TouchOptions& options) {
   const auto clouds = parse_clouds(options.load.clouds);
   for (const CloudArgument& cloud : clouds) {
@@ -41,6 +49,7 @@ void check_usage(const TouchOptions& options) {
       throw UsageError("standard input (-) can be read only once");
     }
   }
+  check_files(options, clouds);
   if (options.log == "-" && options.json == "-") {
     throw UsageError("--log and --json cannot both go to standard output");
   }
@@ -134,7 +143,6 @@ struct Outputs {
     if (!options.log.empty()) log.emplace(options.log);
     if (!options.json.empty()) json.emplace(options.json);
     if (options.picture.empty()) return;
-    OutputFile(options.picture).close();
     picture.emplace(options.picture);
   }
 };

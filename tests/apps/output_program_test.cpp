@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "apps/program.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Output, FileThatIsReadOrWrittenTwiceIsRefusedAndStaysAsItWas) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  shell.write("way.csv", press_and_slide());
+  fs::create_symlink("plane.xyz", shell.path("link.xyz"));
+  fs::create_hard_link(shell.path("plane.xyz"), shell.path("twin.xyz"));
+  for (const char* arguments :
+       {"touch plane.xyz --log plane.xyz", "touch plane.xyz --json ./plane.xyz",
+        "touch link.xyz --log plane.xyz", "touch plane.xyz --log link.xyz",
+        "touch plane.xyz --picture twin.xyz", "touch plane.xyz --trajectory way.csv --log way.csv",
+        "touch plane.xyz --log new.txt --json ./new.txt", "info plane.xyz --json plane.xyz"}) {
+    const Outcome outcome = shell.run(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_NE(outcome.err.find("same file"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(shell.read("plane.xyz") == plane_xyz()) << arguments;
+    EXPECT_TRUE(shell.read("way.csv") == press_and_slide()) << arguments;
+  }
+  EXPECT_FALSE(fs::exists(shell.path("new.txt")));
+}
+
+TEST(Output, FailedRunLeavesWhatWasThereAndNothingElse) {
+  Shell shell;
+  shell.write("broken.ply", "this is no cloud\n");
+  for (const char* name : {"a.csv", "a.json", "a.png"}) shell.write(name, "of an earlier run");
+  const std::size_t files = 1 + 3 + 3;  // and the shell's own three
+  EXPECT_EQ(shell.run("touch broken.ply --log a.csv --json a.json --picture a.png").code, 1);
+  for (const char* name : {"a.csv", "a.json", "a.png"}) {
+    EXPECT_EQ(shell.read(name), "of an earlier run") << name;
+  }
+  const auto entries = fs::directory_iterator(fs::path(shell.path("")));
+  EXPECT_EQ(static_cast<std::size_t>(std::distance(begin(entries), end(entries))), files);
+}
+
+TEST(Output, LinksAndDevicesAreWrittenThrough) {
+  Shell shell;
+  shell.write("real.csv", "old");
+  fs::create_symlink("real.csv", shell.path("link.csv"));
+  const Outcome outcome =
+      shell.run("touch synthetic:sheet --duration 0.1 --log link.csv --json /dev/null");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(fs::is_symlink(shell.path("link.csv")));
+  EXPECT_EQ(shell.read("real.csv").find("t,hip_x"), 0u);
+}
+
+TEST(Output, ProtectedFileIsNotReplaced) {
+  if (access("/", W_OK) == 0) GTEST_SKIP() << "the superuser may write everything";
+  Shell shell;
+  shell.write("kept.csv", "kept");
+  fs::permissions(shell.path("kept.csv"), fs::perms::owner_read);
+  EXPECT_EQ(shell.run("touch synthetic:sheet --duration 0.1 --log kept.csv").code, 1);
+  EXPECT_EQ(shell.read("kept.csv"), "kept");
+}
+
+}  // namespace
+}  // namespace palpate::app
