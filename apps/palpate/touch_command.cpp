@@ -68,6 +68,18 @@ void play_back(Hand& hand, Trajectory way) {
   hand.device = std::make_unique<ScriptedDevice>(std::move(way));
 }
 
+// A day: longer ones are times in another unit, or broken.
+constexpr double kLongest = 86'400;  // s
+
+void check_duration(const Trajectory& trajectory) {
+  const double duration = trajectory.back().time - trajectory.front().time;
+  if (duration <= kLongest) return;
+  throw UsageError(
+      fmt::format("--trajectory lasts {:.6g} s; --device simulated plays {:.0f} s at most: are "
+                  "its times in seconds?",
+                  duration, kLongest));
+}
+
 Hand scripted(const TouchOptions& options, Trajectory trajectory) {
   Hand hand;
   hand.stiffness = options.stiffness.value_or(kStiffness);
@@ -188,6 +200,7 @@ void touch(const TouchOptions& options) {
   check_usage(options);
   Trajectory trajectory;
   if (!options.trajectory.empty()) trajectory = read_trajectory(options.trajectory);
+  if (!trajectory.empty() && options.device == "simulated") check_duration(trajectory);
   Outputs outputs(options);
   Scene scene;
   const std::vector<TouchedCloud> clouds = fill(scene, options);

@@ -61,7 +61,8 @@ void check_options(const SimulatedDeviceOptions& o, std::size_t maximum_delay) {
   require(not_negative(o.hand.damping), "hand.damping", o.hand.damping, "0 or more N s/m");
   require(positive(o.hand.maximum_force), "hand.maximum_force", o.hand.maximum_force,
           "a positive force in newtons");
-  require(not_negative(o.duration), "duration", o.duration, "0 or more seconds");
+  const double duration = o.duration.value_or(0);
+  require(not_negative(duration), "duration", duration, "0 or more seconds");
   require(o.position.allFinite(), "position", o.position.norm(), "finite coordinates");
   require(o.velocity.allFinite(), "velocity", o.velocity.norm(), "a finite velocity");
 }
@@ -72,7 +73,7 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, Trajecto
     : options_(options), target_(std::move(target)) {
   check_options(options_, kMaximumDelay);
   if (!target_.empty()) check(target_);
-  if (options_.duration == 0 && !target_.empty()) options_.duration = target_.back().time;
+  if (!options_.duration && !target_.empty()) options_.duration = target_.back().time;
   info_.name = "simulated";
   info_.maximum_force = options_.maximum_force;
   info_.rate = options_.rate;
@@ -100,7 +101,7 @@ DeviceState SimulatedDevice::read() noexcept {
   state_.time = static_cast<double>(steps_) / options_.rate;
   started_ = true;
   // Half a step of slack: the end of a target need not be a whole number of steps.
-  if (options_.duration > 0 && state_.time > options_.duration + 0.5 / options_.rate) {
+  if (options_.duration && state_.time > *options_.duration + 0.5 / options_.rate) {
     state_.status = DeviceStatus::finished;
   }
   return state_;

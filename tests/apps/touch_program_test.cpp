@@ -179,6 +179,16 @@ TEST(Touch, SimulatedHandIsPulledAlongATrajectory) {
   EXPECT_NEAR(number(log["hip_y"][290]), 3e-4, 1e-4);
 }
 
+TEST(Touch, SimulatedHandOfATrajectoryWithOneRowTakesOneStep) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  shell.write("way.csv", "t,hip_x,hip_y,hip_z\n100,0,0,0.01\n");
+  const Outcome outcome =
+      shell.run("touch plane.xyz --trajectory way.csv --device simulated --log log.csv");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(columns(shell.read("log.csv"))["t"].size(), 1u);
+}
+
 TEST(Touch, PresetPaperAndEveryFieldRun) {
   Shell shell;
   for (const char* more : {"--preset paper", "--preset paper --field pointset", "--field metaball",

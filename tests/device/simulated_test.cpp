@@ -275,5 +275,19 @@ TEST(SimulatedDevice, RefusesOptionsOutOfRange) {
   EXPECT_THROW(SimulatedDevice({}, {{1, {0, 0, 0}}, {0, {0, 0, 0}}}), Error);
 }
 
+TEST(SimulatedDevice, TargetOfOneRowIsOneStepAndNoTargetIsNoEnd) {
+  SimulatedDevice one({}, {{0, {0.1, 0, 0}}});
+  EXPECT_EQ(one.read().status, DeviceStatus::ok);
+  EXPECT_EQ(one.read().status, DeviceStatus::finished);
+  SimulatedDevice free;
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(free.read().status, DeviceStatus::ok);
+}
+
+TEST(SimulatedDevice, DurationThatWasGivenWins) {
+  SimulatedDevice device({.duration = 0.01}, {{0, {0, 0, 0}}, {1, {0.1, 0, 0}}});
+  for (int i = 0; i <= 10; ++i) EXPECT_EQ(device.read().status, DeviceStatus::ok) << i;
+  EXPECT_EQ(device.read().status, DeviceStatus::finished);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "palpate/device/device.hpp"
 #include "palpate/geometry/trajectory.hpp"
@@ -28,7 +29,9 @@ struct SimulatedDeviceOptions {
   SimulatedHand hand = {};
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< at time 0, m; a target's start wins
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< at time 0, m/s
-  double duration = 0;  ///< s after which the status is `finished`; 0: at the end of the target
+  /// s after which the status is `finished`, 0 for one step at least; unset: at the end of the
+  /// target, never where there is none
+  std::optional<double> duration = {};
 };
 
 /// A device that exists in simulated time only: a point mass with viscous and dry friction, read
