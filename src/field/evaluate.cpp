@@ -16,6 +16,9 @@ namespace {
 using Eigen::Map;
 using Eigen::Vector3d;
 
+// Weight sums up to this are none: the rim of a support, where ratios of sums mean nothing.
+constexpr double kNoWeight = 1e-12;
+
 /// A function with its gradient.
 struct Value {
   double f = 0;
@@ -233,7 +236,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   const auto sum = options.kind == FieldKind::metaball ? surface.sums->weights : surface.sums->all;
   sum(patch.columns(), wendland, local.data(), sums);
   const Support support = support_of(sums, patch.columns().sources);
-  if (!(support.plain > 1e-12)) return nothing_here(patch);
+  if (!(support.plain > kNoWeight)) return nothing_here(patch);
 
   Sample sample;
   sample.support = support.w.f;
@@ -257,7 +260,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
 
 double free_level(const ImplicitSurface& surface, double smallest_radius) noexcept {
   const FieldOptions& options = surface.options;
-  if (options.kind != FieldKind::metaball && !options.capped) return 1e-9;
+  if (options.kind != FieldKind::metaball && !options.capped) return kNoWeight;
   double level = options.threshold;
   if (options.tool_radius > 0) {
     const double eta = surface.offset + options.tool_radius / smallest_radius;

@@ -51,6 +51,11 @@ double weight_now(const ActiveLayer& layer, std::uint32_t i, bool raw_weights) n
   return layer.weight * lerp(start, points.end_density_weights[i], layer.progress);
 }
 
+bool weightless(const SurfacePoints& points, std::uint32_t i) noexcept {
+  return points.density_weights[i] <= 0 &&
+         (points.end_density_weights.empty() || points.end_density_weights[i] <= 0);
+}
+
 Patch::Patch(std::size_t capacity)
     : capacity_((capacity + simd::kLanes - 1) / simd::kLanes * simd::kLanes),
       pitch_(capacity_ + 2 * kCacheLine),
@@ -108,7 +113,8 @@ bool Patch::gather_layer(const ActiveLayer& layer) noexcept {
   while (!stack.empty()) {
     const std::uint32_t index = stack.pop();
     const CellGrid::Cell& cell = layer.points->grid.cells()[index];
-    if (!test.near(cell, layer.points->cell_reach[index] + extra_)) continue;
+    const double reach = std::max<double>(layer.points->cell_reach[index], options_.radius);
+    if (!test.near(cell, reach + extra_)) continue;
     if (cell.children > 0 && cell.end - cell.begin > stride_) {
       stack.push_children(cell);
     } else if (!take_near(layer, cell.begin, cell.end)) {
@@ -125,8 +131,9 @@ bool Patch::take_near(const ActiveLayer& layer, std::uint32_t begin, std::uint32
   for (std::uint64_t i = first; i < end; i += stride_) {
     const auto k = static_cast<std::uint32_t>(i);
     const Eigen::Vector3d position = position_now(layer, k, center_);
-    const double reach = layer.points->radii[k] + extra_;
-    if (position.squaredNorm() > reach * reach) continue;
+    const double radius = options_.radius > 0 ? options_.radius : layer.points->radii[k];
+    const double reach = radius + extra_;
+    if (position.squaredNorm() > reach * reach || weightless(*layer.points, k)) continue;
     if (used_ == capacity_) return false;
     for (int axis = 0; axis < 3; ++axis) column(kPosition + axis)[used_] = position[axis];
     index_[used_++] = k;
@@ -138,7 +145,7 @@ bool Patch::take_near(const ActiveLayer& layer, std::uint32_t begin, std::uint32
 void Patch::fill(const ActiveLayer& layer, std::uint32_t first) noexcept {
   const SurfacePoints& points = *layer.points;
   for (std::uint32_t k = first; k < used_; ++k) {
-    const double radius = points.radii[index_[k]];
+    const double radius = options_.radius > 0 ? options_.radius : points.radii[index_[k]];
     column(kRadius)[k] = radius;
     column(kInverseR2)[k] = inverse_square(radius);
     column(kWeight)[k] = weight_now(layer, index_[k], options_.raw_weights) * stride_;
@@ -182,7 +189,7 @@ void Patch::pad() noexcept {
   }
 }
 
-void Patch::use_nearest_radius(const Eigen::Vector3d& x) noexcept {
+double Patch::nearest_radius(const Eigen::Vector3d& x) const noexcept {
   const Eigen::Vector3d local = x - center_;
   double nearest = std::numeric_limits<double>::infinity();
   double radius = 0;
@@ -193,13 +200,7 @@ void Patch::use_nearest_radius(const Eigen::Vector3d& x) noexcept {
     nearest = squared;
     radius = columns_.radius[i];
   }
-  if (radius <= 0) return;
-  columns_.uniform_radius = radius;
-  for (std::uint32_t i = 0; i < used_; ++i) {
-    if (column(kRadius)[i] <= 0) continue;
-    column(kRadius)[i] = radius;
-    column(kInverseR2)[i] = 1 / (radius * radius);
-  }
+  return radius;
 }
 
 }  // namespace palpate

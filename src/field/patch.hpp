@@ -22,6 +22,7 @@ struct ActiveLayer {
 };
 
 struct GatherOptions {
+  double radius = 0;         ///< R of all points, m; 0: each has its own
   bool raw_weights = false;  ///< leave out the density weights
   bool normals = true;       ///< copy normals and confidences; metaballs need none
 };
@@ -39,8 +40,8 @@ class Patch {
   void gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
               double extra, const GatherOptions& options = {}) noexcept;
 
-  /// Gives all points the radius of the one nearest to x (the paper's section III-D).
-  void use_nearest_radius(const Eigen::Vector3d& x) noexcept;
+  /// The radius of the point nearest to x (the paper's section III-D), m; 0 of an empty patch.
+  [[nodiscard]] double nearest_radius(const Eigen::Vector3d& x) const noexcept;
 
   /// Covers nothing until the next gather.
   void clear() noexcept { extra_ = -1; }
@@ -114,6 +115,9 @@ class Patch {
 /// The position of a layer's point now, relative to `center` (world frame).
 [[nodiscard]] Eigen::Vector3d position_now(const ActiveLayer& layer, std::uint32_t i,
                                            const Eigen::Vector3d& center) noexcept;
+
+/// Does a point count for nothing at any time (speckle)?
+[[nodiscard]] bool weightless(const SurfacePoints& points, std::uint32_t i) noexcept;
 
 /// a_i C_k now; C_k alone with `raw_weights`.
 [[nodiscard]] double weight_now(const ActiveLayer& layer, std::uint32_t i,

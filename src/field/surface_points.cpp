@@ -1,8 +1,12 @@
 #include "palpate/field/surface_points.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <limits>
 
 #include "geometry/neighborhoods.hpp"
+#include "palpate/base/error.hpp"
 #include "palpate/geometry/spacing.hpp"
 
 namespace palpate {
@@ -17,7 +21,58 @@ std::vector<float> reaches(const SurfacePoints& points) {
   return reach;
 }
 
+void require_length(const char* column, std::size_t length, std::size_t expected) {
+  if (length == expected) return;
+  throw Error(fmt::format("surface points: {} has {} entries and not {}; fill it, then finish()",
+                          column, length, expected));
+}
+
+void require_range(const char* column, const std::vector<float>& values, float low, float high) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] >= low && values[i] <= high) continue;
+    throw Error(fmt::format("surface points: {}[{}] is {}; it must lie between {} and {}", column,
+                            i, values[i], low, high));
+  }
+}
+
+void require_finite(const char* column, const std::vector<Eigen::Vector3f>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i].allFinite()) continue;
+    throw Error(fmt::format("surface points: {}[{}] is not finite", column, i));
+  }
+}
+
+void check_lengths(const SurfacePoints& points) {
+  const std::size_t n = points.size();
+  const auto optional = [n](std::size_t length) { return length == 0 ? 0 : n; };
+  require_length("radii", points.radii.size(), n);
+  require_length("density_weights", points.density_weights.size(), n);
+  require_length("confidences", points.confidences.size(), n);
+  require_length("normals", points.normals.size(), optional(points.normals.size()));
+  require_length("materials", points.materials.size(), optional(points.materials.size()));
+  require_length("end_positions", points.end_positions.size(),
+                 optional(points.end_positions.size()));
+  require_length("end_normals", points.end_normals.size(), optional(points.end_normals.size()));
+  require_length("end_density_weights", points.end_density_weights.size(),
+                 optional(points.end_density_weights.size()));
+  require_length("cell_reach", points.cell_reach.size(), points.grid.cells().size());
+}
+
 }  // namespace
+
+void check(const SurfacePoints& points) {
+  check_lengths(points);
+  constexpr float kLarge = std::numeric_limits<float>::max();
+  require_range("radii", points.radii, std::numeric_limits<float>::min(), kLarge);
+  require_range("density_weights", points.density_weights, 0, kLarge);
+  require_range("end_density_weights", points.end_density_weights, 0, kLarge);
+  require_range("confidences", points.confidences, 0, 1);
+  require_range("materials", points.materials, 0, 1);
+  require_finite("normals", points.normals);
+  require_finite("end_normals", points.end_normals);
+  require_finite("end_positions", points.end_positions);
+  if (!points.origin.allFinite()) throw Error("surface points: the origin is not finite");
+}
 
 void finish(SurfacePoints& points) {
   points.cell_reach = points.end_positions.empty()

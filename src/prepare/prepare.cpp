@@ -21,6 +21,7 @@
 #include "palpate/geometry/voxel_grid.hpp"
 #include "prepare/check_options.hpp"
 #include "prepare/count_weights.hpp"
+#include "prepare/irregularity.hpp"
 #include "prepare/limit_growth.hpp"
 #include "prepare/merge_slivers.hpp"
 #include "prepare/noise.hpp"
@@ -47,6 +48,10 @@ constexpr double kPaperMultiple = 2.5;
 
 // Noise is not smoothed away at the price of shape of this part of the cloud's size.
 constexpr double kFinestShape = 25;
+
+// R in spacings at least, where points lie irregularly: gaps between random points are wider than
+// 2.5 spacings' support bridges.
+constexpr double kIrregularMultiple = 3;
 
 /// Adds the time since the last lap to `seconds`.
 class Stopwatch {
@@ -199,6 +204,10 @@ class Preparation {
                            .normal_error = options_.normal_error,
                            .minimum = options_.minimum_radius,
                            .finest_shape = extent() / kFinestShape};
+    if (!support.multiple && report_.voxel <= 0 && is_irregular(points_.grid, spacings_)) {
+      support.multiple =
+          std::max(kIrregularMultiple, support_multiple(report_.noise, report_.spacing));
+    }
     if (!noise_map_) {
       points_.radii = support_radii(spacings_, support);
       return;
@@ -238,6 +247,7 @@ class Preparation {
   }
 
   void weigh() {
+    points_.kernel = options_.kernel;
     sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
     points_.density_weights = density_weights(sums_);
     if (!counts_.empty()) {

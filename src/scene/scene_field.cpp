@@ -5,6 +5,7 @@
 #include <deque>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "field/evaluate.hpp"
 #include "field/free_space.hpp"
@@ -20,6 +21,12 @@ using Eigen::Vector3d;
 // next one is gathered; in support radii.
 constexpr double kMargin = 0.35;
 constexpr double kReserve = 0.1;
+
+// The largest tool, in support radii, that a surface is pushed out by in full.
+constexpr double kToolShare = 0.3;
+
+// The smallest share of the mean radius that sweeps still follow.
+constexpr double kFinest = 0.25;
 
 // A surface may rise this fast and still take a resting proxy along (algorithm.md section 2.4).
 constexpr double kReanchorSpeed = 0.5;  // m/s
@@ -43,9 +50,11 @@ struct SceneField::State {
 
   void list_layers() noexcept;
   void gather(Patch& patch, const Vector3d& center, double extra) const noexcept;
+  void choose_uniform_radius(const Vector3d& proxy) noexcept;
   void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
   [[nodiscard]] const Patch& patch_at(const Ball& ball) const noexcept;
   [[nodiscard]] double radius() const noexcept;
+  [[nodiscard]] FieldNote standing_notes() const noexcept;
 
   ImplicitSurface surface;
   std::deque<SourceView> views;
@@ -54,7 +63,10 @@ struct SceneField::State {
   std::size_t layer_count = 0;
   double typical_radius = 0;  // of the layers
   double snapshot_duration = 0;
-  bool plain = true;  // no materials and no motion: every surface is the same
+  double uniform_radius = 0;  // R of all points; 0: each has its own
+  double now = 0;
+  bool other_kernel = false;
+  bool plain = true;  // one source, sure of it, no materials, no motion: every surface is the same
   std::uint64_t revision = 0;
 
   // Samples away from the path are rare and take a patch of their own; that is a cache.
@@ -67,7 +79,8 @@ struct SceneField::State {
 void SceneField::State::list_layers() noexcept {
   layer_count = 0;
   snapshot_duration = 0;
-  plain = views.size() == 1;
+  other_kernel = false;
+  plain = views.size() == 1 && views.front().presence() == 1;
   typical_radius = std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < views.size(); ++s) {
     const Snapshot* snapshot = views[s].current();
@@ -75,6 +88,8 @@ void SceneField::State::list_layers() noexcept {
     snapshot_duration = std::max(snapshot_duration, snapshot->end - snapshot->start);
     for (std::size_t k = 0; k < snapshot->layers.size(); ++k) {
       const ActiveLayer layer = views[s].layer(k, static_cast<int>(s));
+      if (layer.points->size() == 0) continue;  // a sensor that sees nothing
+      other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
       typical_radius = std::min(typical_radius, layer.points->radius);
       plain = plain && layer.points->materials.empty() && layer.rate == 0;
       layers[layer_count++] = layer;
@@ -85,10 +100,23 @@ void SceneField::State::list_layers() noexcept {
 
 void SceneField::State::gather(Patch& patch, const Vector3d& center, double extra) const noexcept {
   patch.gather(active(), sources(), center, extra,
-               {.raw_weights = surface.options.raw_weights,
+               {.radius = uniform_radius,
+                .raw_weights = surface.options.raw_weights,
                 .normals = surface.options.kind != FieldKind::metaball});
   if (patch.thinned()) notes = notes | FieldNote::thinned;
   ++gathers;
+}
+
+/// Notes that hold whatever is sampled.
+FieldNote SceneField::State::standing_notes() const noexcept {
+  FieldNote found = layer_count > 0 ? FieldNote::none : FieldNote::no_surface;
+  if (near.thinned()) found = found | FieldNote::thinned;
+  if (other_kernel && !surface.options.raw_weights) found = found | FieldNote::other_kernel;
+  const double largest_tool = (1 + 1e-6) * kToolShare * near.smallest_radius();
+  if (near.points() > 0 && surface.options.tool_radius > largest_tool) {
+    found = found | FieldNote::tool_too_large;
+  }
+  return found;
 }
 
 double SceneField::State::radius() const noexcept {
@@ -103,17 +131,23 @@ void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) 
   const double stretch = std::min(length, r);
   const Vector3d end = length > 0 ? Vector3d(proxy + way * (stretch / length)) : proxy;
   const bool covered = near.covers({proxy, kReserve * r}) && near.covers({end, kReserve * r});
-  if (covered && !surface.options.nearest_radius) return;
-  gather(near, 0.5 * (proxy + end), 0.5 * stretch + kMargin * r);
-  if (surface.options.nearest_radius) near.use_nearest_radius(proxy);
+  if (!covered) gather(near, 0.5 * (proxy + end), 0.5 * stretch + kMargin * r);
+}
+
+/// The paper's section III-D: the radius of the point nearest to the proxy is that of all. Where no
+/// point is near, it stays what it was.
+void SceneField::State::choose_uniform_radius(const Vector3d& proxy) noexcept {
+  const double before = std::exchange(uniform_radius, 0);
+  gather(far, proxy, 0);
+  const double nearest = far.nearest_radius(proxy);
+  uniform_radius = nearest > 0 ? nearest : before > 0 ? before : typical_radius;
+  far.clear();
+  if (uniform_radius != before) near.clear();
 }
 
 const Patch& SceneField::State::patch_at(const Ball& ball) const noexcept {
   if (near.covers(ball)) return near;
-  if (!far.covers(ball)) {
-    gather(far, ball.center, std::max(kMargin * radius(), ball.radius));
-    if (surface.options.nearest_radius) far.use_nearest_radius(ball.center);
-  }
+  if (!far.covers(ball)) gather(far, ball.center, std::max(kMargin * radius(), ball.radius));
   return far;
 }
 
@@ -124,23 +158,27 @@ SceneField::~SceneField() = default;
 
 void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) noexcept {
   State& state = *state_;
+  if (std::isfinite(now)) state.now = now;
   bool changed = false;
-  for (SourceView& view : state.views) changed = view.advance(now) || changed;
+  for (SourceView& view : state.views) changed = view.advance(state.now) || changed;
   if (changed) {
     state.list_layers();
     state.near.clear();
     state.far.clear();
     ++state.revision;
   }
-  state.notes = state.layer_count > 0 ? FieldNote::none : FieldNote::no_surface;
-  if (hip.allFinite() && proxy.allFinite()) state.gather_path(hip, proxy);
-  if (state.near.thinned()) state.notes = state.notes | FieldNote::thinned;
+  state.notes = FieldNote::none;
+  if (hip.allFinite() && proxy.allFinite()) {
+    if (options_.nearest_radius) state.choose_uniform_radius(proxy);
+    state.gather_path(hip, proxy);
+  }
+  state.notes = state.notes | state.standing_notes();
+  if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;
 }
 
 Sample SceneField::sample(const Vector3d& x, Side side) const noexcept {
   const State& state = *state_;
-  if (!x.allFinite()) return {};
-  if (state.layer_count == 0) return {.value = 1};  // free; there is no length to measure it in
+  if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free; of no length
   return evaluate(state.surface, state.patch_at({x, 0}), x, side);
 }
 
@@ -152,7 +190,7 @@ bool SceneField::is_free(const Ball& ball) const noexcept {
   if (small || state.near.covers(ball) || state.far.covers(ball)) {
     return palpate::is_free(state.surface, state.patch_at(ball), ball);
   }
-  return is_free_space(state.surface, state.active(), state.sources(), ball);
+  return is_free_space(state.surface, state.active(), state.sources(), ball, state.uniform_radius);
 }
 
 Surface SceneField::surface(const Vector3d& x) const noexcept {
@@ -167,6 +205,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   if (mean.source < 0) return result;
   const SoftMaterial& soft = state.soft[static_cast<std::size_t>(mean.source)];
   result.source = mean.source;
+  result.presence = state.views[static_cast<std::size_t>(mean.source)].presence();
   result.velocity = mean.velocity;
   result.stiffness_factor = soft.stiffness_factor + mean.material * (1 - soft.stiffness_factor);
   result.friction_factor = soft.friction_factor + mean.material * (1 - soft.friction_factor);
@@ -176,8 +215,10 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
 FieldTraits SceneField::traits() const noexcept {
   const State& state = *state_;
   const bool metaball = options_.kind == FieldKind::metaball;
+  // One finely sampled spot must not make sweeps fine everywhere.
   const double smallest =
-      state.near.points() > 0 ? state.near.smallest_radius() : state.typical_radius;
+      std::max(state.near.points() > 0 ? state.near.smallest_radius() : state.typical_radius,
+               kFinest * state.radius());
   FieldTraits traits;
   traits.two_sided = options_.two_sided && !metaball;
   traits.resolution = metaball ? 0.002 * smallest : smallest / 16;

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <utility>
 
 #include "palpate/base/error.hpp"
@@ -20,12 +21,19 @@ void check(const std::string& name, const Snapshot& snapshot) {
     throw Error(fmt::format("source '{}': a snapshot of {} layers; at most {} are felt", name,
                             snapshot.layers.size(), Snapshot::kMaxLayers));
   }
-  if (!(snapshot.end >= snapshot.start)) {
-    throw Error(fmt::format("source '{}': a snapshot from {} s to {} s; the end comes first", name,
-                            snapshot.start, snapshot.end));
+  if (!std::isfinite(snapshot.start) || !std::isfinite(snapshot.end) ||
+      snapshot.end < snapshot.start) {
+    throw Error(
+        fmt::format("source '{}': a snapshot from {} s to {} s; give finite times, in order", name,
+                    snapshot.start, snapshot.end));
   }
+  check_factor(name, "presence_start", snapshot.presence_start);
+  check_factor(name, "presence_end", snapshot.presence_end);
   for (const Layer& layer : snapshot.layers) {
     if (!layer.points) throw Error(fmt::format("source '{}': a layer without points", name));
+    check_factor(name, "a layer's weight_start", layer.weight_start);
+    check_factor(name, "a layer's weight_end", layer.weight_end);
+    check(*layer.points);
   }
 }
 

@@ -9,6 +9,9 @@
 namespace palpate {
 namespace {
 
+// A snapshot that starts later than this is a mistake of clocks, s.
+constexpr double kPatience = 1;
+
 double progress_at(const Snapshot& snapshot, double now) noexcept {
   const double duration = snapshot.end - snapshot.start;
   if (!(duration > 0)) return now < snapshot.start ? 0 : 1;
@@ -31,22 +34,26 @@ SourceView::~SourceView() {
 bool SourceView::advance(double now) noexcept {
   const Snapshot* const snapshot_before = current_;
   const double progress_before = progress_;
-  look();
+  look(now);
   change_over(now);
   progress_ = current_ ? progress_at(*current_, now) : 0;
   return current_ != snapshot_before || progress_ != progress_before;
 }
 
-void SourceView::look() noexcept {
-  if (next_) return;
+void SourceView::look(double now) noexcept {
   const Snapshot* newest = handoff_->peek();
-  if (newest == current_) return;
-  if (!newest) {
-    handoff_->release(reader_, slot_);
-    current_ = nullptr;
-    return;
-  }
+  if (newest == current_ && !next_) return;
+  if (newest && (newest == current_ || newest == next_)) return;
+  if (!newest) return forget();
+  if (next_ && next_->start - now <= kPatience) return;
   next_ = handoff_->acquire(reader_, 1 - slot_);
+}
+
+void SourceView::forget() noexcept {
+  handoff_->release(reader_, slot_);
+  handoff_->release(reader_, 1 - slot_);
+  current_ = nullptr;
+  next_ = nullptr;
 }
 
 void SourceView::change_over(double now) noexcept {
@@ -55,6 +62,11 @@ void SourceView::change_over(double now) noexcept {
   slot_ = 1 - slot_;
   current_ = next_;
   next_ = nullptr;
+}
+
+double SourceView::presence() const noexcept {
+  if (!current_) return 0;
+  return current_->presence_start + progress_ * (current_->presence_end - current_->presence_start);
 }
 
 ActiveLayer SourceView::layer(std::size_t k, int source) const noexcept {

@@ -18,18 +18,23 @@ class SourceView {
   SourceView(const SourceView&) = delete;
   SourceView& operator=(const SourceView&) = delete;
 
-  /// Looks for a new snapshot and brings everything to time `now`, s. True when that moved or
-  /// changed the surface.
+  /// Looks for a new snapshot and brings everything to time `now`, s, which is finite. True when
+  /// that moved or changed the surface. A snapshot that waits for its start is replaced by a newer
+  /// one only when it starts unreasonably late.
   bool advance(double now) noexcept;
 
   /// nullptr: no surface now.
   [[nodiscard]] const Snapshot* current() const noexcept { return current_; }
 
+  /// How sure the current snapshot is now, 0-1; 0 without one.
+  [[nodiscard]] double presence() const noexcept;
+
   /// The current snapshot's k-th layer as it counts now.
   [[nodiscard]] ActiveLayer layer(std::size_t k, int source) const noexcept;
 
  private:
-  void look() noexcept;
+  void look(double now) noexcept;
+  void forget() noexcept;
   void change_over(double now) noexcept;
 
   Handoff<Snapshot>* handoff_;

@@ -43,6 +43,7 @@ inline SurfacePoints make_points(const std::vector<TestPoint>& points,
   std::vector<Eigen::Vector3f> positions;
   for (const TestPoint& p : points) positions.push_back(p.position.cast<float>());
   SurfacePoints result;
+  result.kernel = kernel;
   result.grid = CellGrid(positions);
   const auto weights = brute_density_weights(points, kernel);
   for (const std::uint32_t i : result.grid.order()) {

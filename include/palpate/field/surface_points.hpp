@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "palpate/field/kernel.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 
 namespace palpate {
@@ -26,6 +27,8 @@ struct SurfacePoints {
   std::vector<Eigen::Vector3f> end_normals;
   std::vector<float> end_density_weights;
 
+  Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for
+
   std::vector<float> cell_reach;  ///< for each cell: the largest R_i plus way to go in it, m
   double radius = 0;              ///< a typical R (median), m
   double smallest_radius = 0;     ///< smallest R_i, m
@@ -33,7 +36,11 @@ struct SurfacePoints {
   [[nodiscard]] std::size_t size() const { return grid.size(); }
 };
 
-/// Fills `cell_reach`, `radius` and `smallest_radius` from the other columns.
+/// Fills `cell_reach`, `radius` and `smallest_radius` from the other columns, which must be whole.
 void finish(SurfacePoints& points);
+
+/// Are the columns whole, in range and finished? For those who get points from others.
+/// @throws Error that names the column.
+void check(const SurfacePoints& points);
 
 }  // namespace palpate

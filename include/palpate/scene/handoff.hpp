@@ -21,6 +21,8 @@ namespace palpate {
 /// kReaders * kHeld + 1 values are alive at a time, however many are published.
 template <class T>
 class Handoff {
+  static_assert(std::atomic<const T*>::is_always_lock_free);
+
  public:
   static constexpr std::size_t kReaders = 16;
   /// A reader holds at most two values: the current and the next one.

@@ -12,9 +12,13 @@ namespace palpate {
 /// What update() and the samples since then ran into, as bits.
 enum class FieldNote : std::uint32_t {
   none = 0,
-  thinned = 1u << 0,     ///< more points than the patch holds: every 2nd, 4th, ... was taken.
-                         ///< Remedy: a smaller radius or a larger voxel
-  no_surface = 1u << 1,  ///< no source has a surface now
+  thinned = 1u << 0,          ///< more points than the patch holds: every 2nd, 4th, ... was taken.
+                              ///< Remedy: a smaller radius or a larger voxel
+  no_surface = 1u << 1,       ///< no source has a surface now
+  time_not_finite = 1u << 2,  ///< update() kept the time of the last one
+  other_kernel = 1u << 3,     ///< points were prepared for another kernel than FieldOptions::kernel
+  tool_too_large = 1u << 4,   ///< tool_radius is above 0.3 R here, so it counts for less. Remedy:
+                              ///< PrepareOptions::minimum_radius = tool_radius / 0.3
 };
 
 [[nodiscard]] constexpr FieldNote operator|(FieldNote a, FieldNote b) noexcept {

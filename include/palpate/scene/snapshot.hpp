@@ -21,8 +21,10 @@ struct Layer {
 struct Snapshot {
   static constexpr std::size_t kMaxLayers = 8;
 
-  double start = 0;  ///< s, on the clock that SceneField::update is given
-  double end = 0;    ///< s; not before start
+  double start = 0;           ///< s, on the clock that SceneField::update is given
+  double end = 0;             ///< s; not before start
+  double presence_start = 1;  ///< 0-1: is the sensor still sure of what it saw?
+  double presence_end = 1;
   std::vector<Layer> layers;
 };
 

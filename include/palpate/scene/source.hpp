@@ -39,8 +39,8 @@ class Source {
   void set(const PointCloud& cloud);
 
   /// Makes `snapshot` the newest; nullptr: there is no surface any more. Not real-time.
-  /// @throws Error when it has more than Snapshot::kMaxLayers layers, an empty one, or ends before
-  /// it starts.
+  /// @throws Error when it has more than Snapshot::kMaxLayers layers, a layer that is not whole, a
+  /// weight or presence outside 0-1, or times that are not finite and in order.
   void publish(std::unique_ptr<const Snapshot> snapshot);
 
   /// The newest surface's first layer, for those who draw or explore; may be null. Not real-time.
