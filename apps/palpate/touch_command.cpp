@@ -142,7 +142,7 @@ std::string subtitle(const TouchReport& report) {
       "{} field, K = {:.4g} N/m, {} steps in {:.3g} s, {} contacts, energy given to the "
       "hand {}",
       name_of(report.field.kind), report.proxy.stiffness, grouped(s.steps()), s.duration(),
-      grouped(s.contacts()), energy(energy_at_hand(report)));
+      grouped(s.contacts()), energy(energy_at_hand(report).given));
 }
 
 // Every file is made before the work: a place that does not exist is told at once.

@@ -56,6 +56,12 @@ void print_plan(const ExplorationPlan& plan, std::FILE* out) {
              scale, plan.stiffness, plan.workspace.felt_stiffness(plan.stiffness));
 }
 
+// The second number is the surface's alone, without what holding a force for a step adds.
+void print_energy(const HandEnergy& hand, std::FILE* out) {
+  fmt::print(out, "  energy     {} given to the hand{}, {} along the path\n", energy(hand.given),
+             hand.given < 0 ? " (negative: taken from it)" : "", energy(hand.path));
+}
+
 void print_notes(const TouchStatistics& s, const Style& style, std::FILE* out) {
   bool any = false;
   for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
@@ -114,9 +120,10 @@ Json json_device(const TouchReport& report) {
 
 }  // namespace
 
-double energy_at_hand(const TouchReport& report) {
+HandEnergy energy_at_hand(const TouchReport& report) {
   const double scale = report.plan == nullptr ? 1 : report.plan->workspace.scale;
-  return report.statistics.energy() / scale;
+  const TouchStatistics& s = report.statistics;
+  return {s.given_energy() / scale, s.path_energy() / scale};
 }
 
 const char* name_of(FieldKind kind) {
@@ -143,8 +150,7 @@ void print_report(const TouchReport& report, std::FILE* out) {
              100 * share(s.touching(), s.steps()));
   fmt::print(out, "  force      {:.3g} N at most, changing by {:.2g} N a step at most\n",
              s.largest_force(), s.largest_jump());
-  fmt::print(out, "  energy     {} given to the hand{}\n", energy(energy_at_hand(report)),
-             s.energy() < 0 ? " (negative: taken from it)" : "");
+  print_energy(energy_at_hand(report), out);
   print_notes(s, style, out);
   if (s.touching() == 0) {
     fmt::print(out, "  {} the hand never met the surface: {}\n", style.warning("advice    "),
@@ -161,6 +167,7 @@ Json json_report(const TouchReport& report) {
   }
   const TouchStatistics& s = report.statistics;
   const StepTimes times = s.times();
+  const HandEnergy energies = energy_at_hand(report);
   return {{"palpate", std::string(version())},
           {"clouds", clouds},
           {"preset", report.options.preset},
@@ -175,8 +182,10 @@ Json json_report(const TouchReport& report) {
           {"contact_share", share(s.touching(), s.steps())},
           {"largest_force_N", s.largest_force()},
           {"largest_force_step_N", s.largest_jump()},
-          {"energy_given_to_hand_J", energy_at_hand(report)},
-          {"integral_of_force_over_log_J", s.energy()},
+          {"energy_given_to_hand_J", energies.given},
+          {"energy_along_path_J", energies.path},
+          {"energy_given_in_world_J", s.given_energy()},
+          {"energy_along_path_in_world_J", s.path_energy()},
           {"notes", json_notes(s)}};
 }
 

@@ -25,7 +25,11 @@ struct TouchReport {
 };
 
 /// Work done on the hand, J: in its own metres, where the cloud is magnified (workspace.hpp).
-[[nodiscard]] double energy_at_hand(const TouchReport& report);
+struct HandEnergy {
+  double given = 0;  ///< TouchStatistics::given_energy()
+  double path = 0;   ///< TouchStatistics::path_energy()
+};
+[[nodiscard]] HandEnergy energy_at_hand(const TouchReport& report);
 
 /// As on the command line.
 [[nodiscard]] const char* name_of(FieldKind kind);

@@ -37,7 +37,9 @@ void TouchStatistics::add(const TouchStep& step) {
   const bool first = times_.empty();
   if (first) first_time_ = step.time;
   if (!first) {
-    energy_ += 0.5 * (last_.contact.force + contact.force).dot(step.hip - last_.hip);
+    const Eigen::Vector3d way = step.hip - last_.hip;
+    given_energy_ += last_.contact.force.dot(way);
+    path_energy_ += 0.5 * (last_.contact.force + contact.force).dot(way);
     largest_jump_ = std::max(largest_jump_, (contact.force - last_.contact.force).norm());
   }
   if (contact.touching) {

@@ -49,8 +49,13 @@ class TouchStatistics {
   [[nodiscard]] double largest_force() const { return largest_force_; }
   /// Largest change of the force from one step to the next, N.
   [[nodiscard]] double largest_jump() const { return largest_jump_; }
-  /// Integral of F . dh by trapezoids, J: positive = given to the hand.
-  [[nodiscard]] double energy() const { return energy_; }
+  /// What a device gives the hand that holds each force until the next step, J: the sum of
+  /// F_k . (h_{k+1} - h_k). Negative: taken from the hand. Sampling alone makes it positive: of a
+  /// spring, by K / 2 |h_{k+1} - h_k|^2 a step.
+  [[nodiscard]] double given_energy() const { return given_energy_; }
+  /// The integral of F . dh along the way by trapezoids, J, as if forces changed without steps. It
+  /// shows whether the surface is passive, not whether a device is.
+  [[nodiscard]] double path_energy() const { return path_energy_; }
   /// Steps with each note, in the order of note_text().
   [[nodiscard]] const std::array<std::size_t, kNotes>& notes() const { return notes_; }
   /// By nearest rank. Zero without steps.
@@ -64,7 +69,8 @@ class TouchStatistics {
   std::size_t touching_ = 0;
   double largest_force_ = 0;
   double largest_jump_ = 0;
-  double energy_ = 0;
+  double given_energy_ = 0;
+  double path_energy_ = 0;
   std::array<std::size_t, kNotes> notes_{};
 };
 

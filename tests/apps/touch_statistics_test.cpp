@@ -22,16 +22,35 @@ TouchStep step(double time, const Vector3d& hip, const Vector3d& force) {
 TEST(TouchStatistics, EnergyOfAConstantForceIsForceTimesWay) {
   TouchStatistics statistics;
   for (int i = 0; i <= 10; ++i) statistics.add(step(i, {0.01 * i, 0, 0}, {2, 5, 0}));
-  EXPECT_NEAR(statistics.energy(), 0.2, 1e-15);
+  EXPECT_NEAR(statistics.given_energy(), 0.2, 1e-15);
+  EXPECT_NEAR(statistics.path_energy(), 0.2, 1e-15);
 }
 
-TEST(TouchStatistics, SpringGivesBackWhatItTook) {
+TEST(TouchStatistics, SpringGivesBackWhatItTookAlongThePath) {
   TouchStatistics statistics;
   for (int i = 0; i <= 1000; ++i) {
     const double depth = 1e-3 * std::sin(std::numbers::pi * i / 1000);
     statistics.add(step(1e-3 * i, {0, 0, -depth}, {0, 0, 500 * depth}));
   }
-  EXPECT_NEAR(statistics.energy(), 0, 1e-18);
+  EXPECT_NEAR(statistics.path_energy(), 0, 1e-18);
+}
+
+TEST(TouchStatistics, HeldForceOfASpringGivesHalfStiffnessTimesEachStepSquared) {
+  TouchStatistics statistics;
+  double expected = 0;
+  double before = 0;
+  for (int i = 0; i <= 1000; ++i) {
+    const double depth = 1e-3 * std::sin(std::numbers::pi * i / 20);
+    const double force = depth > 0 ? 500 * depth : 0;
+    statistics.add(step(1e-3 * i, {0, 0, -depth}, {0, 0, force}));
+    if (i > 0 && (depth > 1e-9 || before > 1e-9)) {
+      expected += 0.5 * 500 * std::pow(depth - before, 2);
+    }
+    before = depth;
+  }
+  EXPECT_NEAR(statistics.given_energy(), expected, 1e-12);
+  EXPECT_GT(expected, 1e-4);
+  EXPECT_NEAR(statistics.path_energy(), 0, 1e-15);
 }
 
 TEST(TouchStatistics, PressingInTakesEnergyFromTheHand) {
@@ -40,7 +59,8 @@ TEST(TouchStatistics, PressingInTakesEnergyFromTheHand) {
     const double depth = 1e-5 * i;
     statistics.add(step(1e-3 * i, {0, 0, -depth}, {0, 0, 500 * depth}));
   }
-  EXPECT_NEAR(statistics.energy(), -0.5 * 500 * 1e-6, 1e-15);
+  EXPECT_NEAR(statistics.path_energy(), -0.5 * 500 * 1e-6, 1e-15);
+  EXPECT_NEAR(statistics.given_energy(), -0.5 * 500 * 1e-6 * 0.99, 1e-15);
 }
 
 TEST(TouchStatistics, CountsContactsAndKeepsTheLargest) {
