@@ -53,6 +53,9 @@ void check_usage(const TouchOptions& options) {
   if (options.log == "-" && options.json == "-") {
     throw UsageError("--log and --json cannot both go to standard output");
   }
+  // Where a cloud is explored, K is known later, and checked again.
+  const bool explored = options.trajectory.empty() && !options.stiffness;
+  if (!explored) (void)soft_material(options, options.stiffness.value_or(kStiffness));
   if (!options.viewpoint.empty()) (void)parse_point(options.viewpoint, "--viewpoint");
   if (!options.load.intrinsics.empty()) (void)parse_intrinsics(options.load.intrinsics);
   if (options.friction_static > 0 && options.friction_static < options.friction_dynamic) {
@@ -205,8 +208,10 @@ void touch(const TouchOptions& options) {
   Scene scene;
   const std::vector<TouchedCloud> clouds = fill(scene, options);
   const FieldOptions field_choice = field_options(options);
-  SceneField field(scene, field_choice);
   Hand hand = make_hand(options, scene, field_choice, std::move(trajectory));
+  Scene felt;
+  fill_softened(felt, scene, soft_material(options, hand.stiffness));
+  SceneField field(felt, field_choice);
   Proxy proxy(proxy_options(options, hand.stiffness));
   TouchStatistics statistics(hand.steps);
   play(hand, field, proxy, statistics, outputs);

@@ -62,16 +62,6 @@ std::map<std::string, Eigen::Isometry3d> poses(const TouchOptions& options,
   return result;
 }
 
-// The stiffness of the softest points as a share of the hardest ones'.
-double soft_factor(const TouchOptions& options) {
-  const double hard = options.stiffness.value_or(kStiffness);
-  if (*options.soft_stiffness > hard) {
-    throw UsageError(fmt::format("--soft-stiffness {} is above --stiffness {}; it must not be",
-                                 *options.soft_stiffness, hard));
-  }
-  return *options.soft_stiffness / hard;
-}
-
 void check_intensities(const LoadedCloud& loaded) {
   if (!loaded.file.cloud.intensities.empty()) return;
   throw Error(
@@ -127,12 +117,34 @@ ProxyOptions proxy_options(const TouchOptions& options, double stiffness) {
   return result;
 }
 
+SoftMaterial soft_material(const TouchOptions& options, double stiffness) {
+  SoftMaterial soft;
+  if (!options.soft_stiffness) return soft;
+  if (*options.soft_stiffness > stiffness) {
+    throw UsageError(
+        fmt::format("--soft-stiffness {} is above the {:.4g} N/m of the hardest points; give less, "
+                    "or a larger --stiffness",
+                    *options.soft_stiffness, stiffness));
+  }
+  soft.stiffness_factor = *options.soft_stiffness / stiffness;
+  return soft;
+}
+
+void fill_softened(Scene& scene, const Scene& prepared, const SoftMaterial& soft) {
+  for (std::size_t i = 0; i < prepared.size(); ++i) {
+    SourceOptions options = prepared.source(i).options();
+    options.soft = soft;
+    auto snapshot = std::make_unique<Snapshot>();
+    snapshot->layers.push_back({prepared.source(i).points(), 1, 1});
+    scene.add(prepared.source(i).name(), options).publish(std::move(snapshot));
+  }
+}
+
 std::vector<TouchedCloud> fill(Scene& scene, const TouchOptions& options) {
   const std::vector<CloudArgument> arguments = parse_clouds(options.load.clouds);
   const std::map<std::string, Eigen::Isometry3d> placed = poses(options, arguments);
   SourceOptions source;
   source.prepare = prepare_options(options);
-  if (options.soft_stiffness) source.soft.stiffness_factor = soft_factor(options);
   std::vector<TouchedCloud> clouds;
   for (const CloudArgument& argument : arguments) {
     const LoadedCloud loaded = load(argument, options.load);

@@ -36,4 +36,12 @@ struct TouchedCloud {
 /// @throws UsageError when a pose names no cloud; Error as reading and preparing do.
 [[nodiscard]] std::vector<TouchedCloud> fill(Scene& scene, const TouchOptions& options);
 
+/// What the softest points feel like, where the hardest ones have `stiffness` N/m.
+/// @throws UsageError when they would be harder than these.
+[[nodiscard]] SoftMaterial soft_material(const TouchOptions& options, double stiffness);
+
+/// Puts into `scene` what `prepared` holds, shared, with another soft material: how hard the
+/// hardest points are may be known after preparation only.
+void fill_softened(Scene& scene, const Scene& prepared, const SoftMaterial& soft);
+
 }  // namespace palpate::app

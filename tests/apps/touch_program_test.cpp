@@ -166,6 +166,27 @@ TEST(Touch, SoftStiffnessFollowsTheIntensity) {
   }
 }
 
+TEST(Touch, SoftStiffnessIsAShareOfTheStiffnessThatWasPlanned) {
+  Shell shell;
+  shell.write("plane.ply", plane_ply_with_intensity());
+  // 60 m across: K is chosen for the hand's scale, far below 500.
+  const std::string explore = "touch plane.ply --scale 1000 --duration 4 --log log.csv ";
+  ASSERT_EQ(shell.run(explore + "--json r.json").code, 0);
+  const auto report = nlohmann::json::parse(shell.read("r.json"));
+  const double hard = report["stiffness_N_per_m"].get<double>();
+  ASSERT_LT(hard, 100);
+  ASSERT_EQ(shell.run(explore + fmt::format("--soft-stiffness {}", 0.2 * hard)).code, 0);
+  double smallest = hard;
+  for (const std::string& k : columns(shell.read("log.csv"))["stiffness"]) {
+    if (number(k) > 0) smallest = std::min(smallest, number(k));
+  }
+  EXPECT_GE(smallest, 0.2 * hard * (1 - 1e-6));
+  EXPECT_LT(smallest, 0.9 * hard);
+  const Outcome outcome = shell.run(explore + "--soft-stiffness 100");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("--soft-stiffness"), std::string::npos) << outcome.err;
+}
+
 TEST(Touch, SimulatedHandIsPulledAlongATrajectory) {
   Shell shell;
   shell.write("plane.xyz", plane_xyz());
