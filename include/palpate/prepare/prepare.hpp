@@ -22,7 +22,8 @@ enum class Orientation {
 struct PrepareOptions {
   std::optional<double> voxel = {};            ///< leaf of the voxel filter, m; 0: keep every point
   std::optional<double> radius = {};           ///< one support radius R for all points, m
-  std::optional<double> radius_multiple = {};  ///< m in R = m s; 2.5 unless noise asks for more
+  std::optional<double> radius_multiple = {};  ///< m in R = m s; 2.5, irregular points 3, unless
+                                               ///< noise asks for more
   double minimum_radius = 0;                   ///< no R below this, m (a tool's radius / 0.3)
   double normal_error = 0.02;  ///< wanted error of normals, rad (theta: 1.15 degrees)
   std::optional<Eigen::Vector3d> viewpoint = {};  ///< of the sensor, in the cloud's frame, m
