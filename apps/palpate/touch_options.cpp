@@ -113,6 +113,11 @@ void add_feel_options(CLI::App& command, TouchOptions& o) {
   add("--friction-viscous", o.friction_viscous, "grows with the speed of sliding (0)")
       ->check(not_negative())
       ->type_name("N S/M");
+  add("--soft-friction", o.soft_friction,
+      "share of the friction, 0 to 1, where the cloud's intensity is lowest; it grows to all of it "
+      "where that is highest")
+      ->check(number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }))
+      ->type_name("SHARE");
   add("--texture-amplitude", o.texture_amplitude, "of a fine relief on the surface (0: none)")
       ->check(not_negative())
       ->type_name("METRES");

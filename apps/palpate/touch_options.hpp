@@ -42,6 +42,7 @@ struct TouchOptions {
   double texture_amplitude = 0;          ///< m
   double texture_wavelength = 4e-3;      ///< m
   std::optional<double> soft_stiffness;  ///< N/m
+  std::optional<double> soft_friction;   ///< share, 0 to 1
 
   std::string trajectory;
   std::string device;

@@ -33,7 +33,7 @@ PrepareOptions prepare_options(const TouchOptions& options) {
   result.minimum_radius = options.tool_radius / 0.3;
   result.kernel = kernel(options);
   result.paper = options.preset == "paper";
-  result.material_from_intensity = options.soft_stiffness.has_value();
+  result.material_from_intensity = wants_material(options);
   if (options.one_sided && options.viewpoint.empty()) result.orientation = Orientation::outward;
   if (!options.viewpoint.empty()) {
     result.viewpoint = parse_point(options.viewpoint, "--viewpoint");
@@ -64,10 +64,10 @@ std::map<std::string, Eigen::Isometry3d> poses(const TouchOptions& options,
 
 void check_intensities(const LoadedCloud& loaded) {
   if (!loaded.file.cloud.intensities.empty()) return;
-  throw Error(
-      fmt::format("--soft-stiffness needs a scalar for each point, but {} has no intensity column; "
-                  "leave the option out or give a file with one",
-                  loaded.argument.path));
+  throw Error(fmt::format(
+      "--soft-stiffness and --soft-friction need a scalar for each point, but {} has no "
+      "intensity column; leave them out or give a file with one",
+      loaded.argument.path));
 }
 
 TouchedCloud add(Scene& scene, const LoadedCloud& loaded, const SourceOptions& options) {
@@ -117,8 +117,13 @@ ProxyOptions proxy_options(const TouchOptions& options, double stiffness) {
   return result;
 }
 
+bool wants_material(const TouchOptions& options) {
+  return options.soft_stiffness || options.soft_friction;
+}
+
 SoftMaterial soft_material(const TouchOptions& options, double stiffness) {
   SoftMaterial soft;
+  soft.friction_factor = options.soft_friction.value_or(1);
   if (!options.soft_stiffness) return soft;
   if (*options.soft_stiffness > stiffness) {
     throw UsageError(
@@ -148,7 +153,7 @@ std::vector<TouchedCloud> fill(Scene& scene, const TouchOptions& options) {
   std::vector<TouchedCloud> clouds;
   for (const CloudArgument& argument : arguments) {
     const LoadedCloud loaded = load(argument, options.load);
-    if (options.soft_stiffness) check_intensities(loaded);
+    if (wants_material(options)) check_intensities(loaded);
     const auto pose = placed.find(argument.name);
     source.T_world_sensor = pose == placed.end() ? Eigen::Isometry3d::Identity() : pose->second;
     clouds.push_back(add(scene, loaded, source));

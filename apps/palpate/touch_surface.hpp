@@ -36,6 +36,9 @@ struct TouchedCloud {
 /// @throws UsageError when a pose names no cloud; Error as reading and preparing do.
 [[nodiscard]] std::vector<TouchedCloud> fill(Scene& scene, const TouchOptions& options);
 
+/// Does the command line ask for a material that follows the intensity?
+[[nodiscard]] bool wants_material(const TouchOptions& options);
+
 /// What the softest points feel like, where the hardest ones have `stiffness` N/m.
 /// @throws UsageError when they would be harder than these.
 [[nodiscard]] SoftMaterial soft_material(const TouchOptions& options, double stiffness);

@@ -166,6 +166,30 @@ TEST(Touch, SoftStiffnessFollowsTheIntensity) {
   }
 }
 
+TEST(Touch, SoftFrictionFollowsTheIntensity) {
+  Shell shell;
+  shell.write("plane.ply", plane_ply_with_intensity());
+  double pull[2] = {};
+  for (const int side : {0, 1}) {
+    // Pressed 2 mm deep and drawn along y until the proxy slides, where the material is 1/6 or 5/6.
+    std::string way = "t,hip_x,hip_y,hip_z\n";
+    const double x = side == 0 ? -0.02 : 0.02;
+    for (int i = 0; i < 200; ++i) {
+      way += fmt::format("{},{},{},{}\n", 1e-3 * i, x, 1e-4 * std::max(0, i - 100) - 5e-3,
+                         i < 100 ? 8e-3 - 1e-4 * i : -2e-3);
+    }
+    shell.write("way.csv", way);
+    const Outcome outcome = shell.run(
+        "touch plane.ply --soft-friction 0.1 --friction-dynamic 0.4 --friction-static 0.4 "
+        "--trajectory way.csv --log log.csv");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    auto log = columns(shell.read("log.csv"));
+    pull[side] = -number(log["fy"].back()) / number(log["fz"].back());
+  }
+  EXPECT_NEAR(pull[0], 0.4 * (0.1 + 0.9 / 6), 0.02);
+  EXPECT_NEAR(pull[1], 0.4 * (0.1 + 0.9 * 5 / 6), 0.02);
+}
+
 TEST(Touch, SoftStiffnessIsAShareOfTheStiffnessThatWasPlanned) {
   Shell shell;
   shell.write("plane.ply", plane_ply_with_intensity());
