@@ -7,8 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "apps/palpate/distinct_files.hpp"
-#include "apps/palpate/errors.hpp"
 #include "apps/palpate/log.hpp"
 #include "apps/palpate/output.hpp"
 #include "apps/palpate/picture.hpp"
@@ -16,6 +14,7 @@
 #include "apps/palpate/touch_report.hpp"
 #include "apps/palpate/touch_run.hpp"
 #include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/touch_usage.hpp"
 #include "apps/palpate/words.hpp"
 #include "palpate/device/scripted.hpp"
 #include "palpate/device/simulated.hpp"
@@ -35,52 +34,10 @@ struct Hand {
   std::optional<ExplorationPlan> plan;
 };
 
-void check_files(const TouchOptions& options, const std::vector<CloudArgument>& clouds) {
-  std::vector<NamedFile> read = inputs(clouds);
-  read.push_back({"--trajectory", options.trajectory});
-  check_distinct(
-      read, {{"--log", options.log}, {"--json", options.json}, {"--picture", options.picture}});
-}
-
-void check_usage(const TouchOptions& options) {
-  const auto clouds = parse_clouds(options.load.clouds);
-  for (const CloudArgument& cloud : clouds) {
-    if (cloud.path == "-" && options.trajectory == "-") {
-      throw UsageError("standard input (-) can be read only once");
-    }
-  }
-  check_files(options, clouds);
-  if (options.log == "-" && options.json == "-") {
-    throw UsageError("--log and --json cannot both go to standard output");
-  }
-  // Where a cloud is explored, K is known later, and checked again.
-  const bool explored = options.trajectory.empty() && !options.stiffness;
-  if (!explored) (void)soft_material(options, options.stiffness.value_or(kStiffness));
-  if (!options.viewpoint.empty()) (void)parse_point(options.viewpoint, "--viewpoint");
-  if (!options.load.intrinsics.empty()) (void)parse_intrinsics(options.load.intrinsics);
-  if (options.friction_static > 0 && options.friction_static < options.friction_dynamic) {
-    throw UsageError(
-        fmt::format("--friction-static {} is below --friction-dynamic {}; it must not be",
-                    options.friction_static, options.friction_dynamic));
-  }
-}
-
 // The hand is where `way` says, whatever the force.
 void play_back(Hand& hand, Trajectory way) {
   hand.steps = way.size();
   hand.device = std::make_unique<ScriptedDevice>(std::move(way));
-}
-
-// A day: longer ones are times in another unit, or broken.
-constexpr double kLongest = 86'400;  // s
-
-void check_duration(const Trajectory& trajectory) {
-  const double duration = trajectory.back().time - trajectory.front().time;
-  if (duration <= kLongest) return;
-  throw UsageError(
-      fmt::format("--trajectory lasts {:.6g} s; --device simulated plays {:.0f} s at most: are "
-                  "its times in seconds?",
-                  duration, kLongest));
 }
 
 Hand scripted(const TouchOptions& options, Trajectory trajectory) {
@@ -114,10 +71,10 @@ Hand simulated(const TouchOptions& options, Trajectory trajectory) {
 Hand exploring(const TouchOptions& options, const Scene& scene, const FieldOptions& field) {
   Hand hand;
   PlanOptions plan;
-  plan.duration = options.duration;
+  plan.duration = options.duration.value_or(plan.duration);
   plan.stiffness = options.stiffness.value_or(0);
   plan.tool_radius = options.tool_radius;
-  plan.seed = options.seed;
+  plan.seed = options.seed.value_or(plan.seed);
   const bool pulled = options.device != "scripted";
   if (!pulled) plan.hand.stiffness = std::numeric_limits<double>::infinity();
   hand.plan = plan_exploration(scene, field, plan);
@@ -203,7 +160,7 @@ void touch(const TouchOptions& options) {
   check_usage(options);
   Trajectory trajectory;
   if (!options.trajectory.empty()) trajectory = read_trajectory(options.trajectory);
-  if (!trajectory.empty() && options.device == "simulated") check_duration(trajectory);
+  check_trajectory(options, trajectory);
   Outputs outputs(options);
   Scene scene;
   const std::vector<TouchedCloud> clouds = fill(scene, options);

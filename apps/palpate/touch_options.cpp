@@ -104,7 +104,8 @@ void add_feel_options(CLI::App& command, TouchOptions& o) {
       "K where the cloud's intensity is lowest; it grows to --stiffness where that is highest")
       ->check(not_negative())
       ->type_name("N/M");
-  add("--friction-static", o.friction_static, "coefficient while the proxy sticks (0)")
+  add("--friction-static", o.friction_static,
+      "coefficient while the proxy sticks (--friction-dynamic)")
       ->check(not_negative())
       ->type_name("MU");
   add("--friction-dynamic", o.friction_dynamic, "coefficient while it slides (0)")

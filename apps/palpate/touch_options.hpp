@@ -35,8 +35,8 @@ struct TouchOptions {
   double tool_radius = 0;
   bool one_sided = false;
 
-  std::optional<double> stiffness;  ///< N/m
-  double friction_static = 0;
+  std::optional<double> stiffness;        ///< N/m
+  std::optional<double> friction_static;  ///< the dynamic one unless given
   double friction_dynamic = 0;
   double friction_viscous = 0;           ///< N s/m
   double texture_amplitude = 0;          ///< m
@@ -46,8 +46,8 @@ struct TouchOptions {
 
   std::string trajectory;
   std::string device;
-  double duration = 10;  ///< s
-  std::uint64_t seed = 1;
+  std::optional<double> duration;  ///< s
+  std::optional<std::uint64_t> seed;
 
   std::string log;
   std::string json;

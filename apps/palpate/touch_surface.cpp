@@ -30,7 +30,7 @@ PrepareOptions prepare_options(const TouchOptions& options) {
   PrepareOptions result;
   result.voxel = options.voxel;
   result.radius = options.radius;
-  result.minimum_radius = options.tool_radius / 0.3;
+  result.minimum_radius = smallest_radius(options);
   result.kernel = kernel(options);
   result.paper = options.preset == "paper";
   result.material_from_intensity = wants_material(options);
@@ -105,10 +105,14 @@ FieldOptions field_options(const TouchOptions& options) {
   return result;
 }
 
+double smallest_radius(const TouchOptions& options) {
+  return options.tool_radius / 0.3;
+}
+
 ProxyOptions proxy_options(const TouchOptions& options, double stiffness) {
   ProxyOptions result;
   result.stiffness = stiffness;
-  result.friction.static_coefficient = std::max(options.friction_static, options.friction_dynamic);
+  result.friction.static_coefficient = options.friction_static.value_or(options.friction_dynamic);
   result.friction.dynamic_coefficient = options.friction_dynamic;
   result.friction.viscous = options.friction_viscous;
   result.texture.amplitude = options.texture_amplitude;

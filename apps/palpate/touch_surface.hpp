@@ -18,6 +18,9 @@ inline constexpr double kStiffness = 500;
 /// The field that the command line asks for.
 [[nodiscard]] FieldOptions field_options(const TouchOptions& options);
 
+/// The smallest R that a tool of the size asked for can be felt with, m.
+[[nodiscard]] double smallest_radius(const TouchOptions& options);
+
 /// The proxy that it asks for, with a surface of `stiffness` N/m.
 [[nodiscard]] ProxyOptions proxy_options(const TouchOptions& options, double stiffness);
 

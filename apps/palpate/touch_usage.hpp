@@ -1,0 +1,16 @@
+#pragma once
+
+#include "apps/palpate/touch_options.hpp"
+#include "palpate/geometry/trajectory.hpp"
+
+namespace palpate::app {
+
+/// What can be told of a command line before anything is read.
+/// @throws UsageError when options contradict each other, or would change nothing.
+void check_usage(const TouchOptions& options);
+
+/// Of the trajectory that `options` name. @throws UsageError when it lasts longer than a day and is
+/// to be simulated; Error when a place is farther from the origin than surfaces can be felt.
+void check_trajectory(const TouchOptions& options, const Trajectory& trajectory);
+
+}  // namespace palpate::app
