@@ -16,6 +16,7 @@
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/touch_usage.hpp"
 #include "apps/palpate/words.hpp"
+#include "palpate/base/error.hpp"
 #include "palpate/device/scripted.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
@@ -145,6 +146,9 @@ void tell(const TouchReport& report, Outputs& outputs) {
     outputs.json->close();
   }
   if (outputs.picture) outputs.picture->draw(report.scene, title(report), subtitle(report));
+  const TouchStatistics& s = report.statistics;
+  if (s.steps() == 0 || s.faults() < s.steps()) return;
+  throw Error("every step was a fault: nothing was felt (everything was written)");
 }
 
 Hand make_hand(const TouchOptions& options, const Scene& scene, const FieldOptions& field,

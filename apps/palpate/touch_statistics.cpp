@@ -23,7 +23,9 @@ constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
      "the proxy's iterations ran out before the closest point; it goes on in the next step"},
     {"reanchored", "the surface had moved over the proxy, which was taken along"},
     {"fault",
-     "an input was not finite, so the force was zero from there on; repair the trajectory"},
+     "the hand or the surface was nowhere (not finite, or beyond 1e9 m from the origin), so the "
+     "force "
+     "was zero from there on; repair the trajectory or --pose"},
     {"thinned",
      "more points than the patch holds lay near the tool, so some were left out; give a smaller "
      "--radius or a larger --voxel"},
@@ -55,6 +57,12 @@ void TouchStatistics::add(const TouchStep& step) {
   }
   times_.push_back(step.microseconds);
   last_ = step;
+}
+
+std::size_t TouchStatistics::faults() const {
+  constexpr std::size_t kFault = 4;
+  static_assert(kContactNotes[kFault] == ContactNote::fault);
+  return notes_[kFault];
 }
 
 StepTimes TouchStatistics::times() const {

@@ -58,6 +58,8 @@ class TouchStatistics {
   [[nodiscard]] double path_energy() const { return path_energy_; }
   /// Steps with each note, in the order of note_text().
   [[nodiscard]] const std::array<std::size_t, kNotes>& notes() const { return notes_; }
+  /// Steps that the proxy could not take.
+  [[nodiscard]] std::size_t faults() const;
   /// By nearest rank. Zero without steps.
   [[nodiscard]] StepTimes times() const;
 

@@ -70,6 +70,19 @@ void check_intensities(const LoadedCloud& loaded) {
       loaded.argument.path));
 }
 
+// Farther away the proxy would fault in every step.
+void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
+  if (points.size() == 0) return;
+  const CellGrid::Cell& root = points.grid.cells().front();
+  const double far = std::max((points.origin + root.lower.cast<double>()).cwiseAbs().maxCoeff(),
+                              (points.origin + root.upper.cast<double>()).cwiseAbs().maxCoeff());
+  if (far <= Proxy::kLargestCoordinate) return;
+  throw Error(fmt::format(
+      "{} reaches {:.4g} m from the origin; beyond {:.0e} m no surface can be resolved: "
+      "are --scale and --pose right?",
+      cloud.path, far, Proxy::kLargestCoordinate));
+}
+
 TouchedCloud add(Scene& scene, const LoadedCloud& loaded, const SourceOptions& options) {
   TouchedCloud result{loaded.argument,
                       loaded.file.format,
@@ -82,9 +95,10 @@ TouchedCloud add(Scene& scene, const LoadedCloud& loaded, const SourceOptions& o
   const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
                                     grouped(loaded.file.cloud.size())));
   const auto start = std::chrono::steady_clock::now();
-  scene.add(loaded.argument.name, loaded.file.cloud, options);
+  const Source& source = scene.add(loaded.argument.name, loaded.file.cloud, options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   result.prepare_seconds = taken.count();
+  check_place(loaded.argument, *source.points());
   return result;
 }
 

@@ -101,6 +101,7 @@ TEST(TouchStatistics, CountsEveryNoteUnderItsOwnName) {
     if (statistics.notes()[i] > 0) names += std::string(note_text(i).name) + " ";
   }
   EXPECT_EQ(names, "lost fault thinned ");
+  EXPECT_EQ(statistics.faults(), 1u);
 }
 
 }  // namespace

@@ -71,6 +71,7 @@ TEST(Usage, InputAtFaultEndsWithOneAndNamesIt) {
   shell.write("text.ply", "this is no cloud\n");
   shell.write("plane.xyz", plane_xyz());
   shell.write("bad.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n0,1,1,1\n");
+  shell.write("far.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n1,1e10,1,1\n");
   const std::pair<const char*, const char*> cases[] = {
       {"touch missing.ply", "missing.ply"},
       {"touch empty.ply", "empty.ply"},
@@ -79,6 +80,9 @@ TEST(Usage, InputAtFaultEndsWithOneAndNamesIt) {
       {"touch plane.xyz --trajectory missing.csv", "missing.csv"},
       {"touch plane.xyz --trajectory bad.csv", "line 3"},
       {"touch plane.xyz --soft-stiffness 100", "intensity"},
+      {"touch plane.xyz --trajectory far.csv", "row 1"},
+      {"touch p=plane.xyz --pose p=1e12,0,0,0,0,0,1", "from the origin"},
+      {"touch plane.xyz --scale 1e30", "from the origin"},
       {"touch plane.xyz --log nowhere/log.csv", "nowhere/log.csv"},
       {"touch plane.xyz --duration 0.1 --picture nowhere/a.png", "nowhere/a.png"},
       {"info missing.ply", "missing.ply"},
