@@ -20,6 +20,7 @@
 #include "palpate/geometry/support.hpp"
 #include "palpate/geometry/voxel_grid.hpp"
 #include "prepare/check_options.hpp"
+#include "prepare/close_gaps.hpp"
 #include "prepare/count_weights.hpp"
 #include "prepare/irregularity.hpp"
 #include "prepare/limit_growth.hpp"
@@ -249,6 +250,9 @@ class Preparation {
   void weigh() {
     points_.kernel = options_.kernel;
     sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
+    if (!options_.radius && !options_.paper) {
+      close_gaps(points_.grid, options_.kernel, points_.radii, sums_);
+    }
     points_.density_weights = density_weights(sums_);
     if (!counts_.empty()) {
       weigh_by_counts(points_.grid, in_grid_order(points_.grid, counts_), points_.radii,

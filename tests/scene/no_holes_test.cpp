@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "palpate/contact/proxy.hpp"
+#include "palpate/scene/scene_field.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// Points of a sheet in z = 0 that are off their places by up to a tenth of the spacing.
+class Sheet {
+ public:
+  /// Adds [x0, x1) x [y0, y1), `spacing` apart, m.
+  void add(double x0, double x1, double y0, double y1, double spacing) {
+    for (double x = x0 + spacing / 2; x < x1; x += spacing) {
+      for (double y = y0 + spacing / 2; y < y1; y += spacing) {
+        cloud_.positions.push_back(
+            Vector3d(x + spacing * off(), y + spacing * off(), 0).cast<float>());
+      }
+    }
+  }
+
+  /// Adds points within `size` of the origin.
+  void add_cluster(int count, double size) {
+    for (int i = 0; i < count; ++i) {
+      cloud_.positions.push_back((10 * size * Vector3d(off(), off(), 0.1 * off())).cast<float>());
+    }
+  }
+
+  [[nodiscard]] const PointCloud& cloud() const { return cloud_; }
+
+ private:
+  double off() { return off_(random_); }
+
+  std::mt19937 random_{1};
+  std::uniform_real_distribution<double> off_{-0.1, 0.1};
+  PointCloud cloud_;
+};
+
+/// Does a hand that moves from `from` to `to` end in contact?
+bool stops(SceneField& field, const Vector3d& from, const Vector3d& to) {
+  constexpr int kSteps = 20;
+  Proxy proxy;
+  Contact contact;
+  for (int k = 0; k <= kSteps; ++k) {
+    const Vector3d hand = from + (to - from) * k / kSteps;
+    field.update(k * 1e-3, hand, k == 0 ? hand : proxy.position());
+    contact = proxy.step(field, hand, 1e-3);
+  }
+  return contact.touching;
+}
+
+/// Pokes from z = depth to -depth / 3 that pass; `step`: between them, m.
+int passes(SceneField& field, double x0, double x1, double y1, double step, double depth) {
+  int passed = 0;
+  for (double x = x0; x <= x1; x += step) {
+    for (double y = -y1; y <= y1; y += step) {
+      passed += stops(field, {x, y, depth}, {x, y, -depth / 3}) ? 0 : 1;
+    }
+  }
+  return passed;
+}
+
+TEST(NoHoles, RoundNearDuplicates) {
+  for (const int count : {1, 4, 9, 20, 60}) {
+    for (const double size : {2e-5, 2e-4}) {
+      Sheet sheet;
+      sheet.add(-0.1, 0.1, -0.1, 0.1, 0.01);
+      sheet.add_cluster(count, size);
+      Scene scene;
+      scene.add("sheet", sheet.cloud());
+      SceneField field(scene);
+      EXPECT_EQ(passes(field, -0.03, 0.03, 0.03, 2.5e-3, 0.03), 0) << count << " in " << size;
+    }
+  }
+}
+
+TEST(NoHoles, WhereDensityChangesAtOnce) {
+  for (const int ratio : {2, 3, 4, 6, 8, 12}) {
+    const double fine = 1e-3;
+    Sheet sheet;
+    sheet.add(-0.02, 0, -0.04, 0.04, fine);
+    sheet.add(0, 0.08, -0.04, 0.04, ratio * fine);
+    Scene scene;
+    scene.add("sheet", sheet.cloud());
+    SceneField field(scene);
+    EXPECT_EQ(passes(field, -0.01, 0.06, 0.02, 2e-3, 0.03), 0) << "1:" << ratio;
+  }
+}
+
+TEST(NoHoles, InASphereOfRandomPoints) {
+  constexpr double kSphere = 0.06;
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const auto direction = [&] {
+    return Vector3d(normal(random), normal(random), normal(random)).normalized();
+  };
+  PointCloud cloud;
+  for (int i = 0; i < 8000; ++i) cloud.positions.push_back((kSphere * direction()).cast<float>());
+  Scene scene;
+  scene.add("sphere", cloud);
+  SceneField field(scene);
+  int passed = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3d ray = direction();
+    passed += stops(field, 0.08 * ray, 0.055 * ray) ? 0 : 1;
+  }
+  EXPECT_EQ(passed, 0);
+}
+
+}  // namespace
+}  // namespace palpate
