@@ -132,12 +132,19 @@ void Proxy::release(const Eigen::Vector3d& place) noexcept {
   lost_time_ = 0;
   touching_ = false;
   sliding_ = false;
+  cut_short_ = false;
+}
+
+// The next step has the whole budget for where this one stopped: it does not re-anchor first.
+void Proxy::cut_short(Contact& contact) noexcept {
+  cut_short_ = true;
+  contact.notes = contact.notes | ContactNote::sweep_truncated;
 }
 
 void Proxy::hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept {
   const std::optional<SurfacePoint> at = find_surface(probe, hip, contact);
   if (!at) {
-    if (touching_) fade(hip, dt, contact);
+    if (touching_) keep(probe, hip, dt, contact);
     return;
   }
   lost_time_ = 0;
@@ -160,27 +167,32 @@ std::optional<SurfacePoint> Proxy::find_surface(Probe& probe, const Eigen::Vecto
                                                 Contact& contact) noexcept {
   const Sample here = probe.sample(position_);
   std::optional<SurfacePoint> at;
-  if (surface_moved(probe, here, normal_, probe.traits().revision != revision_)) {
+  const bool changed = probe.traits().revision != revision_;
+  if (!cut_short_ && surface_moved(probe, here, normal_, changed)) {
     at = reanchor(probe, position_, normal_);
     if (at) contact.notes = contact.notes | ContactNote::reanchored;
   }
   if (!at) at = project(probe, position_, here);
   if (!at) at = recover(probe, position_, normal_);
+  cut_short_ = false;
   if (at || !(here.value > 0)) return at;
   const Sweep way = first_contact(probe, position_, hip);
   if (way.end == Sweep::End::hit) return project(probe, way.position);
-  if (way.end == Sweep::End::truncated)
-    contact.notes = contact.notes | ContactNote::sweep_truncated;
-  release(way.position);
+  if (way.end == Sweep::End::clear) {
+    release(hip);
+  } else {
+    cut_short(contact);
+    position_ = way.position;
+  }
   return std::nullopt;
 }
 
 // Takes over where the motion ended. True while the proxy still touches.
 bool Proxy::settle(const Slide& motion, Contact& contact) noexcept {
+  if (motion.end == Slide::End::interrupted || motion.end == Slide::End::postponed) {
+    cut_short(contact);
+  }
   if (motion.end == Slide::End::released || motion.end == Slide::End::interrupted) {
-    if (motion.end == Slide::End::interrupted) {
-      contact.notes = contact.notes | ContactNote::sweep_truncated;
-    }
     release(motion.at.position);
     return false;
   }
@@ -198,6 +210,11 @@ bool Proxy::settle(const Slide& motion, Contact& contact) noexcept {
 void Proxy::press(const Field& field, const Eigen::Vector3d& hip, double dissipated, double dt,
                   Contact& contact) noexcept {
   surface_ = field.surface(position_);
+  pull(hip, dissipated, dt, contact);
+}
+
+void Proxy::pull(const Eigen::Vector3d& hip, double dissipated, double dt,
+                 Contact& contact) noexcept {
   const Eigen::Vector3d stretch = position_ - hip;
   contact.stiffness = tank_.follow(wanted_stiffness(), stretch.norm(), dissipated, dt);
   contact.force = contact.stiffness * stretch;
@@ -209,20 +226,39 @@ double Proxy::wanted_stiffness() const noexcept {
   return options_.stiffness * factor(surface_.stiffness_factor) * factor(surface_.presence);
 }
 
-// No surface anywhere near: the force stays for a moment, then goes, and the contact with it.
-void Proxy::fade(const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept {
-  contact.notes = contact.notes | ContactNote::lost;
-  lost_time_ += dt;
-  const double size = last_force_.norm();
-  if (lost_time_ > kKeepLost) {
-    const double left = size - kFadeRate * dt;
-    if (!(left > 0)) return release(hip);
-    last_force_ *= left / size;
-  }
-  contact.force = last_force_;
+// A contact whose surface was not found in this step. Where the search was only cut short, the
+// spring goes on from as far as it came, lest the force drop for one step.
+void Proxy::keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept {
   contact.normal = normal_;
+  if (cut_short_) return pull(hip, 0, dt, contact);
+  contact.notes = contact.notes | ContactNote::lost;
+  fade(dt);
+  contact.force = last_force_;
   contact.stiffness = tank_.stiffness();
   contact.source = surface_.source;
+  if (last_force_.isZero(0)) let_go(probe, hip);
+}
+
+// The force stays for a moment, then goes.
+void Proxy::fade(double dt) noexcept {
+  lost_time_ += dt;
+  if (lost_time_ <= kKeepLost) return;
+  const double size = last_force_.norm();
+  const double left = size - kFadeRate * dt;
+  if (left > 0) {
+    last_force_ *= left / size;
+  } else {
+    last_force_.setZero();
+  }
+}
+
+// Never through what cannot be found: from a free place to the first contact; from inside, only
+// when the hand has come out again in front of where it went in. Until then the proxy waits there,
+// without force.
+void Proxy::let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept {
+  if (lost_time_ <= kKeepLost) return;
+  if (!probe.inside(position_)) return release(first_contact(probe, position_, hip).position);
+  if ((hip - position_).dot(normal_) >= 0 && !probe.inside(hip)) release(hip);
 }
 
 }  // namespace palpate

@@ -65,8 +65,9 @@ class Slider {
     const double radius = result_.at.radius;
     const Side side = probe_.side;
     const Eigen::Vector3d from = result_.at.position + kLift * radius * result_.at.normal;
+    const int swept = probe_.swept;
     const Sweep way = first_contact(probe_, from, hip_);
-    if (way.end != Sweep::End::hit) return leave(way);
+    if (way.end != Sweep::End::hit) return leave(way, swept, side);
     if ((way.position - from).norm() < kStay * radius) return stay(side);
     const std::optional<SurfacePoint> next = project(probe_, way.position);
     if (!next) return stay(side);
@@ -74,8 +75,15 @@ class Slider {
     return Turn::go_on;
   }
 
-  [[nodiscard]] Turn leave(const Sweep& way) noexcept {
+  // A sweep that only had what others left of the budget proves nothing when it is truncated: the
+  // proxy stays, lest the force drop for one step, and the next step looks again. One that had most
+  // of the budget goes on from where it ended. `swept`: what was spent before it.
+  [[nodiscard]] Turn leave(const Sweep& way, int swept, Side side) noexcept {
     const bool clear = way.end == Sweep::End::clear;
+    if (!clear && swept >= kSweepBudget / 2) {
+      result_.end = Slide::End::postponed;
+      return stay(side);
+    }
     result_.end = clear ? Slide::End::released : Slide::End::interrupted;
     result_.at.position = clear ? hip_ : way.position;
     return Turn::stop;
@@ -120,8 +128,9 @@ class Slider {
     const Eigen::Vector3d over = from + step;
     if (probe_.inside(over)) return Turn::stop;
     if (first_contact(probe_, from, over).end != Sweep::End::clear) return stay(side);
+    const int swept = probe_.swept;
     const Sweep way = first_contact(probe_, over, hip_);
-    if (way.end != Sweep::End::hit) return leave(way);
+    if (way.end != Sweep::End::hit) return leave(way, swept, side);
     const std::optional<SurfacePoint> next = project(probe_, way.position);
     if (!next || (hip_ - next->position).squaredNorm() >
                      (hip_ - at.position).squaredNorm() - kArmijo * step.squaredNorm()) {

@@ -22,6 +22,7 @@ struct Slide {
     unfinished,   ///< on the surface; iterations or evaluations ran out
     released,     ///< in free space, at the hand
     interrupted,  ///< in free space, on the way to the hand: the sweep was truncated
+    postponed,    ///< on the surface; sweeps before had left too little to see whether it is free
   };
   End end = End::resting;
   SurfacePoint at;

@@ -120,6 +120,55 @@ TEST(Moving, LostSurfaceThatComesBackIsFoundAgain) {
   EXPECT_NEAR(c.force.z(), 1.5, 1e-9);
 }
 
+TEST(Moving, LostContactNeverGoesThroughWhatItStoodOn) {
+  DullPlateField plate;
+  Proxy proxy;
+  proxy.reset({0, 0, 0.03});
+  const Vector3d beyond(0, 0, -0.08);
+  drive(proxy, plate, {0, 0, 0.03}, beyond, 1);
+  plate.dull = true;
+  const Contact lost = rest(proxy, plate, beyond, 500);
+  EXPECT_EQ(lost.force.norm(), 0);
+  EXPECT_TRUE(has(lost.notes, ContactNote::lost));
+  EXPECT_NEAR(lost.proxy.z(), 0, 1e-9);
+  plate.dull = false;
+  const Contact found = rest(proxy, plate, {0, 0, -0.001}, 1);
+  EXPECT_NEAR(found.force.z(), 0.5, 1e-6);
+}
+
+TEST(Moving, LostContactEndsWhenTheHandComesOut) {
+  DullPlateField plate;
+  Proxy proxy;
+  proxy.reset({0, 0, 0.03});
+  drive(proxy, plate, {0, 0, 0.03}, {0, 0, -0.01}, 1);
+  plate.dull = true;
+  const Contact lost = rest(proxy, plate, {0, 0, 0.01}, 500);
+  EXPECT_TRUE(lost.touching);
+  const Contact out = rest(proxy, plate, {0, 0, 0.03}, 2);
+  EXPECT_FALSE(out.touching);
+  EXPECT_EQ(out.proxy.z(), 0.03);
+}
+
+TEST(Moving, SearchCutShortKeepsTheSpring) {
+  const PlaneField plane;
+  DoubtfulField field;
+  field.floor = -0.0029;
+  Proxy proxy = pressed(plane);
+  Contact c = proxy.step(field, kHip, kTick);
+  EXPECT_TRUE(has(c.notes, ContactNote::sweep_truncated));
+  EXPECT_TRUE(c.touching);
+  EXPECT_NEAR(c.force.z(), 500 * (c.proxy.z() - kHip.z()), 1e-12);
+  double before = c.force.z();
+  for (int i = 0; i < 4; ++i) {
+    c = proxy.step(field, kHip, kTick);
+    EXPECT_LE(c.force.z(), before + 1e-6);
+    EXPECT_GT(c.force.z(), 0.05 - 1e-6);
+    before = c.force.z();
+  }
+  EXPECT_EQ(c.notes, ContactNote::none);
+  EXPECT_NEAR(c.force.z(), 0.05, 1e-6);
+}
+
 TEST(Moving, StartEmbeddedGoesToTheNearestFront) {
   const SphereField sphere(0.04);
   Proxy proxy;

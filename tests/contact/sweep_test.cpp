@@ -55,17 +55,6 @@ TEST(Sweep, NoWayAtAllIsClear) {
   EXPECT_EQ(first_contact(probe, place, place).end, Sweep::End::clear);
 }
 
-/// Free everywhere, but never certain of it.
-class DoubtfulField final : public Field {
- public:
-  [[nodiscard]] Sample sample(const Vector3d&, Side) const noexcept override {
-    return {.value = 1, .support = 1, .radius = 0.01};
-  }
-  [[nodiscard]] bool is_free(const Ball&) const noexcept override { return false; }
-  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
-  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-5}; }
-};
-
 TEST(Sweep, IsTruncatedWhereItIsStillFreeAndGoesOnNextStep) {
   const DoubtfulField field;
   Probe probe(field, kSmooth, 0, 0);

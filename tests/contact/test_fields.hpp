@@ -95,4 +95,40 @@ class FogField final : public Field {
   [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-4}; }
 };
 
+/// Solid below `floor` and free above, but never certain of it, and blind farther than 0.1 mm away.
+class DoubtfulField final : public Field {
+ public:
+  double floor = -1;  // m
+
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side) const noexcept override {
+    const double height = x.z() - floor;
+    if (height > 1e-4) return {.value = 1, .support = 1, .radius = 0.01};
+    return {.value = height, .gradient = Eigen::Vector3d::UnitZ(), .support = 1, .radius = 0.01};
+  }
+  [[nodiscard]] bool is_free(const Ball&) const noexcept override { return false; }
+  [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-5}; }
+};
+
+/// A plate with faces at z = 0 and z = -5 cm; while it is dull, no surface can be found near it.
+class DullPlateField final : public Field {
+ public:
+  bool dull = false;
+
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side) const noexcept override {
+    if (dull && x.z() < 0.02 && x.z() > -0.07) return {.value = -1, .support = 1, .radius = 0.01};
+    const double above = x.z();
+    const double below = -0.05 - x.z();
+    return {.value = std::max(above, below),
+            .gradient = (above > below ? 1 : -1) * Eigen::Vector3d::UnitZ(),
+            .support = 1,
+            .radius = 0.01};
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return sample(ball.center, 1).value > ball.radius;
+  }
+  [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-4}; }
+};
+
 }  // namespace palpate::test

@@ -92,7 +92,11 @@ class Proxy {
   [[nodiscard]] bool settle(const Slide& motion, Contact& contact) noexcept;
   void press(const Field& field, const Eigen::Vector3d& hip, double dissipated, double dt,
              Contact& contact) noexcept;
-  void fade(const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
+  void pull(const Eigen::Vector3d& hip, double dissipated, double dt, Contact& contact) noexcept;
+  void keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
+  void cut_short(Contact& contact) noexcept;
+  void fade(double dt) noexcept;
+  void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
   [[nodiscard]] double wanted_stiffness() const noexcept;
   [[nodiscard]] Contact faulted() noexcept;
 
@@ -109,6 +113,7 @@ class Proxy {
   bool started_ = false;
   bool touching_ = false;
   bool sliding_ = false;
+  bool cut_short_ = false;  // the last step's search, by its budget
   bool fault_ = false;
 };
 

@@ -1,0 +1,40 @@
+#include "contact/slide.hpp"
+
+#include <gtest/gtest.h>
+
+#include "contact/sweep.hpp"
+#include "contact/test_fields.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+const Texture kSmooth;
+const SurfacePoint kStart{
+    .position = Vector3d::Zero(), .normal = Vector3d::UnitZ(), .radius = 0.01};
+const Vector3d kAbove(0, 0, 0.1);
+
+TEST(Slide, ReleaseThatFewEvaluationsAreLeftForIsPostponed) {
+  DoubtfulField field;
+  field.floor = 0;
+  Probe probe(field, kSmooth, 0, 0.01);
+  probe.swept = kSweepBudget - 100;
+  const Slide motion = slide(probe, kStart, kAbove, false, {});
+  EXPECT_EQ(motion.end, Slide::End::postponed);
+  EXPECT_EQ(motion.at.position, kStart.position);
+  EXPECT_LE(probe.evaluations(), 120);
+}
+
+TEST(Slide, ReleaseThatEvenAWholeBudgetIsTooShortForGoesOnInFreeSpace) {
+  DoubtfulField field;
+  field.floor = 0;
+  Probe probe(field, kSmooth, 0, 0.01);
+  const Slide motion = slide(probe, kStart, kAbove, false, {});
+  EXPECT_EQ(motion.end, Slide::End::interrupted);
+  EXPECT_GT(motion.at.position.z(), 1e-4);
+  EXPECT_LT(motion.at.position.z(), kAbove.z());
+}
+
+}  // namespace
+}  // namespace palpate::test
