@@ -5,9 +5,10 @@
 
 #include <cmath>
 #include <nanoflann.hpp>
-#include <random>
+#include <string>
 #include <vector>
 
+#include "clouds.hpp"
 #include "field/evaluate.hpp"
 #include "field/patch.hpp"
 #include "palpate/field/kernel.hpp"
@@ -20,22 +21,6 @@ using Eigen::Vector3f;
 using namespace palpate;
 
 constexpr double kRadiusOfSphere = 0.1;  // m
-
-/// A bumpy, noisy sphere of about `count` points, evenly spread.
-std::vector<Vector3f> bumpy_sphere(std::size_t count) {
-  std::mt19937 random(1);
-  std::normal_distribution<double> noise(0, 0.2e-3);
-  std::vector<Vector3f> points;
-  const double golden = M_PI * (3 - std::sqrt(5.0));
-  for (std::size_t i = 0; i < count; ++i) {
-    const double z = 1 - 2 * (i + 0.5) / count;
-    const double ring = std::sqrt(1 - z * z);
-    const Vector3d d(ring * std::cos(golden * i), ring * std::sin(golden * i), z);
-    const double r = kRadiusOfSphere + 2e-3 * std::sin(9 * d.x()) * std::cos(7 * d.y());
-    points.push_back((d * (r + noise(random))).cast<float>());
-  }
-  return points;
-}
 
 struct Cloud {
   std::vector<Vector3f> points;
@@ -52,10 +37,6 @@ struct Cloud {
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud,
                                                  3, std::uint32_t>;
 
-double spacing_of(std::size_t count) {
-  return kRadiusOfSphere * std::sqrt(4 * M_PI / static_cast<double>(count));
-}
-
 /// Where a proxy asks: along the surface at 10 cm/s, four evaluations in a step of 1 ms.
 std::vector<Vector3d> path() {
   std::vector<Vector3d> places;
@@ -68,9 +49,9 @@ std::vector<Vector3d> path() {
 
 void nanoflann_sum(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
-  const Cloud cloud{bumpy_sphere(count)};
+  const Cloud cloud{bench::bumpy_sphere(count)};
   const Tree tree(3, cloud, {10});
-  const double radius = 2.5 * spacing_of(count);
+  const double radius = 2.5 * bench::bumpy_sphere_spacing(count);
   const auto places = path();
   nanoflann::SearchParams unsorted(32, 0, false);
   std::vector<std::pair<std::uint32_t, float>> found;
@@ -78,7 +59,8 @@ void nanoflann_sum(benchmark::State& state) {
   std::size_t k = 0;
   double neighbours = 0;
   for (auto _ : state) {
-    const Vector3d& x = places[k++ % places.size()];
+    const Vector3d& x = places[k];
+    k = k + 1 < places.size() ? k + 1 : 0;
     const Vector3f query = x.cast<float>();
     tree.radiusSearch(query.data(), static_cast<float>(radius * radius), found, unsorted);
     double sum = 0;
@@ -98,9 +80,9 @@ void nanoflann_sum(benchmark::State& state) {
 
 SurfacePoints surface_points(std::size_t count) {
   SurfacePoints points;
-  const auto positions = bumpy_sphere(count);
+  const auto positions = bench::bumpy_sphere(count);
   points.grid = CellGrid(positions);
-  points.radii.assign(count, static_cast<float>(2.5 * spacing_of(count)));
+  points.radii.assign(count, static_cast<float>(2.5 * bench::bumpy_sphere_spacing(count)));
   points.density_weights.assign(count, 1.0f);
   points.confidences.assign(count, 1.0f);
   for (const auto& p : points.grid.points()) points.normals.push_back(p.normalized());
@@ -113,7 +95,7 @@ class Walk {
  public:
   Walk(std::size_t count, bool normals)
       : points_(surface_points(count)),
-        margin_(0.35 * 2.5 * spacing_of(count)),
+        margin_(0.35 * 2.5 * bench::bumpy_sphere_spacing(count)),
         gather_{.raw_weights = true, .normals = normals} {}
 
   const Patch& at(const Vector3d& x) {
@@ -145,7 +127,8 @@ void palpate_sum(benchmark::State& state) {
   std::size_t k = 0;
   simd::Sums sums;
   for (auto _ : state) {
-    const Vector3d& x = places[k++ % places.size()];
+    const Vector3d& x = places[k];
+    k = k + 1 < places.size() ? k + 1 : 0;
     const Patch& patch = walk.at(x);
     const Vector3d local = x - patch.center();
     simd::best().weights(patch.columns(), false, local.data(), sums);
@@ -161,21 +144,30 @@ void palpate_sample(benchmark::State& state, FieldKind kind) {
   const auto places = path();
   std::size_t k = 0;
   for (auto _ : state) {
-    const Vector3d& x = places[k++ % places.size()];
+    const Vector3d& x = places[k];
+    k = k + 1 < places.size() ? k + 1 : 0;
     benchmark::DoNotOptimize(evaluate(surface, walk.at(x), x, 1));
   }
   walk.report(state);
 }
 
-void sizes(benchmark::internal::Benchmark* bench) {
-  bench->Arg(36000)->Arg(146000);
+void add_rows(std::size_t count) {
+  const auto points = static_cast<std::int64_t>(count);
+  const auto row = [&](const std::string& name, auto body) {
+    benchmark::RegisterBenchmark((name + "/" + std::to_string(count)).c_str(), body)->Arg(points);
+  };
+  row("metaball_sum/palpate", palpate_sum);
+  row("metaball_sum/nanoflann", nanoflann_sum);
+  row("sample_metaball/palpate",
+      [](benchmark::State& state) { palpate_sample(state, FieldKind::metaball); });
+  row("sample_balanced/palpate",
+      [](benchmark::State& state) { palpate_sample(state, FieldKind::balanced); });
 }
-
-BENCHMARK(nanoflann_sum)->Apply(sizes);
-BENCHMARK(palpate_sum)->Apply(sizes);
-BENCHMARK_CAPTURE(palpate_sample, metaball, FieldKind::metaball)->Apply(sizes);
-BENCHMARK_CAPTURE(palpate_sample, balanced, FieldKind::balanced)->Apply(sizes);
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  for (const std::size_t count : {36000, 146000}) add_rows(count);
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -35,11 +35,17 @@ def medians(files):
     }
 
 
+def readable(milliseconds):
+    if milliseconds < 0.01:
+        return f"{milliseconds * 1e6:.0f} ns"
+    return f"{milliseconds:.2f} ms" if milliseconds < 1000 else f"{milliseconds / 1000:.2f} s"
+
+
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    print("| estimator | points | who | ms | ns a point | ratio to palpate |")
-    print("|---|---|---|---|---|---|")
+    print("| estimator | points | who | time | ratio to palpate |")
+    print("|---|---|---|---|---|")
     notes = []
     for (estimator, points), row in medians(sys.argv[1:]).items():
         if "palpate" not in row:
@@ -47,8 +53,7 @@ def main():
         ours = row["palpate"][0]
         for who, (time, run) in row.items():
             ratio = "" if who == "palpate" else f"{time / ours:.1f}"
-            each = time * 1e6 / points
-            print(f"| {estimator} | {points} | {who} | {time:.2f} | {each:.0f} | {ratio} |")
+            print(f"| {estimator} | {points} | {who} | {readable(time)} | {ratio} |")
             if "p99_degrees_to_pcl" in run:
                 notes.append(
                     f"{estimator}, {points} points, against PCL's: 99th percentile "

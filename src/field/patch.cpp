@@ -127,13 +127,18 @@ bool Patch::gather_layer(const ActiveLayer& layer) noexcept {
 
 /// Notes the places of a run's points that are near enough, every stride_-th of them.
 bool Patch::take_near(const ActiveLayer& layer, std::uint32_t begin, std::uint32_t end) noexcept {
+  const SurfacePoints& points = *layer.points;
+  const Eigen::Vector3f* const start = points.grid.points().data();
+  const Eigen::Vector3f* const way =
+      points.end_positions.empty() ? nullptr : points.end_positions.data();
+  const Eigen::Vector3d shift = center_ - points.origin;
   const std::uint32_t first = (begin + stride_ - 1) / stride_ * stride_;
   for (std::uint64_t i = first; i < end; i += stride_) {
     const auto k = static_cast<std::uint32_t>(i);
-    const Eigen::Vector3d position = position_now(layer, k, center_);
-    const double radius = options_.radius > 0 ? options_.radius : layer.points->radii[k];
-    const double reach = radius + extra_;
-    if (position.squaredNorm() > reach * reach || weightless(*layer.points, k)) continue;
+    const Eigen::Vector3d position =
+        way ? position_now(layer, k, center_) : Eigen::Vector3d(start[k].cast<double>() - shift);
+    const double reach = (options_.radius > 0 ? options_.radius : points.radii[k]) + extra_;
+    if (position.squaredNorm() > reach * reach || weightless(points, k)) continue;
     if (used_ == capacity_) return false;
     for (int axis = 0; axis < 3; ++axis) column(kPosition + axis)[used_] = position[axis];
     index_[used_++] = k;

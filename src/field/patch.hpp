@@ -47,7 +47,8 @@ class Patch {
   void clear() noexcept { extra_ = -1; }
 
   [[nodiscard]] bool covers(const Ball& ball) const noexcept {
-    return (ball.center - center_).norm() + ball.radius <= extra_;
+    const double slack = extra_ - ball.radius;
+    return slack >= 0 && (ball.center - center_).squaredNorm() <= slack * slack;
   }
   [[nodiscard]] const Eigen::Vector3d& center() const noexcept { return center_; }
   [[nodiscard]] std::size_t points() const noexcept { return count_; }

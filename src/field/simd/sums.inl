@@ -10,7 +10,7 @@ namespace palpate::simd {
 namespace {
 
 namespace stdx = std::experimental;
-using Lanes = stdx::fixed_size_simd<double, kLanes>;
+using Lanes = stdx::simd<double, stdx::simd_abi::deduce_t<double, kLanes>>;
 
 inline Lanes load(const double* p) {
   return Lanes(p, stdx::element_aligned);
@@ -34,10 +34,10 @@ inline void add(Vector& to, const Lanes& w, const Vector& v) {
   to.y += w * v.y;
   to.z += w * v.z;
 }
-inline void store(const Vector& v, double out[3]) {
-  out[0] = sum(v.x);
-  out[1] = sum(v.y);
-  out[2] = sum(v.z);
+inline void store(const Vector& v, double scale, double out[3]) {
+  out[0] = scale * sum(v.x);
+  out[1] = scale * sum(v.y);
+  out[2] = scale * sum(v.z);
 }
 inline Vector load3(const double* const column[3], std::uint32_t i) {
   return {load(column[0] + i), load(column[1] + i), load(column[2] + i)};
@@ -47,10 +47,15 @@ inline Vector offsets(const Columns& c, std::uint32_t i, const double x[3]) {
   return {p.x - x[0], p.y - x[1], p.z - x[2]};
 }
 
+// w and -g up to the factors below, which are multiplied into finished sums.
 struct Weight {
   Lanes w;
-  Lanes steep;  // -g
+  Lanes steep;
 };
+template <bool kWendland>
+constexpr double kScaleW = kWendland ? 1 : 1. / 9;
+template <bool kWendland>
+constexpr double kScaleSteep = kWendland ? 20 : 4. / 9;
 
 // Eqs. (1) and (2) with their slopes (field/kernel.hpp), at q = r^2.
 // Without the attribute it is called and not inlined, which costs more than it computes.
@@ -58,9 +63,14 @@ template <bool kWendland>
 [[gnu::always_inline]] inline Weight kernel(const Lanes& q) {
   const Lanes r = kWendland ? Lanes(stdx::sqrt(q)) : q;
   Lanes s = 1.0 - r;
-  stdx::where(s < 0.0, s) = 0.0;
-  if constexpr (kWendland) return {s * s * s * s * (4.0 * r + 1.0), 20.0 * (s * s * s)};
-  return {s * s * (5. / 9 + 4. / 9 * s), s * (20. / 9 + 24. / 9 * s)};
+  s = 0.5 * (s + stdx::abs(s));  // max(s, 0), without a detour through masks
+  if constexpr (kWendland) {
+    const Lanes s3 = s * s * s;
+    return {s * s3 * (4.0 * r + 1.0), s3};
+  }
+  const Lanes twice = s + s;
+  const Lanes sum45 = 5.0 + (twice + twice);  // 5 + 4 s; a product less
+  return {s * s * sum45, s * (sum45 + twice)};
 }
 
 // sum w and sum w R with their gradients. Where all radii are equal, the latter follow.
@@ -82,12 +92,12 @@ struct WeightSums {
     }
   }
 
-  void finish(const Columns& c, int source, Sums& out) const {
-    out.w[source] = sum(w);
-    store(grad_w, out.grad_w[source]);
-    out.wr += kUneven ? sum(wr) : c.uniform_radius * out.w[source];
+  void finish(const Columns& c, int source, double scale_w, double scale_grad, Sums& out) const {
+    out.w[source] = scale_w * sum(w);
+    store(grad_w, scale_grad, out.grad_w[source]);
+    out.wr += kUneven ? scale_w * sum(wr) : c.uniform_radius * out.w[source];
     double grad[3];
-    store(kUneven ? grad_wr : grad_w, grad);
+    store(kUneven ? grad_wr : grad_w, scale_grad, grad);
     for (int axis = 0; axis < 3; ++axis) {
       out.grad_wr[axis] += kUneven ? grad[axis] : c.uniform_radius * grad[axis];
     }
@@ -111,7 +121,7 @@ void weights(const Columns& c, const double x[3], Sums& out) noexcept {
       const Lanes weight = load(c.weight + i);
       sums.add_point(c, i, q, weight * k.w, weight * k.steep * inverse_r2);
     }
-    sums.finish(c, s, out);
+    sums.finish(c, s, kScaleW<kWendland>, kScaleSteep<kWendland>, out);
   }
 }
 
@@ -138,9 +148,9 @@ struct NormalSums {
   void finish(Sums& out) const {
     out.v = sum(v);
     out.vnq = sum(vnq);
-    store(grad_v, out.grad_v);
-    store(vq, out.vq);
-    store(vn, out.vn);
+    store(grad_v, 1, out.grad_v);
+    store(vq, 1, out.vq);
+    store(vn, 1, out.vn);
   }
 };
 
@@ -155,12 +165,13 @@ void all(const Columns& c, const double x[3], Sums& out) noexcept {
       const Lanes inverse_r2 = load(c.inverse_r2 + i);
       const Weight k = kernel<kWendland>(dot(q, q) * inverse_r2);
       const Lanes weight = load(c.weight + i);
-      const Lanes slope = weight * k.steep * inverse_r2;
+      const Lanes slope = kScaleSteep<kWendland> * (weight * k.steep * inverse_r2);
       slope.copy_to(c.slope + i, stdx::element_aligned);
-      sums.add_point(c, i, q, weight * k.w, slope);
-      normals.add_point(c, i, q, weight * k.w, slope);
+      const Lanes w = kScaleW<kWendland> * (weight * k.w);
+      sums.add_point(c, i, q, w, slope);
+      normals.add_point(c, i, q, w, slope);
     }
-    sums.finish(c, s, out);
+    sums.finish(c, s, 1, 1, out);
   }
   normals.finish(out);
 }
@@ -175,7 +186,7 @@ void gradient(const Columns& c, const double x[3], const Linear& b, double out[3
     const Lanes bi = dot(n, alpha) + dot(q, beta) + dot(n, q) * b.gamma + b.delta;
     add(total, load(c.slope + i) * load(c.confidence + i) * bi, q);
   }
-  store(total, out);
+  store(total, 1, out);
 }
 
 template <bool kWendland>
@@ -185,11 +196,11 @@ void bound(const Columns& c, const double x[3], double h, double out[kMaxSources
     for (std::uint32_t i = c.source_begin[s]; i < c.source_begin[s + 1]; i += kLanes) {
       const Vector q = offsets(c, i, x);
       Lanes nearest = stdx::sqrt(dot(q, q)) - h;
-      stdx::where(nearest < 0.0, nearest) = 0.0;
+      nearest = 0.5 * (nearest + stdx::abs(nearest));
       const Lanes r2 = nearest * nearest * load(c.inverse_r2 + i);
       w += load(c.weight + i) * kernel<kWendland>(r2).w;
     }
-    out[s] = sum(w);
+    out[s] = kScaleW<kWendland> * sum(w);
   }
 }
 
