@@ -17,8 +17,10 @@ say "packages"
 need_packages build picture
 
 say "build"
-# The first time without the tests, which need more packages.
-if [ -f build/release/CMakeCache.txt ]; then configure release; else configure release -DPALPATE_BUILD_TESTS=OFF; fi
+# A tree that holds the tests keeps them, unless packages that they need are absent.
+if ! { [ -f build/release/CMakeCache.txt ] && cmake --preset release >/dev/null 2>&1; }; then
+  configure release -DPALPATE_BUILD_TESTS=OFF
+fi
 build release palpate_app
 
 say "touch $cloud"

@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# Measures everything that bench/RESULTS.md holds, in one run, and writes it there.
+#
+# bench/run_all.sh   needs the packages of scripts/packages.txt (groups build, test, bench); real
+#                    clouds are looked for in $PALPATE_DATA, else in ../shared/data, and left out
+#                    with a word where they are absent
+# Quote ratios and medians: other work on the machine shifts single times.
+# shellcheck source=scripts/lib.sh
+source "$(dirname "$0")/../scripts/lib.sh"
+need_packages build test bench
+find_data
+
+say "build"
+configure release -DPALPATE_BUILD_BENCH=ON
+build release geometry_bench field_bench accuracy_bench palpate_app
+programs=build/release
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+speed() {
+  "$programs/bench/$1" --benchmark_repetitions=7 --benchmark_min_time=0.05 \
+    --benchmark_report_aggregates_only=true --benchmark_out_format=json \
+    --benchmark_out="$scratch/$1.json" >/dev/null 2>&1
+}
+
+clouds() {
+  if [ -z "${PALPATE_DATA:-}" ]; then
+    echo "Left out: no real clouds were there."
+    return
+  fi
+  local lidar=$scratch/autzen.las
+  xz -dkc "$PALPATE_DATA/autzen_10m/autzen.las.xz" >"$lidar"
+  bench/step_times.py "$programs/apps/palpate/palpate" \
+    "$PALPATE_DATA/stanford_bunny/bun_zipper.ply" "$PALPATE_DATA/stanford_dragon/dragon_vrip.ply.gz" \
+    "$PALPATE_DATA/pcl_tabletop/osd_test7.pcd" \
+    "$PALPATE_DATA/pcl_tabletop/milk_cartoon_all_small_clorox.pcd" "$lidar,--scale,0.3048"
+  echo
+  echo "The LiDAR at its most: $(/usr/bin/env python3 - "$programs/apps/palpate/palpate" "$lidar" <<'PY'
+import resource, subprocess, sys
+subprocess.run([sys.argv[1], "touch", sys.argv[2], "--scale", "0.3048", "--duration", "1"], check=True,
+               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+print(f"{resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e6:.2f} GB of memory")
+PY
+)."
+}
+
+say "speed beside other libraries"
+speed geometry_bench
+speed field_bench
+say "steps on real clouds"
+clouds >"$scratch/clouds.md"
+say "accuracy"
+for noise in a b; do
+  "$programs/bench/accuracy/accuracy_bench" --noise "$noise" >"$scratch/$noise.md"
+done
+
+{
+  cat <<EOF
+# Results
+
+$(date +%Y-%m-%d), commit $(git rev-parse --short HEAD), $(nproc) cores ($(awk -F': ' '/model name/ { print $2; exit }' /proc/cpuinfo)), load
+$(cut -d' ' -f1 /proc/loadavg) at the end, $(g++ --version | head -n 1), Release. What the rows mean and what was settled: [README.md](README.md).
+All of it in one run of
+
+    bench/run_all.sh
+
+## Speed beside other libraries
+
+One thread, medians of seven repetitions of processor time, peers at the same compiler flags.
+
+$(bench/ratios.py "$scratch/geometry_bench.json" "$scratch/field_bench.json")
+
+## Steps and preparation on real clouds
+
+$(cat "$scratch/clouds.md")
+
+## Accuracy on depth frames with known truth
+
+One raw frame taken as unorganised points. CHAI3D's column is quoted (best of three tuned meshes, each
+metric apart), not run here.
+
+$(cat "$scratch/a.md")
+
+$(cat "$scratch/b.md")
+EOF
+} >bench/RESULTS.md
+say "bench/RESULTS.md is written"
