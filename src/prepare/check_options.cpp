@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "palpate/base/error.hpp"
+#include "prepare/given_signs.hpp"
 
 namespace palpate {
 namespace {
@@ -36,7 +37,7 @@ void check(const PrepareOptions& options, const PointCloud& cloud) {
   if (options.orientation == Orientation::viewpoint && !options.viewpoint && !cloud.viewpoint) {
     throw Error("normals are to point to the viewpoint, but none is known; give one");
   }
-  if (options.orientation == Orientation::given && cloud.normals.empty()) {
+  if (options.orientation == Orientation::given && share_given(cloud.normals) == 0) {
     throw Error("normals are to be as given, but the cloud has none");
   }
   if (options.material_from_intensity && cloud.intensities.empty()) {

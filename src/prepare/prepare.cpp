@@ -21,7 +21,9 @@
 #include "palpate/geometry/voxel_grid.hpp"
 #include "prepare/check_options.hpp"
 #include "prepare/close_gaps.hpp"
+#include "prepare/columns.hpp"
 #include "prepare/count_weights.hpp"
+#include "prepare/given_signs.hpp"
 #include "prepare/irregularity.hpp"
 #include "prepare/limit_growth.hpp"
 #include "prepare/merge_slivers.hpp"
@@ -46,6 +48,9 @@ constexpr double kSliver = 0.7;
 
 // The paper's multiple m, its k nearest neighbours and the level of its metaball (section V).
 constexpr double kPaperMultiple = 2.5;
+
+// Normals of which this share or less is there are as good as none.
+constexpr double kMostGiven = 0.25;
 
 // Noise is not smoothed away at the price of shape of this part of the cloud's size.
 constexpr double kFinestShape = 25;
@@ -77,24 +82,6 @@ PointCloud placed(PointCloud cloud, const Eigen::Isometry3d& T_world_sensor) {
   }
   if (cloud.viewpoint) cloud.viewpoint = T_world_sensor * *cloud.viewpoint;
   return cloud;
-}
-
-template <class T>
-std::vector<T> in_grid_order(const CellGrid& grid, const std::vector<T>& column) {
-  std::vector<T> sorted;
-  sorted.reserve(column.size());
-  for (const std::uint32_t i : grid.order()) sorted.push_back(column[i]);
-  return sorted;
-}
-
-/// 0 at the lowest, 1 at the highest intensity.
-std::vector<float> materials_of(const CellGrid& grid, const std::vector<float>& intensities) {
-  auto materials = in_grid_order(grid, intensities);
-  const auto [low, high] = std::minmax_element(materials.begin(), materials.end());
-  const float from = *low;
-  const float range = *high - *low;
-  for (float& m : materials) m = range > 0 ? (m - from) / range : 1.0f;
-  return materials;
 }
 
 /// One cloud on its way to surface points.
@@ -229,19 +216,18 @@ class Preparation {
   void give_sign() {
     Orientation how = options_.orientation;
     if (how == Orientation::automatic) {
-      how = options_.viewpoint         ? Orientation::viewpoint
-            : !cloud_->normals.empty() ? Orientation::given
-            : viewpoint_               ? Orientation::viewpoint
-                                       : Orientation::outward;
+      const bool given = share_given(cloud_->normals) > kMostGiven;
+      how = options_.viewpoint ? Orientation::viewpoint
+            : given            ? Orientation::given
+            : viewpoint_       ? Orientation::viewpoint
+                               : Orientation::outward;
     }
     if (how == Orientation::viewpoint) {
       const Eigen::Vector3d eye = *viewpoint_ - points_.origin;
       orient_to_viewpoint(points_.grid.points(), eye.cast<float>(), points_.normals);
     } else if (how == Orientation::given) {
-      const auto given = in_grid_order(points_.grid, cloud_->normals);
-      for (std::size_t i = 0; i < given.size(); ++i) {
-        if (given[i].dot(points_.normals[i]) < 0) points_.normals[i] = -points_.normals[i];
-      }
+      orient_as_given(points_.grid, in_grid_order(points_.grid, cloud_->normals), spacings_,
+                      points_.radii, points_.normals);
     } else {
       orient_outward(points_.grid, spacings_, points_.normals);
     }

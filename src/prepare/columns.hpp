@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "palpate/geometry/cell_grid.hpp"
+
+namespace palpate {
+
+/// A cloud's column in the order of the grid made of it.
+template <class T>
+[[nodiscard]] std::vector<T> in_grid_order(const CellGrid& grid, const std::vector<T>& column) {
+  std::vector<T> sorted;
+  sorted.reserve(column.size());
+  for (const std::uint32_t i : grid.order()) sorted.push_back(column[i]);
+  return sorted;
+}
+
+/// In grid order; 0 at the lowest, 1 at the highest intensity.
+[[nodiscard]] std::vector<float> materials_of(const CellGrid& grid,
+                                              const std::vector<float>& intensities);
+
+}  // namespace palpate
