@@ -15,6 +15,8 @@ struct SweepScene {
   const char* name;
   std::vector<TestPoint> (*make)(const Sampling& sampling);
   double extent;  // of the points in x and y, m
+  double height;  // within which the middles of ways lie, m
+  int least_contacts;
 };
 
 std::vector<TestPoint> noisy_sheet(Sampling sampling) {
@@ -36,11 +38,11 @@ std::vector<TestPoint> two_sheets(const Sampling& sampling) {
 }
 
 const SweepScene kScenes[] = {
-    {"sheet", [](const Sampling& s) { return sheet(s, 0.05); }, 0.05},
-    {"noisy_sheet", [](const Sampling& s) { return noisy_sheet(s); }, 0.05},
-    {"line", [](const Sampling& s) { return line(s, 0.05); }, 0.05},
-    {"single_point", single, 0.008},
-    {"two_sheets", two_sheets, 0.05},
+    {"sheet", [](const Sampling& s) { return sheet(s, 0.05); }, 0.05, 0.008, 2500},
+    {"noisy_sheet", [](const Sampling& s) { return noisy_sheet(s); }, 0.05, 0.008, 2500},
+    {"line", [](const Sampling& s) { return line(s, 0.05); }, 0.05, 0.007, 1000},
+    {"single_point", single, 0.008, 0.007, 1200},
+    {"two_sheets", two_sheets, 0.05, 0.014, 2200},
 };
 
 /// Where brute force first finds something solid along the way, and how long the chord is.
@@ -124,12 +126,13 @@ TEST_P(AcceptanceSweep, MissesNothingThatBruteForceFinds) {
     const double radius = 4e-3 * m;
     PointField scene(kScenes[index].make({.radius = radius}), {.kind = kind});
     for (const auto& [length, repeats] :
-         {std::pair{1e-3, 4000}, {2e-3, 3000}, {20e-3, 500}, {100e-3, 100}}) {
+         {std::pair{1e-3, 6000}, {2e-3, 4500}, {20e-3, 750}, {100e-3, 150}}) {
       for (int i = 0; i < effort(repeats); ++i) {
         // Through a place near the points, in any direction.
         const double wide = 1.1 * kScenes[index].extent;
-        const Vector3d center(wide * uniform(random), std::min(wide, 0.02) * uniform(random),
-                              std::min(wide, 0.014) * uniform(random));
+        const double high = kScenes[index].height;
+        const Vector3d center(wide * uniform(random), std::min(wide, 2.5 * high) * uniform(random),
+                              high * uniform(random));
         const Vector3d way =
             length * Vector3d(uniform(random), uniform(random), uniform(random)).normalized();
         const double share = length < 0.01 ? 0.5 : 0.5 * (1 + uniform(random));
@@ -143,7 +146,9 @@ TEST_P(AcceptanceSweep, MissesNothingThatBruteForceFinds) {
   RecordProperty("truncated", tally.truncated);
   EXPECT_EQ(tally.missed, 0) << "of " << tally.contacts << " contacts";
   EXPECT_EQ(tally.late, 0) << "of " << tally.contacts << " contacts";
-  EXPECT_GT(tally.contacts, 0);
+  EXPECT_GT(tally.contacts, effort(kScenes[index].least_contacts));
+  EXPECT_LE(tally.phantom, 1 + tally.contacts / 150);
+  EXPECT_LE(tally.truncated, 1 + tally.contacts / 1000);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, AcceptanceSweep,
