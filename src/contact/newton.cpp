@@ -9,7 +9,8 @@ namespace {
 constexpr int kSteps = 10;
 constexpr double kClamp = 0.3;       // of R
 constexpr double kTolerance = 1e-6;  // of R
-constexpr double kAccept = 1e-4;     // of R, when the steps have run out
+constexpr double kLastStep = 2e-4;  // of R: a step so short leaves its square, which needs no proof
+constexpr double kAccept = 1e-4;    // of R, when the steps have run out
 constexpr double kLeastGradient = 1e-8;
 constexpr double kLeastSupport = 1e-6;
 
@@ -37,6 +38,9 @@ std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
     const double tolerance = (step < kSteps ? kTolerance : kAccept) * radius;
     if (std::abs(*distance) < tolerance) return SurfacePoint{place, normal, radius};
     if (step == kSteps) return std::nullopt;
+    if (std::abs(*distance) < kLastStep * radius) {
+      return SurfacePoint{place - *distance * normal, normal, radius};
+    }
     place -= std::clamp(*distance, -kClamp * radius, kClamp * radius) * normal;
     here = probe.sample(place);
   }
