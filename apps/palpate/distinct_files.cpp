@@ -21,9 +21,9 @@ bool is_plain(const std::string& path) {
 bool same_place(const std::string& a, const std::string& b) {
   std::error_code failed;
   if (fs::equivalent(a, b, failed) && !failed) return true;  // two names of one file
-  const fs::path place = fs::weakly_canonical(a, failed);
+  const fs::path place = fs::weakly_canonical(fs::absolute(a), failed);
   if (failed) return a == b;
-  return place == fs::weakly_canonical(b, failed) && !failed;
+  return place == fs::weakly_canonical(fs::absolute(b), failed) && !failed;
 }
 
 }  // namespace

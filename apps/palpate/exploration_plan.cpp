@@ -22,7 +22,6 @@ constexpr double kPatch = 0.6;       // m across that a hand explores in some se
 constexpr double kPatchRadii = 20;   // ... or, where that is more, as many R
 constexpr double kDepth = 0.75;      // R under the surface
 constexpr double kLargestForce = 4;  // N
-constexpr double kStiffest = 2000;   // N/m that the simulated hand holds without humming
 
 // All sources' points, relative to one origin. A single source's are not copied: it may be large.
 struct Union {

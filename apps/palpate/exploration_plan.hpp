@@ -10,6 +10,10 @@
 
 namespace palpate::app {
 
+/// The stiffest surface, N/m to the hand, that the simulated hand holds without humming: about
+/// b / 1.5 T with its and the device's damping b, half a step of holding and one of delay.
+inline constexpr double kStiffest = 2000;
+
 /// How a hand on a desk explores a scene of any size.
 struct ExplorationPlan {
   Workspace workspace;   ///< magnified so that what is explored fits a hand's reach

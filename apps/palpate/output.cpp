@@ -22,7 +22,7 @@ bool as_it_is(const std::string& path) {
 
 std::string where_links_lead(const std::string& path) {
   std::error_code failed;
-  const fs::path place = fs::weakly_canonical(path, failed);
+  const fs::path place = fs::weakly_canonical(fs::absolute(path), failed);
   return failed ? path : place.string();
 }
 

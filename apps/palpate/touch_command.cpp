@@ -168,6 +168,7 @@ void touch(const TouchOptions& options) {
   Outputs outputs(options);
   Scene scene;
   const std::vector<TouchedCloud> clouds = fill(scene, options);
+  check_texture(options, scene);
   const FieldOptions field_choice = field_options(options);
   Hand hand = make_hand(options, scene, field_choice, std::move(trajectory));
   Scene felt;

@@ -98,7 +98,7 @@ void add_feel_options(CLI::App& command, TouchOptions& o) {
   };
   add("--stiffness", o.stiffness,
       "K of the surface, in the cloud's metres (500; less where a large cloud is explored)")
-      ->check(positive())
+      ->check(number("above 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }))
       ->type_name("N/M");
   add("--soft-stiffness", o.soft_stiffness,
       "K where the cloud's intensity is lowest; it grows to --stiffness where that is highest")

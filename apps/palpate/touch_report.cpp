@@ -126,6 +126,26 @@ HandEnergy energy_at_hand(const TouchReport& report) {
   return {s.given_energy() / scale, s.path_energy() / scale};
 }
 
+std::vector<std::string> advice(const TouchReport& report) {
+  std::vector<std::string> sentences;
+  if (report.statistics.touching() == 0) {
+    sentences.push_back(fmt::format(
+        "the hand never met the surface: {}",
+        report.plan != nullptr
+            ? "give it more time (--duration)"
+            : "is the trajectory in metres and in the cloud's frame, and --scale right?"));
+  }
+  const double scale = report.plan == nullptr ? 1 : report.plan->workspace.scale;
+  const double felt = scale * report.proxy.stiffness;
+  if (felt > kStiffest) {
+    sentences.push_back(
+        fmt::format("{:.4g} N/m to the hand is stiffer than forces held for a step can be without "
+                    "giving it energy; a --stiffness up to {:.4g} is steady",
+                    felt, kStiffest / scale));
+  }
+  return sentences;
+}
+
 const char* name_of(FieldKind kind) {
   if (kind == FieldKind::metaball) return "metaball";
   return kind == FieldKind::pointset ? "pointset" : "balanced";
@@ -152,11 +172,8 @@ void print_report(const TouchReport& report, std::FILE* out) {
              s.largest_force(), s.largest_jump());
   print_energy(energy_at_hand(report), out);
   print_notes(s, style, out);
-  if (s.touching() == 0) {
-    fmt::print(out, "  {} the hand never met the surface: {}\n", style.warning("advice    "),
-               report.plan != nullptr
-                   ? "give it more time (--duration)"
-                   : "is the trajectory in metres and in the cloud's frame, and --scale right?");
+  for (const std::string& sentence : advice(report)) {
+    fmt::print(out, "  {} {}\n", style.warning("advice    "), sentence);
   }
 }
 
@@ -186,7 +203,8 @@ Json json_report(const TouchReport& report) {
           {"energy_along_path_J", energies.path},
           {"energy_given_in_world_J", s.given_energy()},
           {"energy_along_path_in_world_J", s.path_energy()},
-          {"notes", json_notes(s)}};
+          {"notes", json_notes(s)},
+          {"advice", advice(report)}};
 }
 
 }  // namespace palpate::app

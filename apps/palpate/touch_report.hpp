@@ -31,6 +31,9 @@ struct HandEnergy {
 };
 [[nodiscard]] HandEnergy energy_at_hand(const TouchReport& report);
 
+/// What to do differently, in whole sentences; empty: nothing.
+[[nodiscard]] std::vector<std::string> advice(const TouchReport& report);
+
 /// As on the command line.
 [[nodiscard]] const char* name_of(FieldKind kind);
 

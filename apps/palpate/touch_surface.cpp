@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <map>
 
 #include "apps/palpate/errors.hpp"
@@ -14,6 +15,9 @@
 namespace palpate::app {
 
 namespace {
+
+// The relief goes 2 amplitudes deep, and weights run out at about half an R under the points.
+constexpr double kDeepestTexture = 0.2;  // R
 
 FieldKind field_kind(const TouchOptions& options) {
   if (options.field == "pointset") return FieldKind::pointset;
@@ -133,6 +137,18 @@ ProxyOptions proxy_options(const TouchOptions& options, double stiffness) {
   result.texture.wavelength = options.texture_wavelength;
   if (options.preset == "paper") result.method = ProxyMethod::single_step;
   return result;
+}
+
+void check_texture(const TouchOptions& options, const Scene& scene) {
+  double largest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    largest = std::min(largest, kDeepestTexture * scene.source(i).report().radius);
+  }
+  if (options.texture_amplitude <= largest) return;
+  throw UsageError(
+      fmt::format("--texture-amplitude {} is carved deeper than the surface reaches with its R; "
+                  "give {:.2g} at most",
+                  options.texture_amplitude, largest));
 }
 
 bool wants_material(const TouchOptions& options) {

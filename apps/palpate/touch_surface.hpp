@@ -42,6 +42,10 @@ struct TouchedCloud {
 /// Does the command line ask for a material that follows the intensity?
 [[nodiscard]] bool wants_material(const TouchOptions& options);
 
+/// @throws UsageError when the texture would be carved deeper than the thinnest surface of `scene`
+/// reaches, so that no hand could meet it.
+void check_texture(const TouchOptions& options, const Scene& scene);
+
 /// What the softest points feel like, where the hardest ones have `stiffness` N/m.
 /// @throws UsageError when they would be harder than these.
 [[nodiscard]] SoftMaterial soft_material(const TouchOptions& options, double stiffness);

@@ -201,7 +201,8 @@ TEST(Touch, SoftStiffnessIsAShareOfTheStiffnessThatWasPlanned) {
   ASSERT_LT(hard, 100);
   ASSERT_EQ(shell.run(explore + fmt::format("--soft-stiffness {}", 0.2 * hard)).code, 0);
   double smallest = hard;
-  for (const std::string& k : columns(shell.read("log.csv"))["stiffness"]) {
+  auto log = columns(shell.read("log.csv"));
+  for (const std::string& k : log["stiffness"]) {
     if (number(k) > 0) smallest = std::min(smallest, number(k));
   }
   EXPECT_GE(smallest, 0.2 * hard * (1 - 1e-6));
