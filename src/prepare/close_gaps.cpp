@@ -17,7 +17,7 @@ constexpr float kMultiple = 2.5f;      // R over the gap
 constexpr float kFaint = 2.5f;         // sums of weights: 4.5 and more inside a sheet
 constexpr float kOpposite = -0.5f;     // cosine between two that lie on opposite sides
 constexpr float kFirstReach = 1.5f;    // radii
-constexpr int kWidenings = 3;          // of the reach, each twofold: gaps up to six radii
+constexpr int kWidenings = 2;          // of the reach, each twofold: gaps up to three radii
 constexpr std::size_t kEnough = 2048;  // points in reach: no sparse place any more
 
 /// The nearest in each of the six cones round the axes.
