@@ -36,5 +36,20 @@ TEST(Slide, ReleaseThatEvenAWholeBudgetIsTooShortForGoesOnInFreeSpace) {
   EXPECT_LT(motion.at.position.z(), kAbove.z());
 }
 
+// Four radii deep in a hollow, a whole tangent overshoots four times.
+TEST(Slide, HollowTakesFewSubSteps) {
+  const BowlField bowl(0.01);
+  Probe probe(bowl, kSmooth, 1, 0.01);
+  const SurfacePoint bottom{.position = {0, 0, -0.01}, .normal = Vector3d::UnitZ(), .radius = 0.01};
+  const Vector3d direction = Vector3d(0.4, 0.1, -1).normalized();
+  const Slide motion = slide(probe, bottom, 0.04 * direction, false, {});
+  EXPECT_EQ(motion.end, Slide::End::resting);
+  EXPECT_LT((motion.at.position - 0.01 * direction).norm(), 1e-5);
+  EXPECT_LE(motion.iterations, 6);
+  EXPECT_LE(probe.evaluations(), 20);
+  RecordProperty("iterations", motion.iterations);
+  RecordProperty("evaluations", probe.evaluations());
+}
+
 }  // namespace
 }  // namespace palpate::test
