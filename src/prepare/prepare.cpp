@@ -91,6 +91,7 @@ class Preparation {
               const Eigen::Isometry3d& T_world_sensor)
       : options_(options), cloud_(&cloud) {
     check(options, cloud);
+    check_pose(T_world_sensor);
     report_.points_in = cloud.size();
     if (options.clip || !T_world_sensor.matrix().isIdentity(0)) {
       own_ = placed(options.clip ? clip(cloud, *options.clip) : cloud, T_world_sensor);

@@ -128,6 +128,40 @@ TEST(Prepare, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)prepare(flat(), {.clip = Box{{5, 5, 5}, {6, 6, 6}}}), Error);
 }
 
+TEST(Prepare, RefusesCloudsThatAreNotWhole) {
+  const auto refuses = [](const auto& spoil, const PrepareOptions& options = {}) {
+    PointCloud cloud = flat();
+    spoil(cloud);
+    EXPECT_THROW((void)prepare(cloud, options), Error);
+  };
+  refuses([](PointCloud& c) { c.normals.resize(3); });
+  refuses([](PointCloud& c) { c.colors.resize(c.size() + 1); });
+  refuses([](PointCloud& c) { c.intensities.resize(3); });
+  refuses([](PointCloud& c) { c.positions[7].y() = NAN; });
+  refuses([](PointCloud& c) { c.origin.x() = NAN; });
+  refuses([](PointCloud& c) { c.viewpoint = Vector3d(0, INFINITY, 0); });
+  refuses([](PointCloud&) {}, {.viewpoint = Vector3d(0, NAN, 0)});
+  const auto spoil_intensity = [](PointCloud& c) {
+    c.intensities.assign(c.size(), 1.0f);
+    c.intensities[9] = NAN;
+  };
+  refuses(spoil_intensity, {.material_from_intensity = true});
+}
+
+TEST(Prepare, RefusesPosesThatAreNotRigid) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation().x() = NAN;
+  EXPECT_THROW((void)prepare(flat(), {}, pose), Error);
+  pose.setIdentity();
+  pose.linear() *= 1.01;
+  EXPECT_THROW((void)prepare(flat(), {}, pose), Error);
+  pose.setIdentity();
+  pose.linear()(2, 2) = -1;
+  EXPECT_THROW((void)prepare(flat(), {}, pose), Error);
+  pose.linear()(2, 2) = 1 + 1e-7;  // a rotation that came from floats
+  EXPECT_NO_THROW((void)prepare(flat(), {}, pose));
+}
+
 TEST(Prepare, FewPointsAreFelt) {
   for (int count = 1; count <= 6; ++count) {
     PointCloud cloud;

@@ -61,7 +61,8 @@ struct Prepared {
 
 /// Filters, indexes and orients a cloud and places it in the world. Runs on every core; the result
 /// does not depend on their number.
-/// @throws Error when no point is left or an option makes no sense.
+/// @throws Error when no point is left, an option makes no sense, a point is not finite, a column
+/// is neither empty nor as long as the points, or the pose is not rigid.
 [[nodiscard]] Prepared prepare(
     const PointCloud& cloud, const PrepareOptions& options = {},
     const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity());
