@@ -29,7 +29,7 @@ std::size_t shade(std::size_t count, std::size_t largest) {
 }  // namespace
 
 DensityMap map_density(const PointCloud& cloud, int columns) {
-  const Box box = bounds_of(cloud);
+  const Box box = core_of(cloud);
   const Eigen::Vector3d size = box.size();
   Eigen::Index shortest = 0;
   size.minCoeff(&shortest);
@@ -43,6 +43,7 @@ DensityMap map_density(const PointCloud& cloud, int columns) {
   map.rows = std::clamp(static_cast<int>(std::ceil(height / (2 * map.cell))), 1, kMostRows);
   map.counts.resize(map.place(map.rows, 0));
   for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!box.contains(cloud.point(i))) continue;
     const Eigen::Vector3d p = cloud.point(i) - box.lower;
     const int column = std::min(static_cast<int>(p[map.horizontal] / map.cell), map.columns - 1);
     const int row = std::min(static_cast<int>(p[map.vertical] / (2 * map.cell)), map.rows - 1);

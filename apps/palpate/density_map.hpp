@@ -7,7 +7,7 @@
 
 namespace palpate::app {
 
-/// A cloud seen along its shortest side, as counts on a grid.
+/// A cloud without stray points seen along its shortest side, as counts on a grid.
 struct DensityMap {
   int columns = 0;
   int rows = 0;

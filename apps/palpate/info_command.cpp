@@ -26,7 +26,8 @@ InfoReport study(const CloudArgument& argument, const LoadOptions& options) {
   const PointCloud& cloud = report.loaded.file.cloud;
   const Waiting waiting("studying " + argument.name);
   report.bounds = bounds_of(cloud);
-  report.units = guess_units(report.bounds, report.loaded.file.format);
+  report.core = core_of(cloud);
+  report.units = guess_units(report.core, report.loaded.file.format);
   report.spacing = measure_spacing(CellGrid(cloud.positions));
   const Prepared prepared = prepare(cloud);
   report.prepared = prepared.report;

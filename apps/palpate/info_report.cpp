@@ -49,6 +49,11 @@ void print_bounds(const InfoReport& report, std::FILE* out) {
     fmt::print(out, "  {}          {:.6g} to {:.6g}, {} long\n", "xyz"[axis],
                report.bounds.lower[axis], report.bounds.upper[axis], length(size[axis]));
   }
+  const Eigen::Vector3d core = report.core.size();
+  if (core != size) {
+    fmt::print(out, "  core       {} x {} x {} but for some stray points\n", length(core.x()),
+               length(core.y()), length(core.z()));
+  }
   fmt::print(out, "  units      {}: {}\n", report.units.units, report.units.reason);
   if (!report.units.advice.empty()) fmt::print(out, "             {}\n", report.units.advice);
 }

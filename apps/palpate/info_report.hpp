@@ -12,6 +12,7 @@ namespace palpate::app {
 struct InfoReport {
   LoadedCloud loaded;
   Box bounds;
+  Box core;  ///< without stray points
   UnitsGuess units;
   SpacingFacts spacing;
   PrepareReport prepared;  ///< with the defaults: the advice

@@ -95,7 +95,7 @@ TouchedCloud add(Scene& scene, const LoadedCloud& loaded, const SourceOptions& o
                       loaded.seconds,
                       {},
                       0};
-  result.units = guess_units(bounds_of(loaded.file.cloud), loaded.file.format);
+  result.units = guess_units(core_of(loaded.file.cloud), loaded.file.format);
   const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
                                     grouped(loaded.file.cloud.size())));
   const auto start = std::chrono::steady_clock::now();

@@ -51,5 +51,15 @@ TEST(CloudFacts, OnePointIsAllRim) {
   EXPECT_EQ(rim_share(prepare(cloud).points), 1);
 }
 
+TEST(CloudFacts, StrayPointSaysNothingOfTheCore) {
+  PointCloud cloud = synthetic_cloud("bumps");
+  const Box all = bounds_of(cloud);
+  EXPECT_EQ(core_of(cloud).lower, all.lower);
+  EXPECT_EQ(core_of(cloud).upper, all.upper);
+  cloud.positions.push_back({500, -300, 200});
+  EXPECT_GT(bounds_of(cloud).size().maxCoeff(), 400);
+  EXPECT_NEAR(core_of(cloud).size().maxCoeff(), all.size().maxCoeff(), 2e-3);
+}
+
 }  // namespace
 }  // namespace palpate::app

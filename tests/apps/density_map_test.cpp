@@ -39,5 +39,16 @@ TEST(DensityMap, OnePointIsOneLetter) {
   EXPECT_EQ(draw(map_density(cloud, 72), false), "  @\n");
 }
 
+TEST(DensityMap, StrayPointIsLeftOut) {
+  PointCloud cloud = synthetic_cloud("bumps");
+  const DensityMap before = map_density(cloud, 40);
+  cloud.positions.push_back({500, -300, 200});
+  const DensityMap after = map_density(cloud, 40);
+  EXPECT_NEAR(after.cell, before.cell, 0.02 * before.cell);
+  EXPECT_NEAR(after.rows, before.rows, 1);
+  const auto empty = [](const DensityMap& map) { return std::ranges::count(map.counts, 0u); };
+  EXPECT_LT(empty(after), 80) << empty(before);  // two rows
+}
+
 }  // namespace
 }  // namespace palpate::app
