@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "apps/palpate/touch_surface.hpp"
@@ -17,11 +18,12 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kReach = 0.3;       // m across that a hand on a desk reaches
-constexpr double kPatch = 0.6;       // m across that a hand explores in some seconds ...
-constexpr double kPatchRadii = 20;   // ... or, where that is more, as many R
-constexpr double kDepth = 0.75;      // R under the surface
-constexpr double kLargestForce = 4;  // N
+constexpr double kReach = 0.3;          // m across that a hand on a desk reaches
+constexpr double kPatch = 0.6;          // m across that a hand explores in some seconds ...
+constexpr double kPatchRadii = 20;      // ... or, where that is more, as many R
+constexpr double kDepth = 0.75;         // R under the surface
+constexpr double kLargestForce = 4;     // N
+constexpr double kPaperMultiple = 2.5;  // m = R / s where s is not known
 
 // All sources' points, relative to one origin. A single source's are not copied: it may be large.
 struct Union {
@@ -30,7 +32,8 @@ struct Union {
   std::vector<Vector3f> points;
   std::vector<Vector3f> normals;
   Box box;
-  double radius = 0;  // of the source with most points
+  double radius = 0;   // of the source with most points
+  double spacing = 0;  // likewise; 0: not known
 
   [[nodiscard]] ExploredSurface view() const {
     if (sources.size() > 1) return {origin, points, normals};
@@ -60,7 +63,10 @@ Union unite(const Scene& scene) {
     const Vector3d shift = source->origin - all.origin;
     all.box.extend(root.lower.cast<double>() + shift);
     all.box.extend(root.upper.cast<double>() + shift);
-    if (source->size() > most) all.radius = source->radius;
+    if (source->size() > most) {
+      all.radius = source->radius;
+      all.spacing = scene.source(i).report().spacing;
+    }
     most = std::max(most, source->size());
   }
   if (all.sources.empty()) throw Error("there is nothing to explore: no cloud has a point");
@@ -70,10 +76,20 @@ Union unite(const Scene& scene) {
   return all;
 }
 
+// The sum of raw weights at a point of a plane: m^2 times the kernel's integral over the plane.
+double raw_weight(Kernel kernel, double multiple) {
+  const double integral = 2 * std::numbers::pi / (kernel == Kernel::wyvill ? 27. / 4 : 14.);
+  return multiple * multiple * integral;
+}
+
 // How far the felt surface lies above the points.
-double offset(const FieldOptions& field, double radius, double tool_radius) {
+double offset(const FieldOptions& field, const Union& all, double tool_radius) {
   if (field.kind != FieldKind::metaball) return tool_radius;
-  return (field.raw_weights ? 0.7 : 0.49) * radius + tool_radius;
+  double level = field.threshold;
+  if (field.raw_weights) {
+    level /= raw_weight(field.kernel, all.spacing > 0 ? all.radius / all.spacing : kPaperMultiple);
+  }
+  return plane_offset(field.kernel, level) * all.radius + tool_radius;
 }
 
 double choose_scale(double patch, double stiffness) {
@@ -112,7 +128,7 @@ ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
   // Hand and surface are springs in a row: the hand has to want more than it gets.
   const double felt = plan.workspace.felt_stiffness(plan.stiffness);
   explore_options.depth = plan.depth * (1 + felt / options.hand.stiffness);
-  explore_options.offset = offset(field, all.radius, options.tool_radius);
+  explore_options.offset = offset(field, all, options.tool_radius);
   explore_options.patch = plan.patch;
   explore_options.slide_speed = scale * std::clamp(0.5 * plan.patch / scale, 0.05, 0.2);
   explore_options.travel_speed = scale * std::clamp(plan.patch / scale, 0.1, 0.3);

@@ -45,6 +45,38 @@ TEST(ExplorationPlan, StiffnessThatWasAskedForIsKeptAndHeldStable) {
   EXPECT_LE(plan.workspace.felt_stiffness(plan.stiffness), 2000);
 }
 
+// The hand's wish is offset - depth under the highest place: what it means to feel follows the
+// metaball's level.
+TEST(ExplorationPlan, HandStopsHigherOverASurfaceThatLiesHigher) {
+  PointCloud plane;
+  for (int i = 0; i < 100 * 100; ++i) {
+    plane.positions.emplace_back(2e-3f * static_cast<float>(i % 100),
+                                 2e-3f * static_cast<float>(i / 100), 0.f);
+  }
+  plane.viewpoint = Eigen::Vector3d(0.1, 0.1, 1);
+  Scene scene;
+  scene.add("plane", plane);
+  const double radius = scene.source(0).report().radius;
+  const auto lowest = [&](const FieldOptions& field) {
+    const ExplorationPlan plan = plan_exploration(scene, field, {.duration = 2});
+    double z = 1;
+    for (const TrajectoryRow& row : plan.target) {
+      z = std::min(z, plan.workspace.position_to_world(row.position).z());
+    }
+    return z;
+  };
+  FieldOptions field{.kind = FieldKind::metaball, .threshold = 0.4};
+  const double usual = lowest(field);
+  field.threshold = 0.05;
+  EXPECT_NEAR(lowest(field) - usual,
+              radius * (plane_offset(Kernel::wyvill, 0.05) - plane_offset(Kernel::wyvill, 0.4)),
+              1e-4);
+  field.kernel = Kernel::wendland;
+  EXPECT_NEAR(lowest(field) - usual,
+              radius * (plane_offset(Kernel::wendland, 0.05) - plane_offset(Kernel::wyvill, 0.4)),
+              1e-4);
+}
+
 TEST(ExplorationPlan, SceneWithoutPointsIsRefused) {
   Scene scene;
   scene.add("camera");
