@@ -14,7 +14,7 @@ namespace palpate {
 namespace {
 
 constexpr float kMultiple = 2.5f;      // R over the gap
-constexpr float kFaint = 2.5f;         // sums of weights: 4.5 and more inside a sheet
+constexpr float kFaint = 2.5f;         // sums of weights: 5.8 on a square grid
 constexpr float kOpposite = -0.5f;     // cosine between two that lie on opposite sides
 constexpr float kFirstReach = 1.5f;    // radii
 constexpr int kWidenings = 2;          // of the reach, each twofold: gaps up to three radii
