@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "apps/palpate/exploration_plan.hpp"
+#include "apps/palpate/touch_run.hpp"
+#include "apps/palpate/touch_surface.hpp"
+#include "apps/program.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/device/simulated.hpp"
+#include "support/effort.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Milliseconds of simulated time that every file is touched for.
+int milliseconds() {
+  return test::effort(10'000);
+}
+
+std::string data_folder() {
+  const char* folder = std::getenv("PALPATE_DATA");
+  return folder != nullptr && fs::is_directory(folder) ? folder : "";
+}
+
+// Every k-th file where effort is small: then a test is to be quick, and not to be complete.
+std::vector<fs::path> files_in(const fs::path& folder, std::initializer_list<const char*> endings) {
+  std::vector<fs::path> files;
+  const auto options = fs::directory_options::follow_directory_symlink;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, options)) {
+    const std::string name = entry.path().string();
+    const bool wanted = std::ranges::any_of(endings, [&](auto end) { return name.ends_with(end); });
+    if (wanted && entry.is_regular_file()) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  const auto kept = static_cast<std::size_t>(test::effort(static_cast<int>(files.size())));
+  const std::size_t stride = kept == 0 ? 1 : (files.size() + kept - 1) / kept;
+  std::vector<fs::path> result;
+  for (std::size_t i = 0; i < files.size(); i += stride) result.push_back(files[i]);
+  return result;
+}
+
+// What the program needs to know of a depth image: its folder's sequence.json tells.
+void describe_depth(const fs::path& file, LoadOptions& load) {
+  if (file.filename() == "TUM_depth.png") {
+    load.intrinsics = "525,525,319.5,239.5";
+    load.depth_unit = 1. / 5000;
+    return;
+  }
+  std::ifstream stream(file.parent_path().parent_path() / "sequence.json");
+  const auto facts = nlohmann::json::parse(stream);
+  const auto value = [&](const char* key) { return facts.at(key).get<double>(); };
+  load.intrinsics = fmt::format("{},{},{},{}", value("fx"), value("fy"), value("cx"), value("cy"));
+  load.depth_unit = value("depth_unit_m");
+}
+
+bool is_quiet(const TouchStep& step) {
+  return step.contact.force.allFinite() && step.contact.proxy.allFinite() &&
+         !has(step.contact.notes, ContactNote::fault);
+}
+
+// As `palpate touch FILE --duration 10` does.
+TouchStatistics touch(const TouchOptions& options) {
+  Scene scene;
+  (void)fill(scene, options);
+  const FieldOptions field_choice = field_options(options);
+  const ExplorationPlan plan =
+      plan_exploration(scene, field_choice, {.duration = 1e-3 * milliseconds()});
+  SimulatedDevice device({}, plan.target);
+  SceneField field(scene, field_choice);
+  Proxy proxy(proxy_options(options, plan.stiffness));
+  TouchStatistics statistics;
+  std::size_t bad = 0;
+  run_touch(device, plan.workspace, field, proxy, [&](const TouchStep& step) {
+    statistics.add(step);
+    if (!is_quiet(step)) ++bad;
+  });
+  EXPECT_EQ(bad, 0u) << "steps with a fault, or not finite";
+  return statistics;
+}
+
+void expect_touched(const fs::path& file) {
+  SCOPED_TRACE(file.string());
+  TouchOptions options;
+  options.load.clouds = {file.string()};
+  if (file.extension() == ".png") describe_depth(file, options.load);
+  try {
+    const TouchStatistics statistics = touch(options);
+    EXPECT_GE(statistics.steps(), static_cast<std::size_t>(milliseconds()));
+    EXPECT_GT(statistics.touching(), 0u);
+  } catch (const Error& error) {
+    const bool no_reader = std::string(error.what()).find("laszip") != std::string::npos;
+    EXPECT_TRUE(no_reader) << error.what();
+  }
+}
+
+void expect_all_touched(std::initializer_list<const char*> endings) {
+  for (const fs::path& file : files_in(data_folder(), endings)) expect_touched(file);
+}
+
+class EveryFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (data_folder().empty()) GTEST_SKIP() << "PALPATE_DATA names no folder of real data";
+  }
+};
+
+TEST_F(EveryFile, MeshesAreTouchedWithoutAFault) {
+  expect_all_touched({".ply", ".ply.gz"});
+}
+
+TEST_F(EveryFile, ScansAreTouchedWithoutAFault) {
+  expect_all_touched({".pcd", ".las", ".laz"});
+}
+
+TEST_F(EveryFile, DepthImagesAreTouchedWithoutAFault) {
+  expect_all_touched({".png"});
+}
+
+TEST_F(EveryFile, PackedSurveyOfTenMillionPointsIsTouchedWithoutAFault) {
+  if (test::effort(10) < 10) GTEST_SKIP() << "too long where every test is to be quick";
+  if (std::system("xz --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "xz is not installed";
+  const Shell folder;
+  for (const fs::path& packed : files_in(data_folder(), {".las.xz"})) {
+    const std::string unpacked = folder.path(packed.stem().string());
+    const std::string command = fmt::format("xz -dc -T0 '{}' > '{}'", packed.string(), unpacked);
+    if (std::system(command.c_str()) != 0) GTEST_SKIP() << "there is no room to unpack " << packed;
+    expect_touched(unpacked);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::app
