@@ -15,14 +15,4 @@ namespace palpate {
                                  std::span<const ActiveLayer> layers, int sources, const Ball& ball,
                                  double radius = 0) noexcept;
 
-/// Weighted means over a patch's points at a place.
-struct PatchSurface {
-  double material = 1;
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
-  int source = -1;                                     ///< that weighs most; -1: no point is near
-};
-
-[[nodiscard]] PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
-                                        const Eigen::Vector3d& x) noexcept;
-
 }  // namespace palpate

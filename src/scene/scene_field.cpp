@@ -9,6 +9,7 @@
 
 #include "field/evaluate.hpp"
 #include "field/free_space.hpp"
+#include "field/mean_surface.hpp"
 #include "field/patch.hpp"
 #include "scene/source_view.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "field/evaluate.hpp"
 #include "field/free_space.hpp"
+#include "field/mean_surface.hpp"
 #include "support/make_points.hpp"
 
 namespace palpate {

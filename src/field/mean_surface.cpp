@@ -1,0 +1,37 @@
+#include "field/mean_surface.hpp"
+
+namespace palpate {
+
+PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
+                          const Eigen::Vector3d& x) noexcept {
+  using Eigen::Vector3d;
+  const simd::Columns& c = patch.columns();
+  const Vector3d local = x - patch.center();
+  PatchSurface result;
+  double total = 0;
+  double largest = 0;
+  double material = 0;
+  Vector3d velocity = Vector3d::Zero();
+  for (int s = 0; patch.points() > 0 && s < c.sources; ++s) {
+    double of_source = 0;
+    for (std::uint32_t i = c.source_begin[s]; i < c.source_begin[s + 1]; ++i) {
+      const Vector3d q = Vector3d(c.position[0][i], c.position[1][i], c.position[2][i]) - local;
+      const double w =
+          c.weight[i] * evaluate(surface.options.kernel, q.squaredNorm() * c.inverse_r2[i]).w;
+      of_source += w;
+      material += w * patch.material(i);
+      velocity += w * patch.velocity(i);
+    }
+    total += of_source;
+    if (of_source > largest) {
+      largest = of_source;
+      result.source = s;
+    }
+  }
+  if (total <= 0) return result;
+  result.material = material / total;
+  result.velocity = velocity / total;
+  return result;
+}
+
+}  // namespace palpate
