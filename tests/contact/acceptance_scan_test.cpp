@@ -132,7 +132,7 @@ TEST_F(Bunny, IsExploredWithoutEnteringIt) {
     record(result, ticks, kind == FieldKind::balanced ? "balanced" : "metaball");
     EXPECT_EQ(result.not_finite, 0);
     EXPECT_EQ(result.inside, 0);
-    EXPECT_GT(result.touching, ticks / 10);
+    EXPECT_GT(result.touching, ticks / 20);  // a short walk has its approach in it
     EXPECT_LE(result.given, 0.05e-3);
   }
 }
