@@ -9,13 +9,17 @@ import sys
 FLOORS = {
     "base": set(),
     "geometry": {"base"},
-    "io": {"base", "geometry"},
+    "depth": {"base", "geometry"},
+    "io": {"base", "geometry", "depth"},
     "field": {"base", "geometry"},
-    "contact": {"base"},  # and field/field.hpp: see ALLOWED
+    "contact": {"base", "geometry"},  # and field/field.hpp: see ALLOWED
     "prepare": {"base", "geometry", "field"},
-    "scene": {"base", "geometry", "field", "prepare"},
+    "scene": {"base", "geometry", "depth", "field", "prepare"},
+    "sensor": {"base", "geometry", "depth", "io", "field", "prepare", "scene"},
     "device": {"base", "geometry", "io", "field", "contact", "prepare", "scene"},
-    "apps": {"base", "geometry", "io", "field", "contact", "prepare", "scene", "device"},
+    "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "device"},
+    "apps": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "sensor",
+             "device", "servo"},
 }
 # Single headers that a floor may include of a floor that it may not see otherwise.
 ALLOWED = {("contact", "palpate/field/field.hpp")}

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "palpate/geometry/ball.hpp"
+
 namespace palpate {
 
 /// Which side of a two-sided surface is free: +1 where its normals point to, -1 the other, 0 not
@@ -16,12 +18,6 @@ struct Sample {
   double height = 0;   ///< signed by the normals and not by `side`: tells which side x is on, m
   double support = 0;  ///< sum of weights (1 on a well sampled surface); 0: nothing known here
   double radius = 0;   ///< support radius R here: the length that steps are measured in, m
-};
-
-/// A closed ball in the world frame.
-struct Ball {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
-  double radius = 0;                                 ///< m
 };
 
 /// What the surface is made of near a place on it.

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -25,6 +27,12 @@ struct Snapshot {
   double end = 0;             ///< s; not before start
   double presence_start = 1;  ///< 0-1: is the sensor still sure of what it saw?
   double presence_end = 1;
+  /// From this time on presence fades to 0 in `fade` s, unless a newer snapshot comes: nobody has
+  /// to publish for a silent sensor's surface to fade away. Infinite: never.
+  double silent_from = std::numeric_limits<double>::infinity();
+  double fade = 0.5;           ///< s
+  double stamp = 0;            ///< when the newest data in it was taken, s, same clock
+  std::uint64_t sequence = 0;  ///< counts a source's snapshots
   std::vector<Layer> layers;
 };
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+
+#include "palpate/depth/depth_frame.hpp"
+
+namespace palpate {
+
+/// What came of asking a camera for a frame.
+enum class CameraStatus {
+  frame,    ///< a new frame
+  waiting,  ///< none within the time that was given
+  ended,    ///< a recording has come to its end
+  failed,   ///< unplugged, out of order: reason() says why; asking again may help
+};
+
+struct CameraInfo {
+  std::string name;   ///< for messages, such as "simulated:table"
+  double rate = 30;   ///< frames a second that it is made for, Hz
+  bool paces = true;  ///< read() waits for frames as they happen; false: as fast as it is asked
+};
+
+/// A source of depth frames. One thread uses it. Construction opens it and throws Error.
+class DepthCamera {
+ public:
+  virtual ~DepthCamera() = default;
+
+  [[nodiscard]] virtual const CameraInfo& info() const noexcept = 0;
+
+  /// Fills `frame` with the next image, reusing its memory, waiting for it at most `timeout` s.
+  /// A frame that cannot be used (cut, garbage) is `failed` with a reason; the next may be good.
+  [[nodiscard]] virtual CameraStatus read(DepthFrame& frame, double timeout) = 0;
+
+  /// Why the last read() failed and what to do; empty otherwise.
+  [[nodiscard]] virtual std::string reason() const = 0;
+
+ protected:
+  DepthCamera() = default;
+  DepthCamera(const DepthCamera&) = default;
+  DepthCamera& operator=(const DepthCamera&) = default;
+};
+
+}  // namespace palpate
