@@ -1,5 +1,7 @@
 #include "field/mean_surface.hpp"
 
+#include <algorithm>
+
 namespace palpate {
 
 PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
@@ -11,6 +13,7 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
   double total = 0;
   double largest = 0;
   double material = 0;
+  double presence = 0;
   Vector3d velocity = Vector3d::Zero();
   for (int s = 0; patch.points() > 0 && s < c.sources; ++s) {
     double of_source = 0;
@@ -20,6 +23,7 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
           c.weight[i] * evaluate(surface.options.kernel, q.squaredNorm() * c.inverse_r2[i]).w;
       of_source += w;
       material += w * patch.material(i);
+      presence += w * patch.presence(i);
       velocity += w * patch.velocity(i);
     }
     total += of_source;
@@ -30,6 +34,7 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
   }
   if (total <= 0) return result;
   result.material = material / total;
+  if (patch.has_presences()) result.presence = std::min(1.0, presence / total);
   result.velocity = velocity / total;
   return result;
 }

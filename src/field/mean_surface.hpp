@@ -8,6 +8,7 @@ namespace palpate {
 /// Weighted means over a patch's points at a place.
 struct PatchSurface {
   double material = 1;
+  double presence = 1;                                 ///< of the points, without the sources' own
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
   int source = -1;                                     ///< that weighs most; -1: no point is near
 };

@@ -25,6 +25,13 @@ Eigen::Vector3d normal_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
   return length > 1e-6 ? Eigen::Vector3d(mixed / length) : start;
 }
 
+double presence_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  const double start = points.presences.empty() ? 1.0 : points.presences[i];
+  if (points.end_presences.empty()) return start;
+  return lerp(start, points.end_presences[i], layer.progress);
+}
+
 Eigen::Vector3d velocity_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
   const SurfacePoints& points = *layer.points;
   if (points.end_positions.empty()) return Eigen::Vector3d::Zero();
@@ -79,6 +86,8 @@ void Patch::gather(std::span<const ActiveLayer> layers, int sources, const Eigen
   options_ = options;
   has_materials_ = std::ranges::any_of(
       layers, [](const ActiveLayer& layer) { return !layer.points->materials.empty(); });
+  has_presences_ =
+      std::ranges::any_of(layers, [](const ActiveLayer& layer) { return fades(*layer.points); });
   has_motion_ =
       std::ranges::any_of(layers, [](const ActiveLayer& layer) { return layer.rate > 0; });
   stride_ = 1;
@@ -162,6 +171,9 @@ void Patch::fill(const ActiveLayer& layer, std::uint32_t first) noexcept {
   if (options_.normals) fill_normals(layer, first);
   for (std::uint32_t k = first; has_materials_ && k < used_; ++k) {
     column(kMaterial)[k] = points.materials.empty() ? 1.0 : points.materials[index_[k]];
+  }
+  for (std::uint32_t k = first; has_presences_ && k < used_; ++k) {
+    column(kPresence)[k] = presence_now(layer, index_[k]);
   }
   for (std::uint32_t k = first; has_motion_ && k < used_; ++k) {
     const Eigen::Vector3d velocity = velocity_now(layer, index_[k]);

@@ -58,9 +58,13 @@ class Patch {
   [[nodiscard]] double mean_radius() const noexcept { return mean_radius_; }
   [[nodiscard]] const simd::Columns& columns() const noexcept { return columns_; }
 
-  /// Of the k-th column entry; 1 and 0 where no layer has any.
+  /// Of the k-th column entry; 1, 1 and 0 where no layer has any.
   [[nodiscard]] double material(std::uint32_t k) const noexcept {
     return has_materials_ ? column(kMaterial)[k] : 1;
+  }
+  [[nodiscard]] bool has_presences() const noexcept { return has_presences_; }
+  [[nodiscard]] double presence(std::uint32_t k) const noexcept {
+    return has_presences_ ? column(kPresence)[k] : 1;
   }
   [[nodiscard]] Eigen::Vector3d velocity(std::uint32_t k) const noexcept {
     if (!has_motion_) return Eigen::Vector3d::Zero();
@@ -77,6 +81,7 @@ class Patch {
     kInverseR2,
     kSlope,
     kMaterial,
+    kPresence,
     kVelocity,
     kColumns = kVelocity + 3
   };
@@ -101,6 +106,7 @@ class Patch {
   double extra_ = -1;
   GatherOptions options_;
   bool has_materials_ = false;
+  bool has_presences_ = false;
   bool has_motion_ = false;
   std::uint32_t used_ = 0;  // with padding
   std::size_t count_ = 0;   // without
@@ -119,6 +125,11 @@ class Patch {
 
 /// Does a point count for nothing at any time (speckle)?
 [[nodiscard]] bool weightless(const SurfacePoints& points, std::uint32_t i) noexcept;
+
+/// Do any of the points have a presence of their own?
+[[nodiscard]] inline bool fades(const SurfacePoints& points) noexcept {
+  return !points.presences.empty() || !points.end_presences.empty();
+}
 
 /// a_i C_k now; C_k alone with `raw_weights`.
 [[nodiscard]] double weight_now(const ActiveLayer& layer, std::uint32_t i,

@@ -50,6 +50,9 @@ void check_lengths(const SurfacePoints& points) {
   require_length("confidences", points.confidences.size(), n);
   require_length("normals", points.normals.size(), optional(points.normals.size()));
   require_length("materials", points.materials.size(), optional(points.materials.size()));
+  require_length("presences", points.presences.size(), optional(points.presences.size()));
+  require_length("end_presences", points.end_presences.size(),
+                 optional(points.end_presences.size()));
   require_length("end_positions", points.end_positions.size(),
                  optional(points.end_positions.size()));
   require_length("end_normals", points.end_normals.size(), optional(points.end_normals.size()));
@@ -68,6 +71,8 @@ void check(const SurfacePoints& points) {
   require_range("end_density_weights", points.end_density_weights, 0, kLarge);
   require_range("confidences", points.confidences, 0, 1);
   require_range("materials", points.materials, 0, 1);
+  require_range("presences", points.presences, 0, 1);
+  require_range("end_presences", points.end_presences, 0, 1);
   require_finite("normals", points.normals);
   require_finite("end_normals", points.end_normals);
   require_finite("end_positions", points.end_positions);

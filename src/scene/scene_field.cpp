@@ -92,7 +92,7 @@ void SceneField::State::list_layers() noexcept {
       if (layer.points->size() == 0) continue;  // a sensor that sees nothing
       other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
       typical_radius = std::min(typical_radius, layer.points->radius);
-      plain = plain && layer.points->materials.empty() && layer.rate == 0;
+      plain = plain && layer.points->materials.empty() && !fades(*layer.points) && layer.rate == 0;
       layers[layer_count++] = layer;
     }
   }
@@ -206,7 +206,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   if (mean.source < 0) return result;
   const SoftMaterial& soft = state.soft[static_cast<std::size_t>(mean.source)];
   result.source = mean.source;
-  result.presence = state.views[static_cast<std::size_t>(mean.source)].presence();
+  result.presence = mean.presence * state.views[static_cast<std::size_t>(mean.source)].presence();
   result.velocity = mean.velocity;
   result.stiffness_factor = soft.stiffness_factor + mean.material * (1 - soft.stiffness_factor);
   result.friction_factor = soft.friction_factor + mean.material * (1 - soft.friction_factor);

@@ -110,6 +110,24 @@ TEST(SceneField, PresenceGoesFromItsStartToItsEnd) {
   }
 }
 
+TEST(SceneField, PointsAndSourcesArePresentTogether) {
+  SurfacePoints points = make_points(plane(0));
+  points.presences.assign(points.size(), 1);
+  points.end_presences.assign(points.size(), 0.5F);
+  auto snapshot = std::make_unique<Snapshot>();
+  snapshot->end = 1;
+  snapshot->presence_start = snapshot->presence_end = 0.5;
+  snapshot->layers.push_back({share(std::move(points))});
+  Scene scene;
+  scene.add("plane").publish(std::move(snapshot));
+  SceneField field(scene);
+  for (const double t : {0.0, 0.5, 1.0, 2.0}) {
+    field.update(t, Vector3d::Zero(), Vector3d::Zero());
+    const double of_points = 1 - 0.5 * std::min(t, 1.0);
+    EXPECT_NEAR(field.surface(Vector3d::Zero()).presence, 0.5 * of_points, 1e-12);
+  }
+}
+
 TEST(SceneField, OneRadiusForAllIsOneEverywhere) {
   // Left half with small, right half with large radii: the paper takes that of the nearest point.
   auto points = plane(0);

@@ -12,8 +12,9 @@ namespace palpate {
 /// Indexed points with all that a field needs of them, immutable once made. Every column is in the
 /// grid's sorted order and either as long as the grid or, where it says so, empty.
 ///
-/// A point may move in a straight line while a snapshot lasts: `grid`, `normals` and
-/// `density_weights` hold its start (A), the `end_` columns its end (B), empty when A = B.
+/// A point may move in a straight line while a snapshot lasts: `grid`, `normals`,
+/// `density_weights` and `presences` hold its start (A), the `end_` columns its end (B), empty when
+/// A = B.
 struct SurfacePoints {
   Eigen::Vector3d origin =
       Eigen::Vector3d::Zero();  ///< world frame; grid points are relative to it, m
@@ -23,9 +24,11 @@ struct SurfacePoints {
   std::vector<float> radii;              ///< R_i, m
   std::vector<float> confidences;        ///< c_i, 0-1
   std::vector<float> materials;          ///< 0-1; empty: all 1
+  std::vector<float> presences;  ///< 0-1: is the sensor still sure of this point? Empty: all 1
   std::vector<Eigen::Vector3f> end_positions;
   std::vector<Eigen::Vector3f> end_normals;
   std::vector<float> end_density_weights;
+  std::vector<float> end_presences;
 
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for
 
