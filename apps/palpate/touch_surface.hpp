@@ -7,7 +7,7 @@
 #include "apps/palpate/load.hpp"
 #include "apps/palpate/touch_options.hpp"
 #include "palpate/contact/proxy.hpp"
-#include "palpate/field/implicit.hpp"
+#include "palpate/field/field_options.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::app {

@@ -6,7 +6,7 @@
 
 #include "accuracy/score.hpp"
 #include "palpate/contact/proxy.hpp"
-#include "palpate/field/implicit.hpp"
+#include "palpate/field/field_options.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::accuracy {

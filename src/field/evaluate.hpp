@@ -3,7 +3,7 @@
 #include "field/patch.hpp"
 #include "field/simd/sums.hpp"
 #include "palpate/field/field.hpp"
-#include "palpate/field/implicit.hpp"
+#include "palpate/field/field_options.hpp"
 
 namespace palpate {
 

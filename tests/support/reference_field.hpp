@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "palpate/field/field.hpp"
-#include "palpate/field/implicit.hpp"
+#include "palpate/field/field_options.hpp"
 #include "palpate/field/kernel.hpp"
 #include "palpate/field/surface_points.hpp"
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "palpate/field/field.hpp"
-#include "palpate/field/implicit.hpp"
+#include "palpate/field/field_options.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate {

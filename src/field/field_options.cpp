@@ -1,4 +1,4 @@
-#include "palpate/field/implicit.hpp"
+#include "palpate/field/field_options.hpp"
 
 namespace palpate {
 
