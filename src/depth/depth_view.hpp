@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-namespace palpate::detail {
+namespace palpate::depth {
 
 /// A depth image that somebody else owns. Depths along the optical axis, m, row by row; whatever
 /// is not within nearest ... farthest (0, NaN, infinity too) counts as not measured.
@@ -22,4 +22,4 @@ struct DepthView {
   [[nodiscard]] bool valid(float z) const { return z >= nearest && z <= farthest; }
 };
 
-}  // namespace palpate::detail
+}  // namespace palpate::depth

@@ -5,7 +5,7 @@
 #include "depth/depth_view.hpp"
 #include "palpate/depth/noise_model.hpp"
 
-namespace palpate::detail {
+namespace palpate::depth {
 
 /// sigma(z) and c from one frame alone: residuals of quadratic windows in inverse depth, their
 /// autocorrelation, and how much wide windows miss (nss_fast.md section 2). What the frame does
@@ -38,4 +38,4 @@ class NoiseTracker {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace palpate::detail
+}  // namespace palpate::depth

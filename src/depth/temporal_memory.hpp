@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+#include "palpate/depth/filtered_depth.hpp"
+
+namespace palpate::depth {
+
+/// What the filter over time remembers of one block; see BlockFits for the columns.
+struct BlockMemory {
+  float rho = 0;             ///< mean inverse depth, 1/m
+  float variance = 0;        ///< of one frame's rho, 1/m^2: of the mean it is variance / count
+  float extra = 0;           ///< variance that moving into other views has added, 1/m^2
+  float slope_x = 0;         ///< 1/m
+  float slope_y = 0;         ///< 1/m
+  float slope_variance = 0;  ///< of one frame's slopes, 1/m^2
+  float confidence = 0;
+  float speed = 0;         ///< v: change of rho, 1/m per frame; not 0 only while it moves
+  std::uint8_t count = 0;  ///< frames in the mean; 0: nothing is remembered
+  std::uint8_t calm = 0;   ///< frames in a row that a moving block stood still
+  std::uint8_t missed = 0;
+  bool moving = false;
+  BlockState state = BlockState::empty;
+};
+
+}  // namespace palpate::depth
