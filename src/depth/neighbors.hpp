@@ -1,0 +1,28 @@
+#pragma once
+
+#include "depth/block_fits.hpp"
+#include "depth/blocks.hpp"
+
+namespace palpate::depth {
+
+/// How far a neighbouring block's inverse depth may differ on the same surface.
+struct SameSurface {
+  NoiseModel noise;
+  float steep = 0;  ///< relative change of depth from block to block
+
+  SameSurface(const NoiseModel& noise_model, const BlockGrid& grid);
+  [[nodiscard]] float limit(float rho) const {
+    return 4.3F * block_sigma(noise, rho) + steep * rho;
+  }
+};
+
+/// Empties blocks that stand between surfaces: those that fewer than two of their eight neighbours
+/// continue, be it by lying close or by lying on a line with the block and its opposite neighbour.
+/// `scratch` is kept for its memory.
+void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& scratch);
+
+/// Plain fits: each block's own mean, its slopes by least squares over those of its eight
+/// neighbours that show the same surface.
+void fit_plain(const Blocks& blocks, const NoiseModel& noise, BlockFits& fits);
+
+}  // namespace palpate::depth

@@ -1,0 +1,62 @@
+#include "depth/output.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::depth {
+namespace {
+
+using Eigen::Vector3f;
+
+// Towards the sensor: the plane (a, b, c) . p = 1 has its origin in front.
+Vector3f normal_of(const Vector3f& plane) {
+  const float length = plane.norm();
+  return length > 0 ? Vector3f(-plane / length) : Vector3f(Vector3f::Zero());
+}
+
+}  // namespace
+
+void resize(const BlockGrid& grid, FilteredDepth& out) {
+  out.columns = grid.columns;
+  out.rows = grid.rows;
+  out.pitch = std::max(std::abs(grid.step_x), std::abs(grid.step_y));
+  const std::size_t size = grid.size();
+  out.states.resize(size, BlockState::empty);
+  out.positions.resize(size, Vector3f::Zero());
+  out.normals.resize(size, Vector3f::Zero());
+  out.confidences.resize(size);
+  out.deviations.resize(size);
+  out.spacings.resize(size);
+  out.jumped.resize(size, 1);
+}
+
+void write_points(const BlockFits& fits, FilteredDepth& out) {
+  const BlockGrid& grid = fits.grid;
+  const auto step_x = static_cast<float>(grid.step_x);
+  const auto step_y = static_cast<float>(grid.step_y);
+  std::size_t i = 0;
+  for (int row = 0; row < grid.rows; ++row) {
+    const auto y = static_cast<float>(grid.y(row));
+    for (int column = 0; column < grid.columns; ++column, ++i) {
+      out.states[i] = fits.states[i];
+      if (fits.states[i] == BlockState::empty) continue;
+      const auto x = static_cast<float>(grid.x(column));
+      const Vector3f ray(x, y, 1);
+      const float z = 1 / fits.rho[i];
+      const float a = fits.slope_x[i];
+      const float b = fits.slope_y[i];
+      out.positions[i] = z * ray;
+      const bool known = fits.confidences[i] > 0;
+      out.normals[i] =
+          known ? normal_of(Vector3f(a, b, fits.rho[i] - a * x - b * y)) : Vector3f(0, 0, 0);
+      out.confidences[i] = fits.confidences[i];
+      out.deviations[i] = std::sqrt(fits.variance[i]) * z * z * ray.norm();
+      // How far the next column's and row's points are on the tangent plane.
+      const Vector3f to_right = z * step_x * (Vector3f::UnitX() - z * a * ray);
+      const Vector3f below = z * step_y * (Vector3f::UnitY() - z * b * ray);
+      out.spacings[i] = std::sqrt(std::max(to_right.squaredNorm(), below.squaredNorm()));
+    }
+  }
+}
+
+}  // namespace palpate::depth
