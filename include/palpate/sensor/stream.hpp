@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "palpate/base/clock.hpp"
+#include "palpate/scene/source.hpp"
+#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/stream_state.hpp"
+
+namespace palpate {
+
+struct StreamOptions {
+  double lead = 2e-3;      ///< a surface is felt from so long after it is ready, s
+  double stall = 0.5;      ///< a camera silent or frozen for longer has stalled, s
+  double patience = 0.05;  ///< one DepthCamera::read() may wait so long, s; so may the destructor
+  double first_retry = 0.25;  ///< the second failure in a row waits so long, s; then twice, ...
+  double longest_retry = 5;   ///< ... but no longer than this, s
+  /// Frames that repeat the one before bit for bit are real: for cameras without noise. Otherwise
+  /// they are dropped, so that a frozen camera's surface fades as a silent one's does.
+  bool allow_repeats = false;
+};
+
+/// Takes a frame and makes it touchable, asking its second argument for the time from which on.
+/// Called on a thread of the stream.
+using FrameSink = std::function<void(const DepthFrame&, const StartTime&)>;
+
+/// From a camera to a source: one thread reads, another prepares. A frame that comes while the one
+/// before is being prepared waits, and the next takes its place: frames are dropped, never queued,
+/// so that what is felt is never older than it must be. A camera that does not pace itself
+/// (CameraInfo::paces) is read when preparation is ready, and loses nothing.
+///
+/// No frame of a camera, and nothing that it or preparation throws, ends a stream: it is counted
+/// and told by state(). What stops coming fades as the source's PolicyOptions say.
+class Stream {
+ public:
+  /// Starts the threads. Source and clock outlive the stream, and nobody else pushes.
+  /// @throws Error when an option is out of range or there is no camera.
+  Stream(std::unique_ptr<DepthCamera> camera, Source& source, const Clock& clock,
+         const StreamOptions& options = {});
+
+  /// The same into any sink; `name` stands for it in messages.
+  Stream(std::unique_ptr<DepthCamera> camera, std::string name, FrameSink sink, const Clock& clock,
+         const StreamOptions& options = {});
+
+  /// Stops: waits for a read() and a preparation that are under way, and for nothing else.
+  ~Stream();
+  Stream(Stream&&) noexcept;
+  Stream& operator=(Stream&&) noexcept;
+
+  /// How it fares. Any thread; takes a lock, so not for a servo's.
+  [[nodiscard]] StreamState state() const;
+
+ private:
+  struct Threads;
+  std::unique_ptr<Threads> threads_;
+};
+
+}  // namespace palpate

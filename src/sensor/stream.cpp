@@ -1,0 +1,187 @@
+#include "palpate/sensor/stream.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "palpate/base/error.hpp"
+#include "sensor/frame_check.hpp"
+#include "sensor/frame_exchange.hpp"
+#include "sensor/retry.hpp"
+#include "sensor/stream_log.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace sensor;
+
+// A camera's clock may run ahead of the host's by so much before a stamp is thought senseless.
+constexpr double kAhead = 1;  // s
+
+const StreamOptions& checked(const StreamOptions& options, const std::string& name) {
+  const auto require = [&](double value, const char* what, bool good) {
+    if (good && std::isfinite(value)) return;
+    throw Error(
+        fmt::format("stream to {}: {} cannot be {} s. Give a time in seconds.", name, what, value));
+  };
+  require(options.lead, "the lead", options.lead >= 0);
+  require(options.stall, "the time after which a camera has stalled", options.stall > 0);
+  require(options.patience, "the wait for a frame", options.patience > 0);
+  require(options.first_retry, "the wait before a retry", options.first_retry > 0);
+  require(options.longest_retry, "the longest wait before a retry",
+          options.longest_retry >= options.first_retry);
+  return options;
+}
+
+std::unique_ptr<DepthCamera> checked(std::unique_ptr<DepthCamera> camera, const std::string& name) {
+  if (!camera) throw Error(fmt::format("stream to {}: there is no camera. Open one first.", name));
+  return camera;
+}
+
+}  // namespace
+
+struct Stream::Threads {
+  Threads(std::unique_ptr<DepthCamera> given, const std::string& name, FrameSink to,
+          const Clock& time, const StreamOptions& wishes)
+      : options(checked(wishes, name)),
+        camera(checked(std::move(given), name)),
+        sink(std::move(to)),
+        clock(time),
+        log(name, camera->info().name, options.stall, clock.now()),
+        check(options.allow_repeats),
+        retry(options.first_retry, options.longest_retry),
+        exchange(!camera->info().paces) {
+    start(name);
+  }
+
+  ~Threads() { stop(); }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+  void start(const std::string& name);
+  void stop();
+  void read();
+  [[nodiscard]] CameraStatus ask(DepthFrame& frame);
+  [[nodiscard]] bool take(DepthFrame& frame);
+  [[nodiscard]] bool wait_to_retry();
+  void prepare();
+  void prepare(const DepthFrame& frame);
+
+  const StreamOptions options;
+  const std::unique_ptr<DepthCamera> camera;  // the reading thread's
+  const FrameSink sink;                       // the preparing thread's
+  const Clock& clock;
+  StreamLog log;
+  FrameCheck check;  // the reading thread's
+  Retry retry;       // the reading thread's
+  FrameExchange exchange;
+  std::string failure;  // of the last ask(); the reading thread's
+  std::thread preparing;
+  std::thread reading;
+};
+
+void Stream::Threads::start(const std::string& name) {
+  try {
+    preparing = std::thread([this] { prepare(); });
+    reading = std::thread([this] { read(); });
+  } catch (const std::system_error& error) {
+    stop();
+    throw Error(
+        fmt::format("stream to {}: its threads cannot start ({}). End other programs or "
+                    "raise the limit (ulimit -u).",
+                    name, error.what()));
+  }
+}
+
+void Stream::Threads::stop() {
+  exchange.stop();
+  if (reading.joinable()) reading.join();
+  if (preparing.joinable()) preparing.join();
+}
+
+void Stream::Threads::read() {
+  DepthFrame frame;
+  while (exchange.wait_for_room()) {
+    const CameraStatus status = ask(frame);
+    log.look(clock.now());
+    if (status == CameraStatus::ended) break;
+    if (status == CameraStatus::frame && !take(frame)) return;
+    if (status == CameraStatus::failed && !wait_to_retry()) return;
+  }
+  exchange.end();
+}
+
+CameraStatus Stream::Threads::ask(DepthFrame& frame) {
+  try {
+    const CameraStatus status = camera->read(frame, options.patience);
+    if (status == CameraStatus::failed) failure = camera->reason();
+    return status;
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  return CameraStatus::failed;
+}
+
+bool Stream::Threads::take(DepthFrame& frame) {
+  retry.succeeded();
+  const double now = clock.now();
+  const double latest =
+      camera->info().paces ? now + kAhead : std::numeric_limits<double>::infinity();
+  const auto objection = check.examine(frame, latest);
+  log.came(now, objection, check.size_changes());
+  if (objection) return true;
+  const auto outcome = exchange.offer(frame);
+  if (outcome == FrameExchange::Offer::overtook) log.overtaken();
+  return outcome != FrameExchange::Offer::stopped;
+}
+
+bool Stream::Threads::wait_to_retry() {
+  const double now = clock.now();
+  const double until = now + retry.failed();
+  log.failed(now, failure, retry.repeatedly());
+  while (clock.now() < until) {
+    if (!exchange.pause(options.patience)) return false;
+  }
+  log.retried();
+  return true;
+}
+
+void Stream::Threads::prepare() {
+  DepthFrame frame;
+  while (exchange.take(frame)) prepare(frame);
+  if (exchange.ended()) log.ended();
+}
+
+void Stream::Threads::prepare(const DepthFrame& frame) {
+  std::optional<double> start;
+  const StartTime ask_start = [&] {
+    start = clock.now() + options.lead;
+    return *start;
+  };
+  try {
+    sink(frame, ask_start);
+    if (start) log.touchable(*start - frame.stamp);
+  } catch (const std::exception& error) {
+    log.refused(clock.now(), error.what());
+  }
+}
+
+Stream::Stream(std::unique_ptr<DepthCamera> camera, std::string name, FrameSink sink,
+               const Clock& clock, const StreamOptions& options)
+    : threads_(
+          std::make_unique<Threads>(std::move(camera), name, std::move(sink), clock, options)) {}
+
+Stream::~Stream() = default;
+Stream::Stream(Stream&&) noexcept = default;
+Stream& Stream::operator=(Stream&&) noexcept = default;
+
+StreamState Stream::state() const {
+  return threads_->log.state(threads_->clock.now());
+}
+
+}  // namespace palpate

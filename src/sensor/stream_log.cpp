@@ -1,0 +1,109 @@
+#include "sensor/stream_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace palpate::sensor {
+namespace {
+
+constexpr double kSmoothing = 1.0 / 8;  // what a new interval counts in the mean
+
+}  // namespace
+
+StreamLog::StreamLog(std::string source, std::string camera, double stall, double now)
+    : stall_(stall), useful_(now) {
+  state_.source = std::move(source);
+  state_.camera = std::move(camera);
+  state_.last_frame = now;
+}
+
+void StreamLog::came(double now, const std::optional<Objection>& objection,
+                     std::uint64_t size_changes) {
+  const std::lock_guard lock(mutex_);
+  const double interval = now - state_.last_frame;
+  if (state_.frames == 1) interval_ = interval;
+  if (state_.frames > 1) interval_ += kSmoothing * (interval - interval_);
+  ++state_.frames;
+  state_.last_frame = now;
+  objection_ = objection ? objection->words : "";
+  if (size_changes != state_.size_changes) {
+    state_.size_changes = size_changes;
+    note(now, "its frames have another size from now on");
+  }
+  if (objection) {
+    ++(state_.drops.*(objection->cause));
+    note(now, objection->words);
+    look_locked(now);
+    return;
+  }
+  useful_ = now;
+  state_.phase = StreamPhase::running;
+}
+
+void StreamLog::overtaken() {
+  const std::lock_guard lock(mutex_);
+  ++state_.drops.overtaken;
+}
+
+void StreamLog::refused(double now, const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  ++state_.drops.refused;
+  note(now, "a frame could not be prepared: " + why);
+}
+
+void StreamLog::touchable(double latency) {
+  const std::lock_guard lock(mutex_);
+  ++state_.touchable;
+  ++latencies_;
+  latency_sum_ += latency;
+  state_.latency_mean = latency_sum_ / static_cast<double>(latencies_);
+  state_.latency_worst = latencies_ == 1 ? latency : std::max(state_.latency_worst, latency);
+}
+
+void StreamLog::failed(double now, const std::string& why, bool repeatedly) {
+  const std::lock_guard lock(mutex_);
+  ++state_.failures;
+  if (repeatedly) state_.phase = StreamPhase::failed;
+  note(now, why.empty() ? "it failed without a reason" : why);
+}
+
+void StreamLog::retried() {
+  const std::lock_guard lock(mutex_);
+  ++state_.retries;
+}
+
+void StreamLog::ended() {
+  const std::lock_guard lock(mutex_);
+  state_.phase = StreamPhase::ended;
+}
+
+void StreamLog::look(double now) {
+  const std::lock_guard lock(mutex_);
+  look_locked(now);
+}
+
+void StreamLog::look_locked(double now) {
+  const bool quiet = state_.phase == StreamPhase::starting || state_.phase == StreamPhase::running;
+  if (!quiet || now - useful_ <= stall_) return;
+  state_.phase = StreamPhase::stalled;
+  ++state_.stalls;
+  note(now, objection_.empty() ? fmt::format("no frame for {:.3g} s", now - useful_)
+                               : fmt::format("no frame of use for {:.3g} s; the last: {}",
+                                             now - useful_, objection_));
+}
+
+void StreamLog::note(double now, const std::string& what) {
+  state_.problem = fmt::format("{} ({}): {}", state_.source, state_.camera, what);
+  state_.problem_at = now;
+}
+
+StreamState StreamLog::state(double now) const {
+  const std::lock_guard lock(mutex_);
+  StreamState state = state_;
+  const double interval = std::max(interval_, now - state_.last_frame);
+  state.rate = state_.frames > 1 && interval > 0 ? 1 / interval : 0;
+  return state;
+}
+
+}  // namespace palpate::sensor

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <mutex>
+#include <string>
+
+#include "palpate/sensor/stream_state.hpp"
+#include "sensor/frame_check.hpp"
+
+namespace palpate::sensor {
+
+/// Keeps a stream's books. Any thread; times are s on the stream's clock.
+class StreamLog {
+ public:
+  StreamLog(std::string source, std::string camera, double stall, double now);
+
+  /// A frame came from the camera; one of use if nothing objects to it.
+  void came(double now, const std::optional<Objection>& objection, std::uint64_t size_changes);
+  void overtaken();
+  /// Preparation of a frame threw.
+  void refused(double now, const std::string& why);
+  void touchable(double latency);
+  void failed(double now, const std::string& why, bool repeatedly);
+  void retried();
+  void ended();
+  /// Notices silence. To be called now and then.
+  void look(double now);
+
+  [[nodiscard]] StreamState state(double now) const;
+
+ private:
+  void note(double now, const std::string& what);
+  void look_locked(double now);
+
+  mutable std::mutex mutex_;
+  StreamState state_;
+  double stall_;
+  double useful_;        // when the last frame of use came, or the stream began
+  double interval_ = 0;  // mean time between frames
+  double latency_sum_ = 0;
+  std::uint64_t latencies_ = 0;
+  std::string objection_;  // to the last frame; empty: none
+};
+
+}  // namespace palpate::sensor
