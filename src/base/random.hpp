@@ -12,14 +12,17 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
 
-  /// Even in [0, 1).
-  double uniform() {
+  /// Even over all 64-bit numbers.
+  std::uint64_t bits() {
     state_ += 0x9e3779b97f4a7c15u;
     std::uint64_t z = state_;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+    return z ^ (z >> 31);
   }
+
+  /// Even in [0, 1).
+  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 
   /// Normal with mean 0 and deviation 1 (Box and Muller).
   double normal() {

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "palpate/depth/noise_model.hpp"
+
+namespace palpate {
+
+/// How the errors of a simulated depth camera hang together from pixel to pixel. All kinds have the
+/// same standard deviation.
+enum class NoiseKind {
+  none,         ///< exact depths, still rounded
+  independent,  ///< in each pixel for itself
+  blurred,      ///< white noise after a Gaussian blur of 2 pixels
+  quantised,    ///< after one of 4 pixels, and then quantised in disparity, as the first Kinect
+};
+
+/// sigma(z) = 0.0012 + 0.0019 (z - 0.4)^2, in m: a Kinect-like camera's.
+[[nodiscard]] NoiseModel kinect_like_noise();
+
+struct SimulatedNoiseOptions {
+  NoiseKind kind = NoiseKind::independent;
+  NoiseModel model = kinect_like_noise();  ///< its standard deviation; `kind` says the correlation
+  double rounding = 1e-3;                  ///< depths are whole multiples of it, m; 0: not rounded
+  bool silhouettes = false;  ///< of the pixels at depth jumps a quarter is missing and a quarter
+                             ///< lies between the two depths (flying)
+  std::uint64_t seed = 0;
+};
+
+/// Makes what a sensor would have measured of exact depths. The same options, frame number and
+/// depths give the same result everywhere. One thread uses it; it allocates in its first frame
+/// only.
+class SimulatedNoise {
+ public:
+  /// @throws Error when an option is out of its range.
+  explicit SimulatedNoise(const SimulatedNoiseOptions& options);
+
+  /// Disturbs `depth` (m, `width` * `height`, row by row; 0 stays 0) as frame number `frame`.
+  void apply(int width, int height, std::uint64_t frame, std::vector<float>& depth);
+
+  /// Noise of variance 1 as `kind` correlates it; zeros for `none`. Valid until the next call.
+  const std::vector<float>& unit_noise(int width, int height, std::uint64_t frame);
+
+  [[nodiscard]] const SimulatedNoiseOptions& options() const { return options_; }
+
+ private:
+  void draw(std::uint64_t seed);
+  void blur(int width, int height);
+
+  SimulatedNoiseOptions options_;
+  std::vector<float> quantiles_;  // of the normal distribution, evenly spaced in probability
+  std::vector<float> taps_;       // half of the blur's, its middle first
+  std::vector<float> noise_;
+  std::vector<float> row_;
+  std::vector<float> padded_;  // the image with its other side above and below
+  std::vector<float> exact_;
+};
+
+}  // namespace palpate

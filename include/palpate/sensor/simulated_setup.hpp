@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "palpate/sensor/simulated_camera.hpp"
+
+namespace palpate {
+
+/// A scene with a camera that looks at it.
+struct SimulatedSetup {
+  SimulatedScene scene;
+  SimulatedCameraOptions camera;
+};
+
+struct SimulatedName {
+  std::string name;
+  std::string description;  ///< a line for lists
+};
+
+/// The scenes that have names.
+[[nodiscard]] std::vector<SimulatedName> simulated_names();
+
+/// @throws Error when there is no scene of that name; says which there are.
+[[nodiscard]] SimulatedSetup make_simulated_setup(const std::string& name);
+
+/// Opens "SCENE[,KEY=VALUE]..." ("" is the scene `table`). Keys: noise (none, a, b, c: NoiseKind in
+/// their order), seed, silhouettes (0, 1), rate (Hz), phase (s), jitter (s), dropped (share),
+/// frames, loop. `clock` outlives the camera; null: frames come as fast as they are asked for.
+/// @throws Error when a name or a value makes no sense.
+[[nodiscard]] std::unique_ptr<SimulatedCamera> open_simulated(const std::string& specification,
+                                                              const Clock* clock);
+
+}  // namespace palpate
