@@ -10,6 +10,7 @@
 #include "depth/neighbors.hpp"
 #include "depth/output.hpp"
 #include "depth/undistort.hpp"
+#include "depth/window_fits.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -83,6 +84,8 @@ struct DepthFilter::State {
   depth::Undistorter undistorter;
   depth::Blocks blocks;
   depth::BlockFits fits;
+  depth::FitRegion region;
+  depth::WindowFits window_fits;
   std::vector<float> last_depth;
   std::vector<float> scratch;
   FilteredDepth out;
@@ -134,6 +137,7 @@ struct DepthFilter::State {
     depth::average_blocks(image, frame.camera.width, out.noise, options, blocks);
     depth::reject_flying(out.noise, blocks, scratch);
     depth::fit_plain(blocks, out.noise, fits);
+    window_fits.fit(blocks, out.noise, options.normal_error, region, fits);
     mark_jumps();
     depth::write_points(fits, out);
     return out;
@@ -150,14 +154,16 @@ DepthFilter& DepthFilter::operator=(DepthFilter&&) noexcept = default;
 
 const FilteredDepth& DepthFilter::filter(const DepthFrame& frame,
                                          const Eigen::Isometry3d& T_world_sensor,
-                                         std::span<const Ball>) {
+                                         std::span<const Ball> fit_within) {
   check(frame);
+  state_->region.set(depth::block_grid(frame.camera), T_world_sensor, fit_within);
   return state_->filter(frame, T_world_sensor);
 }
 
 const FilteredDepth& DepthFilter::filter(const DepthFrame& frame,
                                          const Eigen::Isometry3d& T_world_sensor) {
   check(frame);
+  state_->region.set(depth::block_grid(frame.camera));
   return state_->filter(frame, T_world_sensor);
 }
 

@@ -11,8 +11,9 @@ struct SameSurface {
   float steep = 0;  ///< relative change of depth from block to block
 
   SameSurface(const NoiseModel& noise_model, const BlockGrid& grid);
-  [[nodiscard]] float limit(float rho) const {
-    return 4.3F * block_sigma(noise, rho) + steep * rho;
+  /// `distance` in blocks.
+  [[nodiscard]] float limit(float rho, float distance = 1) const {
+    return 4.3F * block_sigma(noise, rho) + steep * distance * rho;
   }
 };
 

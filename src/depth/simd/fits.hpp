@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// The noise-sized fit of nss_fast.md section 1: the code that is compiled once for each level of
+// the instruction set. Plain pointers and numbers alone cross this border.
+
+namespace palpate::simd {
+
+constexpr int kWindowSums = 8;         // doubles at each place of a table
+constexpr int kLargestWindow = 40;     // blocks from a window's middle to its border, at most
+constexpr double kRhoUnits = 1 << 20;  // inverse depths are counted in 2^-20 / m
+
+// Blocks in rows with a margin: pointers are to the block (0, 0).
+struct BlockRows {
+  const float* rho;            // inverse depth, 1/m; 0: hole
+  const std::uint8_t* counts;  // pixels measured; 0: filled, if rho is not 0
+  std::ptrdiff_t stride;       // from row to row
+};
+
+// Running sums over the blocks [first_column, first_column + columns) x [first_row, ...): place
+// (c, r) has the sums over the c x r blocks left and above of it, so there are columns + 1 by
+// rows + 1 places. u and v count from the table's middle.
+struct WindowTable {
+  double* sums;
+  int first_column, first_row;
+  int columns, rows;
+};
+
+// What fits need beside the table.
+struct FitInput {
+  WindowTable table;
+  BlockRows blocks;       // measured only, nothing filled
+  double x0, y0;          // ray of block (0, 0)
+  double step_x, step_y;  // from block to block
+  double noise[3];        // sigma(rho) = noise[2] + noise[1] rho + noise[0] rho^2 of a full block
+  double pixel_noise[3];  // of one pixel, without correlation, alike
+  double normal_error;    // theta, rad
+  double growth;          // min(2, sqrt c): how much larger windows are for correlated noise
+};
+
+// A row of the columns of BlockFits: plain fits on entry.
+struct FitRow {
+  float* rho;
+  float* variance;
+  float* slope_x;
+  float* slope_y;
+  float* slope_variance;
+  float* confidences;
+};
+
+struct FitFunctions {
+  // Writes all places of the table.
+  void (*table)(const WindowTable& table, const BlockRows& filled) noexcept;
+  // Fits `count` blocks of one row, rising columns.
+  void (*fit)(const FitInput& input, int row, const std::int32_t* columns, int count,
+              const FitRow& out) noexcept;
+};
+
+extern const FitFunctions kFitsBaseline;
+extern const FitFunctions kFitsV3;  // x86-64-v3; the same numbers bit for bit
+
+// The better that this processor has.
+const FitFunctions& best_fits() noexcept;
+
+}  // namespace palpate::simd
