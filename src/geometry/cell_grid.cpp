@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cassert>
+#include <numeric>
+#include <utility>
 
 #include "geometry/cell_builder.hpp"
 #include "geometry/distance.hpp"
@@ -70,6 +74,41 @@ CellGrid::CellGrid(std::span<const Eigen::Vector3f> positions) {
   points_ = builder.points();
   cells_ = builder.cells();
   detail::fit_boxes(points_, cells_);
+}
+
+void CellGrid::rebuild(std::span<const Eigen::Vector3f> positions,
+                       std::span<const std::uint32_t> codes) {
+  assert(positions.size() == codes.size() && std::is_sorted(codes.begin(), codes.end()));
+  points_.assign(positions.begin(), positions.end());
+  order_.resize(positions.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  cells_.clear();
+  if (positions.empty()) return;
+  const Eigen::Vector3f zero = Eigen::Vector3f::Zero();
+  cells_.push_back({zero, zero, 0, static_cast<std::uint32_t>(positions.size()), 0, 0});
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    if (cells_[cell].size() > kLeafPoints) divide(cell, codes);
+  }
+  detail::fit_boxes(points_, cells_);
+}
+
+void CellGrid::divide(std::size_t cell, std::span<const std::uint32_t> codes) {
+  const auto [begin, end] = std::pair(cells_[cell].begin, cells_[cell].end);
+  const std::uint32_t difference = codes[begin] ^ codes[end - 1];
+  if (difference == 0) return;
+  const int shift = (static_cast<int>(std::bit_width(difference)) - 1) / 2 * 2;
+  const auto first_child = static_cast<std::uint32_t>(cells_.size());
+  for (std::uint32_t from = begin; from < end;) {
+    const std::uint32_t group = codes[from] >> shift;
+    const auto next =
+        std::partition_point(codes.begin() + from, codes.begin() + end,
+                             [&](std::uint32_t code) { return code >> shift == group; });
+    const auto to = static_cast<std::uint32_t>(next - codes.begin());
+    cells_.push_back({Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), from, to, 0, 0});
+    from = to;
+  }
+  cells_[cell].first_child = first_child;
+  cells_[cell].children = static_cast<std::uint32_t>(cells_.size()) - first_child;
 }
 
 void CellGrid::within(const Eigen::Vector3f& center, float radius,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
+#include "scene/disagreement.hpp"
 
 namespace palpate {
 
@@ -13,6 +14,11 @@ Source& Scene::add(std::string name, const SourceOptions& options) {
   if (sources_.size() == kMaxSources) {
     throw Error(fmt::format("cannot add '{}': a scene holds {} sources; merge some clouds first",
                             name, kMaxSources));
+  }
+  if (*fields_ > 0) {
+    throw Error(fmt::format(
+        "cannot add '{}': the scene is being touched; add sources before making fields of it",
+        name));
   }
   const bool taken =
       std::ranges::any_of(sources_, [&](const Source& source) { return source.name() == name; });
@@ -29,6 +35,18 @@ Source& Scene::add(std::string name, const PointCloud& cloud, const SourceOption
     throw;
   }
   return source;
+}
+
+SourceState Scene::state(std::size_t i) const {
+  SourceState state = source(i).state();
+  const auto own = source(i).points();
+  for (std::size_t k = 0; own && k < size(); ++k) {
+    const auto other = k == i ? nullptr : source(k).points();
+    if (!other) continue;
+    const std::optional<double> found = disagreement(*own, *other);
+    if (found) state.disagreement = std::max(*found, state.disagreement.value_or(0));
+  }
+  return state;
 }
 
 }  // namespace palpate

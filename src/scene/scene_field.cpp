@@ -1,17 +1,21 @@
 #include "palpate/scene/scene_field.hpp"
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <deque>
 #include <limits>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "field/evaluate.hpp"
 #include "field/free_space.hpp"
 #include "field/mean_surface.hpp"
 #include "field/patch.hpp"
+#include "scene/reach_board.hpp"
 #include "scene/source_view.hpp"
+#include "scene/tool_reach.hpp"
 
 namespace palpate {
 namespace {
@@ -32,24 +36,44 @@ constexpr double kFinest = 0.25;
 // A surface may rise this fast and still take a resting proxy along (algorithm.md section 2.4).
 constexpr double kReanchorSpeed = 0.5;  // m/s
 
+// A tool feels points as far away as this, in support radii: normals and weights beside rims need
+// their neighbours, too.
+constexpr double kFelt = 2;
+
 }  // namespace
 
 static_assert(Scene::kMaxSources <= simd::kMaxSources);
 
 struct SceneField::State {
-  explicit State(Scene& scene, const FieldOptions& options) : surface(options) {
+  State(Scene& scene, const FieldOptions& options, const std::string& name)
+      : surface(options), fields(scene.fields_) {
     for (std::size_t i = 0; i < scene.size(); ++i) {
-      views.emplace_back(scene.source(i).handoff_);
-      soft.push_back(scene.source(i).options().soft);
+      Source& source = scene.source(i);
+      views.emplace_back(source.handoff_, name);
+      boards.push_back(source.reaches_.get());
+      soft.push_back(source.options().soft);
     }
+    ++*fields;
   }
+  ~State() {
+    for (std::size_t i = 0; i < views.size(); ++i) boards[i]->clear(views[i].reader());
+    --*fields;
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
 
   [[nodiscard]] std::span<const ActiveLayer> active() const noexcept {
     return {layers.data(), layer_count};
   }
   [[nodiscard]] int sources() const noexcept { return static_cast<int>(views.size()); }
 
+  /// One source, sure of it, no materials, no motion: every surface is the same.
+  [[nodiscard]] bool plain() const noexcept {
+    return plain_points && views.size() == 1 && views.front().presence() == 1;
+  }
+
   void list_layers() noexcept;
+  void publish_reach(const Vector3d& hip, const Vector3d& proxy) noexcept;
   void gather(Patch& patch, const Vector3d& center, double extra) const noexcept;
   void choose_uniform_radius(const Vector3d& proxy) noexcept;
   void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
@@ -58,7 +82,10 @@ struct SceneField::State {
   [[nodiscard]] FieldNote standing_notes() const noexcept;
 
   ImplicitSurface surface;
+  std::shared_ptr<std::atomic<int>> fields;  // of the scene
   std::deque<SourceView> views;
+  std::vector<ReachBoard*> boards;  // of the views' sources
+  ToolReach reach;
   std::vector<SoftMaterial> soft;
   std::array<ActiveLayer, Scene::kMaxSources * Snapshot::kMaxLayers> layers;
   std::size_t layer_count = 0;
@@ -67,7 +94,7 @@ struct SceneField::State {
   double uniform_radius = 0;  // R of all points; 0: each has its own
   double now = 0;
   bool other_kernel = false;
-  bool plain = true;  // one source, sure of it, no materials, no motion: every surface is the same
+  bool plain_points = true;  // no materials, no motion, no fading
   std::uint64_t revision = 0;
 
   // Samples away from the path are rare and take a patch of their own; that is a cache.
@@ -81,7 +108,7 @@ void SceneField::State::list_layers() noexcept {
   layer_count = 0;
   snapshot_duration = 0;
   other_kernel = false;
-  plain = views.size() == 1 && views.front().presence() == 1;
+  plain_points = true;
   typical_radius = std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < views.size(); ++s) {
     const Snapshot* snapshot = views[s].current();
@@ -92,7 +119,8 @@ void SceneField::State::list_layers() noexcept {
       if (layer.points->size() == 0) continue;  // a sensor that sees nothing
       other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
       typical_radius = std::min(typical_radius, layer.points->radius);
-      plain = plain && layer.points->materials.empty() && !fades(*layer.points) && layer.rate == 0;
+      plain_points = plain_points && layer.points->materials.empty() && !fades(*layer.points) &&
+                     layer.rate == 0;
       layers[layer_count++] = layer;
     }
   }
@@ -152,8 +180,14 @@ const Patch& SceneField::State::patch_at(const Ball& ball) const noexcept {
   return far;
 }
 
-SceneField::SceneField(Scene& scene, const FieldOptions& options)
-    : options_(options), state_(std::make_unique<State>(scene, options)) {}
+/// Tells every source where the tool can be.
+void SceneField::State::publish_reach(const Vector3d& hip, const Vector3d& proxy) noexcept {
+  const Reach ball = reach.update(now, hip, proxy, snapshot_duration, kFelt * radius());
+  for (std::size_t i = 0; i < views.size(); ++i) boards[i]->write(views[i].reader(), ball);
+}
+
+SceneField::SceneField(Scene& scene, const FieldOptions& options, const std::string& name)
+    : options_(options), state_(std::make_unique<State>(scene, options, name)) {}
 
 SceneField::~SceneField() = default;
 
@@ -172,6 +206,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   if (hip.allFinite() && proxy.allFinite()) {
     if (options_.nearest_radius) state.choose_uniform_radius(proxy);
     state.gather_path(hip, proxy);
+    state.publish_reach(hip, proxy);
   }
   state.notes = state.notes | state.standing_notes();
   if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;
@@ -198,7 +233,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {};
   Surface result;
-  if (state.plain) {
+  if (state.plain()) {
     result.source = 0;
     return result;
   }

@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
+#include "prepare/check_options.hpp"
+#include "scene/intake.hpp"
+#include "scene/reach_board.hpp"
 
 namespace palpate {
 namespace {
@@ -37,41 +40,133 @@ void check(const std::string& name, const Snapshot& snapshot) {
   }
 }
 
+/// Errors of what `act` does, with the source's name.
+template <class Act>
+auto named(const std::string& name, const Act& act) {
+  try {
+    return act();
+  } catch (const Error& error) {
+    throw Error(fmt::format("source '{}': {}", name, error.what()));
+  }
+}
+
 }  // namespace
 
 Source::Source(std::string name, const SourceOptions& options)
-    : name_(std::move(name)), options_(options) {
+    : name_(std::move(name)),
+      options_(options),
+      pose_(options.T_world_sensor),
+      reaches_(std::make_unique<ReachBoard>()) {
   check_factor(name_, "soft.stiffness_factor", options_.soft.stiffness_factor);
   check_factor(name_, "soft.friction_factor", options_.soft.friction_factor);
+  named(name_, [&] { intake_ = std::make_unique<Intake>(options_); });
+}
+
+Source::~Source() = default;
+
+PrepareReport Source::report() const {
+  const std::lock_guard lock(mutex_);
+  return report_;
+}
+
+Eigen::Isometry3d Source::pose() const {
+  const std::lock_guard lock(mutex_);
+  return pose_;
+}
+
+void Source::set_pose(const Eigen::Isometry3d& T_world_sensor) {
+  named(name_, [&] { check_pose(T_world_sensor); });
+  const std::lock_guard lock(mutex_);
+  pose_ = T_world_sensor;
 }
 
 void Source::set(const PointCloud& cloud) {
-  Prepared prepared = [&] {
-    try {
-      return prepare(cloud, options_.prepare, options_.T_world_sensor);
-    } catch (const Error& error) {
-      throw Error(fmt::format("source '{}': {}", name_, error.what()));
-    }
-  }();
-  report_ = prepared.report;
-  auto snapshot = std::make_unique<Snapshot>();
+  Prepared prepared = named(name_, [&] { return prepare(cloud, options_.prepare, pose()); });
+  {
+    const std::lock_guard lock(mutex_);
+    report_ = prepared.report;
+  }
+  auto snapshot = std::make_shared<Snapshot>();
   snapshot->layers.push_back(
       {std::make_shared<const SurfacePoints>(std::move(prepared.points)), 1, 1});
   publish(std::move(snapshot));
 }
 
-void Source::publish(std::unique_ptr<const Snapshot> snapshot) {
+bool Source::push(const DepthFrame& frame, const StartTime& start) {
+  if (!room_for(false)) return false;
+  reaches_->read(found_);
+  named(name_, [&] {
+    const Eigen::Isometry3d pose_now = frame.T_world_sensor ? *frame.T_world_sensor : pose();
+    if (frame.T_world_sensor) check_pose(pose_now);
+    hand_over(intake_->take(frame, {pose_now, found_, start}));
+  });
+  const std::lock_guard lock(mutex_);
+  state_.depth = intake_->median_depth();
+  state_.noise = intake_->noise().sigma(state_.depth);
+  state_.correlation = intake_->noise().correlation;
+  return true;
+}
+
+bool Source::push(const PointCloud& cloud, double stamp, const StartTime& start) {
+  if (!room_for(true)) return false;
+  reaches_->read(found_);
+  PrepareReport report;
+  named(name_, [&] { hand_over(intake_->take(cloud, stamp, {pose(), found_, start}, report)); });
+  const std::lock_guard lock(mutex_);
+  report_ = report;
+  return true;
+}
+
+/// May one more snapshot be made? If not, says whom it waits for.
+bool Source::room_for(bool clouds) {
+  const std::size_t most = intake_->most_snapshots(clouds, handoff_.readers());
+  if (handoff_.alive() < most) return true;
+  handoff_.sweep();
+  if (handoff_.alive() < most) return true;
+  std::string slowest = handoff_.slowest();
+  const std::lock_guard lock(mutex_);
+  ++state_.dropped;
+  state_.slowest = std::move(slowest);
+  return false;
+}
+
+void Source::hand_over(std::shared_ptr<const Snapshot> snapshot) {
+  if (!snapshot) return;
+  {
+    const std::lock_guard lock(mutex_);
+    note(*snapshot);
+  }
+  handoff_.publish(std::move(snapshot));
+}
+
+void Source::note(const Snapshot& snapshot) {
+  points_ = snapshot.layers.back().points;
+  ++state_.frames;
+  state_.interval = state_.frames > 1 ? intake_->interval() : 0;
+  state_.latency = snapshot.start - snapshot.stamp;
+  state_.stamp = snapshot.stamp;
+  state_.points = points_->size();
+  state_.silent_from = snapshot.silent_from;
+  state_.fade = snapshot.fade;
+}
+
+void Source::publish(std::shared_ptr<const Snapshot> snapshot) {
   if (snapshot) check(name_, *snapshot);
   {
-    const std::lock_guard lock(points_mutex_);
+    const std::lock_guard lock(mutex_);
     points_ = snapshot && !snapshot->layers.empty() ? snapshot->layers.front().points : nullptr;
   }
   handoff_.publish(std::move(snapshot));
 }
 
 std::shared_ptr<const SurfacePoints> Source::points() const {
-  const std::lock_guard lock(points_mutex_);
+  const std::lock_guard lock(mutex_);
   return points_;
+}
+
+SourceState Source::state() const {
+  const std::lock_guard lock(mutex_);
+  return state_;
 }
 
 }  // namespace palpate

@@ -12,15 +12,10 @@ namespace {
 // A snapshot that starts later than this is a mistake of clocks, s.
 constexpr double kPatience = 1;
 
-double progress_at(const Snapshot& snapshot, double now) noexcept {
-  const double duration = snapshot.end - snapshot.start;
-  if (!(duration > 0)) return now < snapshot.start ? 0 : 1;
-  return std::clamp((now - snapshot.start) / duration, 0.0, 1.0);
-}
-
 }  // namespace
 
-SourceView::SourceView(Handoff<Snapshot>& handoff) : handoff_(&handoff), reader_(handoff.join()) {
+SourceView::SourceView(Handoff<Snapshot>& handoff, const std::string& name)
+    : handoff_(&handoff), reader_(handoff.join(name)) {
   if (reader_ == Handoff<Snapshot>::kReaders) {
     throw Error(fmt::format("the scene has {} fields already; destroy one before making another",
                             Handoff<Snapshot>::kReaders));
@@ -36,8 +31,11 @@ bool SourceView::advance(double now) noexcept {
   const double progress_before = progress_;
   look(now);
   change_over(now);
-  progress_ = current_ ? progress_at(*current_, now) : 0;
-  return current_ != snapshot_before || progress_ != progress_before;
+  progress_ = current_ ? palpate::progress(*current_, now) : 0;
+  const bool there_before = presence_ > 0;
+  presence_ = current_ ? palpate::presence(*current_, now) : 0;
+  return current_ != snapshot_before || progress_ != progress_before ||
+         there_before != (presence_ > 0);
 }
 
 void SourceView::look(double now) noexcept {
@@ -62,11 +60,6 @@ void SourceView::change_over(double now) noexcept {
   slot_ = 1 - slot_;
   current_ = next_;
   next_ = nullptr;
-}
-
-double SourceView::presence() const noexcept {
-  if (!current_) return 0;
-  return current_->presence_start + progress_ * (current_->presence_end - current_->presence_start);
 }
 
 ActiveLayer SourceView::layer(std::size_t k, int source) const noexcept {

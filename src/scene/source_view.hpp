@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 #include "field/patch.hpp"
 #include "palpate/scene/handoff.hpp"
@@ -12,8 +13,8 @@ namespace palpate {
 /// the next. Everything but construction and destruction is real-time.
 class SourceView {
  public:
-  /// @throws Error when the source has no reader's place left.
-  explicit SourceView(Handoff<Snapshot>& handoff);
+  /// `name`: of the reader. @throws Error when the source has no reader's place left.
+  SourceView(Handoff<Snapshot>& handoff, const std::string& name);
   ~SourceView();
   SourceView(const SourceView&) = delete;
   SourceView& operator=(const SourceView&) = delete;
@@ -23,11 +24,16 @@ class SourceView {
   /// one only when it starts unreasonably late.
   bool advance(double now) noexcept;
 
-  /// nullptr: no surface now.
-  [[nodiscard]] const Snapshot* current() const noexcept { return current_; }
+  /// nullptr: no surface now; one that has faded away is none.
+  [[nodiscard]] const Snapshot* current() const noexcept {
+    return presence_ > 0 ? current_ : nullptr;
+  }
 
   /// How sure the current snapshot is now, 0-1; 0 without one.
-  [[nodiscard]] double presence() const noexcept;
+  [[nodiscard]] double presence() const noexcept { return presence_; }
+
+  /// The reader's place at the source.
+  [[nodiscard]] std::size_t reader() const noexcept { return reader_; }
 
   /// The current snapshot's k-th layer as it counts now.
   [[nodiscard]] ActiveLayer layer(std::size_t k, int source) const noexcept;
@@ -43,6 +49,7 @@ class SourceView {
   const Snapshot* current_ = nullptr;
   const Snapshot* next_ = nullptr;
   double progress_ = 0;
+  double presence_ = 0;
 };
 
 }  // namespace palpate

@@ -46,6 +46,12 @@ class CellGrid {
   /// @throws Error when there are more points than that, or one is not finite.
   explicit CellGrid(std::span<const Eigen::Vector3f> positions);
 
+  /// Builds the index anew, in the memory of the last one, of points that stand along a curve
+  /// already, as those of a depth image do: `codes`, which never fall, say where on it, two bits a
+  /// level. A cell's points agree in their leading bits; those that agree in all of them stay
+  /// together, however many. Their order is kept. Allocates only to grow. Positions are finite.
+  void rebuild(std::span<const Eigen::Vector3f> positions, std::span<const std::uint32_t> codes);
+
   [[nodiscard]] std::size_t size() const { return points_.size(); }
   [[nodiscard]] std::span<const Cell> cells() const { return cells_; }
 
@@ -64,6 +70,8 @@ class CellGrid {
   void nearest(const Eigen::Vector3f& center, std::size_t k, std::vector<Neighbor>& found) const;
 
  private:
+  void divide(std::size_t cell, std::span<const std::uint32_t> codes);
+
   std::vector<Eigen::Vector3f> points_;
   std::vector<std::uint32_t> order_;
   std::vector<Cell> cells_;

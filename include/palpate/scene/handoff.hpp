@@ -8,17 +8,19 @@
 #include <iterator>
 #include <memory>
 #include <mutex>
-#include <vector>
+#include <string>
+#include <utility>
 
 namespace palpate {
 
 /// Hands immutable values from preparing threads to several real-time readers without locks: the
 /// one place where threads meet. A reader marks what it looks at in a slot of its own (a hazard
-/// pointer); a value is freed by the next publish() or leave() that finds no slot naming it, on
+/// pointer); a value is let go by the next publish() or leave() that finds no slot naming it, on
 /// that thread and never on a reader's.
 ///
 /// A reader that stands still keeps the values in its slots alive and delays nobody; so at most
-/// kReaders * kHeld + 1 values are alive at a time, however many are published.
+/// kReaders * kHeld + 1 values are alive at a time, however many are published. Nothing here
+/// allocates but join().
 template <class T>
 class Handoff {
   static_assert(std::atomic<const T*>::is_always_lock_free);
@@ -32,37 +34,42 @@ class Handoff {
   Handoff(const Handoff&) = delete;
   Handoff& operator=(const Handoff&) = delete;
   /// Every reader has left by now.
-  ~Handoff() {
-    assert(std::ranges::none_of(taken_, [](bool taken) { return taken; }));
-  }
+  ~Handoff() { assert(readers() == 0); }
 
-  /// Takes a reader's place. Not real-time. Returns kReaders when all places are taken.
-  [[nodiscard]] std::size_t join() {
+  /// Takes a reader's place. Not real-time. Returns kReaders when all places are taken. `name`: for
+  /// those who look for a reader that stands still.
+  [[nodiscard]] std::size_t join(std::string name = {}) {
     const std::lock_guard lock(mutex_);
-    const auto place = std::ranges::find(taken_, false);
-    if (place != taken_.end()) *place = true;
-    return static_cast<std::size_t>(std::distance(taken_.begin(), place));
+    const auto free = std::ranges::find(taken_, false);
+    const auto place = static_cast<std::size_t>(std::distance(taken_.begin(), free));
+    if (place == kReaders) return kReaders;
+    taken_[place] = true;
+    names_[place] = std::move(name);
+    return place;
   }
 
   /// Gives a place back. Not real-time; the reader must no longer use what it held.
   void leave(std::size_t reader) {
-    Values unused;  // outlives the lock: what it holds is freed after the unlocking
+    Values unused;  // outlives the lock: what it holds is let go after the unlocking
     const std::lock_guard lock(mutex_);
     assert(reader < kReaders && taken_[reader]);
     for (auto& slot : readers_[reader].slots) slot.store(nullptr);
     taken_[reader] = false;
-    unused = take_unused();
+    take_unused(unused);
   }
 
-  /// Makes `value` the newest; a null one says that there is nothing any more. Not real-time. Frees
-  /// what no reader holds any more.
-  void publish(std::unique_ptr<const T> value) {
+  /// Makes `value` the newest; a null one says that there is nothing any more. Not real-time. Lets
+  /// go of what no reader holds any more.
+  void publish(std::shared_ptr<const T> value) {
     Values unused;
     const std::lock_guard lock(mutex_);
     const T* newest = value.get();
-    if (newest) values_.push_back(std::move(value));  // first: this may throw
+    const auto end = values_.begin() + static_cast<std::ptrdiff_t>(count_);
+    const bool known =
+        std::any_of(values_.begin(), end, [&](const auto& other) { return other.get() == newest; });
+    if (newest && !known) values_[count_++] = std::move(value);
     newest_.store(newest);
-    unused = take_unused();
+    take_unused(unused);
   }
 
   /// The newest value, held in `slot` (< kHeld) of `reader` until the slot is used again; nullptr
@@ -96,44 +103,78 @@ class Handoff {
   [[nodiscard]] const T* peek() const noexcept { return newest_.load(); }
 
   /// How many values are alive. Not real-time.
-  [[nodiscard]] std::size_t alive() {
+  [[nodiscard]] std::size_t alive() const {
     const std::lock_guard lock(mutex_);
-    return values_.size();
+    return count_;
+  }
+
+  /// How many readers' places are taken. Not real-time.
+  [[nodiscard]] std::size_t readers() const {
+    const std::lock_guard lock(mutex_);
+    return static_cast<std::size_t>(std::ranges::count(taken_, true));
+  }
+
+  /// Lets go of what no reader holds any more, as publish() does. Not real-time.
+  void sweep() {
+    Values unused;
+    const std::lock_guard lock(mutex_);
+    take_unused(unused);
+  }
+
+  /// The name of a reader that holds the oldest value of all; empty when none is held but the
+  /// newest. Not real-time.
+  [[nodiscard]] std::string slowest() const {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t v = 0; v < count_; ++v) {
+      const T* const value = values_[v].get();
+      if (value == newest_.load()) continue;
+      const auto holder = std::ranges::find_if(
+          readers_, [value](const Reader& reader) { return holds(reader, value); });
+      if (holder == readers_.end()) continue;
+      return names_[static_cast<std::size_t>(std::distance(readers_.begin(), holder))];
+    }
+    return {};
   }
 
  private:
-  using Values = std::vector<std::unique_ptr<const T>>;
-
   static constexpr int kTries = 4;
   static constexpr std::size_t kCacheLine = 64;
+  static constexpr std::size_t kMostValues = kReaders * kHeld + 2;  // one is being published
+
+  using Values = std::array<std::shared_ptr<const T>, kMostValues>;
 
   /// A reader writes on a cache line of its own.
   struct alignas(kCacheLine) Reader {
     std::array<std::atomic<const T*>, kHeld> slots{};
   };
 
-  /// Moves what nobody needs out of `values_`. The mutex is held. Looks at each slot once; a
-  /// value that is not the newest cannot become marked afterwards (see acquire()).
-  [[nodiscard]] Values take_unused() {
-    const T* newest = newest_.load();
-    const auto kept = std::partition(values_.begin(), values_.end(), [&](const auto& value) {
-      return value.get() == newest || held(value.get());
-    });
-    Values unused(std::make_move_iterator(kept), std::make_move_iterator(values_.end()));
-    values_.erase(kept, values_.end());
-    return unused;
+  /// Moves what nobody needs out of `values_`, whose order stays. The mutex is held. Looks at
+  /// each slot once; a value that is not the newest cannot become marked afterwards (see
+  /// acquire()).
+  void take_unused(Values& unused) {
+    const T* const newest = newest_.load();
+    std::size_t kept = 0;
+    for (std::size_t v = 0; v < count_; ++v) {
+      const T* const value = values_[v].get();
+      const bool needed = value == newest || std::ranges::any_of(readers_, [&](const auto& reader) {
+                            return holds(reader, value);
+                          });
+      auto& place = needed ? values_[kept++] : unused[v];
+      if (&place != &values_[v]) place = std::move(values_[v]);
+    }
+    count_ = kept;
   }
 
-  [[nodiscard]] bool held(const T* value) const {
-    return std::ranges::any_of(readers_, [value](const Reader& reader) {
-      return std::ranges::any_of(reader.slots,
-                                 [value](const auto& slot) { return slot.load() == value; });
-    });
+  [[nodiscard]] static bool holds(const Reader& reader, const T* value) {
+    return std::ranges::any_of(reader.slots,
+                               [value](const auto& slot) { return slot.load() == value; });
   }
 
-  std::mutex mutex_;  // publishers and those who join or leave; never taken by acquire()
-  Values values_;
+  mutable std::mutex mutex_;  // publishers and those who join or leave; never taken by acquire()
+  Values values_;             // the first count_, oldest first
+  std::size_t count_ = 0;
   std::array<bool, kReaders> taken_{};
+  std::array<std::string, kReaders> names_;
   std::atomic<const T*> newest_{nullptr};
   std::array<Reader, kReaders> readers_{};
 };

@@ -19,6 +19,8 @@ struct PolicyOptions {
   double silence = 0.3;  ///< a surface that nothing confirmed for so long begins to fade, s
   double fade = 0.5;     ///< in which it fades away, s
   bool fit_everywhere = false;  ///< run the depth filter's fit outside the fields' reach as well
+  bool clip_to_reach = false;   ///< leave out points of clouds that no tool can come to before the
+                                ///< next ones (the paper's section IV-B)
 };
 
 }  // namespace palpate

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <deque>
+#include <memory>
 #include <string>
 
 #include "palpate/scene/source.hpp"
@@ -9,13 +11,14 @@
 namespace palpate {
 
 /// The sources that are touched together. Knows no camera and owns no thread. Outlives every
-/// SceneField made of it; sources are added before.
+/// SceneField made of it; sources are added before the first of them.
 class Scene {
  public:
   static constexpr std::size_t kMaxSources = 8;
 
   /// Adds a source that something else will publish to.
-  /// @throws Error when the name is taken or the scene is full.
+  /// @throws Error when the name is taken, the scene is full, or a SceneField looks at it: that
+  /// would never see the new source.
   Source& add(std::string name, const SourceOptions& options = {});
 
   /// Adds a cloud that stands still, and prepares it here.
@@ -26,8 +29,15 @@ class Scene {
   [[nodiscard]] Source& source(std::size_t i) { return sources_[i]; }
   [[nodiscard]] const Source& source(std::size_t i) const { return sources_[i]; }
 
+  /// How the i-th source fares, and how badly it disagrees with the others. Takes milliseconds; any
+  /// thread but a servo's.
+  [[nodiscard]] SourceState state(std::size_t i) const;
+
  private:
+  friend class SceneField;
+
   std::deque<Source> sources_;
+  std::shared_ptr<std::atomic<int>> fields_ = std::make_shared<std::atomic<int>>(0);
 };
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "palpate/field/field.hpp"
 #include "palpate/field/field_options.hpp"
@@ -35,14 +36,17 @@ class SceneField final : public Field {
  public:
   static constexpr std::size_t kPatchPoints = 2048;  ///< room of a patch
 
+  /// `name`: for reports of fields that stand still.
   /// @throws Error when an option is out of range or the scene has too many readers.
-  explicit SceneField(Scene& scene, const FieldOptions& options = {});
+  explicit SceneField(Scene& scene, const FieldOptions& options = {},
+                      const std::string& name = "a field");
   ~SceneField() override;
   SceneField(const SceneField&) = delete;
   SceneField& operator=(const SceneField&) = delete;
 
   /// Picks up new snapshots, brings the surface to time `now` (s) and gathers the points around
-  /// the proxy and its way to the hand (m, world). Wait-free, allocation-free.
+  /// the proxy and its way to the hand (m, world). Tells the sources where the tool can be next.
+  /// Wait-free, allocation-free.
   void update(double now, const Eigen::Vector3d& hip, const Eigen::Vector3d& proxy) noexcept;
 
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side side) const noexcept override;

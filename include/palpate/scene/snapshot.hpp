@@ -36,4 +36,10 @@ struct Snapshot {
   std::vector<Layer> layers;
 };
 
+/// How far `snapshot` has gone at `time` (s): 0 at its start and before, 1 at its end and after.
+[[nodiscard]] double progress(const Snapshot& snapshot, double time) noexcept;
+
+/// How sure its sensor is of it at `time` (s), 0-1.
+[[nodiscard]] double presence(const Snapshot& snapshot, double time) noexcept;
+
 }  // namespace palpate

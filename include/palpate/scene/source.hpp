@@ -5,14 +5,20 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/prepare/prepare.hpp"
 #include "palpate/scene/handoff.hpp"
 #include "palpate/scene/policy.hpp"
+#include "palpate/scene/reach.hpp"
 #include "palpate/scene/snapshot.hpp"
+#include "palpate/scene/source_state.hpp"
 
 namespace palpate {
+
+class Intake;
+class ReachBoard;
 
 /// What points of material 0 feel like. Material 1 is as stiff and rough as the proxy's options
 /// say, and between the two it goes in a straight line.
@@ -29,9 +35,10 @@ struct SourceOptions {
   DepthFilterOptions depth = {};  ///< for depth frames that are pushed
 };
 
-/// Asked once, when a pushed surface is ready: when it is to start being felt, s, on the clock that
-/// SceneField::update is given. Live: now plus a lead of 2 ms. In simulated time: the frame's stamp
-/// plus the latency.
+/// Asked once, when a pushed frame or cloud has been filtered: when its surface is to start being
+/// felt, s, on the clock that SceneField::update is given. Live: now plus a lead of 2 ms, in which
+/// the rest is done. In simulated time: the frame's stamp plus the latency. A start before that of
+/// the surface pushed last counts as the same.
 using StartTime = std::function<double()>;
 
 /// One sensor or file: its pose, and the newest snapshot of what it sees.
@@ -39,41 +46,72 @@ class Source {
  public:
   /// @throws Error when an option is out of its range.
   Source(std::string name, const SourceOptions& options);
+  ~Source();
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const SourceOptions& options() const { return options_; }
-  [[nodiscard]] const PrepareReport& report() const { return report_; }
+  /// Of the newest cloud that was prepared here. Any thread but a servo's.
+  [[nodiscard]] PrepareReport report() const;
+
+  /// Where the sensor stands: options().T_world_sensor until set_pose(). Any thread but a servo's.
+  [[nodiscard]] Eigen::Isometry3d pose() const;
+  /// Moves the sensor, from the next push() or set() on. Any thread but a servo's.
+  /// @throws Error when the pose is not rigid.
+  void set_pose(const Eigen::Isometry3d& T_world_sensor);
 
   /// Prepares a cloud that stands still and makes it this source's surface. Not real-time.
   /// @throws Error as prepare() does.
   void set(const PointCloud& cloud);
 
   /// Takes the next frame of a depth camera: filters it, brings it into the surface as the policy
-  /// says, publishes. `frame.T_world_sensor`, where set, stands above options().T_world_sensor.
-  /// Not real-time; one thread pushes.
-  /// @throws Error as DepthFilter::filter does.
-  void push(const DepthFrame& frame, const StartTime& start);
+  /// says, publishes. `frame.T_world_sensor`, where set, stands above pose(). Once frames of one
+  /// size have come for a while, nothing is allocated. Not real-time; one thread pushes.
+  ///
+  /// False when the frame was dropped, because fields that stand still hold all snapshots that
+  /// there may be; state() names one of them.
+  /// @throws Error as DepthFilter::filter does, and when a time is not finite or the pose not
+  /// rigid.
+  bool push(const DepthFrame& frame, const StartTime& start);
 
-  /// Takes the next cloud of a sensor that delivers clouds, taken at `stamp` (s). Likewise.
-  /// @throws Error as prepare() does, and when the policy needs depth frames.
-  void push(const PointCloud& cloud, double stamp, const StartTime& start);
+  /// Takes the next cloud of a sensor that delivers clouds, taken at `stamp` (s). Likewise, but
+  /// preparation allocates.
+  /// @throws Error as prepare() does, when a time is not finite, and when the policy needs depth
+  /// frames.
+  bool push(const PointCloud& cloud, double stamp, const StartTime& start);
 
   /// Makes `snapshot` the newest; nullptr: there is no surface any more. Not real-time.
   /// @throws Error when it has more than Snapshot::kMaxLayers layers, a layer that is not whole, a
   /// weight or presence outside 0-1, or times that are not finite and in order.
-  void publish(std::unique_ptr<const Snapshot> snapshot);
+  void publish(std::shared_ptr<const Snapshot> snapshot);
 
-  /// The newest surface's first layer, for those who draw or explore; may be null. Not real-time.
+  /// The newest surface's first layer, for those who draw or explore; may be null. Any thread but a
+  /// servo's.
   [[nodiscard]] std::shared_ptr<const SurfacePoints> points() const;
 
+  /// How it fares. Any thread but a servo's. Scene::state() knows how it agrees with others, too.
+  [[nodiscard]] SourceState state() const;
+
  private:
+  friend class Scene;
   friend class SceneField;
+
+  [[nodiscard]] bool room_for(bool clouds);
+  void hand_over(std::shared_ptr<const Snapshot> snapshot);
+  void note(const Snapshot& snapshot);
 
   std::string name_;
   SourceOptions options_;
+  mutable std::mutex mutex_;  // of what follows; whoever draws, and the preparing thread
+  Eigen::Isometry3d pose_;
   PrepareReport report_;
-  mutable std::mutex points_mutex_;  // whoever draws, and the preparing thread
   std::shared_ptr<const SurfacePoints> points_;
+  SourceState state_;
+
+  std::unique_ptr<Intake> intake_;  // the preparing thread's
+  std::vector<Reach> found_;        // likewise
+  std::unique_ptr<ReachBoard> reaches_;
   Handoff<Snapshot> handoff_;
 };
 

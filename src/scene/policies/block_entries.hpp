@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "palpate/geometry/pinhole.hpp"
+#include "scene/policies/block_order.hpp"
+
+namespace palpate {
+
+/// What a point of a morphing surface is.
+enum class EntryKind : std::uint8_t {
+  live,     ///< the surface that a block shows, or showed last
+  leaving,  ///< fades away over one frame
+  outside,  ///< has left the image, which a moving camera looks elsewhere now
+};
+
+/// What is remembered of a point besides what the field needs of it.
+struct Entry {
+  std::uint32_t place = 0;  ///< of its block on the curve
+  EntryKind kind = EntryKind::live;
+  bool seen = false;     ///< in the last frame
+  double confirmed = 0;  ///< stamp of the last frame that showed it, s
+};
+
+/// Lists which entries are at which block.
+class BlockEntries {
+ public:
+  /// Entries by their places on the curve, equal places in rising order of entries.
+  void sort(std::span<const Entry> entries, std::size_t blocks);
+
+  /// Numbers of the entries at a place of the curve.
+  [[nodiscard]] std::span<const std::uint32_t> at(std::size_t place) const {
+    return std::span(sorted_).subspan(begin_[place], begin_[place + 1] - begin_[place]);
+  }
+
+ private:
+  std::vector<std::uint32_t> begin_;
+  std::vector<std::uint32_t> sorted_;
+};
+
+}  // namespace palpate

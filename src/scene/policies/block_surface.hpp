@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "palpate/depth/filtered_depth.hpp"
+#include "palpate/field/kernel.hpp"
+#include "palpate/geometry/ball.hpp"
+
+namespace palpate {
+
+/// How far the points of a depth frame reach and what they weigh, from the image alone: neighbours
+/// are known without a search.
+class BlockSurface {
+ public:
+  explicit BlockSurface(Kernel kernel) : kernel_(kernel) {}
+
+  /// Radii and areas of all blocks. Beside rims and holes a weight is exact inside the balls
+  /// (sensor frame), elsewhere that of a whole surface. Allocates when the size of frames changes.
+  void measure(const FilteredDepth& depth, std::span<const Ball> exact_within);
+  /// The same, exact everywhere.
+  void measure(const FilteredDepth& depth);
+
+  /// R_i, m: max(2.5 s, 1.7 times the largest spacing of rows) (field_choice.md section 5), limited
+  /// so that it grows by half the distance at most from block to block.
+  [[nodiscard]] float radius(std::size_t block) const { return radii_[block]; }
+
+  /// a_i R_i^2, m^2: the density weight of a point with radius R is this over R^2.
+  [[nodiscard]] float area(std::size_t block) const { return areas_[block]; }
+
+ private:
+  void start(const FilteredDepth& depth);
+  void limit_growth(const FilteredDepth& depth);
+  void mark_rims(const FilteredDepth& depth);
+  void weigh_rims(const FilteredDepth& depth);
+  [[nodiscard]] int half_window(const FilteredDepth& depth, std::size_t block) const;
+  [[nodiscard]] bool near_rim(const FilteredDepth& depth, std::size_t block, int half) const;
+  void list_rims(const FilteredDepth& depth, std::span<const Ball> exact_within, bool everywhere);
+  template <class Visit>
+  void visit_window(const FilteredDepth& depth, std::size_t block, const Visit& visit) const;
+
+  Kernel kernel_;
+  std::vector<float> radii_;  // 0: no point
+  std::vector<float> areas_;
+  std::vector<float> sums_;           // S_i
+  std::vector<std::int32_t> rims_;    // blocks without or beside another surface, summed up to each
+  std::vector<std::uint32_t> exact_;  // blocks whose sums are taken from their neighbours
+  std::vector<float> exact_sums_;     // of those
+};
+
+}  // namespace palpate

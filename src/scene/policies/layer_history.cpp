@@ -1,0 +1,51 @@
+#include "scene/policies/layer_history.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+namespace palpate {
+
+void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const Moment& moment,
+                       std::vector<Layer>& layers) {
+  age(moment);
+  layers_.push_back({std::move(newest), 0, 0});
+  const auto most =
+      policy_ == Policy::crossfade ? Snapshot::kMaxLayers : static_cast<std::size_t>(history_);
+  if (layers_.size() > most) layers_.erase(layers_.begin());
+  weigh();
+  last_ = moment;
+  layers.assign(layers_.begin(), layers_.end());
+}
+
+/// Weights as they are at the new start; what has faded away is dropped.
+void LayerHistory::age(const Moment& moment) {
+  double u = 1;
+  if (last_.duration > 0) {
+    u = std::clamp((moment.start - last_.start) / last_.duration, 0.0, 1.0);
+  }
+  for (Layer& layer : layers_) {
+    layer.weight_start += u * (layer.weight_end - layer.weight_start);
+  }
+  std::erase_if(
+      layers_, [](const Layer& layer) { return layer.weight_start <= 0 && layer.weight_end <= 0; });
+}
+
+void LayerHistory::weigh() {
+  const std::size_t counted = std::min(layers_.size(), static_cast<std::size_t>(history_));
+  const double share = 1 / static_cast<double>(counted);
+  for (std::size_t k = 0; k < layers_.size(); ++k) {
+    const bool counts = layers_.size() - k <= counted;
+    layers_[k].weight_end = counts ? share : 0;
+    if (policy_ != Policy::crossfade) layers_[k].weight_start = layers_[k].weight_end;
+  }
+  const double sum =
+      std::accumulate(layers_.begin(), layers_.end(), 0.0,
+                      [](double total, const Layer& layer) { return total + layer.weight_start; });
+  if (sum <= 0) layers_.back().weight_start = 1;
+  // One had to go early, or the sum is off by rounding.
+  for (Layer& layer : layers_) layer.weight_start /= sum > 0 ? sum : 1;
+}
+
+}  // namespace palpate

@@ -1,0 +1,273 @@
+#include "scene/policies/morph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+// What has faded so far is gone.
+constexpr float kGone = 1e-4f;
+
+// A point's radius follows what the image says only when the two are this far apart: a radius that
+// followed noise would move the surface at every swap.
+constexpr float kSteadyRadius = 0.15f;
+constexpr float kConfidenceShare = 0.25f;  // of the new confidence in the mean
+
+// Single precision resolves a micrometre as far from the points' origin as this, m.
+constexpr double kFarFromOrigin = 16;
+
+// Blocks that a camera no longer looks at, in blocks of an image.
+constexpr double kMostEntries = 1.5;
+
+Eigen::Vector3f mix(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float u) {
+  return a + u * (b - a);
+}
+
+Eigen::Vector3f mix_normals(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float u) {
+  const Eigen::Vector3f mixed = mix(a, b, u);
+  const float length = mixed.norm();
+  return length > 1e-6f ? Eigen::Vector3f(mixed / length) : a;
+}
+
+}  // namespace
+
+struct Morph::Point {
+  PointState state;
+  PointNature nature;
+  float area = 0;  // a_i R_i^2
+};
+
+void Morph::forget() {
+  last_.reset();
+  entries_.clear();
+}
+
+void Morph::fill_still(const MorphInput& input, const Moment& moment,
+                       const std::shared_ptr<SurfacePoints>& points) {
+  forget();
+  still_ = true;
+  fill(input, moment, points);
+  still_ = false;
+}
+
+void Morph::fill(const MorphInput& input, const Moment& moment,
+                 const std::shared_ptr<SurfacePoints>& points) {
+  start(input, moment, *points);
+  measure(input);
+  if (moved_) follow_camera(input);
+  by_block_.sort(entries_, order_.size());
+  for (std::size_t place = 0; place < order_.size(); ++place) settle(input.depth, place);
+  writer_.end();
+  std::swap(entries_, next_entries_);
+  last_ = points;
+  last_moment_ = moment;
+  T_world_sensor_ = input.depth.T_world_sensor;
+}
+
+void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& points) {
+  const FilteredDepth& depth = input.depth;
+  if (order_.columns != depth.columns || order_.rows != depth.rows) {
+    forget();
+    order_ = make_block_order(depth.columns, depth.rows);
+  }
+  const Eigen::Isometry3d& T_world_sensor = depth.T_world_sensor;
+  if ((T_world_sensor.translation() - origin_).norm() > kFarFromOrigin) forget();
+  if (!last_) origin_ = T_world_sensor.translation();
+  moment_ = moment;
+  progress_ = 1;
+  if (last_ && last_moment_.duration > 0) {
+    progress_ = std::clamp((moment.start - last_moment_.start) / last_moment_.duration, 0.0, 1.0);
+  }
+  moved_ = last_ && T_world_sensor.matrix() != T_world_sensor_.matrix();
+  turn_ = T_world_sensor.linear().cast<float>();
+  shift_ = (T_world_sensor.translation() - origin_).cast<float>();
+  points.origin = origin_;
+  points.kernel = options_.kernel;
+  points.sharp_edges =
+      std::find(depth.states.begin(), depth.states.end(), BlockState::fitted) != depth.states.end();
+  next_entries_.clear();
+  writer_.begin(points, std::max(entries_.size() + entries_.size() / 16, order_.size() / 2));
+}
+
+void Morph::measure(const MorphInput& input) {
+  if (input.everywhere) {
+    surface_.measure(input.depth);
+    return;
+  }
+  const Eigen::Isometry3d T_sensor_world = input.depth.T_world_sensor.inverse();
+  local_reach_.clear();
+  for (const Ball& ball : input.reach) {
+    local_reach_.push_back({T_sensor_world * ball.center, ball.radius});
+  }
+  surface_.measure(input.depth, local_reach_);
+}
+
+/// Puts every old point at the block that sees it now.
+void Morph::follow_camera(const MorphInput& input) {
+  const FilteredDepth& depth = input.depth;
+  const Pinhole& p = input.pinhole;
+  std::vector<std::uint32_t>& places = place_of_block_;
+  places.resize(order_.size());
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    places[order_.blocks[k]] = static_cast<std::uint32_t>(k);
+  }
+  const Eigen::Matrix3f back = turn_.transpose();
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    Entry& entry = entries_[i];
+    const Point point = old_point(static_cast<std::uint32_t>(i));
+    const Eigen::Vector3f local = back * (point.state.position - shift_);
+    const double u = (local.x() / local.z() * p.fx + p.cx - 0.5) / 2;
+    const double v = (local.y() / local.z() * p.fy + p.cy - 0.5) / 2;
+    const bool inside =
+        local.z() > 0 && u > -0.5 && v > -0.5 && u < depth.columns - 0.5 && v < depth.rows - 0.5;
+    if (inside) {
+      entry.place = places[static_cast<std::size_t>(std::lround(v)) *
+                               static_cast<std::size_t>(depth.columns) +
+                           static_cast<std::size_t>(std::lround(u))];
+      if (entry.kind == EntryKind::outside) entry.kind = EntryKind::live;
+    } else if (entry.kind == EntryKind::live) {
+      entry.kind = EntryKind::outside;
+    }
+  }
+}
+
+Morph::Point Morph::old_point(std::uint32_t i) const {
+  const SurfacePoints& p = *last_;
+  const auto u = static_cast<float>(progress_);
+  Point point;
+  const bool fades = !p.presences.empty();
+  point.nature = {p.radii[i], p.confidences[i]};
+  if (progress_ >= 1) {
+    point.state = {p.end_positions[i], p.end_normals[i], p.end_density_weights[i],
+                   fades ? p.end_presences[i] : 1.0f};
+  } else {
+    const auto between = [u](float a, float b) { return a + u * (b - a); };
+    point.state = {mix(p.grid.points()[i], p.end_positions[i], u),
+                   mix_normals(p.normals[i], p.end_normals[i], u),
+                   between(p.density_weights[i], p.end_density_weights[i]),
+                   fades ? between(p.presences[i], p.end_presences[i]) : 1.0f};
+  }
+  return point;
+}
+
+Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) const {
+  Point point;
+  point.state.position = turn_ * depth.positions[block] + shift_;
+  point.state.normal = turn_ * depth.normals[block];
+  point.nature = {surface_.radius(block), depth.confidences[block]};
+  point.area = surface_.area(block);
+  point.state.weight = std::min(1.0f, point.area / (point.nature.radius * point.nature.radius));
+  return point;
+}
+
+/// What becomes of one block: of the point that the frame has there, and of the old ones.
+void Morph::settle(const FilteredDepth& depth, std::size_t place) {
+  const std::span<const std::uint32_t> old = by_block_.at(place);
+  const std::size_t block = order_.blocks[place];
+  const bool shown = depth.states[block] != BlockState::empty;
+  if (!shown && old.empty()) return;
+  place_ = static_cast<std::uint32_t>(place);
+  std::uint32_t partner = kNone;
+  if (shown) {
+    const Point point = new_point(depth, block);
+    partner = partner_of(old, point.state.position);
+    if (partner != kNone && !follows(depth, block, point, partner)) partner = kNone;
+    if (partner != kNone) {
+      move(point, partner);
+    } else {
+      appear(point);
+    }
+  }
+  bool held = shown;
+  for (const std::uint32_t i : old) {
+    if (i == partner) continue;
+    const EntryKind kind = entries_[i].kind;
+    if (kind == EntryKind::outside || (kind == EntryKind::live && !held)) {
+      hold(i);
+      held = held || kind == EntryKind::live;
+    } else {
+      leave(i);
+    }
+  }
+}
+
+/// The nearest of the points that a block has shown so far.
+std::uint32_t Morph::partner_of(std::span<const std::uint32_t> old,
+                                const Eigen::Vector3f& place) const {
+  if (old.size() == 1) return entries_[old[0]].kind == EntryKind::live ? old[0] : kNone;
+  std::uint32_t partner = kNone;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const std::uint32_t i : old) {
+    if (entries_[i].kind != EntryKind::live) continue;
+    const float squared = (old_point(i).state.position - place).squaredNorm();
+    if (squared >= nearest) continue;
+    nearest = squared;
+    partner = i;
+  }
+  return partner;
+}
+
+/// Is the block's new point the old one, gone on? What the filter says of jumps counts when both
+/// saw the point in the last frame, and from the same place.
+bool Morph::follows(const FilteredDepth& depth, std::size_t block, const Point& point,
+                    std::uint32_t i) const {
+  if (depth.jumped[block] != 0 && entries_[i].seen && !moved_) return false;
+  const float way = (point.state.position - old_point(i).state.position).squaredNorm();
+  return way <= point.nature.radius * point.nature.radius;
+}
+
+void Morph::move(Point to, std::uint32_t i) {
+  const Point from = old_point(i);
+  const float radius = from.nature.radius;
+  if (std::abs(to.nature.radius - radius) < kSteadyRadius * radius) {
+    to.nature.radius = radius;
+    to.state.weight = std::min(1.0f, to.area / (radius * radius));
+  }
+  to.nature.confidence =
+      from.nature.confidence + kConfidenceShare * (to.nature.confidence - from.nature.confidence);
+  if (to.state.normal.isZero(0)) to.state.normal = from.state.normal;
+  const auto rise = static_cast<float>(moment_.duration / options_.fade);
+  to.state.presence = std::min(1.0f, from.state.presence + rise);
+  add(from.state, to.state, to.nature, {place_, EntryKind::live, true, moment_.stamp});
+}
+
+void Morph::appear(const Point& point) {
+  PointState from = point.state;
+  if (!still_) from.weight = 0;
+  add(from, point.state, point.nature, {place_, EntryKind::live, true, moment_.stamp});
+}
+
+/// Nothing says that the point is gone, nothing that it is there.
+void Morph::hold(std::uint32_t i) {
+  const Point point = old_point(i);
+  const Entry& entry = entries_[i];
+  const double unsure = moment_.stamp + moment_.duration - entry.confirmed - options_.silence;
+  const auto sure = static_cast<float>(std::clamp(1 - unsure / options_.fade, 0.0, 1.0));
+  const auto fall = static_cast<float>(moment_.duration / options_.fade);
+  PointState to = point.state;
+  to.presence = std::max(std::min(to.presence, sure), to.presence - fall);
+  const auto most = static_cast<std::size_t>(kMostEntries * static_cast<double>(order_.size()));
+  if (to.presence <= 0 || writer_.count() > most) return leave(i);
+  to.weight = last_->end_density_weights[i];
+  add(point.state, to, point.nature, {place_, entry.kind, false, entry.confirmed});
+}
+
+void Morph::leave(std::uint32_t i) {
+  const Point point = old_point(i);
+  if (point.state.weight <= kGone) return;
+  PointState to = point.state;
+  to.weight = 0;
+  add(point.state, to, point.nature, {place_, EntryKind::leaving, false, entries_[i].confirmed});
+}
+
+void Morph::add(const PointState& from, const PointState& to, const PointNature& nature,
+                const Entry& entry) {
+  writer_.add(order_.codes[place_], from, to, nature);
+  next_entries_.push_back(entry);
+}
+
+}  // namespace palpate

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "palpate/depth/filtered_depth.hpp"
+#include "palpate/geometry/ball.hpp"
+#include "palpate/geometry/pinhole.hpp"
+#include "scene/policies/block_entries.hpp"
+#include "scene/policies/block_order.hpp"
+#include "scene/policies/block_surface.hpp"
+#include "scene/policies/moment.hpp"
+#include "scene/policies/point_writer.hpp"
+
+namespace palpate {
+
+struct MorphOptions {
+  double silence = 0.3;  ///< a point that nothing confirmed for so long begins to fade, s
+  double fade = 0.5;     ///< in which it fades away, s
+  Kernel kernel = Kernel::wyvill;
+};
+
+/// A filtered depth frame, and where to look at it closely.
+struct MorphInput {
+  const FilteredDepth& depth;
+  Pinhole pinhole;                ///< of the undistorted image
+  std::span<const Ball> reach{};  ///< where weights beside rims are exact; world frame
+  bool everywhere = true;         ///< exact weights everywhere
+};
+
+/// The policy for depth streams (algorithm.md section 5.1): the points of the blocks move, while a
+/// snapshot lasts, from where the surface is at its start to where the new frame has them. So
+/// whenever a frame comes, the surface goes on without a step.
+///
+/// A point's identity is its block, or where a moving camera sees it now. A block that shows
+/// another surface than before does not move: the old point fades away and the new one fades in
+/// over the snapshot. A block that shows nothing keeps its point, whose presence fades once nothing
+/// has confirmed it for a while; so does what a moving camera no longer looks at.
+class Morph {
+ public:
+  explicit Morph(const MorphOptions& options) : options_(options), surface_(options.kernel) {}
+
+  /// Fills `points`, keeping it as what the next frame starts from. Allocates only to grow.
+  void fill(const MorphInput& input, const Moment& moment,
+            const std::shared_ptr<SurfacePoints>& points);
+
+  /// Likewise, with nothing before the frame and no motion.
+  void fill_still(const MorphInput& input, const Moment& moment,
+                  const std::shared_ptr<SurfacePoints>& points);
+
+  /// There is no surface any more.
+  void forget();
+
+ private:
+  struct Point;
+
+  void start(const MorphInput& input, const Moment& moment, SurfacePoints& points);
+  void measure(const MorphInput& input);
+  void follow_camera(const MorphInput& input);
+  void settle(const FilteredDepth& depth, std::size_t place);
+  [[nodiscard]] Point old_point(std::uint32_t i) const;
+  [[nodiscard]] Point new_point(const FilteredDepth& depth, std::size_t block) const;
+  [[nodiscard]] std::uint32_t partner_of(std::span<const std::uint32_t> old,
+                                         const Eigen::Vector3f& place) const;
+  [[nodiscard]] bool follows(const FilteredDepth& depth, std::size_t block, const Point& point,
+                             std::uint32_t i) const;
+  void move(Point to, std::uint32_t i);
+  void appear(const Point& point);
+  void hold(std::uint32_t i);
+  void leave(std::uint32_t i);
+  void add(const PointState& from, const PointState& to, const PointNature& nature,
+           const Entry& entry);
+
+  MorphOptions options_;
+  BlockOrder order_;
+  BlockSurface surface_;
+  PointWriter writer_;
+  std::vector<Ball> local_reach_;
+
+  // What was shown last.
+  std::shared_ptr<const SurfacePoints> last_;
+  Moment last_moment_;
+  std::vector<Entry> entries_;  // of its points
+  BlockEntries by_block_;
+  std::vector<std::uint32_t> place_of_block_;
+  Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
+
+  // What is being made.
+  Moment moment_;
+  double progress_ = 1;  // of what was shown last, at the new start
+  bool moved_ = false;   // the camera
+  bool still_ = false;
+  std::uint32_t place_ = 0;
+  std::vector<Entry> next_entries_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3f turn_ = Eigen::Matrix3f::Identity();  // sensor to world
+  Eigen::Vector3f shift_ = Eigen::Vector3f::Zero();
+};
+
+}  // namespace palpate

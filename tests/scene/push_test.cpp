@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "palpate/base/error.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/scene/scene_field.hpp"
+#include "support/depth_frames.hpp"
+#include "support/snapshots.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using test::frame_of;
+using test::height_of;
+using test::looking_down;
+using test::small_camera;
+using test::wall;
+
+constexpr double kFrame = 1. / 30;
+
+SourceOptions depth_source(Policy policy) {
+  SourceOptions options;
+  options.T_world_sensor = looking_down();
+  options.policy.policy = policy;
+  options.policy.fit_everywhere = true;
+  return options;
+}
+
+void push(Source& source, double stamp, double height) {
+  source.push(frame_of(small_camera(), stamp, wall(0.5 - height)), [=] { return stamp + 0.01; });
+}
+
+double height_at(SceneField& field, double now) {
+  field.update(now, Vector3d::Zero(), Vector3d::Zero());
+  return height_of(field);
+}
+
+TEST(Push, AFrameIsASurfaceWhereTheSensorSawIt) {
+  for (const Policy policy : {Policy::replace, Policy::average, Policy::crossfade, Policy::morph}) {
+    Scene scene;
+    Source& source = scene.add("camera", depth_source(policy));
+    SceneField field(scene);
+    push(source, 0, 5e-3);
+    EXPECT_NEAR(height_at(field, 0.01 + kFrame), 5e-3, 20e-6) << static_cast<int>(policy);
+    EXPECT_EQ(source.state().frames, 1u);
+    EXPECT_NEAR(source.state().latency, 0.01, 1e-12);
+    EXPECT_GT(source.state().points, 4000u);
+    EXPECT_LE(source.state().points, 4800u);
+  }
+}
+
+TEST(Push, MorphGoesInAStraightLineFromFrameToFrame) {
+  Scene scene;
+  Source& source = scene.add("camera", depth_source(Policy::morph));
+  SceneField field(scene);
+  push(source, 0, 0);
+  push(source, kFrame, 0);
+  push(source, 2 * kFrame, 3e-3);
+  height_at(field, 0.01);
+  height_at(field, 0.01 + kFrame);
+  const double start = 0.01 + 2 * kFrame;
+  EXPECT_NEAR(height_at(field, start), 0, 20e-6);
+  for (const double u : {0.25, 0.5, 0.75, 1.0, 1.5}) {
+    EXPECT_NEAR(height_at(field, start + u * kFrame), 3e-3 * std::min(u, 1.0), 30e-6) << u;
+  }
+}
+
+TEST(Push, ReplaceIsAHardSwap) {
+  Scene scene;
+  Source& source = scene.add("camera", depth_source(Policy::replace));
+  SceneField field(scene);
+  push(source, 0, 0);
+  height_at(field, 0.01);
+  push(source, kFrame, 3e-3);
+  EXPECT_NEAR(height_at(field, 0.0099 + kFrame), 0, 20e-6);
+  EXPECT_NEAR(height_at(field, 0.0101 + kFrame), 3e-3, 20e-6);
+}
+
+TEST(Push, CloudsCannotMorph) {
+  Source source("cloud", depth_source(Policy::morph));
+  PointCloud cloud;
+  cloud.positions.assign(10, Eigen::Vector3f::Zero());
+  EXPECT_THROW(source.push(cloud, 0, [] { return 0.0; }), Error);
+}
+
+TEST(Push, RefusesTimesThatAreNone) {
+  Source source("camera", depth_source(Policy::morph));
+  EXPECT_THROW(source.push(frame_of(small_camera(), NAN, wall(0.5)), [] { return 0.0; }), Error);
+  EXPECT_THROW(source.push(frame_of(small_camera(), 0, wall(0.5)), [] { return NAN; }), Error);
+  EXPECT_EQ(source.state().frames, 0u);
+}
+
+TEST(Push, RefusesOptionsThatAreNone) {
+  SourceOptions options = depth_source(Policy::average);
+  options.policy.history = 8;
+  EXPECT_THROW(Source("camera", options), Error);
+  options.policy.history = 4;
+  options.policy.fade = 0;
+  EXPECT_THROW(Source("camera", options), Error);
+}
+
+}  // namespace
+}  // namespace palpate
