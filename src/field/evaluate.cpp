@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field/oriented.hpp"
+#include "field/sharp_edges.hpp"
 #include "palpate/base/error.hpp"
 
 // Notation as in docs/architecture.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
@@ -13,17 +15,10 @@
 namespace palpate {
 namespace {
 
-using Eigen::Map;
 using Eigen::Vector3d;
 
 // Weight sums up to this are none: the rim of a support, where ratios of sums mean nothing.
 constexpr double kNoWeight = 1e-12;
-
-/// A function with its gradient.
-struct Value {
-  double f = 0;
-  Vector3d grad = Vector3d::Zero();
-};
 
 /// W, R(x) and what is at hand of the sums.
 struct Support {
@@ -32,10 +27,6 @@ struct Support {
   double plain = 0;  // sum of w_i over all sources
   Vector3d plain_grad = Vector3d::Zero();
 };
-
-Vector3d vector(const double v[3]) noexcept {
-  return Map<const Vector3d>(v);
-}
 
 Value unite(const simd::Sums& sums, int sources) noexcept {
   if (sources == 1) return {sums.w[0], vector(sums.grad_w[0])};
@@ -77,49 +68,6 @@ Value level_of(const ImplicitSurface& surface, const Support& support) noexcept 
   const double slope = plane_threshold_slope(options.kernel, eta);
   const double d_eta = -options.tool_radius / (support.radius.f * support.radius.f);
   return {plane_threshold(options.kernel, eta), slope * d_eta * support.radius.grad};
-}
-
-/// A surface from normals, with what `simd::gradient` needs to finish its gradient.
-struct Oriented {
-  double f = 0;
-  Vector3d base = Vector3d::Zero();  // the part of the gradient outside the sum
-  simd::Linear b{};
-};
-
-void assign(double to[3], const Vector3d& from) noexcept {
-  for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
-}
-
-/// Half point-set surface, half IMLS: f = 1/2 [-Nb . A - sum v n.q / V].
-Oriented balanced(const simd::Sums& sums) noexcept {
-  const double s = 1 / sums.v;
-  const Vector3d a = s * vector(sums.vq);
-  const Vector3d nb = s * vector(sums.vn);
-  const double imls = -s * sums.vnq;
-  Oriented result;
-  result.f = 0.5 * (imls - nb.dot(a));
-  result.base = nb;
-  assign(result.b.alpha, -0.5 * s * a);
-  assign(result.b.beta, -0.5 * s * nb);
-  result.b.gamma = -0.5 * s;
-  result.b.delta = 0.5 * s * (2 * nb.dot(a) - imls);
-  return result;
-}
-
-/// Eqs. (5)-(7): f = n . (x - a), and its exact gradient.
-Oriented pointset(const simd::Sums& sums) noexcept {
-  const double s = 1 / sums.v;
-  const Vector3d a = s * vector(sums.vq);
-  const double length = vector(sums.vn).norm();
-  const Vector3d n = vector(sums.vn) / length;
-  Oriented result;
-  result.f = -n.dot(a);
-  result.base = n;
-  assign(result.b.alpha, -(a + n * result.f) / length);
-  assign(result.b.beta, -s * n);
-  result.b.gamma = 0;
-  result.b.delta = s * n.dot(a);
-  return result;
 }
 
 /// Can the normals' surface be told here at all?
@@ -173,20 +121,31 @@ Sample nothing_here(const Patch& patch) noexcept {
   return sample;
 }
 
-/// The normals' surface at x with its exact gradient.
-Value finish_gradient(const ImplicitSurface& surface, const Patch& patch, const Oriented& oriented,
-                      const double x[3]) noexcept {
-  if (surface.options.gradient == GradientKind::normal) return {oriented.f, oriented.base};
+/// May edges be sharpened here?
+bool may_sharpen(const FieldOptions& options, const simd::Columns& columns) noexcept {
+  return options.sharp_edges && columns.uniform_sharp != 0 && options.kind == FieldKind::balanced &&
+         options.gradient == GradientKind::exact;
+}
+
+/// The normals' surface at x, signed by the normals, with its exact gradient.
+Value height_at(const ImplicitSurface& surface, const simd::Columns& columns, const double x[3],
+                const simd::Sums& sums, const Value& radius, double sign) noexcept {
+  const FieldOptions& options = surface.options;
+  if (may_sharpen(options, columns)) {
+    return sharp_balanced(
+        {surface.sums, &columns, options.kernel == Kernel::wendland, x, &sums, sign, radius});
+  }
+  const Oriented oriented = options.kind == FieldKind::balanced ? balanced(sums) : pointset(sums);
+  if (options.gradient == GradientKind::normal) return {oriented.f, oriented.base};
   double sum[3];
-  surface.sums->gradient(patch.columns(), x, oriented.b, sum);
+  surface.sums->gradient(columns, x, oriented.b, sum);
   return {oriented.f, oriented.base + vector(sum)};
 }
 
 /// Cap, tool and blend around the normals' surface (algorithm.md 1.4, 1.5).
 Value capped(const ImplicitSurface& surface, const simd::Sums& sums, const Support& support,
-             const Value& height, Side side) noexcept {
+             const Value& height, double sign) noexcept {
   const FieldOptions& options = surface.options;
-  const double sign = options.two_sided && side < 0 ? -1 : 1;
   const Value outer{sign * height.f - options.tool_radius, sign * height.grad};
   if (!options.capped) return outer;
   const Value floor{options.minimum_support, Vector3d::Zero()};
@@ -243,10 +202,11 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   sample.radius = support.radius.f;
   Value value;
   if (has_normals(options, sums, support.plain)) {
-    const Oriented oriented = options.kind == FieldKind::balanced ? balanced(sums) : pointset(sums);
-    const Value height = finish_gradient(surface, patch, oriented, local.data());
+    const double sign = options.two_sided && side < 0 ? -1 : 1;
+    const Value height =
+        height_at(surface, patch.columns(), local.data(), sums, support.radius, sign);
     sample.height = height.f;
-    value = capped(surface, sums, support, height, side);
+    value = capped(surface, sums, support, height, sign);
   } else {
     value = as_length(options, support, level_of(surface, support));
     if (options.gradient == GradientKind::printed) {

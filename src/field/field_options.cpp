@@ -9,6 +9,7 @@ FieldOptions paper_field(FieldKind kind) {
   options.threshold = 0.5;
   options.two_sided = false;
   options.capped = false;
+  options.sharp_edges = false;
   options.raw_weights = true;
   options.nearest_radius = true;
   return options;

@@ -67,7 +67,8 @@ Patch::Patch(std::size_t capacity)
     : capacity_((capacity + simd::kLanes - 1) / simd::kLanes * simd::kLanes),
       pitch_(capacity_ + 2 * kCacheLine),
       data_(kColumns * pitch_, 0.0),
-      index_(capacity_, 0) {
+      index_(capacity_, 0),
+      near_(capacity_ / simd::kLanes, 0) {
   for (int axis = 0; axis < 3; ++axis) {
     columns_.position[axis] = column(kPosition + axis);
     columns_.normal[axis] = column(kNormal + axis);
@@ -76,7 +77,11 @@ Patch::Patch(std::size_t capacity)
   columns_.confidence = column(kConfidence);
   columns_.radius = column(kRadius);
   columns_.inverse_r2 = column(kInverseR2);
+  columns_.sharp = column(kSharp);
   columns_.slope = column(kSlope);
+  columns_.trusted = column(kTrusted);
+  columns_.near = near_.data();
+  for (int k = 0; k < 2; ++k) columns_.closeness[k] = column(kCloseness + k);
 }
 
 void Patch::gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
@@ -84,6 +89,8 @@ void Patch::gather(std::span<const ActiveLayer> layers, int sources, const Eigen
   center_ = center;
   extra_ = extra;
   options_ = options;
+  has_sharp_ = std::ranges::any_of(
+      layers, [](const ActiveLayer& layer) { return layer.points->sharp_edges; });
   has_materials_ = std::ranges::any_of(
       layers, [](const ActiveLayer& layer) { return !layer.points->materials.empty(); });
   has_presences_ =
@@ -102,6 +109,7 @@ bool Patch::gather_all(std::span<const ActiveLayer> layers, int sources) noexcep
   smallest_radius_ = std::numeric_limits<double>::infinity();
   largest_radius_ = 0;
   radius_sum_ = 0;
+  columns_.uniform_sharp = 0;
   columns_.sources = sources;
   columns_.source_begin[0] = 0;
   std::size_t next = 0;
@@ -167,6 +175,7 @@ void Patch::fill(const ActiveLayer& layer, std::uint32_t first) noexcept {
     largest_radius_ = std::max(largest_radius_, radius);
     radius_sum_ += radius;
   }
+  if (has_sharp_ && first < used_) fill_sharpness(layer, first);
   count_ += used_ - first;
   if (options_.normals) fill_normals(layer, first);
   for (std::uint32_t k = first; has_materials_ && k < used_; ++k) {
@@ -188,6 +197,13 @@ void Patch::fill_normals(const ActiveLayer& layer, std::uint32_t first) noexcept
     for (int axis = 0; axis < 3; ++axis) column(kNormal + axis)[k] = normal[axis];
     column(kConfidence)[k] = points.normals.empty() ? 0.0 : points.confidences[index_[k]];
   }
+}
+
+void Patch::fill_sharpness(const ActiveLayer& layer, std::uint32_t first) noexcept {
+  const double sharp = layer.points->sharp_edges ? 1 : 0;
+  std::fill(column(kSharp) + first, column(kSharp) + used_, sharp);
+  const bool alike = count_ == 0 || columns_.uniform_sharp == sharp;
+  columns_.uniform_sharp = alike ? sharp : -1;
 }
 
 /// Neighbours mostly share their radius, and a division is what a gather would spend most time on.

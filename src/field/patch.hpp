@@ -79,8 +79,11 @@ class Patch {
     kConfidence,
     kRadius,
     kInverseR2,
+    kSharp,
     kSlope,
-    kMaterial,
+    kTrusted,
+    kCloseness,
+    kMaterial = kCloseness + 2,
     kPresence,
     kVelocity,
     kColumns = kVelocity + 3
@@ -94,6 +97,7 @@ class Patch {
                                std::uint32_t end) noexcept;
   void fill(const ActiveLayer& layer, std::uint32_t first) noexcept;
   void fill_normals(const ActiveLayer& layer, std::uint32_t first) noexcept;
+  void fill_sharpness(const ActiveLayer& layer, std::uint32_t first) noexcept;
   [[nodiscard]] double inverse_square(double radius) noexcept;
   void pad() noexcept;
 
@@ -105,6 +109,8 @@ class Patch {
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double extra_ = -1;
   GatherOptions options_;
+  std::vector<std::uint32_t> near_;  // scratch of the sums
+  bool has_sharp_ = false;
   bool has_materials_ = false;
   bool has_presences_ = false;
   bool has_motion_ = false;

@@ -22,6 +22,7 @@ struct Case {
   int sources = 1;
   double doubtful = 0;  // share of points without trusted normals
   const char* name = "";
+  int sharp = 0;  // sources whose edges may be sharp, as bits
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
@@ -33,6 +34,7 @@ class GradientTest : public testing::TestWithParam<Case> {
   GradientTest() {
     for (int s = 0; s < GetParam().sources; ++s) {
       points_[s] = make_points(wavy_sheet(10 + s, GetParam().doubtful), GetParam().options.kernel);
+      points_[s].sharp_edges = (GetParam().sharp >> s & 1) != 0;
       layers_.push_back({&points_[s], s});
     }
     patch_.gather(layers_, GetParam().sources, Vector3d::Zero(), 20e-3,
@@ -71,7 +73,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{{}, 1, 0, "balanced"}, Case{{}, 2, 0, "balanced_two_sources"},
         Case{{}, 1, 0.6, "balanced_blended"}, Case{{}, 2, 0.6, "balanced_blended_two_sources"},
         Case{{.kernel = Kernel::wendland}, 1, 0.3, "balanced_wendland"},
-        Case{{.tool_radius = 2e-3}, 1, 0.5, "balanced_tool"},
+        Case{{.tool_radius = 2e-3}, 1, 0.5, "balanced_tool"}, Case{{}, 1, 0, "sharp", 1},
+        Case{{.kernel = Kernel::wendland, .tool_radius = 2e-3}, 1, 0.5, "sharp_wendland_tool", 1},
+        Case{{}, 2, 0.3, "sharp_two_sources", 3}, Case{{}, 2, 0.3, "one_of_two_sharp", 2},
         Case{{.kind = FieldKind::pointset}, 1, 0, "pointset"},
         Case{{.kind = FieldKind::pointset}, 2, 0.6, "pointset_blended"},
         Case{{.kind = FieldKind::metaball}, 1, 0, "metaball"},

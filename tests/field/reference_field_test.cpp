@@ -16,7 +16,9 @@ using Eigen::Vector3d;
 class Reference : public testing::TestWithParam<FieldKind> {};
 
 TEST_P(Reference, GradientAgreesWithCentralDifferences) {
-  const SurfacePoints first = make_points(wavy_sheet(1, 0.2));
+  SurfacePoints sharp = make_points(wavy_sheet(1, 0.2));
+  sharp.sharp_edges = true;
+  const SurfacePoints& first = sharp;
   const SurfacePoints second = make_points(wavy_sheet(2, 0.2));
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -61,8 +63,9 @@ TEST_P(Reference, SceneFieldSaysTheSame) {
       std::vector<std::shared_ptr<const SurfacePoints>> kept;
       std::vector<const SurfacePoints*> all;
       for (int s = 0; s < sources; ++s) {
-        kept.push_back(std::make_shared<SurfacePoints>(
-            make_points(wavy_sheet(10 + static_cast<unsigned>(s), 0.3), kernel)));
+        SurfacePoints points = make_points(wavy_sheet(10 + static_cast<unsigned>(s), 0.3), kernel);
+        points.sharp_edges = s % 2 == 0;
+        kept.push_back(std::make_shared<SurfacePoints>(std::move(points)));
         all.push_back(kept.back().get());
         auto snapshot = std::make_unique<Snapshot>();
         snapshot->layers.push_back({kept.back()});

@@ -40,6 +40,9 @@ inline Dual sqrt(const Dual& a) {
   const double root = std::sqrt(a.v);
   return {root, a.g / (2 * root)};
 }
+inline Dual exp(const Dual& a) {
+  return {std::exp(a.v), std::exp(a.v) * a.g};
+}
 using DualVector = std::array<Dual, 3>;
 inline Dual dot(const DualVector& a, const DualVector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -55,6 +58,7 @@ struct ReferencePoint {
   double weight = 1;      // C_k a_i
   double confidence = 1;  // c_i
   int source = 0;
+  bool sharp = false;
 };
 
 /// The field of algorithm.md 1.2-1.5, field_choice.md 2 and architecture.md ("Words") over all
@@ -80,9 +84,10 @@ class ReferenceField final : public Field {
     const Dual blob = as_length(radius, options_.threshold, support);
     Dual value = blob;
     if (s.trusted.v > 1e-9 * s.plain.v && options_.kind != FieldKind::metaball) {
-      const Dual height = height_of(s);
+      const double sign = options_.two_sided && side < 0 ? -1 : 1;
+      const Dual height = sharpened(s, radius, sign);
       result.height = height.v;
-      value = blend(s, capped(height, radius, support, side), blob);
+      value = blend(s, capped(height, radius, support, sign), blob);
     }
     result.value = value.v;
     result.gradient = value.g;
@@ -114,12 +119,20 @@ class ReferenceField final : public Field {
   }
 
  private:
+  struct Term {
+    Dual v;
+    DualVector q;
+    Eigen::Vector3d n = Eigen::Vector3d::Zero();
+  };
+
   struct Sums {
     std::vector<Dual> by_source;
     Dual plain, radius;  // sum w, sum w R
     Dual trusted;        // sum v, v = w c
     DualVector q, n;     // sum v (p - x), sum v n
     Dual nq;             // sum v n . (p - x)
+    Dual sharp;          // sum v of points that may be sharpened
+    std::vector<Term> terms;
   };
 
   static std::vector<ReferencePoint> points_of(const std::vector<const SurfacePoints*>& sources) {
@@ -131,7 +144,7 @@ class ReferenceField final : public Field {
                        from.normals.empty() ? Eigen::Vector3d::Zero().eval()
                                             : from.normals[i].cast<double>().eval(),
                        from.radii[i], from.density_weights[i], from.confidences[i],
-                       static_cast<int>(s)});
+                       static_cast<int>(s), from.sharp_edges});
       }
     }
     return all;
@@ -156,15 +169,24 @@ class ReferenceField final : public Field {
       s.plain = s.plain + w;
       s.radius = s.radius + p.radius * w;
       s.trusted = s.trusted + v;
+      if (p.sharp) s.sharp = s.sharp + v;
+      Term term{v, {}, p.normal};
       for (int k = 0; k < 3; ++k) {
-        const auto axis = static_cast<std::size_t>(k);
-        const Dual q{-away[k], -Eigen::Vector3d::Unit(k)};
-        s.q[axis] = s.q[axis] + v * q;
-        s.n[axis] = s.n[axis] + p.normal[k] * v;
-        s.nq = s.nq + p.normal[k] * (v * q);
+        term.q[static_cast<std::size_t>(k)] = {-away[k], -Eigen::Vector3d::Unit(k)};
       }
+      add(s, v, term);
+      if (v.v > 0) s.terms.push_back(term);
     }
     return s;
+  }
+
+  static void add(Sums& s, const Dual& v, const Term& term) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double n = term.n[static_cast<Eigen::Index>(axis)];
+      s.q[axis] = s.q[axis] + v * term.q[axis];
+      s.n[axis] = s.n[axis] + n * v;
+      s.nq = s.nq + n * (v * term.q[axis]);
+    }
   }
 
   [[nodiscard]] static Dual united(const std::vector<Dual>& by_source) {
@@ -183,13 +205,47 @@ class ReferenceField final : public Field {
     return -0.5 * (dot(mean_normal, a) + s.nq / s.trusted);
   }
 
+  /// MEAN + sigma chi (RIMLS - MEAN) of nss_fast.md section 1.
+  [[nodiscard]] Dual sharpened(const Sums& s, const Dual& radius, double sign) const {
+    const Dual mean = height_of(s);
+    if (options_.kind != FieldKind::balanced || !options_.sharp_edges || s.sharp.v <= 0) {
+      return mean;
+    }
+    const DualVector a = s.q / s.trusted;
+    const DualVector mean_normal = s.n / s.trusted;
+    const Dual bulge = sign * ((s.nq / s.trusted - dot(mean_normal, a)) / radius);
+    constexpr double kFrom = 1e-5;
+    Dual u = (1 / (0.05 - kFrom)) * (bulge - constant(kFrom));
+    if (u.v <= 0) return mean;
+    if (u.v >= 1) u = constant(1);
+    const Dual chi = u * u * (constant(3) - 2 * u);
+    const Dual rimls = height_of(robust(s, robust(s, s)));
+    return mean + s.sharp / s.trusted * chi * (rimls - mean);
+  }
+
+  /// Sums with every v times exp(-|n_i - n|^2 / 0.5^2), n the mean normal of the sums `before`.
+  [[nodiscard]] static Sums robust(const Sums& s, const Sums& before) {
+    Sums result;
+    const DualVector n = before.n / before.trusted;
+    for (const Term& term : s.terms) {
+      Dual squared;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Dual turn = constant(term.n[static_cast<Eigen::Index>(axis)]) - n[axis];
+        squared = squared + turn * turn;
+      }
+      const Dual v = term.v * exp(-1 / (0.5 * 0.5) * squared);
+      result.trusted = result.trusted + v;
+      add(result, v, term);
+    }
+    return result;
+  }
+
   [[nodiscard]] Dual as_length(const Dual& radius, double level, const Dual& support) const {
     return (0.35 / options_.minimum_support) * (radius * (constant(level) - support));
   }
 
   [[nodiscard]] Dual capped(const Dual& height, const Dual& radius, const Dual& support,
-                            Side side) const {
-    const double sign = options_.two_sided && side < 0 ? -1 : 1;
+                            double sign) const {
     const Dual outer = sign * height - constant(options_.tool_radius);
     if (!options_.capped) return outer;
     const Dual cap = as_length(radius, options_.minimum_support, support);

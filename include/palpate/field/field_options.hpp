@@ -28,7 +28,10 @@ struct FieldOptions {
   double tool_radius = 0;        ///< radius of the proxy's ball, m; the surface is pushed out by it
   bool two_sided = true;         ///< solid from both sides; false: closed objects, normals outward
   bool capped = true;            ///< cap at Wmin and blend to the metaball where normals are unsure
-  bool raw_weights = false;      ///< ignore density weights (the paper)
+  /// Convex edges keep their shape where points say that they may (SurfacePoints::sharp_edges);
+  /// `balanced` only. Such places cost about three times as much.
+  bool sharp_edges = true;
+  bool raw_weights = false;     ///< ignore density weights (the paper)
   bool nearest_radius = false;  ///< use the R of the point nearest to the proxy for all (the paper)
 };
 

@@ -30,6 +30,11 @@ struct SurfacePoints {
   std::vector<float> end_density_weights;
   std::vector<float> end_presences;
 
+  /// May convex edges between these points be felt sharp (FieldOptions::sharp_edges)? Only where
+  /// normals do not blur them: organised depth after the noise-sized fit. Normals that are means
+  /// over a neighbourhood gain nothing.
+  bool sharp_edges = false;
+
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for
 
   std::vector<float> cell_reach;  ///< for each cell: the largest R_i plus way to go in it, m

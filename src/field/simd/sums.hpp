@@ -20,22 +20,36 @@ struct Columns {
   const double* radius;      // R_i, m
   const double* inverse_r2;  // 1 / R_i^2
   double uniform_radius;     // R of all points, m; 0: they differ
+  const double* sharp;       // 1: the point takes part in sharpening edges; else 0
+  double uniform_sharp;      // of all points; below 0: they differ
   double* slope;             // scratch: a_i C_k g_i / R_i^2 of the last call of `all`
+  double* trusted;           // scratch: v_i, of the last call of `near`
+  std::uint32_t* near;       // scratch: where lanes begin of which any is near, of the same call
+  double* closeness[2];      // scratch for `robust`
   std::uint32_t source_begin[kMaxSources + 1];
   int sources;
 };
 
 // q_i = p_i - x, w_i with its weight, v_i = c_i w_i.
-struct Sums {
+struct Moments {
+  double v;      // sum v_i
+  double vq[3];  // sum v_i q_i
+  double vn[3];  // sum v_i n_i
+  double vnq;    // sum v_i n_i . q_i
+};
+
+struct Sums : Moments {
   double w[kMaxSources];  // sum w_i, for each source
   double grad_w[kMaxSources][3];
   double wr;  // sum w_i R_i
   double grad_wr[3];
-  double v;  // sum v_i
   double grad_v[3];
-  double vq[3];  // sum v_i q_i
-  double vn[3];  // sum v_i n_i
-  double vnq;    // sum v_i n_i . q_i
+};
+
+// sum s_i v_i of the points' sharpness s_i, with its gradient.
+struct Share {
+  double sv;
+  double grad_sv[3];
 };
 
 // b_i = n_i . alpha + q_i . beta + (n_i . q_i) gamma + delta.
@@ -45,6 +59,15 @@ struct Linear {
   double gamma;
   double delta;
 };
+
+// The derivatives of a sum of v_i phi_i b_i: in x with the normal n held, and in n with x held.
+struct Pull {
+  double place[3];
+  double normal[3];
+};
+
+// phi_i = exp(-|n_i - n|^2 / kSpread^2): how much a point counts to a surface of normal n.
+constexpr double kSpread = 0.5;
 
 struct Functions {
   // The weight sums alone (metaball).
@@ -56,6 +79,18 @@ struct Functions {
   // For each source an upper bound of sum w_i over the ball (x, h).
   void (*bound)(const Columns&, bool wendland, const double x[3], double h,
                 double out[kMaxSources]) noexcept;
+
+  // Lists where points have weight at x and what weight, for the functions below, which look at no
+  // others and are to be called with the same x and the number of places that it returns.
+  std::uint32_t (*near)(const Columns&, bool wendland, const double x[3]) noexcept;
+  // The sharp points' share, with the slopes that `all` left.
+  void (*share)(const Columns&, std::uint32_t places, const double x[3], Share&) noexcept;
+  // The moments of v_i phi_i; leaves phi_i in the k-th closeness column.
+  void (*robust)(const Columns&, std::uint32_t places, const double x[3], const double n[3], int k,
+                 Moments&) noexcept;
+  // Derivatives of those, with the slopes that `all` and the phi_i that `robust` left.
+  void (*pull)(const Columns&, std::uint32_t places, const double x[3], const double n[3], int k,
+               const Linear&, Pull&) noexcept;
 };
 
 extern const Functions kBaseline;

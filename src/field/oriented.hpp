@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "field/simd/sums.hpp"
+
+// Surfaces from normals. Notation as in docs/architecture.md: q_i = p_i - x, v_i = c_i w_i,
+// V = sum v, A = sum v q / V, Nb = sum v n / V.
+
+namespace palpate {
+
+/// A function with its gradient.
+struct Value {
+  double f = 0;
+  Eigen::Vector3d grad = Eigen::Vector3d::Zero();
+};
+
+[[nodiscard]] inline Eigen::Vector3d vector(const double v[3]) noexcept {
+  return Eigen::Map<const Eigen::Vector3d>(v);
+}
+
+inline void assign(double to[3], const Eigen::Vector3d& from) noexcept {
+  for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
+}
+
+/// A function of sums whose gradient is base + sum grad v_i b_i; what `simd::gradient` needs.
+struct Oriented {
+  double f = 0;
+  Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< the part of the gradient outside the sum
+  simd::Linear b{};
+};
+
+/// Half point-set surface, half IMLS: f = 1/2 [-Nb . A - sum v n.q / V].
+[[nodiscard]] Oriented balanced(const simd::Moments& sums) noexcept;
+
+/// Eqs. (5)-(7): f = n . (x - A), and its exact gradient.
+[[nodiscard]] Oriented pointset(const simd::Moments& sums) noexcept;
+
+/// a R = sum v n.q / V - Nb . A, the height of the point-set surface above IMLS: above 0 where the
+/// surface is convex as the normals see it, 0 on a plane, below 0 where it is concave.
+[[nodiscard]] Oriented convexity(const simd::Moments& sums) noexcept;
+
+}  // namespace palpate
