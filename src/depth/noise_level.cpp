@@ -94,10 +94,12 @@ void NoiseLevel::find_flat(int bin) {
   sample = {};
   if (variances_.size() < kFewest) return;
   const float typical = typical_variance(variances_);
-  const auto flat =
-      static_cast<double>(std::count_if(variances_.begin(), variances_.end(), [typical](float v) {
-        return v <= kMoreThanLowest * typical;
-      }));
+  const auto up_to = [this](float limit) {
+    return static_cast<double>(std::count_if(variances_.begin(), variances_.end(),
+                                             [limit](float v) { return v <= limit; }));
+  };
+  const double flat = up_to(kMoreThanLowest * typical);
+  if (up_to(typical / kMoreThanLowest) > kScattered * flat) return;
   const double z = depths / static_cast<double>(variances_.size());
   const double rounding = median(steps_) / std::sqrt(12.0);
   const double sigma = std::sqrt(typical) * z / bin_depth(bin);

@@ -9,11 +9,8 @@
 namespace palpate::depth {
 namespace {
 
-constexpr int kTerms = 6;            // 1, u, v, u^2, uv, v^2
 constexpr double kMeasured = 0.7;    // share of the pixels that a window needs
 constexpr double kSmallStep = 1e-6;  // of the depth: rounding of floats is no step
-
-using Terms = Eigen::Matrix<double, kTerms, 1>;
 
 // Sums of u^a and of q u^a along a row.
 struct RowSums {
@@ -76,9 +73,12 @@ void NoiseWindowFitter::gather(const DepthView& frame, const NoiseWindow& window
   }
 }
 
-bool NoiseWindowFitter::subtract_surface(int size) {
-  constexpr std::array<std::array<int, 2>, kTerms> kPowers{
-      {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
+// Coefficients of the surface through what gather() has left.
+NoiseWindowFitter::Terms NoiseWindowFitter::surface(int size) const {
+  struct Power {
+    std::size_t u, v;
+  };
+  constexpr std::array<Power, kTerms> kPowers{{{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
   Eigen::Matrix<double, kTerms, kTerms> normal = Eigen::Matrix<double, kTerms, kTerms>::Zero();
   Terms right = Terms::Zero();
   for (int j = 0; j < size; ++j) {
@@ -87,17 +87,19 @@ bool NoiseWindowFitter::subtract_surface(int size) {
     const double v = coordinate(j, size);
     const std::array<double, 5> powers{1, v, v * v, v * v * v, v * v * v * v};
     for (int a = 0; a < kTerms; ++a) {
+      const Power& row = kPowers[static_cast<std::size_t>(a)];
+      right(a) += sums.q[row.u] * powers[row.v];
       for (int b = 0; b <= a; ++b) {
-        const auto pu = static_cast<std::size_t>(kPowers[a][0] + kPowers[b][0]);
-        const auto pv = static_cast<std::size_t>(kPowers[a][1] + kPowers[b][1]);
-        normal(a, b) += sums.u[pu] * powers[pv];
+        const Power& column = kPowers[static_cast<std::size_t>(b)];
+        normal(a, b) += sums.u[row.u + column.u] * powers[row.v + column.v];
       }
-      right(a) += sums.q[static_cast<std::size_t>(kPowers[a][0])] *
-                  powers[static_cast<std::size_t>(kPowers[a][1])];
     }
   }
-  const Terms c = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-  if (!c.allFinite()) return false;
+  return normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+}
+
+// Leaves residuals as depth.
+void NoiseWindowFitter::subtract(const Terms& c, int size) {
   const double z = depth_sum_ / count_;
   std::size_t at = 0;
   for (int j = 0; j < size; ++j) {
@@ -110,7 +112,6 @@ bool NoiseWindowFitter::subtract_surface(int size) {
       residuals_[at] = mask_[at] * static_cast<float>((residuals_[at] - model) * z * z);
     }
   }
-  return true;
 }
 
 float NoiseWindowFitter::block_variance(int size) const {
@@ -134,9 +135,10 @@ float NoiseWindowFitter::block_variance(int size) const {
 WindowResidual NoiseWindowFitter::fit(const DepthView& frame, const NoiseWindow& window) {
   gather(frame, window);
   WindowResidual result;
-  if (count_ < kMeasured * window.size * window.size || !subtract_surface(window.size)) {
-    return result;
-  }
+  if (count_ < kMeasured * window.size * window.size) return result;
+  const Terms c = surface(window.size);
+  if (!c.allFinite()) return result;
+  subtract(c, window.size);
   double squares = 0;
   const auto pixels = static_cast<std::size_t>(window.size) * static_cast<std::size_t>(window.size);
   for (std::size_t i = 0; i < pixels; ++i) squares += residuals_[i] * residuals_[i];

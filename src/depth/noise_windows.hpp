@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "depth/depth_view.hpp"
@@ -37,8 +38,12 @@ class NoiseWindowFitter {
   [[nodiscard]] const std::vector<float>& mask() const { return mask_; }
 
  private:
+  static constexpr int kTerms = 6;  // 1, u, v, u^2, uv, v^2
+  using Terms = Eigen::Matrix<double, kTerms, 1>;
+
   void gather(const DepthView& frame, const NoiseWindow& window);
-  bool subtract_surface(int size);
+  [[nodiscard]] Terms surface(int size) const;
+  void subtract(const Terms& c, int size);
   [[nodiscard]] float block_variance(int size) const;
 
   std::vector<float> residuals_;
