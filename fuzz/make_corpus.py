@@ -18,7 +18,7 @@ def seed(target, name, data):
     folder.mkdir(parents=True, exist_ok=True)
     data = data.encode() if isinstance(data, str) else data
     (folder / name).write_bytes(data)
-    if target not in ("any", "trajectory"):
+    if target not in ("any", "depth", "frame_list", "poses", "sequence", "trajectory"):
         seed("any", f"{target}-{name}", data)
 
 
@@ -123,15 +123,20 @@ def depth():
     rows = struct.pack(">12H", *samples)
     seed("pgm", "maxval_65535", b"P5\n# a seed\n4 3\n65535\n" + rows)
     seed("pgm", "maxval_10000", b"P5 4 3 10000\n" + rows)
+    seed("depth", "pgm", b"P5 4 3 65535\n" + rows)
+    plane = [1000 + 3 * (i % 16) + i // 16 for i in range(256)]
+    seed("depth", "pgm_swapped", b"P5 16 16 65535\n" + struct.pack("<256H", *plane))
 
     def chunk(kind, data):
         return (struct.pack(">I", len(data)) + kind + data
                 + struct.pack(">I", zlib.crc32(kind + data)))
     lines = b"".join(b"\0" + rows[8 * i:8 * i + 8] for i in range(height))
     for name, bits, data in (("depth", 16, lines), ("grey8", 8, bytes(15))):
-        seed("png", name, b"\x89PNG\r\n\x1a\n"
-             + chunk(b"IHDR", struct.pack(">2I5B", width, height, bits, 0, 0, 0, 0))
-             + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
+        png = (b"\x89PNG\r\n\x1a\n"
+               + chunk(b"IHDR", struct.pack(">2I5B", width, height, bits, 0, 0, 0, 0))
+               + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
+        seed("png", name, png)
+        seed("depth", "png_" + name, png)
 
 
 def text():
@@ -161,5 +166,23 @@ def packed():
     seed("gzip", "stored", gzip.compress(plain, compresslevel=0, mtime=0))
 
 
-for make in (ply, pcd, las, depth, text, packed):
+def sequences():
+    camera = '"fx": 500, "fy": 510, "cx": 320, "cy": 240'
+    seed("sequence", "least", "{" + camera + "}")
+    seed("sequence", "every_field", "{" + camera + """, "width": 640, "height": 480,
+ "distortion": [0.1, 0.2, 0.3], "depth_unit_m": 0.0002, "fps": 15, "invalid": [0, 7, 65535],
+ "images": "d", "frames": "list.txt", "stamps": [0, 0.5], "pose": "poses.log: colour",
+ "pose_direction": "world_to_camera", "T_pose_camera": [1, 2, 3, 0, 0, 1, 0],
+ "byte_order": "little", "static_camera": false, "intrinsics_note": "guessed"}""")
+    seed("frame_list", "depth", "# depth maps\n1.5 depth/a.png\n2.5 depth/b.png\n")
+    seed("frame_list", "associations", "1 rgb/a.png 1.1 depth/b.png\n2 depth/c.png 2.1 rgb/d.png\n")
+    seed("poses", "tum", "# timestamp tx ty tz qx qy qz qw\n1.5 1 2 3 0 0 0 1\n2.5 4 5 6 0 0 1 0\n")
+    seed("poses", "order", "0 0 1\n1 0 0 5\n0 1 0 6\n0 0 1 7\n0 0 0 1\n"
+         "3\t3\t4\n 0 -1 0 1\n 1 0 0 2\n 0 0 1 3\n 0 0 0 1\n")
+    seed("poses", "number", "# Depth-to-color camera extrinsic matrix\n"
+         "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n# pose for frame-000012\n"
+         "1 0 0 5\n0 1 0 6\n0 0 1 7\n0 0 0 1\n")
+
+
+for make in (ply, pcd, las, depth, text, packed, sequences):
     make()

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <variant>
 
 #include "io/depth_image.hpp"
 #include "io/gzip.hpp"
@@ -19,14 +21,19 @@
 #include "io/xyz.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/read_cloud.hpp"
+#include "palpate/io/read_depth.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "palpate/io/write_cloud.hpp"
+#include "sensor/frame_list.hpp"
+#include "sensor/pose_track.hpp"
+#include "sensor/sequence_description.hpp"
 
 namespace palpate::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 10> kNames{"any", "gzip", "las", "obj",        "pcd",
-                                                  "pgm", "ply",  "png", "trajectory", "xyz"};
+constexpr std::array<std::string_view, 14> kNames{"any",   "depth",    "frame_list", "gzip", "las",
+                                                  "obj",   "pcd",      "pgm",        "ply",  "png",
+                                                  "poses", "sequence", "trajectory", "xyz"};
 
 void expect(bool promise, const char* name) {
   if (!promise) throw std::logic_error(name);
@@ -60,6 +67,58 @@ void check_rewriting(const CloudFile& file) {
   }
 }
 
+void check_depth(std::span<const std::byte> bytes) {
+  const ReadDepthOptions options{.camera = {0, 0, {100, 100, 2, 2}, {}}};
+  const DepthFrame frame = read_depth_frame_bytes(bytes, "input", options);
+  expect(frame.camera.width > 0 && frame.camera.height > 0, "a frame without pixels");
+  const auto pixels =
+      static_cast<std::size_t>(frame.camera.width) * static_cast<std::size_t>(frame.camera.height);
+  expect(frame.depth.size() == pixels, "depths that are not one a pixel");
+  for (const float z : frame.depth) expect(std::isfinite(z) && z >= 0, "a depth");
+}
+
+void check_poses(std::string_view text) {
+  const sensor::Poses poses = sensor::parse_poses(text, "input");
+  const auto check = [](const Eigen::Isometry3d& pose) {
+    expect(pose.matrix().allFinite(), "a pose that is not finite");
+    const Eigen::Matrix3d square = pose.linear() * pose.linear().transpose();
+    expect(square.isIdentity(1e-9), "a rotation that is none");
+  };
+  if (const auto* track = std::get_if<sensor::PoseTrack>(&poses)) {
+    for (const auto& known : *track) check(known.pose);
+    for (const auto& known : *track) check(*sensor::pose_at(*track, known.stamp));
+  } else if (const auto* ordered = std::get_if<sensor::PosesByOrder>(&poses)) {
+    for (const auto& [number, pose] : ordered->poses) check(pose);
+  } else {
+    for (const auto& [number, pose] : std::get<sensor::PosesByNumber>(poses).poses) check(pose);
+  }
+}
+
+void check_frame_list(std::string_view text) {
+  double last = -std::numeric_limits<double>::infinity();
+  for (const sensor::ListedFrame& frame : sensor::parse_frame_list(text, "input")) {
+    expect(frame.stamp > last && !frame.image.empty(), "a list out of order");
+    last = frame.stamp;
+  }
+}
+
+// True when `name` is one of the parts of a sequence.
+bool run_sequence_target(std::string_view name, const io::Input& input) {
+  if (name == "depth") {
+    check_depth(input.bytes);
+  } else if (name == "poses") {
+    check_poses(input.text());
+  } else if (name == "frame_list") {
+    check_frame_list(input.text());
+  } else if (name == "sequence") {
+    const auto sequence = sensor::parse_description(input.text(), "input");
+    expect(sequence.camera.pinhole.fx > 0 && sequence.depth_unit > 0, "a camera that is none");
+  } else {
+    return false;
+  }
+  return true;
+}
+
 CloudFile read_as(std::string_view name, const io::Input& input) {
   if (name == "las") return io::read_las(input);
   if (name == "obj") return io::read_obj(input);
@@ -87,7 +146,7 @@ void run_target(std::string_view name, std::span<const std::byte> bytes) {
     } else if (name == "trajectory") {
       std::istringstream stream{std::string(input.text())};
       (void)read_trajectory(stream, "input");
-    } else {
+    } else if (!run_sequence_target(name, input)) {
       const CloudFile file = read_as(name, input);
       check_promises(file);
       check_rewriting(file);

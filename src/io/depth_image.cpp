@@ -14,7 +14,20 @@ namespace {
 
 constexpr std::size_t kFarBeyond = 10;  // times the median depth
 
-Pinhole checked_intrinsics(const Input& input, const DepthImage& image) {
+// 0 when no pixel is valid.
+std::size_t median_depth(const DepthImage& image) {
+  std::vector<std::uint16_t> valid;
+  std::copy_if(image.samples.begin(), image.samples.end(), std::back_inserter(valid),
+               [&](std::uint16_t s) { return is_depth(image, s); });
+  if (valid.empty()) return 0;
+  const auto middle = valid.begin() + static_cast<std::ptrdiff_t>(valid.size() / 2);
+  std::nth_element(valid.begin(), middle, valid.end());
+  return *middle;
+}
+
+}  // namespace
+
+Pinhole intrinsics_of(const Input& input, const DepthImage& image) {
   if (!input.options.intrinsics) {
     fail(input,
          fmt::format("a depth image of {} x {} pixels, and the camera is not known", image.width,
@@ -35,33 +48,20 @@ Pinhole checked_intrinsics(const Input& input, const DepthImage& image) {
   return camera;
 }
 
-double checked_unit(const Input& input) {
+double unit_of(const Input& input) {
   const double unit = input.options.depth_unit;
   if (std::isfinite(unit) && unit > 0) return unit;
   fail(input, fmt::format("a depth unit of {} metres", unit),
        "Give the metres of one depth step, such as 0.001 for millimetres");
 }
 
-bool is_valid(const DepthImage& image, std::uint16_t sample) {
+bool is_depth(const DepthImage& image, std::uint16_t sample) {
   return sample != 0 && sample < image.largest && sample != 65535;
 }
 
-// 0 when no pixel is valid.
-std::size_t median_depth(const DepthImage& image) {
-  std::vector<std::uint16_t> valid;
-  std::copy_if(image.samples.begin(), image.samples.end(), std::back_inserter(valid),
-               [&](std::uint16_t s) { return is_valid(image, s); });
-  if (valid.empty()) return 0;
-  const auto middle = valid.begin() + static_cast<std::ptrdiff_t>(valid.size() / 2);
-  std::nth_element(valid.begin(), middle, valid.end());
-  return *middle;
-}
-
-}  // namespace
-
 CloudFile cloud_of(const Input& input, const DepthImage& image) {
-  const Pinhole camera = checked_intrinsics(input, image);
-  const double unit = checked_unit(input);
+  const Pinhole camera = intrinsics_of(input, image);
+  const double unit = unit_of(input);
   const std::size_t farthest = kFarBeyond * median_depth(image);
   CloudBuilder builder(input, {}, ColorScale::byte, image.samples.size());
   Progress progress(input.options, image.samples.size());
@@ -69,7 +69,7 @@ CloudFile cloud_of(const Input& input, const DepthImage& image) {
   for (std::size_t i = 0; i < image.samples.size(); ++i) {
     progress.at(i);
     const std::uint16_t sample = image.samples[i];
-    const bool kept = is_valid(image, sample) && sample <= farthest;
+    const bool kept = is_depth(image, sample) && sample <= farthest;
     const double z = kept ? unit * sample : std::nan("");
     row[0] = (static_cast<double>(i % image.width) - camera.cx) * z / camera.fx;
     row[1] = (static_cast<double>(i / image.width) - camera.cy) * z / camera.fy;

@@ -25,6 +25,15 @@ struct DepthImage {
 /// @throws Error when options.intrinsics or depth_unit are absent or senseless.
 [[nodiscard]] CloudFile cloud_of(const Input& input, const DepthImage& image);
 
+/// The camera that options.intrinsics describes. @throws Error likewise.
+[[nodiscard]] Pinhole intrinsics_of(const Input& input, const DepthImage& image);
+
+/// options.depth_unit, m. @throws Error likewise.
+[[nodiscard]] double unit_of(const Input& input);
+
+/// Is it a depth rather than a mark for "nothing measured"?
+[[nodiscard]] bool is_depth(const DepthImage& image, std::uint16_t sample);
+
 /// @throws Error unless `pixels` 16-bit samples could come from `bytes` bytes that deflate packed.
 void check_image_size(const Input& input, std::uint64_t width, std::uint64_t height);
 

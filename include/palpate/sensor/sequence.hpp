@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/base/clock.hpp"
+#include "palpate/sensor/depth_camera.hpp"
+
+namespace palpate {
+
+struct SequenceFrame {
+  std::filesystem::path image;
+  double stamp = 0;                                   ///< when it was taken, s since any start
+  std::optional<Eigen::Isometry3d> T_world_sensor{};  ///< at the stamp, where poses are known
+};
+
+/// Depth images one after another, as docs/sequences.md describes them.
+struct Sequence {
+  std::string name;                    ///< for messages: the folder
+  CameraModel camera;                  ///< width and height 0: whatever the images have
+  double depth_unit = 1e-3;            ///< metres a step of the images
+  std::vector<std::uint16_t> invalid;  ///< "nothing measured", besides 0 and 65535
+  bool swapped = false;                ///< images hold the less significant byte first
+  double rate = 30;                    ///< frames a second, Hz
+  bool posed = false;                  ///< poses are known; a frame without one is out of use
+  std::vector<SequenceFrame> frames;   ///< stamps grow strictly
+};
+
+/// Reads the description of a sequence, no image: `folder` holds a sequence.json, or a depth.txt or
+/// associations.txt as TUM's RGB-D benchmark has them.
+/// @throws Error that names the file, the place in it and a remedy.
+[[nodiscard]] Sequence read_sequence(const std::filesystem::path& folder);
+
+struct SequenceOptions {
+  const Clock* clock = nullptr;      ///< frames are shown at their time on it; outlives the camera.
+                                     ///< Null: as fast as they are asked for
+  std::optional<double> start = {};  ///< the first frame's stamp, s; unset: when it is first asked
+                                     ///< for, and 0 without a clock
+  bool loop = false;                 ///< begins again at the end, one frame's time after the last
+};
+
+/// A camera that plays a sequence. Every frame is shown, in order: one that is asked for too late
+/// is shown at once. Stamps go on as recorded, from SequenceOptions::start. An image that is
+/// missing, broken, of another size, or without the pose that others have fails when its turn
+/// comes, and the next is as good as ever.
+/// @throws Error when there is no frame.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_sequence(Sequence sequence,
+                                                         const SequenceOptions& options = {});
+
+}  // namespace palpate

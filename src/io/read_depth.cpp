@@ -1,0 +1,112 @@
+#include "palpate/io/read_depth.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+
+#include "io/depth_image.hpp"
+#include "io/file_bytes.hpp"
+#include "io/file_kind.hpp"
+#include "io/gzip.hpp"
+#include "io/input.hpp"
+#include "io/pgm.hpp"
+#include "io/png.hpp"
+#include "io/swapped.hpp"
+#include "palpate/io/read_cloud.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace io;
+
+DepthImage read_kind(const Input& input, FileKind kind) {
+  if (kind == FileKind::png) return read_png(input);
+  if (kind == FileKind::pgm) return read_pgm(input);
+  fail(input, "not a depth image", "Give a 16-bit grey PNG or PGM");
+}
+
+DepthImage read_image(const Input& input) {
+  const FileKind kind = kind_of(input);
+  if (kind != FileKind::gzip) return read_kind(input, kind);
+  const Bytes unpacked = gunzip(input);
+  const Input inside{unpacked.span(), input.name, input.options};
+  return read_kind(inside, kind_of(inside));
+}
+
+void check_size(const Input& input, const DepthImage& image, const CameraModel& camera) {
+  const auto fits = [](int wanted, std::size_t found) {
+    return wanted == 0 || static_cast<std::size_t>(wanted) == found;
+  };
+  if (fits(camera.width, image.width) && fits(camera.height, image.height)) return;
+  fail(input,
+       fmt::format("an image of {} x {} pixels from a camera of {} x {}", image.width, image.height,
+                   camera.width, camera.height),
+       "Give the camera's own images, or correct its width and height");
+}
+
+void straighten(const Input& input, DepthImage& image, bool swapped) {
+  if (swapped) {
+    swap_bytes(image);
+  } else if (looks_swapped(image)) {
+    fail(input, "the two bytes of its samples seem to be exchanged",
+         "If they are, say so (\"byte_order\": \"little\" in a sequence.json), or write the image "
+         "again");
+  }
+}
+
+void fill(DepthFrame& frame, const DepthImage& image, double unit,
+          const std::vector<std::uint16_t>& invalid) {
+  frame.depth.resize(image.samples.size());
+  std::ranges::transform(image.samples, frame.depth.begin(), [&](std::uint16_t sample) {
+    const bool measured =
+        is_depth(image, sample) && std::ranges::find(invalid, sample) == invalid.end();
+    return measured ? static_cast<float>(unit * sample) : 0.0F;
+  });
+  frame.colors.clear();
+}
+
+void read_bytes_into(std::span<const std::byte> bytes, const std::string& name,
+                     const ReadDepthOptions& options, DepthFrame& frame) {
+  ReadOptions as_cloud;
+  if (options.camera.pinhole.fx != 0) as_cloud.intrinsics = options.camera.pinhole;
+  as_cloud.depth_unit = options.depth_unit;
+  const Input input{bytes, name, as_cloud};
+  try {
+    DepthImage image = read_image(input);
+    CameraModel camera = options.camera;
+    camera.pinhole = intrinsics_of(input, image);
+    const double unit = unit_of(input);
+    check_size(input, image, camera);
+    straighten(input, image, options.swapped);
+    camera.width = static_cast<int>(image.width);
+    camera.height = static_cast<int>(image.height);
+    fill(frame, image, unit, options.invalid);
+    frame.camera = camera;
+  } catch (const std::bad_alloc&) {
+    fail(input, "not enough memory for its pixels", "Close other programs");
+  }
+}
+
+}  // namespace
+
+DepthFrame read_depth_frame_bytes(std::span<const std::byte> bytes, const std::string& name,
+                                  const ReadDepthOptions& options) {
+  DepthFrame frame;
+  read_bytes_into(bytes, name, options, frame);
+  return frame;
+}
+
+void read_depth_frame(const std::filesystem::path& path, const ReadDepthOptions& options,
+                      DepthFrame& frame) {
+  const Bytes bytes = read_bytes(path);
+  read_bytes_into(bytes.span(), path == "-" ? "standard input" : path.string(), options, frame);
+}
+
+DepthFrame read_depth_frame(const std::filesystem::path& path, const ReadDepthOptions& options) {
+  DepthFrame frame;
+  read_depth_frame(path, options, frame);
+  return frame;
+}
+
+}  // namespace palpate

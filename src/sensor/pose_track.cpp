@@ -1,0 +1,168 @@
+#include "sensor/pose_track.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "io/input.hpp"
+#include "io/text_scanner.hpp"
+#include "sensor/rigid.hpp"
+
+namespace palpate::sensor {
+namespace {
+
+using io::Input;
+using io::take_word;
+using io::TextScanner;
+
+constexpr double kWidestGap = 0.25;  // s; a person's hand moves a decimetre in it
+constexpr double kSame = 1e-3;       // s
+constexpr std::string_view kRemedy = "Correct this line, or export the poses again";
+
+bool is_comment(std::string_view line) {
+  line = io::trim(line);
+  return line.empty() || line.front() == '#';
+}
+
+// Exactly N finite numbers.
+template <std::size_t N>
+std::optional<std::array<double, N>> numbers(std::string_view line) {
+  std::array<double, N> values{};
+  for (double& value : values) {
+    const std::optional<double> number = io::parse_number(take_word(line));
+    if (!number || !std::isfinite(*number)) return {};
+    value = *number;
+  }
+  return io::trim(line).empty() ? std::optional(values) : std::nullopt;
+}
+
+// The four lines of a matrix; its first begins at `begin`.
+Eigen::Isometry3d read_matrix(const Input& input, TextScanner& scanner) {
+  const std::size_t begin = scanner.offset();
+  Eigen::Matrix4d matrix;
+  for (int row = 0; row < 4; ++row) {
+    const std::size_t offset = scanner.offset();
+    const auto values = numbers<4>(scanner.next_line());
+    if (!values) {
+      io::fail_at_line(input, offset, "four numbers of a 4 x 4 matrix are missing", kRemedy);
+    }
+    matrix.row(row) = Eigen::Map<const Eigen::RowVector4d>(values->data());
+  }
+  const auto pose = rigid(matrix.block<3, 1>(0, 3), Eigen::Matrix3d(matrix.block<3, 3>(0, 0)));
+  if (!pose) io::fail_at_line(input, begin, "this matrix is no rotation and place", kRemedy);
+  return *pose;
+}
+
+PoseTrack read_track(const Input& input) {
+  PoseTrack track;
+  TextScanner scanner(input);
+  while (!scanner.at_end()) {
+    const std::size_t offset = scanner.offset();
+    const std::string_view line = scanner.next_line();
+    if (is_comment(line)) continue;
+    const auto v = numbers<8>(line);
+    if (!v) {
+      io::fail_at_line(input, offset, "this is not \"time x y z qx qy qz qw\"", kRemedy);
+    }
+    const auto [t, x, y, z, qx, qy, qz, qw] = *v;
+    const auto pose = rigid({x, y, z}, Eigen::Quaterniond(qw, qx, qy, qz));
+    if (!pose) {
+      io::fail_at_line(input, offset, "this quaternion's length is not 1, or the place is none",
+                       kRemedy);
+    }
+    if (!track.empty() && t <= track.back().stamp) {
+      io::fail_at_line(input, offset, "this time is not after that of the line before", kRemedy);
+    }
+    track.push_back({t, *pose});
+  }
+  return track;
+}
+
+PosesByOrder read_by_order(const Input& input) {
+  PosesByOrder result;
+  TextScanner scanner(input);
+  while (!scanner.at_end()) {
+    const std::size_t offset = scanner.offset();
+    std::string_view line = scanner.next_line();
+    if (is_comment(line)) continue;
+    const auto number = io::parse_count(take_word(line));
+    if (!number) io::fail_at_line(input, offset, "a frame's number is missing", kRemedy);
+    result.poses[*number] = read_matrix(input, scanner);
+  }
+  return result;
+}
+
+std::optional<std::size_t> frame_number(std::string_view comment) {
+  constexpr std::string_view kFrame = "frame-";
+  const std::size_t found = comment.rfind(kFrame);
+  if (found == std::string_view::npos) return {};
+  std::string_view rest = comment.substr(found + kFrame.size());
+  return io::parse_count(take_word(rest));
+}
+
+bool names_mounting(std::string_view comment) {
+  std::string lower(comment);
+  std::ranges::transform(lower, lower.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return lower.find("depth-to-color") != std::string::npos &&
+         lower.find("extrinsic") != std::string::npos;
+}
+
+PosesByNumber read_by_number(const Input& input) {
+  PosesByNumber result;
+  TextScanner scanner(input);
+  while (!scanner.at_end()) {
+    const std::string_view line = io::trim(scanner.next_line());
+    if (line.empty() || line.front() != '#') continue;
+    if (const auto number = frame_number(line)) {
+      result.poses[*number] = read_matrix(input, scanner);
+    } else if (names_mounting(line)) {
+      result.T_told_sensor = read_matrix(input, scanner);
+    }
+  }
+  return result;
+}
+
+std::string_view first_line(const Input& input) {
+  TextScanner scanner(input);
+  while (!scanner.at_end()) {
+    const std::string_view line = scanner.next_line();
+    if (!is_comment(line)) return line;
+  }
+  return {};
+}
+
+}  // namespace
+
+Poses parse_poses(std::string_view text, const std::string& name) {
+  const ReadOptions unused;
+  const Input input{std::as_bytes(std::span(text)), name, unused};
+  const std::string_view first = first_line(input);
+  if (numbers<8>(first)) return read_track(input);
+  if (text.find("frame-") != std::string_view::npos) return read_by_number(input);
+  if (numbers<3>(first)) return read_by_order(input);
+  io::fail(input, "no poses that are known",
+           "Give lines \"time x y z qx qy qz qw\", or 4 x 4 matrices as in docs/sequences.md");
+}
+
+std::optional<Eigen::Isometry3d> pose_at(const PoseTrack& track, double stamp) {
+  const auto next = std::ranges::lower_bound(track, stamp, {}, &StampedPose::stamp);
+  if (next != track.end() && next->stamp - stamp <= kSame) return next->pose;
+  if (next == track.begin()) return {};
+  const StampedPose& before = *std::prev(next);
+  if (stamp - before.stamp <= kSame) return before.pose;
+  if (next == track.end() || next->stamp - before.stamp > kWidestGap) return {};
+  const double u = (stamp - before.stamp) / (next->stamp - before.stamp);
+  const Eigen::Quaterniond from(before.pose.linear());
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = from.slerp(u, Eigen::Quaterniond(next->pose.linear())).toRotationMatrix();
+  pose.translation() = (1 - u) * before.pose.translation() + u * next->pose.translation();
+  return pose;
+}
+
+}  // namespace palpate::sensor

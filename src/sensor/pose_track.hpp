@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace palpate::sensor {
+
+/// A pose at a time.
+struct StampedPose {
+  double stamp = 0;  // s
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+};
+
+/// Poses in the order of time.
+using PoseTrack = std::vector<StampedPose>;
+
+/// Poses of numbered frames, the number counting the frames of the sequence from 0.
+struct PosesByOrder {
+  std::map<std::size_t, Eigen::Isometry3d> poses;
+};
+
+/// Poses of numbered frames, the number standing at the end of the image's name; and what stands
+/// behind each pose, such as from the depth camera to the colour camera whose poses they are.
+struct PosesByNumber {
+  std::map<std::size_t, Eigen::Isometry3d> poses;
+  Eigen::Isometry3d T_told_sensor = Eigen::Isometry3d::Identity();
+};
+
+using Poses = std::variant<PoseTrack, PosesByOrder, PosesByNumber>;
+
+/// Reads poses, camera to world: lines "time x y z qx qy qz qw" (TUM), groups of a line of three
+/// counts and four of a 4 x 4 matrix (Redwood's .log), or 4 x 4 matrices under comments that name
+/// "frame-NUMBER".
+/// @throws Error that names the line and what it should be.
+[[nodiscard]] Poses parse_poses(std::string_view text, const std::string& name);
+
+/// The pose at a time between two known ones: places in a straight line, rotations along the
+/// shortest arc (slerp). One that is known within a
+/// millisecond is taken as it is. Nothing before the first, after the last, and in gaps above
+/// 0.25 s.
+[[nodiscard]] std::optional<Eigen::Isometry3d> pose_at(const PoseTrack& track, double stamp);
+
+}  // namespace palpate::sensor

@@ -1,0 +1,187 @@
+#include "palpate/sensor/sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+#include "io/file_bytes.hpp"
+#include "io/input.hpp"
+#include "palpate/base/error.hpp"
+#include "sensor/frame_list.hpp"
+#include "sensor/pose_track.hpp"
+#include "sensor/sequence_description.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace sensor;
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& path) {
+  const io::Bytes bytes = io::read_bytes(path);
+  return {reinterpret_cast<const char*>(bytes.span().data()), bytes.size()};
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+// What TUM's benchmark says of its sequences: depth v / 5000 m, and one set of intrinsics that it
+// recommends for all of them.
+SequenceDescription tum_layout(const fs::path& folder) {
+  SequenceDescription sequence;
+  sequence.camera.pinhole = {.fx = 525, .fy = 525, .cx = 319.5, .cy = 239.5};
+  sequence.depth_unit = 1.0 / 5000;
+  for (const char* list : {"depth.txt", "associations.txt"}) {
+    if (sequence.frames.empty() && is_file(folder / list)) sequence.frames = list;
+  }
+  if (is_file(folder / "groundtruth.txt")) sequence.poses = "groundtruth.txt";
+  return sequence;
+}
+
+SequenceDescription describe(const fs::path& folder) {
+  const fs::path description = folder / "sequence.json";
+  if (is_file(description)) return parse_description(text_of(description), description.string());
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) {
+    throw Error(fmt::format("{}: no such folder. Give the folder of a sequence.", folder.string()));
+  }
+  SequenceDescription sequence = tum_layout(folder);
+  if (sequence.frames.empty()) {
+    throw Error(
+        fmt::format("{}: holds no sequence. Write a sequence.json there (docs/sequences.md), or "
+                    "add the depth.txt or associations.txt of a TUM RGB-D sequence.",
+                    folder.string()));
+  }
+  return sequence;
+}
+
+bool is_image(const fs::path& path) {
+  const std::string ending = io::extension(path.string());
+  return ending == ".png" || ending == ".pgm";
+}
+
+std::vector<fs::path> images_in(const fs::path& folder, const std::string& wanted) {
+  std::error_code failure;
+  const bool usual = wanted.empty() && fs::is_directory(folder / "depth", failure);
+  const fs::path place = usual ? folder / "depth" : folder / wanted;
+  std::vector<fs::path> images;
+  fs::directory_iterator entry(place, failure);
+  for (; !failure && entry != fs::directory_iterator(); entry.increment(failure)) {
+    if (is_image(entry->path())) images.push_back(entry->path());
+  }
+  if (failure) {
+    throw Error(
+        fmt::format("{}: cannot be listed ({}). Give the folder of the depth images "
+                    "(\"images\" in sequence.json).",
+                    place.string(), failure.message()));
+  }
+  std::ranges::sort(images);
+  return images;
+}
+
+std::vector<SequenceFrame> listed_frames(const fs::path& folder, const std::string& list) {
+  const fs::path path = folder / list;
+  std::vector<SequenceFrame> frames;
+  for (ListedFrame& frame : parse_frame_list(text_of(path), path.string())) {
+    frames.push_back({.image = path.parent_path() / frame.image, .stamp = frame.stamp});
+  }
+  return frames;
+}
+
+void check_stamps(const fs::path& folder, const std::vector<double>& stamps, std::size_t images) {
+  const bool good =
+      stamps.empty() || (stamps.size() == images &&
+                         std::ranges::adjacent_find(stamps, std::greater_equal{}) == stamps.end());
+  if (good) return;
+  throw Error(
+      fmt::format("{}: \"stamps\" has {} times for {} images, or they do not grow. Give one "
+                  "time in seconds an image, each after the one before.",
+                  (folder / "sequence.json").string(), stamps.size(), images));
+}
+
+std::vector<SequenceFrame> frames_of(const fs::path& folder, const SequenceDescription& sequence) {
+  if (!sequence.frames.empty()) return listed_frames(folder, sequence.frames);
+  std::vector<SequenceFrame> frames;
+  for (fs::path& image : images_in(folder, sequence.images)) {
+    const double stamp = static_cast<double>(frames.size()) / sequence.rate;
+    frames.push_back({.image = std::move(image), .stamp = stamp});
+  }
+  check_stamps(folder, sequence.stamps, frames.size());
+  for (std::size_t i = 0; i < sequence.stamps.size(); ++i) frames[i].stamp = sequence.stamps[i];
+  return frames;
+}
+
+// The digits at the end of a file's name.
+std::optional<std::size_t> number_of(const fs::path& image) {
+  std::string stem = image.stem().string();
+  while (!stem.empty() && (stem.back() < '0' || stem.back() > '9')) stem.pop_back();
+  std::size_t begin = stem.size();
+  while (begin > 0 && stem[begin - 1] >= '0' && stem[begin - 1] <= '9') --begin;
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(stem.data() + begin, stem.data() + stem.size(), number);
+  return error == std::errc() && begin < stem.size() ? std::optional(number) : std::nullopt;
+}
+
+std::optional<Eigen::Isometry3d> look_up(const std::map<std::size_t, Eigen::Isometry3d>& poses,
+                                         std::optional<std::size_t> number) {
+  const auto found = number ? poses.find(*number) : poses.end();
+  return found == poses.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<Eigen::Isometry3d> pose_of(const Poses& poses, const SequenceFrame& frame,
+                                         std::size_t i) {
+  if (const auto* track = std::get_if<PoseTrack>(&poses)) return pose_at(*track, frame.stamp);
+  if (const auto* ordered = std::get_if<PosesByOrder>(&poses)) return look_up(ordered->poses, i);
+  return look_up(std::get<PosesByNumber>(poses).poses, number_of(frame.image));
+}
+
+void add_poses(const fs::path& folder, const SequenceDescription& description,
+               std::vector<SequenceFrame>& frames) {
+  const fs::path path = folder / description.poses;
+  const Poses poses = parse_poses(text_of(path), path.string());
+  Eigen::Isometry3d T_told_sensor = description.T_told_sensor;
+  if (const auto* numbered = std::get_if<PosesByNumber>(&poses)) {
+    T_told_sensor = numbered->T_told_sensor * T_told_sensor;
+  }
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto told = pose_of(poses, frames[i], i);
+    if (!told) continue;
+    frames[i].T_world_sensor =
+        (description.world_to_camera ? told->inverse() : *told) * T_told_sensor;
+  }
+}
+
+// Of lists: by the middle interval.
+double rate_of(const SequenceDescription& description, const std::vector<SequenceFrame>& frames) {
+  const bool told = description.frames.empty() && description.stamps.empty();
+  if (told || frames.size() < 2) return description.rate;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    intervals.push_back(frames[i].stamp - frames[i - 1].stamp);
+  }
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return 1 / *middle;
+}
+
+}  // namespace
+
+Sequence read_sequence(const fs::path& folder) {
+  const SequenceDescription description = describe(folder);
+  Sequence sequence{.name = folder.string(),
+                    .camera = description.camera,
+                    .depth_unit = description.depth_unit,
+                    .invalid = description.invalid,
+                    .swapped = description.swapped,
+                    .frames = frames_of(folder, description)};
+  sequence.posed = !description.poses.empty();
+  if (sequence.posed) add_poses(folder, description, sequence.frames);
+  sequence.rate = rate_of(description, sequence.frames);
+  return sequence;
+}
+
+}  // namespace palpate

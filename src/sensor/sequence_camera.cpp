@@ -1,0 +1,101 @@
+#include "sensor/sequence_camera.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate::sensor {
+
+SequenceCamera::SequenceCamera(Sequence sequence, const SequenceOptions& options)
+    : sequence_(std::move(sequence)),
+      options_(options),
+      info_{.name = "sequence:" + sequence_.name,
+            .rate = sequence_.rate,
+            .paces = options.clock != nullptr},
+      images_{.camera = sequence_.camera,
+              .depth_unit = sequence_.depth_unit,
+              .invalid = sequence_.invalid,
+              .swapped = sequence_.swapped} {
+  if (sequence_.frames.empty()) {
+    throw Error(fmt::format("{}: a sequence without frames. Add 16-bit depth images (PNG, PGM).",
+                            sequence_.name));
+  }
+  lap_ = sequence_.frames.back().stamp - sequence_.frames.front().stamp + 1 / sequence_.rate;
+}
+
+CameraStatus SequenceCamera::read(DepthFrame& frame, double timeout) {
+  reason_.clear();
+  if (next_ == sequence_.frames.size()) {
+    if (!options_.loop) return CameraStatus::ended;
+    next_ = 0;
+    ++laps_;
+  }
+  if (!options_.start) options_.start = options_.clock != nullptr ? options_.clock->now() : 0;
+  load();  // beforehand, so that it is there when its time comes
+  if (!wait(timeout)) return CameraStatus::waiting;
+  return show(frame);
+}
+
+double SequenceCamera::stamp() const {
+  const double since = sequence_.frames[next_].stamp - sequence_.frames.front().stamp;
+  return *options_.start + since + static_cast<double>(laps_) * lap_;
+}
+
+void SequenceCamera::load() {
+  if (std::exchange(loaded_, true)) return;
+  failure_ = load_image(sequence_.frames[next_]);
+}
+
+std::string SequenceCamera::load_image(const SequenceFrame& frame) {
+  if (sequence_.posed && !frame.T_world_sensor) {
+    return fmt::format("{}: no pose is known of it, though of others. It was left out.",
+                       frame.image.string());
+  }
+  try {
+    read_depth_frame(frame.image, images_, loaded_frame_);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  // The first image says what size all have, where the description does not.
+  images_.camera.width = loaded_frame_.camera.width;
+  images_.camera.height = loaded_frame_.camera.height;
+  loaded_frame_.T_world_sensor = frame.T_world_sensor;
+  return {};
+}
+
+bool SequenceCamera::wait(double timeout) const {
+  if (options_.clock == nullptr) return true;
+  const double early = stamp() - options_.clock->now();
+  if (early <= 0) return true;
+  if (timeout <= 0) return false;
+  std::this_thread::sleep_for(std::chrono::duration<double>(std::min(early, timeout)));
+  return options_.clock->now() >= stamp();
+}
+
+CameraStatus SequenceCamera::show(DepthFrame& frame) {
+  const double time = stamp();
+  loaded_ = false;
+  ++next_;
+  if (!failure_.empty()) {
+    reason_ = std::exchange(failure_, "");
+    return CameraStatus::failed;
+  }
+  std::swap(frame, loaded_frame_);
+  frame.stamp = time;
+  return CameraStatus::frame;
+}
+
+}  // namespace palpate::sensor
+
+namespace palpate {
+
+std::unique_ptr<DepthCamera> open_sequence(Sequence sequence, const SequenceOptions& options) {
+  return std::make_unique<sensor::SequenceCamera>(std::move(sequence), options);
+}
+
+}  // namespace palpate
