@@ -7,6 +7,7 @@
 
 #include "depth/block_fits.hpp"
 #include "depth/temporal_memory.hpp"
+#include "depth/temporal_warp.hpp"
 
 namespace palpate::depth {
 
@@ -17,9 +18,9 @@ struct TemporalOptions {
   int hold = 10;         ///< frames for which a block that is not measured any more is kept
 };
 
-/// G = 5, and 7 for sensors whose pixels err together (c > 2), which the fits' variances tell less
-/// well (nss_fast.md section 3).
-[[nodiscard]] double gate_for(double correlation);
+/// What suits a sensor: G = 5, and 7 where pixels err together (c > 2), since the variances of fits
+/// tell less then; no prediction there either (nss_fast.md section 3).
+[[nodiscard]] TemporalOptions temporal_options(int memory, bool predict, double correlation);
 
 /// The filter over time of nss_fast.md section 3, after the fit, a block at a time: what stands
 /// still is averaged, what moves is taken as it is measured. Bounded work; it allocates only when
@@ -31,11 +32,11 @@ class TemporalFilter {
   /// the pose at the stamp: when it is another than before, what is remembered is put into the new
   /// view first. A block whose state changes between plain and fitted starts anew, which counts as
   /// another surface only if it is one.
-  void filter(BlockFits& fits, const Eigen::Isometry3d& T_world_sensor,
-              const TemporalOptions& options);
+  void filter(const TemporalOptions& options, const Eigen::Isometry3d& T_world_sensor,
+              BlockFits& fits);
 
-  /// A frame that repeats the one before: `fits` gets what that one gave, and nothing has jumped.
-  void repeat(BlockFits& fits);
+  /// A frame that repeats the one before was not given to filter(): nothing has jumped.
+  void repeat();
 
   void reset();
 
@@ -46,14 +47,15 @@ class TemporalFilter {
   [[nodiscard]] std::span<const std::uint8_t> missed() const { return missed_; }
 
  private:
-  void prepare(const BlockFits& fits, const Eigen::Isometry3d& T_world_sensor);
+  void prepare(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor);
 
   BlockGrid grid_;
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
   std::vector<BlockMemory> memory_;
-  std::vector<BlockMemory> warped_;
+  std::vector<float> expected_;  // rho of what the block showed before, in this view; 0: none
   std::vector<std::uint8_t> jumped_;
   std::vector<std::uint8_t> missed_;
+  TemporalWarp warp_;
 };
 
 }  // namespace palpate::depth

@@ -15,7 +15,7 @@ struct BlockMemory {
   float slope_y = 0;         ///< 1/m
   float slope_variance = 0;  ///< of one frame's slopes, 1/m^2
   float confidence = 0;
-  float speed = 0;         ///< v: change of rho, 1/m per frame; not 0 only while it moves
+  float speed = 0;         ///< v: change of rho while it moves, 1/m per frame
   std::uint8_t count = 0;  ///< frames in the mean; 0: nothing is remembered
   std::uint8_t calm = 0;   ///< frames in a row that a moving block stood still
   std::uint8_t missed = 0;

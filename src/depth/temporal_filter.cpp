@@ -1,0 +1,202 @@
+#include "depth/temporal_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "depth/temporal_limits.hpp"
+
+namespace palpate::depth {
+namespace {
+
+constexpr float kFollow = 0.8F;          // beta: how fast the speed follows
+constexpr int kCalmFrames = 2;           // after which a moving block stands still
+constexpr float kFarthestAhead = 3e-3F;  // prediction along the normal, m: 1.5 N at 500 N/m
+constexpr float kTooFast = 3.5e-3F;      // m per frame along the normal: no prediction
+
+float squared(float x) {
+  return x * x;
+}
+
+/// One frame's block.
+struct Measured {
+  float rho, variance, slope_x, slope_y, slope_variance, confidence;
+  BlockState state;
+};
+
+Measured measured(const BlockFits& fits, std::size_t i) {
+  return {fits.rho[i],     fits.variance[i],       fits.slope_x[i],
+          fits.slope_y[i], fits.slope_variance[i], fits.confidences[i],
+          fits.states[i]};
+}
+
+void restart(const Measured& now, BlockMemory& m) {
+  m.rho = now.rho;
+  m.variance = now.variance;
+  m.extra = 0;
+  m.slope_x = now.slope_x;
+  m.slope_y = now.slope_y;
+  m.slope_variance = now.slope_variance;
+  m.confidence = now.confidence;
+  m.count = 1;
+  m.calm = 0;
+  m.state = now.state;
+}
+
+void stop(BlockMemory& m) {
+  m.speed = 0;
+  m.moving = false;
+}
+
+/// Is the frame within the gate of what is remembered? Slopes that nothing vouches for are not
+/// asked.
+bool agrees(const Measured& now, const BlockMemory& m, float gate2) {
+  const float share = 1 / static_cast<float>(m.count);
+  const float place = m.variance * share + m.extra + now.variance;
+  if (squared(now.rho - m.rho) > gate2 * place) return false;
+  if (!(now.confidence > 0 && m.confidence > 0)) return true;
+  const float slope = m.slope_variance * share + now.slope_variance;
+  const float turned = squared(now.slope_x - m.slope_x) + squared(now.slope_y - m.slope_y);
+  return turned <= 2 * gate2 * slope;
+}
+
+void average_slopes(const Measured& now, float share, BlockMemory& m) {
+  if (now.confidence > 0) {
+    if (!(m.confidence > 0)) share = 1;
+    m.slope_x += share * (now.slope_x - m.slope_x);
+    m.slope_y += share * (now.slope_y - m.slope_y);
+    m.slope_variance += share * (now.slope_variance - m.slope_variance);
+  }
+  m.confidence += share * (now.confidence - m.confidence);
+}
+
+void average(const Measured& now, int memory, BlockMemory& m) {
+  m.count = static_cast<std::uint8_t>(std::min(memory, m.count + 1));
+  const float share = 1 / static_cast<float>(m.count);
+  m.rho += share * (now.rho - m.rho);
+  m.variance += share * (now.variance - m.variance);
+  m.extra *= squared(1 - share);
+  average_slopes(now, share, m);
+}
+
+// Takes the frame as it is: whatever lags or runs ahead of what moves is felt.
+void follow(const Measured& now, float gate2, BlockMemory& m) {
+  const float d = now.rho - m.rho;
+  const bool calm = squared(d) <= gate2 * (m.variance + now.variance);
+  const std::uint8_t calm_frames = calm ? m.calm + 1 : 0;
+  m.speed += kFollow * (d - m.speed);
+  restart(now, m);
+  m.calm = calm_frames;
+  if (calm_frames >= kCalmFrames) stop(m);
+}
+
+/// Takes in a measured block. True: it shows another surface than what is remembered.
+bool step(const Measured& now, const TemporalOptions& options, float gate2, BlockMemory& m) {
+  m.missed = 0;
+  const float d = now.rho - m.rho;
+  const bool another = m.count == 0 || std::abs(d) > another_surface(std::max(now.rho, m.rho));
+  if (another || m.state != now.state) {
+    restart(now, m);
+    stop(m);
+    return another;
+  }
+  if (m.moving) {
+    follow(now, gate2, m);
+  } else if (agrees(now, m, gate2)) {
+    average(now, options.memory, m);
+  } else {
+    m.speed = d;
+    m.moving = true;
+    restart(now, m);
+  }
+  return false;
+}
+
+/// How far ahead of the frame a moving block is put, 1/m: one frame, as far as is safe.
+float ahead(const BlockMemory& m, float x, float y) {
+  if (!m.moving) return 0;
+  const float nz = m.rho - m.slope_x * x - m.slope_y * y;
+  const float length = std::sqrt(squared(m.slope_x) + squared(m.slope_y) + squared(nz));
+  // Along the normal a change of rho moves the surface by n.ray / rho^2, n.ray = rho / length.
+  const float per_meter = m.rho * length;
+  if (std::abs(m.speed) > kTooFast * per_meter) return 0;
+  return std::clamp(m.speed, -kFarthestAhead * per_meter, kFarthestAhead * per_meter);
+}
+
+void write(const BlockMemory& m, float rho, std::size_t i, BlockFits& fits) {
+  const float share = 1 / static_cast<float>(m.count);
+  fits.states[i] = m.state;
+  fits.rho[i] = rho;
+  fits.variance[i] = m.variance * share + m.extra;
+  fits.slope_x[i] = m.slope_x;
+  fits.slope_y[i] = m.slope_y;
+  fits.slope_variance[i] = m.slope_variance * share;
+  fits.confidences[i] = m.confidence;
+}
+
+}  // namespace
+
+TemporalOptions temporal_options(int memory, bool predict, double correlation) {
+  const bool together = correlation > 2;
+  TemporalOptions options;
+  options.memory = std::clamp(memory, 1, 255);
+  options.gate = together ? 7 : 5;
+  options.predict = predict && !together;
+  return options;
+}
+
+void TemporalFilter::reset() {
+  std::fill(memory_.begin(), memory_.end(), BlockMemory{});
+}
+
+void TemporalFilter::repeat() {
+  std::fill(jumped_.begin(), jumped_.end(), std::uint8_t{0});
+}
+
+void TemporalFilter::prepare(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor) {
+  if (grid != grid_) {
+    grid_ = grid;
+    memory_.assign(grid.size(), {});
+    expected_.assign(grid.size(), 0.0F);
+    jumped_.assign(grid.size(), 0);
+    missed_.assign(grid.size(), 0);
+    warp_.resize(grid.size());
+  } else if (T_world_sensor.matrix() != T_world_sensor_.matrix()) {
+    warp_.warp(grid, T_world_sensor.inverse() * T_world_sensor_, memory_, expected_);
+    T_world_sensor_ = T_world_sensor;
+    return;
+  }
+  T_world_sensor_ = T_world_sensor;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    expected_[i] = memory_[i].count > 0 ? memory_[i].rho : 0.0F;
+  }
+}
+
+void TemporalFilter::filter(const TemporalOptions& options, const Eigen::Isometry3d& T_world_sensor,
+                            BlockFits& fits) {
+  prepare(fits.grid, T_world_sensor);
+  const auto gate2 = static_cast<float>(options.gate * options.gate);
+  std::size_t i = 0;
+  for (int row = 0; row < grid_.rows; ++row) {
+    const auto y = static_cast<float>(grid_.y(row));
+    for (int column = 0; column < grid_.columns; ++column, ++i) {
+      BlockMemory& m = memory_[i];
+      if (fits.states[i] != BlockState::empty) {
+        step(measured(fits, i), options, gate2, m);
+      } else if (m.count > 0 && m.missed < options.hold) {
+        ++m.missed;
+        stop(m);
+      } else {
+        m = {};
+      }
+      missed_[i] = m.missed;
+      jumped_[i] = m.count > 0 &&
+                   !(expected_[i] > 0 && std::abs(m.rho - expected_[i]) <= another_surface(m.rho));
+      if (m.count == 0) continue;
+      const bool predicted = options.predict && m.moving;
+      const float lead = predicted ? ahead(m, static_cast<float>(grid_.x(column)), y) : 0.0F;
+      write(m, m.rho + lead, i, fits);
+    }
+  }
+}
+
+}  // namespace palpate::depth
