@@ -7,159 +7,180 @@
 namespace palpate::simd {
 namespace {
 
-// Sets one of four windows over the block `i`.
-inline void put(const FitInput& in, int row, const Chunk& c, int i, int lane, int shift_u,
-                int shift_v, int half_u, int half_v, Windows& w) {
-  w.column[lane] = c.columns[i] - in.table.first_column + shift_u;
-  w.row[lane] = row - in.table.first_row + shift_v;
-  w.half_u[lane] = half_u;
-  w.half_v[lane] = half_v;
-}
-
-inline bool same_size(const Chunk& c, int k, int i) {
-  return k > 0 && c.half_u[k][i] == c.half_u[k - 1][i] && c.half_v[k][i] == c.half_v[k - 1][i];
-}
-
-// Takes the window of size k for block i if its surface is one that the noise explains; otherwise
-// says whether an edge stopped it. Returns whether the block may go on growing.
-inline bool judge(bool affine, bool quadratic, int k, int i, Chunk& c) {
-  if (affine || (quadratic && k < kBentSizes)) {
-    c.kind[i] = affine ? kAffine : kQuadratic;
-    c.best_u[i] = c.half_u[k][i];
-    c.best_v[i] = c.half_v[k][i];
-    return true;
-  }
-  c.edge[i] = !quadratic;
-  return false;
-}
-
-// Grows windows around the blocks while one surface explains them.
-inline void grow_centred(const FitInput& in, int row, Chunk& c) {
-  int active[kChunk];
-  int count = c.count;
-  for (int i = 0; i < count; ++i) active[i] = i;
-  for (int k = 0; k < kSizes && count > 0; ++k) {
-    int kept = 0;
-    for (int first = 0; first < count;) {
-      int four[kLanes];
-      int filled = 0;
-      for (; first < count && filled < kLanes; ++first) {
-        if (same_size(c, k, active[first])) {
-          active[kept++] = active[first];
-        } else {
-          four[filled++] = active[first];
-        }
-      }
-      if (filled == 0) continue;
-      Windows w;
-      for (int l = 0; l < kLanes; ++l) {
-        const int i = four[l < filled ? l : 0];
-        put(in, row, c, i, l, 0, 0, c.half_u[k][i], c.half_v[k][i], w);
-      }
-      const Fits f = fit(in, w);
-      for (int l = 0; l < filled; ++l) {
-        if (judge(f.affine[l] != 0, f.quadratic[l] != 0, k, four[l], c)) active[kept++] = four[l];
-      }
-    }
-    count = kept;
-  }
-}
-
-constexpr int kDirections = 8;
-constexpr int kDirectionU[kDirections] = {1, 1, 0, -1, -1, -1, 0, 1};
-constexpr int kDirectionV[kDirections] = {0, 1, 1, 1, 0, -1, -1, -1};
-constexpr int kChains = 2 * kDirections;  // each by half a window and by a whole one
-
-// Windows that stand aside of one block.
-struct Aside {
-  int shift_u[kLanes], shift_v[kLanes];
-  Doubles du, dv;  // of the block from their middles
-};
-
-inline Aside aside(const int chains[kLanes], int half_u, int half_v) {
-  Aside a;
+// Looks up four windows, one around each of the blocks `four`.
+[[gnu::always_inline]] inline Fits fit_four(const FitInput& in, int row, const Chunk& c,
+                                            const int four[kLanes], const int* sizes_u,
+                                            const int* sizes_v) {
+  int half_u[kLanes];
+  int half_v[kLanes];
+  Moments s;
   for (int l = 0; l < kLanes; ++l) {
-    const int direction = chains[l] % kDirections;
-    const bool whole = chains[l] >= kDirections;
-    a.shift_u[l] = kDirectionU[direction] * (whole ? half_u : (half_u + 1) / 2);
-    a.shift_v[l] = kDirectionV[direction] * (whole ? half_v : (half_v + 1) / 2);
-    a.du[l] = -a.shift_u[l];
-    a.dv[l] = -a.shift_v[l];
+    const int i = four[l];
+    half_u[l] = sizes_u[i];
+    half_v[l] = sizes_v[i];
+    s.set(in.table, l, c.columns[i] + c.shift_u[i] - in.table.first_column,
+          row + c.shift_v[i] - in.table.first_row, half_u[l], half_v[l]);
   }
-  return a;
+  return fit(in, shape(half_u, half_v), s);
 }
 
-// The best window found for a block.
-struct Best {
+inline bool same_size(const Chunk& c, int k, const int four[kLanes]) {
+  if (k == 0) return false;
+  int differ = 0;
+  for (int l = 0; l < kLanes; ++l) {
+    differ |= c.half_u[k][four[l]] ^ c.half_u[k - 1][four[l]];
+    differ |= c.half_v[k][four[l]] ^ c.half_v[k - 1][four[l]];
+  }
+  return differ == 0;
+}
+
+// Grows windows around four blocks for as long as one surface explains them.
+inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk& c) {
+  Mask growing = ~Mask{};
+  Mask affine{};  // of the largest windows that are explained
+  Mask edge{};
+  Mask size = Mask{} - 1;  // their number
+  for (int k = 0; k < kSizes && any(growing); ++k) {
+    if (same_size(c, k, four)) {
+      size -= growing;
+      continue;
+    }
+    const Fits f = fit_four(in, row, c, four, c.half_u[k], c.half_v[k]);
+    const Mask good = f.affine | (k < kBentSizes ? f.quadratic : Mask{});
+    edge |= growing & ~good & ~f.quadratic;
+    growing &= good;
+    affine = growing ? f.affine : affine;
+    size -= growing;
+  }
+  for (int l = 0; l < kLanes; ++l) {
+    const int i = four[l];
+    c.edge[i] = edge[l] != 0;
+    if (size[l] < 0) continue;
+    c.kind[i] = affine[l] ? kAffine : kQuadratic;
+    c.best_u[i] = c.half_u[size[l]][i];
+    c.best_v[i] = c.half_v[size[l]][i];
+  }
+}
+
+inline void grow_centred(const FitInput& in, int row, Chunk& c) {
+  for (int first = 0; first < c.count; first += kLanes) {
+    int four[kLanes];
+    for (int l = 0; l < kLanes; ++l) four[l] = first + l < c.count ? first + l : first;
+    grow_four(in, row, four, c);
+  }
+}
+
+// Four windows beside a block: along the axes, or between them.
+struct Directions {
+  int u[kLanes];
+  int v[kLanes];
+};
+constexpr Directions kStraight{{1, 0, -1, 0}, {0, 1, 0, -1}};
+constexpr Directions kDiagonal{{1, -1, -1, 1}, {1, 1, -1, -1}};
+
+// One block on its search beside edges, and the best window found for it.
+struct Search {
+  int i;
+  int column, row;  // in the table
+  Doubles lever_u2, lever_v2;
   double score;
   Kind kind;
   int shift_u, shift_v, half_u, half_v;
 };
 
-// Scores four windows of one block of which `filled` count; keeps the chains that may go on.
-inline int compare_four(const FitInput& in, int row, const Chunk& c, int i, int k,
-                        const int chains[kLanes], int filled, int* kept, Best& best) {
-  const int half_u = c.half_u[k][i];
-  const int half_v = c.half_v[k][i];
-  const Aside a = aside(chains, half_u, half_v);
-  Windows w;
-  for (int l = 0; l < kLanes; ++l) {
-    put(in, row, c, i, l, a.shift_u[l], a.shift_v[l], half_u, half_v, w);
-  }
-  const Fits f = fit(in, w);
-  const Mask good = k < kBentSizes ? f.affine | f.quadratic : f.affine;
-  const Doubles lever_u2 = same(double(c.lever_u[i]) * double(c.lever_u[i]));
-  const Doubles lever_v2 = same(double(c.lever_v[i]) * double(c.lever_v[i]));
-  const Doubles scores = score(f, f.affine, a.du, a.dv, lever_u2, lever_v2);
-  const Doubles off = surface_at(f, f.affine, a.du, a.dv).rho - c.rho[i];
-  const Mask near = off * off <= 4 * c.variance[i];
-  int left = 0;
-  for (int l = 0; l < filled; ++l) {
-    if (!good[l]) continue;
-    kept[left++] = chains[l];
-    if (!near[l] || !(scores[l] < best.score)) continue;
-    best = {scores[l],    f.affine[l] ? kAffine : kQuadratic, a.shift_u[l], a.shift_v[l], half_u,
-            half_v};
-  }
-  return left;
+inline int shift_of(int half, bool whole) {
+  return whole ? half : (half + 1) / 2;
+}
+inline Doubles lanes(const int numbers[kLanes], int factor) {
+  return Doubles{double(numbers[0]), double(numbers[1]), double(numbers[2]), double(numbers[3])} *
+         double(factor);
 }
 
-inline double centred_score(const FitInput& in, int row, const Chunk& c, int i) {
-  Windows w;
-  for (int l = 0; l < kLanes; ++l) put(in, row, c, i, l, 0, 0, c.best_u[i], c.best_v[i], w);
-  const Doubles none{};
-  const Mask affine = c.kind[i] == kAffine ? ~Mask{} : Mask{};
-  return score(fit(in, w), affine, none, none, same(double(c.lever_u[i]) * double(c.lever_u[i])),
-               same(double(c.lever_v[i]) * double(c.lever_v[i])))[0];
+// The best scores that windows beside the block may reach: those of the largest ones, were the
+// surface flat.
+inline Doubles promise(const Chunk& c, const Search& s, const Directions& to, bool whole) {
+  constexpr int kLast = kSizes - 1;
+  const Shape g = shape(c.half_u[kLast][s.i], c.half_v[kLast][s.i]);
+  const Doubles du = lanes(to.u, shift_of(c.half_u[kLast][s.i], whole));
+  const Doubles dv = lanes(to.v, shift_of(c.half_v[kLast][s.i], whole));
+  return c.variance[s.i] * g.per_n *
+         (1.0 + (du * du + s.lever_u2) * g.per_mu + (dv * dv + s.lever_v2) * g.per_mv);
+}
+
+// Lets windows grow in four directions, each until the first that is not explained or cannot win.
+inline void follow(const FitInput& in, const Chunk& c, const Directions& to, bool whole,
+                   Search& search) {
+  Mask growing = promise(c, search, to, whole) < search.score;
+  Doubles best = same(search.score);
+  Mask affine{};
+  Mask size = Mask{} - 1;
+  for (int k = 0; k < kSizes && any(growing); ++k) {
+    const int half_u = c.half_u[k][search.i];
+    const int half_v = c.half_v[k][search.i];
+    if (k > 0 && half_u == c.half_u[k - 1][search.i] && half_v == c.half_v[k - 1][search.i]) {
+      continue;
+    }
+    const int shift_u = shift_of(half_u, whole);
+    const int shift_v = shift_of(half_v, whole);
+    Moments s;
+    for (int l = 0; l < kLanes; ++l) {
+      s.set(in.table, l, search.column + to.u[l] * shift_u, search.row + to.v[l] * shift_v, half_u,
+            half_v);
+    }
+    const Fits f = fit(in, shape(half_u, half_v), s);
+    growing &= f.affine | (k < kBentSizes ? f.quadratic : Mask{});
+    const Doubles du = lanes(to.u, -shift_u);
+    const Doubles dv = lanes(to.v, -shift_v);
+    const Doubles off = surface_at(f, f.affine, du, dv).rho - c.rho[search.i];
+    const Doubles scores = score(f, f.affine, du, dv, search.lever_u2, search.lever_v2);
+    const Mask better = growing & (off * off <= 4 * c.variance[search.i]) & (scores < best);
+    best = better ? scores : best;
+    affine = better ? f.affine : affine;
+    size = better ? Mask{} + k : size;
+  }
+  for (int l = 0; l < kLanes; ++l) {
+    if (size[l] < 0 || !(best[l] < search.score)) continue;
+    search.score = best[l];
+    search.kind = affine[l] ? kAffine : kQuadratic;
+    search.half_u = c.half_u[size[l]][search.i];
+    search.half_v = c.half_v[size[l]][search.i];
+    search.shift_u = to.u[l] * shift_of(search.half_u, whole);
+    search.shift_v = to.v[l] * shift_of(search.half_v, whole);
+  }
+}
+
+inline double centred_score(const FitInput& in, int row, const Chunk& c, const Search& search) {
+  const int four[kLanes] = {search.i, search.i, search.i, search.i};
+  const Mask affine = c.kind[search.i] == kAffine ? ~Mask{} : Mask{};
+  const Fits f = fit_four(in, row, c, four, c.best_u, c.best_v);
+  return score(f, affine, Doubles{}, Doubles{}, search.lever_u2, search.lever_v2)[0];
 }
 
 // Near an edge windows beside the block see more of its surface than those around it.
 inline void try_aside(const FitInput& in, int row, Chunk& c, int i) {
-  Best best{c.kind[i] == kNone ? HUGE_VAL : centred_score(in, row, c, i),
-            c.kind[i],
-            0,
-            0,
-            c.best_u[i],
-            c.best_v[i]};
-  int active[kChains];
-  int count = kChains;
-  for (int chain = 0; chain < kChains; ++chain) active[chain] = chain;
-  for (int k = 0; k < kSizes && count > 0; ++k) {
-    if (same_size(c, k, i)) continue;
-    int kept = 0;
-    for (int first = 0; first < count; first += kLanes) {
-      const int filled = count - first < kLanes ? count - first : kLanes;
-      int chains[kLanes];
-      for (int l = 0; l < kLanes; ++l) chains[l] = active[first + (l < filled ? l : 0)];
-      kept += compare_four(in, row, c, i, k, chains, filled, active + kept, best);
-    }
-    count = kept;
-  }
-  c.kind[i] = best.kind;
-  c.shift_u[i] = best.shift_u;
-  c.shift_v[i] = best.shift_v;
-  c.best_u[i] = best.half_u;
-  c.best_v[i] = best.half_v;
+  const auto lever_u = static_cast<double>(c.lever_u[i]);
+  const auto lever_v = static_cast<double>(c.lever_v[i]);
+  Search search{.i = i,
+                .column = c.columns[i] - in.table.first_column,
+                .row = row - in.table.first_row,
+                .lever_u2 = same(lever_u * lever_u),
+                .lever_v2 = same(lever_v * lever_v),
+                .score = HUGE_VAL,
+                .kind = c.kind[i],
+                .shift_u = 0,
+                .shift_v = 0,
+                .half_u = c.best_u[i],
+                .half_v = c.best_v[i]};
+  if (c.kind[i] != kNone) search.score = centred_score(in, row, c, search);
+  follow(in, c, kStraight, false, search);
+  follow(in, c, kDiagonal, false, search);
+  follow(in, c, kStraight, true, search);
+  follow(in, c, kDiagonal, true, search);
+  c.kind[i] = search.kind;
+  c.shift_u[i] = search.shift_u;
+  c.shift_v[i] = search.shift_v;
+  c.best_u[i] = search.half_u;
+  c.best_v[i] = search.half_v;
 }
 
 // The guard: a surface more than four deviations away from what was measured keeps its slopes, but
@@ -191,18 +212,17 @@ inline void finish(const FitInput& in, int row, const Chunk& c, const FitRow& ou
       if (c.kind[first] != kNone) four[filled++] = first;
     }
     if (filled == 0) return;
-    Windows w;
+    for (int l = filled; l < kLanes; ++l) four[l] = four[0];
     Doubles du;
     Doubles dv;
     Mask affine;
     for (int l = 0; l < kLanes; ++l) {
-      const int i = four[l < filled ? l : 0];
-      put(in, row, c, i, l, c.shift_u[i], c.shift_v[i], c.best_u[i], c.best_v[i], w);
-      du[l] = -c.shift_u[i];
-      dv[l] = -c.shift_v[i];
-      affine[l] = c.kind[i] == kAffine ? -1 : 0;
+      du[l] = -c.shift_u[four[l]];
+      dv[l] = -c.shift_v[four[l]];
+      affine[l] = c.kind[four[l]] == kAffine ? -1 : 0;
     }
-    const Surface s = surface_at(fit(in, w), affine, du, dv);
+    const Fits f = fit_four(in, row, c, four, c.best_u, c.best_v);
+    const Surface s = surface_at(f, affine, du, dv);
     for (int l = 0; l < filled; ++l) write(in, c, four[l], s, l, out);
   }
 }

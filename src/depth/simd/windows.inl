@@ -30,6 +30,10 @@ constexpr double kBlock = 1 << 20;
   return a > b ? a : b;
 }
 
+inline bool any(const Mask& mask) {
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
 // Four rows of numbers become four columns.
 struct Four {
   Doubles v[4];
@@ -64,57 +68,67 @@ struct Extents {
 };
 constexpr Extents kExtents;
 
-// Four windows: middle (in blocks of the table) and half sizes.
-struct Windows {
-  int column[kLanes];
-  int row[kLanes];
-  int half_u[kLanes];
-  int half_v[kLanes];
+// What four windows' extents mean for fits.
+struct Shape {
+  Doubles per_n, per_mu, per_mv, per_ku, per_kv, mu, mv, area;
 };
-
-// Fits over full windows, in units of kRhoUnits and blocks from the middle: 1, u, v, u v, u^2 - mu,
-// v^2 - mv are orthogonal there.
-struct Fits {
-  Doubles m, cu, cv, cuv, cuu, cvv;
-  Doubles variance;          // of one block's inverse depth
-  Doubles per_n, per_mu, per_mv, per_ku, per_kv, mu, mv;
-  Mask full;                 // no hole, all inside the table
-  Mask affine;               // the noise explains what the affine fit leaves
-  Mask quadratic;            // or the quadratic one
-};
-
-struct Moments {
-  Four low, high;
-};
-
-[[gnu::always_inline]] inline Moments moments(const WindowTable& table, const Windows& w,
-                                              Mask& inside) {
-  const std::ptrdiff_t stride = table.columns + 1;
-  Doubles low[kLanes];
-  Doubles high[kLanes];
-  for (int l = 0; l < kLanes; ++l) {
-    std::ptrdiff_t left = w.column[l] - w.half_u[l];
-    std::ptrdiff_t right = w.column[l] + w.half_u[l] + 1;
-    std::ptrdiff_t top = w.row[l] - w.half_v[l];
-    std::ptrdiff_t bottom = w.row[l] + w.half_v[l] + 1;
-    const bool is = left >= 0 && top >= 0 && right <= table.columns && bottom <= table.rows;
-    inside[l] = is ? -1 : 0;
-    if (!is) left = right = top = bottom = 0;
-    const double* top_left = table.sums + kWindowSums * (top * stride + left);
-    const double* top_right = table.sums + kWindowSums * (top * stride + right);
-    const double* bottom_left = table.sums + kWindowSums * (bottom * stride + left);
-    const double* bottom_right = table.sums + kWindowSums * (bottom * stride + right);
-    low[l] = (load(bottom_right) - load(bottom_left)) - (load(top_right) - load(top_left));
-    high[l] = (load(bottom_right + 4) - load(bottom_left + 4)) -
-              (load(top_right + 4) - load(top_left + 4));
-  }
-  return {transpose(low[0], low[1], low[2], low[3]), transpose(high[0], high[1], high[2], high[3])};
-}
 
 [[gnu::always_inline]] inline Four extents(const int half[kLanes]) {
   const auto row = [&](int l) { return load(&kExtents.of[half[l]].per_n); };
   return transpose(row(0), row(1), row(2), row(3));
 }
+
+[[gnu::always_inline]] inline Shape shape(const int half_u[kLanes], const int half_v[kLanes]) {
+  const Four u = extents(half_u);
+  const Four v = extents(half_v);
+  Doubles area;
+  for (int l = 0; l < kLanes; ++l) area[l] = (2 * half_u[l] + 1) * (2 * half_v[l] + 1);
+  return {u.v[0] * v.v[0], u.v[1], v.v[1], u.v[2], v.v[2], u.v[3], v.v[3], area};
+}
+
+// Of four windows of one size.
+[[gnu::always_inline]] inline Shape shape(int half_u, int half_v) {
+  const Extent& u = kExtents.of[half_u];
+  const Extent& v = kExtents.of[half_v];
+  const int area = (2 * half_u + 1) * (2 * half_v + 1);
+  return {same(u.per_n * v.per_n), same(u.per_mu), same(v.per_mu), same(u.per_ku), same(v.per_ku),
+          same(u.mu),              same(v.mu),     same(area)};
+}
+
+// Sums over four windows, and their middles in the table's coordinates.
+struct Moments {
+  Doubles low[kLanes];  // one window each: r, ru, rv, ruu
+  Doubles high[kLanes];  // ruv, rvv, rr, counts
+  Doubles u, v;
+
+  // A window that is not inside the table counts as holes. `column`, `row` in blocks of the table.
+  [[gnu::always_inline]] inline void set(const WindowTable& table, int lane, int column, int row,
+                                         int half_u, int half_v) {
+    const std::ptrdiff_t stride = table.columns + 1;
+    const bool inside = column >= half_u && row >= half_v && column + half_u < table.columns &&
+                        row + half_v < table.rows;
+    const std::ptrdiff_t place = inside ? (row - half_v) * stride + (column - half_u) : 0;
+    const std::ptrdiff_t across = inside ? kWindowSums * (2 * half_u + 1) : 0;
+    const std::ptrdiff_t down = inside ? kWindowSums * stride * (2 * half_v + 1) : 0;
+    const double* top = table.sums + kWindowSums * place;
+    const double* bottom = top + down;
+    low[lane] = (load(bottom + across) - load(bottom)) - (load(top + across) - load(top));
+    high[lane] =
+        (load(bottom + across + 4) - load(bottom + 4)) - (load(top + across + 4) - load(top + 4));
+    u[lane] = column - table.columns / 2;
+    v[lane] = row - table.rows / 2;
+  }
+};
+
+// Fits over full windows, in units of kRhoUnits and blocks from the middle: 1, u, v, u v, u^2 - mu,
+// v^2 - mv are orthogonal there.
+struct Fits {
+  Shape shape;
+  Doubles m, cu, cv, cuv, cuu, cvv;
+  Doubles variance;  // of one block's inverse depth
+  Mask affine;       // no hole, and the noise explains what the affine fit leaves
+  Mask quadratic;    // or the quadratic one
+};
 
 // Is chi^2 = left / variance one that `degrees` of freedom may have: within three deviations?
 [[gnu::always_inline]] inline Mask explained(const Doubles& left, const Doubles& variance, const Doubles& degrees) {
@@ -126,50 +140,33 @@ struct Moments {
   return kRhoUnits * noise[2] + rho * (noise[1] + rho * (noise[0] / kRhoUnits));
 }
 
-[[gnu::always_inline]] inline Fits fit(const FitInput& input, const Windows& w) {
-  const WindowTable& table = input.table;
+[[gnu::always_inline]] inline Fits fit(const FitInput& input, const Shape& g, const Moments& s) {
   Fits f;
-  Moments s;
-  Doubles u;
-  Doubles v;
-  Doubles area;
-  s = moments(table, w, f.full);
-  for (int l = 0; l < kLanes; ++l) {
-    u[l] = w.column[l] - table.columns / 2;
-    v[l] = w.row[l] - table.rows / 2;
-    area[l] = (2 * w.half_u[l] + 1) * (2 * w.half_v[l] + 1);
-  }
-  const auto& [r, su, sv, suu] = s.low.v;
-  const auto& [suv, svv, srr, counts] = s.high.v;
-  const Four eu = extents(w.half_u);
-  const Four ev = extents(w.half_v);
-  f.per_n = eu.v[0] * ev.v[0];
-  f.per_mu = eu.v[1];
-  f.per_ku = eu.v[2];
-  f.mu = eu.v[3];
-  f.per_mv = ev.v[1];
-  f.per_kv = ev.v[2];
-  f.mv = ev.v[3];
-  const Doubles bu = su - u * r;
-  const Doubles bv = sv - v * r;
-  const Doubles buv = suv - u * sv - v * bu;
-  const Doubles buu = suu - u * (su + bu) - f.mu * r;
-  const Doubles bvv = svv - v * (sv + bv) - f.mv * r;
-  f.m = r * f.per_n;
-  f.cu = bu * (f.per_n * f.per_mu);
-  f.cv = bv * (f.per_n * f.per_mv);
-  f.cuv = buv * (f.per_n * f.per_mu * f.per_mv);
-  f.cuu = buu * (f.per_n * f.per_ku);
-  f.cvv = bvv * (f.per_n * f.per_kv);
-  const Doubles weights = counts - kBlock * area;
-  f.full &= weights >= 0.0;
+  f.shape = g;
+  const Four low = transpose(s.low[0], s.low[1], s.low[2], s.low[3]);
+  const Four high = transpose(s.high[0], s.high[1], s.high[2], s.high[3]);
+  const auto& [r, su, sv, suu] = low.v;
+  const auto& [suv, svv, srr, counts] = high.v;
+  const Doubles bu = su - s.u * r;
+  const Doubles bv = sv - s.v * r;
+  const Doubles buv = suv - s.u * sv - s.v * bu;
+  const Doubles buu = suu - s.u * (su + bu) - g.mu * r;
+  const Doubles bvv = svv - s.v * (sv + bv) - g.mv * r;
+  f.m = r * g.per_n;
+  f.cu = bu * (g.per_n * g.per_mu);
+  f.cv = bv * (g.per_n * g.per_mv);
+  f.cuv = buv * (g.per_n * g.per_mu * g.per_mv);
+  f.cuu = buu * (g.per_n * g.per_ku);
+  f.cvv = bvv * (g.per_n * g.per_kv);
+  const Doubles weights = counts - kBlock * g.area;  // negative where there is a hole
   const Doubles sigma = noise_sigma(input.noise, f.m);
   // The rounding to whole units is noise too.
-  f.variance = larger(sigma * sigma * (weights * f.per_n * (1. / 3)), same(1. / 12));
+  f.variance = larger(sigma * sigma * (weights * g.per_n * (1. / 3)), same(1. / 12));
   const Doubles left = srr - r * f.m - f.cu * bu - f.cv * bv;
   const Doubles bent = f.cuv * buv + f.cuu * buu + f.cvv * bvv;
-  f.affine = f.full & explained(left, f.variance, area - 3.0) & (bent <= 12.0 * f.variance);
-  f.quadratic = f.full & explained(left - bent, f.variance, area - 6.0);
+  const Mask full = weights >= 0.0;
+  f.affine = full & explained(left, f.variance, g.area - 3.0) & (bent <= 12.0 * f.variance);
+  f.quadratic = full & explained(left - bent, f.variance, g.area - 6.0);
   return f;
 }
 
@@ -180,27 +177,27 @@ struct Surface {
 };
 
 [[gnu::always_inline]] inline Surface affine_at(const Fits& f, const Doubles& du, const Doubles& dv) {
-  const Doubles var = f.variance * f.per_n;
+  const Doubles var = f.variance * f.shape.per_n;
   return {f.m + f.cu * du + f.cv * dv,
           f.cu,
           f.cv,
-          var * (1.0 + du * du * f.per_mu + dv * dv * f.per_mv),
-          var * f.per_mu,
-          var * f.per_mv};
+          var * (1.0 + du * du * f.shape.per_mu + dv * dv * f.shape.per_mv),
+          var * f.shape.per_mu,
+          var * f.shape.per_mv};
 }
 
 // What the quadratic terms add to it.
 [[gnu::always_inline]] inline Surface bend_at(const Fits& f, const Doubles& du, const Doubles& dv) {
-  const Doubles var = f.variance * f.per_n;
-  const Doubles uu = du * du - f.mu;
-  const Doubles vv = dv * dv - f.mv;
-  const Doubles per_uv = f.per_mu * f.per_mv;
+  const Doubles var = f.variance * f.shape.per_n;
+  const Doubles uu = du * du - f.shape.mu;
+  const Doubles vv = dv * dv - f.shape.mv;
+  const Doubles per_uv = f.shape.per_mu * f.shape.per_mv;
   return {f.cuv * du * dv + f.cuu * uu + f.cvv * vv,
           f.cuv * dv + 2.0 * f.cuu * du,
           f.cuv * du + 2.0 * f.cvv * dv,
-          var * (du * du * dv * dv * per_uv + uu * uu * f.per_ku + vv * vv * f.per_kv),
-          var * (dv * dv * per_uv + 4.0 * du * du * f.per_ku),
-          var * (du * du * per_uv + 4.0 * dv * dv * f.per_kv)};
+          var * (du * du * dv * dv * per_uv + uu * uu * f.shape.per_ku + vv * vv * f.shape.per_kv),
+          var * (dv * dv * per_uv + 4.0 * du * du * f.shape.per_ku),
+          var * (du * du * per_uv + 4.0 * dv * dv * f.shape.per_kv)};
 }
 
 // The affine surface where `affine` is set, the quadratic one elsewhere.
