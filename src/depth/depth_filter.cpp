@@ -1,106 +1,38 @@
 #include "palpate/depth/depth_filter.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
+#include <algorithm>
 #include <cstring>
 
 #include "depth/block_fits.hpp"
 #include "depth/blocks.hpp"
+#include "depth/check_input.hpp"
 #include "depth/neighbors.hpp"
+#include "depth/noise_estimate.hpp"
 #include "depth/output.hpp"
+#include "depth/temporal_filter.hpp"
 #include "depth/undistort.hpp"
 #include "depth/window_fits.hpp"
-#include "palpate/base/error.hpp"
+#include "palpate/depth/sensor_profiles.hpp"
 
 namespace palpate {
-namespace {
-
-// Until the sensor's noise is known: that of a common structured-light camera.
-constexpr NoiseModel kCommonNoise{{0.0015, -0.0015, 0.0019}, 1};
-
-void check(const DepthFilterOptions& options) {
-  if (!(options.normal_error > 0 && options.normal_error < 1)) {
-    throw Error(fmt::format("depth filter: normal_error is {} rad; take a value from 0.001 to 0.1",
-                            options.normal_error));
-  }
-  if (options.memory < 1) {
-    throw Error(fmt::format("depth filter: memory is {} frames; take 1 or more", options.memory));
-  }
-  const bool range =
-      options.nearest > 0 && options.farthest > options.nearest && std::isfinite(options.farthest);
-  if (!range) {
-    throw Error(
-        fmt::format("depth filter: depths from {} to {} m are none; take 0 < nearest < "
-                    "farthest",
-                    options.nearest, options.farthest));
-  }
-  if (!options.noise) return;
-  const NoiseModel& noise = *options.noise;
-  for (const double z : {options.nearest, options.farthest}) {
-    if (!(noise.sigma(z) > 0 && std::isfinite(noise.sigma(z)))) {
-      throw Error(
-          fmt::format("depth filter: the noise at {} m is {} m; give a model that is "
-                      "positive from nearest to farthest",
-                      z, noise.sigma(z)));
-    }
-  }
-  if (!(noise.correlation >= 1 && std::isfinite(noise.correlation))) {
-    throw Error(
-        fmt::format("depth filter: the noise's correlation is {}; take 1 (independent "
-                    "pixels) or more",
-                    noise.correlation));
-  }
-}
-
-void check(const DepthFrame& frame) {
-  const CameraModel& camera = frame.camera;
-  if (camera.width < 2 || camera.height < 2) {
-    throw Error(
-        fmt::format("depth filter: a frame of {} x {} pixels has no block of 2 x 2; give "
-                    "the camera's width and height",
-                    camera.width, camera.height));
-  }
-  const auto pixels = static_cast<std::size_t>(camera.width) * camera.height;
-  if (frame.depth.size() != pixels) {
-    throw Error(fmt::format("depth filter: {} depths for {} x {} pixels; give {}",
-                            frame.depth.size(), camera.width, camera.height, pixels));
-  }
-  const Pinhole& p = camera.pinhole;
-  const bool is_camera = p.fx > 0 && p.fy > 0 && std::isfinite(p.fx) && std::isfinite(p.fy) &&
-                         std::isfinite(p.cx) && std::isfinite(p.cy);
-  if (!is_camera) {
-    throw Error(
-        fmt::format("depth filter: a pinhole with fx {}, fy {}, cx {}, cy {} is none; give "
-                    "the focal lengths and the centre in pixels",
-                    p.fx, p.fy, p.cx, p.cy));
-  }
-}
-
-}  // namespace
 
 struct DepthFilter::State {
+  explicit State(const DepthFilterOptions& given)
+      : options(given), tracker(given.noise.value_or(unknown_sensor_noise())) {}
+
   DepthFilterOptions options;
   depth::Undistorter undistorter;
   depth::Blocks blocks;
-  depth::BlockFits fits;
   depth::FitRegion region;
+  depth::FitRegion last_region;
+  depth::BlockFits fits;
   depth::WindowFits window_fits;
+  depth::NoiseTracker tracker;
+  depth::TemporalFilter temporal;
+  FilteredDepth out;
   std::vector<float> last_depth;
   std::vector<float> scratch;
-  FilteredDepth out;
-  bool seen_before = false;
   bool seen = false;  // is there a frame in last_depth?
-
-  // Is it bit for bit the last frame? Keeps it.
-  bool repeats(const DepthFrame& frame) {
-    const std::size_t bytes = frame.depth.size() * sizeof(float);
-    const bool same = seen && last_depth.size() == frame.depth.size() &&
-                      std::memcmp(last_depth.data(), frame.depth.data(), bytes) == 0;
-    if (!same) last_depth = frame.depth;
-    seen = true;
-    return same;
-  }
 
   void resize(const CameraModel& camera) {
     const depth::BlockGrid grid = depth::block_grid(camera);
@@ -108,45 +40,62 @@ struct DepthFilter::State {
     blocks.resize(grid);
     fits.resize(grid);
     depth::resize(grid, out);
-    forget();
-  }
-
-  void forget() {
     seen = false;
-    seen_before = false;
   }
 
-  // Compares with the points that are still those of the frame before.
-  void mark_jumps() {
-    const depth::SameSurface same(out.noise, fits.grid);
-    for (std::size_t i = 0; i < fits.size(); ++i) {
-      const float before = 1 / out.positions[i].z();
-      const bool known = seen_before && out.states[i] != BlockState::empty;
-      out.jumped[i] = !(known && std::abs(fits.rho[i] - before) <= same.limit(before));
-    }
-    seen_before = true;
+  // Is it bit for bit the last frame? Keeps it.
+  bool repeats(const std::vector<float>& depth) {
+    const bool same =
+        seen && last_depth.size() == depth.size() &&
+        std::memcmp(last_depth.data(), depth.data(), depth.size() * sizeof(float)) == 0;
+    if (!same) last_depth = depth;
+    seen = true;
+    return same;
   }
 
-  const FilteredDepth& filter(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
-    resize(frame.camera);
-    out.duplicate = repeats(frame);
-    out.stamp = frame.stamp;
-    out.T_world_sensor = T_world_sensor;
-    out.noise = options.noise.value_or(kCommonNoise);
+  NoiseModel noise(const DepthFrame& frame) {
+    if (options.noise) return *options.noise;
+    const CameraModel& camera = frame.camera;
+    const double focal = (camera.pinhole.fx + camera.pinhole.fy) / 2;
+    return tracker.update({frame.depth, camera.width, camera.height, focal,
+                           static_cast<float>(options.nearest),
+                           static_cast<float>(options.farthest)});
+  }
+
+  // Fits, in this view, without regard to earlier frames.
+  void fit(const DepthFrame& frame) {
     const float* image = undistorter.undistort(frame.camera, frame.depth);
     depth::average_blocks(image, frame.camera.width, out.noise, options, blocks);
     depth::reject_flying(out.noise, blocks, scratch);
     depth::fit_plain(blocks, out.noise, fits);
     window_fits.fit(blocks, out.noise, options.normal_error, region, fits);
-    mark_jumps();
+  }
+
+  const FilteredDepth& filter(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
+    resize(frame.camera);
+    const bool same_view =
+        seen && region == last_region && T_world_sensor.matrix() == out.T_world_sensor.matrix();
+    out.duplicate = repeats(frame.depth);
+    out.stamp = frame.stamp;
+    out.T_world_sensor = T_world_sensor;
+    last_region = region;
+    if (out.duplicate && same_view) {
+      std::fill(out.jumped.begin(), out.jumped.end(), std::uint8_t{0});
+      return out;
+    }
+    out.noise = noise(frame);
+    fit(frame);
+    temporal.filter(depth::temporal_options(options.memory, options.predict, out.noise.correlation),
+                    T_world_sensor, fits);
     depth::write_points(fits, out);
+    std::copy(temporal.jumped().begin(), temporal.jumped().end(), out.jumped.begin());
     return out;
   }
 };
 
-DepthFilter::DepthFilter(const DepthFilterOptions& options) : state_(std::make_unique<State>()) {
-  check(options);
-  state_->options = options;
+DepthFilter::DepthFilter(const DepthFilterOptions& options) {
+  depth::check(options);
+  state_ = std::make_unique<State>(options);
 }
 DepthFilter::~DepthFilter() = default;
 DepthFilter::DepthFilter(DepthFilter&&) noexcept = default;
@@ -155,20 +104,24 @@ DepthFilter& DepthFilter::operator=(DepthFilter&&) noexcept = default;
 const FilteredDepth& DepthFilter::filter(const DepthFrame& frame,
                                          const Eigen::Isometry3d& T_world_sensor,
                                          std::span<const Ball> fit_within) {
-  check(frame);
+  depth::check(frame);
+  depth::check(T_world_sensor);
   state_->region.set(depth::block_grid(frame.camera), T_world_sensor, fit_within);
   return state_->filter(frame, T_world_sensor);
 }
 
 const FilteredDepth& DepthFilter::filter(const DepthFrame& frame,
                                          const Eigen::Isometry3d& T_world_sensor) {
-  check(frame);
+  depth::check(frame);
+  depth::check(T_world_sensor);
   state_->region.set(depth::block_grid(frame.camera));
   return state_->filter(frame, T_world_sensor);
 }
 
 void DepthFilter::reset() {
-  state_->forget();
+  state_->temporal.reset();
+  state_->tracker.reset();
+  state_->seen = false;
 }
 
 }  // namespace palpate

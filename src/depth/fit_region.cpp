@@ -84,6 +84,14 @@ void FitRegion::set(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sens
   }
 }
 
+bool FitRegion::operator==(const FitRegion& other) const {
+  const auto same = [](const Ball& a, const Ball& b) {
+    return a.center == b.center && a.radius == b.radius;
+  };
+  return everything_ == other.everything_ && range_ == other.range_ &&
+         std::equal(balls_.begin(), balls_.end(), other.balls_.begin(), other.balls_.end(), same);
+}
+
 bool FitRegion::contains(const Vector3d& point) const {
   return std::any_of(balls_.begin(), balls_.end(), [&](const Ball& ball) {
     return (point - ball.center).squaredNorm() <= ball.radius * ball.radius;

@@ -17,6 +17,7 @@ struct BlockRange {
   int columns = 0;
   int rows = 0;
 
+  bool operator==(const BlockRange&) const = default;
   [[nodiscard]] bool empty() const { return columns <= 0 || rows <= 0; }
   /// Larger by `border` on all sides, as far as the grid goes.
   [[nodiscard]] BlockRange grown(int border, const BlockGrid& grid) const;
@@ -30,6 +31,8 @@ class FitRegion {
   /// What lies in the balls (world frame).
   void set(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor,
            std::span<const Ball> balls);
+
+  [[nodiscard]] bool operator==(const FitRegion& other) const;
 
   /// Blocks outside of it are outside of the region.
   [[nodiscard]] const BlockRange& range() const { return range_; }
