@@ -11,10 +11,16 @@
 #include <string_view>
 
 #include "apps/palpate/errors.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/depth/sensor_profiles.hpp"
 
 namespace palpate::app {
 
 namespace {
+
+constexpr std::string_view kSynthetic = "synthetic:";
+constexpr std::string_view kCamera = "camera:";
+constexpr std::string_view kSequence = "sequence:";
 
 std::optional<double> number(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -26,26 +32,26 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-bool is_name(std::string_view text) {
-  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
-  });
-}
-
-// An argument's own name, if it has one.
-std::optional<CloudArgument> split_name(const std::string& argument) {
-  std::error_code ignored;
-  if (std::filesystem::exists(argument, ignored)) return {};
-  const std::size_t place = argument.find('=');
-  if (place == std::string::npos || !is_name(std::string_view(argument).substr(0, place)))
-    return {};
-  return CloudArgument{argument.substr(0, place), argument.substr(place + 1)};
+// "camera:simulated:table" is called simulated-table.
+std::string name_of_camera(std::string_view text) {
+  std::string name;
+  for (const char c : text) {
+    const bool fits = is_name({&c, 1});
+    if (fits) name += c;
+    if (!fits && !name.empty() && name.back() != '-') name += '-';
+  }
+  while (name.ends_with('-')) name.pop_back();
+  return name.empty() ? "camera" : name;
 }
 
 std::string name_of_path(const std::string& path) {
   if (path == "-") return "stdin";
-  if (path.starts_with("synthetic:")) return path.substr(std::string("synthetic:").size());
-  std::filesystem::path name = std::filesystem::path(path).filename();
+  if (path.starts_with(kSynthetic)) return path.substr(kSynthetic.size());
+  if (path.starts_with(kCamera)) return name_of_camera(path.substr(kCamera.size()));
+  std::filesystem::path file(path);
+  if (path.starts_with(kSequence)) file = path.substr(kSequence.size());
+  if (!file.has_filename()) file = file.parent_path();  // a folder with a slash behind it
+  std::filesystem::path name = file.filename();
   if (name.extension() == ".gz") name = name.stem();
   return name.stem().empty() ? "cloud" : name.stem().string();
 }
@@ -94,11 +100,32 @@ Pinhole parse_intrinsics(const std::string& text) {
   return {v[0], v[1], v[2], v[3]};
 }
 
+NoiseModel parse_noise(const std::string& text) {
+  if (std::ranges::none_of(text, [](char c) { return c == ','; })) {
+    try {
+      return sensor_profile(text).noise;
+    } catch (const Error& error) {
+      throw UsageError(fmt::format("--noise: {}", error.what()));
+    }
+  }
+  const auto commas = static_cast<std::size_t>(std::ranges::count(text, ','));
+  const std::vector<double> v =
+      parse_numbers(text, commas == 3 ? 4 : 3, "--noise",
+                    "S0,S1,S2 or S0,S1,S2,C, such as 0.0012,0,0.0019 for 1.2 mm + 1.9 mm z^2");
+  NoiseModel model;
+  std::copy_n(v.begin(), 3, model.coefficients.begin());
+  if (v.size() == 4) model.correlation = v[3];
+  if (model.correlation < 1) {
+    throw UsageError(fmt::format("--noise: a correlation of {}; it is 1 or more", v[3]));
+  }
+  return model;
+}
+
 PoseArgument parse_pose(const std::string& text) {
   const std::string form = "NAME=x,y,z,qx,qy,qz,qw in metres and as a unit quaternion";
   const std::size_t place = text.find('=');
   if (place == std::string::npos || place == 0) {
-    throw UsageError(fmt::format("--pose: '{}' names no cloud; write {}", text, form));
+    throw UsageError(fmt::format("--pose: '{}' names no source; write {}", text, form));
   }
   const std::vector<double> v = parse_numbers(text.substr(place + 1), 7, "--pose", form);
   const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
@@ -114,26 +141,47 @@ PoseArgument parse_pose(const std::string& text) {
   return result;
 }
 
-std::vector<CloudArgument> parse_clouds(const std::vector<std::string>& arguments) {
-  std::vector<CloudArgument> clouds(arguments.size());
+bool is_name(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+  });
+}
+
+CloudArgument split_argument(const std::string& text) {
+  std::error_code ignored;
+  const std::size_t place = text.find('=');
+  const bool named = place != std::string::npos && !std::filesystem::exists(text, ignored) &&
+                     is_name(std::string_view(text).substr(0, place));
+  return named ? CloudArgument{text.substr(0, place), text.substr(place + 1)}
+               : CloudArgument{"", text};
+}
+
+bool lives(const std::string& path) {
+  return path.starts_with(kCamera) || path.starts_with(kSequence) || path.ends_with(".oni");
+}
+
+void name_all(std::vector<CloudArgument>& sources) {
   std::set<std::string> taken;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::optional<CloudArgument> named = split_name(arguments[i]);
-    clouds[i] = named ? *named : CloudArgument{"", arguments[i]};
-    if (named && !taken.insert(named->name).second) {
-      throw UsageError(
-          fmt::format("two clouds are named '{}'; give each its own name", named->name));
-    }
+  for (const CloudArgument& source : sources) {
+    if (source.name.empty() || taken.insert(source.name).second) continue;
+    throw UsageError(
+        fmt::format("two sources are named '{}'; give each its own name", source.name));
   }
-  for (CloudArgument& cloud : clouds) {
-    if (!cloud.name.empty()) continue;
-    cloud.name = free_name(name_of_path(cloud.path), taken);
-    taken.insert(cloud.name);
+  for (CloudArgument& source : sources) {
+    if (!source.name.empty()) continue;
+    source.name = free_name(name_of_path(source.path), taken);
+    taken.insert(source.name);
   }
-  const auto standard_input = [](const CloudArgument& cloud) { return cloud.path == "-"; };
-  if (std::ranges::count_if(clouds, standard_input) > 1) {
+  const auto standard_input = [](const CloudArgument& source) { return source.path == "-"; };
+  if (std::ranges::count_if(sources, standard_input) > 1) {
     throw UsageError("standard input (-) can be read only once");
   }
+}
+
+std::vector<CloudArgument> parse_clouds(const std::vector<std::string>& arguments) {
+  std::vector<CloudArgument> clouds(arguments.size());
+  std::ranges::transform(arguments, clouds.begin(), split_argument);
+  name_all(clouds);
   return clouds;
 }
 

@@ -2,16 +2,18 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "palpate/depth/noise_model.hpp"
 #include "palpate/geometry/pinhole.hpp"
 
 namespace palpate::app {
 
-/// A cloud as named on the command line: NAME=PATH, or PATH alone.
+/// A source as named on the command line: NAME=PATH, or PATH alone.
 struct CloudArgument {
-  std::string name;  ///< unique among the clouds of one command
-  std::string path;  ///< a file, "-" or "synthetic:NAME"
+  std::string name;  ///< unique among the sources of one command
+  std::string path;  ///< a file, "-", "synthetic:NAME", or what lives()
 };
 
 /// A pose as named on the command line.
@@ -32,12 +34,29 @@ struct PoseArgument {
 /// fx,fy,cx,cy in pixels.
 [[nodiscard]] Pinhole parse_intrinsics(const std::string& text);
 
+/// s0,s1,s2 or s0,s1,s2,correlation, where correlation >= 1; or the name of a sensor profile.
+[[nodiscard]] NoiseModel parse_noise(const std::string& text);
+
 /// NAME=x,y,z,qx,qy,qz,qw; the quaternion is normalised.
 [[nodiscard]] PoseArgument parse_pose(const std::string& text);
 
-/// Names every cloud: after NAME=, else after its file, with a number where two would be the same.
-/// An argument that is an existing file is never split.
-/// @throws UsageError when two explicit names are the same, or standard input is asked for twice.
+/// May a source be called so? Letters, digits, '-', '_' and '.'.
+[[nodiscard]] bool is_name(std::string_view text);
+
+/// Takes NAME= off; `name` stays empty where there is none. An argument that is an existing file is
+/// never split.
+[[nodiscard]] CloudArgument split_argument(const std::string& text);
+
+/// Does a path name something that lives ("camera:...", "sequence:...", an .oni file) instead of
+/// a cloud that stands still?
+[[nodiscard]] bool lives(const std::string& path);
+
+/// Names every source that has no name yet after its path, with a number where two would be the
+/// same.
+/// @throws UsageError when two names are the same, or standard input is asked for twice.
+void name_all(std::vector<CloudArgument>& sources);
+
+/// Both for each argument.
 [[nodiscard]] std::vector<CloudArgument> parse_clouds(const std::vector<std::string>& arguments);
 
 }  // namespace palpate::app

@@ -20,7 +20,7 @@ constexpr const char* kFooter = R"(Examples:
 
 Exit codes: 0 done, 1 the input is at fault, 2 the command line is wrong.)";
 
-InfoReport study(const CloudArgument& argument, const LoadOptions& options) {
+InfoReport study(const CloudArgument& argument, const ReadingOptions& options) {
   InfoReport report;
   report.loaded = load(argument, options);
   const PointCloud& cloud = report.loaded.file.cloud;
@@ -38,7 +38,8 @@ InfoReport study(const CloudArgument& argument, const LoadOptions& options) {
 }  // namespace
 
 void add_info_options(CLI::App& command, InfoOptions& options) {
-  add_load_options(command, options.load);
+  command.add_option("clouds", options.clouds, cloud_help())->required()->type_name("CLOUD");
+  add_reading_options(command, options.reading);
   command.add_option("--json", options.json, "the same as data; - is standard output")
       ->type_name("FILE")
       ->group("Output");
@@ -46,12 +47,12 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
 }
 
 void info(const InfoOptions& options) {
-  if (!options.load.intrinsics.empty()) (void)parse_intrinsics(options.load.intrinsics);
+  if (!options.reading.intrinsics.empty()) (void)parse_intrinsics(options.reading.intrinsics);
   nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
-  const std::vector<CloudArgument> arguments = parse_clouds(options.load.clouds);
+  const std::vector<CloudArgument> arguments = parse_clouds(options.clouds);
   check_distinct(inputs(arguments), {{"--json", options.json}});
   for (const CloudArgument& argument : arguments) {
-    const InfoReport report = study(argument, options.load);
+    const InfoReport report = study(argument, options.reading);
     print_report(report, options.json == "-" ? stderr : stdout);
     clouds.push_back(json_report(report));
   }

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "apps/palpate/touch_options.hpp"
+#include "apps/palpate/source_options.hpp"
 
 namespace palpate::app {
 
 /// The command line of `palpate info`.
 struct InfoOptions {
-  LoadOptions load;
+  std::vector<std::string> clouds;
+  ReadingOptions reading;
   std::string json;
 };
 

@@ -25,7 +25,7 @@ CloudFile make_synthetic(const std::string& name, double scale) {
   return file;
 }
 
-CloudFile read(const CloudArgument& argument, const LoadOptions& options) {
+CloudFile read(const CloudArgument& argument, const ReadingOptions& options) {
   if (argument.path.starts_with(kSynthetic)) {
     return make_synthetic(argument.path.substr(kSynthetic.size()), options.scale);
   }
@@ -40,7 +40,7 @@ CloudFile read(const CloudArgument& argument, const LoadOptions& options) {
 
 }  // namespace
 
-LoadedCloud load(const CloudArgument& argument, const LoadOptions& options) {
+LoadedCloud load(const CloudArgument& argument, const ReadingOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   LoadedCloud result{argument, read(argument, options), 0};
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/palpate/arguments.hpp"
-#include "apps/palpate/touch_options.hpp"
+#include "apps/palpate/source_options.hpp"
 #include "palpate/io/read_cloud.hpp"
 
 namespace palpate::app {
@@ -18,6 +18,6 @@ struct LoadedCloud {
 
 /// Reads one cloud, file, standard input or synthetic, with progress on standard error.
 /// @throws Error as read_cloud_file() does, UsageError when options make no sense.
-[[nodiscard]] LoadedCloud load(const CloudArgument& argument, const LoadOptions& options);
+[[nodiscard]] LoadedCloud load(const CloudArgument& argument, const ReadingOptions& options);
 
 }  // namespace palpate::app

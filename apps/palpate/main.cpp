@@ -6,6 +6,7 @@
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/info_command.hpp"
 #include "apps/palpate/picture_script.hpp"
+#include "apps/palpate/setup_file.hpp"
 #include "apps/palpate/touch_command.hpp"
 #include "apps/palpate/words.hpp"
 
@@ -48,7 +49,10 @@ int run(int argc, char** argv) {
   if (program.get_subcommands().empty()) {
     throw UsageError("a command is missing: touch or info; 'palpate --help' tells more");
   }
-  if (touch_command->parsed()) touch(touch_options);
+  if (touch_command->parsed()) {
+    apply_setup(*touch_command, touch_options);
+    touch(touch_options);
+  }
   if (info_command->parsed()) info(info_options);
   return kSuccess;
 }

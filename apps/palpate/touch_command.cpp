@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-#include <memory>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/palpate/hand.hpp"
 #include "apps/palpate/log.hpp"
 #include "apps/palpate/output.hpp"
 #include "apps/palpate/picture.hpp"
@@ -15,84 +15,20 @@
 #include "apps/palpate/touch_run.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/touch_usage.hpp"
+#include "apps/palpate/touched.hpp"
 #include "apps/palpate/words.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/device/scripted.hpp"
-#include "palpate/device/simulated.hpp"
-#include "palpate/io/trajectory.hpp"
 
 namespace palpate::app {
 
 namespace {
 
-// What moves the hand: a device, where it stands, and the surface's stiffness that goes with it.
-struct Hand {
-  std::unique_ptr<Device> device;
-  Workspace workspace;
-  double stiffness = kStiffness;
-
-  std::size_t steps = 0;
-  std::optional<ExplorationPlan> plan;
-};
-
-// The hand is where `way` says, whatever the force.
-void play_back(Hand& hand, Trajectory way) {
-  hand.steps = way.size();
-  hand.device = std::make_unique<ScriptedDevice>(std::move(way));
-}
-
-Hand scripted(const TouchOptions& options, Trajectory trajectory) {
-  Hand hand;
-  hand.stiffness = options.stiffness.value_or(kStiffness);
-  play_back(hand, std::move(trajectory));
-  return hand;
-}
-
-// The hand is pulled along `target`, whose times begin at 0.
-void simulate(Hand& hand, Trajectory target) {
-  const SimulatedDeviceOptions options;
-  hand.steps = static_cast<std::size_t>(target.back().time * options.rate) + 2;
-  hand.device = std::make_unique<SimulatedDevice>(options, std::move(target));
-}
-
-Hand simulated(const TouchOptions& options, Trajectory trajectory) {
-  Hand hand;
-  hand.stiffness = options.stiffness.value_or(kStiffness);
-  const double start = trajectory.front().time;
-  for (TrajectoryRow& row : trajectory) row.time -= start;
-  // Encoders count from where the hand begins, so that far from the origin nothing is lost.
-  hand.workspace.T_world_device.translation() = trajectory.front().position;
-  for (TrajectoryRow& row : trajectory) {
-    row.position = hand.workspace.position_to_device(row.position);
-  }
-  simulate(hand, std::move(trajectory));
-  return hand;
-}
-
-Hand exploring(const TouchOptions& options, const Scene& scene, const FieldOptions& field) {
-  Hand hand;
-  PlanOptions plan;
-  plan.duration = options.duration.value_or(plan.duration);
-  plan.stiffness = options.stiffness.value_or(0);
-  plan.tool_radius = options.tool_radius;
-  plan.seed = options.seed.value_or(plan.seed);
-  const bool pulled = options.device != "scripted";
-  if (!pulled) plan.hand.stiffness = std::numeric_limits<double>::infinity();
-  hand.plan = plan_exploration(scene, field, plan);
-  hand.workspace = hand.plan->workspace;
-  hand.stiffness = hand.plan->stiffness;
-  if (pulled) {
-    simulate(hand, hand.plan->target);
-  } else {
-    play_back(hand, hand.plan->target);
-  }
-  return hand;
-}
+constexpr double kLatency = 0.01;  // from stamp to touchable in simulated time, s
 
 std::string title(const TouchReport& report) {
   std::string text;
-  for (const TouchedCloud& cloud : report.clouds) {
-    text += fmt::format("{}{}", text.empty() ? "" : " + ", cloud.argument.name);
+  for (const TouchedSource& source : report.touched.sources) {
+    text += fmt::format("{}{}", text.empty() ? "" : " + ", source.argument.name);
   }
   return text;
 }
@@ -121,10 +57,11 @@ struct Outputs {
 };
 
 // Steps the run and hands each step to what keeps or sums it.
-void play(Hand& hand, SceneField& field, Proxy& proxy, TouchStatistics& statistics,
-          Outputs& outputs) {
+void play(Hand& hand, SimulatedFeed& feed, SceneField& field, Proxy& proxy,
+          TouchStatistics& statistics, Outputs& outputs) {
   Progress progress("touching");
-  run_touch(*hand.device, hand.workspace, field, proxy, [&](const TouchStep& step) {
+  const auto before = [&](double time) { feed.advance(time); };
+  run_touch(*hand.device, hand.workspace, field, proxy, before, [&](const TouchStep& step) {
     statistics.add(step);
     if (outputs.log) outputs.log->add(step);
     if (outputs.picture) outputs.picture->add(step);
@@ -145,41 +82,44 @@ void tell(const TouchReport& report, Outputs& outputs) {
     outputs.json->write("\n");
     outputs.json->close();
   }
-  if (outputs.picture) outputs.picture->draw(report.scene, title(report), subtitle(report));
+  if (outputs.picture) outputs.picture->draw(report.felt, title(report), subtitle(report));
   const TouchStatistics& s = report.statistics;
   if (s.steps() == 0 || s.faults() < s.steps()) return;
   throw Error("every step was a fault: nothing was felt (everything was written)");
 }
 
-Hand make_hand(const TouchOptions& options, const Scene& scene, const FieldOptions& field,
-               Trajectory trajectory) {
-  if (trajectory.empty()) return exploring(options, scene, field);
-  if (options.device == "simulated") return simulated(options, std::move(trajectory));
-  return scripted(options, std::move(trajectory));
+void keep_reports(Touched& touched, const Scene& felt, const SimulatedFeed& feed) {
+  std::vector<FeedReport> reports = feed.reports();
+  auto next = reports.begin();
+  for (std::size_t i = 0; i < felt.size(); ++i) {
+    TouchedSource& source = touched.sources[i];
+    if (!source.camera) continue;
+    source.feed = std::move(*next++);
+    source.state = felt.state(i);
+  }
 }
 
 }  // namespace
 
 void touch(const TouchOptions& options) {
   check_usage(options);
-  Trajectory trajectory;
-  if (!options.trajectory.empty()) trajectory = read_trajectory(options.trajectory);
-  check_trajectory(options, trajectory);
+  Trajectory way = read_way(options);
   Outputs outputs(options);
-  Scene scene;
-  const std::vector<TouchedCloud> clouds = fill(scene, options);
-  check_texture(options, scene);
+  const bool explored = way.empty() || options.texture_amplitude > 0;
+  Touched touched = prepare_touched(options, explored);
+  check_texture(options, touched.scene);
   const FieldOptions field_choice = field_options(options);
-  Hand hand = make_hand(options, scene, field_choice, std::move(trajectory));
+  Hand hand = make_hand(options, std::move(way), touched.scene, field_choice);
   Scene felt;
-  fill_softened(felt, scene, soft_material(options, hand.stiffness));
+  fill_felt(felt, touched, soft_material(options, hand.stiffness));
   SceneField field(felt, field_choice);
   Proxy proxy(proxy_options(options, hand.stiffness));
   TouchStatistics statistics(hand.steps);
-  play(hand, field, proxy, statistics, outputs);
-  const ExplorationPlan* plan = hand.plan ? &*hand.plan : nullptr;
-  tell({scene, clouds, options, statistics, field_choice, proxy.options(), hand.device->info().name,
-        plan},
+  SimulatedFeed feed = make_feed(touched, felt, options.latency.value_or(kLatency));
+  play(hand, feed, field, proxy, statistics, outputs);
+  keep_reports(touched, felt, feed);
+  tell({touched, felt, options, statistics, field_choice, proxy.options(), hand.device->info().name,
+        hand.plan ? &*hand.plan : nullptr},
        outputs);
 }
 

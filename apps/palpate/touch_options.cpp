@@ -1,59 +1,12 @@
 #include "apps/palpate/touch_options.hpp"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <functional>
 
-#include "palpate/io/synthetic.hpp"
+#include "apps/palpate/option_checks.hpp"
 
 namespace palpate::app {
 
 namespace {
-
-// A check that says which numbers an option takes.
-CLI::Validator number(const std::string& range, std::function<bool(double)> good) {
-  const auto check = [range, good = std::move(good)](const std::string& text) -> std::string {
-    double value = 0;
-    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && good(value)) return "";
-    return fmt::format("'{}' is not {}", text, range);
-  };
-  return CLI::Validator(check, "");
-}
-
-CLI::Validator positive() {
-  return number("a number above 0", [](double x) { return x > 0; });
-}
-CLI::Validator not_negative() {
-  return number("a number of 0 or more", [](double x) { return x >= 0; });
-}
-
-CLI::Validator one_of(const std::vector<std::string>& words) {
-  return CLI::IsMember(words);
-}
-
-// Help in lines that fit beside the options' names.
-std::string wrapped(const std::string& text) {
-  constexpr std::size_t kWidth = 66;
-  std::string result;
-  std::size_t begin = 0;
-  while (text.size() - begin > kWidth) {
-    const std::size_t space = text.rfind(' ', begin + kWidth);
-    if (space == std::string::npos || space <= begin) break;
-    result += text.substr(begin, space - begin) + '\n';
-    begin = space + 1;
-  }
-  return result + text.substr(begin);
-}
-
-std::string synthetic_list() {
-  std::string list;
-  for (const SyntheticName& each : synthetic_names()) {
-    list += fmt::format("{}{}", list.empty() ? "" : ", ", each.name);
-  }
-  return list;
-}
 
 void add_surface_options(CLI::App& command, TouchOptions& o) {
   const std::string group = "Surface (chosen from the data unless given)";
@@ -74,12 +27,6 @@ void add_surface_options(CLI::App& command, TouchOptions& o) {
       "exact (default), normal (eq. 8) or printed (eq. 4 as printed, which points inward)")
       ->check(one_of({"exact", "normal", "printed"}))
       ->type_name("NAME");
-  add("--radius", o.radius, "support radius R of every point: larger is smoother")
-      ->check(positive())
-      ->type_name("METRES");
-  add("--voxel", o.voxel, "edge of the voxel filter; 0 keeps every point")
-      ->check(not_negative())
-      ->type_name("METRES");
   add("--threshold", o.threshold, "level of the metaball, 0 to 1; lower is farther out (0.4)")
       ->check(number("between 0 and 1", [](double x) { return x > 0 && x < 1; }))
       ->type_name("LEVEL");
@@ -140,10 +87,28 @@ void add_hand_options(CLI::App& command, TouchOptions& o) {
       "--trajectory, else simulated")
       ->check(one_of({"scripted", "simulated"}))
       ->type_name("NAME");
-  add("--duration", o.duration, "of the built-in exploration, in simulated time (10)")
+  add("--duration", o.duration, "of the built-in exploration (10)")
       ->check(number("between 0.01 and 3600 s", [](double x) { return x >= 0.01 && x <= 3600; }))
       ->type_name("SECONDS");
   add("--seed", o.seed, "of the exploration: another one touches other places (1)")->type_name("N");
+  add("--rate", o.rate, "steps a second of the exploration and of a simulated device (1000)")
+      ->check(number("between 500 and 10000 Hz", [](double x) { return x >= 500 && x <= 1e4; }))
+      ->type_name("HZ");
+}
+
+void add_time_options(CLI::App& command, TouchOptions& o) {
+  command
+      .add_flag("--simulated-time", o.simulated_time,
+                wrapped("cameras, preparation and servo on one simulated clock, as fast as they "
+                        "go: the same command gives the same log. Files alone always do"))
+      ->group("Streams");
+  command
+      .add_option("--latency", o.latency,
+                  wrapped("from a frame's stamp to its surface's being felt in simulated time "
+                          "(0.01)"))
+      ->check(number("between 0 and 10 s", [](double x) { return x >= 0 && x <= 10; }))
+      ->type_name("SECONDS")
+      ->group("Streams");
 }
 
 void add_output_options(CLI::App& command, TouchOptions& o) {
@@ -162,52 +127,45 @@ constexpr const char* kFooter = R"(Examples:
   palpate touch scan.pcd --trajectory hand.csv --log forces.csv
   palpate touch left=a.ply right=b.ply --pose right=0.1,0,0,0,0,0,1
   palpate touch depth.png --intrinsics 525,525,319.5,239.5
+  palpate touch camera:simulated --simulated-time --duration 5 --picture table.png
+  palpate touch sequence:recording --simulated-time --trajectory hand.csv --log forces.csv
+  palpate touch --setup desk.toml left=sequence:monday
   gunzip -c dragon.ply.gz | palpate touch -
 
 The log begins with t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,fx,fy,fz,us: seconds, metres in the
 world frame, newtons on the hand (K (proxy - hip), before any guard), microseconds of computing. The
-same input gives the same log but for us.
+same input gives the same log but for us. With streams in simulated time, t = 0 is the first frame's
+stamp.
 
 Exit codes: 0 done, 1 the input or the run failed, 2 the command line is wrong.)";
 
 }  // namespace
 
-void add_load_options(CLI::App& command, LoadOptions& o) {
-  command
-      .add_option(
-          "clouds", o.clouds,
-          fmt::format("[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, depth PNG or "
-                      "PGM, any of them gzipped; - for standard input; or synthetic:NAME "
-                      "with NAME one of {}",
-                      synthetic_list()))
-      ->required()
-      ->type_name("CLOUD");
-  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
-    return command.add_option(name, value, wrapped(help))->group("Reading");
-  };
-  add("--scale", o.scale, "metres a unit of the file: 0.001 for millimetres, 0.3048 for feet (1)")
-      ->check(positive())
-      ->type_name("FACTOR");
-  add("--intrinsics", o.intrinsics, "of a depth image, in pixels; needed for one")
-      ->type_name("FX,FY,CX,CY");
-  add("--depth-unit", o.depth_unit, "metres a step of a depth image (0.001)")
-      ->check(positive())
-      ->type_name("METRES");
-}
-
 void add_touch_options(CLI::App& command, TouchOptions& o) {
-  add_load_options(command, o.load);
-  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
-    return command.add_option(name, value, wrapped(help))->group("Reading");
-  };
-  add("--viewpoint", o.viewpoint, "where the sensor stood, in the cloud's frame: orients normals")
-      ->type_name("X,Y,Z");
-  add("--pose", o.poses, "where a cloud's frame is in the world; once for each cloud that moves")
+  command
+      .add_option("sources", o.clouds,
+                  cloud_help() +
+                      "; or what lives: camera:simulated[:SCENE], camera:openni2, camera:freenect, "
+                      "sequence:FOLDER, or an .oni file ('palpate cameras' lists what is there)")
+      ->type_name("SOURCE");
+  command
+      .add_option("--setup", o.setup,
+                  wrapped("TOML file with sources, poses, surface, material, hand; the command "
+                          "line wins over it (docs/setup.md)"))
+      ->type_name("FILE")
+      ->group("Reading");
+  add_source_options(command, o.choices);
+  command
+      .add_option("--pose", o.poses,
+                  wrapped("where a source's frame is in the world; once for each that is not at "
+                          "its origin"))
       ->type_name("NAME=X,Y,Z,QX,QY,QZ,QW")
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->group("Reading");
   add_surface_options(command, o);
   add_feel_options(command, o);
   add_hand_options(command, o);
+  add_time_options(command, o);
   add_output_options(command, o);
   command.footer(kFooter);
 }

@@ -5,33 +5,23 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
+#include "apps/palpate/source_options.hpp"
 
 namespace palpate::app {
 
-/// How clouds are read; the same for every command.
-struct LoadOptions {
-  std::vector<std::string> clouds;
-  double scale = 1;          ///< file's coordinates to metres
-  std::string intrinsics;    ///< "fx,fy,cx,cy"; empty: none
-  double depth_unit = 1e-3;  ///< m
-};
-
 /// The command line of `palpate touch`. Lengths in metres; what is not set is chosen from the data.
 struct TouchOptions {
-  LoadOptions load;
-  std::string viewpoint;
+  std::vector<std::string> clouds;  ///< sources of the command line
+  std::string setup;                ///< file that describes a set-up
+  std::vector<SourceSetup> setup_sources;
   std::vector<std::string> poses;
+  SourceChoices choices;  ///< of every source that the set-up file says nothing else of
 
   std::string preset = "default";
   std::string field;
   std::string kernel;
   std::string gradient;
-  std::optional<double> radius;
   std::optional<double> threshold;
-  std::optional<double> voxel;
   double tool_radius = 0;
   bool one_sided = false;
 
@@ -48,14 +38,15 @@ struct TouchOptions {
   std::string device;
   std::optional<double> duration;  ///< s
   std::optional<std::uint64_t> seed;
+  std::optional<double> rate;  ///< steps a second, Hz
+
+  bool simulated_time = false;
+  std::optional<double> latency;  ///< from stamp to touchable in simulated time, s
 
   std::string log;
   std::string json;
   std::string picture;
 };
-
-/// Adds the options that name clouds and say how to read them.
-void add_load_options(CLI::App& command, LoadOptions& options);
 
 /// Adds every option of `palpate touch`.
 void add_touch_options(CLI::App& command, TouchOptions& options);

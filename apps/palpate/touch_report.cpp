@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/palpate/picture_script.hpp"
+#include "apps/palpate/source_report.hpp"
 #include "apps/palpate/words.hpp"
 
 namespace palpate::app {
@@ -13,36 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string range(double smallest, double middle, double largest) {
-  if (largest <= 1.001 * smallest) return length(middle);
-  return fmt::format("{} ({} to {})", length(middle), length(smallest), length(largest));
-}
-
 double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
-}
-
-void print_cloud(const TouchedCloud& cloud, const PrepareReport& r, double scale,
-                 const Style& style, std::FILE* out) {
-  fmt::print(out, "{} {} ({})\n", style.heading(cloud.argument.name), cloud.argument.path,
-             cloud.format);
-  fmt::print(out, "  points     {} read, {} felt", grouped(r.points_in), grouped(r.points_out));
-  if (r.speckle > 0) fmt::print(out, ", {} dropped as speckle", grouped(r.speckle));
-  if (cloud.dropped > 0) fmt::print(out, ", {} invalid", grouped(cloud.dropped));
-  fmt::print(out, "\n");
-  if (!cloud.units.advice.empty() && scale == 1) {
-    fmt::print(out, "  {} {}? {}; {}\n", style.warning("units     "), cloud.units.units,
-               cloud.units.reason, cloud.units.advice);
-  }
-  fmt::print(out, "  spacing    {}, noise {}, voxel {}\n", length(r.spacing), length(r.noise),
-             r.voxel > 0 ? length(r.voxel) : "none");
-  fmt::print(out, "  R          {}\n", range(r.radius_smallest, r.radius, r.radius_largest));
-  fmt::print(out,
-             "  prepared   {} after {} of reading: filter {}, index {}, spacing {}, normals {}, "
-             "weights {}\n",
-             duration(cloud.prepare_seconds), duration(cloud.read_seconds),
-             duration(r.seconds_filter), duration(r.seconds_index), duration(r.seconds_spacing),
-             duration(r.seconds_normals), duration(r.seconds_weights));
 }
 
 void print_plan(const ExplorationPlan& plan, std::FILE* out) {
@@ -72,30 +45,6 @@ void print_notes(const TouchStatistics& s, const Style& style, std::FILE* out) {
     any = true;
   }
   if (!any) fmt::print(out, "  notes      none\n");
-}
-
-Json json_cloud(const TouchedCloud& cloud, const PrepareReport& r) {
-  return {{"name", cloud.argument.name},
-          {"file", cloud.argument.path},
-          {"format", cloud.format},
-          {"points_declared", cloud.declared},
-          {"points_invalid", cloud.dropped},
-          {"points_read", r.points_in},
-          {"points_felt", r.points_out},
-          {"points_speckle", r.speckle},
-          {"spacing_m", r.spacing},
-          {"noise_m", r.noise},
-          {"voxel_m", r.voxel},
-          {"radius_m",
-           {{"median", r.radius}, {"smallest", r.radius_smallest}, {"largest", r.radius_largest}}},
-          {"seconds",
-           {{"read", cloud.read_seconds},
-            {"prepare", cloud.prepare_seconds},
-            {"filter", r.seconds_filter},
-            {"index", r.seconds_index},
-            {"spacing", r.seconds_spacing},
-            {"normals", r.seconds_normals},
-            {"weights", r.seconds_weights}}}};
 }
 
 Json json_notes(const TouchStatistics& s) {
@@ -153,10 +102,7 @@ const char* name_of(FieldKind kind) {
 
 void print_report(const TouchReport& report, std::FILE* out) {
   const Style style(out);
-  for (std::size_t i = 0; i < report.clouds.size(); ++i) {
-    print_cloud(report.clouds[i], report.scene.source(i).report(), report.options.load.scale, style,
-                out);
-  }
+  for (const TouchedSource& source : report.touched.sources) print_source(source, out);
   const TouchStatistics& s = report.statistics;
   const StepTimes times = s.times();
   fmt::print(out, "{} {} field, {:.4g} N/m, {} device\n", style.heading("touched"),
@@ -178,15 +124,15 @@ void print_report(const TouchReport& report, std::FILE* out) {
 }
 
 Json json_report(const TouchReport& report) {
-  Json clouds = Json::array();
-  for (std::size_t i = 0; i < report.clouds.size(); ++i) {
-    clouds.push_back(json_cloud(report.clouds[i], report.scene.source(i).report()));
+  Json sources = Json::array();
+  for (const TouchedSource& source : report.touched.sources) {
+    sources.push_back(json_source(source));
   }
   const TouchStatistics& s = report.statistics;
   const StepTimes times = s.times();
   const HandEnergy energies = energy_at_hand(report);
   return {{"palpate", std::string(version())},
-          {"clouds", clouds},
+          {"clouds", sources},
           {"preset", report.options.preset},
           {"field", name_of(report.field.kind)},
           {"stiffness_N_per_m", report.proxy.stiffness},

@@ -2,20 +2,20 @@
 
 #include <cstdio>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/palpate/exploration_plan.hpp"
 #include "apps/palpate/touch_statistics.hpp"
-#include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/touched.hpp"
+#include "palpate/contact/proxy.hpp"
 
 namespace palpate::app {
 
 /// Everything that a run's report tells.
 struct TouchReport {
-  const Scene& scene;
-  const std::vector<TouchedCloud>& clouds;
+  const Touched& touched;
+  const Scene& felt;  ///< as the run left it
   const TouchOptions& options;
   const TouchStatistics& statistics;
   FieldOptions field;

@@ -8,6 +8,7 @@
 namespace palpate::app {
 
 void run_touch(Device& device, const Workspace& workspace, SceneField& field, Proxy& proxy,
+               const std::function<void(double)>& before,
                const std::function<void(const TouchStep&)>& each) {
   double previous = 0;
   bool first = true;
@@ -17,6 +18,7 @@ void run_touch(Device& device, const Workspace& workspace, SceneField& field, Pr
     if (state.status == DeviceStatus::failed) {
       throw Error(fmt::format("device '{}' failed: {}", device.info().name, device.reason()));
     }
+    before(state.time);
     const double dt = first ? 1 / device.info().rate : state.time - previous;
     TouchStep step;
     step.time = state.time;
@@ -32,6 +34,12 @@ void run_touch(Device& device, const Workspace& workspace, SceneField& field, Pr
     previous = state.time;
     first = false;
   }
+}
+
+void run_touch(Device& device, const Workspace& workspace, SceneField& field, Proxy& proxy,
+               const std::function<void(const TouchStep&)>& each) {
+  run_touch(
+      device, workspace, field, proxy, [](double) {}, each);
 }
 
 }  // namespace palpate::app

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/palpate/arguments.hpp"
+#include "apps/palpate/chosen_source.hpp"
 #include "apps/palpate/distinct_files.hpp"
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/touch_surface.hpp"
@@ -21,7 +21,8 @@ void require(bool good, const char* what) {
 }
 
 void check_files(const TouchOptions& options) {
-  const std::vector<CloudArgument> clouds = parse_clouds(options.load.clouds);
+  std::vector<CloudArgument> clouds;
+  for (const ChosenSource& source : choose_sources(options)) clouds.push_back(source.argument);
   for (const CloudArgument& cloud : clouds) {
     require(cloud.path != "-" || options.trajectory != "-",
             "standard input (-) can be read only once");
@@ -32,6 +33,7 @@ void check_files(const TouchOptions& options) {
           "--picture cannot go to standard output; name a file such as a.png");
   std::vector<NamedFile> read = inputs(clouds);
   read.push_back({"--trajectory", options.trajectory});
+  read.push_back({"--setup", options.setup});
   check_distinct(
       read, {{"--log", options.log}, {"--json", options.json}, {"--picture", options.picture}});
 }
@@ -49,13 +51,37 @@ void check_surface(const TouchOptions& options) {
           "choose another --field");
   require(options.preset != "paper" || options.tool_radius == 0,
           "--preset paper touches with a point; leave --tool-radius out");
+}
+
+void check_source(const TouchOptions& options, const ChosenSource& source) {
+  const SourceOptions checked = source_options(options, source);  // parses what is text
+  if (!source.choices.reading.intrinsics.empty()) {
+    (void)parse_intrinsics(source.choices.reading.intrinsics);
+  }
   const double smallest = smallest_radius(options);
-  if (options.radius && *options.radius < smallest) {
+  if (checked.prepare.radius && *checked.prepare.radius < smallest) {
     throw UsageError(
         fmt::format("--radius {} is too small for --tool-radius {}; it must be {:.4g} "
                     "at least",
-                    *options.radius, options.tool_radius, smallest));
+                    *checked.prepare.radius, options.tool_radius, smallest));
   }
+  if (lives(source.argument.path)) return;
+  const SourceChoices& choices = source.choices;
+  const bool in_time =
+      !choices.policy.empty() || choices.history || choices.silence || choices.fade || choices.loop;
+  if (in_time) {
+    throw UsageError(
+        fmt::format("{} stands still; --policy, --history, --silence, --fade and --loop are of "
+                    "cameras and sequences",
+                    source.argument.path));
+  }
+}
+
+void check_time(const TouchOptions& options, bool any_lives) {
+  require(any_lives || !options.latency,
+          "--latency is of cameras and sequences; what stands still is there from the start");
+  require(options.simulated_time || !options.latency,
+          "--latency is of simulated time; add --simulated-time");
 }
 
 void check_feel(const TouchOptions& options) {
@@ -75,10 +101,16 @@ void check_usage(const TouchOptions& options) {
   check_files(options);
   check_surface(options);
   check_feel(options);
-  if (!options.viewpoint.empty()) (void)parse_point(options.viewpoint, "--viewpoint");
-  if (!options.load.intrinsics.empty()) (void)parse_intrinsics(options.load.intrinsics);
+  bool any_lives = false;
+  for (const ChosenSource& source : choose_sources(options)) {
+    check_source(options, source);
+    any_lives = any_lives || lives(source.argument.path);
+  }
+  check_time(options, any_lives);
   if (options.trajectory.empty()) return;
   require(!options.duration, "--duration is of the exploration; a --trajectory has its own");
+  require(!options.rate || options.device == "simulated",
+          "--rate is of the exploration or of --device simulated; a --trajectory has its own");
   require(!options.seed, "--seed is of the exploration; a --trajectory is played as it is");
 }
 

@@ -10,6 +10,7 @@
 #include "apps/palpate/exploration_plan.hpp"
 #include "apps/palpate/touch_run.hpp"
 #include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/touched.hpp"
 #include "apps/program.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
@@ -48,17 +49,18 @@ std::vector<fs::path> files_in(const fs::path& folder, std::initializer_list<con
 }
 
 // What the program needs to know of a depth image: its folder's sequence.json tells.
-void describe_depth(const fs::path& file, LoadOptions& load) {
+void describe_depth(const fs::path& file, ReadingOptions& reading) {
   if (file.filename() == "TUM_depth.png") {
-    load.intrinsics = "525,525,319.5,239.5";
-    load.depth_unit = 1. / 5000;
+    reading.intrinsics = "525,525,319.5,239.5";
+    reading.depth_unit = 1. / 5000;
     return;
   }
   std::ifstream stream(file.parent_path().parent_path() / "sequence.json");
   const auto facts = nlohmann::json::parse(stream);
   const auto value = [&](const char* key) { return facts.at(key).get<double>(); };
-  load.intrinsics = fmt::format("{},{},{},{}", value("fx"), value("fy"), value("cx"), value("cy"));
-  load.depth_unit = value("depth_unit_m");
+  reading.intrinsics =
+      fmt::format("{},{},{},{}", value("fx"), value("fy"), value("cx"), value("cy"));
+  reading.depth_unit = value("depth_unit_m");
 }
 
 bool is_quiet(const TouchStep& step) {
@@ -68,8 +70,8 @@ bool is_quiet(const TouchStep& step) {
 
 // As `palpate touch FILE --duration 10` does.
 TouchStatistics touch(const TouchOptions& options) {
-  Scene scene;
-  (void)fill(scene, options);
+  Touched touched = prepare_touched(options, true);
+  Scene& scene = touched.scene;
   const FieldOptions field_choice = field_options(options);
   const ExplorationPlan plan =
       plan_exploration(scene, field_choice, {.duration = 1e-3 * milliseconds()});
@@ -89,8 +91,8 @@ TouchStatistics touch(const TouchOptions& options) {
 void expect_touched(const fs::path& file) {
   SCOPED_TRACE(file.string());
   TouchOptions options;
-  options.load.clouds = {file.string()};
-  if (file.extension() == ".png") describe_depth(file, options.load);
+  options.clouds = {file.string()};
+  if (file.extension() == ".png") describe_depth(file, options.choices.reading);
   try {
     const TouchStatistics statistics = touch(options);
     EXPECT_GE(statistics.steps(), static_cast<std::size_t>(milliseconds()));

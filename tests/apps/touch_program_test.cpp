@@ -51,7 +51,7 @@ TEST(Touch, ExploresASyntheticCloudAndReports) {
   EXPECT_GT(report["contacts"].get<int>(), 0);
   EXPECT_GT(report["largest_force_N"].get<double>(), 0.3);
   EXPECT_LT(report["largest_force_N"].get<double>(), 6);
-  EXPECT_EQ(report["clouds"][0]["points_read"], 10000);
+  EXPECT_EQ(report["sources"][0]["points_read"], 10000);
   EXPECT_GT(report["computing_us"]["p50"].get<double>(), 0);
 }
 
@@ -147,8 +147,8 @@ TEST(Touch, SeveralCloudsAreOneScene) {
       "r.json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto report = nlohmann::json::parse(shell.read("r.json"));
-  EXPECT_EQ(report["clouds"].size(), 2u);
-  EXPECT_EQ(report["clouds"][1]["name"], "plane");
+  EXPECT_EQ(report["sources"].size(), 2u);
+  EXPECT_EQ(report["sources"][1]["name"], "plane");
   EXPECT_NEAR(report["largest_force_N"].get<double>(), 1.5, 0.03);
 }
 

@@ -28,7 +28,7 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"", "touch or info"},
       {"touch synthetic:torus --device simulated --trajectory long.csv", "1e+300"},
       {"tuch synthetic:torus", "tuch"},
-      {"touch", "clouds"},
+      {"touch", "no sources"},
       {"touch synthetic:torus --colour red", "--colour"},
       {"touch synthetic:torus --field mesh", "mesh"},
       {"touch synthetic:torus --radius -1", "above 0"},

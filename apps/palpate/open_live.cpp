@@ -1,0 +1,65 @@
+#include "apps/palpate/open_live.hpp"
+
+#include <fmt/format.h>
+
+#include "apps/palpate/posed_camera.hpp"
+#include "apps/palpate/waiting.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/sensor/sequence.hpp"
+#include "palpate/sensor/simulated_setup.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr std::string_view kSimulated = "camera:simulated";
+constexpr std::string_view kSequence = "sequence:";
+
+// s; a sensor's motor and lamp may take one or two to start.
+constexpr double kPatience = 5;
+// Answers of a camera that waits for nothing.
+constexpr int kTries = 100;
+
+std::unique_ptr<DepthCamera> open(const ChosenSource& source, const Clock* clock) {
+  const std::string& path = source.argument.path;
+  if (path.starts_with(kSequence)) {
+    return open_sequence(read_sequence(path.substr(kSequence.size())),
+                         {.clock = clock, .start = {}, .loop = source.choices.loop});
+  }
+  if (path == kSimulated) return open_simulated("", clock);
+  if (path.starts_with(fmt::format("{}:", kSimulated))) {
+    return open_simulated(path.substr(kSimulated.size() + 1), clock);
+  }
+  throw Error(
+      fmt::format("{}: there is no such camera; 'palpate cameras' lists what there is", path));
+}
+
+}  // namespace
+
+std::unique_ptr<DepthCamera> open_live(const ChosenSource& source, const Clock* clock) {
+  std::unique_ptr<DepthCamera> camera = open(source, clock);
+  if (clock == nullptr && camera->info().paces) {
+    throw Error(
+        fmt::format("{} keeps its own time; leave --simulated-time out, or play a "
+                    "recording of it (sequence:FOLDER)",
+                    source.argument.path));
+  }
+  if (source.pose.isApprox(Eigen::Isometry3d::Identity(), 0)) return camera;
+  return std::make_unique<PosedCamera>(std::move(camera), source.pose);
+}
+
+DepthFrame first_frame(DepthCamera& camera) {
+  const Waiting waiting(fmt::format("waiting for the first frame of {}", camera.info().name));
+  DepthFrame frame;
+  std::string problem = "no frame came";
+  const int tries = camera.info().paces ? static_cast<int>(kPatience / 0.1) : kTries;
+  for (int i = 0; i < tries; ++i) {
+    const CameraStatus status = camera.read(frame, camera.info().paces ? 0.1 : 0);
+    if (status == CameraStatus::frame) return frame;
+    if (status == CameraStatus::failed) problem = camera.reason();
+    if (status == CameraStatus::ended) break;
+  }
+  throw Error(fmt::format("{} gave no frame: {}", camera.info().name, problem));
+}
+
+}  // namespace palpate::app

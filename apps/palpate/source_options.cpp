@@ -1,0 +1,97 @@
+#include "apps/palpate/source_options.hpp"
+
+#include <fmt/format.h>
+
+#include "apps/palpate/option_checks.hpp"
+#include "palpate/io/synthetic.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+std::string synthetic_list() {
+  std::string list;
+  for (const SyntheticName& each : synthetic_names()) {
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", each.name);
+  }
+  return list;
+}
+
+void add_surface_of_source(CLI::App& command, SourceChoices& o) {
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, wrapped(help))
+        ->group("Surface (chosen from the data unless given)");
+  };
+  add("--radius", o.radius, "support radius R of every point: larger is smoother")
+      ->check(positive())
+      ->type_name("METRES");
+  add("--voxel", o.voxel, "edge of the voxel filter of clouds; 0 keeps every point")
+      ->check(not_negative())
+      ->type_name("METRES");
+}
+
+void add_stream_options(CLI::App& command, SourceChoices& o) {
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, wrapped(help))->group("Streams");
+  };
+  add("--policy", o.policy,
+      "how frames become one surface in time: replace (hard swap), average (of N, the paper), "
+      "crossfade, fusion or morph (default of depth cameras)")
+      ->check(one_of({"replace", "average", "crossfade", "fusion", "morph"}))
+      ->type_name("NAME");
+  add("--history", o.history, "N of average and crossfade, 1 to 7 (4)")
+      ->check(number("a whole number from 1 to 7",
+                     [](double x) { return x >= 1 && x <= 7 && x == static_cast<int>(x); }))
+      ->type_name("N");
+  add("--silence", o.silence, "a surface that nothing confirmed for so long begins to fade (0.3)")
+      ->check(positive())
+      ->type_name("SECONDS");
+  add("--fade", o.fade, "in which it fades away (0.5)")->check(positive())->type_name("SECONDS");
+  add("--noise", o.noise,
+      "sd of a depth pixel, S0 + S1 z + S2 z^2 at z metres, and how much neighbours err together "
+      "(C >= 1); or a sensor: kinect1, xtion, realsense, tof. Measured from the frames unless "
+      "given")
+      ->type_name("S0,S1,S2[,C]");
+  command.add_flag("--loop", o.loop, "sequences begin anew at their end")->group("Streams");
+}
+
+}  // namespace
+
+std::string cloud_help() {
+  return fmt::format(
+      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, depth PNG or PGM, any of them "
+      "gzipped; - for standard input; or synthetic:NAME with NAME one of {}",
+      synthetic_list());
+}
+
+void add_reading_options(CLI::App& command, ReadingOptions& o) {
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, wrapped(help))->group("Reading");
+  };
+  add("--scale", o.scale, "metres a unit of the file: 0.001 for millimetres, 0.3048 for feet (1)")
+      ->check(positive())
+      ->type_name("FACTOR");
+  add("--intrinsics", o.intrinsics, "of a depth image, in pixels; needed for one")
+      ->type_name("FX,FY,CX,CY");
+  add("--depth-unit", o.depth_unit, "metres a step of a depth image (0.001)")
+      ->check(positive())
+      ->type_name("METRES");
+}
+
+void add_source_options(CLI::App& command, SourceChoices& o) {
+  add_reading_options(command, o.reading);
+  command
+      .add_option("--viewpoint", o.viewpoint,
+                  "where the sensor stood, in the cloud's frame: orients normals")
+      ->type_name("X,Y,Z")
+      ->group("Reading");
+  command
+      .add_flag("--unorganised", o.unorganised,
+                wrapped("take a depth image as a cloud: voxel filter and fitted normals in place "
+                        "of the depth filter"))
+      ->group("Reading");
+  add_surface_of_source(command, o);
+  add_stream_options(command, o);
+}
+
+}  // namespace palpate::app

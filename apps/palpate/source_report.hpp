@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+
+#include "apps/palpate/touched.hpp"
+
+namespace palpate::app {
+
+/// What a run knows of one of its sources, for a person.
+void print_source(const TouchedSource& source, std::FILE* out);
+
+/// The same as data: SI units, named in the keys.
+[[nodiscard]] nlohmann::ordered_json json_source(const TouchedSource& source);
+
+}  // namespace palpate::app

@@ -1,0 +1,160 @@
+#include "apps/palpate/touched.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "apps/palpate/depth_file.hpp"
+#include "apps/palpate/load.hpp"
+#include "apps/palpate/open_live.hpp"
+#include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/waiting.hpp"
+#include "apps/palpate/words.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void check_intensities(const LoadedCloud& loaded) {
+  if (!loaded.file.cloud.intensities.empty()) return;
+  throw Error(fmt::format(
+      "--soft-stiffness and --soft-friction need a scalar for each point, but {} has no "
+      "intensity column; leave them out or give a file with one",
+      loaded.argument.path));
+}
+
+void refuse_material(const CloudArgument& source) {
+  throw Error(
+      fmt::format("--soft-stiffness and --soft-friction need a scalar for each point, and {} has "
+                  "depths alone; leave them out",
+                  source.path));
+}
+
+// Farther away the proxy would fault in every step.
+void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
+  if (points.size() == 0) return;
+  const CellGrid::Cell& root = points.grid.cells().front();
+  const double far = std::max((points.origin + root.lower.cast<double>()).cwiseAbs().maxCoeff(),
+                              (points.origin + root.upper.cast<double>()).cwiseAbs().maxCoeff());
+  if (far <= Proxy::kLargestCoordinate) return;
+  throw Error(fmt::format(
+      "{} reaches {:.4g} m from the origin; beyond {:.0e} m no surface can be resolved: "
+      "are --scale and --pose right?",
+      cloud.path, far, Proxy::kLargestCoordinate));
+}
+
+void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& chosen,
+               TouchedSource& result) {
+  const LoadedCloud loaded = load(chosen.argument, chosen.choices.reading);
+  if (wants_material(options)) check_intensities(loaded);
+  result.format = loaded.file.format;
+  result.declared = loaded.file.declared;
+  result.dropped = loaded.file.dropped;
+  result.read_seconds = loaded.seconds;
+  if (chosen.choices.reading.scale == 1) {
+    result.units = guess_units(core_of(loaded.file.cloud), loaded.file.format);
+  }
+  const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
+                                    grouped(loaded.file.cloud.size())));
+  const auto start = Clock::now();
+  const Source& source = scene.add(loaded.argument.name, loaded.file.cloud, result.options);
+  result.prepare_seconds = seconds_since(start);
+  result.prepared = source.report();
+  check_place(loaded.argument, *source.points());
+}
+
+// A surface that is there from the start.
+constexpr auto kAtOnce = [] { return 0.0; };
+
+// One frame, in which nothing is known of where the hand will be.
+void push_alone(Source& source, const DepthFrame& frame, TouchedSource& result) {
+  source.push(frame, kAtOnce);
+  const std::shared_ptr<const SurfacePoints> points = source.points();
+  if (!points || points->size() == 0) {
+    throw Error(
+        fmt::format("{} shows no surface: there is nothing to touch", result.argument.path));
+  }
+  check_place(result.argument, *points);
+  result.state = source.state();
+}
+
+void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSource& chosen,
+                     TouchedSource& result) {
+  if (wants_material(options)) refuse_material(chosen.argument);
+  const auto begin = Clock::now();
+  DepthFrame frame = load_depth_image(chosen.argument.path, chosen.choices.reading);
+  frame.stamp = 0;
+  result.read_seconds = seconds_since(begin);
+  result.format = fmt::format("depth image, {} x {}", frame.camera.width, frame.camera.height);
+  result.depth_image = true;
+  result.options.policy.fit_everywhere = true;
+  const Waiting waiting(fmt::format("preparing {}", chosen.argument.name));
+  const auto start = Clock::now();
+  push_alone(scene.add(chosen.argument.name, result.options), frame, result);
+  result.prepare_seconds = seconds_since(start);
+}
+
+void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& chosen, bool explored,
+              TouchedSource& result) {
+  if (wants_material(options)) refuse_material(chosen.argument);
+  result.camera = open_live(chosen, nullptr);
+  result.first = first_frame(*result.camera);
+  Source& source = scene.add(chosen.argument.name, result.options);
+  if (explored) push_alone(source, result.first, result);
+}
+
+}  // namespace
+
+Touched prepare_touched(const TouchOptions& options, bool explored) {
+  Touched touched;
+  for (const ChosenSource& chosen : choose_sources(options)) {
+    TouchedSource& source = touched.sources.emplace_back();
+    source.argument = chosen.argument;
+    source.options = source_options(options, chosen);
+    if (lives(chosen.argument.path)) {
+      add_live(touched.scene, options, chosen, explored, source);
+    } else if (!chosen.choices.unorganised && is_depth_image(chosen.argument.path)) {
+      add_depth_image(touched.scene, options, chosen, source);
+    } else {
+      add_cloud(touched.scene, options, chosen, source);
+    }
+  }
+  return touched;
+}
+
+void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft) {
+  for (std::size_t i = 0; i < touched.sources.size(); ++i) {
+    const TouchedSource& source = touched.sources[i];
+    SourceOptions options = source.options;
+    options.soft = soft;
+    Source& felt = scene.add(source.argument.name, options);
+    if (source.camera) continue;
+    auto snapshot = std::make_unique<Snapshot>();
+    snapshot->layers.push_back({touched.scene.source(i).points(), 1, 1});
+    felt.publish(std::move(snapshot));
+  }
+}
+
+SimulatedFeed make_feed(Touched& touched, Scene& felt, double latency) {
+  std::vector<SimulatedFeed::Feeding> cameras;
+  for (std::size_t i = 0; i < touched.sources.size(); ++i) {
+    TouchedSource& each = touched.sources[i];
+    if (!each.camera) continue;
+    Source& source = felt.source(i);
+    cameras.push_back({each.camera.get(), std::move(each.first), source.name(),
+                       [&source](const DepthFrame& frame, const StartTime& start) {
+                         source.push(frame, start);
+                       }});
+  }
+  return SimulatedFeed(std::move(cameras), latency);
+}
+
+}  // namespace palpate::app

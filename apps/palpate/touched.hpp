@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/palpate/chosen_source.hpp"
+#include "apps/palpate/cloud_facts.hpp"
+#include "apps/palpate/simulated_feed.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/sensor/depth_camera.hpp"
+
+namespace palpate::app {
+
+/// One source of a run. Points themselves live in the scene.
+struct TouchedSource {
+  CloudArgument argument;
+  SourceOptions options;
+  PrepareReport prepared;  ///< of a cloud
+  SourceState state;       ///< of a depth image; of what lives, after the run
+
+  // Of what stands still:
+  bool depth_image = false;
+  std::string format;
+  std::size_t declared = 0;
+  std::size_t dropped = 0;
+  double read_seconds = 0;
+  UnitsGuess units;            ///< of a file that was read without --scale
+  double prepare_seconds = 0;  ///< wall time of everything between reading and touching
+
+  // Of what lives:
+  std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
+  DepthFrame first;                     ///< the camera's first frame
+  FeedReport feed;                      ///< after the run
+};
+
+/// What is touched: everything that is known of it before the first step.
+struct Touched {
+  std::vector<TouchedSource> sources;
+  /// As prepared before the run; of a camera its first frame, where `explored` was asked for.
+  Scene scene;
+};
+
+/// Reads every cloud, prepares it and puts it into the scene; opens every camera and waits for its
+/// first frame, which is prepared only if the surface is to be `explored` before the run.
+/// @throws UsageError when a pose names no source; Error as reading, opening and preparing do.
+[[nodiscard]] Touched prepare_touched(const TouchOptions& options, bool explored);
+
+/// Puts into `scene` what is felt in the run: clouds as they were prepared, shared, with another
+/// soft material (how hard the hardest points are may be known after preparation only); cameras
+/// without a surface yet.
+void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft);
+
+/// Cameras and their sources in `felt`, which outlives the feed, on a simulated clock.
+[[nodiscard]] SimulatedFeed make_feed(Touched& touched, Scene& felt, double latency);
+
+}  // namespace palpate::app
