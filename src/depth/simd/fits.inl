@@ -13,14 +13,19 @@ namespace {
                                             const int* sizes_v) {
   int half_u[kLanes];
   int half_v[kLanes];
+  int columns[kLanes];
+  int rows[kLanes];
   Moments s;
   for (int l = 0; l < kLanes; ++l) {
     const int i = four[l];
     half_u[l] = sizes_u[i];
     half_v[l] = sizes_v[i];
-    s.set(in.table, l, c.columns[i] + c.shift_u[i] - in.table.first_column,
-          row + c.shift_v[i] - in.table.first_row, half_u[l], half_v[l]);
+    columns[l] = c.columns[i] + c.shift_u[i] - in.table.first_column;
+    rows[l] = row + c.shift_v[i] - in.table.first_row;
+    s.set(in.table, l, columns[l], rows[l], half_u[l], half_v[l]);
   }
+  s.u = lanes(columns) - double(in.table.columns / 2);
+  s.v = lanes(rows) - double(in.table.rows / 2);
   return fit(in, shape(half_u, half_v), s);
 }
 
@@ -91,10 +96,6 @@ struct Search {
 inline int shift_of(int half, bool whole) {
   return whole ? half : (half + 1) / 2;
 }
-inline Doubles lanes(const int numbers[kLanes], int factor) {
-  return Doubles{double(numbers[0]), double(numbers[1]), double(numbers[2]), double(numbers[3])} *
-         double(factor);
-}
 
 // The best scores that windows beside the block may reach: those of the largest ones, were the
 // surface flat.
@@ -127,10 +128,12 @@ inline void follow(const FitInput& in, const Chunk& c, const Directions& to, boo
       s.set(in.table, l, search.column + to.u[l] * shift_u, search.row + to.v[l] * shift_v, half_u,
             half_v);
     }
-    const Fits f = fit(in, shape(half_u, half_v), s);
-    growing &= f.affine | (k < kBentSizes ? f.quadratic : Mask{});
     const Doubles du = lanes(to.u, -shift_u);
     const Doubles dv = lanes(to.v, -shift_v);
+    s.u = double(search.column - in.table.columns / 2) - du;
+    s.v = double(search.row - in.table.rows / 2) - dv;
+    const Fits f = fit(in, shape(half_u, half_v), s);
+    growing &= f.affine | (k < kBentSizes ? f.quadratic : Mask{});
     const Doubles off = surface_at(f, f.affine, du, dv).rho - c.rho[search.i];
     const Doubles scores = score(f, f.affine, du, dv, search.lever_u2, search.lever_v2);
     const Mask better = growing & (off * off <= 4 * c.variance[search.i]) & (scores < best);

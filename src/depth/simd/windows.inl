@@ -34,6 +34,11 @@ inline bool any(const Mask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
+inline Doubles lanes(const int numbers[kLanes], int factor = 1) {
+  return Doubles{double(numbers[0]), double(numbers[1]), double(numbers[2]), double(numbers[3])} *
+         double(factor);
+}
+
 // Four rows of numbers become four columns.
 struct Four {
   Doubles v[4];
@@ -95,11 +100,11 @@ struct Shape {
           same(u.mu),              same(v.mu),     same(area)};
 }
 
-// Sums over four windows, and their middles in the table's coordinates.
+// Sums over four windows.
 struct Moments {
   Doubles low[kLanes];  // one window each: r, ru, rv, ruu
   Doubles high[kLanes];  // ruv, rvv, rr, counts
-  Doubles u, v;
+  Doubles u, v;          // of the windows' middles, from the table's
 
   // A window that is not inside the table counts as holes. `column`, `row` in blocks of the table.
   [[gnu::always_inline]] inline void set(const WindowTable& table, int lane, int column, int row,
@@ -115,8 +120,6 @@ struct Moments {
     low[lane] = (load(bottom + across) - load(bottom)) - (load(top + across) - load(top));
     high[lane] =
         (load(bottom + across + 4) - load(bottom + 4)) - (load(top + across + 4) - load(top + 4));
-    u[lane] = column - table.columns / 2;
-    v[lane] = row - table.rows / 2;
   }
 };
 
