@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "palpate/base/error.hpp"
@@ -115,6 +116,18 @@ bool Source::push(const PointCloud& cloud, double stamp, const StartTime& start)
   const std::lock_guard lock(mutex_);
   report_ = report;
   return true;
+}
+
+void Source::keep() {
+  const Snapshot* newest = handoff_.peek();  // nobody else publishes, so nobody frees it
+  if (newest == nullptr) return;
+  auto kept = std::make_shared<Snapshot>(*newest);
+  kept->silent_from = std::numeric_limits<double>::infinity();
+  {
+    const std::lock_guard lock(mutex_);
+    state_.silent_from = kept->silent_from;
+  }
+  handoff_.publish(std::move(kept));
 }
 
 /// May one more snapshot be made? If not, says whom it waits for.

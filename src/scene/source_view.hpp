@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 
 #include "field/patch.hpp"
@@ -25,9 +26,7 @@ class SourceView {
   bool advance(double now) noexcept;
 
   /// nullptr: no surface now; one that has faded away is none.
-  [[nodiscard]] const Snapshot* current() const noexcept {
-    return presence_ > 0 ? current_ : nullptr;
-  }
+  [[nodiscard]] const Snapshot* current() const noexcept { return there_ ? current_ : nullptr; }
 
   /// How sure the current snapshot is now, 0-1; 0 without one.
   [[nodiscard]] double presence() const noexcept { return presence_; }
@@ -42,14 +41,20 @@ class SourceView {
   void look(double now) noexcept;
   void forget() noexcept;
   void change_over(double now) noexcept;
+  [[nodiscard]] double progress_at(double now) const noexcept;
 
   Handoff<Snapshot>* handoff_;
   std::size_t reader_;
   std::size_t slot_ = 0;  // that holds `current_`; the other holds `next_`
   const Snapshot* current_ = nullptr;
   const Snapshot* next_ = nullptr;
+  double begin_ = 0;  // when the current one began to be shown, s
+  double span_ = 0;   // and in which it comes to its end, s
+  double shown_ = -std::numeric_limits<double>::infinity();  // time of the last advance()
+  double sure_ = -std::numeric_limits<double>::infinity();   // when presence was last above 0, s
   double progress_ = 0;
   double presence_ = 0;
+  bool there_ = false;
 };
 
 }  // namespace palpate

@@ -81,6 +81,11 @@ class Source {
   /// frames.
   bool push(const PointCloud& cloud, double stamp, const StartTime& start);
 
+  /// Lets the newest surface stay however long nothing confirms it: a recording has come to its
+  /// end. Points that were fading by themselves go on to. Not real-time; whoever pushes calls it,
+  /// after the last push.
+  void keep();
+
   /// Makes `snapshot` the newest; nullptr: there is no surface any more. Not real-time.
   /// @throws Error when it has more than Snapshot::kMaxLayers layers, a layer that is not whole, a
   /// weight or presence outside 0-1, or times that are not finite and in order.

@@ -20,6 +20,12 @@ float whole_sum(Kernel kernel) {
   return static_cast<float>(kernel == Kernel::wyvill ? kTurn * 4 / 27 : kTurn / 14);
 }
 
+float weight(Kernel kernel, float q) {
+  if (kernel == Kernel::wendland) return static_cast<float>(wendland(static_cast<double>(q)).w);
+  const float s = 1 - q;
+  return s * s * (5 + 4 * s) * (1.0f / 9);
+}
+
 bool present(const FilteredDepth& depth, std::size_t block) {
   return depth.states[block] != BlockState::empty;
 }
@@ -29,7 +35,6 @@ bool present(const FilteredDepth& depth, std::size_t block) {
 void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> exact_within) {
   start(depth);
   limit_growth(depth);
-  mark_rims(depth);
   list_rims(depth, exact_within, false);
   weigh_rims(depth);
 }
@@ -37,7 +42,6 @@ void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> exa
 void BlockSurface::measure(const FilteredDepth& depth) {
   start(depth);
   limit_growth(depth);
-  mark_rims(depth);
   list_rims(depth, {}, true);
   weigh_rims(depth);
 }
@@ -45,12 +49,12 @@ void BlockSurface::measure(const FilteredDepth& depth) {
 // Radii by spacing, and areas of a surface that goes on on all sides.
 void BlockSurface::start(const FilteredDepth& depth) {
   const std::size_t count = depth.size();
-  for (auto* column : {&radii_, &areas_, &sums_}) column->resize(count);
+  for (auto* column : {&radii_, &areas_}) column->resize(count);
   const auto pitch = static_cast<float>(depth.pitch);
   const float whole = whole_sum(kernel_);
   for (std::size_t b = 0; b < count; ++b) {
     if (!present(depth, b)) {
-      radii_[b] = areas_[b] = sums_[b] = 0;
+      radii_[b] = areas_[b] = 0;
       continue;
     }
     const float side = pitch * depth.positions[b].z();
@@ -63,35 +67,22 @@ void BlockSurface::start(const FilteredDepth& depth) {
 
 // Two passes over the image carry a small radius to everywhere (a chamfer transform).
 void BlockSurface::limit_growth(const FilteredDepth& depth) {
-  const int columns = depth.columns;
+  const auto columns = static_cast<std::size_t>(depth.columns);
+  const auto pitch = static_cast<float>(depth.pitch);
   const auto limit = [&](std::size_t b, std::size_t by) {
+    // Blocks are at least their pitch apart, so most pairs need no look at where they are.
     const float room = radii_[b] - radii_[by];
-    if (room <= 0 || radii_[by] == 0) return;
+    if (room <= kSlope * pitch * depth.positions[b].z() || radii_[by] == 0) return;
     const float way = kSlope * (depth.positions[b] - depth.positions[by]).norm();
     if (way < room) radii_[b] = radii_[by] + way;
   };
-  const auto pass = [&](std::size_t b, int u, int v, int step) {
-    const bool row = step > 0 ? v > 0 : v + 1 < depth.rows;
-    const bool column = step > 0 ? u > 0 : u + 1 < columns;
-    const auto beside = b - static_cast<std::size_t>(step);
-    const auto above = b - static_cast<std::size_t>(step * columns);
-    if (column) limit(b, beside);
-    if (row) limit(b, above);
-  };
-  for (int v = 0; v < depth.rows; ++v) {
-    for (int u = 0; u < columns; ++u) {
-      const auto b = static_cast<std::size_t>(v * columns + u);
-      if (radii_[b] > 0) pass(b, u, v, 1);
-    }
+  for (std::size_t b = 1; b < depth.size(); ++b) {
+    if (b % columns != 0) limit(b, b - 1);
+    if (b >= columns) limit(b, b - columns);
   }
-  for (int v = depth.rows; v-- > 0;) {
-    for (int u = columns; u-- > 0;) {
-      const auto b = static_cast<std::size_t>(v * columns + u);
-      if (radii_[b] > 0) pass(b, u, v, -1);
-    }
-  }
-  for (std::size_t b = 0; b < depth.size(); ++b) {
-    if (radii_[b] > 0) sums_[b] = std::max(1.0f, radii_[b] * radii_[b] / areas_[b]);
+  for (std::size_t b = depth.size() - 1; b-- > 0;) {
+    if ((b + 1) % columns != 0) limit(b, b + 1);
+    if (b + columns < depth.size()) limit(b, b + columns);
   }
 }
 
@@ -143,6 +134,7 @@ void BlockSurface::list_rims(const FilteredDepth& depth, std::span<const Ball> e
                              bool everywhere) {
   exact_.clear();
   if (!everywhere && exact_within.empty()) return;
+  mark_rims(depth);
   for (std::size_t b = 0; b < depth.size(); ++b) {
     if (radii_[b] == 0) continue;
     const auto inside = [&](const Ball& ball) {
@@ -169,13 +161,18 @@ void BlockSurface::visit_window(const FilteredDepth& depth, std::size_t block,
       const float radius = radii_[other];
       if (radius == 0) continue;
       const float q = (depth.positions[other] - place).squaredNorm() / (radius * radius);
-      if (q < 1) visit(other, static_cast<float>(evaluate(kernel_, static_cast<double>(q)).w));
+      if (q < 1) visit(other, weight(kernel_, q));
     }
   }
 }
 
 // a_i = 1 / max(S_i, 0.8 Sbar_i).
 void BlockSurface::weigh_rims(const FilteredDepth& depth) {
+  if (exact_.empty()) return;
+  sums_.resize(depth.size());
+  for (std::size_t b = 0; b < depth.size(); ++b) {
+    sums_[b] = radii_[b] > 0 ? std::max(1.0f, radii_[b] * radii_[b] / areas_[b]) : 0;
+  }
   exact_sums_.resize(exact_.size());
   for (std::size_t k = 0; k < exact_.size(); ++k) {
     float sum = 0;

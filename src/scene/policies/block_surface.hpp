@@ -30,6 +30,12 @@ class BlockSurface {
   /// a_i R_i^2, m^2: the density weight of a point with radius R is this over R^2.
   [[nodiscard]] float area(std::size_t block) const { return areas_[block]; }
 
+  /// Says that both will be asked for soon.
+  void fetch(std::size_t block) const {
+    __builtin_prefetch(&radii_[block]);
+    __builtin_prefetch(&areas_[block]);
+  }
+
  private:
   void start(const FilteredDepth& depth);
   void limit_growth(const FilteredDepth& depth);

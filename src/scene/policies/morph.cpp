@@ -9,6 +9,10 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
+constexpr std::size_t kAhead = 32;  // blocks
+
+constexpr double kArrived = 1 - 1e-6;  // what a regular frame's progress is but for rounding
+
 // What has faded so far is gone.
 constexpr float kGone = 1e-4f;
 
@@ -60,7 +64,10 @@ void Morph::fill(const MorphInput& input, const Moment& moment,
   measure(input);
   if (moved_) follow_camera(input);
   by_block_.sort(entries_, order_.size());
-  for (std::size_t place = 0; place < order_.size(); ++place) settle(input.depth, place);
+  for (std::size_t place = 0; place < order_.size(); ++place) {
+    if (place + kAhead < order_.size()) fetch(input.depth, order_.blocks[place + kAhead]);
+    settle(input.depth, place);
+  }
   writer_.end();
   std::swap(entries_, next_entries_);
   last_ = points;
@@ -81,6 +88,7 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
   progress_ = 1;
   if (last_ && last_moment_.duration > 0) {
     progress_ = std::clamp((moment.start - last_moment_.start) / last_moment_.duration, 0.0, 1.0);
+    if (progress_ > kArrived) progress_ = 1;
   }
   moved_ = last_ && T_world_sensor.matrix() != T_world_sensor_.matrix();
   turn_ = T_world_sensor.linear().cast<float>();
@@ -108,26 +116,24 @@ void Morph::measure(const MorphInput& input) {
 
 /// Puts every old point at the block that sees it now.
 void Morph::follow_camera(const MorphInput& input) {
-  const FilteredDepth& depth = input.depth;
-  const Pinhole& p = input.pinhole;
-  std::vector<std::uint32_t>& places = place_of_block_;
-  places.resize(order_.size());
+  place_of_block_.resize(order_.size());
   for (std::size_t k = 0; k < order_.size(); ++k) {
-    places[order_.blocks[k]] = static_cast<std::uint32_t>(k);
+    place_of_block_[order_.blocks[k]] = static_cast<std::uint32_t>(k);
   }
+  const Pinhole& p = input.pinhole;
+  const Eigen::Array2f focal = Eigen::Array2d(p.fx, p.fy).cast<float>() / 2;
+  const Eigen::Array2f center = Eigen::Array2d(p.cx - 0.5, p.cy - 0.5).cast<float>() / 2;
+  const Eigen::Array2f size(static_cast<float>(order_.columns), static_cast<float>(order_.rows));
   const Eigen::Matrix3f back = turn_.transpose();
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& entry = entries_[i];
     const Point point = old_point(static_cast<std::uint32_t>(i));
     const Eigen::Vector3f local = back * (point.state.position - shift_);
-    const double u = (local.x() / local.z() * p.fx + p.cx - 0.5) / 2;
-    const double v = (local.y() / local.z() * p.fy + p.cy - 0.5) / 2;
-    const bool inside =
-        local.z() > 0 && u > -0.5 && v > -0.5 && u < depth.columns - 0.5 && v < depth.rows - 0.5;
+    const Eigen::Array2f block = local.head<2>().array() * (1 / local.z()) * focal + center + 0.5f;
+    const bool inside = local.z() > 0 && (block >= 0).all() && (block < size).all();
     if (inside) {
-      entry.place = places[static_cast<std::size_t>(std::lround(v)) *
-                               static_cast<std::size_t>(depth.columns) +
-                           static_cast<std::size_t>(std::lround(u))];
+      const Eigen::Array2i at = block.cast<int>();
+      entry.place = place_of_block_[static_cast<std::size_t>(at.y() * order_.columns + at.x())];
       if (entry.kind == EntryKind::outside) entry.kind = EntryKind::live;
     } else if (entry.kind == EntryKind::live) {
       entry.kind = EntryKind::outside;
@@ -164,6 +170,14 @@ Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) con
   return point;
 }
 
+/// The curve jumps from row to row, which no processor foresees.
+void Morph::fetch(const FilteredDepth& depth, std::size_t block) const {
+  __builtin_prefetch(&depth.positions[block]);
+  __builtin_prefetch(&depth.normals[block]);
+  __builtin_prefetch(&depth.confidences[block]);
+  surface_.fetch(block);
+}
+
 /// What becomes of one block: of the point that the frame has there, and of the old ones.
 void Morph::settle(const FilteredDepth& depth, std::size_t place) {
   const std::span<const std::uint32_t> old = by_block_.at(place);
@@ -175,11 +189,10 @@ void Morph::settle(const FilteredDepth& depth, std::size_t place) {
   if (shown) {
     const Point point = new_point(depth, block);
     partner = partner_of(old, point.state.position);
-    if (partner != kNone && !follows(depth, block, point, partner)) partner = kNone;
-    if (partner != kNone) {
-      move(point, partner);
-    } else {
+    const bool jumped = depth.jumped[block] != 0;
+    if (partner == kNone || !follow(point, partner, jumped)) {
       appear(point);
+      partner = kNone;
     }
   }
   bool held = shown;
@@ -211,18 +224,14 @@ std::uint32_t Morph::partner_of(std::span<const std::uint32_t> old,
   return partner;
 }
 
-/// Is the block's new point the old one, gone on? What the filter says of jumps counts when both
-/// saw the point in the last frame, and from the same place.
-bool Morph::follows(const FilteredDepth& depth, std::size_t block, const Point& point,
-                    std::uint32_t i) const {
-  if (depth.jumped[block] != 0 && entries_[i].seen && !moved_) return false;
-  const float way = (point.state.position - old_point(i).state.position).squaredNorm();
-  return way <= point.nature.radius * point.nature.radius;
-}
-
-void Morph::move(Point to, std::uint32_t i) {
+/// Lets the old point go to the new one, if they are one surface. What the filter says of jumps
+/// counts when both saw the point in the last frame, and from the same place.
+bool Morph::follow(Point to, std::uint32_t i, bool jumped) {
+  if (jumped && entries_[i].seen && !moved_) return false;
   const Point from = old_point(i);
   const float radius = from.nature.radius;
+  const float way = (to.state.position - from.state.position).squaredNorm();
+  if (way > to.nature.radius * to.nature.radius) return false;
   if (std::abs(to.nature.radius - radius) < kSteadyRadius * radius) {
     to.nature.radius = radius;
     to.state.weight = std::min(1.0f, to.area / (radius * radius));
@@ -233,6 +242,7 @@ void Morph::move(Point to, std::uint32_t i) {
   const auto rise = static_cast<float>(moment_.duration / options_.fade);
   to.state.presence = std::min(1.0f, from.state.presence + rise);
   add(from.state, to.state, to.nature, {place_, EntryKind::live, true, moment_.stamp});
+  return true;
 }
 
 void Morph::appear(const Point& point) {

@@ -61,14 +61,13 @@ class Morph {
   void start(const MorphInput& input, const Moment& moment, SurfacePoints& points);
   void measure(const MorphInput& input);
   void follow_camera(const MorphInput& input);
+  void fetch(const FilteredDepth& depth, std::size_t block) const;
   void settle(const FilteredDepth& depth, std::size_t place);
   [[nodiscard]] Point old_point(std::uint32_t i) const;
   [[nodiscard]] Point new_point(const FilteredDepth& depth, std::size_t block) const;
   [[nodiscard]] std::uint32_t partner_of(std::span<const std::uint32_t> old,
                                          const Eigen::Vector3f& place) const;
-  [[nodiscard]] bool follows(const FilteredDepth& depth, std::size_t block, const Point& point,
-                             std::uint32_t i) const;
-  void move(Point to, std::uint32_t i);
+  bool follow(Point to, std::uint32_t i, bool jumped);
   void appear(const Point& point);
   void hold(std::uint32_t i);
   void leave(std::uint32_t i);
