@@ -69,6 +69,18 @@ void Proxy::reset(const Eigen::Vector3d& position) noexcept {
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
 }
 
+bool Proxy::change(double stiffness, const Friction& friction) noexcept {
+  const auto good = [](double x) { return std::isfinite(x) && x >= 0; };
+  if (!good(stiffness) || !good(friction.static_coefficient) ||
+      !good(friction.dynamic_coefficient) || !good(friction.viscous) ||
+      friction.dynamic_coefficient > friction.static_coefficient) {
+    return false;
+  }
+  options_.stiffness = stiffness;
+  options_.friction = friction;
+  return true;
+}
+
 Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept {
   if (!in_range(hip) || !std::isfinite(dt) || dt < 0) fault_ = true;
   if (fault_) return faulted();

@@ -49,8 +49,8 @@ struct ProxyOptions {
 /// The 3-DOF god-object: follows the hand through free space and stays on the surface when the
 /// hand goes in (algorithm.md section 2; paper section III, after Salisbury and Tarr).
 ///
-/// One proxy belongs to one thread. step() and reset() never allocate, lock, throw or call the
-/// system. Non-finite input latches a fault: zero force until reset().
+/// One proxy belongs to one thread. step(), change() and reset() never allocate, lock, throw or
+/// call the system. Non-finite input latches a fault: zero force until reset().
 class Proxy {
  public:
   /// Farther from the origin than this (m) doubles no longer resolve a surface: a fault.
@@ -77,6 +77,10 @@ class Proxy {
   /// What a step spends at most: 800 in sweeps (and what the last interval of one takes), 20 for
   /// each constrained sub-step allowed (and what a Newton takes), and recovery.
   [[nodiscard]] int max_evaluations() const noexcept { return 900 + 20 * options_.max_iterations; }
+
+  /// Feels stiffness (N/m) and friction like this from the next step on; in contact, stiffness goes
+  /// there as EnergyTank allows. False, and nothing changes, where a number is out of its range.
+  bool change(double stiffness, const Friction& friction) noexcept;
 
   /// Puts the proxy at `position`, in free space, and forgets contact, side and faults.
   void reset(const Eigen::Vector3d& position) noexcept;

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+
+#include "palpate/contact/proxy.hpp"
+#include "palpate/device/device.hpp"
+#include "palpate/device/workspace.hpp"
+#include "palpate/scene/scene_field.hpp"
+#include "palpate/servo/guard.hpp"
+#include "palpate/servo/histogram.hpp"
+#include "palpate/servo/latest.hpp"
+#include "palpate/servo/servo_state.hpp"
+
+namespace palpate {
+
+struct ServoOptions {
+  FieldOptions field = {};
+  ProxyOptions proxy = {};
+  /// maximum_force is lowered to Servo::kForceShare of what the device can hold, and silence raised
+  /// to 2.5 periods of slow devices.
+  GuardOptions guard = {};
+  Workspace workspace = {};
+};
+
+/// What may change while a servo runs.
+struct Feel {
+  double stiffness = 500;  ///< K, N/m
+  Friction friction = {};
+};
+
+/// One hand in a scene: SceneField, Proxy and Guard between a device's place and its force.
+///
+/// Owns no thread: a device's callback calls tick(), or a ServoThread does, or whoever owns the
+/// loop makes a step of its parts. One thread steps; all that is marked so may be called by others
+/// meanwhile. Device and scene outlive it.
+class Servo {
+ public:
+  /// Of a device's continuous maximum: what it is asked to hold (algorithm.md section 8).
+  static constexpr double kForceShare = 0.8;
+
+  /// @throws Error when an option is out of its range or the scene has too many readers.
+  Servo(Device& device, Scene& scene, const ServoOptions& options = {});
+  Servo(const Servo&) = delete;
+  Servo& operator=(const Servo&) = delete;
+
+  /// One step: reads the device, computes, writes the force, shows the state. `now`: s, on the
+  /// clock that snapshots are stamped on; it never goes back. noexcept, allocation-free, lock-free;
+  /// what the device does in read() and write() is the device's.
+  const ServoState& tick(double now) noexcept;
+
+  /// A step at the device's own time: for simulated time.
+  const ServoState& tick() noexcept;
+
+  /// The computing part of a step alone: the force for the device is in state().force, world frame.
+  /// Shows nothing yet. Real-time (docs/architecture.md, contract 1).
+  const ServoState& step(const DeviceState& device, double now) noexcept;
+
+  /// Shows the last step to those who watch, with what was measured of it. Real-time.
+  void show(const StepTiming& timing = {}) noexcept;
+
+  /// `state.force` in the device's frame.
+  [[nodiscard]] Eigen::Vector3d device_force() const noexcept {
+    return options_.workspace.force_to_device(state_.force);
+  }
+
+  [[nodiscard]] Device& device() const noexcept { return device_; }
+  [[nodiscard]] const ServoOptions& options() const noexcept { return options_; }
+
+  /// The newest state. Any thread.
+  [[nodiscard]] ServoState state() const noexcept { return shown_.get(); }
+  /// How late steps began and what they took to compute, where it was measured. Any thread.
+  [[nodiscard]] Durations lateness() const noexcept { return lateness_.look(); }
+  [[nodiscard]] Durations computing() const noexcept { return computing_.look(); }
+
+  /// Lets the hand feel nothing: the force goes to zero at the guard's rate, and back. Any thread.
+  void pause(bool paused) noexcept { paused_.store(paused); }
+  /// Forgets faults and the contact in the next step; the proxy is put to the hand. Any thread.
+  void reset() noexcept { reset_.store(true); }
+
+  /// Changes what is felt from the next step on. In contact, stiffness changes as EnergyTank
+  /// allows: the hand is given no energy. Any thread; not real-time.
+  /// @throws Error when a value is out of its range.
+  void set_feel(const Feel& feel);
+
+ private:
+  void take_wishes(const Eigen::Vector3d& hip) noexcept;
+  [[nodiscard]] Eigen::Vector3d guarded() noexcept;
+
+  Device& device_;
+  ServoOptions options_;
+  SceneField field_;
+  Proxy proxy_;
+  Guard guard_;
+  ServoState state_;  // of the stepping thread; the others see what was shown
+  bool started_ = false;
+  std::uint64_t feel_seen_ = 0;
+
+  Latest<ServoState> shown_;
+  Histogram lateness_;
+  Histogram computing_;
+  std::mutex feel_mutex_;  // between those who change what is felt; the step never takes it
+  Latest<Feel> feel_;
+  std::atomic<bool> paused_{false};
+  std::atomic<bool> reset_{false};
+};
+
+}  // namespace palpate

@@ -1,0 +1,66 @@
+#include "palpate/servo/histogram.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kShortest = 1.25e-7;  // s, the lower end of the first bin
+constexpr double kLongest = 1e6;       // s
+
+std::size_t bin_of(double duration) noexcept {
+  if (duration <= kShortest) return 0;
+  const double octaves = std::log2(duration / kShortest);
+  const auto bin = static_cast<std::size_t>(octaves * Durations::kPerOctave);
+  return std::min(bin, Durations::kBins - 1);
+}
+
+double middle_of(std::size_t bin) noexcept {
+  return kShortest * std::exp2((static_cast<double>(bin) + 0.5) / Durations::kPerOctave);
+}
+
+}  // namespace
+
+double Durations::quantile(double p) const noexcept {
+  if (count == 0) return 0;
+  const double wanted = std::clamp(p, 0.0, 1.0) * static_cast<double>(count);
+  double below = 0;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    below += static_cast<double>(counts[bin]);
+    if (below >= wanted && below > 0) return std::min(middle_of(bin), longest);
+  }
+  return longest;
+}
+
+Durations Durations::since(const Durations& earlier) const noexcept {
+  Durations later = *this;
+  for (std::size_t bin = 0; bin < kBins; ++bin) later.counts[bin] -= earlier.counts[bin];
+  later.count -= earlier.count;
+  later.sum -= earlier.sum;
+  return later;
+}
+
+// One thread adds: what it read cannot have changed when it writes.
+void Histogram::add(double duration) noexcept {
+  if (std::isnan(duration)) return;
+  constexpr auto kRelaxed = std::memory_order_relaxed;
+  const double length = std::clamp(duration, 0.0, kLongest);
+  auto& count = counts_[bin_of(length)];
+  count.store(count.load(kRelaxed) + 1, kRelaxed);
+  sum_.store(sum_.load(kRelaxed) + length, kRelaxed);
+  longest_.store(std::max(longest_.load(kRelaxed), length), kRelaxed);
+}
+
+Durations Histogram::look() const noexcept {
+  Durations seen;
+  for (std::size_t bin = 0; bin < Durations::kBins; ++bin) {
+    seen.counts[bin] = counts_[bin].load(std::memory_order_relaxed);
+    seen.count += seen.counts[bin];
+  }
+  seen.sum = sum_.load(std::memory_order_relaxed);
+  seen.longest = longest_.load(std::memory_order_relaxed);
+  return seen;
+}
+
+}  // namespace palpate

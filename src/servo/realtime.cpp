@@ -1,0 +1,119 @@
+#include "palpate/servo/realtime.hpp"
+
+#include <fmt/core.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <system_error>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kStack = 256 * 1024;  // bytes that a step may use
+constexpr std::size_t kPage = 4096;
+constexpr unsigned long kTimerSlack = 1;  // ns; 50000 for threads without real-time priority
+
+std::string reason(int error) {
+  return std::generic_category().message(error);
+}
+
+RealtimeRequest ask_for_priority(int priority) {
+  RealtimeRequest request;
+  request.what = fmt::format("real-time priority {} (SCHED_FIFO)", priority);
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+  request.granted = error == 0;
+  if (error == EINVAL) {
+    request.remedy = "there is no such priority; give 1 to 99";
+  } else if (!request.granted) {
+    request.remedy = fmt::format(
+        "{}; permit it with a line '@realtime - rtprio {}' in /etc/security/limits.d, "
+        "the user in the group 'realtime', and a new login",
+        reason(error), std::max(priority, 95));
+  }
+  return request;
+}
+
+// Locking what is to come, too, would make allocations fail once the limit is reached.
+bool may_lock_all() {
+  rlimit limit{};
+  getrlimit(RLIMIT_MEMLOCK, &limit);
+  return limit.rlim_cur == RLIM_INFINITY || geteuid() == 0;
+}
+
+RealtimeRequest ask_for_memory() {
+  RealtimeRequest request;
+  request.what = "memory locked (mlockall)";
+  int error = EPERM;
+  if (may_lock_all()) error = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+  request.granted = error == 0;
+  if (!request.granted) {
+    request.remedy = fmt::format(
+        "{}; permit it with a line '@realtime - memlock unlimited' in /etc/security/limits.d, "
+        "the user in the group 'realtime', and a new login",
+        reason(error));
+  }
+  return request;
+}
+
+RealtimeRequest ask_for_processor(int processor) {
+  RealtimeRequest request;
+  request.what = fmt::format("pinned to processor {}", processor);
+  int error = EINVAL;
+  if (processor >= 0 && processor < CPU_SETSIZE) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    CPU_SET(static_cast<std::size_t>(processor), &set);
+    error = pthread_setaffinity_np(pthread_self(), sizeof set, &set);
+  }
+  request.granted = error == 0;
+  if (!request.granted) {
+    request.remedy = fmt::format(
+        "{}; there is none of that number, or this process may not use "
+        "it: 'taskset -p $$' tells which it may",
+        reason(error));
+  }
+  return request;
+}
+
+// Touches the stack once, so that no step is the first to do so.
+void warm_stack() {
+  std::array<volatile char, kStack> stack;
+  for (std::size_t i = 0; i < kStack; i += kPage) stack[i] = 0;
+}
+
+}  // namespace
+
+bool RealtimeReport::all_granted() const noexcept {
+  return std::ranges::all_of(requests, &RealtimeRequest::granted);
+}
+
+std::string in_words(const RealtimeReport& report) {
+  std::string words;
+  for (const RealtimeRequest& request : report.requests) {
+    words += request.granted ? fmt::format("{}: yes\n", request.what)
+                             : fmt::format("{}: not granted ({})\n", request.what, request.remedy);
+  }
+  return words;
+}
+
+RealtimeReport make_realtime(const RealtimeOptions& options) {
+  RealtimeReport report;
+  prctl(PR_SET_TIMERSLACK, kTimerSlack);
+  if (options.processor) report.requests.push_back(ask_for_processor(*options.processor));
+  if (options.realtime_priority) report.requests.push_back(ask_for_priority(options.priority));
+  if (options.lock_memory) report.requests.push_back(ask_for_memory());
+  warm_stack();
+  return report;
+}
+
+}  // namespace palpate

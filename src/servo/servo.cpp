@@ -1,0 +1,120 @@
+#include "palpate/servo/servo.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSilencePeriods = 2.5;
+
+// A device that renders no force is given what would be felt.
+GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
+  if (device.maximum_force > 0) {
+    options.maximum_force =
+        std::min(options.maximum_force, Servo::kForceShare * device.maximum_force);
+  }
+  if (device.rate > 0) options.silence = std::max(options.silence, kSilencePeriods / device.rate);
+  return options;
+}
+
+ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
+  options.guard = guard_for(device, options.guard);
+  return options;
+}
+
+GuardFault known_fault(const ServoState& state) noexcept {
+  if (state.device == DeviceStatus::failed) return GuardFault::device;
+  return has(state.contact.notes, ContactNote::fault) ? GuardFault::proxy : GuardFault::none;
+}
+
+}  // namespace
+
+Servo::Servo(Device& device, Scene& scene, const ServoOptions& options)
+    : device_(device),
+      options_(options_for(device.info(), options)),
+      field_(scene, options_.field),
+      proxy_(options_.proxy),
+      guard_(options_.guard) {}
+
+const ServoState& Servo::tick(double now) noexcept {
+  step(device_.read(), now);
+  device_.write(device_force());
+  show();
+  return state_;
+}
+
+const ServoState& Servo::tick() noexcept {
+  const DeviceState device = device_.read();
+  step(device, device.time);
+  device_.write(device_force());
+  show();
+  return state_;
+}
+
+const ServoState& Servo::step(const DeviceState& device, double now) noexcept {
+  const Workspace& workspace = options_.workspace;
+  const bool goes_on = started_ && std::isfinite(state_.time);
+  state_.dt = goes_on ? now - state_.time : 1 / device_.info().rate;
+  state_.time = now;
+  state_.hip = workspace.position_to_world(device.position);
+  state_.velocity = workspace.velocity_to_world(device.velocity);
+  state_.device = device.status;
+  state_.buttons = device.buttons;
+  take_wishes(state_.hip);
+  field_.update(now, state_.hip, started_ ? proxy_.position() : state_.hip);
+  started_ = true;
+  state_.contact = proxy_.step(field_, state_.hip, state_.dt);
+  state_.force = guarded();
+  state_.guard = guard_.state();
+  state_.field_notes = field_.notes();
+  state_.patch_points = field_.patch_points();
+  ++state_.step;
+  return state_;
+}
+
+void Servo::take_wishes(const Vector3d& hip) noexcept {
+  state_.paused = paused_.load();
+  if (reset_.exchange(false)) {
+    proxy_.reset(hip);
+    guard_.reset();
+  }
+  const std::uint64_t generation = feel_.generation();
+  if (generation == feel_seen_) return;
+  if (const std::optional<Feel> feel = feel_.look()) {
+    proxy_.change(feel->stiffness, feel->friction);
+    feel_seen_ = generation;
+  }
+}
+
+Vector3d Servo::guarded() noexcept {
+  GuardInput input;
+  input.force = state_.paused ? Vector3d::Zero().eval() : state_.contact.force;
+  input.hip = state_.hip;
+  input.velocity = state_.velocity;
+  input.dt = state_.dt;
+  input.stiffness = state_.contact.stiffness;
+  input.fault = known_fault(state_);
+  return guard_.apply(input);
+}
+
+void Servo::show(const StepTiming& timing) noexcept {
+  state_.timing = timing;
+  lateness_.add(timing.lateness);
+  computing_.add(timing.computing);
+  shown_.set(state_);
+}
+
+void Servo::set_feel(const Feel& feel) {
+  ProxyOptions checked = options_.proxy;
+  checked.stiffness = feel.stiffness;
+  checked.friction = feel.friction;
+  static_cast<void>(Proxy(checked));  // throws what is out of range
+  const std::lock_guard lock(feel_mutex_);
+  feel_.set(feel);
+}
+
+}  // namespace palpate

@@ -1,0 +1,108 @@
+// What the guard promises whatever it is told.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "palpate/servo/guard.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+// Numbers as they come, and now and then as they should never come.
+double number(double scale, bool wild) {
+  const double plain = scale * 1e-3 * *rc::gen::inRange(-1000, 1001);
+  if (!wild) return plain;
+  const double infinity = std::numeric_limits<double>::infinity();
+  return *rc::gen::weightedElement<double>({{40, plain},
+                                            {1, std::numeric_limits<double>::quiet_NaN()},
+                                            {1, infinity},
+                                            {1, -infinity},
+                                            {1, 1e308},
+                                            {1, 1e-310},
+                                            {1, 0.0}});
+}
+
+Vector3d vector(double scale, bool wild) {
+  return {number(scale, wild), number(scale, wild), number(scale, wild)};
+}
+
+// A step of a hand that moves at up to 1 m/s or rests, in contact or not, at any force up to 50 N.
+GuardInput input(bool wild, const Vector3d& before) {
+  GuardInput made;
+  made.force = *rc::gen::element(0.0, 1.0, 1.0) * vector(50, wild);
+  made.hip = before + *rc::gen::element(0.0, 1.0) * vector(1e-3, wild);
+  made.velocity = vector(1, wild);
+  made.dt = *rc::gen::weightedElement<double>({{30, 1e-3}, {3, 2e-3}, {2, 0.0}, {1, 0.2}});
+  if (wild) made.dt = *rc::gen::weightedElement<double>({{60, made.dt}, {1, -1.0}});
+  made.stiffness = *rc::gen::element(0.0, 100.0, 500.0, 2000.0);
+  return made;
+}
+
+std::vector<GuardInput> inputs(bool wild) {
+  std::vector<GuardInput> all;
+  const int count = *rc::gen::inRange(1, 60);
+  Vector3d hip = Vector3d::Zero();
+  for (int i = 0; i < count; ++i) {
+    all.push_back(input(wild, hip));
+    if (all.back().hip.allFinite()) hip = all.back().hip;
+  }
+  return all;
+}
+
+RC_GTEST_PROP(GuardProperty, NeverLetsPassWhatIsNotFiniteOrTooLong, ()) {
+  const GuardOptions options{.maximum_force = *rc::gen::element(0.5, 3.0, 16.0)};
+  Guard guard(options);
+  for (const GuardInput& each : inputs(true)) {
+    const bool faulted = guard.state().fault != GuardFault::none;
+    const Vector3d force = guard.apply(each);
+    RC_ASSERT(force.allFinite());
+    RC_ASSERT(force.norm() <= options.maximum_force * (1 + 1e-12));
+    if (faulted) RC_ASSERT(force.isZero(0));
+    if (has(guard.state().notes, GuardNote::fault)) RC_ASSERT(force.isZero(0));
+    if (!each.force.allFinite()) RC_ASSERT(guard.state().fault != GuardFault::none);
+  }
+}
+
+// The bound is computed here anew, from what went in and came out.
+RC_GTEST_PROP(GuardProperty, NeverStepsFurtherThanHandAndSlewAllow, ()) {
+  const GuardOptions options{.maximum_force = *rc::gen::element(0.5, 3.0, 16.0),
+                             .damping = *rc::gen::element(0.0, 1.0)};
+  Guard guard(options);
+  GuardInput before;
+  Vector3d force_before = Vector3d::Zero();
+  bool first = true;
+  for (const GuardInput& each : inputs(false)) {
+    if (first) before = each;
+    first = false;
+    const Vector3d force = guard.apply(each);
+    if (each.dt > options.silence) {
+      RC_ASSERT(force.isZero(0));
+    } else {
+      const double stiffness = std::max(each.stiffness, before.stiffness);
+      const double allowed = stiffness * (each.hip - before.hip).norm() +
+                             options.damping * (each.velocity - before.velocity).norm() +
+                             options.slew * each.dt;
+      RC_ASSERT((force - force_before).norm() <= allowed + 1e-12);
+    }
+    before = each;
+    force_before = force;
+  }
+}
+
+// It only ever goes towards the force that was asked for: no link makes a force of its own.
+RC_GTEST_PROP(GuardProperty, ChangesNothingThatNeedsNoChange, ()) {
+  Guard guard({.maximum_force = 16});
+  for (const GuardInput& each : inputs(false)) {
+    const Vector3d force = guard.apply(each);
+    if (guard.state().notes == GuardNote::none) RC_ASSERT(force == each.force);
+  }
+}
+
+}  // namespace
+}  // namespace palpate

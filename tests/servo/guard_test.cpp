@@ -1,0 +1,174 @@
+#include "palpate/servo/guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kDt = 1e-3;  // s
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+GuardInput pushed(const Vector3d& force, const Vector3d& hip = Vector3d::Zero()) {
+  GuardInput input;
+  input.force = force;
+  input.hip = hip;
+  input.dt = kDt;
+  input.stiffness = 500;
+  return input;
+}
+
+// Pressing into a floor at z = 0 along z, as a proxy would answer.
+GuardInput pressed(double z) {
+  return pushed({0, 0, z < 0 ? -500 * z : 0}, {0, 0, z});
+}
+
+TEST(Guard, LetsASpringPassBitForBitThatTheHandStretches) {
+  Guard guard({.maximum_force = 16});
+  for (int i = 0; i < 2000; ++i) {
+    // 0.2 m/s at most, to 13 mm: comes in, goes out.
+    const double z = 3e-3 - 16e-3 * std::abs(std::sin(0.0125 * i));
+    const GuardInput input = pressed(z);
+    ASSERT_EQ(guard.apply(input), input.force) << "step " << i;
+    ASSERT_EQ(guard.state().notes, GuardNote::none);
+  }
+  EXPECT_EQ(guard.state().counts.steps, 2000u);
+  EXPECT_EQ(in_words(guard.state()), "");
+}
+
+TEST(Guard, LetsAHandGoAtOnceThatLeavesFast) {
+  Guard guard;
+  for (int i = 0; i < 100; ++i) static_cast<void>(guard.apply(pressed(-1e-4 * i)));
+  GuardInput out = pressed(5e-3);  // 15 mm in a step
+  out.stiffness = 0;               // it touches nothing now
+  EXPECT_EQ(guard.apply(out), Vector3d::Zero());
+  EXPECT_EQ(guard.state().notes, GuardNote::none);
+}
+
+TEST(Guard, SlewsWhatTheHandDidNotDo) {
+  Guard guard;
+  static_cast<void>(guard.apply(pushed({0, 0, 0})));
+  const double step = 300 * kDt;
+  for (int i = 1; i <= 20; ++i) {
+    const Vector3d force = guard.apply(pushed({0, 3, 4}));
+    const double expected = std::min(i * step, 5.0);
+    EXPECT_NEAR(force.norm(), expected, 1e-12);
+    EXPECT_NEAR(force.cross(Vector3d(0, 3, 4)).norm(), 0, 1e-12) << "straight to the new force";
+    EXPECT_EQ(has(guard.state().notes, GuardNote::slewed), i * step < 5.0);
+  }
+  EXPECT_EQ(guard.state().counts.slewed, 16u);
+}
+
+TEST(Guard, AllowsWhatADamperMakesOfAChangeOfVelocity) {
+  Guard guard({.damping = 1});
+  static_cast<void>(guard.apply(pushed({0, 0, 0})));
+  GuardInput braked = pushed({0, 0, 0.7});
+  braked.velocity = {0, 0, -0.4};  // 0.4 N of the damper and 0.3 N of the slew
+  EXPECT_EQ(guard.apply(braked), braked.force);
+  EXPECT_EQ(guard.state().notes, GuardNote::none);
+  braked.force.z() = 1.5;
+  EXPECT_NEAR(guard.apply(braked).z(), 1.0, 1e-12) << "the velocity has not changed again";
+}
+
+TEST(Guard, ShortensToTheMaximumAndKeepsTheDirection) {
+  Guard guard({.maximum_force = 3});
+  Vector3d force;
+  for (int i = 0; i <= 100; ++i) {
+    const Vector3d hip = Vector3d(-1e-4, -2e-4, -2e-4) * i;
+    force = guard.apply(pushed(-500 * hip, hip));
+    ASSERT_LE(force.norm(), 3 * (1 + 1e-15));
+    ASSERT_EQ(has(guard.state().notes, GuardNote::clamped), i > 20) << i;
+  }
+  EXPECT_TRUE(force.isApprox(Vector3d(1, 2, 2), 1e-12));
+  EXPECT_EQ(guard.state().counts.clamped, 80u);
+}
+
+TEST(Guard, HoldsZeroAtOnceAndUntilResetWhenSomethingIsNotFinite) {
+  const std::vector<std::pair<GuardFault, GuardInput>> cases = [] {
+    std::vector<std::pair<GuardFault, GuardInput>> all;
+    for (const double bad : {kNan, kInfinity, -kInfinity, 1e300}) {
+      all.emplace_back(GuardFault::force, pushed({0, bad, 2}));
+      all.emplace_back(GuardFault::hand, pushed({0, 0, 2}, {bad, 0, 0}));
+      all.emplace_back(GuardFault::hand, pushed({0, 0, 2}));
+      all.back().second.velocity.z() = bad;
+      all.emplace_back(GuardFault::force, pushed({0, 0, 2}));
+      all.back().second.stiffness = bad;
+    }
+    for (const double bad : {kNan, kInfinity, -1e-9}) {
+      all.emplace_back(GuardFault::time, pushed({0, 0, 2}));
+      all.back().second.dt = bad;
+    }
+    for (const GuardFault known : {GuardFault::proxy, GuardFault::device}) {
+      all.emplace_back(known, pushed({0, 0, 2}));
+      all.back().second.fault = known;
+    }
+    return all;
+  }();
+  for (const auto& [fault, input] : cases) {
+    Guard guard;
+    for (int i = 0; i < 50; ++i) static_cast<void>(guard.apply(pushed({0, 0, 2})));
+    ASSERT_EQ(guard.apply(pushed({0, 0, 2})), Vector3d(0, 0, 2));
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_EQ(guard.apply(i == 0 ? input : pushed({0, 0, 2})), Vector3d::Zero());
+      ASSERT_EQ(guard.state().fault, fault);
+      ASSERT_TRUE(has(guard.state().notes, GuardNote::fault));
+    }
+    EXPECT_EQ(guard.state().counts.faults, 1u);
+    EXPECT_NE(in_words(guard.state()).find(in_words(fault)), std::string::npos);
+    guard.reset();
+    EXPECT_NEAR(guard.apply(pushed({0, 0, 2})).norm(), 0.3, 1e-12) << "up from zero";
+    EXPECT_EQ(guard.state().fault, GuardFault::none);
+  }
+}
+
+TEST(Guard, GivesZeroAfterASilenceAndComesBackSoftly) {
+  Guard guard;
+  for (int i = 0; i < 50; ++i) static_cast<void>(guard.apply(pushed({0, 0, 2})));
+  GuardInput late = pushed({0, 0, 2}, {0, 0, -0.05});  // wherever the hand went meanwhile
+  late.dt = 0.1;
+  EXPECT_EQ(guard.apply(late), Vector3d::Zero());
+  EXPECT_TRUE(has(guard.state().notes, GuardNote::silence));
+  EXPECT_NE(in_words(guard.state()).find("silent"), std::string::npos);
+  for (int i = 1; i <= 6; ++i) {
+    EXPECT_NEAR(guard.apply(pushed({0, 0, 2}, {0, 0, -0.05})).z(), 0.3 * i, 1e-12);
+  }
+  EXPECT_EQ(guard.state().counts.silences, 1u);
+}
+
+TEST(Guard, HasPatienceUpToTheSilenceItWasTold) {
+  Guard guard({.silence = 0.05});
+  GuardInput slow = pushed({0, 0, 1});
+  slow.dt = 0.04;
+  static_cast<void>(guard.apply(slow));
+  EXPECT_EQ(guard.apply(slow), slow.force);
+  EXPECT_EQ(guard.state().counts.silences, 0u);
+}
+
+TEST(Guard, ComesUpSoftlyWhenItStartsInContact) {
+  Guard guard;
+  EXPECT_NEAR(guard.apply(pushed({0, 0, 5})).z(), 0.3, 1e-12);
+  EXPECT_NEAR(guard.apply(pushed({0, 0, 5})).z(), 0.6, 1e-12);
+}
+
+TEST(Guard, RefusesOptionsOutOfRange) {
+  for (const double bad : {0.0, -1.0, kNan}) {
+    EXPECT_THROW(Guard({.maximum_force = bad}), Error);
+    EXPECT_THROW(Guard({.slew = bad}), Error);
+    EXPECT_THROW(Guard({.silence = bad}), Error);
+  }
+  EXPECT_THROW(Guard({.slew = kInfinity}), Error);
+  EXPECT_THROW(Guard({.damping = -0.1}), Error);
+  EXPECT_NO_THROW(Guard({.silence = kInfinity}));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "palpate/device/scripted.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/servo/servo.hpp"
+#include "support/snapshots.hpp"
+
+namespace palpate::test {
+
+/// A sheet at z = 0, R = 10 mm, and nothing else.
+inline Source& add_sheet(Scene& scene) {
+  Source& source = scene.add("sheet");
+  source.publish(still(plane(0)));
+  return source;
+}
+
+/// A hand that starts under the sheet is pushed out of it.
+inline ServoOptions one_sided() {
+  ServoOptions options;
+  options.field.two_sided = false;
+  return options;
+}
+
+/// Down through the sheet to 4 mm under it, across, and up again, in a second of milliseconds.
+inline Trajectory visit() {
+  Trajectory rows;
+  for (int i = 0; i <= 1000; ++i) {
+    const double t = 1e-3 * i;
+    const double depth = 14e-3 * std::min(1.0, 2.5 * std::sin(M_PI * t));
+    rows.push_back({t, {0.02 * (t - 0.5), 0.3e-3, 10e-3 - depth}});
+  }
+  return rows;
+}
+
+/// A device without any force limit or time of its own, wherever it is told to be.
+class FreeDevice final : public Device {
+ public:
+  explicit FreeDevice(const Eigen::Vector3d& position = Eigen::Vector3d::Zero()) {
+    info_.name = "free";
+    state_.position = position;
+  }
+
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] DeviceState read() noexcept override {
+    if (last_step_ >= 0 && reads_ > last_step_) state_.status = DeviceStatus::finished;
+    ++reads_;
+    return state_;
+  }
+  void write(const Eigen::Vector3d& force) noexcept override { force_ = force; }
+  [[nodiscard]] std::string reason() const override { return "told to"; }
+
+  DeviceInfo& info() noexcept { return info_; }
+  DeviceState& state() noexcept { return state_; }
+  void finish_after(int reads) noexcept { last_step_ = reads - 1; }
+  [[nodiscard]] const Eigen::Vector3d& force() const noexcept { return force_; }
+
+ private:
+  DeviceInfo info_;
+  DeviceState state_;
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
+  int reads_ = 0;
+  int last_step_ = -1;
+};
+
+}  // namespace palpate::test
