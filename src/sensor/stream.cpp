@@ -47,10 +47,11 @@ std::unique_ptr<DepthCamera> checked(std::unique_ptr<DepthCamera> camera, const 
 
 struct Stream::Threads {
   Threads(std::unique_ptr<DepthCamera> given, const std::string& name, FrameSink to,
-          const Clock& time, const StreamOptions& wishes)
+          const Clock& time, const StreamOptions& wishes, std::function<void()> at_end)
       : options(checked(wishes, name)),
         camera(checked(std::move(given), name)),
         sink(std::move(to)),
+        ended(std::move(at_end)),
         clock(time),
         log(name, camera->info().name, options.stall, clock.now()),
         check(options.allow_repeats),
@@ -71,10 +72,12 @@ struct Stream::Threads {
   [[nodiscard]] bool wait_to_retry();
   void prepare();
   void prepare(const DepthFrame& frame);
+  void finish();
 
   const StreamOptions options;
   const std::unique_ptr<DepthCamera> camera;  // the reading thread's
   const FrameSink sink;                       // the preparing thread's
+  const std::function<void()> ended;          // likewise; may be empty
   const Clock& clock;
   StreamLog log;
   FrameCheck check;  // the reading thread's
@@ -154,7 +157,16 @@ bool Stream::Threads::wait_to_retry() {
 void Stream::Threads::prepare() {
   DepthFrame frame;
   while (exchange.take(frame)) prepare(frame);
-  if (exchange.ended()) log.ended();
+  if (exchange.ended()) finish();
+}
+
+void Stream::Threads::finish() {
+  try {
+    if (ended) ended();
+  } catch (const std::exception& error) {
+    log.refused(clock.now(), error.what());
+  }
+  log.ended();
 }
 
 void Stream::Threads::prepare(const DepthFrame& frame) {

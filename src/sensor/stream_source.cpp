@@ -1,19 +1,29 @@
 // Apart, so that a stream into another sink needs no Source.
+#include <fmt/format.h>
+
 #include <utility>
 
+#include "palpate/base/error.hpp"
 #include "palpate/sensor/stream.hpp"
 
 namespace palpate {
 namespace {
 
 FrameSink sink_of(Source& source) {
-  return [&source](const DepthFrame& frame, const StartTime& start) { source.push(frame, start); };
+  return [&source](const DepthFrame& frame, const StartTime& start) {
+    if (source.push(frame, start)) return;
+    throw Error(
+        fmt::format("all snapshots are held by fields that stand still, such as that of {}. "
+                    "Update it, or close it",
+                    source.state().slowest));
+  };
 }
 
 }  // namespace
 
 Stream::Stream(std::unique_ptr<DepthCamera> camera, Source& source, const Clock& clock,
                const StreamOptions& options)
-    : Stream(std::move(camera), source.name(), sink_of(source), clock, options) {}
+    : Stream(std::move(camera), source.name(), sink_of(source), clock, options,
+             [&source] { source.keep(); }) {}
 
 }  // namespace palpate

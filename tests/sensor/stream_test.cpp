@@ -276,6 +276,16 @@ TEST_F(StreamTest, EndsWhenTheLastFrameIsPrepared) {
   EXPECT_EQ(stream.state().phase, StreamPhase::ended) << "the end is no stall";
 }
 
+TEST_F(StreamTest, TellsOfTheEndAfterTheLastFrame) {
+  std::atomic<std::size_t> pushed_at_end{99};
+  const Stream stream(std::make_unique<FakeCamera>(script_), "table", touchable_.sink(), clock_, {},
+                      [&] { pushed_at_end = touchable_.stamps().size(); });
+  give(stream, 0.1);
+  script_->give({.status = CameraStatus::ended});
+  ASSERT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
+  EXPECT_EQ(pushed_at_end, 1u);
+}
+
 TEST_F(StreamTest, StopsInEveryState) {
   { const Stream starting = this->stream(); }
   {

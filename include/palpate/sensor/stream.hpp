@@ -32,7 +32,8 @@ using FrameSink = std::function<void(const DepthFrame&, const StartTime&)>;
 /// (CameraInfo::paces) is read when preparation is ready, and loses nothing.
 ///
 /// No frame of a camera, and nothing that it or preparation throws, ends a stream: it is counted
-/// and told by state(). What stops coming fades as the source's PolicyOptions say.
+/// and told by state(). What stops coming fades as the source's PolicyOptions say; but what the
+/// last frames of a recording showed stays (Source::keep).
 class Stream {
  public:
   /// Starts the threads. Source and clock outlive the stream, and nobody else pushes.
@@ -40,9 +41,10 @@ class Stream {
   Stream(std::unique_ptr<DepthCamera> camera, Source& source, const Clock& clock,
          const StreamOptions& options = {});
 
-  /// The same into any sink; `name` stands for it in messages.
+  /// The same into any sink; `name` stands for it in messages. `ended`, if any, is called after the
+  /// last frame of a recording, on the thread that calls the sink.
   Stream(std::unique_ptr<DepthCamera> camera, std::string name, FrameSink sink, const Clock& clock,
-         const StreamOptions& options = {});
+         const StreamOptions& options = {}, std::function<void()> ended = {});
 
   /// Stops: waits for a read() and a preparation that are under way, and for nothing else.
   ~Stream();

@@ -1,0 +1,26 @@
+#include "palpate/base/error.hpp"
+#include "sensor/drivers.hpp"
+
+namespace palpate::sensor {
+namespace {
+
+constexpr const char* kMissing =
+    "this build has no libfreenect. Install libfreenect-dev (Debian, Ubuntu) and build palpate "
+    "again.";
+
+}  // namespace
+
+CameraDriver freenect_driver() {
+  return {.name = "freenect",
+          .description = "Kinect v1",
+          .available = false,
+          .missing = kMissing,
+          .devices = {}};
+}
+
+std::unique_ptr<DepthCamera> open_freenect(const std::string& device,
+                                           const CameraOptions& /*options*/) {
+  throw Error("freenect:" + device + ": " + kMissing);
+}
+
+}  // namespace palpate::sensor

@@ -1,0 +1,67 @@
+#include "sensor/live_camera.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate::sensor {
+namespace {
+
+// Devices need a second or two after they are opened; a loose plug is silent for ever.
+constexpr double kLongSilence = 3;  // s
+
+}  // namespace
+
+LiveCamera::LiveCamera(CameraInfo info, Connect connect, std::string silence, const Clock* clock)
+    : info_(std::move(info)),
+      connect_(std::move(connect)),
+      silence_(std::move(silence)),
+      clock_(clock) {
+  this->connect();
+}
+
+void LiveCamera::connect() {
+  connection_ = connect_();
+  stamps_ = {};
+  heard_ = (clock_ != nullptr ? *clock_ : host_).now();
+}
+
+CameraStatus LiveCamera::read(DepthFrame& frame, double timeout) {
+  reason_.clear();
+  try {
+    if (!connection_) connect();
+    return fetch(frame, timeout);
+  } catch (const Error& error) {
+    reason_ = error.what();
+    connection_.reset();
+    return CameraStatus::failed;
+  }
+}
+
+CameraStatus LiveCamera::fetch(DepthFrame& frame, double timeout) {
+  double device_time = 0;
+  const CameraStatus status = connection_->fetch(frame, device_time, timeout);
+  const double now = (clock_ != nullptr ? *clock_ : host_).now();
+  if (status == CameraStatus::frame) {
+    heard_ = now;
+    frame.stamp = stamp_of(device_time, now);
+    frame.T_world_sensor.reset();
+  } else if (status == CameraStatus::waiting && now - heard_ > kLongSilence) {
+    throw Error(
+        fmt::format("{}: open, but silent for {:.3g} s. {}", info_.name, now - heard_, silence_));
+  }
+  return status;
+}
+
+double LiveCamera::stamp_of(double device_time, double now) {
+  if (info_.paces) return stamps_.host(device_time, now);
+  if (device_time_) {
+    stamp_ += device_time > *device_time_ ? device_time - *device_time_ : 1 / info_.rate;
+  }
+  device_time_ = device_time;
+  return stamp_;
+}
+
+}  // namespace palpate::sensor

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "palpate/base/clock.hpp"
+#include "palpate/sensor/depth_camera.hpp"
+#include "sensor/host_stamps.hpp"
+
+namespace palpate::sensor {
+
+/// A device that is open and delivers. The destructor closes it.
+class Connection {
+ public:
+  virtual ~Connection() = default;
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// Fills camera, depth and colours of `frame`, and `device_time` (s, the device's clock), waiting
+  /// `timeout` s at most. Never `failed`.
+  /// @throws Error when the device is lost, or the frame is damaged.
+  [[nodiscard]] virtual CameraStatus fetch(DepthFrame& frame, double& device_time,
+                                           double timeout) = 0;
+
+ protected:
+  Connection() = default;
+};
+
+/// @throws Error that says why the device cannot be opened.
+using Connect = std::function<std::unique_ptr<Connection>()>;
+
+/// What all drivers of real devices have in common: stamps on the host's clock, and a device that
+/// is lost is opened again when it is asked for the next frame. Where the device does not pace
+/// itself, stamps are its own times, from 0 on, that go on when a recording begins again.
+class LiveCamera final : public DepthCamera {
+ public:
+  /// Opens the device. `silence` tells what a device that is silent for long may lack. Without a
+  /// clock, the host's is taken.
+  LiveCamera(CameraInfo info, Connect connect, std::string silence, const Clock* clock);
+
+  [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override;
+  [[nodiscard]] std::string reason() const override { return reason_; }
+
+ private:
+  void connect();
+  [[nodiscard]] CameraStatus fetch(DepthFrame& frame, double timeout);
+  [[nodiscard]] double stamp_of(double device_time, double now);
+
+  CameraInfo info_;
+  Connect connect_;
+  std::string silence_;
+  SteadyClock host_;
+  const Clock* clock_;  // null: host_
+  std::unique_ptr<Connection> connection_;
+  HostStamps stamps_;
+  double stamp_ = 0;  // of the last frame of a device that does not pace itself
+  std::optional<double> device_time_ = {};  // likewise
+  double heard_ = 0;                        // when the last frame came, s
+  std::string reason_;
+};
+
+}  // namespace palpate::sensor

@@ -1,0 +1,120 @@
+// OpenNI2 as it is installed: its dummy camera, and recordings.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "palpate/base/error.hpp"
+#include "palpate/sensor/open_camera.hpp"
+#include "sensor/fake_camera.hpp"
+#include "sensor/folder.hpp"
+#include "sensor/oni_file.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace sensor;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string refusal(const std::string& name) {
+  try {
+    (void)open_camera(name);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// Reads until something else than `waiting` comes.
+CameraStatus next(DepthCamera& camera, DepthFrame& frame) {
+  for (int i = 0; i < 100; ++i) {
+    const CameraStatus status = camera.read(frame, 0.1);
+    if (status != CameraStatus::waiting) return status;
+  }
+  return CameraStatus::waiting;
+}
+
+TEST(OpenNi2, SaysThatThereIsNoCameraOrFile) {
+  EXPECT_THAT(refusal("openni2:/no/such/uri"), AllOf(HasSubstr("/no/such/uri"), HasSubstr("USB")));
+  EXPECT_THAT(refusal("absent.oni"), HasSubstr("no such file"));
+}
+
+TEST(OpenNi2, RefusesGarbageForARecording) {
+  const Folder folder;
+  folder.write("a.oni", "garbage");
+  folder.write("empty.oni", "");
+  EXPECT_THAT(refusal((folder.path() / "a.oni").string()), HasSubstr("recording"));
+  EXPECT_THAT(refusal((folder.path() / "empty.oni").string()), HasSubstr("recording"));
+}
+
+TEST(OpenNi2, PlaysItsDummyCamera) {
+  ManualClock clock;
+  clock.set(50);
+  const auto camera = open_camera("openni2:Dummy", {.clock = &clock});
+  DepthFrame frame;
+  ASSERT_EQ(next(*camera, frame), CameraStatus::frame);
+  EXPECT_EQ(frame.camera.width, 320);
+  EXPECT_EQ(frame.camera.height, 240);
+  EXPECT_NEAR(frame.camera.pinhole.fx, 288, 1) << "nominal, as the device tells none";
+  EXPECT_EQ(frame.depth.size(), 320u * 240u);
+  EXPECT_EQ(frame.depth[100], 2.0F);
+  EXPECT_EQ(frame.stamp, 50);
+}
+
+TEST(OpenNi2, PlaysARecordingToItsEnd) {
+  const Folder folder;
+  folder.write("a.oni", OniFile(64, 48, 8).bytes());
+  const auto camera = open_camera((folder.path() / "a.oni").string());
+  EXPECT_FALSE(camera->info().paces);
+  DepthFrame frame;
+  int frames = 0;
+  double stamp = -1;
+  while (next(*camera, frame) == CameraStatus::frame) {
+    ++frames;
+    EXPECT_EQ(frame.depth.at(7), static_cast<float>(1e-3 * (1000 + frames)));
+    EXPECT_EQ(frame.depth[0], 0.5F);
+    EXPECT_GT(frame.stamp, stamp);
+    stamp = frame.stamp;
+  }
+  EXPECT_EQ(frames, 8);
+  EXPECT_NEAR(stamp, 7 / 30.0, 1e-3);
+  EXPECT_NEAR(frame.camera.pinhole.fx, 32 / std::tan(0.5), 1e-6);
+  EXPECT_NEAR(frame.camera.pinhole.cy, 24, 1e-9);
+  EXPECT_EQ(next(*camera, frame), CameraStatus::ended);
+}
+
+TEST(OpenNi2, LoopsARecording) {
+  const Folder folder;
+  folder.write("a.oni", OniFile(64, 48, 4).bytes());
+  const auto camera = open_camera((folder.path() / "a.oni").string(), {.loop = true});
+  DepthFrame frame;
+  double stamp = -1;
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_EQ(next(*camera, frame), CameraStatus::frame) << i << camera->reason();
+    EXPECT_GT(frame.stamp, stamp);
+    stamp = frame.stamp;
+  }
+}
+
+TEST(OpenNi2, TurnsMirroredRecordingsRound) {
+  const Folder folder;
+  folder.write("a.oni", OniFile(64, 48, 2, true).bytes());
+  const auto camera = open_camera((folder.path() / "a.oni").string());
+  DepthFrame frame;
+  ASSERT_EQ(next(*camera, frame), CameraStatus::frame);
+  EXPECT_EQ(frame.depth[63], 0.5F);
+  EXPECT_EQ(frame.depth[0], 1.001F);
+}
+
+TEST(OpenNi2, IsListed) {
+  for (const CameraDriver& driver : list_cameras()) {
+    if (driver.name != "openni2") continue;
+    EXPECT_TRUE(driver.available) << driver.missing;
+    return;
+  }
+  FAIL() << "no driver of that name";
+}
+
+}  // namespace
+}  // namespace palpate
