@@ -12,7 +12,7 @@ namespace palpate::depth {
 namespace {
 
 constexpr int kShares = 128;         // frames that one round of the survey takes
-constexpr int kEarlyShares = 16;     // as long as no round has told anything
+constexpr int kPatience = 8;         // as long as no frame tells anything, every 8th is looked at
 constexpr double kMargin = 1.05;     // on c from windows that hold the correlation
 constexpr double kWideMargin = 1.2;  // on c from what is known to come out low
 constexpr double kNoteworthy = 0.1;  // relative change that is handed out
@@ -51,7 +51,7 @@ struct NoiseTracker::State {
   NoiseModel spatial;
   int width = 0;
   int height = 0;
-  bool first = true;       // no frame yet
+  int waited = 0;          // frames that have told nothing
   bool surveyed = false;   // single frames have told something
   double correlation = 1;  // running mean
   NoiseSurvey survey;
@@ -71,7 +71,7 @@ void NoiseTracker::State::resize(const DepthView& frame) {
   survey.resize(width, height);
   pairs.resize(width, height);
   samples.reserve(2 * kNoiseBins);
-  first = true;
+  waited = 0;
   surveyed = false;
   model = spatial = prior;
 }
@@ -123,9 +123,8 @@ void NoiseTracker::State::conclude(bool round) {
 void NoiseTracker::State::update(const DepthView& frame) {
   resize(frame);
   if (!pairs.add(frame, spatial, survey.noise().shared)) return;
-  const int shares = surveyed ? kShares : kEarlyShares;
-  const bool round = survey.advance(frame, first ? 1 : shares);
-  first = false;
+  if (!surveyed && waited++ % kPatience > 0) return;
+  const bool round = survey.advance(frame, surveyed ? kShares : 1);
   if (survey.noise().samples.empty()) return;
   if (round) spatial = fit_noise_curve(survey.noise().samples, prior);
   conclude(round);

@@ -12,7 +12,8 @@ constexpr int kRounds = 4;               // of finding the typical one
 constexpr double kScattered = 0.25;      // share below 1 / kMoreThanLowest that only shape makes
 constexpr std::size_t kChosen = 48;      // windows to be correlated
 constexpr double kMostWeight = 60;
-constexpr double kFinest = 1e-4;  // of the depth: no depth camera errs less
+constexpr double kRounded = 0.02;  // of a step: residuals that rounding to it leaves at least
+constexpr double kFinest = 1e-4;   // of the depth: no depth camera errs less
 
 float quarter(std::vector<float>& values) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
@@ -86,8 +87,11 @@ void NoiseLevel::find_flat(int bin) {
   double depths = 0;
   for (const WindowResidual& r : residuals_) {
     if (!r.usable || r.step <= 0 || noise_bin(r.z) != bin) continue;
-    variances_.push_back(static_cast<float>(r.variance * to_bin_depth(r.z)));
-    steps_.push_back(r.step);
+    const double finest = kFinest * r.z;
+    const double variance = std::max<double>(r.variance, finest * finest);
+    variances_.push_back(static_cast<float>(variance * to_bin_depth(r.z)));
+    const double seen = kRounded * r.step;
+    steps_.push_back(r.variance > seen * seen ? r.step : 0.0F);
     depths += r.z;
   }
   NoiseSample& sample = bins_[static_cast<std::size_t>(bin)];
@@ -103,7 +107,7 @@ void NoiseLevel::find_flat(int bin) {
   const double z = depths / static_cast<double>(variances_.size());
   const double rounding = median(steps_) / std::sqrt(12.0);
   const double sigma = std::sqrt(typical) * z / bin_depth(bin);
-  sample = {z, std::max({sigma, rounding, kFinest * z}), std::min(flat, kMostWeight)};
+  sample = {z, std::max(sigma, rounding), std::min(flat, kMostWeight)};
 }
 
 bool NoiseLevel::is_flat(const WindowResidual& residual) const {

@@ -24,6 +24,7 @@ struct Lanes {
   std::array<float, kSide> squares{};
   std::array<float, kSide> depth{};
   std::array<float, kSide> invalid{};
+  std::array<float, kSide> changed{};
 };
 
 void add_row(Lanes& lanes, const float* now, const float* before, float nearest, float farthest) {
@@ -36,6 +37,7 @@ void add_row(Lanes& lanes, const float* now, const float* before, float nearest,
     lanes.squares[i] += d * d;
     lanes.depth[i] += a;
     lanes.invalid[i] += valid ? 0.0F : 1.0F;
+    lanes.changed[i] += a != b ? 1.0F : 0.0F;
   }
 }
 
@@ -84,7 +86,7 @@ void NoisePairs::keep(const DepthView& frame) {
 
 // False when nothing at all has changed.
 bool NoisePairs::compare(const DepthView& frame) {
-  double change = 0;
+  double changed = 0;
   std::fill(tiles_.begin(), tiles_.end(), Tile{});
   for (int r = 0; r < rows_; ++r) {
     if (!in_part(r)) continue;
@@ -97,7 +99,7 @@ bool NoisePairs::compare(const DepthView& frame) {
         add_row(lanes, &frame.depth[at], &before_[at], frame.nearest, frame.farthest);
       }
       const double squares = total(lanes.squares);
-      change += squares;
+      changed += total(lanes.changed);
       Tile& tile = tiles_[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) +
                           static_cast<std::size_t>(c)];
       if (total(lanes.invalid) > 0) continue;
@@ -107,7 +109,7 @@ bool NoisePairs::compare(const DepthView& frame) {
       tile.within = static_cast<float>(std::max(0.0, squares / kPixels - mean * mean));
     }
   }
-  return change > 0;
+  return changed > 0;
 }
 
 void NoisePairs::drop_moving(const NoiseModel& noise, double shared) {

@@ -91,7 +91,8 @@ void NoiseSurvey::conclude() {
     noise_.shared = correlation.shared;
     noise_.whole = correlation.whole && correlation.shared <= kMostShared[i];
     noise_.samples.assign(level.samples().begin(), level.samples().end());
-    for (NoiseSample& sample : noise_.samples) sample.sigma *= std::sqrt(correlation.variance);
+    const double raised = std::sqrt(std::max(1.0, correlation.variance));
+    for (NoiseSample& sample : noise_.samples) sample.sigma *= raised;
     if (noise_.whole) break;
   }
 }

@@ -54,23 +54,25 @@ void NoiseWindowFitter::gather(const DepthView& frame, const NoiseWindow& window
   step_ = std::numeric_limits<float>::infinity();
   std::size_t at = 0;
   for (int v = window.v; v < window.v + window.size; ++v) {
-    float before = 0;
     for (int u = window.u; u < window.u + window.size; ++u, ++at) {
       const float z = frame.at(u, v);
       const bool valid = frame.valid(z);
       mask_[at] = valid ? 1.0F : 0.0F;
       residuals_[at] = 0;
-      if (valid) {
-        if (count_ == 0) reference_ = 1.0 / z;
-        residuals_[at] = static_cast<float>(1.0 / z - reference_);
-        depth_sum_ += z;
-        ++count_;
-        const float step = std::abs(z - before);
-        if (before > 0 && step > kSmallStep * z) step_ = std::min(step_, step);
-      }
-      before = valid ? z : 0;
+      if (!valid) continue;
+      if (count_ == 0) reference_ = 1.0 / z;
+      residuals_[at] = static_cast<float>(1.0 / z - reference_);
+      depth_sum_ += z;
+      ++count_;
+      if (u > window.u) take_step(z, frame.at(u - 1, v));
+      if (v > window.v) take_step(z, frame.at(u, v - 1));
     }
   }
+}
+
+void NoiseWindowFitter::take_step(float z, float before) {
+  const float step = std::abs(z - before);
+  if (step > kSmallStep * z) step_ = std::min(step_, step);
 }
 
 // Coefficients of the surface through what gather() has left.

@@ -42,6 +42,7 @@ class NoiseWindowFitter {
   using Terms = Eigen::Matrix<double, kTerms, 1>;
 
   void gather(const DepthView& frame, const NoiseWindow& window);
+  void take_step(float z, float before);
   [[nodiscard]] Terms surface(int size) const;
   void subtract(const Terms& c, int size);
   [[nodiscard]] float block_variance(int size) const;
