@@ -66,7 +66,7 @@ void WindowFits::fit_row(const simd::FitInput& in, const Blocks& blocks, const S
                          fits.slope_y.data() + first,
                          fits.slope_variance.data() + first,
                          fits.confidences.data() + first};
-  simd::best_fits().fit(in, row, columns.data(), static_cast<int>(columns.size()), out);
+  functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), out);
   for (const std::int32_t column : columns) {
     fits.states[first + column] = BlockState::fitted;
     if (fits.confidences[first + column] == kUnfit) fit_masked(blocks, same, column, row, fits);
@@ -85,7 +85,7 @@ void WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double norma
   const BlockRange range = region.range().grown(kBorder, grid);
   fill_gaps(blocks, noise, range, filled_);
   const simd::FitInput in = input(blocks, noise, normal_error, range);
-  simd::best_fits().table(in.table, rows_of(filled_));
+  functions_->table(in.table, rows_of(filled_));
   list_columns(blocks, region);
   const SameSurface same(noise, grid);
   const auto count = static_cast<std::size_t>(region.range().rows);

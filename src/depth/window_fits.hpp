@@ -16,6 +16,9 @@ namespace palpate::depth {
 /// Several threads share the rows; results do not depend on how.
 class WindowFits {
  public:
+  explicit WindowFits(const simd::FitFunctions& functions = simd::best_fits())
+      : functions_(&functions) {}
+
   /// Replaces the plain fits of the region's blocks.
   void fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
            const FitRegion& region, BlockFits& fits);
@@ -31,6 +34,7 @@ class WindowFits {
   void fit_row(const simd::FitInput& in, const Blocks& blocks, const SameSurface& same, int row,
                std::span<const std::int32_t> columns, BlockFits& fits) const;
 
+  const simd::FitFunctions* functions_;
   Blocks filled_;
   std::vector<Place> table_;
   std::vector<std::int32_t> columns_;  // of the region's blocks, row after row

@@ -1,0 +1,193 @@
+#include "depth/window_fits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/cpu.hpp"
+#include "depth/metric_fit.hpp"
+#include "depth/small_frames.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+depth::BlockFits fit_all(const depth::Blocks& blocks, const NoiseModel& noise) {
+  depth::BlockFits fits;
+  fits.resize(blocks.grid);
+  depth::fit_plain(blocks, noise, fits);
+  depth::FitRegion region;
+  region.set(blocks.grid);
+  depth::WindowFits windows;
+  windows.fit(blocks, noise, 0.0035, region, fits);
+  return fits;
+}
+
+Vector3d normal_of(const depth::BlockFits& fits, int column, int row) {
+  const std::size_t i = fits.grid.index(column, row);
+  const double a = fits.slope_x[i];
+  const double b = fits.slope_y[i];
+  return -Vector3d(a, b, fits.rho[i] - a * fits.grid.x(column) - b * fits.grid.y(row)).normalized();
+}
+
+Vector3d position_of(const depth::BlockFits& fits, int column, int row) {
+  return Vector3d(fits.grid.x(column), fits.grid.y(row), 1) /
+         fits.rho[fits.grid.index(column, row)];
+}
+
+/// Root mean squares over blocks.
+struct Errors {
+  double height = 0;  // m
+  double angle = 0;   // rad
+  int count = 0;
+
+  void add(const Solid& truth, const Vector3d& position, const Vector3d& normal) {
+    const Distance exact = distance_and_normal(truth, position);
+    height += exact.value * exact.value;
+    const double turned = std::acos(std::min(1.0, exact.gradient.dot(normal)));
+    angle += turned * turned;
+    ++count;
+  }
+  [[nodiscard]] double rms_height() const { return std::sqrt(height / count); }
+  [[nodiscard]] double rms_angle() const { return std::sqrt(angle / count); }
+};
+
+struct Comparison {
+  Errors fast;
+  Errors slow;
+};
+
+/// Every third block that `wanted` picks, by both forms.
+template <class Wanted>
+Comparison compare(const std::vector<Solid>& solids, const Solid& truth, const NoiseModel& noise,
+                   double largest, const Wanted& wanted) {
+  Comparison both;
+  SimulatedNoiseOptions simulated{.model = noise, .rounding = 0};
+  for (std::uint64_t frame = 0; frame < 2; ++frame) {
+    const depth::Blocks blocks = blocks_of(noisy_frame(solids, simulated, frame), noise);
+    const depth::BlockFits fits = fit_all(blocks, noise);
+    const MetricFitter slow(blocks, {noise, largest});
+    for (int row = 12; row < blocks.grid.rows - 12; row += 3) {
+      for (int column = 12; column < blocks.grid.columns - 12; column += 3) {
+        if (!(blocks.rho[blocks.at(column, row)] > 0)) continue;
+        const Vector3d position = position_of(fits, column, row);
+        if (!wanted(position)) continue;
+        const MetricFit other = slow.fit(column, row);
+        if (!other.found) continue;
+        both.fast.add(truth, position, normal_of(fits, column, row));
+        both.slow.add(truth, other.position, other.normal);
+      }
+    }
+  }
+  return both;
+}
+
+TEST(WindowFits, FindAPlaneAsWellAsTheSlowForm) {
+  const Solid table = plane({0, 0, 0.7}, Vector3d(0.1, -0.8, -0.6).normalized());
+  const Comparison both =
+      compare({table}, table, kinect_like_noise(), 0.022, [](const Vector3d&) { return true; });
+  ASSERT_GT(both.fast.count, 200);
+  EXPECT_LT(both.fast.rms_angle(), 0.35 * kDegree);
+  EXPECT_LT(both.fast.rms_angle(), 1.3 * both.slow.rms_angle());
+  EXPECT_LT(both.fast.rms_height(), 0.08e-3);
+  EXPECT_LT(both.fast.rms_height(), 1.3 * both.slow.rms_height());
+}
+
+TEST(WindowFits, FindASphereNearlyAsWellAsTheSlowForm) {
+  const Solid ball = sphere({0, 0, 0.66}, 0.06);
+  const Solid wall = plane({0, 0, 1}, {0, 0, -1});
+  const Comparison both =
+      compare({ball, wall}, ball, kinect_like_noise(), 0.02, [](const Vector3d& p) {
+        return std::hypot(p.x(), p.y()) < 0.06 * std::sin(50 * kDegree) && p.z() < 0.67;
+      });
+  ASSERT_GT(both.fast.count, 150);
+  EXPECT_LT(both.fast.rms_angle(), 2.0 * kDegree);
+  EXPECT_LT(both.fast.rms_angle(), 1.4 * both.slow.rms_angle());
+  EXPECT_LT(both.fast.rms_height(), 0.25e-3);
+}
+
+TEST(WindowFits, ComeCloserToAnEdgeThanTheSlowForm) {
+  const Solid block = box({0, 0, 0.75}, 0.07, 40 * kDegree, 20 * kDegree);
+  const Comparison both =
+      compare({block}, block, kinect_like_noise(), 0.02, [&](const Vector3d& p) {
+        const Vector3d local = (block.T_world_solid.inverse() * p).cwiseAbs();
+        Vector3d gaps = block.size - local;
+        std::sort(gaps.begin(), gaps.end());
+        return gaps[1] > 2.5e-3 && gaps[1] < 10e-3;  // from the nearest edge, on a face
+      });
+  ASSERT_GT(both.fast.count, 60);
+  EXPECT_LT(both.fast.rms_angle(), both.slow.rms_angle());
+  EXPECT_LT(both.fast.rms_angle(), 4 * kDegree);
+}
+
+TEST(WindowFits, AreExactOnAPlaneWithoutNoise) {
+  const Vector3d normal = Vector3d(0.2, -0.6, -0.7).normalized();
+  const Solid table = plane({0, 0, 0.7}, normal);
+  const NoiseModel fine{{1e-5, 0, 0}, 1};
+  const depth::Blocks blocks = blocks_of(exact_frame({table}), fine);
+  const depth::BlockFits fits = fit_all(blocks, fine);
+  for (int row = 0; row < fits.grid.rows; ++row) {
+    for (int column = 0; column < fits.grid.columns; ++column) {
+      ASSERT_EQ(fits.states[fits.grid.index(column, row)], BlockState::fitted);
+      EXPECT_NEAR(distance_and_normal(table, position_of(fits, column, row)).value, 0, 5e-6);
+      EXPECT_LT((normal_of(fits, column, row) - normal).norm(), 2e-3);
+    }
+  }
+}
+
+TEST(WindowFits, TellTheirOwnErrors) {
+  const Solid table = plane({0, 0, 0.7}, Vector3d(0, -0.8, -0.6).normalized());
+  const NoiseModel noise = kinect_like_noise();
+  double places = 0;
+  double slopes = 0;
+  double count = 0;
+  for (std::uint64_t frame = 0; frame < 6; ++frame) {
+    const DepthFrame image = noisy_frame({table}, {.rounding = 0}, frame);
+    const depth::BlockFits fits = fit_all(blocks_of(image, noise), noise);
+    const Vector3d exact = table.T_world_solid.linear().col(2) /
+                           table.T_world_solid.linear().col(2).dot(Vector3d(0, 0, 0.7));
+    for (int row = 12; row < fits.grid.rows - 12; row += 4) {
+      for (int column = 12; column < fits.grid.columns - 12; column += 4) {
+        const std::size_t i = fits.grid.index(column, row);
+        const Vector3d ray(fits.grid.x(column), fits.grid.y(row), 1);
+        places += std::pow(fits.rho[i] - exact.dot(ray), 2) / fits.variance[i];
+        slopes += std::pow(fits.slope_y[i] - exact.y(), 2) / fits.slope_variance[i];
+        ++count;
+      }
+    }
+  }
+  EXPECT_NEAR(places / count, 1, 0.35);
+  EXPECT_NEAR(slopes / count, 1, 0.35);
+}
+
+TEST(WindowFits, GiveTheSameBitsOnOlderProcessors) {
+  if (!cpu_has_v3()) GTEST_SKIP() << "this processor has one level of the instruction set only";
+  const std::vector<Solid> solids = {sphere({0.03, 0, 0.6}, 0.06),
+                                     box({-0.06, 0.02, 0.7}, 0.05, 0.6, 0.4),
+                                     plane({0, 0, 0.9}, Vector3d(0, -0.5, -0.8).normalized())};
+  const NoiseModel noise = kinect_like_noise();
+  const depth::Blocks blocks = blocks_of(noisy_frame(solids, {.silhouettes = true}), noise);
+  std::vector<std::vector<float>> columns[2];
+  int level = 0;
+  for (const simd::FitFunctions* functions : {&simd::kFitsBaseline, &simd::kFitsV3}) {
+    depth::BlockFits fits;
+    fits.resize(blocks.grid);
+    depth::fit_plain(blocks, noise, fits);
+    depth::FitRegion region;
+    region.set(blocks.grid);
+    depth::WindowFits windows(*functions);
+    windows.fit(blocks, noise, 0.0035, region, fits);
+    columns[level] = {fits.rho,     fits.variance,       fits.slope_x,
+                      fits.slope_y, fits.slope_variance, fits.confidences};
+    ++level;
+  }
+  EXPECT_EQ(columns[0], columns[1]);
+}
+
+}  // namespace
+}  // namespace palpate::test
