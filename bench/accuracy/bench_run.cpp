@@ -29,7 +29,7 @@ std::vector<IdealRow> ideal_rows(const TruthScene& truth, const BenchOptions& op
 
 // Contenders that prepare alike share a scene.
 bool prepared_alike(const Contender& a, const Contender& b) {
-  return a.prepare.paper == b.prepare.paper;
+  return a.organised == b.organised && a.prepare.paper == b.prepare.paper;
 }
 
 Score score_row(Scene& scene, const Contender& contender, const IdealRow& ideal,
@@ -46,20 +46,24 @@ Score score_row(Scene& scene, const Contender& contender, const IdealRow& ideal,
 
 BenchResults run_bench(const BenchOptions& options, const std::vector<Contender>& contenders) {
   const TruthScene truth = make_truth_scene(options.layout);
-  const DepthImage exact = render_depth(truth);
+  const DepthFrame exact = exact_frame(truth);
   const std::vector<IdealRow> rows = ideal_rows(truth, options);
   BenchResults out;
   for (int i = 0; i < options.seeds; ++i) {
     const std::uint64_t seed = options.first_seed + static_cast<std::uint64_t>(i);
-    const DepthImage frame = add_noise(exact, {options.noise, seed, options.silhouettes});
-    const PointCloud cloud = back_project(frame, truth.camera.pinhole);
+    SimulatedNoiseOptions noise;
+    noise.kind = options.noise;
+    noise.seed = seed;
+    noise.silhouettes = options.silhouettes;
+    const DepthFrame frame = noisy_frame(exact, noise);
     std::unique_ptr<Scene> scene;
     for (std::size_t k = 0; k < contenders.size(); ++k) {
       const Contender& contender = contenders[k];
       if (!scene || !prepared_alike(contender, contenders[k - 1])) {
-        scene = make_scene(cloud, truth, contender.prepare);
+        scene = make_scene(frame, truth, contender);
       }
-      out.preparations.push_back({seed, contender.name, scene->source(0).report()});
+      const Source& source = scene->source(0);
+      out.preparations.push_back({seed, contender.name, source.report(), source.state()});
       for (const IdealRow& row : rows) {
         out.results.push_back(
             {seed, contender.name, row.row.name, score_row(*scene, contender, row, truth)});

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "accuracy/contender.hpp"
-#include "accuracy/depth_noise.hpp"
 #include "accuracy/rows.hpp"
+#include "accuracy/truth_frame.hpp"
 
 namespace palpate::accuracy {
 
@@ -32,6 +32,7 @@ struct Preparation {
   std::uint64_t seed = 0;
   std::string contender;
   PrepareReport report;
+  SourceState state;
 };
 
 struct BenchResults {

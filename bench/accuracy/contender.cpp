@@ -5,6 +5,8 @@
 namespace palpate::accuracy {
 namespace {
 
+constexpr double kForEver = 1e6;  // s
+
 ProxyOptions proxy_options(ProxyMethod method) {
   ProxyOptions options;
   options.stiffness = kStiffness;
@@ -15,13 +17,20 @@ ProxyOptions proxy_options(ProxyMethod method) {
 Contender ours(std::string name, FieldKind kind, const PrepareOptions& prepare) {
   FieldOptions field;
   field.kind = kind;
-  return {std::move(name), prepare, field, proxy_options(ProxyMethod::converged)};
+  return {std::move(name), false, prepare, field, proxy_options(ProxyMethod::converged)};
 }
 
 Contender papers(std::string name, FieldKind kind) {
   PrepareOptions prepare;
   prepare.paper = true;
-  return {std::move(name), prepare, paper_field(kind), proxy_options(ProxyMethod::single_step)};
+  return {std::move(name), false, prepare, paper_field(kind),
+          proxy_options(ProxyMethod::single_step)};
+}
+
+Contender organised() {
+  Contender contender = ours(kOrganised, FieldKind::balanced, {});
+  contender.organised = true;
+  return contender;
 }
 
 void record(Trace& trace, const Contact& contact, const Eigen::Vector3d& hip) {
@@ -33,20 +42,27 @@ void record(Trace& trace, const Contact& contact, const Eigen::Vector3d& hip) {
 }  // namespace
 
 std::vector<Contender> all_contenders(const PrepareOptions& prepare) {
-  return {ours("balanced", FieldKind::balanced, prepare),
+  return {organised(),
+          ours(kUnorganised, FieldKind::balanced, prepare),
           ours("pointset", FieldKind::pointset, prepare),
           ours("metaball", FieldKind::metaball, prepare),
           papers("paper pointset", FieldKind::pointset),
           papers("paper metaball", FieldKind::metaball)};
 }
 
-std::unique_ptr<Scene> make_scene(const PointCloud& cloud, const TruthScene& truth,
-                                  const PrepareOptions& prepare) {
+std::unique_ptr<Scene> make_scene(const DepthFrame& frame, const TruthScene& truth,
+                                  const Contender& contender) {
   auto scene = std::make_unique<Scene>();
   SourceOptions options;
   options.T_world_sensor = truth.camera.T_world_camera;
-  options.prepare = prepare;
-  scene->add("frame", cloud, options);
+  options.prepare = contender.prepare;
+  options.policy.fit_everywhere = true;  // no tool has said yet where it is
+  options.policy.silence = kForEver;
+  if (contender.organised) {
+    scene->add("frame", options).push(frame, [] { return -1.0; });
+  } else {
+    scene->add("frame", back_project(frame), options);
+  }
   return scene;
 }
 

@@ -9,4 +9,8 @@ namespace palpate::accuracy {
 [[nodiscard]] std::vector<double> high_pass(const std::vector<double>& signal, double cutoff,
                                             double rate);
 
+/// Likewise, a signal without what is faster than `cutoff`.
+[[nodiscard]] std::vector<double> low_pass(const std::vector<double>& signal, double cutoff,
+                                           double rate);
+
 }  // namespace palpate::accuracy

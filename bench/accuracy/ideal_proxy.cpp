@@ -81,10 +81,10 @@ void IdealProxy::settle(const Vector3d& hip) {
     const Vector3d way = hip - position_;
     const double length = way.norm();
     const Vector3d goal = length > kStep ? Vector3d(way * (kStep / length)) : way;
-    std::array<Constraint, kParts> constraints;
+    std::array<Constraint, kTableParts> constraints;
     for (std::size_t k = 0; k < constraints.size(); ++k) {
       const Distance found = distance_and_normal(scene_->solids[k], position_);
-      constraints[k] = {found.normal, std::min(0.0, -found.value)};
+      constraints[k] = {found.gradient, std::min(0.0, -found.value)};
     }
     const Vector3d step = nearest_allowed(constraints, goal);
     position_ += step;

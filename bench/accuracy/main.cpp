@@ -38,9 +38,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--normal-error", arguments.prepare.normal_error, "Wanted normal error, rad");
 }
 
-NoiseKind noise_of(const std::string& letter) {
-  if (letter == "b") return NoiseKind::blurred;
-  return letter == "c" ? NoiseKind::quantised : NoiseKind::independent;
+palpate::NoiseKind noise_of(const std::string& letter) {
+  if (letter == "b") return palpate::NoiseKind::blurred;
+  return letter == "c" ? palpate::NoiseKind::quantised : palpate::NoiseKind::independent;
 }
 
 std::vector<Contender> chosen(const Arguments& arguments) {

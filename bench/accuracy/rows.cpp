@@ -150,11 +150,11 @@ Path crease(const TruthScene& scene) {
 // The cloud ends where the table leaves the image at its lower border, between the camera and the
 // slides. The truth goes on there, so that these rows tell of steps and attraction alone.
 Vector3d cloud_edge(const TruthScene& scene) {
-  const DepthCamera& camera = scene.camera;
+  const CameraModel& camera = scene.camera.model;
   const Vector3d ray((camera.width / 2 - camera.pinhole.cx) / camera.pinhole.fx,
                      (camera.height - 1 - camera.pinhole.cy) / camera.pinhole.fy, 1);
-  const Vector3d eye = camera.T_world_camera.translation();
-  const Vector3d direction = camera.T_world_camera.linear() * ray;
+  const Vector3d eye = scene.camera.T_world_camera.translation();
+  const Vector3d direction = scene.camera.T_world_camera.linear() * ray;
   return eye - direction * (eye.z() / direction.z());
 }
 

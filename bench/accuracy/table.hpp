@@ -7,16 +7,25 @@
 
 namespace palpate::accuracy {
 
-/// One line of table A: a metric of a row, its target for one raw frame taken as unorganised
-/// points, and what evaluation.md quotes for the best of three tuned CHAI3D meshes.
+/// What absolute values over several frames must not be above; < 0: no target.
+struct Limit {
+  double median = -1;
+  double worst = -1;
+};
+
+/// One line of table A: a metric of a row, its targets for one raw frame, and what evaluation.md
+/// quotes for the best of three tuned CHAI3D meshes.
 struct Target {
   std::string row;
   std::string metric;  ///< for the reader, with its unit
   double (*of)(const Score&) = nullptr;
-  double limit = 0;    ///< the median over the frames must not be above, as an absolute
-                       ///< value; < 0: no target
+  Limit points;        ///< taken as unorganised points
+  Limit organised;     ///< taken as a depth frame
   std::string quoted;  ///< empty: not quoted
 };
+
+/// What the contender of this name is held to: none but palpate's two defaults to anything.
+[[nodiscard]] Limit limit_of(const Target& target, const std::string& contender);
 
 /// The targets that hold for this noise.
 [[nodiscard]] std::vector<Target> targets(NoiseKind noise);
@@ -30,7 +39,7 @@ struct Spread {
 [[nodiscard]] Spread spread(const BenchResults& results, const std::string& contender,
                             const Target& target);
 
-/// Is the target met by this contender's median (or is there none)?
+/// Is the target met by this contender (or is there none)?
 [[nodiscard]] bool met(const BenchResults& results, const std::string& contender,
                        const Target& target);
 

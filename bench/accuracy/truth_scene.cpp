@@ -1,116 +1,17 @@
 #include "accuracy/truth_scene.hpp"
 
-#include <cmath>
-#include <numbers>
-#include <string>
-
-#include "palpate/base/error.hpp"
-
 namespace palpate::accuracy {
-namespace {
-
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kTableDistance = 0.7;  // along the optical axis, m
-constexpr double kLookDown = 27 * kDegree;
-constexpr double kSphereRadius = 0.060;
-constexpr double kCylinderRadius = 0.035;
-constexpr double kCylinderHeight = 0.12;
-constexpr double kRoot =
-    0.05;  // how far what stands on the table goes on below it: a crease is no edge
-constexpr double kPlateElevation = 0.05;  // of the plate's middle above the table
-const Vector3d kBoxSize(0.12, 0.10, 0.08);
-const Vector3d kPlateSize(0.002, 0.12, 0.10);
-
-// Feet of the objects on the table, m, and how the box is turned. All are clear of one another, of
-// their shadows in the camera's view and of the slides.
-struct Layout {
-  Eigen::Vector2d sphere, box, cylinder, plate, slide;
-  double box_turn;
-  double wall;
-};
-
-Layout layout_of(int number) {
-  switch (number) {
-    case 0:
-      return {{0.02, 0.24}, {0.03, -0.24}, {0.24, 0.14}, {0.22, -0.03},
-              {-0.04, 0.0}, -20 * kDegree, 0.50};
-    case 1:
-      return {{-0.02, -0.22}, {0.06, 0.20},  {0.20, -0.02}, {0.25, -0.17},
-              {-0.05, 0.0},   -20 * kDegree, 0.55};
-    case 2:
-      return {{0.12, -0.02}, {-0.02, -0.22}, {0.30, 0.11}, {0.18, 0.27},
-              {-0.07, 0.18}, 20 * kDegree,   0.60};
-    default:
-      throw Error("there is no layout " + std::to_string(number) +
-                  " of the truth scene; take 0 to " + std::to_string(kLayouts - 1));
-  }
-}
-
-Isometry3d camera_pose() {
-  const double c = std::cos(kLookDown);
-  const double s = std::sin(kLookDown);
-  Isometry3d pose = Isometry3d::Identity();
-  const Vector3d forward(c, 0, -s);
-  const Vector3d right(0, -1, 0);
-  pose.linear().col(0) = right;
-  pose.linear().col(1) = forward.cross(right);
-  pose.linear().col(2) = forward;
-  pose.translation() = -kTableDistance * forward;
-  return pose;
-}
-
-Isometry3d upright(const Eigen::Vector2d& foot, double height, double turn = 0) {
-  Isometry3d pose = Isometry3d::Identity();
-  pose.linear() = Eigen::AngleAxisd(turn, Vector3d::UnitZ()).toRotationMatrix();
-  pose.translation() = Vector3d(foot.x(), foot.y(), height);
-  return pose;
-}
-
-// Local x points at the camera, local y is horizontal.
-Isometry3d facing(const Vector3d& center, const Vector3d& camera) {
-  Isometry3d pose = Isometry3d::Identity();
-  const Vector3d x = (camera - center).normalized();
-  const Vector3d y = Vector3d::UnitZ().cross(x).normalized();
-  pose.linear().col(0) = x;
-  pose.linear().col(1) = y;
-  pose.linear().col(2) = x.cross(y);
-  pose.translation() = center;
-  return pose;
-}
-
-Isometry3d wall_pose(double x) {
-  Isometry3d pose = Isometry3d::Identity();
-  pose.linear() = Eigen::AngleAxisd(-90 * kDegree, Vector3d::UnitY()).toRotationMatrix();
-  pose.translation() = Vector3d(x, 0, 0);
-  return pose;
-}
-
-}  // namespace
 
 TruthScene make_truth_scene(int layout) {
-  const Layout at = layout_of(layout);
+  const SimulatedTable table = make_simulated_table(layout);
   TruthScene scene;
-  scene.camera.T_world_camera = camera_pose();
-  const Vector3d eye = scene.camera.T_world_camera.translation();
-  const Vector3d plate(at.plate.x(), at.plate.y(), kPlateElevation);
-  scene.solids[kTable] = {};
-  scene.solids[kWall] = {SolidKind::half_space, wall_pose(at.wall), Vector3d::Zero()};
-  scene.solids[kSphere] = {SolidKind::ball, upright(at.sphere, kSphereRadius),
-                           Vector3d::Constant(kSphereRadius)};
-  scene.solids[kBox] = {SolidKind::block, upright(at.box, (kBoxSize.z() - kRoot) / 2, at.box_turn),
-                        (kBoxSize + kRoot * Vector3d::UnitZ()) / 2};
-  scene.solids[kCylinder] = {
-      SolidKind::cylinder, upright(at.cylinder, (kCylinderHeight - kRoot) / 2),
-      Vector3d(kCylinderRadius, kCylinderRadius, (kCylinderHeight + kRoot) / 2)};
-  scene.solids[kPlate] = {SolidKind::block, facing(plate, eye), kPlateSize / 2};
-  scene.slide_center = Vector3d(at.slide.x(), at.slide.y(), 0);
+  for (std::size_t i = 0; i < kTableParts; ++i) scene.solids[i] = table.scene.solids[i].solid;
+  scene.camera.T_world_camera = table.T_world_camera;
+  scene.slide_center = table.free_patch;
   return scene;
 }
 
-Distance distance_and_normal(const TruthScene& scene, const Vector3d& x) {
+Distance distance_and_normal(const TruthScene& scene, const Eigen::Vector3d& x) {
   Distance nearest = distance_and_normal(scene.solids[0], x);
   for (std::size_t i = 1; i < scene.solids.size(); ++i) {
     const Distance other = distance_and_normal(scene.solids[i], x);

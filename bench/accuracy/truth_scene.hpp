@@ -1,28 +1,25 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 
-#include "accuracy/depth_camera.hpp"
-#include "accuracy/solid.hpp"
+#include "palpate/depth/camera_model.hpp"
+#include "palpate/sensor/simulated_table.hpp"
 
 namespace palpate::accuracy {
 
-/// Places in TruthScene::solids.
-enum Part : std::size_t { kTable, kWall, kSphere, kBox, kCylinder, kPlate, kParts };
+struct TruthCamera {
+  CameraModel model{640, 480, {525, 525, 319.5, 239.5}, {}};
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+};
 
-/// The scene of evaluation.md. World frame: the table is z = 0, z points up, x away from the
-/// camera, and the optical axis meets the table at the origin.
+/// The scene of evaluation.md: SimulatedTable, standing still, with the camera that sees it.
 struct TruthScene {
-  std::array<Solid, kParts> solids;
-  DepthCamera camera;
+  std::array<Solid, kTableParts> solids;  ///< in the order of TablePart
+  TruthCamera camera;
   Eigen::Vector3d slide_center = Eigen::Vector3d::Zero();  ///< of a free patch of table, m
 };
 
-/// How many placements of the objects there are: the first is the bench's own, the others are for
-/// checking that nothing was tuned to it.
-inline constexpr int kLayouts = 3;
-
+/// Layout 0 is the bench's own, the others are for checking that nothing was tuned to it.
 /// @throws palpate::Error when there is no such layout.
 [[nodiscard]] TruthScene make_truth_scene(int layout = 0);
 

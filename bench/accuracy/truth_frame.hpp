@@ -1,0 +1,20 @@
+#pragma once
+
+#include "palpate/depth/depth_frame.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+#include "palpate/sensor/simulated_noise.hpp"
+
+namespace palpate::accuracy {
+
+struct TruthScene;
+
+/// What the scene's camera would see if it never erred.
+[[nodiscard]] DepthFrame exact_frame(const TruthScene& scene);
+
+/// What it sees.
+[[nodiscard]] DepthFrame noisy_frame(const DepthFrame& exact, const SimulatedNoiseOptions& noise);
+
+/// Every measured pixel as a point in the camera's frame, whose viewpoint is its origin.
+[[nodiscard]] PointCloud back_project(const DepthFrame& frame);
+
+}  // namespace palpate::accuracy
