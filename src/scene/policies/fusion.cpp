@@ -44,10 +44,7 @@ void Fusion::choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_wor
 
 /// Brings everything to the new start.
 void Fusion::age(const Moment& moment) {
-  double u = 1;
-  if (last_.duration > 0) {
-    u = std::clamp((moment.start - last_.start) / last_.duration, 0.0, 1.0);
-  }
+  const double u = progress(last_, moment.start);
   for (auto& [key, voxel] : voxels_) {
     voxel.start += u * (voxel.end - voxel.start);
     voxel.weight_start += u * (voxel.weight_end - voxel.weight_start);

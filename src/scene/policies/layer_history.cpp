@@ -6,6 +6,11 @@
 #include <utility>
 
 namespace palpate {
+namespace {
+
+constexpr double kGone = 1e-9;
+
+}  // namespace
 
 void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const Moment& moment,
                        std::vector<Layer>& layers) {
@@ -13,7 +18,7 @@ void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const Moment
   layers_.push_back({std::move(newest), 0, 0});
   const auto most =
       policy_ == Policy::crossfade ? Snapshot::kMaxLayers : static_cast<std::size_t>(history_);
-  if (layers_.size() > most) layers_.erase(layers_.begin());
+  if (layers_.size() > most) drop();
   weigh();
   last_ = moment;
   layers.assign(layers_.begin(), layers_.end());
@@ -21,15 +26,25 @@ void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const Moment
 
 /// Weights as they are at the new start; what has faded away is dropped.
 void LayerHistory::age(const Moment& moment) {
-  double u = 1;
-  if (last_.duration > 0) {
-    u = std::clamp((moment.start - last_.start) / last_.duration, 0.0, 1.0);
-  }
+  const double u = progress(last_, moment.start);
   for (Layer& layer : layers_) {
     layer.weight_start += u * (layer.weight_end - layer.weight_start);
   }
-  std::erase_if(
-      layers_, [](const Layer& layer) { return layer.weight_start <= 0 && layer.weight_end <= 0; });
+  std::erase_if(layers_, [](const Layer& layer) {
+    return layer.weight_start <= kGone && layer.weight_end <= kGone;
+  });
+}
+
+/// Makes room: takes out what matters least. Clouds that come at three times their rate do that to
+/// a crossfade of four.
+void LayerHistory::drop() {
+  const auto least = policy_ == Policy::crossfade
+                         ? std::min_element(layers_.begin(), layers_.end() - 1,
+                                            [](const Layer& a, const Layer& b) {
+                                              return a.weight_start < b.weight_start;
+                                            })
+                         : layers_.begin();
+  layers_.erase(least);
 }
 
 void LayerHistory::weigh() {

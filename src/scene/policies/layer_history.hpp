@@ -25,6 +25,7 @@ class LayerHistory {
 
  private:
   void age(const Moment& moment);
+  void drop();
   void weigh();
 
   Policy policy_;

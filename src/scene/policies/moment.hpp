@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 namespace palpate {
 
 /// When a snapshot holds.
@@ -8,5 +10,14 @@ struct Moment {
   double start = 0;     ///< s, on the fields' clock; no earlier than the last snapshot's
   double duration = 0;  ///< how long the next one is going to be waited for, s
 };
+
+/// How far what began at `last` has gone at `time`, s, 0-1. Rounding does not keep it from
+/// arriving.
+[[nodiscard]] inline double progress(const Moment& last, double time) {
+  constexpr double kArrived = 1 - 1e-6;
+  if (!(last.duration > 0)) return 1;
+  const double share = std::clamp((time - last.start) / last.duration, 0.0, 1.0);
+  return share > kArrived ? 1 : share;
+}
 
 }  // namespace palpate

@@ -11,8 +11,6 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 constexpr std::size_t kAhead = 32;  // blocks
 
-constexpr double kArrived = 1 - 1e-6;  // what a regular frame's progress is but for rounding
-
 // What has faded so far is gone.
 constexpr float kGone = 1e-4f;
 
@@ -85,11 +83,7 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
   if ((T_world_sensor.translation() - origin_).norm() > kFarFromOrigin) forget();
   if (!last_) origin_ = T_world_sensor.translation();
   moment_ = moment;
-  progress_ = 1;
-  if (last_ && last_moment_.duration > 0) {
-    progress_ = std::clamp((moment.start - last_moment_.start) / last_moment_.duration, 0.0, 1.0);
-    if (progress_ > kArrived) progress_ = 1;
-  }
+  progress_ = last_ ? progress(last_moment_, moment.start) : 1;
   moved_ = last_ && T_world_sensor.matrix() != T_world_sensor_.matrix();
   turn_ = T_world_sensor.linear().cast<float>();
   shift_ = (T_world_sensor.translation() - origin_).cast<float>();

@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "palpate/scene/scene.hpp"
+#include "palpate/scene/scene_field.hpp"
+#include "scene/reach_board.hpp"
+#include "scene/tool_reach.hpp"
+#include "support/depth_frames.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(ReachBoard, TellsWhatWasWritten) {
+  ReachBoard board;
+  std::vector<Reach> found{{Vector3d::Ones(), 5}};
+  board.read(found);
+  EXPECT_TRUE(found.empty());
+  board.write(3, {{1, 2, 3}, 0.1});
+  board.write(7, {{4, 5, 6}, 0.2});
+  board.read(found);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].center, Vector3d(1, 2, 3));
+  EXPECT_EQ(found[1].radius, 0.2);
+  board.clear(3);
+  board.read(found);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].center, Vector3d(4, 5, 6));
+}
+
+TEST(ReachBoard, NeverGivesHalfOfTwo) {
+  ReachBoard board;
+  std::atomic<bool> done{false};
+  const std::jthread writer([&] {
+    for (int i = 0; !done; ++i) {
+      const double v = i % 1000;
+      board.write(0, {{v, v, v}, v});
+    }
+  });
+  std::vector<Reach> found;
+  for (int i = 0; i < 20000; ++i) {
+    board.read(found);
+    for (const Reach& reach : found) {
+      ASSERT_EQ(reach.center, Vector3d::Constant(reach.radius));
+    }
+  }
+  done = true;
+}
+
+// The hand starts from rest and reaches 1 m/s within a frame and the latency.
+TEST(ToolReach, HoldsWhereTheHandGoesNext) {
+  constexpr double kTick = 1e-3;
+  constexpr double kAhead = 2. / 30 + 0.02;
+  const auto hand = [](double t) {
+    const double s = t < 0.2 ? 0 : t < 0.4 ? 2.5 * (t - 0.2) * (t - 0.2) : 0.1 + (t - 0.4);
+    return Vector3d(s, 0, 0);
+  };
+  ToolReach reach;
+  for (double t = 0; t < 1; t += kTick) {
+    const Reach ball = reach.update(t, hand(t), hand(t), 1. / 30, 0.02);
+    EXPECT_LT((hand(t + kAhead) - ball.center).norm(), ball.radius) << t;
+  }
+}
+
+TEST(ToolReach, IsSmallAroundAHandThatRests) {
+  ToolReach reach;
+  Reach ball;
+  for (int k = 0; k < 1000; ++k) {
+    ball = reach.update(1e-3 * k, Vector3d::Zero(), Vector3d::Zero(), 1. / 30, 0.02);
+  }
+  EXPECT_LT(ball.radius, 0.1);
+  EXPECT_GT(ball.radius, 0.05);
+}
+
+TEST(ToolReach, HoldsHandAndProxy) {
+  ToolReach reach;
+  const Vector3d hip(0, 0, -0.3);
+  const Vector3d proxy(0.1, 0, 0);
+  const Reach ball = reach.update(0, hip, proxy, 1. / 30, 0.02);
+  EXPECT_LT((hip - ball.center).norm(), ball.radius);
+  EXPECT_LT((proxy - ball.center).norm(), ball.radius);
+}
+
+TEST(ToolReach, TimesThatMakeNoSenseAreIgnored) {
+  ToolReach reach;
+  Reach ball = reach.update(5, Vector3d::Zero(), Vector3d::Zero(), 0, 0);
+  ball = reach.update(5, Vector3d::Ones(), Vector3d::Zero(), 0, 0);
+  ball = reach.update(4, Vector3d::Zero(), Vector3d::Zero(), 0, 0);
+  EXPECT_LT(ball.radius, 0.1);
+}
+
+TEST(Scene, FieldsTellSourcesWhereTheyFeel) {
+  Scene scene;
+  SourceOptions options;
+  options.T_world_sensor = test::looking_down();
+  options.depth.memory = 1;
+  Source& source = scene.add("camera", options);
+  SceneField field(scene);
+  field.update(0, {0.03, 0, 0}, {0.03, 0, 0});
+  const DepthFrame frame = test::frame_of(test::small_camera(), 0, test::wall(0.5), 1e-4);
+  source.push(frame, [] { return 0.0; });
+  EXPECT_TRUE(source.points()->sharp_edges) << "there are blocks with a fit";
+  EXPECT_EQ(source.state().points, source.points()->size());
+}
+
+TEST(Scene, RefusesSourcesThatAFieldWouldNeverSee) {
+  Scene scene;
+  scene.add("early");
+  {
+    const SceneField field(scene);
+    EXPECT_ANY_THROW(scene.add("late"));
+  }
+  EXPECT_NO_THROW(scene.add("late"));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,61 @@
+#include "scene/recycler.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+TEST(Recycler, GivesOutAgainWhatCameBack) {
+  Recycler<std::vector<int>> recycler;
+  auto first = recycler.take();
+  first->assign(1000, 7);
+  const std::vector<int>* const object = first.get();
+  auto second = recycler.take();
+  EXPECT_NE(second.get(), object);
+  first.reset();
+  const auto again = recycler.take();
+  EXPECT_EQ(again.get(), object);
+  EXPECT_EQ(again->size(), 1000u) << "with what it held";
+}
+
+struct Clear {
+  void operator()(std::vector<int>& values) const noexcept { values.clear(); }
+};
+
+TEST(Recycler, RestsAsItIsTold) {
+  Recycler<std::vector<int>, Clear> recycler;
+  recycler.take()->assign(1000, 7);
+  const auto again = recycler.take();
+  EXPECT_TRUE(again->empty());
+  EXPECT_GE(again->capacity(), 1000u);
+}
+
+TEST(Recycler, OwnersMayOutliveIt) {
+  std::shared_ptr<std::vector<int>> owned;
+  {
+    Recycler<std::vector<int>> recycler;
+    owned = recycler.take();
+    owned->assign(10, 3);
+  }
+  EXPECT_EQ(owned->back(), 3);
+  owned.reset();
+}
+
+TEST(Recycler, ObjectsComeBackOnAnyThread) {
+  Recycler<std::vector<int>> recycler;
+  std::vector<std::shared_ptr<std::vector<int>>> owned;
+  for (int round = 0; round < 200; ++round) {
+    for (int i = 0; i < 4; ++i) {
+      owned.push_back(recycler.take());
+      owned.back()->assign(16, round);
+    }
+    const std::jthread other([mine = std::move(owned)]() mutable { mine.clear(); });
+    owned.clear();
+  }
+}
+
+}  // namespace
+}  // namespace palpate
