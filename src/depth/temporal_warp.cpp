@@ -11,9 +11,10 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-constexpr float kReach = 0.75F;     // blocks from a piece's middle to the blocks it is offered to
-constexpr float kInflation = 0.1F;  // share of the mean's variance that each move adds
-constexpr float kGrazing = 0.02F;   // n.ray / |ray|: planes seen closer to edge-on are given up
+constexpr float kReach = 0.75F;      // blocks from a piece's middle to the blocks it is offered to
+constexpr float kInflation = 0.1F;   // share of the mean's variance that each move adds
+constexpr float kContinuous = 0.1F;  // of another surface's distance, between neighbours
+constexpr float kGrazing = 0.02F;    // n.ray / |ray|: planes seen closer to edge-on are given up
 
 /// A plane as the vector a with a.p = 1 for its points p.
 Vector3f plane_of(const BlockMemory& m, float x, float y) {
@@ -43,10 +44,46 @@ float seen_at(const Vector3f& plane, float x, float y) {
   return clear ? rho : 0.0F;
 }
 
+/// How the slopes change from block to block: what keeps round things round when their pieces are
+/// cut beside their middles.
+struct Bend {
+  float xx = 0, yy = 0, xy = 0;  // 1/m
+};
+
+/// Does a neighbour `dx`, `dy` away continue the piece?
+bool continues(const BlockMemory& m, const BlockMemory& neighbor, float dx, float dy) {
+  if (neighbor.count == 0 || !(neighbor.confidence > 0)) return false;
+  const float jump = neighbor.rho - (m.rho + m.slope_x * dx + m.slope_y * dy);
+  return std::abs(jump) < kContinuous * another_surface(m.rho);
+}
+
+Bend bend_at(const BlockGrid& grid, const std::vector<BlockMemory>& memory, std::size_t i,
+             int column, int row) {
+  Bend bend;
+  if (column < 1 || row < 1 || column + 1 >= grid.columns || row + 1 >= grid.rows) return bend;
+  const BlockMemory& m = memory[i];
+  const auto dx = static_cast<float>(grid.step_x);
+  const auto dy = static_cast<float>(grid.step_y);
+  const BlockMemory* row_of = &memory[i];
+  const BlockMemory& left = row_of[-1];
+  const BlockMemory& right = row_of[1];
+  const BlockMemory& above = row_of[-grid.columns];
+  const BlockMemory& below = row_of[grid.columns];
+  const bool whole = m.confidence > 0 && continues(m, left, -dx, 0) && continues(m, right, dx, 0) &&
+                     continues(m, above, 0, -dy) && continues(m, below, 0, dy);
+  if (!whole) return bend;
+  bend.xx = (right.slope_x - left.slope_x) / (2 * dx);
+  bend.yy = (below.slope_y - above.slope_y) / (2 * dy);
+  bend.xy = 0.5F * ((right.slope_y - left.slope_y) / (2 * dx) +
+                    (below.slope_x - above.slope_x) / (2 * dy));
+  return bend;
+}
+
 }  // namespace
 
 void TemporalWarp::resize(std::size_t blocks) {
   claims_.resize(blocks);
+  planes_.resize(blocks);
   warped_.resize(blocks);
 }
 
@@ -56,9 +93,26 @@ void TemporalWarp::offer(const Claim& claim, std::size_t block) {
     const float limit = another_surface(held.rho);
     const bool hidden = claim.rho < held.rho - limit;
     const bool hides = claim.rho > held.rho + limit;
-    if (hidden || (!hides && claim.offset2 >= held.offset2)) return;
+    const bool closer =
+        claim.dc * claim.dc + claim.dr * claim.dr < held.dc * held.dc + held.dr * held.dr;
+    if (hidden || (!hides && !closer)) return;
   }
   held = claim;
+}
+
+// To the blocks next to its middle, at column c and row r.
+void TemporalWarp::offer_around(const BlockGrid& grid, std::int32_t from, float rho, float c,
+                                float r) {
+  const bool inside =
+      c > -1 && r > -1 && c < static_cast<float>(grid.columns) && r < static_cast<float>(grid.rows);
+  if (!inside) return;
+  const int last_column = std::min(grid.columns - 1, static_cast<int>(std::floor(c + kReach)));
+  const int last_row = std::min(grid.rows - 1, static_cast<int>(std::floor(r + kReach)));
+  for (int b = std::max(0, static_cast<int>(std::ceil(r - kReach))); b <= last_row; ++b) {
+    for (int a = std::max(0, static_cast<int>(std::ceil(c - kReach))); a <= last_column; ++a) {
+      offer({from, rho, c - static_cast<float>(a), r - static_cast<float>(b)}, grid.index(a, b));
+    }
+  }
 }
 
 void TemporalWarp::claim(const BlockGrid& grid, const Eigen::Isometry3d& T_now_before,
@@ -69,62 +123,56 @@ void TemporalWarp::claim(const BlockGrid& grid, const Eigen::Isometry3d& T_now_b
   const auto per_y = static_cast<float>(1 / grid.step_y);
   const auto x0 = static_cast<float>(grid.x0);
   const auto y0 = static_cast<float>(grid.y0);
+  std::size_t i = 0;
   for (int row = 0; row < grid.rows; ++row) {
     const auto y = static_cast<float>(grid.y(row));
-    for (int column = 0; column < grid.columns; ++column) {
-      const std::size_t i = grid.index(column, row);
+    for (int column = 0; column < grid.columns; ++column, ++i) {
       const BlockMemory& m = memory[i];
       if (m.count == 0) continue;
-      const Vector3f p = move.point(Vector3f(static_cast<float>(grid.x(column)), y, 1) / m.rho);
+      const auto x = static_cast<float>(grid.x(column));
+      planes_[i] = move.plane(plane_of(m, x, y));
+      const Vector3f p = move.point(Vector3f(x, y, 1) / m.rho);
       if (!(p.z() > 0)) continue;
       const float rho = 1 / p.z();
-      const float c = (p.x() * rho - x0) * per_x;
-      const float r = (p.y() * rho - y0) * per_y;
-      if (!(c > -1 && r > -1 && c < static_cast<float>(grid.columns) &&
-            r < static_cast<float>(grid.rows))) {
-        continue;
-      }
-      const int last_column = std::min(grid.columns - 1, static_cast<int>(std::floor(c + kReach)));
-      const int last_row = std::min(grid.rows - 1, static_cast<int>(std::floor(r + kReach)));
-      for (int b = std::max(0, static_cast<int>(std::ceil(r - kReach))); b <= last_row; ++b) {
-        for (int a = std::max(0, static_cast<int>(std::ceil(c - kReach))); a <= last_column; ++a) {
-          const float dc = c - static_cast<float>(a);
-          const float dr = r - static_cast<float>(b);
-          offer({static_cast<std::int32_t>(i), rho, dc * dc + dr * dr}, grid.index(a, b));
-        }
-      }
+      offer_around(grid, static_cast<std::int32_t>(i), rho, (p.x() * rho - x0) * per_x,
+                   (p.y() * rho - y0) * per_y);
     }
   }
+}
+
+// The piece that a block is given, where its ray meets it.
+bool TemporalWarp::put(const BlockGrid& grid, const std::vector<BlockMemory>& memory,
+                       const Claim& claim, float x, float y, BlockMemory& to) const {
+  const auto i = static_cast<std::size_t>(claim.from);
+  const int column = claim.from % grid.columns;
+  const int row = claim.from / grid.columns;
+  const BlockMemory& from = memory[i];
+  const Vector3f plane = planes_[i];
+  const float rho = seen_at(plane, x, y);
+  if (!(rho > 0) || std::abs(rho - claim.rho) > another_surface(rho)) return false;
+  const Bend bend = bend_at(grid, memory, i, column, row);
+  const float dx = -claim.dc * static_cast<float>(grid.step_x);
+  const float dy = -claim.dr * static_cast<float>(grid.step_y);
+  to = from;
+  to.slope_x = plane.x() + bend.xx * dx + bend.xy * dy;
+  to.slope_y = plane.y() + bend.xy * dx + bend.yy * dy;
+  to.rho = rho + 0.5F * (bend.xx * dx * dx + bend.yy * dy * dy) + bend.xy * dx * dy;
+  to.extra += (kInflation * from.variance + from.slope_variance * (dx * dx + dy * dy)) /
+              static_cast<float>(from.count);
+  return true;
 }
 
 void TemporalWarp::warp(const BlockGrid& grid, const Eigen::Isometry3d& T_now_before,
                         std::vector<BlockMemory>& memory, std::vector<float>& expected) {
   claim(grid, T_now_before, memory);
-  const Move move(T_now_before);
-  const auto step2 = static_cast<float>(grid.step_x * grid.step_y);
   std::size_t i = 0;
   for (int row = 0; row < grid.rows; ++row) {
     const auto y = static_cast<float>(grid.y(row));
     for (int column = 0; column < grid.columns; ++column, ++i) {
       const auto x = static_cast<float>(grid.x(column));
-      const BlockMemory& own = memory[i];
-      expected[i] = own.count > 0 ? seen_at(move.plane(plane_of(own, x, y)), x, y) : 0.0F;
-      BlockMemory& to = warped_[i];
-      to = {};
-      const Claim& claim = claims_[i];
-      if (claim.from < 0) continue;
-      const BlockMemory& from = memory[static_cast<std::size_t>(claim.from)];
-      const auto from_x = static_cast<float>(grid.x(claim.from % grid.columns));
-      const auto from_y = static_cast<float>(grid.y(claim.from / grid.columns));
-      const Vector3f plane = move.plane(plane_of(from, from_x, from_y));
-      const float rho = seen_at(plane, x, y);
-      if (!(rho > 0) || std::abs(rho - claim.rho) > another_surface(rho)) continue;
-      to = from;
-      to.rho = rho;
-      to.slope_x = plane.x();
-      to.slope_y = plane.y();
-      const float mean = 1 / static_cast<float>(from.count);
-      to.extra += mean * (kInflation * from.variance + from.slope_variance * claim.offset2 * step2);
+      expected[i] = memory[i].count > 0 ? seen_at(planes_[i], x, y) : 0.0F;
+      const bool given = claims_[i].from >= 0 && put(grid, memory, claims_[i], x, y, warped_[i]);
+      if (!given) warped_[i] = {};
     }
   }
   memory.swap(warped_);
