@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
+#include <thread>
 
 #include "palpate/base/error.hpp"
 #include "sensor/drivers.hpp"
@@ -16,6 +18,7 @@ namespace palpate::sensor {
 namespace {
 
 constexpr float kAsAsked = -1;  // playback speed: a frame whenever one is read
+constexpr auto kTwoFrames = std::chrono::milliseconds(80);
 constexpr double kMicrosecond = 1e-6;
 
 // What OpenNI2 says of its last error, on one line.
@@ -67,12 +70,15 @@ class OpenNi2Connection final : public Connection {
     choose_mode();
     if (stream_.getMirroringEnabled()) (void)stream_.setMirroringEnabled(false);
     mirrored_ = stream_.getMirroringEnabled();
+    across_ = stream_.getHorizontalFieldOfView();
+    down_ = stream_.getVerticalFieldOfView();
     if (device_.isFile()) start_playback(options);
     check(stream_.start(), "does not start");
   }
 
   ~OpenNi2Connection() override {
     frame_.release();
+    if (device_.isFile()) calm_player();
     stream_.stop();
     stream_.destroy();
     device_.close();
@@ -90,14 +96,17 @@ class OpenNi2Connection final : public Connection {
     if (status == openni::STATUS_TIME_OUT) return CameraStatus::waiting;
     check(status, "stopped delivering");
     check(stream_.readFrame(&frame_), "stopped delivering");
+    if (once_ && frame_.getFrameIndex() <= last_) {  // it began again
+      at_end_ = true;
+      return CameraStatus::ended;
+    }
     fill(frame);
     device_time = kMicrosecond * static_cast<double>(frame_.getTimestamp());
-    at_end_ = frames_ > 0 && frame_.getFrameIndex() >= frames_;
+    last_ = frame_.getFrameIndex();
+    at_end_ = once_ && last_ >= frames_;
     frame_.release();
     return CameraStatus::frame;
   }
-
-  [[nodiscard]] double rate() const { return stream_.getVideoMode().getFps(); }
 
  private:
   void check(openni::Status status, std::string_view what) const {
@@ -121,17 +130,28 @@ class OpenNi2Connection final : public Connection {
   void start_playback(const CameraOptions& options) {
     openni::PlaybackControl* control = device_.getPlaybackControl();
     if (control == nullptr) return;
-    (void)control->setRepeatEnabled(options.loop);
+    // Repeated always: at an end without repetition the player's thread runs wild (see
+    // calm_player).
+    (void)control->setRepeatEnabled(true);
     if (options.clock == nullptr) (void)control->setSpeed(kAsAsked);
-    if (!options.loop) frames_ = control->getNumberOfFrames(stream_);
+    once_ = !options.loop;
+    frames_ = control->getNumberOfFrames(stream_);
+  }
+
+  // OpenNI2's player looks through its list of streams between frames and takes no lock, so a
+  // stream must not go meanwhile. Told to wait until it is asked, it rests in the next frame.
+  void calm_player() {
+    if (openni::PlaybackControl* control = device_.getPlaybackControl()) {
+      (void)control->setSpeed(kAsAsked);
+      std::this_thread::sleep_for(kTwoFrames);
+    }
   }
 
   [[nodiscard]] Pinhole pinhole(int width, int height) const {
-    const double across = stream_.getHorizontalFieldOfView();
-    const double down = stream_.getVerticalFieldOfView();
-    if (!(across > 0 && across < 3 && down > 0 && down < 3)) return kinect_pinhole(width, height);
-    return {.fx = width / (2 * std::tan(across / 2)),
-            .fy = height / (2 * std::tan(down / 2)),
+    const bool known = across_ > 0 && across_ < 3 && down_ > 0 && down_ < 3;
+    if (!known) return kinect_pinhole(width, height);
+    return {.fx = width / (2 * std::tan(across_ / 2)),
+            .fy = height / (2 * std::tan(down_ / 2)),
             .cx = width / 2.0,
             .cy = height / 2.0};
   }
@@ -172,7 +192,11 @@ class OpenNi2Connection final : public Connection {
   openni::VideoStream stream_;
   openni::VideoFrameRef frame_;
   bool mirrored_ = false;
-  int frames_ = 0;  // of a recording that is played once
+  double across_ = 0;  // field of view, rad; 0: not known
+  double down_ = 0;
+  bool once_ = false;  // a recording that is played once
+  int frames_ = 0;     // of a recording
+  int last_ = 0;       // the frame's number in it
   bool at_end_ = false;
 };
 

@@ -12,19 +12,25 @@ namespace palpate::sensor {
 /// but at its first pixel (0.5 m), at 30 Hz, uncompressed, with a field of view of 1.0 x 0.8 rad.
 class OniFile {
  public:
-  OniFile(int width, int height, int frames, bool mirrored = false) {
+  struct Kind {
+    bool mirrored = false;
+    bool whole = true;  ///< false: without the properties that OpenNI2's player asks for
+  };
+
+  OniFile(int width, int height, int frames) : OniFile(width, height, frames, Kind{}) {}
+  OniFile(int width, int height, int frames, const Kind& kind) {
     const auto count = static_cast<std::uint32_t>(frames);
     const auto w = static_cast<std::uint32_t>(width);
     const auto h = static_cast<std::uint32_t>(height);
     head(count);
     node(count);
-    whole("oniRequiredFrameSize", width * height * 2);
-    whole("xnMirror", mirrored ? 1 : 0);
-    whole("xnBytesPerPixel", 2);
+    number("oniRequiredFrameSize", width * height * 2);
+    number("xnMirror", kind.mirrored ? 1 : 0);
+    if (kind.whole) number("xnBytesPerPixel", 2);
     general("xnMapOutputMode", numbers<std::uint32_t>({w, h, 30}));
-    whole("xnPixelFormat", 4);
-    whole("oniPixelFormat", 100);
-    general("xnCropping", std::string(12, '\0'));
+    number("xnPixelFormat", 4);
+    number("oniPixelFormat", 100);
+    if (kind.whole) general("xnCropping", std::string(12, '\0'));
     general("xnFOV", numbers<double>({1.0, 0.8}));
     record(kNodeReady, "");
     record(kDataBegin, numbers<std::uint32_t>({count}) + numbers<std::uint64_t>({kStep * count}));
@@ -82,7 +88,7 @@ class OniFile {
                            numbers<std::uint64_t>({0, kStep * frames, 0}));
   }
 
-  void whole(std::string_view property, std::int64_t value) {
+  void number(std::string_view property, std::int64_t value) {
     record(kIntProperty,
            name(property) + numbers<std::uint32_t>({8}) + numbers<std::int64_t>({value}));
   }
