@@ -52,7 +52,7 @@ void Guard::reset() noexcept {
   started_ = false;
 }
 
-Vector3d Guard::apply(const GuardInput& input) noexcept {
+Vector3d Guard::pass(const GuardInput& input) noexcept {
   ++state_.counts.steps;
   state_.notes = GuardNote::none;
   if (state_.fault != GuardFault::none) return fail(state_.fault);

@@ -98,7 +98,7 @@ Vector3d Servo::guarded() noexcept {
   input.dt = state_.dt;
   input.stiffness = state_.contact.stiffness;
   input.fault = known_fault(state_);
-  return guard_.apply(input);
+  return guard_.pass(input);
 }
 
 void Servo::show(const StepTiming& timing) noexcept {
@@ -106,6 +106,7 @@ void Servo::show(const StepTiming& timing) noexcept {
   lateness_.add(timing.lateness);
   computing_.add(timing.computing);
   shown_.set(state_);
+  if (options_.steps != nullptr) options_.steps->push(state_);
 }
 
 void Servo::set_feel(const Feel& feel) {

@@ -60,7 +60,7 @@ RC_GTEST_PROP(GuardProperty, NeverLetsPassWhatIsNotFiniteOrTooLong, ()) {
   Guard guard(options);
   for (const GuardInput& each : inputs(true)) {
     const bool faulted = guard.state().fault != GuardFault::none;
-    const Vector3d force = guard.apply(each);
+    const Vector3d force = guard.pass(each);
     RC_ASSERT(force.allFinite());
     RC_ASSERT(force.norm() <= options.maximum_force * (1 + 1e-12));
     if (faulted) RC_ASSERT(force.isZero(0));
@@ -80,7 +80,7 @@ RC_GTEST_PROP(GuardProperty, NeverStepsFurtherThanHandAndSlewAllow, ()) {
   for (const GuardInput& each : inputs(false)) {
     if (first) before = each;
     first = false;
-    const Vector3d force = guard.apply(each);
+    const Vector3d force = guard.pass(each);
     if (each.dt > options.silence) {
       RC_ASSERT(force.isZero(0));
     } else {
@@ -99,7 +99,7 @@ RC_GTEST_PROP(GuardProperty, NeverStepsFurtherThanHandAndSlewAllow, ()) {
 RC_GTEST_PROP(GuardProperty, ChangesNothingThatNeedsNoChange, ()) {
   Guard guard({.maximum_force = 16});
   for (const GuardInput& each : inputs(false)) {
-    const Vector3d force = guard.apply(each);
+    const Vector3d force = guard.pass(each);
     if (guard.state().notes == GuardNote::none) RC_ASSERT(force == each.force);
   }
 }

@@ -38,7 +38,7 @@ TEST(Guard, LetsASpringPassBitForBitThatTheHandStretches) {
     // 0.2 m/s at most, to 13 mm: comes in, goes out.
     const double z = 3e-3 - 16e-3 * std::abs(std::sin(0.0125 * i));
     const GuardInput input = pressed(z);
-    ASSERT_EQ(guard.apply(input), input.force) << "step " << i;
+    ASSERT_EQ(guard.pass(input), input.force) << "step " << i;
     ASSERT_EQ(guard.state().notes, GuardNote::none);
   }
   EXPECT_EQ(guard.state().counts.steps, 2000u);
@@ -47,19 +47,19 @@ TEST(Guard, LetsASpringPassBitForBitThatTheHandStretches) {
 
 TEST(Guard, LetsAHandGoAtOnceThatLeavesFast) {
   Guard guard;
-  for (int i = 0; i < 100; ++i) static_cast<void>(guard.apply(pressed(-1e-4 * i)));
+  for (int i = 0; i < 100; ++i) static_cast<void>(guard.pass(pressed(-1e-4 * i)));
   GuardInput out = pressed(5e-3);  // 15 mm in a step
   out.stiffness = 0;               // it touches nothing now
-  EXPECT_EQ(guard.apply(out), Vector3d::Zero());
+  EXPECT_EQ(guard.pass(out), Vector3d::Zero());
   EXPECT_EQ(guard.state().notes, GuardNote::none);
 }
 
 TEST(Guard, SlewsWhatTheHandDidNotDo) {
   Guard guard;
-  static_cast<void>(guard.apply(pushed({0, 0, 0})));
+  static_cast<void>(guard.pass(pushed({0, 0, 0})));
   const double step = 300 * kDt;
   for (int i = 1; i <= 20; ++i) {
-    const Vector3d force = guard.apply(pushed({0, 3, 4}));
+    const Vector3d force = guard.pass(pushed({0, 3, 4}));
     const double expected = std::min(i * step, 5.0);
     EXPECT_NEAR(force.norm(), expected, 1e-12);
     EXPECT_NEAR(force.cross(Vector3d(0, 3, 4)).norm(), 0, 1e-12) << "straight to the new force";
@@ -70,13 +70,13 @@ TEST(Guard, SlewsWhatTheHandDidNotDo) {
 
 TEST(Guard, AllowsWhatADamperMakesOfAChangeOfVelocity) {
   Guard guard({.damping = 1});
-  static_cast<void>(guard.apply(pushed({0, 0, 0})));
+  static_cast<void>(guard.pass(pushed({0, 0, 0})));
   GuardInput braked = pushed({0, 0, 0.7});
   braked.velocity = {0, 0, -0.4};  // 0.4 N of the damper and 0.3 N of the slew
-  EXPECT_EQ(guard.apply(braked), braked.force);
+  EXPECT_EQ(guard.pass(braked), braked.force);
   EXPECT_EQ(guard.state().notes, GuardNote::none);
   braked.force.z() = 1.5;
-  EXPECT_NEAR(guard.apply(braked).z(), 1.0, 1e-12) << "the velocity has not changed again";
+  EXPECT_NEAR(guard.pass(braked).z(), 1.0, 1e-12) << "the velocity has not changed again";
 }
 
 TEST(Guard, ShortensToTheMaximumAndKeepsTheDirection) {
@@ -84,7 +84,7 @@ TEST(Guard, ShortensToTheMaximumAndKeepsTheDirection) {
   Vector3d force;
   for (int i = 0; i <= 100; ++i) {
     const Vector3d hip = Vector3d(-1e-4, -2e-4, -2e-4) * i;
-    force = guard.apply(pushed(-500 * hip, hip));
+    force = guard.pass(pushed(-500 * hip, hip));
     ASSERT_LE(force.norm(), 3 * (1 + 1e-15));
     ASSERT_EQ(has(guard.state().notes, GuardNote::clamped), i > 20) << i;
   }
@@ -115,31 +115,31 @@ TEST(Guard, HoldsZeroAtOnceAndUntilResetWhenSomethingIsNotFinite) {
   }();
   for (const auto& [fault, input] : cases) {
     Guard guard;
-    for (int i = 0; i < 50; ++i) static_cast<void>(guard.apply(pushed({0, 0, 2})));
-    ASSERT_EQ(guard.apply(pushed({0, 0, 2})), Vector3d(0, 0, 2));
+    for (int i = 0; i < 50; ++i) static_cast<void>(guard.pass(pushed({0, 0, 2})));
+    ASSERT_EQ(guard.pass(pushed({0, 0, 2})), Vector3d(0, 0, 2));
     for (int i = 0; i < 3; ++i) {
-      ASSERT_EQ(guard.apply(i == 0 ? input : pushed({0, 0, 2})), Vector3d::Zero());
+      ASSERT_EQ(guard.pass(i == 0 ? input : pushed({0, 0, 2})), Vector3d::Zero());
       ASSERT_EQ(guard.state().fault, fault);
       ASSERT_TRUE(has(guard.state().notes, GuardNote::fault));
     }
     EXPECT_EQ(guard.state().counts.faults, 1u);
     EXPECT_NE(in_words(guard.state()).find(in_words(fault)), std::string::npos);
     guard.reset();
-    EXPECT_NEAR(guard.apply(pushed({0, 0, 2})).norm(), 0.3, 1e-12) << "up from zero";
+    EXPECT_NEAR(guard.pass(pushed({0, 0, 2})).norm(), 0.3, 1e-12) << "up from zero";
     EXPECT_EQ(guard.state().fault, GuardFault::none);
   }
 }
 
 TEST(Guard, GivesZeroAfterASilenceAndComesBackSoftly) {
   Guard guard;
-  for (int i = 0; i < 50; ++i) static_cast<void>(guard.apply(pushed({0, 0, 2})));
+  for (int i = 0; i < 50; ++i) static_cast<void>(guard.pass(pushed({0, 0, 2})));
   GuardInput late = pushed({0, 0, 2}, {0, 0, -0.05});  // wherever the hand went meanwhile
   late.dt = 0.1;
-  EXPECT_EQ(guard.apply(late), Vector3d::Zero());
+  EXPECT_EQ(guard.pass(late), Vector3d::Zero());
   EXPECT_TRUE(has(guard.state().notes, GuardNote::silence));
   EXPECT_NE(in_words(guard.state()).find("silent"), std::string::npos);
   for (int i = 1; i <= 6; ++i) {
-    EXPECT_NEAR(guard.apply(pushed({0, 0, 2}, {0, 0, -0.05})).z(), 0.3 * i, 1e-12);
+    EXPECT_NEAR(guard.pass(pushed({0, 0, 2}, {0, 0, -0.05})).z(), 0.3 * i, 1e-12);
   }
   EXPECT_EQ(guard.state().counts.silences, 1u);
 }
@@ -148,15 +148,15 @@ TEST(Guard, HasPatienceUpToTheSilenceItWasTold) {
   Guard guard({.silence = 0.05});
   GuardInput slow = pushed({0, 0, 1});
   slow.dt = 0.04;
-  static_cast<void>(guard.apply(slow));
-  EXPECT_EQ(guard.apply(slow), slow.force);
+  static_cast<void>(guard.pass(slow));
+  EXPECT_EQ(guard.pass(slow), slow.force);
   EXPECT_EQ(guard.state().counts.silences, 0u);
 }
 
 TEST(Guard, ComesUpSoftlyWhenItStartsInContact) {
   Guard guard;
-  EXPECT_NEAR(guard.apply(pushed({0, 0, 5})).z(), 0.3, 1e-12);
-  EXPECT_NEAR(guard.apply(pushed({0, 0, 5})).z(), 0.6, 1e-12);
+  EXPECT_NEAR(guard.pass(pushed({0, 0, 5})).z(), 0.3, 1e-12);
+  EXPECT_NEAR(guard.pass(pushed({0, 0, 5})).z(), 0.6, 1e-12);
 }
 
 TEST(Guard, RefusesOptionsOutOfRange) {

@@ -85,7 +85,7 @@ class Guard {
   explicit Guard(const GuardOptions& options = {});
 
   /// The force that may go to the device, N. Finite, whatever the input.
-  [[nodiscard]] Eigen::Vector3d apply(const GuardInput& input) noexcept;
+  [[nodiscard]] Eigen::Vector3d pass(const GuardInput& input) noexcept;
 
   /// Forgets a fault and where the hand was; the next force comes up from zero.
   void reset() noexcept;

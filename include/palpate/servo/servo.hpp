@@ -13,6 +13,7 @@
 #include "palpate/servo/histogram.hpp"
 #include "palpate/servo/latest.hpp"
 #include "palpate/servo/servo_state.hpp"
+#include "palpate/servo/step_queue.hpp"
 
 namespace palpate {
 
@@ -23,6 +24,7 @@ struct ServoOptions {
   /// to 2.5 periods of slow devices.
   GuardOptions guard = {};
   Workspace workspace = {};
+  StepQueue* steps = nullptr;  ///< every step is put into it; outlives the servo
 };
 
 /// What may change while a servo runs.

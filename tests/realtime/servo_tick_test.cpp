@@ -1,0 +1,102 @@
+// The real-time contract of Servo::tick: field, proxy, guard, and what it shows to others.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <thread>
+
+#include "realtime/watch.hpp"
+#include "servo/servo_rig.hpp"
+
+namespace palpate::realtime {
+namespace {
+
+using Eigen::Vector3d;
+using test::FreeDevice;
+
+class ServoTick : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!can_trap_system_calls()) {
+      GTEST_SKIP() << "this kernel has no Syscall User Dispatch (Linux 5.11 on x86-64)";
+    }
+    source_ = &test::add_sheet(scene_);
+    device_.info().maximum_force = 2;
+    servo_ = std::make_unique<Servo>(device_, scene_);
+  }
+
+  // A watched step with the hand at `z`, `dt` after the last one.
+  const ServoState& tick(double z, double dt = 1e-3) {
+    device_.state().position = {0.01 * std::sin(10 * now_), 0.3e-3, z};
+    now_ += dt;
+    Watch watch;
+    const ServoState& state = servo_->tick(now_);
+    const Findings found = watch.stop();
+    EXPECT_EQ(found.total(), 0) << found << "at step " << state.step;
+    return state;
+  }
+
+  // Down to 6 mm under the sheet and up again, in 200 steps.
+  void press() {
+    for (int i = 0; i < 200; ++i) tick(4e-3 - 10e-3 * std::sin(i * M_PI / 200));
+  }
+
+  Scene scene_;
+  Source* source_ = nullptr;
+  FreeDevice device_{{0, 0, 5e-3}};
+  std::unique_ptr<Servo> servo_;
+  double now_ = 0;
+};
+
+TEST_F(ServoTick, KeepsTheContractInContactAndAtTheClamp) {
+  press();
+  EXPECT_GT(servo_->state().guard.counts.clamped, 10u);
+}
+
+TEST_F(ServoTick, KeepsTheContractWhileSnapshotsChangeAndVanish) {
+  for (int i = 0; i < 400; ++i) {
+    if (i % 33 == 0) source_->publish(test::still(test::plane(1e-3 * (i % 5)), now_ + 2e-3));
+    if (i == 250) source_->publish(std::make_unique<const Snapshot>());
+    if (i == 350) source_->publish(nullptr);
+    tick(i < 20 ? 6e-3 - 5e-4 * i : -4e-3);
+  }
+  EXPECT_GT(servo_->state().guard.counts.slewed, 0u);
+}
+
+TEST_F(ServoTick, KeepsTheContractOnFaultsGapsAndReset) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {nan, std::numeric_limits<double>::infinity(), 1e300}) {
+    press();
+    tick(-2e-3, 0.1);  // the watchdog's
+    tick(bad);
+    tick(-2e-3);
+    EXPECT_NE(servo_->state().guard.fault, GuardFault::none);
+    servo_->reset();
+    tick(5e-3);
+    EXPECT_EQ(servo_->state().guard.fault, GuardFault::none);
+  }
+  tick(0, nan);
+  now_ = 10;
+  servo_->reset();
+  press();
+  device_.state().status = DeviceStatus::failed;
+  tick(-2e-3);
+  EXPECT_EQ(servo_->state().guard.fault, GuardFault::device);
+}
+
+TEST_F(ServoTick, KeepsTheContractWhileOthersWatchAndChangeIt) {
+  std::jthread others([&](const std::stop_token& stop) {
+    for (int i = 0; !stop.stop_requested(); ++i) {
+      static_cast<void>(servo_->state());
+      static_cast<void>(servo_->lateness());
+      servo_->set_feel({.stiffness = 200.0 + i % 100});
+      servo_->pause(i % 50 == 0);
+    }
+  });
+  press();
+  press();
+}
+
+}  // namespace
+}  // namespace palpate::realtime

@@ -1,0 +1,47 @@
+#include "palpate/servo/step_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "support/effort.hpp"
+
+namespace palpate {
+namespace {
+
+ServoState numbered(std::uint64_t number) {
+  ServoState state;
+  state.step = number;
+  state.patch_points = number;
+  return state;
+}
+
+TEST(StepQueue, GivesStepsInOrderAndCountsThoseThatFoundNoRoom) {
+  StepQueue queue(3);  // four
+  EXPECT_FALSE(queue.pop());
+  for (std::uint64_t i = 1; i <= 6; ++i) EXPECT_EQ(queue.push(numbered(i)), i <= 4);
+  EXPECT_EQ(queue.dropped(), 2u);
+  for (std::uint64_t i = 1; i <= 4; ++i) EXPECT_EQ(queue.pop()->step, i);
+  EXPECT_FALSE(queue.pop());
+  EXPECT_TRUE(queue.push(numbered(7)));
+  EXPECT_EQ(queue.pop()->step, 7u);
+}
+
+TEST(StepQueue, LosesAndTearsNothingBetweenTwoThreads) {
+  StepQueue queue(64);
+  const auto count = static_cast<std::uint64_t>(test::effort(100'000));
+  std::jthread servo([&](const std::stop_token& stop) {
+    for (std::uint64_t i = 1; i <= count; ++i) {
+      while (!queue.push(numbered(i)) && !stop.stop_requested()) std::this_thread::yield();
+    }
+  });
+  for (std::uint64_t i = 1; i <= count; ++i) {
+    std::optional<ServoState> state;
+    while (!(state = queue.pop())) std::this_thread::yield();
+    ASSERT_EQ(state->step, i);
+    ASSERT_EQ(state->patch_points, i);
+  }
+}
+
+}  // namespace
+}  // namespace palpate
