@@ -1,0 +1,86 @@
+#include "apps/palpate/live_feed.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "palpate/base/thread_clock.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+// A stream owns its camera; here what is touched goes on owning it.
+class LentCamera final : public DepthCamera {
+ public:
+  explicit LentCamera(DepthCamera& camera) : camera_(camera) {}
+
+  [[nodiscard]] const CameraInfo& info() const noexcept override { return camera_.info(); }
+  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override {
+    return camera_.read(frame, timeout);
+  }
+  [[nodiscard]] std::string reason() const override { return camera_.reason(); }
+
+ private:
+  DepthCamera& camera_;
+};
+
+}  // namespace
+
+// What the sink notes is its thread's until the stream has ended.
+struct LiveFeed::Lane {
+  Lane(TouchedSource& from, Source& to, const Clock& clock) : touched(from), felt(to) {
+    stream.emplace(
+        std::make_unique<LentCamera>(*from.camera), to.name(),
+        [this](const DepthFrame& frame, const StartTime& start) { take(frame, start); }, clock,
+        StreamOptions{}, [this] { felt.keep(); });
+  }
+
+  void take(const DepthFrame& frame, const StartTime& start) {
+    if (report.prepare_ms.empty()) report.first_stamp = frame.stamp;
+    report.last_stamp = frame.stamp;
+    report.width = frame.camera.width;
+    report.height = frame.camera.height;
+    const double begin = thread_cpu_seconds();
+    felt.push(frame, start);
+    report.prepare_ms.push_back(1e3 * (thread_cpu_seconds() - begin));
+  }
+
+  TouchedSource& touched;
+  Source& felt;
+  FeedReport report;
+  std::optional<Stream> stream;
+};
+
+LiveFeed::LiveFeed(Touched& touched, Scene& felt, const Clock& clock)
+    : touched_(touched), felt_(felt) {
+  for (std::size_t i = 0; i < touched.sources.size(); ++i) {
+    TouchedSource& source = touched.sources[i];
+    if (source.camera) lanes_.emplace_back(source, felt.source(i), clock);
+  }
+}
+
+LiveFeed::~LiveFeed() = default;
+
+std::vector<StreamState> LiveFeed::states() const {
+  std::vector<StreamState> states;
+  for (const Lane& lane : lanes_) states.push_back(lane.stream->state());
+  return states;
+}
+
+void LiveFeed::finish(double start) {
+  for (Lane& lane : lanes_) {
+    StreamState state = lane.stream->state();
+    lane.stream.reset();
+    lane.report.state = std::move(state);
+    lane.report.state.problem_at -= start;
+    lane.report.state.last_frame -= start;
+    lane.report.first_stamp -= start;
+    lane.report.last_stamp -= start;
+    lane.touched.feed = lane.report;
+  }
+  for (std::size_t i = 0; i < felt_.size(); ++i) {
+    if (touched_.sources[i].camera) touched_.sources[i].state = felt_.state(i);
+  }
+}
+
+}  // namespace palpate::app

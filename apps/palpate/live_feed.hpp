@@ -1,0 +1,34 @@
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "apps/palpate/touched.hpp"
+#include "palpate/base/clock.hpp"
+#include "palpate/sensor/stream.hpp"
+
+namespace palpate::app {
+
+/// The streams of everything in `touched` that lives, into its sources in `felt`; all outlive it.
+class LiveFeed {
+ public:
+  LiveFeed(Touched& touched, Scene& felt, const Clock& clock);
+  ~LiveFeed();
+  LiveFeed(const LiveFeed&) = delete;
+  LiveFeed& operator=(const LiveFeed&) = delete;
+
+  /// How each stream fares, in the order of the sources.
+  [[nodiscard]] std::vector<StreamState> states() const;
+
+  /// Ends the streams and puts what they were like into `touched`, times counted from `start` (s on
+  /// the clock).
+  void finish(double start);
+
+ private:
+  struct Lane;
+  Touched& touched_;
+  Scene& felt_;
+  std::deque<Lane> lanes_;
+};
+
+}  // namespace palpate::app

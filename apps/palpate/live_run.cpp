@@ -1,0 +1,135 @@
+#include "apps/palpate/live_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "apps/palpate/interruption.hpp"
+#include "apps/palpate/live_feed.hpp"
+#include "apps/palpate/live_status.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/device/paced.hpp"
+#include "palpate/servo/servo_thread.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr double kQueue = 4;  // s of steps that writing them down may fall behind
+constexpr std::chrono::milliseconds kLook{20};
+
+double rate_of(const Run& run) {
+  return std::clamp(run.options.rate.value_or(run.hand.device->info().rate),
+                    ServoThread::kLeastRate, ServoThread::kMostRate);
+}
+
+// A scripted hand has no say in its rate, the clock has.
+ServoOptions servo_options(const Run& run, StepQueue& steps) {
+  ServoOptions options;
+  options.field = run.field;
+  options.proxy = run.proxy;
+  options.workspace = run.hand.workspace;
+  options.steps = &steps;
+  return options;
+}
+
+// With the force that was felt, which the guard may have changed.
+TouchStep step_of(const ServoState& state, double start) {
+  TouchStep step;
+  step.time = state.time - start;
+  step.hip = state.hip;
+  step.contact = state.contact;
+  step.contact.force = state.force;
+  step.microseconds = 1e6 * state.timing.computing;
+  step.patch_points = state.patch_points;
+  step.notes = state.field_notes;
+  return step;
+}
+
+// Takes steps from the servo to whoever wants each, and sums up what the status tells.
+class Watcher {
+ public:
+  Watcher(const Servo& servo, StepQueue& steps, const EachStep& each, double start)
+      : servo_(servo), steps_(steps), each_(each), start_(start) {}
+
+  void take_steps() {
+    while (const std::optional<ServoState> state = steps_.pop()) {
+      const TouchStep step = step_of(*state, start_);
+      force_ = std::max(force_, step.contact.force.norm());
+      each_(step);
+    }
+  }
+
+  LiveMoment moment(double now, const LiveFeed& feed) {
+    LiveMoment moment;
+    moment.time = now - start_;
+    moment.servo = servo_.state();
+    moment.force = std::exchange(force_, 0);
+    const Durations lateness = servo_.lateness();
+    const Durations computing = servo_.computing();
+    moment.lateness = lateness.since(lateness_);
+    moment.computing = computing.since(computing_);
+    const double span = now - std::exchange(looked_, now);
+    moment.rate = span > 0 ? static_cast<double>(moment.computing.count) / span : 0;
+    lateness_ = lateness;
+    computing_ = computing;
+    moment.streams = feed.states();
+    return moment;
+  }
+
+ private:
+  const Servo& servo_;
+  StepQueue& steps_;
+  const EachStep& each_;
+  double start_;
+  double looked_ = start_;
+  double force_ = 0;
+  Durations lateness_;
+  Durations computing_;
+};
+
+void check_device(const Run& run, const ServoState& last) {
+  if (last.device != DeviceStatus::failed) return;
+  const Device& device = *run.hand.device;
+  throw Error(fmt::format("device '{}' failed: {}", device.info().name, device.reason()));
+}
+
+}  // namespace
+
+LiveReport run_live(Run& run, WaitingClock& clock, const EachStep& each) {
+  LiveReport report;
+  report.rate = rate_of(run);
+  PacedDevice device(*run.hand.device, clock);
+  StepQueue steps(static_cast<std::size_t>(kQueue * report.rate));
+  Servo servo(device, run.felt, servo_options(run, steps));
+  const Interruption interruption;
+  LiveFeed feed(run.touched, run.felt, clock);
+  const double start = clock.now();
+  Watcher watcher(servo, steps, each, start);
+  {
+    LiveStatus status;
+    ServoThread thread(servo, clock, {.rate = report.rate});
+    report.realtime = thread.realtime();
+    while (thread.running() && !interruption.asked()) {
+      std::this_thread::sleep_for(kLook);
+      watcher.take_steps();
+      const double now = clock.now();
+      if (status.due(now - start)) status.show(watcher.moment(now, feed));
+    }
+    thread.stop();
+    report.skipped = thread.skipped();
+  }
+  watcher.take_steps();
+  feed.finish(start);
+  report.lateness = servo.lateness();
+  report.unwritten = steps.dropped();
+  report.guard = servo.state().guard;
+  report.interrupted = interruption.asked();
+  check_device(run, servo.state());
+  return report;
+}
+
+}  // namespace palpate::app

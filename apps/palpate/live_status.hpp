@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/sensor/stream_state.hpp"
+#include "palpate/servo/histogram.hpp"
+#include "palpate/servo/servo_state.hpp"
+
+namespace palpate::app {
+
+/// What is told of a run while it lasts.
+struct LiveMoment {
+  double time = 0;     ///< since the run began, s
+  ServoState servo;    ///< its last step
+  double force = 0;    ///< the longest since the moment before, N
+  double rate = 0;     ///< steps a second since then, Hz
+  Durations lateness;  ///< of the steps since then
+  Durations computing;
+  std::vector<StreamState> streams;
+};
+
+/// One line: "12.3 s  1.42 N  1000 Hz, 24 us (p99 61), late p99 0.09 ms | table 30.0 Hz, 11 ms". A
+/// stream that does not run and a servo that holds back say why.
+[[nodiscard]] std::string in_words(const LiveMoment& moment);
+
+/// Shows moments on standard error: in one line that is rewritten ten times a second on a terminal,
+/// in lines of their own, one a second, elsewhere.
+class LiveStatus {
+ public:
+  LiveStatus();
+  ~LiveStatus();
+  LiveStatus(const LiveStatus&) = delete;
+  LiveStatus& operator=(const LiveStatus&) = delete;
+
+  /// Is the next moment to be shown at `time`, s since the run began?
+  [[nodiscard]] bool due(double time) const { return time >= next_; }
+  void show(const LiveMoment& moment);
+
+ private:
+  bool terminal_;
+  bool shown_ = false;
+  double next_;  // s
+};
+
+/// As much of `line` as fits into `columns`, in whole characters of UTF-8.
+[[nodiscard]] std::string fitted(const std::string& line, std::size_t columns);
+
+}  // namespace palpate::app
