@@ -11,7 +11,7 @@ started=$SECONDS
 status=0
 
 say "packages"
-need_packages build test fuzz lint
+need_packages build cameras test fuzz lint
 find_data
 
 say "Debug"
