@@ -89,17 +89,15 @@ void follow(const Measured& now, float gate2, BlockMemory& m) {
   if (calm_frames >= kCalmFrames) stop(m);
 }
 
-/// Takes in a measured block. True: it shows another surface than what is remembered.
-bool step(const Measured& now, const TemporalOptions& options, float gate2, BlockMemory& m) {
+/// Takes in a measured block.
+void step(const Measured& now, const TemporalOptions& options, float gate2, BlockMemory& m) {
   m.missed = 0;
   const float d = now.rho - m.rho;
   const bool another = m.count == 0 || std::abs(d) > another_surface(std::max(now.rho, m.rho));
   if (another || m.state != now.state) {
     restart(now, m);
     stop(m);
-    return another;
-  }
-  if (m.moving) {
+  } else if (m.moving) {
     follow(now, gate2, m);
   } else if (agrees(now, m, gate2)) {
     average(now, options.memory, m);
@@ -108,7 +106,15 @@ bool step(const Measured& now, const TemporalOptions& options, float gate2, Bloc
     m.moving = true;
     restart(now, m);
   }
-  return false;
+}
+
+void miss(int hold, BlockMemory& m) {
+  if (m.count > 0 && m.missed < std::min(hold, 255)) {
+    ++m.missed;
+    stop(m);
+  } else {
+    m = {};
+  }
 }
 
 /// How far ahead of the frame a moving block is put, 1/m: one frame, as far as is safe.
@@ -158,7 +164,6 @@ void TemporalFilter::prepare(const BlockGrid& grid, const Eigen::Isometry3d& T_w
     memory_.assign(grid.size(), {});
     expected_.assign(grid.size(), 0.0F);
     jumped_.assign(grid.size(), 0);
-    missed_.assign(grid.size(), 0);
     warp_.resize(grid.size());
   } else if (T_world_sensor.matrix() != T_world_sensor_.matrix()) {
     warp_.warp(grid, T_world_sensor.inverse() * T_world_sensor_, memory_, expected_);
@@ -180,18 +185,14 @@ void TemporalFilter::filter(const TemporalOptions& options, const Eigen::Isometr
     const auto y = static_cast<float>(grid_.y(row));
     for (int column = 0; column < grid_.columns; ++column, ++i) {
       BlockMemory& m = memory_[i];
-      if (fits.states[i] != BlockState::empty) {
-        step(measured(fits, i), options, gate2, m);
-      } else if (m.count > 0 && m.missed < options.hold) {
-        ++m.missed;
-        stop(m);
-      } else {
-        m = {};
+      jumped_[i] = 0;
+      if (fits.states[i] == BlockState::empty) {
+        miss(options.hold, m);
+        continue;
       }
-      missed_[i] = m.missed;
-      jumped_[i] = m.count > 0 &&
-                   !(expected_[i] > 0 && std::abs(m.rho - expected_[i]) <= another_surface(m.rho));
-      if (m.count == 0) continue;
+      step(measured(fits, i), options, gate2, m);
+      const float limit = another_surface(m.rho);
+      jumped_[i] = !(expected_[i] > 0 && std::abs(m.rho - expected_[i]) <= limit);
       const bool predicted = options.predict && m.moving;
       const float lead = predicted ? ahead(m, static_cast<float>(grid_.x(column)), y) : 0.0F;
       write(m, m.rho + lead, i, fits);

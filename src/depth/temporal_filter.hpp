@@ -15,7 +15,7 @@ struct TemporalOptions {
   int memory = 8;        ///< frames that a still block averages, 1 to 255; 1: none
   double gate = 5;       ///< G: standard deviations within which a block stands still
   bool predict = false;  ///< moving blocks are put one frame ahead
-  int hold = 10;         ///< frames for which a block that is not measured any more is kept
+  int hold = 10;         ///< frames for which a block that is not measured is remembered
 };
 
 /// What suits a sensor: G = 5, and 7 where pixels err together (c > 2), since the variances of fits
@@ -27,10 +27,11 @@ struct TemporalOptions {
 /// the grid's size changes.
 class TemporalFilter {
  public:
-  /// Takes in one frame and replaces its columns by the filtered ones. Blocks that are empty now
-  /// but were measured a moment ago come back as they were, with missed() > 0. `T_world_sensor` is
-  /// the pose at the stamp: when it is another than before, what is remembered is put into the new
-  /// view first. A block whose state changes between plain and fitted starts anew, which counts as
+  /// Takes in one frame and replaces its columns by the filtered ones. Blocks that are empty stay
+  /// so; that nothing confirms them is for others to deal with. What was known of them is
+  /// remembered for a while and goes on when they are measured again. `T_world_sensor` is the pose
+  /// at the stamp: when it is another than before, what is remembered is put into the new view
+  /// first. A block whose state changes between plain and fitted starts anew, which counts as
   /// another surface only if it is one.
   void filter(const TemporalOptions& options, const Eigen::Isometry3d& T_world_sensor,
               BlockFits& fits);
@@ -40,11 +41,11 @@ class TemporalFilter {
 
   void reset();
 
-  /// Of the last frame, an entry a block; 1: it shows another surface than in the frame before, or
-  /// none was seen there.
+  /// Of the last frame, an entry a block; 1: it shows another surface than the block did when it
+  /// was measured last, or nothing is remembered of it.
   [[nodiscard]] std::span<const std::uint8_t> jumped() const { return jumped_; }
-  /// Frames since the block was last measured; 0 for what is measured now.
-  [[nodiscard]] std::span<const std::uint8_t> missed() const { return missed_; }
+  /// What is remembered, an entry a block; `missed` frames ago where that is not 0.
+  [[nodiscard]] std::span<const BlockMemory> memory() const { return memory_; }
 
  private:
   void prepare(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor);
@@ -54,7 +55,6 @@ class TemporalFilter {
   std::vector<BlockMemory> memory_;
   std::vector<float> expected_;  // rho of what the block showed before, in this view; 0: none
   std::vector<std::uint8_t> jumped_;
-  std::vector<std::uint8_t> missed_;
   TemporalWarp warp_;
 };
 

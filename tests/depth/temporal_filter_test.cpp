@@ -170,26 +170,40 @@ TEST_F(TemporalFilterTest, AnotherSurfaceReplacesTheOldOneAtOnce) {
   EXPECT_EQ(jumps(), 0);
 }
 
-TEST_F(TemporalFilterTest, WhatIsNotMeasuredIsHeldForAWhile) {
+TEST_F(TemporalFilterTest, WhatIsNotMeasuredIsRememberedForAWhile) {
   const TemporalOptions options{.hold = 3};
+  const auto hide = [&](int frames) {
+    for (int frame = 0; frame < frames; ++frame) {
+      test::measure({}, kStill, kSd, kSlopeSd, random_, fits_);
+      fits_.states[7] = BlockState::empty;
+      fits_.rho[7] = 0;
+      filter_.filter(options, kStill, fits_);
+      EXPECT_EQ(fits_.states[7], BlockState::empty);
+      EXPECT_EQ(filter_.jumped()[7], 0);
+      EXPECT_EQ(filter_.memory()[8].missed, 0);
+    }
+  };
   for (int frame = 0; frame < 5; ++frame) show({}, options);
   const float last = fits_.rho[7];
-  for (int frame = 1; frame <= 5; ++frame) {
-    test::measure({}, kStill, kSd, kSlopeSd, random_, fits_);
-    fits_.states[7] = BlockState::empty;
-    fits_.rho[7] = 0;
-    filter_.filter(options, kStill, fits_);
-    const bool held = frame <= 3;
-    EXPECT_EQ(fits_.states[7], held ? BlockState::fitted : BlockState::empty);
-    EXPECT_EQ(filter_.missed()[7], held ? frame : 0);
-    EXPECT_EQ(filter_.jumped()[7], 0);
-    if (held) {
-      EXPECT_EQ(fits_.rho[7], last);
-    }
-    EXPECT_EQ(filter_.missed()[8], 0);
-  }
+  hide(3);
+  EXPECT_EQ(filter_.memory()[7].missed, 3);
+  EXPECT_EQ(filter_.memory()[7].rho, last);
+  show({}, options);  // goes on with its sixth frame
+  EXPECT_EQ(filter_.jumped()[7], 0);
+  EXPECT_NEAR(fits_.variance[7], kSd * kSd / 6, 1e-3 * kSd * kSd);
+  hide(4);
+  EXPECT_EQ(filter_.memory()[7].count, 0);
   show({}, options);
   EXPECT_EQ(filter_.jumped()[7], 1);
+}
+
+TEST_F(TemporalFilterTest, WhatComesBackElsewhereHasJumped) {
+  for (int frame = 0; frame < 5; ++frame) show({.plane_point = {0, 0, 0.6}});
+  std::fill(fits_.states.begin(), fits_.states.end(), BlockState::empty);
+  filter_.filter({}, kStill, fits_);
+  EXPECT_EQ(jumps(), 0);
+  show({});
+  EXPECT_EQ(jumps(), 3000);
 }
 
 TEST_F(TemporalFilterTest, ABlockThatBecomesFittedStartsAnewWithoutAJump) {
