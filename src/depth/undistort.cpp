@@ -16,6 +16,12 @@ bool same(const CameraModel& a, const CameraModel& b) {
   return parts(a) == parts(b);
 }
 
+// Does the distorted radius still grow here? From where it does not, the model means nothing.
+bool grows(const Distortion& d, double x, double y) {
+  const double r2 = x * x + y * y;
+  return 1 + r2 * (3 * d.k1 + r2 * (5 * d.k2 + r2 * 7 * d.k3)) > 0;
+}
+
 }  // namespace
 
 ImagePoint distort(const Distortion& d, double x, double y) {
@@ -31,10 +37,13 @@ void Undistorter::make_map(const CameraModel& camera) {
   std::int32_t* to = map_.data();
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
-      const ImagePoint at = distort(camera.distortion, (u - p.cx) / p.fx, (v - p.cy) / p.fy);
+      const double x = (u - p.cx) / p.fx;
+      const double y = (v - p.cy) / p.fy;
+      const ImagePoint at = distort(camera.distortion, x, y);
       const double du = std::round(at.x * p.fx + p.cx);
       const double dv = std::round(at.y * p.fy + p.cy);
-      const bool inside = du >= 0 && dv >= 0 && du < camera.width && dv < camera.height;
+      const bool inside = du >= 0 && dv >= 0 && du < camera.width && dv < camera.height &&
+                          grows(camera.distortion, x, y);
       *to++ = inside ? static_cast<std::int32_t>(dv) * camera.width + static_cast<std::int32_t>(du)
                      : -1;
     }
