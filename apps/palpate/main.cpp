@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 
+#include "apps/palpate/cameras_command.hpp"
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/info_command.hpp"
 #include "apps/palpate/picture_script.hpp"
@@ -37,6 +38,10 @@ int run(int argc, char** argv) {
   CLI::App* info_command =
       program.add_subcommand("info", "Say what is in a cloud and how it will feel");
   add_info_options(*info_command, info_options);
+  CamerasOptions cameras_options;
+  CLI::App* cameras_command =
+      program.add_subcommand("cameras", "List cameras, and what is missing for others");
+  add_cameras_options(*cameras_command, cameras_options);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version
@@ -47,13 +52,14 @@ int run(int argc, char** argv) {
         kUsage);
   }
   if (program.get_subcommands().empty()) {
-    throw UsageError("a command is missing: touch or info; 'palpate --help' tells more");
+    throw UsageError("a command is missing: touch, info or cameras; 'palpate --help' tells more");
   }
   if (touch_command->parsed()) {
     apply_setup(*touch_command, touch_options);
     touch(touch_options);
   }
   if (info_command->parsed()) info(info_options);
+  if (cameras_command->parsed()) cameras(cameras_options);
   return kSuccess;
 }
 

@@ -1,0 +1,36 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace palpate::app {
+namespace {
+
+TEST(Cameras, ListsDriversDevicesAndWhatIsMissing) {
+  Shell shell;
+  const Outcome outcome = shell.run("cameras --json cameras.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* word : {"simulated:table", "sequence", "openni2", "freenect", "Kinect"}) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+  }
+  const auto drivers = nlohmann::json::parse(shell.read("cameras.json"));
+  ASSERT_EQ(drivers.size(), 4u);
+  for (const auto& driver : drivers) {
+    const bool available = driver["available"].get<bool>();
+    EXPECT_EQ(available, driver["missing"].get<std::string>().empty()) << driver["name"];
+    if (available) continue;
+    EXPECT_NE(outcome.out.find(driver["missing"].get<std::string>()), std::string::npos);
+  }
+  EXPECT_EQ(drivers[0]["devices"][0]["name"], "simulated:table");
+}
+
+TEST(Cameras, GivesDataAloneOnStandardOutput) {
+  Shell shell;
+  const Outcome outcome = shell.run("cameras --json -");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out).size(), 4u);
+}
+
+}  // namespace
+}  // namespace palpate::app
