@@ -32,10 +32,10 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-// "camera:simulated:table" is called simulated-table.
+// "simulated:table,rate=60" is called simulated-table.
 std::string name_of_camera(std::string_view text) {
   std::string name;
-  for (const char c : text) {
+  for (const char c : text.substr(0, text.find(','))) {
     const bool fits = is_name({&c, 1});
     if (fits) name += c;
     if (!fits && !name.empty() && name.back() != '-') name += '-';

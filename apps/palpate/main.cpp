@@ -6,6 +6,7 @@
 #include "apps/palpate/cameras_command.hpp"
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/info_command.hpp"
+#include "apps/palpate/paper_command.hpp"
 #include "apps/palpate/picture_script.hpp"
 #include "apps/palpate/setup_file.hpp"
 #include "apps/palpate/touch_command.hpp"
@@ -42,6 +43,10 @@ int run(int argc, char** argv) {
   CLI::App* cameras_command =
       program.add_subcommand("cameras", "List cameras, and what is missing for others");
   add_cameras_options(*cameras_command, cameras_options);
+  PaperCommand paper_command;
+  CLI::App* paper_app =
+      program.add_subcommand("paper", "Repeat the experiments of Leeper, Chan and Salisbury 2012");
+  add_paper_options(*paper_app, paper_command);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version
@@ -52,7 +57,8 @@ int run(int argc, char** argv) {
         kUsage);
   }
   if (program.get_subcommands().empty()) {
-    throw UsageError("a command is missing: touch, info or cameras; 'palpate --help' tells more");
+    throw UsageError(
+        "a command is missing: touch, info, cameras or paper; 'palpate --help' tells more");
   }
   if (touch_command->parsed()) {
     apply_setup(*touch_command, touch_options);
@@ -60,6 +66,7 @@ int run(int argc, char** argv) {
   }
   if (info_command->parsed()) info(info_options);
   if (cameras_command->parsed()) cameras(cameras_options);
+  if (paper_app->parsed()) paper(paper_command);
   return kSuccess;
 }
 

@@ -5,44 +5,30 @@
 #include "apps/palpate/posed_camera.hpp"
 #include "apps/palpate/waiting.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/sequence.hpp"
-#include "palpate/sensor/simulated_setup.hpp"
+#include "palpate/sensor/open_camera.hpp"
 
 namespace palpate::app {
 
 namespace {
-
-constexpr std::string_view kSimulated = "camera:simulated";
-constexpr std::string_view kSequence = "sequence:";
 
 // s; a sensor's motor and lamp may take one or two to start.
 constexpr double kPatience = 5;
 // Answers of a camera that waits for nothing.
 constexpr int kTries = 100;
 
-std::unique_ptr<DepthCamera> open(const ChosenSource& source, const Clock* clock) {
-  const std::string& path = source.argument.path;
-  if (path.starts_with(kSequence)) {
-    return open_sequence(read_sequence(path.substr(kSequence.size())),
-                         {.clock = clock, .start = {}, .loop = source.choices.loop});
-  }
-  if (path == kSimulated) return open_simulated("", clock);
-  if (path.starts_with(fmt::format("{}:", kSimulated))) {
-    return open_simulated(path.substr(kSimulated.size() + 1), clock);
-  }
-  throw Error(
-      fmt::format("{}: there is no such camera; 'palpate cameras' lists what there is", path));
-}
-
 }  // namespace
 
 std::unique_ptr<DepthCamera> open_live(const ChosenSource& source, const Clock* clock) {
-  std::unique_ptr<DepthCamera> camera = open(source, clock);
+  constexpr std::string_view kCamera = "camera:";
+  const std::string& path = source.argument.path;
+  const std::string name = path.starts_with(kCamera) ? path.substr(kCamera.size()) : path;
+  std::unique_ptr<DepthCamera> camera =
+      open_camera(name, {.clock = clock, .loop = source.choices.loop});
   if (clock == nullptr && camera->info().paces) {
     throw Error(
         fmt::format("{} keeps its own time; leave --simulated-time out, or play a "
                     "recording of it (sequence:FOLDER)",
-                    source.argument.path));
+                    path));
   }
   if (source.pose.isApprox(Eigen::Isometry3d::Identity(), 0)) return camera;
   return std::make_unique<PosedCamera>(std::move(camera), source.pose);

@@ -7,6 +7,9 @@ namespace palpate::app {
 /// picture.py, as CMake found it.
 [[nodiscard]] std::string_view picture_script();
 
+/// figures.py likewise.
+[[nodiscard]] std::string_view figures_script();
+
 /// The project's version.
 [[nodiscard]] std::string_view version();
 

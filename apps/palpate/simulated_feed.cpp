@@ -23,6 +23,7 @@ SimulatedFeed::SimulatedFeed(std::vector<Feeding> cameras, double latency)
     lane.camera = each.camera;
     lane.next = std::move(each.first);
     lane.sink = std::move(each.sink);
+    lane.ended = std::move(each.ended);
     lane.report.state.source = each.source;
     lane.report.state.camera = each.camera->info().name;
     lanes_.push_back(std::move(lane));
@@ -30,7 +31,6 @@ SimulatedFeed::SimulatedFeed(std::vector<Feeding> cameras, double latency)
   for (Lane& lane : lanes_) {
     lane.next.stamp -= start_;
     lane.report.first_stamp = lane.next.stamp;
-    lane.report.state.frames = 1;
   }
 }
 
@@ -54,6 +54,7 @@ void SimulatedFeed::push(Lane& lane) {
   FeedReport& report = lane.report;
   const double touchable = lane.next.stamp + latency_;
   const double begin = thread_cpu_seconds();
+  ++report.state.frames;
   try {
     lane.sink(lane.next, [touchable] { return touchable; });
     ++report.state.touchable;
@@ -74,15 +75,16 @@ void SimulatedFeed::read_next(Lane& lane) {
   for (int tries = 0; tries < kPatience; ++tries) {
     const CameraStatus status = lane.camera->read(lane.next, 0);
     if (status == CameraStatus::frame) {
-      ++state.frames;
       lane.next.stamp -= start_;
       if (lane.next.stamp > state.last_frame) return;
+      ++state.frames;
       ++state.drops.late;
       continue;
     }
     if (status == CameraStatus::ended) {
       state.phase = StreamPhase::ended;
       lane.pending = false;
+      lane.ended();
       return;
     }
     if (status == CameraStatus::failed) {

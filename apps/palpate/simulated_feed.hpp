@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ class SimulatedFeed {
     DepthFrame first;
     std::string source;  ///< name, for messages
     FrameSink sink;
+    std::function<void()> ended = [] {};  ///< called after the last frame of a recording
   };
 
   /// Cameras outlive the feed. `latency`: from stamp to touchable, s.
@@ -46,6 +48,7 @@ class SimulatedFeed {
     DepthCamera* camera = nullptr;
     DepthFrame next;
     FrameSink sink;
+    std::function<void()> ended;
     bool pending = true;  // is there a frame that waits for its time?
     FeedReport report;
   };

@@ -2,28 +2,23 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "apps/palpate/hand.hpp"
 #include "apps/palpate/log.hpp"
 #include "apps/palpate/output.hpp"
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
+#include "apps/palpate/run.hpp"
 #include "apps/palpate/touch_report.hpp"
-#include "apps/palpate/touch_run.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/touch_usage.hpp"
-#include "apps/palpate/touched.hpp"
 #include "apps/palpate/words.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
 
 namespace {
-
-constexpr double kLatency = 0.01;  // from stamp to touchable in simulated time, s
 
 std::string title(const TouchReport& report) {
   std::string text;
@@ -56,17 +51,16 @@ struct Outputs {
   }
 };
 
-// Steps the run and hands each step to what keeps or sums it.
-void play(Hand& hand, SimulatedFeed& feed, SceneField& field, Proxy& proxy,
-          TouchStatistics& statistics, Outputs& outputs) {
+// Runs, and hands each step to what keeps or sums it.
+void play(Run& run, TouchStatistics& statistics, Outputs& outputs) {
   Progress progress("touching");
-  const auto before = [&](double time) { feed.advance(time); };
-  run_touch(*hand.device, hand.workspace, field, proxy, before, [&](const TouchStep& step) {
+  run_simulated(run, [&](const TouchStep& step) {
     statistics.add(step);
     if (outputs.log) outputs.log->add(step);
     if (outputs.picture) outputs.picture->add(step);
     if (statistics.steps() % 256 == 0) {
-      progress.update(static_cast<double>(statistics.steps()) / static_cast<double>(hand.steps));
+      progress.update(static_cast<double>(statistics.steps()) /
+                      static_cast<double>(run.hand.steps));
     }
   });
   if (outputs.log) outputs.log->close();
@@ -88,17 +82,6 @@ void tell(const TouchReport& report, Outputs& outputs) {
   throw Error("every step was a fault: nothing was felt (everything was written)");
 }
 
-void keep_reports(Touched& touched, const Scene& felt, const SimulatedFeed& feed) {
-  std::vector<FeedReport> reports = feed.reports();
-  auto next = reports.begin();
-  for (std::size_t i = 0; i < felt.size(); ++i) {
-    TouchedSource& source = touched.sources[i];
-    if (!source.camera) continue;
-    source.feed = std::move(*next++);
-    source.state = felt.state(i);
-  }
-}
-
 }  // namespace
 
 void touch(const TouchOptions& options) {
@@ -108,17 +91,14 @@ void touch(const TouchOptions& options) {
   const bool explored = way.empty() || options.texture_amplitude > 0;
   Touched touched = prepare_touched(options, explored);
   check_texture(options, touched.scene);
-  const FieldOptions field_choice = field_options(options);
-  Hand hand = make_hand(options, std::move(way), touched.scene, field_choice);
+  const FieldOptions field = field_options(options);
+  Hand hand = make_hand(options, std::move(way), touched.scene, field);
   Scene felt;
   fill_felt(felt, touched, soft_material(options, hand.stiffness));
-  SceneField field(felt, field_choice);
-  Proxy proxy(proxy_options(options, hand.stiffness));
+  Run run{options, touched, felt, hand, field, proxy_options(options, hand.stiffness)};
   TouchStatistics statistics(hand.steps);
-  SimulatedFeed feed = make_feed(touched, felt, options.latency.value_or(kLatency));
-  play(hand, feed, field, proxy, statistics, outputs);
-  keep_reports(touched, felt, feed);
-  tell({touched, felt, options, statistics, field_choice, proxy.options(), hand.device->info().name,
+  play(run, statistics, outputs);
+  tell({touched, felt, options, statistics, field, run.proxy, hand.device->info().name,
         hand.plan ? &*hand.plan : nullptr},
        outputs);
 }

@@ -29,7 +29,7 @@ constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
     {"thinned",
      "more points than the patch holds lay near the tool, so some were left out; give a smaller "
      "--radius or a larger --voxel"},
-    {"no_surface", "no cloud had a surface"},
+    {"no_surface", "no source had a surface"},
 }};
 
 }  // namespace

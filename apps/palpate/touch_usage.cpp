@@ -80,6 +80,9 @@ void check_source(const TouchOptions& options, const ChosenSource& source) {
 void check_time(const TouchOptions& options, bool any_lives) {
   require(any_lives || !options.latency,
           "--latency is of cameras and sequences; what stands still is there from the start");
+  require(!any_lives || options.simulated_time,
+          "cameras and sequences are touched in simulated "
+          "time only so far; add --simulated-time");
   require(options.simulated_time || !options.latency,
           "--latency is of simulated time; add --simulated-time");
 }

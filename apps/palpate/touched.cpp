@@ -17,10 +17,10 @@ namespace palpate::app {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using WallClock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+double seconds_since(WallClock::time_point start) {
+  return std::chrono::duration<double>(WallClock::now() - start).count();
 }
 
 void check_intensities(const LoadedCloud& loaded) {
@@ -64,7 +64,7 @@ void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& ch
   }
   const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
                                     grouped(loaded.file.cloud.size())));
-  const auto start = Clock::now();
+  const auto start = WallClock::now();
   const Source& source = scene.add(loaded.argument.name, loaded.file.cloud, result.options);
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();
@@ -89,7 +89,7 @@ void push_alone(Source& source, const DepthFrame& frame, TouchedSource& result) 
 void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSource& chosen,
                      TouchedSource& result) {
   if (wants_material(options)) refuse_material(chosen.argument);
-  const auto begin = Clock::now();
+  const auto begin = WallClock::now();
   DepthFrame frame = load_depth_image(chosen.argument.path, chosen.choices.reading);
   frame.stamp = 0;
   result.read_seconds = seconds_since(begin);
@@ -97,15 +97,15 @@ void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSour
   result.depth_image = true;
   result.options.policy.fit_everywhere = true;
   const Waiting waiting(fmt::format("preparing {}", chosen.argument.name));
-  const auto start = Clock::now();
+  const auto start = WallClock::now();
   push_alone(scene.add(chosen.argument.name, result.options), frame, result);
   result.prepare_seconds = seconds_since(start);
 }
 
 void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& chosen, bool explored,
-              TouchedSource& result) {
+              const Clock* clock, TouchedSource& result) {
   if (wants_material(options)) refuse_material(chosen.argument);
-  result.camera = open_live(chosen, nullptr);
+  result.camera = open_live(chosen, clock);
   result.first = first_frame(*result.camera);
   Source& source = scene.add(chosen.argument.name, result.options);
   if (explored) push_alone(source, result.first, result);
@@ -113,14 +113,14 @@ void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& cho
 
 }  // namespace
 
-Touched prepare_touched(const TouchOptions& options, bool explored) {
+Touched prepare_touched(const TouchOptions& options, bool explored, const Clock* clock) {
   Touched touched;
   for (const ChosenSource& chosen : choose_sources(options)) {
     TouchedSource& source = touched.sources.emplace_back();
     source.argument = chosen.argument;
     source.options = source_options(options, chosen);
     if (lives(chosen.argument.path)) {
-      add_live(touched.scene, options, chosen, explored, source);
+      add_live(touched.scene, options, chosen, explored, clock, source);
     } else if (!chosen.choices.unorganised && is_depth_image(chosen.argument.path)) {
       add_depth_image(touched.scene, options, chosen, source);
     } else {
@@ -149,10 +149,10 @@ SimulatedFeed make_feed(Touched& touched, Scene& felt, double latency) {
     TouchedSource& each = touched.sources[i];
     if (!each.camera) continue;
     Source& source = felt.source(i);
-    cameras.push_back({each.camera.get(), std::move(each.first), source.name(),
-                       [&source](const DepthFrame& frame, const StartTime& start) {
-                         source.push(frame, start);
-                       }});
+    cameras.push_back(
+        {each.camera.get(), std::move(each.first), source.name(),
+         [&source](const DepthFrame& frame, const StartTime& start) { source.push(frame, start); },
+         [&source] { source.keep(); }});
   }
   return SimulatedFeed(std::move(cameras), latency);
 }

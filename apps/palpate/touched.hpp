@@ -42,9 +42,11 @@ struct Touched {
 };
 
 /// Reads every cloud, prepares it and puts it into the scene; opens every camera and waits for its
-/// first frame, which is prepared only if the surface is to be `explored` before the run.
+/// first frame, which is prepared only if the surface is to be `explored` before the run. Cameras
+/// keep the time of `clock`, which outlives them; null: simulated time.
 /// @throws UsageError when a pose names no source; Error as reading, opening and preparing do.
-[[nodiscard]] Touched prepare_touched(const TouchOptions& options, bool explored);
+[[nodiscard]] Touched prepare_touched(const TouchOptions& options, bool explored,
+                                      const Clock* clock = nullptr);
 
 /// Puts into `scene` what is felt in the run: clouds as they were prepared, shared, with another
 /// soft material (how hard the hardest points are may be known after preparation only); cameras

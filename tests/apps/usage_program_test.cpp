@@ -25,7 +25,7 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
   Shell shell;
   shell.write("long.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n1e300,0,0,0\n");
   const std::pair<const char*, const char*> cases[] = {
-      {"", "touch, info or cameras"},
+      {"", "touch, info, cameras or paper"},
       {"touch synthetic:torus --device simulated --trajectory long.csv", "1e+300"},
       {"tuch synthetic:torus", "tuch"},
       {"touch", "no sources"},

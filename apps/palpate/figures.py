@@ -1,0 +1,160 @@
+"""Draws the paper's figures from palpate's measurements.
+
+Usage: figures.py FOLDER PICTURE. FOLDER holds facts.json and table.csv. Ends with 3 where matplotlib
+is missing.
+"""
+
+import json
+import os
+import sys
+
+try:
+    import matplotlib
+    import numpy as np
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+except ImportError as error:
+    print(error, file=sys.stderr)
+    sys.exit(3)
+
+INK = "#1f2933"
+FAINT = "#8492a6"
+GRID = "#e4e7eb"
+METABALL = "#dd8a00"
+POINTSET = "#2b6cb0"
+OURS = "#c53030"
+PAPER = "#b8c2cc"
+COLORS = {"metaball": METABALL, "point-set": POINTSET, "palpate": OURS}
+SHOWN_SECONDS = 2.0
+
+
+def load(folder):
+    """The facts and the table, column by column."""
+    with open(os.path.join(folder, "facts.json"), encoding="utf-8") as file:
+        facts = json.load(file)
+    table = np.genfromtxt(os.path.join(folder, "table.csv"), delimiter=",", names=True)
+    return facts, table
+
+
+def head(figure, title, subtitle):
+    """Title and subtitle in the upper left corner."""
+    figure.text(0.045, 0.945, title, fontsize=16, fontweight="bold", color=INK)
+    figure.text(0.045, 0.905, subtitle, fontsize=10.5, color=FAINT)
+
+
+def fig5(facts, picture):
+    """Times of the three steps at the four sizes, the paper's beside ours, on logarithmic axes."""
+    rows = facts["rows"][::-1]
+    names = ["index", "normals", "spacing"]
+    figure, all_axes = plt.subplots(1, 3, figsize=(12.6, 5.2), dpi=150, sharey=True)
+    figure.subplots_adjust(left=0.075, right=0.985, top=0.8, bottom=0.125, wspace=0.06)
+    places = np.arange(len(rows))
+    for i, (axes, name) in enumerate(zip(all_axes, names)):
+        for shift, key, color, label in ((-0.2, "paper_ms", PAPER, "the paper"),
+                                         (0.2, "here_ms", OURS, "palpate")):
+            times = [row[key][i] for row in rows]
+            axes.bar(places + shift, times, 0.36, color=color, label=label)
+            for place, time in zip(places + shift, times):
+                axes.text(place, time * 1.07, f"{time:.3g}", ha="center", va="bottom", fontsize=9,
+                          color=INK)
+        axes.set_yscale("log")
+        axes.set_xticks(places, [f"{row['points']:,}".replace(",", " ") for row in rows])
+        axes.set_title("index (the paper: kd-tree)" if name == "index" else name, loc="left",
+                       color=INK)
+        axes.set_xlabel("points")
+        axes.grid(axis="x", visible=False)
+    all_axes[0].set_ylabel("ms")
+    low, high = all_axes[0].get_ylim()
+    all_axes[0].set_ylim(low, high * 1.8)
+    all_axes[2].legend(loc="upper left", frameon=False)
+    head(figure, "Preparing clouds of four sizes",
+         f"the paper on a Core i7-950 in 2012; here on {facts['cores']} cores; points of "
+         f"{facts['source']}")
+    figure.savefig(picture, format="png")
+
+
+def label_of(press):
+    """A press's name as people say it."""
+    if press["clouds"] == 0:
+        return "palpate's default"
+    return f"{press['name']}, N = {press['clouds']}"
+
+
+def draw_series(axes, table, press, column, scale):
+    """One component of the normal, or the height, over some seconds."""
+    shown = table["t"] <= table["t"][0] + SHOWN_SECONDS
+    values = scale * table[f"{press['key'].replace('-', '')}_{column}"][shown]
+    axes.plot(table["t"][shown] - table["t"][0], values, color=COLORS[press["name"]], linewidth=0.9)
+
+
+def draw_bars(axes, facts, value, scale, title, unit):
+    """A standard deviation against N, and ours as a line."""
+    for name, shift in (("metaball", -0.19), ("point-set", 0.19)):
+        some = [p for p in facts["presses"] if p["name"] == name]
+        places = np.array([p["clouds"] for p in some]) + shift
+        axes.bar(places, [scale * value(p) for p in some], 0.34, color=COLORS[name], label=name)
+    ours = scale * value(facts["presses"][-1])
+    axes.axhline(ours, color=OURS, linewidth=1.8, label=f"palpate's default, {ours:.2g} {unit}")
+    axes.set_title(title, loc="left", color=INK)
+    axes.set_xlabel("N clouds")
+    axes.set_ylabel(unit)
+    axes.set_xticks([1, 2, 3, 4])
+    axes.set_ylim(0, 1.18 * axes.get_ylim()[1])
+    axes.grid(axis="x", visible=False)
+    axes.legend(loc="upper right", frameon=False)
+
+
+def fig7(facts, table, picture):
+    """The normal's components over time, and what N clouds do to them and to the height."""
+    presses = facts["presses"]
+    by_key = {p["key"]: p for p in presses}
+    columns = [by_key[k] for k in ("metaball_1", "point-set_1", "metaball_4", "point-set_4", "palpate")]
+    figure = plt.figure(figsize=(14.4, 9), dpi=150, facecolor="white")
+    upper = figure.add_gridspec(2, len(columns), left=0.055, right=0.985, top=0.825, bottom=0.46,
+                                wspace=0.08, hspace=0.16)
+    first = None
+    limit = 1.1 * max(np.abs(np.asarray([table[f"{p['key'].replace('-', '')}_{c}"] for p in columns
+                                         for c in ("nx", "ny")])).max(), 1e-3)
+    for i, press in enumerate(columns):
+        for j, column in enumerate(("nx", "ny")):
+            axes = figure.add_subplot(upper[j, i], sharex=first, sharey=first)
+            first = first or axes
+            draw_series(axes, table, press, column, 1)
+            axes.set_ylim(-limit, limit)
+            axes.tick_params(labelleft=i == 0, labelbottom=j == 1)
+            if i == 0:
+                axes.set_ylabel(f"$n_{column[1]}$")
+            if j == 0:
+                axes.set_title(f"{label_of(press)}\n$R$ = {1e3 * press['radius_m']:.1f} mm", loc="left",
+                               color=INK, fontsize=10.5)
+            else:
+                axes.set_xlabel("time, s")
+    lower = figure.add_gridspec(1, 2, left=0.055, right=0.985, top=0.355, bottom=0.065, wspace=0.12)
+    draw_bars(figure.add_subplot(lower[0, 0]), facts,
+              lambda p: np.hypot(p["nx_sd_degrees"], p["ny_sd_degrees"]), 1,
+              "normal: standard deviation of its direction", "degrees")
+    draw_bars(figure.add_subplot(lower[0, 1]), facts, lambda p: p["height_sd_m"], 1e3,
+              "height: standard deviation", "mm")
+    head(figure, "A hand pressed into a surface that stands still",
+         f"{facts['depth_m']:.2f} m from the camera, which looks at it at "
+         f"{facts['angle_degrees']:.0f} degrees; metaball and point-set with {1e3 * facts['voxel_m']:.1f} "
+         f"mm voxels, R = 2.5 s, T = 0.5, hard swap; {facts['source']}")
+    figure.savefig(picture, format="png")
+
+
+def main(folder, picture):
+    facts, table = load(folder)
+    plt.rcParams.update({"font.size": 10.5, "font.family": "DejaVu Sans", "text.color": INK,
+                         "axes.labelcolor": INK, "axes.edgecolor": FAINT, "xtick.color": INK,
+                         "ytick.color": INK, "axes.grid": True, "grid.color": GRID,
+                         "axes.axisbelow": True, "axes.spines.top": False,
+                         "axes.spines.right": False})
+    if facts["figure"] == "fig5":
+        fig5(facts, picture)
+    else:
+        fig7(facts, table, picture)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2])

@@ -1,0 +1,107 @@
+#include "apps/palpate/paper_fig5.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/palpate/paper_frames.hpp"
+#include "apps/palpate/progress.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/base/thread_clock.hpp"
+#include "palpate/geometry/voxel_grid.hpp"
+#include "palpate/scene/scene.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+// Fig. 5 of the paper: points, and ms.
+constexpr std::array<std::size_t, 4> kSizes = {146'000, 36'000, 16'000, 2'500};
+constexpr std::array<PrepareTimes, 4> kPaper = {
+    {{135, 780, 275}, {26, 160, 60}, {10, 70, 25}, {1.4, 10, 3.7}}};
+
+constexpr double kCloseEnough = 0.005;  // of the size
+
+// The leaf that leaves about so many points; fewer are left the larger it is.
+double leaf_for(const PointCloud& cloud, std::size_t wanted) {
+  double low = 1e-4;
+  double high = 0.2;
+  while (high / low > 1.0005) {
+    const double leaf = std::sqrt(low * high);
+    const std::size_t left = voxel_downsample(cloud, leaf).size();
+    const double error = static_cast<double>(left) / static_cast<double>(wanted) - 1;
+    if (std::abs(error) < kCloseEnough) return leaf;
+    (error > 0 ? low : high) = leaf;
+  }
+  return low;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+Fig5Row measure(const PointCloud& cloud, std::size_t size, const PrepareTimes& paper, int repeats) {
+  Fig5Row row{
+      .points = size, .points_here = 0, .voxel = 0, .paper = paper, .here = {}, .weights = 0};
+  row.voxel = leaf_for(cloud, size);
+  const PointCloud thinned = voxel_downsample(cloud, row.voxel);
+  row.points_here = thinned.size();
+  PrepareOptions options;
+  options.voxel = 0;
+  options.paper = true;
+  std::vector<double> index;
+  std::vector<double> normals;
+  std::vector<double> spacing;
+  std::vector<double> weights;
+  for (int i = 0; i < repeats; ++i) {
+    const PrepareReport report = prepare(thinned, options).report;
+    index.push_back(1e3 * report.seconds_index);
+    normals.push_back(1e3 * report.seconds_normals);
+    spacing.push_back(1e3 * report.seconds_spacing);
+    weights.push_back(1e3 * report.seconds_weights);
+  }
+  row.here = {median(index), median(normals), median(spacing)};
+  row.weights = median(weights);
+  return row;
+}
+
+double measure_frame(const DepthFrame& frame, int repeats) {
+  Scene scene;
+  SourceOptions options;
+  options.policy.fit_everywhere = true;
+  Source& source = scene.add("frame", options);
+  std::vector<double> times;
+  DepthFrame next = frame;
+  for (int i = 0; i < repeats + 2; ++i) {
+    next.stamp = i / 30.0;
+    const double begin = thread_cpu_seconds();
+    source.push(next, [&] { return next.stamp; });
+    if (i >= 2) times.push_back(1e3 * (thread_cpu_seconds() - begin));  // memory is there by now
+  }
+  return median(times);
+}
+
+}  // namespace
+
+Fig5 measure_fig5(const DepthFrame& frame, int repeats) {
+  const PointCloud cloud = cloud_of(frame);
+  if (cloud.size() < kSizes.front()) {
+    throw Error(
+        fmt::format("the frame has {} points, and the paper's largest cloud {}; take a "
+                    "larger image",
+                    cloud.size(), kSizes.front()));
+  }
+  Fig5 result;
+  result.pixels = cloud.size();
+  Progress progress("preparing clouds of four sizes");
+  for (std::size_t i = 0; i < kSizes.size(); ++i) {
+    progress.update(static_cast<double>(i) / kSizes.size());
+    result.rows.push_back(measure(cloud, kSizes[i], kPaper[i], repeats));
+  }
+  result.everywhere = measure_frame(frame, repeats);
+  return result;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,63 @@
+#include "apps/palpate/paper_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "apps/palpate/errors.hpp"
+#include "apps/palpate/open_live.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr int kMiddle = 8;  // pixels to either side of the image's middle
+
+}  // namespace
+
+std::unique_ptr<DepthCamera> open_paper_source(const std::string& source) {
+  if (!lives(source)) {
+    throw UsageError(fmt::format(
+        "{} is neither a camera nor a sequence; name one such as sequence:FOLDER", source));
+  }
+  ChosenSource chosen;
+  chosen.argument = {"source", source};
+  return open_live(chosen, nullptr);
+}
+
+PointCloud cloud_of(const DepthFrame& frame) {
+  const Pinhole& p = frame.camera.pinhole;
+  PointCloud cloud;
+  cloud.viewpoint = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+    const double z = static_cast<double>(frame.depth[i]);
+    if (z <= 0) continue;
+    const auto width = static_cast<std::size_t>(frame.camera.width);
+    const double x = (static_cast<double>(i % width) - p.cx) * z / p.fx;
+    const double y = (static_cast<double>(i / width) - p.cy) * z / p.fy;
+    cloud.positions.push_back(Eigen::Vector3d(x, y, z).cast<float>());
+  }
+  return cloud;
+}
+
+double depth_in_the_middle(const DepthFrame& frame) {
+  std::vector<float> depths;
+  const int u = frame.camera.width / 2;
+  const int v = frame.camera.height / 2;
+  for (int row = std::max(0, v - kMiddle); row < std::min(frame.camera.height, v + kMiddle);
+       ++row) {
+    for (int column = std::max(0, u - kMiddle); column < std::min(frame.camera.width, u + kMiddle);
+         ++column) {
+      const auto at = static_cast<std::size_t>(row * frame.camera.width + column);
+      if (frame.depth[at] > 0) depths.push_back(frame.depth[at]);
+    }
+  }
+  if (depths.empty()) throw Error("the frame shows nothing in the middle of its image");
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return static_cast<double>(*middle);
+}
+
+}  // namespace palpate::app

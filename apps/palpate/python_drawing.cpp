@@ -1,0 +1,122 @@
+#include "apps/palpate/python_drawing.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+// A folder of our own that vanishes with its contents.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "palpate-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) {
+      throw Error(
+          fmt::format("{} cannot be made for the picture's data; set TMPDIR to a folder with "
+                      "room",
+                      pattern));
+    }
+    path_ = pattern;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void write_file(const std::string& path, std::string_view bytes) {
+  OutputFile file(path);
+  file.write(bytes);
+  file.close();
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream stream(path);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// Debian's own Python first: that is the one python3-matplotlib belongs to.
+std::string python() {
+  const char* debian = "/usr/bin/python3";
+  return access(debian, X_OK) == 0 ? debian : "python3";
+}
+
+// Runs a program, with its complaints in a file, and returns its exit code; 127: it is not there.
+int run(const std::vector<std::string>& words, const std::string& complaints) {
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, complaints.c_str(),
+                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+  pid_t child = 0;
+  const int failed =
+      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) return 127;
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 126;
+}
+
+// The last line that says something: Python's own error.
+std::string last_line(const std::string& text) {
+  std::istringstream stream(text);
+  std::string line;
+  std::string last;
+  while (std::getline(stream, line)) {
+    if (!line.empty()) last = line;
+  }
+  return last;
+}
+
+}  // namespace
+
+std::string float_bytes(const std::vector<float>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+void draw_by_python(std::string_view script, const std::vector<DrawingData>& data,
+                    const std::string& path, OutputFile& picture) {
+  const TemporaryFolder folder;
+  for (const DrawingData& each : data) write_file(folder.file(each.name), each.bytes);
+  write_file(folder.file("draw.py"), script);
+  const std::string complaints = folder.file("complaints.txt");
+  const int code =
+      run({python(), "-B", folder.file("draw.py"), folder.file(""), picture.growing()}, complaints);
+  if (code == 0) return picture.close();
+  if (code == 127 || code == 3) {
+    throw Error(
+        fmt::format("{} was not drawn: Python 3 with matplotlib is missing; install it with "
+                    "'apt install python3-matplotlib' (everything else was written)",
+                    path));
+  }
+  throw Error(fmt::format("{} was not drawn: {} (everything else was written)", path,
+                          last_line(read_text(complaints))));
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+
+#include "apps/palpate/hand.hpp"
+#include "apps/palpate/touch_statistics.hpp"
+#include "apps/palpate/touched.hpp"
+#include "palpate/contact/proxy.hpp"
+
+namespace palpate::app {
+
+/// All that a run is made of: what is touched, and who touches.
+struct Run {
+  const TouchOptions& options;
+  Touched& touched;
+  Scene& felt;  ///< what the run feels of it: fill_felt()
+  Hand& hand;
+  FieldOptions field;
+  ProxyOptions proxy;
+};
+
+/// Is handed every step as soon as it is done.
+using EachStep = std::function<void(const TouchStep&)>;
+
+/// Cameras, preparation and servo on one simulated clock, one thread, as fast as they go. The same
+/// run gives the same steps, bit for bit. Fills in what `touched` tells of its cameras.
+/// @throws Error when the device fails.
+void run_simulated(Run& run, const EachStep& each);
+
+}  // namespace palpate::app
