@@ -211,7 +211,8 @@ TEST(Evaluate, DegenerateNeighbourhoodsStayFinite) {
       {{{0, 0, 0}, Vector3d::UnitZ(), 10e-3, 1}, {{0, 0, 0}, -Vector3d::UnitZ(), 10e-3, 1}},
       {{{0, 0, 0}, Vector3d::UnitX(), 10e-3, 1}}};
   for (const auto& cloud : clouds) {
-    const SurfacePoints points = make_points(cloud);
+    SurfacePoints points = make_points(cloud);
+    points.sharp_edges = true;
     const Patch patch = patch_of(points);
     for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset, FieldKind::metaball}) {
       const ImplicitSurface surface{FieldOptions{.kind = kind}};

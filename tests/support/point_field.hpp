@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "palpate/scene/scene_field.hpp"
 #include "support/make_points.hpp"
@@ -10,8 +11,11 @@ namespace palpate::test {
 /// A scene of points and the field over it, without any preparation in between.
 class PointField {
  public:
-  explicit PointField(const std::vector<TestPoint>& points, const FieldOptions& options = {})
-      : points_(std::make_shared<SurfacePoints>(make_points(points, options.kernel))) {
+  explicit PointField(const std::vector<TestPoint>& points, const FieldOptions& options = {},
+                      bool sharp_edges = false) {
+    SurfacePoints made = make_points(points, options.kernel);
+    made.sharp_edges = sharp_edges;
+    points_ = std::make_shared<SurfacePoints>(std::move(made));
     auto snapshot = std::make_unique<Snapshot>();
     snapshot->layers.push_back({points_});
     scene_.add("points").publish(std::move(snapshot));
