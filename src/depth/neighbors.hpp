@@ -7,13 +7,15 @@ namespace palpate::depth {
 
 /// How far a neighbouring block's inverse depth may differ on the same surface.
 struct SameSurface {
+  static constexpr float kClose = 4.3F;  ///< 3 sigma of the difference of two blocks
+
   NoiseModel noise;
   float steep = 0;  ///< relative change of depth from block to block
 
   SameSurface(const NoiseModel& noise_model, const BlockGrid& grid);
   /// `distance` in blocks.
   [[nodiscard]] float limit(float rho, float distance = 1) const {
-    return 4.3F * block_sigma(noise, rho) + steep * distance * rho;
+    return kClose * block_sigma(noise, rho) + steep * distance * rho;
   }
 };
 

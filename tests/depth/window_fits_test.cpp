@@ -8,6 +8,7 @@
 
 #include "base/cpu.hpp"
 #include "depth/metric_fit.hpp"
+#include "depth/simd/plain.hpp"
 #include "depth/small_frames.hpp"
 
 namespace palpate::test {
@@ -187,6 +188,52 @@ TEST(WindowFits, GiveTheSameBitsOnOlderProcessors) {
     ++level;
   }
   EXPECT_EQ(columns[0], columns[1]);
+}
+
+// The other passes over all blocks have a copy for newer processors too.
+TEST(PlainFits, GiveTheSameBitsOnOlderProcessors) {
+  if (!cpu_has_v3()) GTEST_SKIP() << "this processor has one level of the instruction set only";
+  const std::vector<Solid> solids = {sphere({0.03, 0, 0.6}, 0.06), plane({0, 0, 0.9}, {0, 0, -1})};
+  CameraModel camera = kSmall;
+  camera.width = 154;  // 77 blocks: the last ones are no whole eight
+  const DepthFrame frame = noisy_frame(solids, {.silhouettes = true}, 0, camera);
+  const simd::BlockGate gate{0.1F, 20, {0.004F, 0.006F, 0.005F}};
+  const simd::BlockLimits limits{{0.0008F, -0.0008F, 0.001F}, 4.3F, 0.01F, 7.3F};
+  depth::Blocks blocks[2];
+  depth::BlockFits fits[2];
+  int level = 0;
+  for (const simd::PlainFunctions* functions : {&simd::kPlainBaseline, &simd::kPlainV3}) {
+    depth::Blocks& b = blocks[level];
+    depth::BlockFits& f = fits[level++];
+    b.resize(depth::block_grid(camera));
+    f.resize(b.grid);
+    const auto stride = static_cast<std::ptrdiff_t>(b.stride);
+    const auto each_row = [&](auto action) {
+      for (int row = 0; row < b.grid.rows; ++row) action(row, b.at(0, row), f.grid.index(0, row));
+    };
+    each_row([&](int row, std::size_t at, std::size_t) {
+      functions->average(frame.depth.data() + std::ptrdiff_t{2} * row * camera.width, camera.width,
+                         b.grid.columns, gate, &b.rho[at], &b.counts[at]);
+    });
+    const std::vector<float> before = b.rho;
+    each_row([&](int, std::size_t at, std::size_t) {
+      functions->reject(&before[at], stride, b.grid.columns, limits, 2, &b.rho[at], &b.counts[at]);
+    });
+    EXPECT_NE(b.rho, before);
+    each_row([&](int, std::size_t at, std::size_t to) {
+      functions->fit(&b.rho[at], &b.counts[at], stride, b.grid.columns, limits, 262.5F, 262.5F,
+                     {reinterpret_cast<std::uint8_t*>(&f.states[to]), &f.rho[to], &f.variance[to],
+                      &f.slope_x[to], &f.slope_y[to], &f.slope_variance[to], &f.confidences[to]});
+    });
+  }
+  EXPECT_EQ(blocks[0].rho, blocks[1].rho);
+  EXPECT_EQ(blocks[0].counts, blocks[1].counts);
+  EXPECT_EQ(fits[0].states, fits[1].states);
+  EXPECT_EQ(fits[0].variance, fits[1].variance);
+  EXPECT_EQ(fits[0].slope_x, fits[1].slope_x);
+  EXPECT_EQ(fits[0].slope_y, fits[1].slope_y);
+  EXPECT_EQ(fits[0].slope_variance, fits[1].slope_variance);
+  EXPECT_EQ(fits[0].confidences, fits[1].confidences);
 }
 
 }  // namespace
