@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <string_view>
 #include <thread>
 
@@ -62,8 +63,9 @@ std::string remedy(const std::string& device) {
 
 class OpenNi2Connection final : public Connection {
  public:
-  OpenNi2Connection(std::string name, const std::string& device, const CameraOptions& options)
-      : name_(std::move(name)), device_name_(device) {
+  OpenNi2Connection(std::shared_ptr<const Library> library, std::string name,
+                    const std::string& device, const CameraOptions& options)
+      : library_(std::move(library)), name_(std::move(name)), device_name_(device) {
     const char* uri = device.empty() ? openni::ANY_DEVICE : device.c_str();
     check(device_.open(uri), "cannot be opened");
     check(stream_.create(device_, openni::SENSOR_DEPTH), "has no depth that can be had");
@@ -185,9 +187,9 @@ class OpenNi2Connection final : public Connection {
     }
   }
 
+  std::shared_ptr<const Library> library_;
   std::string name_;
   std::string device_name_;
-  Library library_;
   openni::Device device_;
   openni::VideoStream stream_;
   openni::VideoFrameRef frame_;
@@ -237,10 +239,12 @@ std::unique_ptr<DepthCamera> open_openni2(const std::string& device, const Camer
           ? "Recordings without the properties of a camera (those of OpenNI2's dummy device) are "
             "never played by OpenNI2; record it again from a camera."
           : "Plug it out and in again, into USB 2 if it is on USB 3.";
+  // Started here once: a stream opens a lost device again on its own thread.
+  const auto library = std::make_shared<Library>();
   return std::make_unique<LiveCamera>(
       CameraInfo{
           .name = name, .rate = 30, .paces = !is_recording(device) || options.clock != nullptr},
-      [=] { return std::make_unique<OpenNi2Connection>(name, device, options); }, silence,
+      [=] { return std::make_unique<OpenNi2Connection>(library, name, device, options); }, silence,
       options.clock);
 }
 
