@@ -5,8 +5,9 @@
 namespace palpate::streams {
 namespace {
 
-constexpr double kVoxel = 0.004;   // m
-constexpr double kRadius = 0.010;  // m
+constexpr double kVoxel = 0.004;          // m
+constexpr double kRadius = 0.010;         // m
+constexpr double kFigureRadius = 0.0051;  // m
 
 ProxyOptions proxy_options(ProxyMethod method) {
   ProxyOptions options;
@@ -82,8 +83,7 @@ Contender papers_way(int history) {
 
 Contender papers_figure(int history) {
   Contender contender = papers_way(history);
-  contender.source.prepare.radius.reset();
-  contender.source.prepare.paper = true;
+  contender.source.prepare.radius = kFigureRadius;
   return contender;
 }
 

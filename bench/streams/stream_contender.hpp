@@ -41,8 +41,7 @@ struct Contender {
 /// surfaces, R = 10 mm.
 [[nodiscard]] Contender papers_way(int history);
 
-/// The same as in the paper's Fig. 7: R is 2.5 times the mean distance to the nearest three
-/// neighbours.
+/// The same with R = 5.1 mm, for Fig. 7: 2.5 times the mean distance to the nearest neighbour.
 [[nodiscard]] Contender papers_figure(int history);
 
 }  // namespace palpate::streams

@@ -111,13 +111,14 @@ Measures together(const std::vector<Measures>& all) {
     for (const Measures& m : all) out.*of += m.*of * (m.*of) / n;
     out.*of = std::sqrt(out.*of);
   };
-  for (const auto of : {&Measures::jump, &Measures::jump_high, &Measures::vibration,
-                        &Measures::ripple, &Measures::force, &Measures::normal,
-                        &Measures::normal_sd, &Measures::height_sd, &Measures::lag_sd}) {
+  for (const auto of :
+       {&Measures::jump, &Measures::jump_high, &Measures::vibration, &Measures::ripple,
+        &Measures::force, &Measures::normal, &Measures::normal_sd, &Measures::lag_sd}) {
     join(of);
   }
   for (const Measures& m : all) {
     out.lag += m.lag / n;
+    out.radius += m.radius / n;
     out.contact += m.contact / n;
     out.step = std::max(out.step, m.step);
     out.pops += m.pops;

@@ -76,12 +76,26 @@ void add_bands(const Setup& setup, const std::vector<Vector3d>& force, Measures&
   out.vibration = std::sqrt(vibration / count);
 }
 
+// How far the proxy is under the true surface, m.
+double sunk(const Setup& setup, const StreamTrace& trace, std::size_t tick) {
+  const double t = static_cast<double>(tick) * kTick;
+  return -distance_and_normal(setup.scene, trace.felt.proxy[tick], t).value;
+}
+
+// The same before the surface moves: a metaball stands in front of its points.
+double sunk_at_rest(const Setup& setup, const StreamTrace& trace) {
+  Moments sum;
+  for (std::size_t i = setup.rest - kTrim; i < setup.rest; ++i) sum.add(sunk(setup, trace, i));
+  return sum.mean();
+}
+
 void add_heights(const Setup& setup, const StreamTrace& trace, Measures& out) {
   Moments lag;
+  Moments radius;
   std::array<Moments, 3> normal;
   for (std::size_t i = setup.path.begin; i < setup.path.end; ++i) {
-    const double t = static_cast<double>(i) * kTick;
-    lag.add(-distance_and_normal(setup.scene, trace.felt.proxy[i], t).value);
+    lag.add(sunk(setup, trace, i));
+    radius.add(trace.radius[i]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       normal[axis].add(trace.normal[i][static_cast<Eigen::Index>(axis)]);
     }
@@ -89,9 +103,12 @@ void add_heights(const Setup& setup, const StreamTrace& trace, Measures& out) {
   double variance = 0;  // of two tangential directions; along the normal there is next to none
   for (const Moments& axis : normal) variance += axis.deviation() * axis.deviation();
   out.normal_sd = kDegrees * std::sqrt(variance / 2);
-  out.lag = kMillimetres * (lag.mean() - setup.speed * setup.latency);
+  out.radius = kMillimetres * radius.mean();
+  out.lag = kMillimetres * lag.mean();
+  if (setup.speed > 0) {
+    out.lag -= kMillimetres * (setup.speed * setup.latency + sunk_at_rest(setup, trace));
+  }
   out.lag_sd = kMillimetres * lag.deviation();
-  out.height_sd = out.lag_sd;
 }
 
 void add_contact(const Setup& setup, const StreamTrace& trace, const accuracy::Trace* ideal,

@@ -13,15 +13,16 @@ struct Measures {
   double ripple = 0;     ///< force above 20 Hz, RMS, N
   double force = 0;      ///< |F - F_ideal|, RMS, N; where the ideal is known
   double normal = 0;     ///< angle between force and ideal force, RMS, degrees; likewise
-  double normal_sd = 0;  ///< deviation over time of the field's normal in one tangential
-                         ///< direction, degrees
-  double height_sd = 0;  ///< deviation over time of the proxy's height, mm
-  double lag = 0;        ///< how far the proxy is behind the true surface, mean, mm; less what
-                         ///< the latency explains
-  double lag_sd = 0;     ///< mm
-  double contact = 0;    ///< share of ticks with at least 20 % of the ideal force
-  double step = 0;       ///< largest change of force from one tick to the next, N
-  double pops = 0;       ///< times that contact was lost for three ticks or more
+  /// Deviation over time of the field's normal in one tangential direction, degrees.
+  double normal_sd = 0;
+  /// How far the proxy is behind (under) the true surface, mean, mm. Where that moves, less what
+  /// the latency explains and less what it is at rest.
+  double lag = 0;
+  double lag_sd = 0;   ///< mm
+  double contact = 0;  ///< share of ticks with at least 20 % of the ideal force
+  double step = 0;     ///< largest change of force from one tick to the next, N
+  double pops = 0;     ///< times that contact was lost for three ticks or more
+  double radius = 0;   ///< R at the proxy, mean, mm
 };
 
 /// Against the ideal proxy on what stands still: `ideal` is its trace; null where the surface

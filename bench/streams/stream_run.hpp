@@ -10,6 +10,7 @@ namespace palpate::streams {
 struct StreamTrace {
   accuracy::Trace felt;                 ///< raw K (p - h), and the proxy
   std::vector<Eigen::Vector3d> normal;  ///< of the field at the proxy, unit; zero: no surface there
+  std::vector<double> radius;           ///< R there, m
   std::vector<std::size_t> swaps;       ///< ticks in which a new surface began
 };
 

@@ -58,22 +58,23 @@ Path press(const Vector3d& place, const Vector3d& out, double seconds) {
 }
 
 // Presses `kComingDepth` into the surface while it rests, then moves with it.
-Path ride(const Vector3d& place, const Vector3d& out, double speed, double seconds, double* start) {
+void ride(Setup& setup, const Vector3d& place, const Vector3d& out, double seconds) {
   PathBuilder builder(place + 0.01 * out);
   builder.line_to(place - kComingDepth * out).hold(0.2);
-  const Path rest = delayed(builder.build(), kWarmUp);
-  *start = static_cast<double>(rest.hip.size() - 1) * kTick;
+  setup.rest = delayed(builder.build(), kWarmUp).hip.size() - 1;
   const Vector3d deep = place - kComingDepth * out;
+  const double speed = setup.speed;
   builder.line_to(deep + kSettle * speed * out, speed)
       .start_score()
       .line_to(deep + (kSettle + seconds) * speed * out, speed);
-  return delayed(builder.build(), kWarmUp);
+  setup.path = delayed(builder.build(), kWarmUp);
+  setup.depth = kComingDepth;
 }
 
-Motion coming(const Vector3d& velocity, double start) {
+Motion coming(const Setup& setup, const Vector3d& out) {
   Motion motion;
-  motion.velocity = velocity;
-  motion.begin = start;
+  motion.velocity = setup.speed * out;
+  motion.begin = static_cast<double>(setup.rest) * kTick;
   return motion;
 }
 
@@ -100,11 +101,9 @@ Setup plane_comes(const Frames& frames, double speed) {
   const SimulatedTable table = make_simulated_table();
   // The table alone: it must not run into what stands on it.
   setup.scene.solids.resize(1);
-  double start = 0;
-  setup.path = ride(table.free_patch, Vector3d::UnitZ(), speed, frames.seconds, &start);
-  setup.scene.solids[0].motion = coming(speed * Vector3d::UnitZ(), start);
   setup.speed = speed;
-  setup.depth = kComingDepth;
+  ride(setup, table.free_patch, Vector3d::UnitZ(), frames.seconds);
+  setup.scene.solids[0].motion = coming(setup, Vector3d::UnitZ());
   return setup;
 }
 
@@ -120,11 +119,9 @@ Setup ball_comes(const Frames& frames, double speed) {
   wall.T_world_solid.linear() =
       Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()).toRotationMatrix();
   wall.T_world_solid.translation() = Vector3d(0, 0, 1.2);
-  double start = 0;
-  setup.path = ride(Vector3d(0, 0, kFront), out, speed, frames.seconds, &start);
-  setup.scene.solids = {{wall, {}}, {ball, coming(speed * out, start)}};
   setup.speed = speed;
-  setup.depth = kComingDepth;
+  ride(setup, Vector3d(0, 0, kFront), out, frames.seconds);
+  setup.scene.solids = {{wall, {}}, {ball, coming(setup, out)}};
   return setup;
 }
 

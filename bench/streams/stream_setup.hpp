@@ -18,6 +18,7 @@ struct Setup {
   double latency = 0.010;  ///< from a frame's stamp to the start of its surface, s
   double speed = 0;        ///< of the surface, m/s
   double depth = 0;        ///< of the hand in the true surface while it is scored, m
+  std::size_t rest = 0;    ///< tick at which a surface that comes begins to move
 };
 
 /// How frames come.

@@ -107,14 +107,15 @@ std::string markdown_targets(const std::vector<Result>& results) {
 
 std::string markdown_experiment(const std::vector<Result>& results) {
   std::string text =
-      "| in time | surface | jump, N rms (p95) | vibration, N | force error, N | sd of normal, deg "
-      "| height or lag, mm | contact, % | largest step, N "
-      "|\n|---|---|---|---|---|---|---|---|---|\n";
+      "| in time | surface | R, mm | jump, N rms (p95) | vibration, N | force error, N | sd of "
+      "normal, deg "
+      "| under the surface, mm | contact, % | largest step, N "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Result& result : results) {
     const Measures& m = result.measures;
     text +=
-        fmt::format("| {} | {} | {} ({}) | {} | {} | {} | {} +- {} | {:.1f} | {} |\n",
-                    result.contender, result.tool, number(m.jump), number(m.jump_high),
+        fmt::format("| {} | {} | {:.1f} | {} ({}) | {} | {} | {} | {} +- {} | {:.1f} | {} |\n",
+                    result.contender, result.tool, m.radius, number(m.jump), number(m.jump_high),
                     number(m.vibration), m.force > 0 ? number(m.force) : "", number(m.normal_sd),
                     number(m.lag), number(m.lag_sd), 100 * m.contact, number(m.step));
   }

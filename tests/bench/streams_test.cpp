@@ -68,12 +68,13 @@ StreamTrace perfect(const Setup& setup) {
     trace.felt.proxy.push_back(on_table);
     trace.felt.force.push_back(accuracy::kStiffness * (on_table - hip));
     trace.normal.push_back(Eigen::Vector3d::UnitZ());
+    trace.radius.push_back(0.01);
   }
   return trace;
 }
 
 TEST(Measures, GiveNothingForAPerfectTrace) {
-  const Setup setup = flat_press();
+  const streams::Setup setup = flat_press();
   StreamTrace trace = perfect(setup);
   for (std::size_t i = setup.path.begin; i < setup.path.end; i += 33) trace.swaps.push_back(i);
   const Measures m = measure(setup, trace, &trace.felt);
@@ -82,12 +83,13 @@ TEST(Measures, GiveNothingForAPerfectTrace) {
   EXPECT_EQ(m.force, 0);
   EXPECT_EQ(m.normal_sd, 0);
   EXPECT_NEAR(m.lag, 0, 1e-12);
+  EXPECT_NEAR(m.radius, 10, 1e-9);
   EXPECT_EQ(m.contact, 1);
   EXPECT_EQ(m.pops, 0);
 }
 
 TEST(Measures, SeeAJumpAtASwap) {
-  const Setup setup = flat_press();
+  const streams::Setup setup = flat_press();
   StreamTrace trace = perfect(setup);
   const accuracy::Trace ideal = trace.felt;
   const std::size_t swap = setup.path.begin + 500;
@@ -105,7 +107,7 @@ TEST(Measures, SeeAJumpAtASwap) {
 }
 
 TEST(Measures, SeeVibrationOfItsBandAndLostContact) {
-  const Setup setup = flat_press();
+  const streams::Setup setup = flat_press();
   StreamTrace trace = perfect(setup);
   const accuracy::Trace ideal = trace.felt;
   for (std::size_t i = 0; i < trace.felt.force.size(); ++i) {
