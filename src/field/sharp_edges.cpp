@@ -7,9 +7,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// a from which on edges are sharpened, and from which on in full. Below the first, positions and
-// normals in single precision make planes look convex.
-constexpr double kFrom = 1e-5;
+// a from which on edges are sharpened, and from which on in full. Below the first, what noise a
+// good fit leaves makes planes look convex; they need not pay for it.
+constexpr double kFrom = 0.002;
 constexpr double kFull = 0.05;
 
 /// chi of the gate, with its derivative in a.

@@ -20,7 +20,7 @@ struct SharpPlace {
 /// convex as seen from the given side (nss_fast.md section 1):
 ///
 ///   f = MEAN + sigma chi (RIMLS - MEAN),  chi = u^2 (3 - 2u),
-///   u = a / 0.05 within 0 and 1, a = [sum v n.q / V - Nb . A] / R
+///   u = (a - 0.002) / 0.048 within 0 and 1, a = [sum v n.q / V - Nb . A] / R
 ///
 /// sigma is the share of the points that may be sharpened, sum v s / sum v. RIMLS is MEAN with
 /// points that count less the more their normal differs from the surface's: twice, v_i is

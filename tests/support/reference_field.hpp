@@ -214,7 +214,7 @@ class ReferenceField final : public Field {
     const DualVector a = s.q / s.trusted;
     const DualVector mean_normal = s.n / s.trusted;
     const Dual bulge = sign * ((s.nq / s.trusted - dot(mean_normal, a)) / radius);
-    constexpr double kFrom = 1e-5;
+    constexpr double kFrom = 0.002;
     Dual u = (1 / (0.05 - kFrom)) * (bulge - constant(kFrom));
     if (u.v <= 0) return mean;
     if (u.v >= 1) u = constant(1);

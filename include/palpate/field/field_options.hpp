@@ -29,7 +29,7 @@ struct FieldOptions {
   bool two_sided = true;         ///< solid from both sides; false: closed objects, normals outward
   bool capped = true;            ///< cap at Wmin and blend to the metaball where normals are unsure
   /// Convex edges keep their shape where points say that they may (SurfacePoints::sharp_edges);
-  /// `balanced` only. Such places cost about three times as much.
+  /// `balanced` only. A sample there costs about 2.5 times as much.
   bool sharp_edges = true;
   bool raw_weights = false;     ///< ignore density weights (the paper)
   bool nearest_radius = false;  ///< use the R of the point nearest to the proxy for all (the paper)
