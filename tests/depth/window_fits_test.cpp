@@ -99,6 +99,18 @@ TEST(WindowFits, FindAPlaneAsWellAsTheSlowForm) {
   EXPECT_LT(both.fast.rms_height(), 1.3 * both.slow.rms_height());
 }
 
+// Neighbouring blocks alone would mistake such noise for slopes, and make windows too small.
+TEST(WindowFits, FindAPlaneInTheNoiseOfATimeOfFlightCamera) {
+  const Solid wall = plane({0, 0, 1.2}, Vector3d(0.1, -0.3, -0.95).normalized());
+  const NoiseModel noise{{0, 0, 0.015}, 1};
+  const Comparison both =
+      compare({wall}, wall, noise, 0.0355, [](const Vector3d&) { return true; });
+  ASSERT_GT(both.fast.count, 200);
+  EXPECT_LT(both.fast.rms_angle(), 3.1 * kDegree);
+  EXPECT_LT(both.fast.rms_height(), 0.8e-3);
+  EXPECT_LT(both.fast.rms_angle(), both.slow.rms_angle());  // whose balls leave out what errs most
+}
+
 TEST(WindowFits, FindASphereNearlyAsWellAsTheSlowForm) {
   const Solid ball = sphere({0, 0, 0.66}, 0.06);
   const Solid wall = plane({0, 0, 1}, {0, 0, -1});

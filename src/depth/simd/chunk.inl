@@ -22,6 +22,8 @@ struct Chunk {
   const std::int32_t* columns;        // of the image
   double rho[kChunk];                 // measured, in kRhoUnits
   double variance[kChunk];            // of it
+  float slope_x[kChunk];              // first guesses, as in BlockFits
+  float slope_y[kChunk];
   float reach_u[kChunk];              // blocks from the middle to the border of the largest window
   float reach_v[kChunk];
   float lever_u[kChunk];              // a quarter of r_max, in blocks
@@ -37,9 +39,9 @@ struct Chunk {
   bool edge[kChunk];
 };
 
-// Largest windows: what noise and wanted error ask for, in blocks foreshortened as the plain
-// slopes tell.
-inline void size_windows(const FitInput& in, int row, const FitRow& plain, Chunk& c) {
+// Largest windows: what noise and wanted error ask for, in blocks foreshortened as the slopes
+// tell.
+inline void size_windows(const FitInput& in, int row, Chunk& c) {
   constexpr float kSide = .88F;  // a square with the second moments of a disc
   const auto y = static_cast<float>(in.y0 + row * in.step_y);
   const auto step_x = static_cast<float>(in.step_x);
@@ -55,8 +57,8 @@ inline void size_windows(const FitInput& in, int row, const FitRow& plain, Chunk
     const auto x = static_cast<float>(in.x0 + column * in.step_x);
     const float rho = in.blocks.rho[row * in.blocks.stride + column];
     const float z = 1 / rho;
-    const float a = plain.slope_x[column] * z;
-    const float b = plain.slope_y[column] * z;
+    const float a = c.slope_x[i] * z;
+    const float b = c.slope_y[i] * z;
     const float ax = 1 - a * x;
     const float by = 1 - b * y;
     const float pitch_u = step_x * std::sqrt(ax * ax + a * a * (y * y + 1));  // per z
@@ -88,7 +90,7 @@ inline void size_windows(const FitInput& in, int row, const FitRow& plain, Chunk
   }
 }
 
-inline void start(const FitInput& in, int row, Chunk& c) {
+inline void start(const FitInput& in, int row, const FitRow& plain, Chunk& c) {
   for (int i = 0; i < c.count; ++i) {
     const std::ptrdiff_t at = row * in.blocks.stride + c.columns[i];
     const double rho = static_cast<double>(in.blocks.rho[at]);
@@ -96,6 +98,8 @@ inline void start(const FitInput& in, int row, Chunk& c) {
     const double variance = kRhoUnits * kRhoUnits * sigma * sigma * 4 / in.blocks.counts[at];
     c.rho[i] = kRhoUnits * rho;
     c.variance[i] = variance > 1. / 12 ? variance : 1. / 12;
+    c.slope_x[i] = plain.slope_x[c.columns[i]];
+    c.slope_y[i] = plain.slope_y[c.columns[i]];
     c.kind[i] = kNone;
     c.shift_u[i] = c.shift_v[i] = c.best_u[i] = c.best_v[i] = 0;
     c.edge[i] = false;

@@ -29,6 +29,41 @@ namespace {
   return fit(in, shape(half_u, half_v), s);
 }
 
+// How far a window has to reach for slopes that tell the foreshortening; 1: the plain ones do.
+inline int first_reach(const FitInput& in, const Chunk& c, int i) {
+  constexpr double kSlopeError = 0.15;  // of the tangent
+  constexpr int kLargestReach = 8;
+  const double step = in.step_x < in.step_y ? in.step_x : in.step_y;
+  const double wanted = kSlopeError * c.rho[i] * step;
+  int half = 1;
+  while (half < kLargestReach) {
+    const Extent& e = kExtents.of[half];
+    if (c.variance[i] * e.per_n * e.per_n * e.per_mu <= wanted * wanted) break;
+    ++half;
+  }
+  return half;
+}
+
+// Where noise drowns the slopes over 3x3 blocks, wider windows replace them if they are flat.
+inline void widen_slopes(const FitInput& in, int row, Chunk& c) {
+  int half[kChunk];
+  int four[kLanes];
+  int filled = 0;
+  for (int i = 0; i < c.count; ++i) {
+    half[i] = first_reach(in, c, i);
+    if (half[i] > 1) four[filled++] = i;
+    if (filled == 0 || (filled < kLanes && i + 1 < c.count)) continue;
+    for (int l = filled; l < kLanes; ++l) four[l] = four[0];
+    const Fits f = fit_four(in, row, c, four, half, half);
+    for (int l = 0; l < filled; ++l) {
+      if (!f.affine[l]) continue;
+      c.slope_x[four[l]] = static_cast<float>(f.cu[l] / (kRhoUnits * in.step_x));
+      c.slope_y[four[l]] = static_cast<float>(f.cv[l] / (kRhoUnits * in.step_y));
+    }
+    filled = 0;
+  }
+}
+
 inline bool same_size(const Chunk& c, int k, const int four[kLanes]) {
   if (k == 0) return false;
   int differ = 0;
@@ -236,8 +271,9 @@ void fit_blocks(const FitInput& in, int row, const std::int32_t* columns, int co
     Chunk c;
     c.count = count - first < kChunk ? count - first : kChunk;
     c.columns = columns + first;
-    start(in, row, c);
-    size_windows(in, row, out, c);
+    start(in, row, out, c);
+    widen_slopes(in, row, c);
+    size_windows(in, row, c);
     grow_centred(in, row, c);
     for (int i = 0; i < c.count; ++i) {
       if (c.edge[i]) try_aside(in, row, c, i);
