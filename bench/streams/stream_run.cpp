@@ -104,7 +104,7 @@ std::vector<StreamTrace> run_stream(const Setup& setup, const Contender& contend
       if (!feed->waiting || start - kLead > now) continue;
       push(*feed, contender, ball, start);
       feed->waiting = false;
-      const auto swap = static_cast<std::size_t>(std::ceil(start / kTick - kSlack));
+      const auto swap = static_cast<std::size_t>(std::max(0.0, std::ceil(start / kTick - kSlack)));
       for (StreamTrace& trace : traces) trace.swaps.push_back(swap);
     }
     for (std::size_t k = 0; k < hands.size(); ++k) {
