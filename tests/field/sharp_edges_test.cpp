@@ -96,15 +96,15 @@ TEST(SharpEdges, TheGradientIsExact) {
   const Pair pair(rough_ridge());
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-1, 1);
-  constexpr double h = 2e-8;
+  constexpr double kStep = 2e-8;
   int sharpened = 0;
   for (int k = 0; k < 400; ++k) {
     const Vector3d x(4e-3 * place(random), 8e-3 * place(random), 4e-3 * place(random));
     const Sample sample = pair.sharp(x);
     Vector3d numeric;
     for (int axis = 0; axis < 3; ++axis) {
-      const Vector3d step = h * Vector3d::Unit(axis);
-      numeric[axis] = (pair.sharp(x + step).value - pair.sharp(x - step).value) / (2 * h);
+      const Vector3d step = kStep * Vector3d::Unit(axis);
+      numeric[axis] = (pair.sharp(x + step).value - pair.sharp(x - step).value) / (2 * kStep);
     }
     EXPECT_LE((sample.gradient - numeric).norm(), 1e-5 * numeric.norm()) << x.transpose();
     if (std::abs(sample.value - pair.mean(x).value) > 1e-5) ++sharpened;
