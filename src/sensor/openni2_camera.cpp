@@ -1,5 +1,4 @@
 // PrimeSense and Xtion cameras and .oni recordings through OpenNI2.
-#include <OpenNI.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,11 +8,13 @@
 #include <memory>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "palpate/base/error.hpp"
 #include "sensor/drivers.hpp"
 #include "sensor/kinect_depth.hpp"
 #include "sensor/live_camera.hpp"
+#include "sensor/openni2_library.hpp"
 
 namespace palpate::sensor {
 namespace {
@@ -22,30 +23,7 @@ constexpr float kAsAsked = -1;  // playback speed: a frame whenever one is read
 constexpr auto kTwoFrames = std::chrono::milliseconds(80);
 constexpr double kMicrosecond = 1e-6;
 
-// What OpenNI2 says of its last error, on one line.
-std::string last_words() {
-  std::string words = openni::OpenNI::getExtendedError();
-  std::ranges::replace_if(
-      words, [](char c) { return c < ' '; }, ' ');
-  const std::size_t begin = words.find_first_not_of(' ');
-  if (begin == std::string::npos) return "no reason given";
-  return words.substr(begin, words.find_last_not_of(' ') - begin + 1);
-}
-
-// The library counts how often it was started.
-class Library {
- public:
-  Library() {
-    if (openni::OpenNI::initialize() == openni::STATUS_OK) return;
-    throw Error(
-        fmt::format("openni2: the library does not start ({}). Install libopenni2-0 again; "
-                    "its drivers lie in OpenNI2/Drivers beside it.",
-                    last_words()));
-  }
-  ~Library() { openni::OpenNI::shutdown(); }
-  Library(const Library&) = delete;
-  Library& operator=(const Library&) = delete;
-};
+using Library = std::shared_ptr<const OpenNi2Library>;
 
 bool is_recording(std::string_view device) {
   return device.ends_with(".oni") || device.ends_with(".ONI");
@@ -61,92 +39,157 @@ std::string remedy(const std::string& device) {
          "OpenNI2";
 }
 
-class OpenNi2Connection final : public Connection {
+// A device, and a frame of it: closed, released.
+struct CloseDevice {
+  Library library;
+  void operator()(_OniDevice* device) const { (void)library->close(device); }
+};
+struct ReleaseFrame {
+  Library library;
+  void operator()(OniFrame* frame) const { library->release_frame(frame); }
+};
+using Device = std::unique_ptr<_OniDevice, CloseDevice>;
+using Frame = std::unique_ptr<OniFrame, ReleaseFrame>;
+
+// A property of a stream; `otherwise` where it has none.
+template <class T>
+T property(const OpenNi2Library& library, OniStreamHandle stream, int id, T otherwise) {
+  T value = otherwise;
+  int size = sizeof value;
+  return library.get_property(stream, id, &value, &size) == ONI_STATUS_OK ? value : otherwise;
+}
+
+// The depth of a device. The destructor stops it.
+class DepthStream {
  public:
-  OpenNi2Connection(std::shared_ptr<const Library> library, std::string name,
-                    const std::string& device, const CameraOptions& options)
-      : library_(std::move(library)), name_(std::move(name)), device_name_(device) {
-    const char* uri = device.empty() ? openni::ANY_DEVICE : device.c_str();
-    check(device_.open(uri), "cannot be opened");
-    check(stream_.create(device_, openni::SENSOR_DEPTH), "has no depth that can be had");
-    choose_mode();
-    if (stream_.getMirroringEnabled()) (void)stream_.setMirroringEnabled(false);
-    mirrored_ = stream_.getMirroringEnabled();
-    across_ = stream_.getHorizontalFieldOfView();
-    down_ = stream_.getVerticalFieldOfView();
-    if (device_.isFile()) start_playback(options);
-    check(stream_.start(), "does not start");
+  DepthStream(Library library, OniDeviceHandle device)
+      : library_(std::move(library)), device_(device) {}
+  ~DepthStream() {
+    if (stream_ == nullptr) return;
+    if (is_file()) calm_player();
+    library_->stop(stream_);
+    library_->destroy_stream(stream_);
+  }
+  DepthStream(const DepthStream&) = delete;
+  DepthStream& operator=(const DepthStream&) = delete;
+
+  [[nodiscard]] OniStatus create() {
+    return library_->create_stream(device_, ONI_SENSOR_DEPTH, &stream_);
+  }
+  [[nodiscard]] OniStreamHandle get() const { return stream_; }
+
+  [[nodiscard]] bool is_file() const {
+    return library_->has_device_property(device_, ONI_DEVICE_PROPERTY_PLAYBACK_SPEED) != 0;
   }
 
-  ~OpenNi2Connection() override {
-    frame_.release();
-    if (device_.isFile()) calm_player();
-    stream_.stop();
-    stream_.destroy();
-    device_.close();
-  }
-  OpenNi2Connection(const OpenNi2Connection&) = delete;
-  OpenNi2Connection& operator=(const OpenNi2Connection&) = delete;
-
-  [[nodiscard]] CameraStatus fetch(DepthFrame& frame, double& device_time,
-                                   double timeout) override {
-    if (at_end_) return CameraStatus::ended;
-    openni::VideoStream* stream = &stream_;
-    int ready = 0;
-    const auto status = openni::OpenNI::waitForAnyStream(
-        &stream, 1, &ready, static_cast<int>(std::lround(1e3 * std::clamp(timeout, 0.0, 60.0))));
-    if (status == openni::STATUS_TIME_OUT) return CameraStatus::waiting;
-    check(status, "stopped delivering");
-    check(stream_.readFrame(&frame_), "stopped delivering");
-    if (once_ && frame_.getFrameIndex() <= last_) {  // it began again
-      at_end_ = true;
-      return CameraStatus::ended;
+  // Some devices start in units of 100 um or in a small mode.
+  void choose_mode() {
+    const OniSensorInfo* sensor = library_->get_sensor_info(device_, ONI_SENSOR_DEPTH);
+    for (int i = 0; sensor != nullptr && i < sensor->numSupportedVideoModes; ++i) {
+      const OniVideoMode& mode = sensor->pSupportedVideoModes[i];
+      const bool wanted = mode.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_1_MM &&
+                          mode.resolutionX == 640 && mode.resolutionY == 480 && mode.fps == 30;
+      if (wanted && set(ONI_STREAM_PROPERTY_VIDEO_MODE, mode)) return;
     }
-    fill(frame);
-    device_time = kMicrosecond * static_cast<double>(frame_.getTimestamp());
-    last_ = frame_.getFrameIndex();
-    at_end_ = once_ && last_ >= frames_;
-    frame_.release();
-    return CameraStatus::frame;
+  }
+
+  void play(bool as_asked) {
+    // Repeated always: at an end without repetition the player's thread runs wild (calm_player).
+    const OniBool repeat = TRUE;
+    (void)library_->set_device_property(device_, ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED,
+                                        &repeat, sizeof repeat);
+    if (as_asked) set_speed(kAsAsked);
+  }
+
+  template <class T>
+  bool set(int id, const T& value) {
+    return library_->set_property(stream_, id, &value, sizeof value) == ONI_STATUS_OK;
   }
 
  private:
-  void check(openni::Status status, std::string_view what) const {
-    if (status == openni::STATUS_OK) return;
-    throw Error(fmt::format("{}: {} ({}). {}.", name_, what, last_words(), remedy(device_name_)));
-  }
-
-  // Some devices start in units of 100 um or in a small mode; recordings are as they are.
-  void choose_mode() {
-    if (device_.isFile()) return;
-    const auto& modes = stream_.getSensorInfo().getSupportedVideoModes();
-    for (int i = 0; i < modes.getSize(); ++i) {
-      const openni::VideoMode& mode = modes[i];
-      const bool wanted = mode.getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_1_MM &&
-                          mode.getResolutionX() == 640 && mode.getResolutionY() == 480 &&
-                          mode.getFps() == 30;
-      if (wanted && stream_.setVideoMode(mode) == openni::STATUS_OK) return;
-    }
-  }
-
-  void start_playback(const CameraOptions& options) {
-    openni::PlaybackControl* control = device_.getPlaybackControl();
-    if (control == nullptr) return;
-    // Repeated always: at an end without repetition the player's thread runs wild (see
-    // calm_player).
-    (void)control->setRepeatEnabled(true);
-    if (options.clock == nullptr) (void)control->setSpeed(kAsAsked);
-    once_ = !options.loop;
-    frames_ = control->getNumberOfFrames(stream_);
+  void set_speed(float speed) {
+    (void)library_->set_device_property(device_, ONI_DEVICE_PROPERTY_PLAYBACK_SPEED, &speed,
+                                        sizeof speed);
   }
 
   // OpenNI2's player looks through its list of streams between frames and takes no lock, so a
   // stream must not go meanwhile. Told to wait until it is asked, it rests in the next frame.
   void calm_player() {
-    if (openni::PlaybackControl* control = device_.getPlaybackControl()) {
-      (void)control->setSpeed(kAsAsked);
-      std::this_thread::sleep_for(kTwoFrames);
+    set_speed(kAsAsked);
+    std::this_thread::sleep_for(kTwoFrames);
+  }
+
+  Library library_;
+  OniDeviceHandle device_;
+  OniStreamHandle stream_ = nullptr;
+};
+
+class OpenNi2Connection final : public Connection {
+ public:
+  OpenNi2Connection(const Library& library, std::string name, const std::string& device,
+                    const CameraOptions& options)
+      : library_(library),
+        name_(std::move(name)),
+        device_name_(device),
+        device_(open_device(), {library}),
+        stream_(library, device_.get()) {
+    check(stream_.create(), "has no depth that can be had");
+    if (stream_.is_file()) {
+      stream_.play(options.clock == nullptr);
+      once_ = !options.loop;
+      frames_ = get(ONI_STREAM_PROPERTY_NUMBER_OF_FRAMES, 0);
+    } else {
+      stream_.choose_mode();
     }
+    if (mirrored()) (void)stream_.set(ONI_STREAM_PROPERTY_MIRRORING, OniBool{FALSE});
+    mirrored_ = mirrored();
+    across_ = static_cast<double>(get(ONI_STREAM_PROPERTY_HORIZONTAL_FOV, 0.0F));
+    down_ = static_cast<double>(get(ONI_STREAM_PROPERTY_VERTICAL_FOV, 0.0F));
+    check(library_->start(stream_.get()), "does not start");
+  }
+
+  [[nodiscard]] CameraStatus fetch(DepthFrame& frame, double& device_time,
+                                   double timeout) override {
+    if (at_end_) return CameraStatus::ended;
+    OniStreamHandle stream = stream_.get();
+    int ready = 0;
+    const int milliseconds = static_cast<int>(std::lround(1e3 * std::clamp(timeout, 0.0, 60.0)));
+    const OniStatus status = library_->wait(&stream, 1, &ready, milliseconds);
+    if (status == ONI_STATUS_TIME_OUT) return CameraStatus::waiting;
+    check(status, "stopped delivering");
+    OniFrame* raw = nullptr;
+    check(library_->read_frame(stream, &raw), "stopped delivering");
+    const Frame image(raw, {library_});
+    if (once_ && image->frameIndex <= last_) at_end_ = true;  // it began again
+    if (at_end_) return CameraStatus::ended;
+    fill(frame, *image);
+    device_time = kMicrosecond * static_cast<double>(image->timestamp);
+    last_ = image->frameIndex;
+    at_end_ = once_ && last_ >= frames_;
+    return CameraStatus::frame;
+  }
+
+ private:
+  void check(OniStatus status, std::string_view what) const {
+    if (status == ONI_STATUS_OK) return;
+    throw Error(
+        fmt::format("{}: {} ({}). {}.", name_, what, library_->last_words(), remedy(device_name_)));
+  }
+
+  [[nodiscard]] OniDeviceHandle open_device() const {
+    OniDeviceHandle device = nullptr;
+    const char* any = nullptr;
+    check(library_->open(device_name_.empty() ? any : device_name_.c_str(), &device),
+          "cannot be opened");
+    return device;
+  }
+
+  template <class T>
+  [[nodiscard]] T get(int id, T otherwise) const {
+    return property(*library_, stream_.get(), id, otherwise);
+  }
+  [[nodiscard]] bool mirrored() const {
+    return get(ONI_STREAM_PROPERTY_MIRRORING, OniBool{FALSE}) != FALSE;
   }
 
   [[nodiscard]] Pinhole pinhole(int width, int height) const {
@@ -158,41 +201,38 @@ class OpenNi2Connection final : public Connection {
             .cy = height / 2.0};
   }
 
-  void fill(DepthFrame& frame) const {
-    const int width = frame_.getWidth();
-    const int height = frame_.getHeight();
-    const auto format = frame_.getVideoMode().getPixelFormat();
-    const bool fine = format == openni::PIXEL_FORMAT_DEPTH_100_UM;
-    const int stride = frame_.getStrideInBytes();
-    const bool whole = frame_.getData() != nullptr && width > 0 && height > 0 &&
-                       stride >= width * 2 &&
-                       frame_.getDataSize() >= stride * (height - 1) + 2 * width;
-    if (!whole || (!fine && format != openni::PIXEL_FORMAT_DEPTH_1_MM)) {
+  void fill(DepthFrame& frame, const OniFrame& image) const {
+    const auto format = image.videoMode.pixelFormat;
+    const bool fine = format == ONI_PIXEL_FORMAT_DEPTH_100_UM;
+    const bool whole = image.data != nullptr && image.width > 0 && image.height > 0 &&
+                       image.stride >= image.width * 2 &&
+                       image.dataSize >= image.stride * (image.height - 1) + 2 * image.width;
+    if (!whole || (!fine && format != ONI_PIXEL_FORMAT_DEPTH_1_MM)) {
       throw Error(
           fmt::format("{}: a damaged frame of {} x {} pixels and {} bytes. If it happens "
                       "again, plug the camera into another USB socket.",
-                      name_, width, height, frame_.getDataSize()));
+                      name_, image.width, image.height, image.dataSize));
     }
-    frame.camera = {width, height, pinhole(width, height), {}};
-    frame.depth.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    frame.camera = {image.width, image.height, pinhole(image.width, image.height), {}};
+    frame.depth.resize(static_cast<std::size_t>(image.width) *
+                       static_cast<std::size_t>(image.height));
     frame.colors.clear();
-    const double unit = fine ? 1e-4 : 1e-3;
-    const auto* bytes = static_cast<const std::byte*>(frame_.getData());
-    for (int v = 0; v < height; ++v) {
-      const auto* row = reinterpret_cast<const openni::DepthPixel*>(bytes + v * stride);
-      float* out = frame.depth.data() + v * width;
-      std::transform(row, row + width, out,
-                     [unit](openni::DepthPixel z) { return static_cast<float>(unit * z); });
-      if (mirrored_) std::reverse(out, out + width);
+    const auto* bytes = static_cast<const std::byte*>(image.data);
+    for (int v = 0; v < image.height; ++v) {
+      const auto* row = reinterpret_cast<const OniDepthPixel*>(bytes + v * image.stride);
+      float* out = frame.depth.data() + v * image.width;
+      std::transform(row, row + image.width, out, [unit = fine ? 1e-4 : 1e-3](OniDepthPixel z) {
+        return static_cast<float>(unit * z);
+      });
+      if (mirrored_) std::reverse(out, out + image.width);
     }
   }
 
-  std::shared_ptr<const Library> library_;
+  Library library_;
   std::string name_;
   std::string device_name_;
-  openni::Device device_;
-  openni::VideoStream stream_;
-  openni::VideoFrameRef frame_;
+  Device device_;
+  DepthStream stream_;  // goes before its device
   bool mirrored_ = false;
   double across_ = 0;  // field of view, rad; 0: not known
   double down_ = 0;
@@ -203,14 +243,16 @@ class OpenNi2Connection final : public Connection {
 };
 
 void list_devices(CameraDriver& driver) {
-  const Library library;
-  openni::Array<openni::DeviceInfo> devices;
-  openni::OpenNI::enumerateDevices(&devices);
-  for (int i = 0; i < devices.getSize(); ++i) {
+  const OpenNi2Library library;
+  OniDeviceInfo* devices = nullptr;
+  int count = 0;
+  if (library.get_device_list(&devices, &count) != ONI_STATUS_OK) return;
+  for (int i = 0; i < count; ++i) {
     driver.devices.push_back(
-        {.name = fmt::format("openni2:{}", devices[i].getUri()),
-         .description = fmt::format("{} {}", devices[i].getVendor(), devices[i].getName())});
+        {.name = fmt::format("openni2:{}", devices[i].uri),
+         .description = fmt::format("{} {}", devices[i].vendor, devices[i].name)});
   }
+  (void)library.release_device_list(devices);
 }
 
 }  // namespace
@@ -231,19 +273,18 @@ CameraDriver openni2_driver() {
 
 std::unique_ptr<DepthCamera> open_openni2(const std::string& device, const CameraOptions& options) {
   const std::string name = device.empty() ? "openni2" : "openni2:" + device;
-  if (is_recording(device) && !std::filesystem::exists(device)) {
+  const bool recording = is_recording(device);
+  if (recording && !std::filesystem::exists(device)) {
     throw Error(name + ": no such file. Check the path.");
   }
   const char* silence =
-      is_recording(device)
-          ? "Recordings without the properties of a camera (those of OpenNI2's dummy device) are "
-            "never played by OpenNI2; record it again from a camera."
-          : "Plug it out and in again, into USB 2 if it is on USB 3.";
+      recording ? "Recordings without the properties of a camera (those of OpenNI2's dummy device) "
+                  "are never played by OpenNI2; record it again from a camera."
+                : "Plug it out and in again, into USB 2 if it is on USB 3.";
   // Started here once: a stream opens a lost device again on its own thread.
-  const auto library = std::make_shared<Library>();
+  const Library library = std::make_shared<OpenNi2Library>();
   return std::make_unique<LiveCamera>(
-      CameraInfo{
-          .name = name, .rate = 30, .paces = !is_recording(device) || options.clock != nullptr},
+      CameraInfo{.name = name, .rate = 30, .paces = !recording || options.clock != nullptr},
       [=] { return std::make_unique<OpenNi2Connection>(library, name, device, options); }, silence,
       options.clock);
 }

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <OniCAPI.h>
+
+#include <string>
+
+namespace palpate::sensor {
+
+/// OpenNI2's C interface, found at run time: whoever opens none of its cameras does without the
+/// library and the threads that it starts.
+class OpenNi2Library {
+ public:
+  /// Loads and starts it. @throws Error that says what is missing.
+  OpenNi2Library();
+  ~OpenNi2Library();
+  OpenNi2Library(const OpenNi2Library&) = delete;
+  OpenNi2Library& operator=(const OpenNi2Library&) = delete;
+
+  /// What it says of its last error, on one line.
+  [[nodiscard]] std::string last_words() const;
+
+  decltype(&::oniGetDeviceList) get_device_list = nullptr;
+  decltype(&::oniReleaseDeviceList) release_device_list = nullptr;
+  decltype(&::oniDeviceOpen) open = nullptr;
+  decltype(&::oniDeviceClose) close = nullptr;
+  decltype(&::oniDeviceGetSensorInfo) get_sensor_info = nullptr;
+  decltype(&::oniDeviceSetProperty) set_device_property = nullptr;
+  decltype(&::oniDeviceIsPropertySupported) has_device_property = nullptr;
+  decltype(&::oniDeviceCreateStream) create_stream = nullptr;
+  decltype(&::oniStreamDestroy) destroy_stream = nullptr;
+  decltype(&::oniStreamStart) start = nullptr;
+  decltype(&::oniStreamStop) stop = nullptr;
+  decltype(&::oniStreamGetProperty) get_property = nullptr;
+  decltype(&::oniStreamSetProperty) set_property = nullptr;
+  decltype(&::oniWaitForAnyStream) wait = nullptr;
+  decltype(&::oniStreamReadFrame) read_frame = nullptr;
+  decltype(&::oniFrameRelease) release_frame = nullptr;
+
+ private:
+  [[nodiscard]] bool find_all(void* library);
+
+  decltype(&::oniInitialize) initialize_ = nullptr;
+  decltype(&::oniShutdown) shutdown_ = nullptr;
+  decltype(&::oniGetExtendedError) get_extended_error_ = nullptr;
+};
+
+}  // namespace palpate::sensor
