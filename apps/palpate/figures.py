@@ -65,8 +65,8 @@ def fig5(facts, picture):
         axes.set_xlabel("points")
         axes.grid(axis="x", visible=False)
     all_axes[0].set_ylabel("ms")
-    low, high = all_axes[0].get_ylim()
-    all_axes[0].set_ylim(low, high * 1.8)
+    every = [time for row in rows for key in ("paper_ms", "here_ms") for time in row[key]]
+    all_axes[0].set_ylim(0.5 * min(every), 2.5 * max(every))
     all_axes[2].legend(loc="upper left", frameon=False)
     head(figure, "Preparing clouds of four sizes",
          f"the paper on a Core i7-950 in 2012; here on {facts['cores']} cores; points of "
@@ -139,7 +139,7 @@ def fig7(facts, table, picture):
     head(figure, "A hand pressed into a surface that stands still",
          f"{facts['depth_m']:.2f} m from the camera, which looks at it at "
          f"{facts['angle_degrees']:.0f} degrees; metaball and point-set with {1e3 * facts['voxel_m']:.1f} "
-         f"mm voxels, R = 2.5 s, T = 0.5, hard swap; {facts['source']}")
+         f"mm voxels, {facts['radius']}, T = 0.5, hard swap; {facts['source']}")
     figure.savefig(picture, format="png")
 
 

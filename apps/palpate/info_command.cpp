@@ -5,6 +5,7 @@
 
 #include "apps/palpate/distinct_files.hpp"
 #include "apps/palpate/info_report.hpp"
+#include "apps/palpate/live_facts.hpp"
 #include "apps/palpate/load.hpp"
 #include "apps/palpate/output.hpp"
 #include "apps/palpate/waiting.hpp"
@@ -17,6 +18,7 @@ constexpr const char* kFooter = R"(Examples:
   palpate info bunny.ply
   palpate info depth.png --intrinsics 525,525,319.5,239.5
   palpate info - < scan.pcd
+  palpate info sequence:recording camera:openni2
 
 Exit codes: 0 done, 1 the input is at fault, 2 the command line is wrong.)";
 
@@ -38,7 +40,10 @@ InfoReport study(const CloudArgument& argument, const ReadingOptions& options) {
 }  // namespace
 
 void add_info_options(CLI::App& command, InfoOptions& options) {
-  command.add_option("clouds", options.clouds, cloud_help())->required()->type_name("CLOUD");
+  command
+      .add_option("clouds", options.clouds, cloud_help() + "; or a camera or sequence as for touch")
+      ->required()
+      ->type_name("CLOUD");
   add_reading_options(command, options.reading);
   command.add_option("--json", options.json, "the same as data; - is standard output")
       ->type_name("FILE")
@@ -51,9 +56,16 @@ void info(const InfoOptions& options) {
   nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
   const std::vector<CloudArgument> arguments = parse_clouds(options.clouds);
   check_distinct(inputs(arguments), {{"--json", options.json}});
+  std::FILE* out = options.json == "-" ? stderr : stdout;
   for (const CloudArgument& argument : arguments) {
+    if (lives(argument.path)) {
+      const LiveFacts facts = study_live(argument);
+      print_facts(facts, out);
+      clouds.push_back(json_facts(facts));
+      continue;
+    }
     const InfoReport report = study(argument, options.reading);
-    print_report(report, options.json == "-" ? stderr : stdout);
+    print_report(report, out);
     clouds.push_back(json_report(report));
   }
   if (options.json.empty()) return;

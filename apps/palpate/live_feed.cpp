@@ -41,7 +41,7 @@ struct LiveFeed::Lane {
     report.width = frame.camera.width;
     report.height = frame.camera.height;
     const double begin = thread_cpu_seconds();
-    felt.push(frame, start);
+    push_frame(touched, felt, frame, start);
     report.prepare_ms.push_back(1e3 * (thread_cpu_seconds() - begin));
   }
 

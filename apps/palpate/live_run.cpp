@@ -21,12 +21,11 @@ namespace {
 constexpr double kQueue = 4;  // s of steps that writing them down may fall behind
 constexpr std::chrono::milliseconds kLook{20};
 
+// A trajectory may have few rows or many; the clock has its own.
 double rate_of(const Run& run) {
-  return std::clamp(run.options.rate.value_or(run.hand.device->info().rate),
-                    ServoThread::kLeastRate, ServoThread::kMostRate);
+  return std::clamp(run.hand.device->info().rate, ServoThread::kLeastRate, ServoThread::kMostRate);
 }
 
-// A scripted hand has no say in its rate, the clock has.
 ServoOptions servo_options(const Run& run, StepQueue& steps) {
   ServoOptions options;
   options.field = run.field;

@@ -16,22 +16,29 @@ constexpr double kPatience = 5;
 // Answers of a camera that waits for nothing.
 constexpr int kTries = 100;
 
-}  // namespace
-
-std::unique_ptr<DepthCamera> open_live(const ChosenSource& source, const Clock* clock) {
+std::unique_ptr<DepthCamera> open(const ChosenSource& source, const Clock* clock) {
   constexpr std::string_view kCamera = "camera:";
   const std::string& path = source.argument.path;
   const std::string name = path.starts_with(kCamera) ? path.substr(kCamera.size()) : path;
-  std::unique_ptr<DepthCamera> camera =
-      open_camera(name, {.clock = clock, .loop = source.choices.loop});
+  return open_camera(name, {.clock = clock, .loop = source.choices.loop});
+}
+
+}  // namespace
+
+std::unique_ptr<DepthCamera> open_live(const ChosenSource& source, const Clock* clock) {
+  std::unique_ptr<DepthCamera> camera = open(source, clock);
   if (clock == nullptr && camera->info().paces) {
     throw Error(
         fmt::format("{} keeps its own time; leave --simulated-time out, or play a "
                     "recording of it (sequence:FOLDER)",
-                    path));
+                    source.argument.path));
   }
   if (source.pose.isApprox(Eigen::Isometry3d::Identity(), 0)) return camera;
   return std::make_unique<PosedCamera>(std::move(camera), source.pose);
+}
+
+std::unique_ptr<DepthCamera> open_live_at_any_pace(const ChosenSource& source) {
+  return open(source, nullptr);
 }
 
 DepthFrame first_frame(DepthCamera& camera) {

@@ -15,6 +15,9 @@ namespace palpate::app {
 [[nodiscard]] std::unique_ptr<DepthCamera> open_live(const ChosenSource& source,
                                                      const Clock* clock);
 
+/// The same at its own pace where it has one, else as fast as it is asked.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_live_at_any_pace(const ChosenSource& source);
+
 /// The next frame of use, waiting for some seconds at most.
 /// @throws Error that names the camera and what it complained of.
 [[nodiscard]] DepthFrame first_frame(DepthCamera& camera);

@@ -14,9 +14,10 @@ struct PaperOptions {
   std::string source;  ///< camera or sequence
   std::string csv;
   std::string picture;
-  int repeats = 5;              ///< of each measurement of fig5; the median counts
-  double duration = 4;          ///< of the press of fig7, s
-  std::optional<double> voxel;  ///< of the paper's clouds in fig7, m
+  int repeats = 5;               ///< of each measurement of fig5; the fastest counts
+  double duration = 4;           ///< of the press of fig7, s
+  std::optional<double> radius;  ///< R of the paper's clouds in fig7, m
+  std::optional<double> voxel;   ///< of the paper's clouds in fig7, m
 };
 
 /// The figures of `palpate paper`, each a command of its own.

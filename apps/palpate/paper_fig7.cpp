@@ -8,6 +8,7 @@
 #include <deque>
 #include <memory>
 
+#include "apps/palpate/frame_cloud.hpp"
 #include "apps/palpate/open_live.hpp"
 #include "apps/palpate/paper_frames.hpp"
 #include "apps/palpate/progress.hpp"
@@ -91,8 +92,8 @@ struct Feeler {
 // Nine ways to feel the same frames.
 class Feelers {
  public:
-  Feelers(const Place& place, double voxel) : place_(place) {
-    for (int n = 1; n <= kMostClouds; ++n) add_clouds(n, voxel);
+  Feelers(const Place& place, const Fig7Options& options) : place_(place) {
+    for (int n = 1; n <= kMostClouds; ++n) add_clouds(n, options);
     ours_.add("camera");
     for (const FieldKind kind : {FieldKind::metaball, FieldKind::pointset}) {
       for (int n = 1; n <= kMostClouds; ++n) add_paper(kind, n);
@@ -127,12 +128,13 @@ class Feelers {
   }
 
  private:
-  void add_clouds(int n, double voxel) {
+  void add_clouds(int n, const Fig7Options& wanted) {
     SourceOptions options;
     options.policy.policy = Policy::average;
     options.policy.history = n;
     options.prepare.paper = true;
-    options.prepare.voxel = voxel;
+    options.prepare.voxel = wanted.voxel;
+    options.prepare.radius = wanted.radius;
     options.prepare.clip.emplace();
     options.prepare.clip->extend(place_.point_in_camera - Vector3d::Constant(kAround));
     options.prepare.clip->extend(place_.point_in_camera + Vector3d::Constant(kAround));
@@ -203,10 +205,11 @@ Fig7 measure_fig7(DepthCamera& camera, const Fig7Options& options) {
   DepthFrame frame = first_frame(camera);
   const double start = frame.stamp;
   const Place place = place_of(frame);
-  Feelers feelers(place, options.voxel);
+  Feelers feelers(place, options);
   Fig7 result;
   result.depth = place.point_in_camera.z();
   result.voxel = options.voxel;
+  result.radius_given = options.radius.has_value();
   const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());
   result.angle = std::asin(std::min(1.0, std::abs(pose.linear().col(2).dot(place.normal))));
   const int steps = static_cast<int>(std::lround((kSettled + options.duration) / kPeriod));

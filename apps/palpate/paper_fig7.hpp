@@ -38,12 +38,14 @@ struct Fig7 {
   double depth = 0;           ///< of the test point, along the optical axis, m
   double angle = 0;           ///< between optical axis and surface, rad
   double voxel = 0;           ///< of the paper's clouds, m
+  bool radius_given = false;
   std::size_t frames = 0;
 };
 
 struct Fig7Options {
-  double duration = 4;  ///< of the press, s
-  double voxel = 4e-3;  ///< of the paper's clouds, m
+  double duration = 4;                ///< of the press, s
+  double voxel = 4e-3;                ///< of the paper's clouds, m
+  std::optional<double> radius = {};  ///< R of the paper's clouds, m; unset: 2.5 s
 };
 
 /// The paper's test of stability over time: a hand held 4 mm deep in the surface in the middle of

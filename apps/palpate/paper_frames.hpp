@@ -4,7 +4,6 @@
 #include <string>
 
 #include "palpate/depth/depth_frame.hpp"
-#include "palpate/geometry/point_cloud.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 
 namespace palpate::app {
@@ -16,10 +15,6 @@ inline constexpr const char* kPaperSource = "camera:simulated:still";
 /// Opens a camera or sequence, to be read as fast as it goes.
 /// @throws Error as opening does, UsageError when `source` is no camera.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_paper_source(const std::string& source);
-
-/// The points of a frame's pixels in the camera's frame, as a driver would hand them to the paper's
-/// program. The lens is taken to be without distortion.
-[[nodiscard]] PointCloud cloud_of(const DepthFrame& frame);
 
 /// Median depth of the pixels in the middle of the image, m. @throws Error when there is none.
 [[nodiscard]] double depth_in_the_middle(const DepthFrame& frame);

@@ -28,13 +28,17 @@ std::string key(const Press& press) {
   return press.clouds == 0 ? press.name : fmt::format("{}_{}", press.name, press.clouds);
 }
 
+const char* radius_text(const Fig7& figure) {
+  return figure.radius_given ? "R given" : "R = 2.5 s";
+}
+
 }  // namespace
 
 void print_figure(const Fig5& figure, const std::string& source, std::FILE* out) {
   const Style style(out);
   fmt::print(out,
              "{} preparation of clouds, ms: the paper (Core i7-950, 2012) and here ({} cores, "
-             "median of wall times)\n",
+             "the fastest of some runs)\n",
              style.heading("fig 5"), std::thread::hardware_concurrency());
   fmt::print(out, "{:>8} {:>8} {:>8}   {:^15}   {:^15}   {:^15}   {:^17}\n", "points", "here",
              "voxel", "index", "normals", "spacing", "sum");
@@ -54,7 +58,7 @@ void print_figure(const Fig5& figure, const std::string& source, std::FILE* out)
              source, grouped(figure.pixels));
   fmt::print(out,
              "the whole frame as a depth stream, filtered and ready to touch everywhere: {:.3g} ms "
-             "of one thread's computing\n",
+             "of computing\n",
              figure.everywhere);
 }
 
@@ -73,10 +77,10 @@ void print_figure(const Fig7& figure, const std::string& source, std::FILE* out)
                degrees(press.ny_sd), press.jump, 100 * press.touching);
   }
   fmt::print(out,
-             "metaball and point-set as in the paper: T = 0.5, R = 2.5 s, voxels of {}, N clouds, "
+             "metaball and point-set as in the paper: T = 0.5, {}, voxels of {}, N clouds, "
              "hard swap\nnormals are the field's at the proxy; n_x along the view, n_y across; "
              "force step: the largest from one servo step to the next\n",
-             length(figure.voxel));
+             radius_text(figure), length(figure.voxel));
 }
 
 std::string csv(const Fig5& figure) {
@@ -141,7 +145,8 @@ std::string facts(const Fig7& figure, const std::string& source) {
   }
   return Json{{"figure", "fig7"},        {"source", source},
               {"depth_m", figure.depth}, {"angle_degrees", degrees(figure.angle)},
-              {"voxel_m", figure.voxel}, {"presses", presses}}
+              {"voxel_m", figure.voxel}, {"radius", radius_text(figure)},
+              {"presses", presses}}
       .dump();
 }
 

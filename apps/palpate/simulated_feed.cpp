@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "apps/palpate/computing_time.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/thread_clock.hpp"
 
 namespace palpate::app {
 
@@ -53,7 +53,7 @@ void SimulatedFeed::advance(double now) {
 void SimulatedFeed::push(Lane& lane) {
   FeedReport& report = lane.report;
   const double touchable = lane.next.stamp + latency_;
-  const double begin = thread_cpu_seconds();
+  const double begin = computing_seconds();
   ++report.state.frames;
   try {
     lane.sink(lane.next, [touchable] { return touchable; });
@@ -65,7 +65,7 @@ void SimulatedFeed::push(Lane& lane) {
     report.state.problem = error.what();
     report.state.problem_at = touchable;
   }
-  report.prepare_ms.push_back(1e3 * (thread_cpu_seconds() - begin));
+  report.prepare_ms.push_back(1e3 * (computing_seconds() - begin));
   report.last_stamp = lane.next.stamp;
   report.state.last_frame = lane.next.stamp;
 }

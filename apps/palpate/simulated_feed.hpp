@@ -16,7 +16,7 @@ struct FeedReport {
   int height = 0;
   double first_stamp = 0;          ///< s, from t = 0
   double last_stamp = 0;           ///< s
-  std::vector<double> prepare_ms;  ///< computing time of each frame's preparation, one thread, ms
+  std::vector<double> prepare_ms;  ///< computing time of each frame's preparation, ms
 };
 
 /// Cameras and preparation on a simulated clock: each frame is prepared when simulated time comes

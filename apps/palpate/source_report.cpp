@@ -108,8 +108,13 @@ const char* phase_name(StreamPhase phase) {
   return "";
 }
 
+Policy policy_of(const TouchedSource& source) {
+  const Policy unset = source.as_cloud ? Policy::crossfade : Policy::morph;
+  return source.options.policy.policy.value_or(unset);
+}
+
 const char* policy_name(const TouchedSource& source) {
-  switch (source.options.policy.policy.value_or(Policy::morph)) {
+  switch (policy_of(source)) {
     case Policy::replace:
       return "replace";
     case Policy::average:
@@ -125,7 +130,7 @@ const char* policy_name(const TouchedSource& source) {
 }
 
 bool keeps_history(const TouchedSource& source) {
-  const Policy policy = source.options.policy.policy.value_or(Policy::morph);
+  const Policy policy = policy_of(source);
   return policy == Policy::average || policy == Policy::crossfade;
 }
 
@@ -146,11 +151,15 @@ std::string drops_text(const StreamDrops& drops) {
 }
 
 void print_depth(const SourceState& state, std::FILE* out) {
-  fmt::print(out, "  points     {} felt, the middle of the image {} away\n", grouped(state.points),
-             length(state.depth));
-  fmt::print(
-      out, "  noise      {} a pixel there{}\n", length(state.noise),
-      state.correlation > 1.01 ? fmt::format(", correlated {:.2f} times", state.correlation) : "");
+  fmt::print(out, "  points     {} felt", grouped(state.points));
+  if (state.depth > 0) {
+    fmt::print(out, ", the middle of the image {} away\n", length(state.depth));
+    fmt::print(out, "  noise      {} a pixel there{}", length(state.noise),
+               state.correlation > 1.01
+                   ? fmt::format(", {:.2f} times that in means of neighbours", state.correlation)
+                   : "");
+  }
+  fmt::print(out, "\n");
   if (state.disagreement) {
     fmt::print(out, "  disagrees  {} with the other sources where both see a surface\n",
                length(*state.disagreement));

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/palpate/live_run.hpp"
 #include "apps/palpate/log.hpp"
 #include "apps/palpate/output.hpp"
 #include "apps/palpate/picture.hpp"
@@ -51,19 +52,33 @@ struct Outputs {
   }
 };
 
-// Runs, and hands each step to what keeps or sums it.
-void play(Run& run, TouchStatistics& statistics, Outputs& outputs) {
+void play_simulated(Run& run, const TouchStatistics& statistics, const EachStep& keep) {
   Progress progress("touching");
   run_simulated(run, [&](const TouchStep& step) {
-    statistics.add(step);
-    if (outputs.log) outputs.log->add(step);
-    if (outputs.picture) outputs.picture->add(step);
+    keep(step);
     if (statistics.steps() % 256 == 0) {
       progress.update(static_cast<double>(statistics.steps()) /
                       static_cast<double>(run.hand.steps));
     }
   });
+}
+
+// Runs, in the time of `clock` if there is one, and hands each step to what keeps or sums it.
+std::optional<LiveReport> play(Run& run, WaitingClock* clock, TouchStatistics& statistics,
+                               Outputs& outputs) {
+  const EachStep keep = [&](const TouchStep& step) {
+    statistics.add(step);
+    if (outputs.log) outputs.log->add(step);
+    if (outputs.picture) outputs.picture->add(step);
+  };
+  std::optional<LiveReport> live;
+  if (clock == nullptr) {
+    play_simulated(run, statistics, keep);
+  } else {
+    live = run_live(run, *clock, keep);
+  }
   if (outputs.log) outputs.log->close();
+  return live;
 }
 
 // The picture comes last: everything else is there if it cannot be drawn.
@@ -89,7 +104,9 @@ void touch(const TouchOptions& options) {
   Trajectory way = read_way(options);
   Outputs outputs(options);
   const bool explored = way.empty() || options.texture_amplitude > 0;
-  Touched touched = prepare_touched(options, explored);
+  SteadyWaitingClock steady;
+  WaitingClock* clock = in_real_time(options) ? &steady : nullptr;
+  Touched touched = prepare_touched(options, explored, clock);
   check_texture(options, touched.scene);
   const FieldOptions field = field_options(options);
   Hand hand = make_hand(options, std::move(way), touched.scene, field);
@@ -97,9 +114,9 @@ void touch(const TouchOptions& options) {
   fill_felt(felt, touched, soft_material(options, hand.stiffness));
   Run run{options, touched, felt, hand, field, proxy_options(options, hand.stiffness)};
   TouchStatistics statistics(hand.steps);
-  play(run, statistics, outputs);
+  const std::optional<LiveReport> live = play(run, clock, statistics, outputs);
   tell({touched, felt, options, statistics, field, run.proxy, hand.device->info().name,
-        hand.plan ? &*hand.plan : nullptr},
+        hand.plan ? &*hand.plan : nullptr, live ? &*live : nullptr},
        outputs);
 }
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/palpate/live_report.hpp"
 #include "apps/palpate/picture_script.hpp"
 #include "apps/palpate/source_report.hpp"
 #include "apps/palpate/words.hpp"
@@ -108,8 +109,9 @@ void print_report(const TouchReport& report, std::FILE* out) {
   fmt::print(out, "{} {} field, {:.4g} N/m, {} device\n", style.heading("touched"),
              name_of(report.field.kind), report.proxy.stiffness, report.device);
   if (report.plan != nullptr) print_plan(*report.plan, out);
-  fmt::print(out, "  steps      {} in {:.4g} s of simulated time\n", grouped(s.steps()),
-             s.duration());
+  fmt::print(out, "  steps      {} in {:.4g} s of {} time\n", grouped(s.steps()), s.duration(),
+             report.live == nullptr ? "simulated" : "real");
+  if (report.live != nullptr) print_live(*report.live, out);
   fmt::print(out, "  computing  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} us a step\n",
              times.p50, times.p99, times.p999, times.maximum);
   fmt::print(out, "  contacts   {}, {:.3g} % of the time\n", grouped(s.contacts()),
@@ -131,26 +133,29 @@ Json json_report(const TouchReport& report) {
   const TouchStatistics& s = report.statistics;
   const StepTimes times = s.times();
   const HandEnergy energies = energy_at_hand(report);
-  return {{"palpate", std::string(version())},
-          {"clouds", sources},
-          {"preset", report.options.preset},
-          {"field", name_of(report.field.kind)},
-          {"stiffness_N_per_m", report.proxy.stiffness},
-          {"device", json_device(report)},
-          {"steps", s.steps()},
-          {"simulated_s", s.duration()},
-          {"computing_us",
-           {{"p50", times.p50}, {"p99", times.p99}, {"p99.9", times.p999}, {"max", times.maximum}}},
-          {"contacts", s.contacts()},
-          {"contact_share", share(s.touching(), s.steps())},
-          {"largest_force_N", s.largest_force()},
-          {"largest_force_step_N", s.largest_jump()},
-          {"energy_given_to_hand_J", energies.given},
-          {"energy_along_path_J", energies.path},
-          {"energy_given_in_world_J", s.given_energy()},
-          {"energy_along_path_in_world_J", s.path_energy()},
-          {"notes", json_notes(s)},
-          {"advice", advice(report)}};
+  Json json = {
+      {"palpate", std::string(version())},
+      {"clouds", sources},
+      {"preset", report.options.preset},
+      {"field", name_of(report.field.kind)},
+      {"stiffness_N_per_m", report.proxy.stiffness},
+      {"device", json_device(report)},
+      {"steps", s.steps()},
+      {report.live == nullptr ? "simulated_s" : "real_s", s.duration()},
+      {"computing_us",
+       {{"p50", times.p50}, {"p99", times.p99}, {"p99.9", times.p999}, {"max", times.maximum}}},
+      {"contacts", s.contacts()},
+      {"contact_share", share(s.touching(), s.steps())},
+      {"largest_force_N", s.largest_force()},
+      {"largest_force_step_N", s.largest_jump()},
+      {"energy_given_to_hand_J", energies.given},
+      {"energy_along_path_J", energies.path},
+      {"energy_given_in_world_J", s.given_energy()},
+      {"energy_along_path_in_world_J", s.path_energy()},
+      {"notes", json_notes(s)},
+      {"advice", advice(report)}};
+  if (report.live != nullptr) json["live"] = json_live(*report.live);
+  return json;
 }
 
 }  // namespace palpate::app

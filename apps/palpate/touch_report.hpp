@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/palpate/exploration_plan.hpp"
+#include "apps/palpate/live_run.hpp"
 #include "apps/palpate/touch_statistics.hpp"
 #include "apps/palpate/touched.hpp"
 #include "palpate/contact/proxy.hpp"
@@ -22,6 +23,7 @@ struct TouchReport {
   ProxyOptions proxy;
   std::string device;                     ///< its name
   const ExplorationPlan* plan = nullptr;  ///< of the built-in exploration, if it was that
+  const LiveReport* live = nullptr;       ///< of a run in real time
 };
 
 /// Work done on the hand, J: in its own metres, where the cloud is magnified (workspace.hpp).

@@ -10,7 +10,8 @@ namespace {
 constexpr std::array<ContactNote, 5> kContactNotes = {ContactNote::sweep_truncated,
                                                       ContactNote::lost, ContactNote::not_converged,
                                                       ContactNote::reanchored, ContactNote::fault};
-constexpr std::array<FieldNote, 2> kFieldNotes = {FieldNote::thinned, FieldNote::no_surface};
+constexpr std::array<FieldNote, 3> kFieldNotes = {FieldNote::thinned, FieldNote::no_surface,
+                                                  FieldNote::tool_too_large};
 
 constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
     {"sweep_truncated",
@@ -30,6 +31,9 @@ constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
      "more points than the patch holds lay near the tool, so some were left out; give a smaller "
      "--radius or a larger --voxel"},
     {"no_surface", "no source had a surface"},
+    {"tool_too_large",
+     "the tool is too large for the surface's R, so it counted for less; give a smaller "
+     "--tool-radius"},
 }};
 
 }  // namespace

@@ -31,7 +31,7 @@ struct StepTimes {
 /// Sums up a run, step by step.
 class TouchStatistics {
  public:
-  static constexpr std::size_t kNotes = 7;  ///< five of ContactNote, two of FieldNote
+  static constexpr std::size_t kNotes = 8;  ///< five of ContactNote, three of FieldNote
 
   /// Room for `steps`, so that adding does not disturb the run.
   explicit TouchStatistics(std::size_t steps = 0) { times_.reserve(steps); }

@@ -80,6 +80,11 @@ SourceOptions source_options(const TouchOptions& options, const ChosenSource& so
   return result;
 }
 
+bool taken_as_cloud(const TouchOptions& options, const ChosenSource& source) {
+  return source.choices.unorganised || options.preset == "paper" ||
+         source.choices.policy == "fusion";
+}
+
 FieldOptions field_options(const TouchOptions& options) {
   const FieldKind kind = field_kind(options);
   FieldOptions result;

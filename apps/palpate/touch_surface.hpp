@@ -17,6 +17,9 @@ inline constexpr double kStiffness = 500;
 /// @throws UsageError when a text of `source` makes no sense.
 [[nodiscard]] SourceOptions source_options(const TouchOptions& options, const ChosenSource& source);
 
+/// Are depths of this source taken as clouds, as the paper does, and not by the depth filter?
+[[nodiscard]] bool taken_as_cloud(const TouchOptions& options, const ChosenSource& source);
+
 /// The smallest R that a tool of the size asked for can be felt with, m.
 [[nodiscard]] double smallest_radius(const TouchOptions& options);
 

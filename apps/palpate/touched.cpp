@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "apps/palpate/depth_file.hpp"
+#include "apps/palpate/frame_cloud.hpp"
 #include "apps/palpate/load.hpp"
 #include "apps/palpate/open_live.hpp"
 #include "apps/palpate/touch_surface.hpp"
@@ -76,7 +77,7 @@ constexpr auto kAtOnce = [] { return 0.0; };
 
 // One frame, in which nothing is known of where the hand will be.
 void push_alone(Source& source, const DepthFrame& frame, TouchedSource& result) {
-  source.push(frame, kAtOnce);
+  push_frame(result, source, frame, kAtOnce);
   const std::shared_ptr<const SurfacePoints> points = source.points();
   if (!points || points->size() == 0) {
     throw Error(
@@ -107,6 +108,7 @@ void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& cho
   if (wants_material(options)) refuse_material(chosen.argument);
   result.camera = open_live(chosen, clock);
   result.first = first_frame(*result.camera);
+  result.as_cloud = taken_as_cloud(options, chosen);
   Source& source = scene.add(chosen.argument.name, result.options);
   if (explored) push_alone(source, result.first, result);
 }
@@ -121,7 +123,7 @@ Touched prepare_touched(const TouchOptions& options, bool explored, const Clock*
     source.options = source_options(options, chosen);
     if (lives(chosen.argument.path)) {
       add_live(touched.scene, options, chosen, explored, clock, source);
-    } else if (!chosen.choices.unorganised && is_depth_image(chosen.argument.path)) {
+    } else if (!taken_as_cloud(options, chosen) && is_depth_image(chosen.argument.path)) {
       add_depth_image(touched.scene, options, chosen, source);
     } else {
       add_cloud(touched.scene, options, chosen, source);
@@ -143,16 +145,27 @@ void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft) {
   }
 }
 
+void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
+                const StartTime& start) {
+  if (!touched.as_cloud) {
+    felt.push(frame, start);
+    return;
+  }
+  if (frame.T_world_sensor) felt.set_pose(*frame.T_world_sensor);
+  felt.push(cloud_of(frame), frame.stamp, start);
+}
+
 SimulatedFeed make_feed(Touched& touched, Scene& felt, double latency) {
   std::vector<SimulatedFeed::Feeding> cameras;
   for (std::size_t i = 0; i < touched.sources.size(); ++i) {
     TouchedSource& each = touched.sources[i];
     if (!each.camera) continue;
     Source& source = felt.source(i);
-    cameras.push_back(
-        {each.camera.get(), std::move(each.first), source.name(),
-         [&source](const DepthFrame& frame, const StartTime& start) { source.push(frame, start); },
-         [&source] { source.keep(); }});
+    cameras.push_back({each.camera.get(), std::move(each.first), source.name(),
+                       [&each, &source](const DepthFrame& frame, const StartTime& start) {
+                         push_frame(each, source, frame, start);
+                       },
+                       [&source] { source.keep(); }});
   }
   return SimulatedFeed(std::move(cameras), latency);
 }

@@ -31,6 +31,7 @@ struct TouchedSource {
   // Of what lives:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
   DepthFrame first;                     ///< the camera's first frame
+  bool as_cloud = false;                ///< its frames are taken as clouds
   FeedReport feed;                      ///< after the run
 };
 
@@ -52,6 +53,11 @@ struct Touched {
 /// soft material (how hard the hardest points are may be known after preparation only); cameras
 /// without a surface yet.
 void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft);
+
+/// Makes a camera's frame part of what is felt: by the depth filter or, where that is wanted, as a
+/// cloud. @throws Error as Source::push() does.
+void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
+                const StartTime& start);
 
 /// Cameras and their sources in `felt`, which outlives the feed, on a simulated clock.
 [[nodiscard]] SimulatedFeed make_feed(Touched& touched, Scene& felt, double latency);

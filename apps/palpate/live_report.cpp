@@ -1,0 +1,94 @@
+#include "apps/palpate/live_report.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "apps/palpate/words.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// "slowed 12 steps, shortened 3"; empty: it let everything pass.
+std::string guard_words(const GuardCounts& counts) {
+  std::string words;
+  const auto add = [&words](std::uint64_t count, std::string_view text) {
+    if (count == 0) return;
+    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", grouped(count), text);
+  };
+  add(counts.slewed, "steps slowed that the hand did not cause");
+  add(counts.clamped, "steps shortened to the device's maximum");
+  add(counts.silences, "silences ended by zero force");
+  add(counts.faults, "faults");
+  return words;
+}
+
+void print_guard(const GuardState& guard, const Style& style, std::FILE* out) {
+  const std::string words = guard_words(guard.counts);
+  fmt::print(out, "  guard      {}\n", words.empty() ? "let every force pass" : words);
+  if (guard.fault == GuardFault::none) return;
+  fmt::print(out, "  {} {}\n", style.warning("fault     "), in_words(guard.fault));
+}
+
+void print_requests(const RealtimeReport& report, const Style& style, std::FILE* out) {
+  for (const RealtimeRequest& request : report.requests) {
+    if (request.granted) {
+      fmt::print(out, "  real time  {}: granted\n", request.what);
+    } else {
+      fmt::print(out, "  {} {}: not granted: {}\n", style.warning("real time "), request.what,
+                 request.remedy);
+    }
+  }
+}
+
+Json json_requests(const RealtimeReport& report) {
+  Json requests = Json::array();
+  for (const RealtimeRequest& request : report.requests) {
+    requests.push_back(
+        {{"what", request.what}, {"granted", request.granted}, {"remedy", request.remedy}});
+  }
+  return requests;
+}
+
+}  // namespace
+
+void print_live(const LiveReport& report, std::FILE* out) {
+  const Style style(out);
+  const Durations& late = report.lateness;
+  fmt::print(out,
+             "  pace       {:.4g} Hz; late by {} (p50), {} (p99), {} (max); {} steps left out\n",
+             report.rate, duration(late.quantile(0.5)), duration(late.quantile(0.99)),
+             duration(late.longest), report.skipped == 0 ? "no" : grouped(report.skipped));
+  if (report.unwritten > 0) {
+    fmt::print(out, "  {} {} steps came too fast to be written down; they are in no log\n",
+               style.warning("unwritten "), grouped(report.unwritten));
+  }
+  print_guard(report.guard, style, out);
+  print_requests(report.realtime, style, out);
+  if (report.interrupted) fmt::print(out, "  ended      by Ctrl-C\n");
+}
+
+Json json_live(const LiveReport& report) {
+  const Durations& late = report.lateness;
+  const GuardCounts& counts = report.guard.counts;
+  return {{"rate_Hz", report.rate},
+          {"late_s",
+           {{"p50", late.quantile(0.5)}, {"p99", late.quantile(0.99)}, {"max", late.longest}}},
+          {"steps_left_out", report.skipped},
+          {"steps_unwritten", report.unwritten},
+          {"guard",
+           {{"slewed", counts.slewed},
+            {"clamped", counts.clamped},
+            {"silences", counts.silences},
+            {"faults", counts.faults},
+            {"fault", std::string(in_words(report.guard.fault))}}},
+          {"realtime", json_requests(report.realtime)},
+          {"interrupted", report.interrupted}};
+}
+
+}  // namespace palpate::app
