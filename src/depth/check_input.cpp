@@ -36,11 +36,12 @@ void check(const DepthFilterOptions& options) {
   if (options.memory < 1) {
     throw Error(fmt::format("depth filter: memory is {} frames; take 1 or more", options.memory));
   }
-  const bool range =
-      options.nearest > 0 && options.farthest > options.nearest && std::isfinite(options.farthest);
+  constexpr double kClosest = 1e-3;  // m; inverse depths are counted in 31 bits of 2^-20 / m
+  const bool range = options.nearest >= kClosest && options.farthest > options.nearest &&
+                     std::isfinite(options.farthest);
   if (!range) {
     throw Error(
-        fmt::format("depth filter: depths from {} to {} m are none; take 0 < nearest < "
+        fmt::format("depth filter: depths from {} to {} m are none; take 0.001 <= nearest < "
                     "farthest",
                     options.nearest, options.farthest));
   }

@@ -38,6 +38,7 @@ TEST(DepthFilter, RefusesOptionsThatMeanNothing) {
   refused([](DepthFilterOptions& o) { o.normal_error = std::nan(""); });
   refused([](DepthFilterOptions& o) { o.memory = 0; });
   refused([](DepthFilterOptions& o) { o.nearest = 0; });
+  refused([](DepthFilterOptions& o) { o.nearest = 1e-4; });
   refused([](DepthFilterOptions& o) { o.farthest = o.nearest; });
   refused([](DepthFilterOptions& o) { o.farthest = HUGE_VAL; });
   refused([](DepthFilterOptions& o) { o.noise = NoiseModel{{-1, 0, 0}, 1}; });

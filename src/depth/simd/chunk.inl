@@ -19,14 +19,14 @@ enum Kind : int { kNone, kAffine, kQuadratic };
 
 struct Chunk {
   int count;
-  const std::int32_t* columns;        // of the image
-  double rho[kChunk];                 // measured, in kRhoUnits
-  double variance[kChunk];            // of it
-  float slope_x[kChunk];              // first guesses, as in BlockFits
+  const std::int32_t* columns;  // of the image
+  double rho[kChunk];           // measured, in kRhoUnits
+  double variance[kChunk];      // of it
+  float slope_x[kChunk];        // first guesses, as in BlockFits
   float slope_y[kChunk];
-  float reach_u[kChunk];              // blocks from the middle to the border of the largest window
+  float reach_u[kChunk];  // blocks from the middle to the border of the largest window
   float reach_v[kChunk];
-  float lever_u[kChunk];              // a quarter of r_max, in blocks
+  float lever_u[kChunk];  // a quarter of r_max, in blocks
   float lever_v[kChunk];
   int half_u[kSizes][kChunk];
   int half_v[kSizes][kChunk];
@@ -38,6 +38,20 @@ struct Chunk {
   int best_v[kChunk];
   bool edge[kChunk];
 };
+
+// The window's sizes from a quarter of its largest reach on.
+inline void round_sizes(Chunk& c) {
+  const auto half = [](float reach) {
+    const int rounded = static_cast<int>(reach + .5F);
+    return rounded < 1 ? 1 : rounded > kLargestWindow ? kLargestWindow : rounded;
+  };
+  for (int k = 0; k < kSizes; ++k) {
+    for (int i = 0; i < c.count; ++i) {
+      c.half_u[k][i] = half(kRatios[k] * c.reach_u[i]);
+      c.half_v[k][i] = half(kRatios[k] * c.reach_v[i]);
+    }
+  }
+}
 
 // Largest windows: what noise and wanted error ask for, in blocks foreshortened as the slopes
 // tell.
@@ -64,12 +78,11 @@ inline void size_windows(const FitInput& in, int row, Chunk& c) {
     const float pitch_u = step_x * std::sqrt(ax * ax + a * a * (y * y + 1));  // per z
     const float pitch_v = step_y * std::sqrt(by * by + b * b * (x * x + 1));
     const float across = ax - b * y;
-    const float cosine =
-        1 / std::sqrt((a * a + b * b + across * across) * (x * x + y * y + 1));
+    const float cosine = 1 / std::sqrt((a * a + b * b + across * across) * (x * x + y * y + 1));
     const float root = std::sqrt(cosine);
-    const float delta = pixel / root;                              // per z
-    const float sigma = (n2 + rho * (n1 + rho * n0)) * z;          // of z, per z
-    float reach = std::sqrt(per_error * sigma * pixel * root);     // per z
+    const float delta = pixel / root;                           // per z
+    const float sigma = (n2 + rho * (n1 + rho * n0)) * z;       // of z, per z
+    float reach = std::sqrt(per_error * sigma * pixel * root);  // per z
     reach = reach < 6 * delta ? 6 * delta : reach;
     reach = reach > 15 * delta ? 15 * delta : reach;
     reach *= growth;
@@ -78,16 +91,7 @@ inline void size_windows(const FitInput& in, int row, Chunk& c) {
     c.lever_u[i] = .25F * reach / pitch_u;
     c.lever_v[i] = .25F * reach / pitch_v;
   }
-  for (int k = 0; k < kSizes; ++k) {
-    const auto half = [&](float reach) {
-      const int rounded = static_cast<int>(kRatios[k] * reach + .5F);
-      return rounded < 1 ? 1 : rounded > kLargestWindow ? kLargestWindow : rounded;
-    };
-    for (int i = 0; i < c.count; ++i) {
-      c.half_u[k][i] = half(c.reach_u[i]);
-      c.half_v[k][i] = half(c.reach_v[i]);
-    }
-  }
+  round_sizes(c);
 }
 
 inline void start(const FitInput& in, int row, const FitRow& plain, Chunk& c) {

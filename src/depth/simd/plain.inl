@@ -77,7 +77,8 @@ struct Pixels {
            __builtin_shufflevector(c, d, 1, 3, 5, 7, 9, 11, 13, 15)}};
 }
 
-[[gnu::always_inline]] inline void average_eight(Pixels p, const BlockGate& gate, Floats& rho, Ints& count) {
+[[gnu::always_inline]] inline void average_eight(Pixels p, const BlockGate& gate, Floats& rho,
+                                                 Ints& count) {
   Ints valid{};
   for (Floats& z : p.z) {
     const Ints is = (z >= gate.nearest) & (z <= gate.farthest);  // neither for NaN
@@ -162,7 +163,8 @@ struct Sums {
   Floats n, u, v, uu, uv, vv, r, ur, vr;
 };
 
-[[gnu::always_inline]] inline Sums gather(const float* at, std::ptrdiff_t stride, const Floats& own, const Floats& close) {
+[[gnu::always_inline]] inline Sums gather(const float* at, std::ptrdiff_t stride, const Floats& own,
+                                          const Floats& close) {
   Floats is[3][3];
   Floats d[3][3];
   for (int v = 0; v < 3; ++v) {
@@ -174,9 +176,9 @@ struct Sums {
       d[v][u] = keep(mask, off);
     }
   }
-  const auto column = [](const Floats (&m)[3][3], int u) { return m[0][u] + m[1][u] + m[2][u]; };
-  const auto row = [](const Floats (&m)[3][3], int v) { return m[v][0] + m[v][1] + m[v][2]; };
-  const auto corners = [](const Floats (&m)[3][3]) { return m[0][0] + m[2][2] - m[0][2] - m[2][0]; };
+  const auto column = [](const Floats(&m)[3][3], int u) { return m[0][u] + m[1][u] + m[2][u]; };
+  const auto row = [](const Floats(&m)[3][3], int v) { return m[v][0] + m[v][1] + m[v][2]; };
+  const auto corners = [](const Floats(&m)[3][3]) { return m[0][0] + m[2][2] - m[0][2] - m[2][0]; };
   const Floats left = column(is, 0);
   const Floats right = column(is, 2);
   const Floats above = row(is, 0);

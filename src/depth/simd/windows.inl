@@ -96,13 +96,13 @@ struct Shape {
   const Extent& u = kExtents.of[half_u];
   const Extent& v = kExtents.of[half_v];
   const int area = (2 * half_u + 1) * (2 * half_v + 1);
-  return {same(u.per_n * v.per_n), same(u.per_mu), same(v.per_mu), same(u.per_ku), same(v.per_ku),
-          same(u.mu),              same(v.mu),     same(area)};
+  return {same(u.per_n * v.per_n), same(u.per_mu), same(v.per_mu), same(u.per_ku),
+          same(v.per_ku),          same(u.mu),     same(v.mu),     same(area)};
 }
 
 // Sums over four windows.
 struct Moments {
-  Doubles low[kLanes];  // one window each: r, ru, rv, ruu
+  Doubles low[kLanes];   // one window each: r, ru, rv, ruu
   Doubles high[kLanes];  // ruv, rvv, rr, counts
   Doubles u, v;          // of the windows' middles, from the table's
 
@@ -134,7 +134,8 @@ struct Fits {
 };
 
 // Is chi^2 = left / variance one that `degrees` of freedom may have: within three deviations?
-[[gnu::always_inline]] inline Mask explained(const Doubles& left, const Doubles& variance, const Doubles& degrees) {
+[[gnu::always_inline]] inline Mask explained(const Doubles& left, const Doubles& variance,
+                                             const Doubles& degrees) {
   const Doubles excess = left - degrees * variance;
   return (excess <= 0.0) | (excess * excess <= 18.0 * degrees * variance * variance);
 }
@@ -179,7 +180,8 @@ struct Surface {
   Doubles var_rho, var_u, var_v;
 };
 
-[[gnu::always_inline]] inline Surface affine_at(const Fits& f, const Doubles& du, const Doubles& dv) {
+[[gnu::always_inline]] inline Surface affine_at(const Fits& f, const Doubles& du,
+                                                const Doubles& dv) {
   const Doubles var = f.variance * f.shape.per_n;
   return {f.m + f.cu * du + f.cv * dv,
           f.cu,
@@ -204,7 +206,8 @@ struct Surface {
 }
 
 // The affine surface where `affine` is set, the quadratic one elsewhere.
-[[gnu::always_inline]] inline Surface surface_at(const Fits& f, const Mask& affine, const Doubles& du, const Doubles& dv) {
+[[gnu::always_inline]] inline Surface surface_at(const Fits& f, const Mask& affine,
+                                                 const Doubles& du, const Doubles& dv) {
   const Surface a = affine_at(f, du, dv);
   const Surface b = bend_at(f, du, dv);
   const Doubles none{};
@@ -215,8 +218,9 @@ struct Surface {
 
 // Expected squared error, slopes at a lever of L blocks: variance, and for an affine fit the square
 // of what the quadratic one would change beyond its own variance.
-[[gnu::always_inline]] inline Doubles score(const Fits& f, const Mask& affine, const Doubles& du, const Doubles& dv,
-                     const Doubles& lever_u2, const Doubles& lever_v2) {
+[[gnu::always_inline]] inline Doubles score(const Fits& f, const Mask& affine, const Doubles& du,
+                                            const Doubles& dv, const Doubles& lever_u2,
+                                            const Doubles& lever_v2) {
   const Surface a = affine_at(f, du, dv);
   const Surface b = bend_at(f, du, dv);
   const auto term = [&](const Doubles& variance, const Doubles& change, const Doubles& more) {
