@@ -33,7 +33,7 @@ double largest_weight(const ImplicitSurface& surface, const ActiveLayer& layer, 
     for (std::uint32_t i = cell.begin; i < cell.end && total < enough; ++i, --visits) {
       const double distance = position_now(layer, i, ball.center).norm();
       if (weightless(*layer.points, i)) continue;
-      const double own = radius > 0 ? radius : layer.points->radii[i];
+      const double own = radius > 0 ? radius : radius_now(layer, i);
       const double r = std::max(0.0, distance - ball.radius) / own;
       total += weight_now(layer, i, surface.options.raw_weights) *
                evaluate(surface.options.kernel, r * r).w;

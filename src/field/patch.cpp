@@ -32,6 +32,13 @@ double presence_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
   return lerp(start, points.end_presences[i], layer.progress);
 }
 
+double confidence_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  const double start = points.confidences[i];
+  return points.end_confidences.empty() ? start
+                                        : lerp(start, points.end_confidences[i], layer.progress);
+}
+
 Eigen::Vector3d velocity_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
   const SurfacePoints& points = *layer.points;
   if (points.end_positions.empty()) return Eigen::Vector3d::Zero();
@@ -56,6 +63,12 @@ double weight_now(const ActiveLayer& layer, std::uint32_t i, bool raw_weights) n
   const double start = points.density_weights[i];
   if (points.end_density_weights.empty()) return layer.weight * start;
   return layer.weight * lerp(start, points.end_density_weights[i], layer.progress);
+}
+
+double radius_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  const double start = points.radii[i];
+  return points.end_radii.empty() ? start : lerp(start, points.end_radii[i], layer.progress);
 }
 
 bool weightless(const SurfacePoints& points, std::uint32_t i) noexcept {
@@ -154,7 +167,7 @@ bool Patch::take_near(const ActiveLayer& layer, std::uint32_t begin, std::uint32
     const auto k = static_cast<std::uint32_t>(i);
     const Eigen::Vector3d position =
         way ? position_now(layer, k, center_) : Eigen::Vector3d(start[k].cast<double>() - shift);
-    const double reach = (options_.radius > 0 ? options_.radius : points.radii[k]) + extra_;
+    const double reach = (options_.radius > 0 ? options_.radius : radius_now(layer, k)) + extra_;
     if (position.squaredNorm() > reach * reach || weightless(points, k)) continue;
     if (used_ == capacity_) return false;
     for (int axis = 0; axis < 3; ++axis) column(kPosition + axis)[used_] = position[axis];
@@ -167,7 +180,7 @@ bool Patch::take_near(const ActiveLayer& layer, std::uint32_t begin, std::uint32
 void Patch::fill(const ActiveLayer& layer, std::uint32_t first) noexcept {
   const SurfacePoints& points = *layer.points;
   for (std::uint32_t k = first; k < used_; ++k) {
-    const double radius = options_.radius > 0 ? options_.radius : points.radii[index_[k]];
+    const double radius = options_.radius > 0 ? options_.radius : radius_now(layer, index_[k]);
     column(kRadius)[k] = radius;
     column(kInverseR2)[k] = inverse_square(radius);
     column(kWeight)[k] = weight_now(layer, index_[k], options_.raw_weights) * stride_;
@@ -195,7 +208,7 @@ void Patch::fill_normals(const ActiveLayer& layer, std::uint32_t first) noexcept
   for (std::uint32_t k = first; k < used_; ++k) {
     const Eigen::Vector3d normal = normal_now(layer, index_[k]);
     for (int axis = 0; axis < 3; ++axis) column(kNormal + axis)[k] = normal[axis];
-    column(kConfidence)[k] = points.normals.empty() ? 0.0 : points.confidences[index_[k]];
+    column(kConfidence)[k] = points.normals.empty() ? 0.0 : confidence_now(layer, index_[k]);
   }
 }
 

@@ -129,6 +129,9 @@ class Patch {
 [[nodiscard]] Eigen::Vector3d position_now(const ActiveLayer& layer, std::uint32_t i,
                                            const Eigen::Vector3d& center) noexcept;
 
+/// The support radius of a layer's point now, m.
+[[nodiscard]] double radius_now(const ActiveLayer& layer, std::uint32_t i) noexcept;
+
 /// Does a point count for nothing at any time (speckle)?
 [[nodiscard]] bool weightless(const SurfacePoints& points, std::uint32_t i) noexcept;
 

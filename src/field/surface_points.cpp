@@ -15,7 +15,10 @@ namespace {
 // R_i plus the way to go.
 std::vector<float> reaches(const SurfacePoints& points) {
   std::vector<float> reach = points.radii;
-  for (std::size_t i = 0; i < reach.size(); ++i) {
+  for (std::size_t i = 0; i < points.end_radii.size(); ++i) {
+    reach[i] = std::max(reach[i], points.end_radii[i]);
+  }
+  for (std::size_t i = 0; i < points.end_positions.size(); ++i) {
     reach[i] += (points.end_positions[i] - points.grid.points()[i]).norm();
   }
   return reach;
@@ -58,6 +61,9 @@ void check_lengths(const SurfacePoints& points) {
   require_length("end_normals", points.end_normals.size(), optional(points.end_normals.size()));
   require_length("end_density_weights", points.end_density_weights.size(),
                  optional(points.end_density_weights.size()));
+  require_length("end_radii", points.end_radii.size(), optional(points.end_radii.size()));
+  require_length("end_confidences", points.end_confidences.size(),
+                 optional(points.end_confidences.size()));
   require_length("cell_reach", points.cell_reach.size(), points.grid.cells().size());
 }
 
@@ -69,7 +75,9 @@ void check(const SurfacePoints& points) {
   require_range("radii", points.radii, std::numeric_limits<float>::min(), kLarge);
   require_range("density_weights", points.density_weights, 0, kLarge);
   require_range("end_density_weights", points.end_density_weights, 0, kLarge);
+  require_range("end_radii", points.end_radii, std::numeric_limits<float>::min(), kLarge);
   require_range("confidences", points.confidences, 0, 1);
+  require_range("end_confidences", points.end_confidences, 0, 1);
   require_range("materials", points.materials, 0, 1);
   require_range("presences", points.presences, 0, 1);
   require_range("end_presences", points.end_presences, 0, 1);
@@ -80,12 +88,13 @@ void check(const SurfacePoints& points) {
 }
 
 void finish(SurfacePoints& points) {
-  points.cell_reach = points.end_positions.empty()
-                          ? detail::largest_in_cells(points.grid, points.radii)
-                          : detail::largest_in_cells(points.grid, reaches(points));
+  points.cell_reach = detail::largest_in_cells(points.grid, reaches(points));
   if (points.radii.empty()) return;
   points.radius = median(points.radii);
   points.smallest_radius = *std::min_element(points.radii.begin(), points.radii.end());
+  for (const float radius : points.end_radii) {
+    points.smallest_radius = std::min<double>(points.smallest_radius, radius);
+  }
 }
 
 }  // namespace palpate

@@ -12,9 +12,8 @@ namespace palpate {
 /// Indexed points with all that a field needs of them, immutable once made. Every column is in the
 /// grid's sorted order and either as long as the grid or, where it says so, empty.
 ///
-/// A point may move in a straight line while a snapshot lasts: `grid`, `normals`,
-/// `density_weights` and `presences` hold its start (A), the `end_` columns its end (B), empty when
-/// A = B.
+/// A point may move in a straight line while a snapshot lasts: `grid` and the columns hold its
+/// start (A), the `end_` columns its end (B), empty when A = B.
 struct SurfacePoints {
   Eigen::Vector3d origin =
       Eigen::Vector3d::Zero();  ///< world frame; grid points are relative to it, m
@@ -28,6 +27,8 @@ struct SurfacePoints {
   std::vector<Eigen::Vector3f> end_positions;
   std::vector<Eigen::Vector3f> end_normals;
   std::vector<float> end_density_weights;
+  std::vector<float> end_radii;
+  std::vector<float> end_confidences;
   std::vector<float> end_presences;
 
   /// May convex edges between these points be felt sharp (FieldOptions::sharp_edges)? Only where

@@ -14,10 +14,8 @@ constexpr std::size_t kAhead = 32;  // blocks
 // What has faded so far is gone.
 constexpr float kGone = 1e-4f;
 
-// A point's radius follows what the image says only when the two are this far apart: a radius that
-// followed noise would move the surface at every swap.
-constexpr float kSteadyRadius = 0.15f;
-constexpr float kConfidenceShare = 0.25f;  // of the new confidence in the mean
+// Of what a frame says of a point's radius and confidence, this share is taken over.
+constexpr float kShare = 0.25f;
 
 // Single precision resolves a micrometre as far from the points' origin as this, m.
 constexpr double kFarFromOrigin = 16;
@@ -39,7 +37,6 @@ Eigen::Vector3f mix_normals(const Eigen::Vector3f& a, const Eigen::Vector3f& b, 
 
 struct Morph::Point {
   PointState state;
-  PointNature nature;
   float area = 0;  // a_i R_i^2
 };
 
@@ -121,8 +118,8 @@ void Morph::follow_camera(const MorphInput& input) {
   const Eigen::Matrix3f back = turn_.transpose();
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& entry = entries_[i];
-    const Point point = old_point(static_cast<std::uint32_t>(i));
-    const Eigen::Vector3f local = back * (point.state.position - shift_);
+    const PointState point = old_point(static_cast<std::uint32_t>(i));
+    const Eigen::Vector3f local = back * (point.position - shift_);
     const Eigen::Array2f block = local.head<2>().array() * (1 / local.z()) * focal + center + 0.5f;
     const bool inside = local.z() > 0 && (block >= 0).all() && (block < size).all();
     if (inside) {
@@ -135,32 +132,32 @@ void Morph::follow_camera(const MorphInput& input) {
   }
 }
 
-Morph::Point Morph::old_point(std::uint32_t i) const {
+PointState Morph::old_point(std::uint32_t i) const {
   const SurfacePoints& p = *last_;
   const auto u = static_cast<float>(progress_);
-  Point point;
   const bool fades = !p.presences.empty();
-  point.nature = {p.radii[i], p.confidences[i]};
   if (progress_ >= 1) {
-    point.state = {p.end_positions[i], p.end_normals[i], p.end_density_weights[i],
-                   fades ? p.end_presences[i] : 1.0f};
-  } else {
-    const auto between = [u](float a, float b) { return a + u * (b - a); };
-    point.state = {mix(p.grid.points()[i], p.end_positions[i], u),
-                   mix_normals(p.normals[i], p.end_normals[i], u),
-                   between(p.density_weights[i], p.end_density_weights[i]),
-                   fades ? between(p.presences[i], p.end_presences[i]) : 1.0f};
+    return {p.end_positions[i], p.end_normals[i],     p.end_density_weights[i],
+            p.end_radii[i],     p.end_confidences[i], fades ? p.end_presences[i] : 1.0f};
   }
-  return point;
+  const auto between = [u](float a, float b) { return a + u * (b - a); };
+  return {mix(p.grid.points()[i], p.end_positions[i], u),
+          mix_normals(p.normals[i], p.end_normals[i], u),
+          between(p.density_weights[i], p.end_density_weights[i]),
+          between(p.radii[i], p.end_radii[i]),
+          between(p.confidences[i], p.end_confidences[i]),
+          fades ? between(p.presences[i], p.end_presences[i]) : 1.0f};
 }
 
 Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) const {
   Point point;
-  point.state.position = turn_ * depth.positions[block] + shift_;
-  point.state.normal = turn_ * depth.normals[block];
-  point.nature = {surface_.radius(block), depth.confidences[block]};
+  PointState& state = point.state;
+  state.position = turn_ * depth.positions[block] + shift_;
+  state.normal = turn_ * depth.normals[block];
+  state.radius = surface_.radius(block);
+  state.confidence = depth.confidences[block];
   point.area = surface_.area(block);
-  point.state.weight = std::min(1.0f, point.area / (point.nature.radius * point.nature.radius));
+  state.weight = std::min(1.0f, point.area / (state.radius * state.radius));
   return point;
 }
 
@@ -210,7 +207,7 @@ std::uint32_t Morph::partner_of(std::span<const std::uint32_t> old,
   float nearest = std::numeric_limits<float>::infinity();
   for (const std::uint32_t i : old) {
     if (entries_[i].kind != EntryKind::live) continue;
-    const float squared = (old_point(i).state.position - place).squaredNorm();
+    const float squared = (old_point(i).position - place).squaredNorm();
     if (squared >= nearest) continue;
     nearest = squared;
     partner = i;
@@ -220,57 +217,52 @@ std::uint32_t Morph::partner_of(std::span<const std::uint32_t> old,
 
 /// Lets the old point go to the new one, if they are one surface. What the filter says of jumps
 /// counts when both saw the point in the last frame, and from the same place.
-bool Morph::follow(Point to, std::uint32_t i, bool jumped) {
+bool Morph::follow(const Point& seen, std::uint32_t i, bool jumped) {
   if (jumped && entries_[i].seen && !moved_) return false;
-  const Point from = old_point(i);
-  const float radius = from.nature.radius;
-  const float way = (to.state.position - from.state.position).squaredNorm();
-  if (way > to.nature.radius * to.nature.radius) return false;
-  if (std::abs(to.nature.radius - radius) < kSteadyRadius * radius) {
-    to.nature.radius = radius;
-    to.state.weight = std::min(1.0f, to.area / (radius * radius));
-  }
-  to.nature.confidence =
-      from.nature.confidence + kConfidenceShare * (to.nature.confidence - from.nature.confidence);
-  if (to.state.normal.isZero(0)) to.state.normal = from.state.normal;
+  const PointState from = old_point(i);
+  PointState to = seen.state;
+  if ((to.position - from.position).squaredNorm() > to.radius * to.radius) return false;
+  to.radius = from.radius + kShare * (to.radius - from.radius);
+  to.confidence = from.confidence + kShare * (to.confidence - from.confidence);
+  to.weight = std::min(1.0f, seen.area / (to.radius * to.radius));
+  if (to.normal.isZero(0)) to.normal = from.normal;
   const auto rise = static_cast<float>(moment_.duration / options_.fade);
-  to.state.presence = std::min(1.0f, from.state.presence + rise);
-  add(from.state, to.state, to.nature, {place_, EntryKind::live, true, moment_.stamp});
+  to.presence = std::min(1.0f, from.presence + rise);
+  add(from, to, {place_, EntryKind::live, true, moment_.stamp});
   return true;
 }
 
 void Morph::appear(const Point& point) {
   PointState from = point.state;
   if (!still_) from.weight = 0;
-  add(from, point.state, point.nature, {place_, EntryKind::live, true, moment_.stamp});
+  add(from, point.state, {place_, EntryKind::live, true, moment_.stamp});
 }
 
 /// Nothing says that the point is gone, nothing that it is there.
 void Morph::hold(std::uint32_t i) {
-  const Point point = old_point(i);
+  const PointState from = old_point(i);
   const Entry& entry = entries_[i];
   const double unsure = moment_.stamp + moment_.duration - entry.confirmed - options_.silence;
   const auto sure = static_cast<float>(std::clamp(1 - unsure / options_.fade, 0.0, 1.0));
   const auto fall = static_cast<float>(moment_.duration / options_.fade);
-  PointState to = point.state;
+  PointState to = from;
   to.presence = std::max(std::min(to.presence, sure), to.presence - fall);
   const auto most = static_cast<std::size_t>(kMostEntries * static_cast<double>(order_.size()));
   if (to.presence <= 0 || writer_.count() > most) return leave(i);
   to.weight = last_->end_density_weights[i];
-  add(point.state, to, point.nature, {place_, entry.kind, false, entry.confirmed});
+  add(from, to, {place_, entry.kind, false, entry.confirmed});
 }
 
 void Morph::leave(std::uint32_t i) {
-  const Point point = old_point(i);
-  if (point.state.weight <= kGone) return;
-  PointState to = point.state;
+  const PointState from = old_point(i);
+  if (from.weight <= kGone) return;
+  PointState to = from;
   to.weight = 0;
-  add(point.state, to, point.nature, {place_, EntryKind::leaving, false, entries_[i].confirmed});
+  add(from, to, {place_, EntryKind::leaving, false, entries_[i].confirmed});
 }
 
-void Morph::add(const PointState& from, const PointState& to, const PointNature& nature,
-                const Entry& entry) {
-  writer_.add(order_.codes[place_], from, to, nature);
+void Morph::add(const PointState& from, const PointState& to, const Entry& entry) {
+  writer_.add(order_.codes[place_], from, to);
   next_entries_.push_back(entry);
 }
 

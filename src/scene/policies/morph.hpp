@@ -63,16 +63,15 @@ class Morph {
   void follow_camera(const MorphInput& input);
   void fetch(const FilteredDepth& depth, std::size_t block) const;
   void settle(const FilteredDepth& depth, std::size_t place);
-  [[nodiscard]] Point old_point(std::uint32_t i) const;
+  [[nodiscard]] PointState old_point(std::uint32_t i) const;
   [[nodiscard]] Point new_point(const FilteredDepth& depth, std::size_t block) const;
   [[nodiscard]] std::uint32_t partner_of(std::span<const std::uint32_t> old,
                                          const Eigen::Vector3f& place) const;
-  bool follow(Point to, std::uint32_t i, bool jumped);
+  bool follow(const Point& seen, std::uint32_t i, bool jumped);
   void appear(const Point& point);
   void hold(std::uint32_t i);
   void leave(std::uint32_t i);
-  void add(const PointState& from, const PointState& to, const PointNature& nature,
-           const Entry& entry);
+  void add(const PointState& from, const PointState& to, const Entry& entry);
 
   MorphOptions options_;
   BlockOrder order_;

@@ -25,8 +25,9 @@ void PointWriter::begin(SurfacePoints& points, std::size_t expected) {
 void PointWriter::make_room(std::size_t room) {
   SurfacePoints& p = *points_;
   for (auto* column : {&p.normals, &p.end_positions, &p.end_normals}) column->resize(room);
-  for (auto* column : {&p.density_weights, &p.end_density_weights, &p.presences, &p.end_presences,
-                       &p.radii, &p.confidences}) {
+  for (auto* column :
+       {&p.density_weights, &p.radii, &p.confidences, &p.presences, &p.end_density_weights,
+        &p.end_radii, &p.end_confidences, &p.end_presences}) {
     column->resize(room);
   }
   starts_.resize(std::max(room, starts_.size()));
@@ -58,18 +59,20 @@ void PointWriter::measure_reach() {
     }
     for (std::uint32_t i = cell.begin; cell.children == 0 && i < cell.end; ++i) {
       const float way = (points_->end_positions[i] - starts_[i]).norm();
-      largest = std::max(largest, points_->radii[i] + way);
+      largest = std::max(largest, std::max(points_->radii[i], points_->end_radii[i]) + way);
     }
     reach[c] = largest;
   }
 }
 
 void PointWriter::measure_radii() {
-  const std::vector<float>& radii = points_->radii;
+  const std::vector<float>& radii = points_->end_radii;
   points_->radius = 0;
   points_->smallest_radius = 0;
   if (radii.empty()) return;
-  points_->smallest_radius = *std::min_element(radii.begin(), radii.end());
+  points_->smallest_radius =
+      std::min(*std::min_element(points_->radii.begin(), points_->radii.end()),
+               *std::min_element(radii.begin(), radii.end()));
   const std::size_t step = std::max<std::size_t>(1, radii.size() / kSample);
   sample_.clear();
   for (std::size_t i = 0; i < radii.size(); i += step) sample_.push_back(radii[i]);

@@ -14,13 +14,9 @@ struct PointState {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the points' origin, m
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< unit, or zero
   float weight = 0;                                    ///< a_i
+  float radius = 0;                                    ///< R_i, m
+  float confidence = 0;                                ///< c_i
   float presence = 1;
-};
-
-/// What does not change on the way.
-struct PointNature {
-  float radius = 0;      ///< R_i, m
-  float confidence = 0;  ///< c_i
 };
 
 /// Writes moving points, which come in the order of a curve, into the columns of surface points,
@@ -30,21 +26,22 @@ class PointWriter {
   /// What `points` held is lost. `expected`: about how many points will come.
   void begin(SurfacePoints& points, std::size_t expected);
 
-  void add(std::uint32_t code, const PointState& start, const PointState& end,
-           const PointNature& nature) {
+  void add(std::uint32_t code, const PointState& start, const PointState& end) {
     if (count_ == room_) make_room(count_ + count_ / 4 + 1024);
     codes_[count_] = code;
     starts_[count_] = start.position;
     SurfacePoints& p = *points_;
     p.normals[count_] = start.normal;
     p.density_weights[count_] = start.weight;
+    p.radii[count_] = start.radius;
+    p.confidences[count_] = start.confidence;
     p.presences[count_] = start.presence;
     p.end_positions[count_] = end.position;
     p.end_normals[count_] = end.normal;
     p.end_density_weights[count_] = end.weight;
+    p.end_radii[count_] = end.radius;
+    p.end_confidences[count_] = end.confidence;
     p.end_presences[count_] = end.presence;
-    p.radii[count_] = nature.radius;
-    p.confidences[count_] = nature.confidence;
     unsure_ = unsure_ || start.presence < 1 || end.presence < 1;
     ++count_;
   }
