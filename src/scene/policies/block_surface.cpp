@@ -67,6 +67,7 @@ void BlockSurface::start(const FilteredDepth& depth) {
 
 // Two passes over the image carry a small radius to everywhere (a chamfer transform).
 void BlockSurface::limit_growth(const FilteredDepth& depth) {
+  if (depth.size() == 0) return;
   const auto columns = static_cast<std::size_t>(depth.columns);
   const auto pitch = static_cast<float>(depth.pitch);
   const auto limit = [&](std::size_t b, std::size_t by) {

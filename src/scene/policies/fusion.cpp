@@ -5,11 +5,13 @@
 #include <utility>
 
 #include "palpate/geometry/filters.hpp"
+#include "prepare/count_weights.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr int kMemory = 8;       // clouds
+constexpr double kParts = 16;    // of a point, to count running means of counts by
 constexpr double kFaded = 0.02;  // a voxel that counts less is gone
 constexpr double kSpacings = 2;  // leaf of a cloud that preparation would keep whole
 
@@ -33,7 +35,8 @@ SurfacePoints Fusion::add(const PointCloud& cloud, const Eigen::Isometry3d& T_wo
                                            cloud.viewpoint.value_or(Eigen::Vector3d::Zero()));
   const Prepared prepared = prepare(means(), options);
   report = prepared.report;
-  return place(prepared);
+  show(prepared);
+  return place(prepared.points);
 }
 
 void Fusion::choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor) {
@@ -42,17 +45,22 @@ void Fusion::choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_wor
   origin_ = T_world_sensor * cloud.origin;
 }
 
-/// Brings everything to the new start.
+/// Brings everything to the new start; what nobody fills any more and has faded away is dropped.
 void Fusion::age(const Moment& moment) {
-  const double u = progress(last_, moment.start);
+  const auto u = static_cast<float>(progress(last_, moment.start));
+  const auto between = [u](const auto& a, const auto& b) { return a + u * (b - a); };
   for (auto& [key, voxel] : voxels_) {
-    voxel.start += u * (voxel.end - voxel.start);
-    voxel.weight_start += u * (voxel.weight_end - voxel.weight_start);
-    voxel.weight_end *= 1 - 1.0 / kMemory;  // unless it is filled again
-    if (voxel.weight_end < kFaded) voxel.weight_end = 0;
+    Shown& start = voxel.start;
+    const Shown& end = voxel.end;
+    start.position = between(start.position, end.position);
+    start.normal = between(start.normal, end.normal).normalized();
+    start.weight = between(start.weight, end.weight);
+    start.radius = between(start.radius, end.radius);
+    start.confidence = between(start.confidence, end.confidence);
+    voxel.filled = false;
   }
   std::erase_if(voxels_, [](const auto& entry) {
-    return entry.second.weight_start <= 0 && entry.second.weight_end <= 0;
+    return entry.second.occupancy < kFaded && entry.second.start.weight <= 0;
   });
 }
 
@@ -66,15 +74,16 @@ void Fusion::mix(const PointCloud& cloud, const Eigen::Isometry3d& T_world_senso
     ++sum.count;
   }
   for (const auto& [key, sum] : sums) {
-    const Eigen::Vector3d mean = sum.total / sum.count;
     Voxel& voxel = voxels_[key];
-    if (voxel.clouds == 0) voxel.start = voxel.end = mean;
+    voxel.filled = true;
     voxel.clouds = std::min(voxel.clouds + 1, kMemory);
     const double share = 1.0 / voxel.clouds;
-    voxel.end += share * (mean - voxel.end);
-    // What age() took away comes back, and a share of what is missing.
-    const double before = voxel.weight_end / (1 - 1.0 / kMemory);
-    voxel.weight_end = std::min(1.0, before + share * (1 - before));
+    voxel.sum += share * (sum.total - voxel.sum);
+    voxel.count += share * (sum.count - voxel.count);
+    voxel.occupancy += share * (1 - voxel.occupancy);
+  }
+  for (auto& [key, voxel] : voxels_) {
+    if (!voxel.filled) voxel.occupancy *= 1 - 1.0 / kMemory;
   }
 }
 
@@ -82,38 +91,59 @@ PointCloud Fusion::means() const {
   PointCloud cloud;
   cloud.origin = origin_;
   cloud.positions.reserve(voxels_.size());
-  for (const auto& [key, voxel] : voxels_) cloud.positions.push_back(voxel.end.cast<float>());
+  for (const auto& [key, voxel] : voxels_) cloud.positions.push_back(voxel.mean().cast<float>());
   return cloud;
 }
 
-/// Preparation knows the points where they go to; they are indexed where they come from.
-SurfacePoints Fusion::place(const Prepared& prepared) {
+/// What preparation makes of the means is where the voxels' points go. Points that stand for many
+/// weigh more: a voxel that the surface only touches holds few, which lie off it.
+void Fusion::show(const Prepared& prepared) {
   const SurfacePoints& ends = prepared.points;
-  std::vector<std::uint32_t> sorted(ends.size());  // of each voxel, its place in `ends`
-  for (std::uint32_t k = 0; k < sorted.size(); ++k) sorted[ends.grid.order()[k]] = k;
   std::vector<Voxel*> voxels;
+  for (auto& [key, voxel] : voxels_) voxels.push_back(&voxel);
+  std::vector<std::uint32_t> counts;
+  for (const std::uint32_t i : ends.grid.order()) {
+    counts.push_back(static_cast<std::uint32_t>(std::lround(kParts * voxels[i]->count)));
+  }
+  std::vector<float> weights = ends.density_weights;
+  weigh_by_counts(ends.grid, counts, ends.radii, weights);
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    Voxel& voxel = *voxels[ends.grid.order()[k]];
+    const bool gone = voxel.occupancy < kFaded;
+    voxel.end = {ends.grid.points()[k], ends.normals[k],
+                 gone ? 0 : weights[k] * static_cast<float>(voxel.occupancy), ends.radii[k],
+                 ends.confidences[k]};
+    if (voxel.start.radius > 0 && voxel.start.normal.dot(voxel.end.normal) >= 0) continue;
+    const float weight = voxel.start.radius > 0 ? voxel.start.weight : 0;
+    voxel.start = voxel.end;
+    voxel.start.weight = weight;
+  }
+}
+
+/// Indexes the points where they come from.
+SurfacePoints Fusion::place(const SurfacePoints& ends) const {
+  std::vector<const Voxel*> voxels;
   std::vector<Eigen::Vector3f> starts;
-  for (auto& [key, voxel] : voxels_) {
+  for (const auto& [key, voxel] : voxels_) {
     voxels.push_back(&voxel);
-    starts.push_back(voxel.start.cast<float>());
+    starts.push_back(voxel.start.position);
   }
   SurfacePoints points;
   points.origin = ends.origin;
   points.kernel = ends.kernel;
   points.grid = CellGrid(starts);
   for (const std::uint32_t i : points.grid.order()) {
-    Voxel& voxel = *voxels[i];
-    const std::uint32_t k = sorted[i];
-    const bool known = voxel.normal.dot(ends.normals[k]) > 0;
-    points.normals.push_back(known ? voxel.normal : ends.normals[k]);
-    points.end_normals.push_back(ends.normals[k]);
-    points.end_positions.push_back(ends.grid.points()[k]);
-    points.radii.push_back(ends.radii[k]);
-    points.confidences.push_back(ends.confidences[k]);
-    const auto weight = ends.density_weights[k];
-    points.density_weights.push_back(weight * static_cast<float>(voxel.weight_start));
-    points.end_density_weights.push_back(weight * static_cast<float>(voxel.weight_end));
-    voxel.normal = ends.normals[k];
+    const Shown& start = voxels[i]->start;
+    const Shown& end = voxels[i]->end;
+    points.normals.push_back(start.normal);
+    points.density_weights.push_back(start.weight);
+    points.radii.push_back(start.radius);
+    points.confidences.push_back(start.confidence);
+    points.end_positions.push_back(end.position);
+    points.end_normals.push_back(end.normal);
+    points.end_density_weights.push_back(end.weight);
+    points.end_radii.push_back(end.radius);
+    points.end_confidences.push_back(end.confidence);
   }
   finish(points);
   return points;

@@ -30,21 +30,33 @@ class Fusion {
  private:
   using Key = std::array<std::int32_t, 3>;
 
-  /// Means are relative to origin_.
-  struct Voxel {
-    Eigen::Vector3d start = Eigen::Vector3d::Zero();
-    Eigen::Vector3d end = Eigen::Vector3d::Zero();
+  /// What a voxel's point was when a snapshot ended; relative to origin_.
+  struct Shown {
+    Eigen::Vector3f position = Eigen::Vector3f::Zero();
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-    double weight_start = 0;
-    double weight_end = 0;
+    float weight = 0;
+    float radius = 0;
+    float confidence = 0;
+  };
+
+  struct Voxel {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of points in a cloud, running mean, m
+    double count = 0;                               ///< likewise
+    double occupancy = 0;                           ///< 0-1: share of clouds that fill it
     int clouds = 0;
+    bool filled = false;  ///< by the newest cloud
+    Shown start;          ///< of the snapshot that is being made
+    Shown end;
+
+    [[nodiscard]] Eigen::Vector3d mean() const { return sum / count; }
   };
 
   void age(const Moment& moment);
   void choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor);
   void mix(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor);
   [[nodiscard]] PointCloud means() const;
-  [[nodiscard]] SurfacePoints place(const Prepared& prepared);
+  void show(const Prepared& prepared);
+  [[nodiscard]] SurfacePoints place(const SurfacePoints& ends) const;
 
   PrepareOptions prepare_;
   double leaf_ = 0;  // m; 0: no cloud yet

@@ -1,0 +1,107 @@
+#include "scene/policies/fusion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "palpate/scene/scene.hpp"
+#include "palpate/scene/scene_field.hpp"
+#include "support/snapshots.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kFrame = 1. / 30;
+
+// A sheet at z = 0 with noise, seen from above.
+PointCloud noisy_sheet(unsigned seed, double noise, double height = 0) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> gauss(0, 1);
+  PointCloud cloud;
+  cloud.viewpoint = Vector3d(0, 0, 0.5);
+  for (int i = -25; i <= 25; ++i) {
+    for (int j = -25; j <= 25; ++j) {
+      const Vector3d p(2e-3 * i + 2e-4 * gauss(random), 2e-3 * j + 2e-4 * gauss(random),
+                       height + noise * gauss(random));
+      cloud.positions.push_back(p.cast<float>());
+    }
+  }
+  return cloud;
+}
+
+SourceOptions options() {
+  SourceOptions options;
+  options.policy.policy = Policy::fusion;
+  return options;
+}
+
+TEST(Fusion, AveragesNoiseAwayAndNeverSteps) {
+  Scene scene;
+  Source& source = scene.add("sensor", options());
+  SceneField field(scene);
+  double last = 0;
+  double step = 0;
+  double largest = 0;
+  for (int k = 0; k < 20; ++k) {
+    const double stamp = k * kFrame;
+    source.push(noisy_sheet(static_cast<unsigned>(k), 1e-3), stamp, [=] { return stamp; });
+    for (double u = 0.02; u < 1; u += 0.07) {
+      field.update(stamp + u * kFrame, Vector3d::Zero(), Vector3d::Zero());
+      const double height = test::height_of(field);
+      if (k > 10) {
+        step = std::max(step, std::abs(height - last));
+        largest = std::max(largest, std::abs(height));
+      }
+      last = height;
+    }
+  }
+  EXPECT_LT(largest, 0.15e-3);
+  EXPECT_LT(step, 0.02e-3) << "a fourteenth of what eight clouds can move it in a frame";
+}
+
+TEST(Fusion, WhatIsNoLongerSeenFadesAway) {
+  Fusion fusion({});
+  PrepareReport report;
+  const auto add = [&](int k, double height) {
+    const double t = k * kFrame;
+    return fusion.add(noisy_sheet(static_cast<unsigned>(k), 1e-4, height),
+                      Eigen::Isometry3d::Identity(), {t, t, kFrame}, report);
+  };
+  for (int k = 0; k < 10; ++k) add(k, 0);
+  SurfacePoints points = add(10, 0.1);
+  const std::size_t both = points.size();
+  for (int k = 11; k < 60; ++k) points = add(k, 0.1);
+  check(points);
+  EXPECT_LT(points.size(), 3 * both / 4);
+  for (const auto& p : points.grid.points()) EXPECT_GT(p.z() + points.origin.z(), 0.05);
+}
+
+TEST(Fusion, GoesOnFromWhereTheSurfaceIs) {
+  Fusion fusion({});
+  PrepareReport report;
+  const auto add = [&](int k, double start) {
+    return fusion.add(noisy_sheet(static_cast<unsigned>(k), 5e-4), Eigen::Isometry3d::Identity(),
+                      {start, start, kFrame}, report);
+  };
+  for (int k = 0; k < 3; ++k) add(k, k * kFrame);
+  const SurfacePoints before = add(3, 3 * kFrame);
+  const SurfacePoints after = add(4, 4 * kFrame);
+  // Every end of before is a start of after.
+  std::vector<CellGrid::Neighbor> near;
+  for (std::size_t i = 0; i < before.size(); i += 5) {
+    if (before.end_density_weights[i] == 0) continue;
+    after.grid.nearest(before.end_positions[i], 1, near);
+    ASSERT_FALSE(near.empty());
+    EXPECT_EQ(near.front().squared_distance, 0);
+    const std::size_t k = near.front().index;
+    EXPECT_EQ(after.density_weights[k], before.end_density_weights[i]);
+    EXPECT_EQ(after.radii[k], before.end_radii[i]);
+  }
+}
+
+}  // namespace
+}  // namespace palpate
