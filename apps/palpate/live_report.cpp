@@ -61,9 +61,9 @@ void print_live(const LiveReport& report, std::FILE* out) {
   const Style style(out);
   const Durations& late = report.lateness;
   fmt::print(out,
-             "  pace       {:.4g} Hz; late by {} (p50), {} (p99), {} (max); {} steps left out\n",
+             "  pace       {:.4g} Hz; late by {} (p50), {} (p99), {} (max); steps left out: {}\n",
              report.rate, duration(late.quantile(0.5)), duration(late.quantile(0.99)),
-             duration(late.longest), report.skipped == 0 ? "no" : grouped(report.skipped));
+             duration(late.longest), report.skipped == 0 ? "none" : grouped(report.skipped));
   if (report.unwritten > 0) {
     fmt::print(out, "  {} {} steps came too fast to be written down; they are in no log\n",
                style.warning("unwritten "), grouped(report.unwritten));

@@ -11,7 +11,6 @@
 #include "apps/palpate/touch_surface.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
-#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {
 
@@ -121,10 +120,6 @@ void check_time(const TouchOptions& options, bool any_lives) {
           "--latency is of cameras and sequences; what stands still is there from the start");
   require(options.simulated_time || !options.latency,
           "--latency is of simulated time; add --simulated-time");
-  const double rate = options.rate.value_or(ServoThread::kLeastRate);
-  require(!any_lives || options.simulated_time ||
-              (rate >= ServoThread::kLeastRate && rate <= ServoThread::kMostRate),
-          "--rate in real time must be 500 to 10000; add --simulated-time for others");
 }
 
 void check_feel(const TouchOptions& options) {

@@ -1,0 +1,69 @@
+// Runs in real time. Nothing here depends on how fast the machine is.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace palpate::app {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(LiveProgram, TouchesACameraInRealTimeAndTellsHowItWent) {
+  Shell shell;
+  const Outcome outcome =
+      shell.run("touch camera:simulated --duration 1.5 --json run.json --log forces.csv");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("real time"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find(" Hz"), std::string::npos) << "a line a second: " << outcome.err;
+  const Json run = Json::parse(shell.read("run.json"));
+  EXPECT_GT(run["steps"], 10);
+  EXPECT_GE(run["real_s"], 1.4);
+  EXPECT_GT(run["sources"][0]["frames_touchable"], 0);
+  const Json& live = run["live"];
+  EXPECT_EQ(live["rate_Hz"], 1000);
+  EXPECT_EQ(live["steps_unwritten"], 0);
+  EXPECT_EQ(live["guard"]["faults"], 0);
+  EXPECT_EQ(live["realtime"].size(), 2u);
+  EXPECT_EQ(live["interrupted"], false);
+  const auto log = columns(shell.read("forces.csv"));
+  EXPECT_EQ(log.begin()->second.size(), run["steps"]) << "every step is written down";
+  for (const char* name : {"fx", "fy", "fz"}) {
+    ASSERT_TRUE(log.contains(name));
+    for (const std::string& force : log.at(name)) {
+      ASSERT_TRUE(std::isfinite(std::strtod(force.c_str(), nullptr)));
+    }
+  }
+}
+
+TEST(LiveProgram, EndsWithItsReportWhenInterrupted) {
+  Shell shell;
+  const int status = std::system(
+      fmt::format(
+          "cd '{}'; '{}' touch camera:simulated --duration 100 --json run.json > out 2> err "
+          "& p=$!; until grep -qs Hz err; do sleep 0.1; kill -0 $p || break; done; "
+          "kill -INT $p; wait $p",
+          shell.path("."), PALPATE_PROGRAM)
+          .c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0) << shell.read("err");
+  EXPECT_NE(shell.read("out").find("Ctrl-C"), std::string::npos);
+  const Json run = Json::parse(shell.read("run.json"));
+  EXPECT_EQ(run["live"]["interrupted"], true);
+  EXPECT_GT(run["steps"], 10);
+}
+
+TEST(LiveProgram, RefusesRatesThatNoServoKeepsInRealTime) {
+  Shell shell;
+  const Outcome outcome = shell.run("touch camera:simulated --rate 100");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("between 500 and 10000"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace palpate::app

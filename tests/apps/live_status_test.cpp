@@ -1,0 +1,85 @@
+#include "apps/palpate/live_status.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace palpate::app {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// A second of 1 kHz: 20 us of computing, the last hundredth 80; late by 50 us.
+LiveMoment second() {
+  Histogram computing;
+  Histogram lateness;
+  for (int i = 0; i < 1000; ++i) {
+    computing.add(i < 985 ? 20e-6 : 80e-6);
+    lateness.add(50e-6);
+  }
+  LiveMoment moment;
+  moment.time = 12.34;
+  moment.force = 1.234;
+  moment.rate = 1000;
+  moment.computing = computing.look();
+  moment.lateness = lateness.look();
+  StreamState stream;
+  stream.source = "table";
+  stream.phase = StreamPhase::running;
+  stream.rate = 29.97;
+  stream.latency_mean = 11.4e-3;
+  moment.streams = {stream};
+  return moment;
+}
+
+TEST(LiveStatus, TellsPaceForceAndStreamsInOneLine) {
+  const std::string words = in_words(second());
+  for (const char* part :
+       {"12.3 s", "1.23 N", "1000 Hz", "late p99 0.05 ms", "table 30.0 Hz, 11 ms"}) {
+    EXPECT_TRUE(contains(words, part)) << part << " in " << words;
+  }
+  EXPECT_FALSE(contains(words, "\n"));
+  EXPECT_FALSE(contains(words, "dropped"));
+  EXPECT_FALSE(contains(words, "FAULT"));
+}
+
+TEST(LiveStatus, TellsWhatIsWrong) {
+  LiveMoment moment = second();
+  moment.servo.guard.fault = GuardFault::hand;
+  moment.streams[0].phase = StreamPhase::stalled;
+  moment.streams[0].drops.overtaken = 2;
+  moment.streams[0].drops.late = 1;
+  StreamState other;
+  other.source = "side";
+  moment.streams.push_back(other);
+  std::string words = in_words(moment);
+  for (const char* part :
+       {"FAULT: the device told", "table STALLED", "3 dropped", "side waiting"}) {
+    EXPECT_TRUE(contains(words, part)) << part << " in " << words;
+  }
+  moment.streams[0].phase = StreamPhase::failed;
+  moment.streams[1].phase = StreamPhase::ended;
+  words = in_words(moment);
+  EXPECT_TRUE(contains(words, "table FAILED"));
+  EXPECT_TRUE(contains(words, "side ended"));
+}
+
+TEST(LiveStatus, KnowsOfNothingBeforeTheFirstStep) {
+  EXPECT_TRUE(contains(in_words(LiveMoment{}), "0.0 s  0.00 N  0 Hz"));
+}
+
+TEST(LiveStatus, FitsIntoATerminalsLine) {
+  EXPECT_EQ(fitted("abc", 10), "abc");
+  EXPECT_EQ(fitted("abcdef", 3), "abc");
+  EXPECT_EQ(fitted("", 3), "");
+  EXPECT_EQ(fitted("a\xc2\xb5"
+                   "bc",
+                   2),
+            "a\xc2\xb5")
+      << "no character is cut";
+}
+
+}  // namespace
+}  // namespace palpate::app
