@@ -1,0 +1,122 @@
+#include "scene/policies/block_surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "palpate/depth/depth_filter.hpp"
+#include "palpate/field/density.hpp"
+#include "palpate/geometry/cell_grid.hpp"
+#include "support/depth_frames.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+FilteredDepth depth_of(const test::DepthOf& surface) {
+  DepthFilter filter({.noise = NoiseModel{{5e-4, 0, 0}, 1}});
+  return filter.filter(test::frame_of(test::small_camera(), 0, surface),
+                       Eigen::Isometry3d::Identity());
+}
+
+// The weights that a search for neighbours would give.
+std::vector<float> searched_weights(const FilteredDepth& depth, const BlockSurface& surface,
+                                    std::vector<std::size_t>& blocks) {
+  std::vector<Eigen::Vector3f> positions;
+  for (std::size_t b = 0; b < depth.size(); ++b) {
+    if (depth.states[b] == BlockState::empty) continue;
+    positions.push_back(depth.positions[b]);
+    blocks.push_back(b);
+  }
+  const CellGrid grid(positions);
+  std::vector<float> radii;
+  for (const std::uint32_t i : grid.order()) radii.push_back(surface.radius(blocks[i]));
+  const std::vector<float> sorted = density_weights(grid, radii);
+  std::vector<float> weights(positions.size());
+  for (std::size_t k = 0; k < weights.size(); ++k) weights[grid.order()[k]] = sorted[k];
+  return weights;
+}
+
+float weight_of(const BlockSurface& surface, std::size_t block) {
+  return surface.area(block) / (surface.radius(block) * surface.radius(block));
+}
+
+void expect_weights(const test::DepthOf& surface_depth, float tolerance) {
+  const FilteredDepth depth = depth_of(surface_depth);
+  BlockSurface surface(Kernel::wyvill);
+  surface.measure(depth);
+  std::vector<std::size_t> blocks;
+  const std::vector<float> expected = searched_weights(depth, surface, blocks);
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    EXPECT_NEAR(weight_of(surface, blocks[k]) / expected[k], 1, tolerance)
+        << "column " << blocks[k] % static_cast<std::size_t>(depth.columns) << ", row "
+        << blocks[k] / static_cast<std::size_t>(depth.columns);
+  }
+}
+
+TEST(BlockSurface, WeighsAWallAsASearchWould) {
+  expect_weights(test::wall(0.5), 0.06f);
+}
+
+TEST(BlockSurface, WeighsASlopeAsASearchWould) {
+  expect_weights(test::plane_depth({0, 0, 0.5}, Vector3d(0.8, 0, -1).normalized()), 0.12f);
+}
+
+TEST(BlockSurface, WeighsRimsAndHolesAsASearchWould) {
+  expect_weights(
+      [](double x, double y) {
+        if (std::hypot(x - 0.1, y) < 0.03) return 0.0;
+        return std::abs(x) < 0.05 ? 0.4 : 0.5;
+      },
+      0.12f);
+}
+
+// R = 2.5 s for a surface that faces the camera; 1.7 rows of one that does not.
+TEST(BlockSurface, RadiiFollowTheSpacingOfRows) {
+  const double pitch = 2 / 375.0;
+  const FilteredDepth wall = depth_of(test::wall(0.5));
+  BlockSurface surface(Kernel::wyvill);
+  surface.measure(wall);
+  const auto middle = static_cast<std::size_t>(wall.columns * 30 + 40);
+  EXPECT_NEAR(surface.radius(middle), 2.5 * pitch * 0.5, 1e-4);
+  const double tilt = 70 * std::numbers::pi / 180;
+  const FilteredDepth slope =
+      depth_of(test::plane_depth({0, 0, 0.5}, Vector3d(std::sin(tilt), 0, -std::cos(tilt))));
+  surface.measure(slope);
+  const double rows = pitch * 0.5 / std::cos(tilt);
+  EXPECT_NEAR(surface.radius(middle) / (1.7 * rows), 1, 0.1);
+}
+
+TEST(BlockSurface, RadiiGrowByHalfTheDistanceAtMost) {
+  const FilteredDepth depth =
+      depth_of([](double x, double) { return x < 0 ? 0.5 : 0.5 / (1 - 2.5 * x); });
+  BlockSurface surface(Kernel::wyvill);
+  surface.measure(depth);
+  for (int v = 0; v < depth.rows; ++v) {
+    for (int u = 1; u < depth.columns; ++u) {
+      const auto b = static_cast<std::size_t>(v * depth.columns + u);
+      if (depth.states[b] == BlockState::empty || depth.states[b - 1] == BlockState::empty) {
+        continue;
+      }
+      const float way = (depth.positions[b] - depth.positions[b - 1]).norm();
+      EXPECT_LE(surface.radius(b) - surface.radius(b - 1), 0.5f * way + 2e-3f * way + 1.4e-3f);
+    }
+  }
+}
+
+TEST(BlockSurface, OutsideOfReachRimsWeighAsIfTheSurfaceWentOn) {
+  const FilteredDepth depth = depth_of(test::wall(0.5));
+  BlockSurface exact(Kernel::wyvill);
+  BlockSurface local(Kernel::wyvill);
+  exact.measure(depth);
+  const std::vector<Ball> reach{{depth.positions[0].cast<double>(), 0.03}};
+  local.measure(depth, reach);
+  const std::size_t last = depth.size() - 1;
+  EXPECT_EQ(local.area(0), exact.area(0));
+  EXPECT_LT(local.area(last), 0.8f * exact.area(last));
+}
+
+}  // namespace
+}  // namespace palpate
