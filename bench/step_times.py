@@ -33,12 +33,12 @@ def one_run(program, file, options, folder):
 def summary(program, file, options, runs, folder):
     found = [one_run(program, file, options, folder) for _ in range(runs)]
     reports = [report for report, _ in found]
-    cloud = reports[0]["clouds"][0]
+    cloud = reports[0]["sources"][0]
 
     def middle(value):
         return statistics.median(value(report) for report in reports)
 
-    seconds = middle(lambda r: sum(r["clouds"][0]["seconds"][k] for k in ("read", "prepare")))
+    seconds = middle(lambda r: sum(r["sources"][0]["seconds"][k] for k in ("read", "prepare")))
     times = [middle(lambda r, p=p: r["computing_us"][p]) for p in ("p50", "p99", "p99.9", "max")]
     return [
         pathlib.Path(file).name,

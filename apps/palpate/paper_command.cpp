@@ -97,13 +97,16 @@ void tell(const Figure& figure, const PaperOptions& options, Outputs& outputs) {
 }  // namespace
 
 void add_paper_options(CLI::App& command, PaperCommand& paper) {
-  command.require_subcommand(1);
+  command.require_subcommand(0, 1);
   command.footer(kFooter);
   paper.fig5 = add_fig5(command, paper.options);
   paper.fig7 = add_fig7(command, paper.options);
 }
 
 void paper(const PaperCommand& paper) {
+  if (!paper.fig5->parsed() && !paper.fig7->parsed()) {
+    throw UsageError("a figure is missing: fig5 or fig7; 'palpate paper --help' tells more");
+  }
   PaperOptions options = paper.options;
   if (options.source.empty()) options.source = kPaperSource;
   Outputs outputs(options);

@@ -1,6 +1,7 @@
 #include "apps/palpate/touch_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 
 #include "apps/palpate/option_checks.hpp"
 
@@ -90,7 +91,10 @@ void add_hand_options(CLI::App& command, TouchOptions& o) {
   add("--duration", o.duration, "of the built-in exploration (10)")
       ->check(number("between 0.01 and 3600 s", [](double x) { return x >= 0.01 && x <= 3600; }))
       ->type_name("SECONDS");
-  add("--seed", o.seed, "of the exploration: another one touches other places (1)")->type_name("N");
+  add("--seed", o.seed, "of the exploration: another one touches other places (1)")
+      ->check(number("a whole number of 0 or more",
+                     [](double x) { return x >= 0 && x <= 1e15 && x == std::floor(x); }))
+      ->type_name("N");
   add("--rate", o.rate, "steps a second of the exploration and of a simulated device (1000)")
       ->check(number("between 500 and 10000 Hz", [](double x) { return x >= 500 && x <= 1e4; }))
       ->type_name("HZ");

@@ -135,7 +135,7 @@ Json json_report(const TouchReport& report) {
   const HandEnergy energies = energy_at_hand(report);
   Json json = {
       {"palpate", std::string(version())},
-      {"clouds", sources},
+      {"sources", sources},
       {"preset", report.options.preset},
       {"field", name_of(report.field.kind)},
       {"stiffness_N_per_m", report.proxy.stiffness},

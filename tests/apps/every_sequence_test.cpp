@@ -1,0 +1,86 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "apps/palpate/run.hpp"
+#include "apps/palpate/touch_surface.hpp"
+#include "support/effort.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> sequences() {
+  const char* folder = std::getenv("PALPATE_DATA");
+  std::vector<fs::path> found;
+  if (folder == nullptr || !fs::is_directory(folder)) return found;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (fs::exists(entry.path() / "sequence.json")) found.push_back(entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+struct Felt {
+  std::size_t steps = 0;
+  std::size_t touching = 0;
+  std::size_t bad = 0;
+  std::size_t without_surface = 0;
+};
+
+Felt play(const TouchOptions& options, Touched& touched, Hand& hand, Scene& felt) {
+  const FieldOptions field = field_options(options);
+  fill_felt(felt, touched, {});
+  Run run{options, touched, felt, hand, field, proxy_options(options, hand.stiffness)};
+  Felt result;
+  run_simulated(run, [&](const TouchStep& step) {
+    const Contact& contact = step.contact;
+    const bool quiet = contact.force.allFinite() && contact.proxy.allFinite() &&
+                       !has(contact.notes, ContactNote::fault);
+    ++result.steps;
+    result.bad += quiet ? 0 : 1;
+    result.touching += contact.touching ? 1 : 0;
+    result.without_surface += has(step.notes, FieldNote::no_surface) ? 1 : 0;
+  });
+  return result;
+}
+
+// Far away from everything for some seconds.
+Trajectory aside(double seconds) {
+  Trajectory way;
+  for (int i = 0; i <= static_cast<int>(1000 * seconds); ++i) {
+    way.push_back({1e-3 * i, Eigen::Vector3d(0, 0, -100)});
+  }
+  return way;
+}
+
+TEST(EverySequence, PlaysThroughAndIsTouchedWithoutAFault) {
+  if (sequences().empty()) GTEST_SKIP() << "PALPATE_DATA names no folder with sequences";
+  for (const fs::path& folder : sequences()) {
+    SCOPED_TRACE(folder.string());
+    TouchOptions options;
+    options.clouds = {"sequence:" + folder.string()};
+    options.simulated_time = true;
+    options.duration = 1e-3 * test::effort(3000);
+    // The first run shows what there is to touch at the end, the second one touches it.
+    Scene seen;
+    Touched watched = prepare_touched(options, false);
+    Hand bystander = make_hand(options, aside(*options.duration), watched.scene, {});
+    EXPECT_EQ(play(options, watched, bystander, seen).bad, 0u);
+    Touched touched = prepare_touched(options, false);
+    Hand hand = make_hand(options, {}, seen, field_options(options));
+    Scene scene;
+    const Felt felt = play(options, touched, hand, scene);
+    EXPECT_EQ(felt.bad, 0u) << "steps with a fault, or not finite";
+    EXPECT_GT(felt.touching, felt.steps / 100);
+    EXPECT_LE(felt.without_surface, 10u) << "before the first frame is touchable";
+    const StreamState& state = touched.sources[0].feed.state;
+    EXPECT_GT(state.touchable, 2u);
+    EXPECT_EQ(state.failures, 0u) << state.problem;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::app

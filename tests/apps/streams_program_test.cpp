@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace palpate::app {
+namespace {
+
+using Json = nlohmann::json;
+
+// The log without its column of computing times.
+std::string without_times(const Shell& shell, const std::string& name) {
+  std::string text;
+  for (const auto& [column, cells] : columns(shell.read(name))) {
+    if (column == "us") continue;
+    text += column;
+    for (const std::string& cell : cells) text += "," + cell;
+    text += "\n";
+  }
+  return text;
+}
+
+double number(const std::string& text) {
+  return std::strtod(text.c_str(), nullptr);
+}
+
+// Down onto the middle of the simulated table, which is z = 0 there, and `seconds` of pressing.
+std::string press_table(double seconds) {
+  std::string text = "t,hip_x,hip_y,hip_z\n";
+  for (int i = 0; i < static_cast<int>(1000 * seconds); ++i) {
+    text += fmt::format("{},0,0,{}\n", 1e-3 * i, std::max(-4e-3, 0.02 - 1e-4 * i));
+  }
+  return text;
+}
+
+// A wall 0.5 m ahead, 64 x 48 pixels, with one pixel that tells the frames apart.
+std::string wall_pgm(int number) {
+  std::string text = "P5 64 48 65535\n";
+  for (int i = 0; i < 64 * 48; ++i) {
+    const int depth = i == 0 ? 500 + number : 500;
+    text += static_cast<char>(depth / 256);
+    text += static_cast<char>(depth % 256);
+  }
+  return text;
+}
+
+// As a sequence of 30 frames a second in the folder "wall".
+void write_wall(const Shell& shell, int frames) {
+  std::filesystem::create_directory(shell.path("wall"));
+  for (int i = 0; i < frames; ++i) shell.write(fmt::format("wall/{:03}.pgm", i), wall_pgm(i));
+  shell.write("wall/sequence.json",
+              R"({"width": 64, "height": 48, "fx": 60, "fy": 60, "cx": 31.5, "cy": 23.5,
+                  "depth_unit_m": 0.001, "fps": 30})");
+}
+
+// Forward until the hand is 4 mm deep in the wall, and then at rest.
+std::string into_wall(int steps) {
+  std::string way = "t,hip_x,hip_y,hip_z\n";
+  for (int i = 0; i < steps; ++i) {
+    way += fmt::format("{},0,0,{}\n", 1e-3 * i, std::min(0.504, 0.48 + 1e-4 * i));
+  }
+  return way;
+}
+
+TEST(Streams, TwoCamerasGiveTheSameLogBitForBit) {
+  Shell shell;
+  const std::string command =
+      "touch camera:simulated:left camera:simulated:right,phase=0.011,jitter=0.004,seed=3 "
+      "--simulated-time --duration 0.8 --log ";
+  ASSERT_EQ(shell.run(command + "a.csv --json a.json").code, 0);
+  ASSERT_EQ(shell.run(command + "b.csv").code, 0);
+  EXPECT_EQ(without_times(shell, "a.csv"), without_times(shell, "b.csv"));
+  const Json report = Json::parse(shell.read("a.json"));
+  EXPECT_GT(report["largest_force_N"].get<double>(), 0.5);
+  ASSERT_EQ(report["sources"].size(), 2u);
+  for (const Json& source : report["sources"]) {
+    EXPECT_GE(source["frames_touchable"].get<int>(), 23);
+    EXPECT_NEAR(source["rate_Hz"].get<double>(), 30, 1.5);
+    EXPECT_NEAR(source["latency_s"]["mean"].get<double>(), 0.01, 1e-9);
+    EXPECT_EQ(source["policy"]["name"], "morph");
+    EXPECT_GT(source["noise_m"].get<double>(), 1e-4);
+    EXPECT_LT(source["disagreement_m"].get<double>(), 1e-3) << "both stand where they say";
+  }
+}
+
+TEST(Streams, TrajectoryIsPlayedInTheWorldFromTheFirstFrameOn) {
+  Shell shell;
+  shell.write("way.csv", press_table(0.6));
+  const Outcome outcome = shell.run(
+      "touch camera:simulated:still --simulated-time --latency 0.05 --trajectory way.csv "
+      "--log log.csv");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  auto log = columns(shell.read("log.csv"));
+  ASSERT_EQ(log["t"].size(), 600u);
+  EXPECT_EQ(log["field_notes"][49], "2") << "no surface before stamp + latency";
+  EXPECT_EQ(log["field_notes"][51], "0");
+  EXPECT_NEAR(number(log["fz"].back()), 500 * 4e-3, 0.15);
+  EXPECT_NEAR(number(log["proxy_z"].back()), 0, 3e-4);
+}
+
+TEST(Streams, EveryPolicyFeelsTheWall) {
+  Shell shell;
+  write_wall(shell, 6);
+  shell.write("way.csv", into_wall(500));
+  for (const char* more :
+       {"--policy replace", "--policy average --history 3", "--policy crossfade", "--policy fusion",
+        "--unorganised", "--preset paper --field pointset", "--noise kinect1"}) {
+    const Outcome outcome =
+        shell.run(fmt::format("touch sequence:wall --loop --simulated-time --trajectory way.csv "
+                              "--log log.csv {}",
+                              more));
+    ASSERT_EQ(outcome.code, 0) << more << "\n" << outcome.err;
+    auto log = columns(shell.read("log.csv"));
+    EXPECT_NEAR(number(log["fz"].back()), -500 * 4e-3, 0.1) << more;
+  }
+}
+
+TEST(Streams, SequenceEndsAndItsLastSurfaceStaysOrLoops) {
+  Shell shell;
+  write_wall(shell, 6);
+  shell.write("way.csv", into_wall(2500));
+  const std::string command =
+      "touch sequence:wall --simulated-time --trajectory way.csv --log log.csv --json r.json ";
+  const Outcome stays = shell.run(command);
+  ASSERT_EQ(stays.code, 0) << stays.err;
+  auto log = columns(shell.read("log.csv"));
+  EXPECT_NEAR(number(log["fz"].back()), -500 * 4e-3, 0.05) << "2.3 s after the last frame";
+  Json report = Json::parse(shell.read("r.json"));
+  EXPECT_EQ(report["sources"][0]["phase"], "ended");
+  EXPECT_EQ(report["sources"][0]["frames_touchable"], 6);
+  const Outcome loops = shell.run(command + "--loop");
+  ASSERT_EQ(loops.code, 0) << loops.err;
+  report = Json::parse(shell.read("r.json"));
+  EXPECT_EQ(report["sources"][0]["phase"], "running");
+  EXPECT_EQ(report["sources"][0]["frames_touchable"], 75);
+}
+
+TEST(Streams, BrokenImageIsReportedAndTheRestIsFelt) {
+  Shell shell;
+  write_wall(shell, 6);
+  shell.write("wall/003.pgm", "P5 64 48 65535\ncut");
+  const Outcome outcome =
+      shell.run("touch wall=sequence:wall --simulated-time --duration 0.5 --json r.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("003.pgm"), std::string::npos) << outcome.out;
+  const Json source = Json::parse(shell.read("r.json"))["sources"][0];
+  EXPECT_EQ(source["frames_touchable"], 5);
+  EXPECT_EQ(source["failures"], 1);
+}
+
+TEST(Streams, DepthImageGoesThroughTheDepthFilterUnlessUnorganised) {
+  Shell shell;
+  shell.write("wall.pgm", wall_pgm(0));
+  shell.write("way.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0.48\n0.1,0,0,0.503\n0.2,0,0,0.503\n");
+  const std::string command =
+      "touch wall.pgm --intrinsics 60,60,31.5,23.5 --trajectory way.csv --log log.csv ";
+  for (const char* more : {"", "--unorganised"}) {
+    const Outcome outcome = shell.run(command + more);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NEAR(number(columns(shell.read("log.csv"))["fz"].back()), -500 * 3e-3, 0.05) << more;
+    EXPECT_EQ(outcome.out.find("voxel") == std::string::npos, std::string(more).empty());
+  }
+  EXPECT_NE(shell.run("touch wall.pgm").err.find("--intrinsics"), std::string::npos);
+}
+
+TEST(Streams, WhatIsNotThereIsNamed) {
+  Shell shell;
+  for (const auto& [arguments, word] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"camera:simulated:nowhere --simulated-time", "nowhere"},
+           {"camera:telescope --simulated-time", "telescope"},
+           {"sequence:nowhere --simulated-time", "nowhere"},
+           {"missing.oni --simulated-time", "missing.oni"},
+           {"camera:simulated --simulated-time --soft-stiffness 100", "depths alone"}}) {
+    const Outcome outcome = shell.run(fmt::format("touch {}", arguments));
+    EXPECT_EQ(outcome.code, 1) << arguments << "\n" << outcome.err;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << arguments << "\n" << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::app
