@@ -183,7 +183,7 @@ void Stream::Threads::prepare(const DepthFrame& frame) {
   }
 }
 
-Stream::Stream(std::unique_ptr<DepthCamera> camera, std::string name, FrameSink sink,
+Stream::Stream(std::unique_ptr<DepthCamera> camera, const std::string& name, FrameSink sink,
                const Clock& clock, const StreamOptions& options, std::function<void()> ended)
     : threads_(std::make_unique<Threads>(std::move(camera), name, std::move(sink), clock, options,
                                          std::move(ended))) {}

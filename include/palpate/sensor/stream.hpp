@@ -43,8 +43,8 @@ class Stream {
 
   /// The same into any sink; `name` stands for it in messages. `ended`, if any, is called after the
   /// last frame of a recording, on the thread that calls the sink.
-  Stream(std::unique_ptr<DepthCamera> camera, std::string name, FrameSink sink, const Clock& clock,
-         const StreamOptions& options = {}, std::function<void()> ended = {});
+  Stream(std::unique_ptr<DepthCamera> camera, const std::string& name, FrameSink sink,
+         const Clock& clock, const StreamOptions& options = {}, std::function<void()> ended = {});
 
   /// Stops: waits for a read() and a preparation that are under way, and for nothing else.
   ~Stream();
