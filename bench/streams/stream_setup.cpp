@@ -71,8 +71,8 @@ void ride(Setup& setup, const Vector3d& place, const Vector3d& out, double secon
   setup.depth = kComingDepth;
 }
 
-Motion coming(const Setup& setup, const Vector3d& out) {
-  Motion motion;
+SimulatedMotion coming(const Setup& setup, const Vector3d& out) {
+  SimulatedMotion motion;
   motion.velocity = setup.speed * out;
   motion.begin = static_cast<double>(setup.rest) * kTick;
   return motion;
@@ -127,7 +127,7 @@ Setup ball_comes(const Frames& frames, double speed) {
 
 Setup camera_moves(const Frames& frames) {
   Setup setup = static_press(frames);
-  Motion& motion = setup.cameras[0].motion;
+  SimulatedMotion& motion = setup.cameras[0].motion;
   motion.frequency = 0.25;
   const double rate = 2 * std::numbers::pi * motion.frequency;
   motion.swing = Vector3d(0, 0.05 / rate, 0);

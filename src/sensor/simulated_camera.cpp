@@ -60,7 +60,12 @@ SimulatedCamera::SimulatedCamera(SimulatedScene scene, const SimulatedCameraOpti
     loop_.emplace_back();
     make_depth(static_cast<std::uint64_t>(i), loop_.back());
   }
-  start_ = options.start.value_or(options.clock ? options.clock->now() : 0);
+  const double opened = options.clock ? options.clock->now() : 0;
+  start_ = options.start.value_or(opened);
+  if (options.clock) {
+    first_ = next_ = static_cast<std::uint64_t>(
+        std::max(0.0, std::ceil((opened - start_ - options.phase) * options.rate)));
+  }
 }
 
 Eigen::Isometry3d SimulatedCamera::true_pose(double t) const {
@@ -81,7 +86,7 @@ bool SimulatedCamera::arrives(std::uint64_t frame) const {
 CameraStatus SimulatedCamera::read(DepthFrame& frame, double timeout) {
   if (options_.clock && !wait_for_frame(timeout)) return CameraStatus::waiting;
   while (!arrives(next_)) ++next_;
-  if (options_.frames > 0 && next_ >= static_cast<std::uint64_t>(options_.frames)) {
+  if (options_.frames > 0 && next_ - first_ >= static_cast<std::uint64_t>(options_.frames)) {
     return CameraStatus::ended;
   }
   fill(next_++, frame);

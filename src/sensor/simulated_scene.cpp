@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-Solid solid_at(const MovingSolid& moving, double t) {
+Solid solid_at(const SimulatedSolid& moving, double t) {
   Solid solid = moving.solid;
   solid.T_world_solid = moved(solid.T_world_solid, moving.motion, t);
   return solid;
@@ -13,13 +13,13 @@ Solid solid_at(const MovingSolid& moving, double t) {
 
 struct Nearest {
   Distance distance;
-  const MovingSolid* solid = nullptr;
+  const SimulatedSolid* solid = nullptr;
 };
 
 Nearest nearest_solid(const SimulatedScene& scene, const Eigen::Vector3d& x, double t) {
   Nearest nearest;
   nearest.distance.value = std::numeric_limits<double>::infinity();
-  for (const MovingSolid& moving : scene.solids) {
+  for (const SimulatedSolid& moving : scene.solids) {
     const Distance found = distance_and_normal(solid_at(moving, t), x);
     if (found.value < nearest.distance.value) nearest = {found, &moving};
   }
@@ -31,7 +31,7 @@ Nearest nearest_solid(const SimulatedScene& scene, const Eigen::Vector3d& x, dou
 std::vector<Solid> solids_at(const SimulatedScene& scene, double t) {
   std::vector<Solid> solids;
   solids.reserve(scene.solids.size());
-  for (const MovingSolid& moving : scene.solids) solids.push_back(solid_at(moving, t));
+  for (const SimulatedSolid& moving : scene.solids) solids.push_back(solid_at(moving, t));
   return solids;
 }
 
@@ -40,11 +40,9 @@ Distance distance_and_normal(const SimulatedScene& scene, const Eigen::Vector3d&
 }
 
 Eigen::Vector3d surface_velocity(const SimulatedScene& scene, const Eigen::Vector3d& x, double t) {
-  const MovingSolid* solid = nearest_solid(scene, x, t).solid;
+  const SimulatedSolid* solid = nearest_solid(scene, x, t).solid;
   if (!solid) return Eigen::Vector3d::Zero();
-  const Twist speed = twist(solid->motion, t);
-  const Eigen::Vector3d origin = moved(solid->solid.T_world_solid, solid->motion, t).translation();
-  return speed.linear + speed.angular.cross(x - origin);
+  return velocity(solid->solid.T_world_solid, solid->motion, x, t);
 }
 
 }  // namespace palpate

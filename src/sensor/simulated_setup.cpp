@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/simulated_table.hpp"
+#include "sensor/simulated_keys.hpp"
 
 namespace palpate {
 namespace {
@@ -16,6 +16,9 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
+// All scenes are where they were after so long: cameras that are opened one after the other see
+// one world, s.
+constexpr double kPeriod = 20;
 constexpr double kDegree = std::numbers::pi / 180;
 
 SimulatedSetup still() {
@@ -29,7 +32,7 @@ SimulatedSetup still() {
 // The sphere goes to and fro at up to 19 mm/s.
 SimulatedSetup table() {
   SimulatedSetup setup = still();
-  Motion& motion = setup.scene.solids[kSphere].motion;
+  SimulatedMotion& motion = setup.scene.solids[kSphere].motion;
   motion.swing = Vector3d(0, 0.03, 0);
   motion.frequency = 0.1;
   return setup;
@@ -46,7 +49,7 @@ SimulatedSetup turned(double angle) {
 // 5 cm/s to the side and 10 degrees a second at most.
 SimulatedSetup wandering() {
   SimulatedSetup setup = still();
-  Motion& motion = setup.camera.motion;
+  SimulatedMotion& motion = setup.camera.motion;
   motion.frequency = 0.25;
   const double rate = 2 * std::numbers::pi * motion.frequency;
   motion.swing = Vector3d(0, 0.05 / rate, 0);
@@ -62,7 +65,7 @@ SimulatedSetup approach() {
   wall.translation() = Vector3d(0, 0, 0.9);
   Isometry3d middle = Isometry3d::Identity();
   middle.translation() = Vector3d(0.15, 0, 0.8);
-  Motion motion;
+  SimulatedMotion motion;
   motion.frequency = 0.1;
   motion.swing = Vector3d(0, 0, -0.05 / (2 * std::numbers::pi * motion.frequency));
   setup.scene.solids = {{{SolidKind::half_space, wall, Vector3d::Zero()}, motion},
@@ -90,60 +93,6 @@ std::string known_names() {
   std::string text;
   for (const Named& named : kNamed) text += (text.empty() ? "" : ", ") + std::string(named.name);
   return text;
-}
-
-double number(const std::string& key, const std::string& text) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || !std::isfinite(value)) {
-    throw Error(fmt::format("simulated camera: '{}' is no value for {}; give a number", text, key));
-  }
-  return value;
-}
-
-int whole(const std::string& key, const std::string& text) {
-  const double value = number(key, text);
-  if (value != std::floor(value) || value < 0 || value > 1e6) {
-    throw Error(
-        fmt::format("simulated camera: {}={} is not a whole number from 0 to 1000000", key, text));
-  }
-  return static_cast<int>(value);
-}
-
-NoiseKind noise_kind(const std::string& text) {
-  if (text == "none") return NoiseKind::none;
-  if (text == "a") return NoiseKind::independent;
-  if (text == "b") return NoiseKind::blurred;
-  if (text == "c") return NoiseKind::quantised;
-  throw Error(fmt::format("simulated camera: there is no noise '{}'; take none, a, b or c", text));
-}
-
-void set(SimulatedCameraOptions& camera, const std::string& key, const std::string& text) {
-  if (key == "noise") {
-    camera.noise.kind = noise_kind(text);
-  } else if (key == "seed") {
-    camera.noise.seed = static_cast<std::uint64_t>(whole(key, text));
-  } else if (key == "silhouettes") {
-    camera.noise.silhouettes = whole(key, text) != 0;
-  } else if (key == "rate") {
-    camera.rate = number(key, text);
-  } else if (key == "phase") {
-    camera.phase = number(key, text);
-  } else if (key == "jitter") {
-    camera.jitter = number(key, text);
-  } else if (key == "dropped") {
-    camera.dropped = number(key, text);
-  } else if (key == "frames") {
-    camera.frames = whole(key, text);
-  } else if (key == "loop") {
-    camera.loop = whole(key, text);
-  } else {
-    throw Error(
-        fmt::format("a simulated camera has no '{}'; keys are noise, seed, silhouettes, "
-                    "rate, phase, jitter, dropped, frames, loop",
-                    key));
-  }
 }
 
 std::vector<std::string> parts_of(const std::string& text) {
@@ -181,13 +130,8 @@ std::unique_ptr<SimulatedCamera> open_simulated(const std::string& specification
   const std::vector<std::string> parts = parts_of(specification);
   SimulatedSetup setup = make_simulated_setup(parts[0].empty() ? "table" : parts[0]);
   setup.camera.clock = clock;
-  for (std::size_t i = 1; i < parts.size(); ++i) {
-    const std::size_t equals = parts[i].find('=');
-    if (equals == std::string::npos) {
-      throw Error(fmt::format("simulated camera: '{}' is not KEY=VALUE", parts[i]));
-    }
-    set(setup.camera, parts[i].substr(0, equals), parts[i].substr(equals + 1));
-  }
+  if (clock) setup.camera.start = kPeriod * std::floor(clock->now() / kPeriod);
+  for (std::size_t i = 1; i < parts.size(); ++i) set_simulated(setup, parts[i]);
   return std::make_unique<SimulatedCamera>(std::move(setup.scene), setup.camera);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <numbers>
 
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/simulated_setup.hpp"
@@ -189,6 +190,42 @@ TEST(SimulatedSetup, OpensEveryNamedSceneAndReadsItsKeys) {
   }
   EXPECT_EQ(open_simulated("", nullptr)->info().name, "simulated:table");
   EXPECT_EQ(open_simulated("still,rate=60", nullptr)->info().rate, 60);
+}
+
+TEST(SimulatedSetup, ShowsOneWorldToCamerasOfOneClock) {
+  FakeClock clock(1007.3, 1e-3);
+  const auto one = open_simulated("table,view=40,noise=none,width=80", &clock);
+  clock.set(1013.7);
+  const auto two = open_simulated("table,view=40,noise=none,width=80", &clock);
+  DepthFrame first;
+  DepthFrame second;
+  clock.set(1013.9);
+  ASSERT_EQ(one->read(first, 1), CameraStatus::frame);
+  clock.set(1013.9);
+  ASSERT_EQ(two->read(second, 1), CameraStatus::frame);
+  EXPECT_EQ(first.stamp, second.stamp);
+  EXPECT_EQ(first.depth, second.depth);
+  EXPECT_EQ(one->scene().solids.size(), two->scene().solids.size());
+}
+
+TEST(SimulatedSetup, TurnsShrinksAndMisleads) {
+  const auto plain = open_simulated("still,noise=none", nullptr);
+  const auto other =
+      open_simulated("still,noise=none,view=40,width=160,seed=5,error=0.003", nullptr);
+  DepthFrame a;
+  DepthFrame b;
+  ASSERT_EQ(plain->read(a, 0), CameraStatus::frame);
+  ASSERT_EQ(other->read(b, 0), CameraStatus::frame);
+  EXPECT_EQ(b.camera.width, 160);
+  EXPECT_EQ(b.camera.height, 120);
+  EXPECT_NEAR(b.camera.pinhole.cx, 79.5, 1e-12);
+  EXPECT_NEAR(b.camera.pinhole.fx, 525 / 4.0, 1e-12);
+  const Eigen::Isometry3d turn(
+      Eigen::AngleAxisd(40 * std::numbers::pi / 180, Eigen::Vector3d::UnitZ()));
+  EXPECT_TRUE(other->true_pose(0).isApprox(turn * plain->true_pose(0), 1e-12));
+  const Eigen::Isometry3d error = other->true_pose(0).inverse() * *b.T_world_sensor;
+  EXPECT_NEAR(error.translation().norm(), 0.003, 1e-12);
+  EXPECT_NEAR(Eigen::AngleAxisd(error.rotation()).angle() * 180 / std::numbers::pi, 0.5, 1e-6);
 }
 
 TEST(SimulatedSetup, SaysWhatItDoesNotKnow) {

@@ -17,13 +17,13 @@ struct SimulatedCameraOptions {
   std::string name = "simulated";
   CameraModel camera = {640, 480, {525, 525, 319.5, 239.5}, {}};
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  Motion motion = {};  ///< of the camera
+  SimulatedMotion motion = {};  ///< of the camera
   SimulatedNoiseOptions noise = {};
   double rate = 30;       ///< frames a second, Hz
   double phase = 0;       ///< frame k is taken at start + phase + k / rate + jitter, s
   double jitter = 0;      ///< frames are taken so much too early or too late at most, s
   double dropped = 0;     ///< share of frames that never arrive, 0-1
-  int frames = 0;         ///< after so many it has ended; 0: never
+  int frames = 0;         ///< after so many, lost ones too, it has ended; 0: never
   int loop = 0;           ///< > 0: so many frames are made beforehand, then shown over and over
   bool tell_pose = true;  ///< frames carry their pose
   /// Calibration error: the pose that is told is the true one times this.
@@ -65,6 +65,7 @@ class SimulatedCamera final : public DepthCamera {
   DepthRenderer renderer_;
   SimulatedNoise noise_;
   double start_ = 0;
+  std::uint64_t first_ = 0;  // frame since the camera is open
   std::uint64_t next_ = 0;
   std::vector<float> exact_;
   std::vector<std::vector<float>> loop_;

@@ -7,7 +7,7 @@ namespace palpate {
 
 /// How a solid or a camera moves: a straight line and a turn between two times, and a sine of
 /// either, all added up. Turns are about the body's own origin.
-struct Motion {
+struct SimulatedMotion {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();       ///< m/s, from `begin` to `end`
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();          ///< of turns, world frame, unit
   double spin = 0;                                          ///< rad/s, from `begin` to `end`
@@ -19,18 +19,13 @@ struct Motion {
   double phase = 0;                                         ///< of both sines, rad
 };
 
-/// How fast a body moves: what is at x moves at linear + angular x (x - origin).
-struct Twist {
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero();   ///< of the body's origin, m/s, world
-  Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< rad/s, world
-};
-
 /// Where a body that is at `pose` when nothing of its motion has happened is at time t (s). The
 /// straight line and the turn count from t = 0, or from `begin` where that is finite.
-[[nodiscard]] Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Motion& motion,
+[[nodiscard]] Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const SimulatedMotion& motion,
                                       double t);
 
-/// At time t; zero for the line and the turn outside of begin ... end.
-[[nodiscard]] Twist twist(const Motion& motion, double t);
+/// How fast that body moves at time t where x is, m/s, world.
+[[nodiscard]] Eigen::Vector3d velocity(const Eigen::Isometry3d& pose, const SimulatedMotion& motion,
+                                       const Eigen::Vector3d& x, double t);
 
 }  // namespace palpate

@@ -8,15 +8,15 @@
 
 namespace palpate {
 
-struct MovingSolid {
+struct SimulatedSolid {
   Solid solid;
-  Motion motion = {};
+  SimulatedMotion motion = {};
 };
 
 /// Solids that move in known ways: what a simulated camera sees, and the truth that what is felt of
 /// it is measured against. World frame; may be read by several threads.
 struct SimulatedScene {
-  std::vector<MovingSolid> solids;
+  std::vector<SimulatedSolid> solids;
 };
 
 /// The solids where they are at time t (s).
