@@ -2,13 +2,22 @@
 # What takes longer than scripts/test.sh: Debug and TSan builds with every test, a minute of fuzzing a
 # target and, for root, the trial of both README commands in a fresh Debian root.
 #
-# --no-fresh-root leaves the last out.
+# --no-fresh-root leaves the last out. --soak does another thing instead: ten minutes of touching two
+# cameras in real time while other load rises and falls; no memory may leak and no step be a fault.
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
 fresh=yes
 if [ "${1:-}" = --no-fresh-root ]; then fresh=no; fi
 started=$SECONDS
 status=0
+
+if [ "${1:-}" = --soak ]; then
+  need_packages build
+  configure release
+  build release palpate_app
+  say "soak, 10 minutes"
+  exec scripts/soak.py build/release/apps/palpate/palpate 600
+fi
 
 say "packages"
 need_packages build cameras test fuzz lint

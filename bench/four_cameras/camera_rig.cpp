@@ -1,0 +1,68 @@
+#include "four_cameras/camera_rig.hpp"
+
+#include <fmt/format.h>
+
+#include "palpate/base/error.hpp"
+#include "palpate/device/exploration.hpp"
+#include "palpate/sensor/simulated_setup.hpp"
+
+namespace palpate::four_cameras {
+
+namespace {
+
+constexpr int kLoop = 32;        // frames
+constexpr double kRate = 30;     // Hz
+constexpr double kApart = 0.05;  // m from the middle of the four to each
+constexpr double kPatch = 0.15;  // that the hand explores, m
+constexpr double kDepth = 3e-3;  // m
+
+SimulatedCameraOptions options_of(const SimulatedSetup& setup, int k, const Clock& clock) {
+  SimulatedCameraOptions options = setup.camera;
+  options.name = fmt::format("camera {}", k + 1);
+  const Eigen::Vector3d aside((k & 1) == 0 ? kApart : -kApart, (k & 2) == 0 ? kApart : -kApart, 0);
+  options.T_world_camera = options.T_world_camera * Eigen::Translation3d(aside);
+  options.noise.seed = static_cast<std::uint64_t>(k + 1);
+  options.rate = kRate;
+  options.phase = k / (kRate * kCameras);
+  options.loop = kLoop;
+  options.clock = &clock;
+  options.start.reset();
+  return options;
+}
+
+}  // namespace
+
+CameraRig::CameraRig(const Clock& clock) {
+  const SimulatedSetup setup = make_simulated_setup("table");
+  for (int k = 0; k < kCameras; ++k) {
+    cameras_.push_back(std::make_unique<SimulatedCamera>(setup.scene, options_of(setup, k, clock)));
+  }
+}
+
+void CameraRig::add_sources(Scene& scene) {
+  for (int k = 0; k < kCameras; ++k) scene.add(fmt::format("camera {}", k + 1));
+}
+
+void CameraRig::show_once(Scene& scene) {
+  DepthFrame frame;
+  for (int k = 0; k < kCameras; ++k) {
+    int tries = 0;
+    while (camera(k).read(frame, 0.1) != CameraStatus::frame) {
+      if (++tries == 100) throw Error(fmt::format("camera {} gives no frame", k + 1));
+    }
+    scene.source(static_cast<std::size_t>(k)).push(frame, [] { return 0.0; });
+    scene.source(static_cast<std::size_t>(k)).keep();
+  }
+}
+
+Trajectory hand_over(const Scene& scene, double seconds) {
+  const auto points = scene.source(0).points();
+  ExplorationOptions options;
+  options.duration = seconds;
+  options.radius = points->radius;
+  options.depth = kDepth;
+  options.patch = kPatch;
+  return explore({points->origin, points->grid.points(), points->normals}, options);
+}
+
+}  // namespace palpate::four_cameras

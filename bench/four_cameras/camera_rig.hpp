@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "palpate/geometry/trajectory.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/sensor/simulated_camera.hpp"
+#include "palpate/servo/waiting_clock.hpp"
+
+namespace palpate::four_cameras {
+
+constexpr int kCameras = 4;
+
+/// Four simulated cameras at 30 Hz, out of step with each other, that look at the same table from
+/// places 10 cm apart. Their frames, 32 each, are made at once and shown over and over, so that
+/// making them costs nothing later.
+class CameraRig {
+ public:
+  explicit CameraRig(const Clock& clock);
+
+  [[nodiscard]] SimulatedCamera& camera(int k) { return *cameras_[static_cast<std::size_t>(k)]; }
+
+  /// Sources for the four, in this order.
+  static void add_sources(Scene& scene);
+
+  /// Shows every source of `scene` one frame; it stands still then.
+  void show_once(Scene& scene);
+
+ private:
+  std::vector<std::unique_ptr<SimulatedCamera>> cameras_;
+};
+
+/// A hand that explores what `scene` shows for `seconds`, always in the same way.
+[[nodiscard]] Trajectory hand_over(const Scene& scene, double seconds);
+
+}  // namespace palpate::four_cameras

@@ -1,0 +1,161 @@
+#include "four_cameras/servo_run.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <thread>
+
+#include "palpate/device/paced.hpp"
+#include "palpate/device/scripted.hpp"
+#include "palpate/sensor/stream.hpp"
+#include "palpate/servo/servo_thread.hpp"
+
+namespace palpate::four_cameras {
+
+namespace {
+
+constexpr double kRate = 1000;     // Hz
+constexpr double kLongest = 3600;  // s; a moving surface moves all the while
+constexpr float kShift = 1e-4F;    // m, over that time
+constexpr double kWarm = 1;        // s that cameras run before the servo does, in every run
+
+class LentCamera final : public DepthCamera {
+ public:
+  explicit LentCamera(DepthCamera& camera) : camera_(camera) {}
+  [[nodiscard]] const CameraInfo& info() const noexcept override { return camera_.info(); }
+  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override {
+    return camera_.read(frame, timeout);
+  }
+  [[nodiscard]] std::string reason() const override { return camera_.reason(); }
+
+ private:
+  DepthCamera& camera_;
+};
+
+// Counts how often its thread slept. Every step of a paced servo waits for the clock once, at most.
+class CountingDevice final : public Device {
+ public:
+  explicit CountingDevice(Device& device) : device_(device) {}
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_.info(); }
+  [[nodiscard]] DeviceState read() noexcept override {
+    rusage usage{};
+    getrusage(RUSAGE_THREAD, &usage);
+    if (reads_ == 0) first_ = usage.ru_nvcsw;
+    slept_ = usage.ru_nvcsw - first_;
+    ++reads_;
+    return device_.read();
+  }
+  void write(const Eigen::Vector3d& force) noexcept override { device_.write(force); }
+  [[nodiscard]] std::string reason() const override { return device_.reason(); }
+  [[nodiscard]] std::int64_t other_waits() const {
+    return std::max<std::int64_t>(slept_ - (reads_ - 1), 0);
+  }
+
+ private:
+  Device& device_;
+  std::int64_t reads_ = 0;
+  std::int64_t first_ = 0;
+  std::int64_t slept_ = 0;
+};
+
+// Frames of one camera that became touchable: when they were taken, and from when on they are felt.
+struct Lane {
+  Source* source = nullptr;
+  std::vector<std::array<double, 2>> felt;
+  std::optional<Stream> stream;
+
+  void take(const DepthFrame& frame, const StartTime& start) {
+    double from = 0;
+    source->push(frame, [&] { return from = start(); });
+    felt.push_back({from, frame.stamp});
+  }
+};
+
+std::deque<Lane> start_cameras(CameraRig& rig, Scene& scene, const Clock& clock) {
+  std::deque<Lane> lanes(kCameras);
+  for (int k = 0; k < kCameras; ++k) {
+    Lane& lane = lanes[static_cast<std::size_t>(k)];
+    lane.source = &scene.source(static_cast<std::size_t>(k));
+    lane.stream.emplace(
+        std::make_unique<LentCamera>(rig.camera(k)), lane.source->name(),
+        [&lane](const DepthFrame& frame, const StartTime& start) { lane.take(frame, start); },
+        clock);
+  }
+  return lanes;
+}
+
+void set_in_motion(Scene& scene, double now) {
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    auto points = std::make_shared<SurfacePoints>(*scene.source(i).points());
+    points->end_positions.assign(points->grid.points().begin(), points->grid.points().end());
+    for (auto& position : points->end_positions) position.z() += kShift;
+    points->end_normals = points->normals;
+    points->end_density_weights = points->density_weights;
+    finish(*points);
+    auto snapshot = std::make_unique<Snapshot>();
+    snapshot->start = now;
+    snapshot->end = now + kLongest;
+    snapshot->layers.push_back({.points = std::move(points)});
+    scene.source(i).publish(std::move(snapshot));
+  }
+}
+
+std::vector<double> ages(const std::deque<Lane>& lanes, double start, double end) {
+  std::vector<double> all;
+  for (const Lane& lane : lanes) {
+    std::size_t next = 0;
+    for (double t = start; t < end; t += 1 / kRate) {
+      while (next < lane.felt.size() && lane.felt[next][0] <= t) ++next;
+      if (next > 0) all.push_back(t - lane.felt[next - 1][1]);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+RunResult run_servo(CameraRig& rig, const Trajectory& hand, Beside beside, WaitingClock& clock) {
+  Scene scene;
+  CameraRig::add_sources(scene);
+  ScriptedDevice script(hand);
+  PacedDevice paced(script, clock);
+  CountingDevice device(paced);
+  StepQueue steps(1 << 17);
+  ServoOptions options;
+  options.steps = &steps;
+  std::deque<Lane> lanes = start_cameras(rig, scene, clock);
+  clock.wait_until(clock.now() + kWarm);
+  if (beside != Beside::cameras) {
+    lanes.clear();
+    for (std::size_t i = 0; i < scene.size(); ++i) scene.source(i).keep();
+  }
+  if (beside == Beside::moving) set_in_motion(scene, clock.now());
+  Servo servo(device, scene, options);
+  RunResult result;
+  const double start = clock.now();
+  {
+    const ServoThread thread(servo, clock, {.rate = kRate});
+    result.realtime = thread.realtime();
+    while (thread.running()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      while (const std::optional<ServoState> state = steps.pop()) {
+        result.touching += state->contact.touching ? 1 : 0;
+      }
+    }
+    result.skipped = thread.skipped();
+  }
+  result.ages = ages(lanes, start, clock.now());
+  for (const Lane& lane : lanes) result.streams.push_back(lane.stream->state());
+  lanes.clear();
+  result.computing = servo.computing();
+  result.lateness = servo.lateness();
+  result.steps = servo.state().step;
+  result.faults = servo.state().guard.counts.faults;
+  result.lock_waits = device.other_waits();
+  return result;
+}
+
+}  // namespace palpate::four_cameras
