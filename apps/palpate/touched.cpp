@@ -87,6 +87,21 @@ void push_alone(Source& source, const DepthFrame& frame, TouchedSource& result) 
   result.state = source.state();
 }
 
+// Sensors that match patterns put false matches far behind everything; a true surface that far has
+// too few and too coarse points to be touched.
+void believe_no_farther(const DepthFrame& frame, DepthFilterOptions& options) {
+  constexpr double kFarBeyond = 10;  // times the median depth
+  std::vector<float> depths;
+  for (const float z : frame.depth) {
+    if (z > 0) depths.push_back(z);
+  }
+  if (depths.empty()) return;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  const double farthest = kFarBeyond * static_cast<double>(*middle);
+  if (farthest > options.nearest) options.farthest = std::min(options.farthest, farthest);
+}
+
 void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSource& chosen,
                      TouchedSource& result) {
   if (wants_material(options)) refuse_material(chosen.argument);
@@ -97,6 +112,7 @@ void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSour
   result.format = fmt::format("depth image, {} x {}", frame.camera.width, frame.camera.height);
   result.depth_image = true;
   result.options.policy.fit_everywhere = true;
+  believe_no_farther(frame, result.options.depth);
   const Waiting waiting(fmt::format("preparing {}", chosen.argument.name));
   const auto start = WallClock::now();
   push_alone(scene.add(chosen.argument.name, result.options), frame, result);
@@ -109,6 +125,7 @@ void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& cho
   result.camera = open_live(chosen, clock);
   result.first = first_frame(*result.camera);
   result.as_cloud = taken_as_cloud(options, chosen);
+  believe_no_farther(result.first, result.options.depth);
   Source& source = scene.add(chosen.argument.name, result.options);
   if (explored) push_alone(source, result.first, result);
 }
