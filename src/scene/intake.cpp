@@ -31,6 +31,16 @@ void check(const PolicyOptions& options) {
   }
 }
 
+/// A filtered frame as a cloud, seen from its origin.
+PointCloud points_of(const FilteredDepth& depth) {
+  PointCloud cloud;
+  cloud.viewpoint = Eigen::Vector3d::Zero();
+  for (std::size_t b = 0; b < depth.size(); ++b) {
+    if (depth.states[b] != BlockState::empty) cloud.positions.push_back(depth.positions[b]);
+  }
+  return cloud;
+}
+
 double time_of(const char* what, double time) {
   if (std::isfinite(time)) return time;
   throw Error(fmt::format("the {} of a frame or cloud is {}; give seconds", what, time));
@@ -64,12 +74,16 @@ std::shared_ptr<const Snapshot> Intake::take(const DepthFrame& frame, const Arri
                                    ? filter_.filter(frame, arrival.T_world_sensor)
                                    : filter_.filter(frame, arrival.T_world_sensor, arrival.reach);
   note_noise(depth);
+  if (frames_ == Policy::fusion) {
+    fusion_.add(points_of(depth), arrival.T_world_sensor);
+    return fused(next_moment(frame.stamp, arrival.start));
+  }
   const MorphInput input{depth, frame.camera.pinhole, arrival.reach, everywhere};
+  morph_.look(input);
   const Moment moment = next_moment(frame.stamp, arrival.start);
-  const bool morphs = frames_ == Policy::morph;
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, frames_);
   std::shared_ptr<SurfacePoints> points = points_.take();
-  if (morphs) {
+  if (frames_ == Policy::morph) {
     morph_.fill(input, moment, points);
     snapshot->layers.push_back({std::move(points), 1, 1});
   } else {
@@ -91,23 +105,26 @@ std::shared_ptr<const Snapshot> Intake::take(const PointCloud& cloud, double sta
   const PointCloud clipped = clips ? within_reach(cloud, arrival) : PointCloud();
   const PointCloud& wanted = clips ? clipped : cloud;
   if (clips && wanted.empty()) return nullptr;
+  if (clouds_ == Policy::fusion) {
+    fusion_.add(wanted, arrival.T_world_sensor);
+    report = fusion_.report();
+    return fused(next_moment(stamp, arrival.start));
+  }
+  Prepared prepared = prepare(wanted, options_.prepare, arrival.T_world_sensor);
+  report = prepared.report;
   std::shared_ptr<SurfacePoints> points = points_.take();
-  Moment moment;
-  if (clouds_ == Policy::fusion) {
-    moment = next_moment(stamp, arrival.start);
-    *points = fusion_.add(wanted, arrival.T_world_sensor, moment, report);
-  } else {
-    Prepared prepared = prepare(wanted, options_.prepare, arrival.T_world_sensor);
-    *points = std::move(prepared.points);
-    report = prepared.report;
-    moment = next_moment(stamp, arrival.start);
-  }
+  *points = std::move(prepared.points);
+  const Moment moment = next_moment(stamp, arrival.start);
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
-  if (clouds_ == Policy::fusion) {
-    snapshot->layers.push_back({std::move(points), 1, 1});
-  } else {
-    layers_.add(std::move(points), moment, snapshot->layers);
-  }
+  layers_.add(std::move(points), moment, snapshot->layers);
+  return snapshot;
+}
+
+std::shared_ptr<const Snapshot> Intake::fused(const Moment& moment) {
+  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, Policy::fusion);
+  std::shared_ptr<SurfacePoints> points = points_.take();
+  *points = fusion_.surface(moment);
+  snapshot->layers.push_back({std::move(points), 1, 1});
   return snapshot;
 }
 
@@ -132,6 +149,7 @@ std::shared_ptr<Snapshot> Intake::next_snapshot(const Moment& moment, Policy pol
   s.silent_from =
       moment.start + std::max(options_.policy.silence, kSilentIntervals * moment.duration);
   s.fade = fade;
+  s.interval = moment.duration;
   s.stamp = moment.stamp;
   s.sequence = last_.sequence + 1;
   last_ = s;

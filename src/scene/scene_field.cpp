@@ -1,5 +1,6 @@
 #include "palpate/scene/scene_field.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -91,6 +92,7 @@ struct SceneField::State {
   std::size_t layer_count = 0;
   double typical_radius = 0;  // of the layers
   double snapshot_duration = 0;
+  double frame_interval = 0;  // the longest of any source
   double uniform_radius = 0;  // R of all points; 0: each has its own
   double now = 0;
   bool other_kernel = false;
@@ -107,6 +109,7 @@ struct SceneField::State {
 void SceneField::State::list_layers() noexcept {
   layer_count = 0;
   snapshot_duration = 0;
+  frame_interval = 0;
   other_kernel = false;
   plain_points = true;
   typical_radius = std::numeric_limits<double>::infinity();
@@ -114,6 +117,7 @@ void SceneField::State::list_layers() noexcept {
     const Snapshot* snapshot = views[s].current();
     if (!snapshot) continue;
     snapshot_duration = std::max(snapshot_duration, snapshot->end - snapshot->start);
+    frame_interval = std::max({frame_interval, snapshot->interval, snapshot_duration});
     for (std::size_t k = 0; k < snapshot->layers.size(); ++k) {
       const ActiveLayer layer = views[s].layer(k, static_cast<int>(s));
       if (layer.points->size() == 0) continue;  // a sensor that sees nothing
@@ -182,7 +186,7 @@ const Patch& SceneField::State::patch_at(const Ball& ball) const noexcept {
 
 /// Tells every source where the tool can be.
 void SceneField::State::publish_reach(const Vector3d& hip, const Vector3d& proxy) noexcept {
-  const Reach ball = reach.update(now, hip, proxy, snapshot_duration, kFelt * radius());
+  const Reach ball = reach.update(now, hip, proxy, frame_interval, kFelt * radius());
   for (std::size_t i = 0; i < views.size(); ++i) boards[i]->write(views[i].reader(), ball);
 }
 
@@ -237,11 +241,14 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
     result.source = 0;
     return result;
   }
-  const PatchSurface mean = mean_surface(state.surface, state.patch_at({x, 0}), x);
+  std::array<double, Scene::kMaxSources> presences{};
+  std::ranges::transform(state.views, presences.begin(), &SourceView::presence);
+  const PatchSurface mean = mean_surface(state.surface, state.patch_at({x, 0}), x,
+                                         std::span(presences).first(state.views.size()));
   if (mean.source < 0) return result;
   const SoftMaterial& soft = state.soft[static_cast<std::size_t>(mean.source)];
   result.source = mean.source;
-  result.presence = mean.presence * state.views[static_cast<std::size_t>(mean.source)].presence();
+  result.presence = mean.presence;
   result.velocity = mean.velocity;
   result.stiffness_factor = soft.stiffness_factor + mean.material * (1 - soft.stiffness_factor);
   result.friction_factor = soft.friction_factor + mean.material * (1 - soft.friction_factor);

@@ -17,8 +17,12 @@ constexpr double kPatience = 1;
 // follow it with a delay (EnergyTank::kTime, a fifth of this). s
 constexpr double kLinger = 0.1;
 
-// However late it is, a snapshot takes this share of its duration.
-constexpr double kLeastShare = 0.5;
+// In which its weights fade then, s.
+constexpr double kLeave = 0.3;
+
+// A late snapshot catches up within this share of its duration, and more the later it is.
+constexpr double kCatchUp = 0.25;
+constexpr double kCatchUpMore = 0.5;
 
 }  // namespace
 
@@ -37,19 +41,35 @@ SourceView::~SourceView() {
 bool SourceView::advance(double now) noexcept {
   const Snapshot* const snapshot_before = current_;
   const double progress_before = progress_;
+  const double share_before = share_;
   look(now);
   change_over(now);
+  move(now);
+  fade(now, now - shown_);
   shown_ = now;
-  progress_ = current_ ? progress_at(now) : 0;
-  presence_ = current_ ? palpate::presence(*current_, now) : 0;
-  if (presence_ > 0) sure_ = now;
-  const bool there_before = std::exchange(there_, current_ && now - sure_ <= kLinger);
-  return current_ != snapshot_before || progress_ != progress_before || there_ != there_before;
+  return current_ != snapshot_before || progress_ != progress_before || share_ != share_before;
 }
 
-double SourceView::progress_at(double now) const noexcept {
-  if (!(span_ > 0)) return now < begin_ ? 0 : 1;
-  return std::clamp((now - begin_) / span_, 0.0, 1.0);
+/// Where the points are. What was behind when it began closes up in a straight line.
+void SourceView::move(double now) noexcept {
+  progress_ = current_ ? progress(*current_, now) : 0;
+  const double duration = current_ ? current_->end - current_->start : 0;
+  rate_ = duration > 0 && progress_ > 0 && progress_ < 1 ? 1 / duration : 0;
+  const double left = 1 - (now - begun_) / catch_up_;
+  if (!(behind_ > 0) || left <= 0) return;
+  progress_ = std::max(0.0, progress_ - behind_ * std::min(left, 1.0));
+  if (progress_ < 1) rate_ += behind_ / catch_up_;
+}
+
+void SourceView::fade(double now, double dt) noexcept {
+  const double wanted = current_ ? palpate::presence(*current_, now) : 0;
+  const bool rises = current_ && share_ > 0 && wanted > presence_ && current_->fade > 0;
+  presence_ = rises ? std::min(wanted, presence_ + std::max(dt, 0.0) / current_->fade) : wanted;
+  faded_ = presence_ > 0 ? 0 : share_ > 0 ? faded_ + std::max(dt, 0.0) : faded_;
+  share_ = !current_       ? 0
+           : presence_ > 0 ? 1
+           : share_ > 0    ? std::clamp(1 - (faded_ - kLinger) / kLeave, 0.0, 1.0)
+                           : 0;
 }
 
 void SourceView::look(double now) noexcept {
@@ -70,23 +90,37 @@ void SourceView::forget() noexcept {
 
 void SourceView::change_over(double now) noexcept {
   if (!next_ || (current_ && now < next_->start)) return;
+  const Times before = current_ ? Times{current_->start, current_->end, current_->sequence}
+                                : Times{next_->start, next_->start, 0};
   handoff_->release(reader_, slot_);
   slot_ = 1 - slot_;
   current_ = next_;
   next_ = nullptr;
-  // One that was published after its start begins where the last surface was shown last, and makes
-  // up for the delay: it never begins on its way.
+  begin(before);
+}
+
+/// One that was published after its start begins where the surface is, and makes up for the delay.
+/// What moves is taken to go on as it did: of its way from A to B, the old surface has gone the
+/// part that it went since that start.
+void SourceView::begin(const Times& before) noexcept {
+  const bool same = before.sequence > 0 && before.sequence == current_->sequence;
+  if (same && before.start == current_->start) return;  // the one that was shown, kept on
+  begun_ = shown_;
+  behind_ = 0;
   const double duration = current_->end - current_->start;
-  begin_ = std::max(current_->start, shown_);
-  span_ = std::max(current_->end - begin_, kLeastShare * duration);
+  const double delay = shown_ - current_->start;
+  if (!(delay > 0) || !(duration > 0)) return;
+  const double span = before.end - before.start;
+  const double left = span > 0 ? std::clamp((before.end - current_->start) / span, 0.0, 1.0) : 0;
+  const double gone = span > 0 ? std::min(delay / span, left) / (1 + left) : 0;
+  behind_ = std::clamp(delay / duration - gone, 0.0, 1.0);
+  catch_up_ = duration * (kCatchUp + kCatchUpMore * behind_);
 }
 
 ActiveLayer SourceView::layer(std::size_t k, int source) const noexcept {
   const Layer& layer = current_->layers[k];
-  const bool under_way = progress_ > 0 && progress_ < 1;
-  return {layer.points.get(), source,
-          layer.weight_start + progress_ * (layer.weight_end - layer.weight_start), progress_,
-          under_way ? 1 / span_ : 0};
+  const double weight = layer.weight_start + progress_ * (layer.weight_end - layer.weight_start);
+  return {layer.points.get(), source, share_ * weight, progress_, rate_};
 }
 
 }  // namespace palpate

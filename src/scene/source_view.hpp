@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -22,39 +23,51 @@ class SourceView {
 
   /// Looks for a new snapshot and brings everything to time `now`, s, which is finite. True when
   /// that moved or changed the surface. A snapshot that waits for its start is replaced by a newer
-  /// one only when it starts unreasonably late.
+  /// one only when it starts unreasonably late; one that came after its start makes up for it.
   bool advance(double now) noexcept;
 
   /// nullptr: no surface now; one that has faded away is none.
-  [[nodiscard]] const Snapshot* current() const noexcept { return there_ ? current_ : nullptr; }
+  [[nodiscard]] const Snapshot* current() const noexcept { return share_ > 0 ? current_ : nullptr; }
 
-  /// How sure the current snapshot is now, 0-1; 0 without one.
+  /// How sure the current snapshot is now, 0-1; 0 without one. Rises no faster than it would fade.
   [[nodiscard]] double presence() const noexcept { return presence_; }
+
+  /// The current snapshot's k-th layer as it counts now. Once presence has come to 0 the weights
+  /// fade as well: what other sources see there goes over to them gradually.
+  [[nodiscard]] ActiveLayer layer(std::size_t k, int source) const noexcept;
 
   /// The reader's place at the source.
   [[nodiscard]] std::size_t reader() const noexcept { return reader_; }
 
-  /// The current snapshot's k-th layer as it counts now.
-  [[nodiscard]] ActiveLayer layer(std::size_t k, int source) const noexcept;
-
  private:
+  /// What is remembered of a snapshot that is let go.
+  struct Times {
+    double start = 0;
+    double end = 0;
+    std::uint64_t sequence = 0;
+  };
+
   void look(double now) noexcept;
   void forget() noexcept;
   void change_over(double now) noexcept;
-  [[nodiscard]] double progress_at(double now) const noexcept;
+  void begin(const Times& before) noexcept;
+  void move(double now) noexcept;
+  void fade(double now, double dt) noexcept;
 
   Handoff<Snapshot>* handoff_;
   std::size_t reader_;
   std::size_t slot_ = 0;  // that holds `current_`; the other holds `next_`
   const Snapshot* current_ = nullptr;
   const Snapshot* next_ = nullptr;
-  double begin_ = 0;  // when the current one began to be shown, s
-  double span_ = 0;   // and in which it comes to its end, s
-  double shown_ = -std::numeric_limits<double>::infinity();  // time of the last advance()
-  double sure_ = -std::numeric_limits<double>::infinity();   // when presence was last above 0, s
+  double shown_ = -std::numeric_limits<double>::infinity();  // time of the last advance(), s
+  double begun_ = 0;     // when the current one began to be shown, s
+  double behind_ = 0;    // how far its surface was behind then, in durations, ...
+  double catch_up_ = 1;  // ... and in which time it makes up for that, s
   double progress_ = 0;
+  double rate_ = 0;  // of progress, 1/s
   double presence_ = 0;
-  bool there_ = false;
+  double share_ = 0;  // of the weights
+  double faded_ = 0;  // time since presence came to 0, s
 };
 
 }  // namespace palpate

@@ -65,11 +65,10 @@ TEST(Fusion, AveragesNoiseAwayAndNeverSteps) {
 
 TEST(Fusion, WhatIsNoLongerSeenFadesAway) {
   Fusion fusion({});
-  PrepareReport report;
   const auto add = [&](int k, double height) {
     const double t = k * kFrame;
-    return fusion.add(noisy_sheet(static_cast<unsigned>(k), 1e-4, height),
-                      Eigen::Isometry3d::Identity(), {t, t, kFrame}, report);
+    fusion.add(noisy_sheet(static_cast<unsigned>(k), 1e-4, height), Eigen::Isometry3d::Identity());
+    return fusion.surface({t, t, kFrame});
   };
   for (int k = 0; k < 10; ++k) add(k, 0);
   SurfacePoints points = add(10, 0.1);
@@ -80,12 +79,27 @@ TEST(Fusion, WhatIsNoLongerSeenFadesAway) {
   for (const auto& p : points.grid.points()) EXPECT_GT(p.z() + points.origin.z(), 0.05);
 }
 
+TEST(Fusion, BadPointsDoNoHarm) {
+  Fusion fusion({});
+  fusion.add(noisy_sheet(0, 1e-4), Eigen::Isometry3d::Identity());
+  const std::size_t good = fusion.surface({0, 0, kFrame}).size();
+  PointCloud bad = noisy_sheet(1, 1e-4);
+  bad.positions[7] = {NAN, 0, 0};
+  bad.positions[8] = {0, INFINITY, 0};
+  bad.positions[9] = {0, 0, 1e30f};
+  for (int k = 1; k < 4; ++k) {
+    fusion.add(bad, Eigen::Isometry3d::Identity());
+    const SurfacePoints points = fusion.surface({k * kFrame, k * kFrame, kFrame});
+    check(points);
+    EXPECT_LT(points.size(), 3 * good / 2);
+  }
+}
+
 TEST(Fusion, GoesOnFromWhereTheSurfaceIs) {
   Fusion fusion({});
-  PrepareReport report;
   const auto add = [&](int k, double start) {
-    return fusion.add(noisy_sheet(static_cast<unsigned>(k), 5e-4), Eigen::Isometry3d::Identity(),
-                      {start, start, kFrame}, report);
+    fusion.add(noisy_sheet(static_cast<unsigned>(k), 5e-4), Eigen::Isometry3d::Identity());
+    return fusion.surface({start, start, kFrame});
   };
   for (int k = 0; k < 3; ++k) add(k, k * kFrame);
   const SurfacePoints before = add(3, 3 * kFrame);

@@ -32,6 +32,7 @@ class MorphTest : public testing::Test {
     // What the filter would say of jumps if it had seen the frame before.
     std::fill(depth.jumped.begin(), depth.jumped.end(), 0);
     points_ = std::make_shared<SurfacePoints>();
+    morph_.look({depth, frame.camera.pinhole});
     morph_.fill({depth, frame.camera.pinhole}, {stamp, stamp + lead_, kFrame}, points_);
     check(*points_);
     return *points_;
@@ -213,12 +214,40 @@ TEST_F(MorphTest, WhatAMovingCameraLeavesBehindIsHeldForAWhile) {
   for (std::size_t i = 0; i < points_->size(); ++i) EXPECT_GT(end(i).x(), -0.06);
 }
 
+TEST_F(MorphTest, ACameraThatGoesFarTakesItsOriginAlong) {
+  for (int k = 0; k < 20; ++k) {
+    T_world_sensor_.pretranslate(Vector3d(1, 0, 0));
+    show(k * kFrame, wall(0.5));
+    EXPECT_LT((points_->origin - T_world_sensor_.translation()).norm(), 17);
+    for (std::size_t i = 0; i < points_->size(); i += 50) {
+      EXPECT_NEAR(start(i).z(), 0, 1e-5);
+      EXPECT_NEAR(end(i).z(), 0, 1e-5);
+    }
+  }
+}
+
+TEST_F(MorphTest, PointsThatAreNoneAreLeftOut) {
+  const DepthFrame frame = frame_of(small_camera(), 0, wall(0.5));
+  DepthFilter filter;
+  FilteredDepth depth = filter.filter(frame, T_world_sensor_);
+  depth.positions[100].z() = -0.5f;
+  depth.positions[200].x() = NAN;
+  depth.normals[300].y() = INFINITY;
+  depth.spacings[400] = NAN;
+  points_ = std::make_shared<SurfacePoints>();
+  morph_.look({depth, frame.camera.pinhole});
+  morph_.fill({depth, frame.camera.pinhole}, {0, 0, kFrame}, points_);
+  check(*points_);
+  EXPECT_EQ(points_->size(), depth.size() - 4);
+}
+
 TEST_F(MorphTest, AnotherImageSizeStartsAnew) {
   show(0, wall(0.5));
   const DepthFrame frame = frame_of({80, 60, {190, 190, 39.5, 29.5}, {}}, kFrame, wall(0.5));
   DepthFilter filter;
   const FilteredDepth& depth = filter.filter(frame, T_world_sensor_);
   points_ = std::make_shared<SurfacePoints>();
+  morph_.look({depth, frame.camera.pinhole});
   morph_.fill({depth, frame.camera.pinhole}, {kFrame, kFrame, kFrame}, points_);
   EXPECT_EQ(coming(), points_->size());
 }

@@ -78,6 +78,14 @@ TEST(Push, ReplaceIsAHardSwap) {
   EXPECT_NEAR(height_at(field, 0.0101 + kFrame), 3e-3, 20e-6);
 }
 
+TEST(Push, FusionOfFramesIsARunningMean) {
+  Scene scene;
+  Source& source = scene.add("camera", depth_source(Policy::fusion));
+  SceneField field(scene);
+  for (int k = 0; k < 10; ++k) push(source, k * kFrame, 1e-3 * (k % 2));
+  EXPECT_NEAR(height_at(field, 0.01 + 10 * kFrame), 0.5e-3, 0.15e-3);
+}
+
 TEST(Push, CloudsCannotMorph) {
   Source source("cloud", depth_source(Policy::morph));
   PointCloud cloud;

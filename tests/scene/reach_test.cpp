@@ -106,6 +106,32 @@ TEST(Scene, FieldsTellSourcesWhereTheyFeel) {
   EXPECT_EQ(source.state().points, source.points()->size());
 }
 
+// A hand that moves at 0.5 m/s over clouds that come five times a second, each clipped to where it
+// can be: it never comes to their end.
+TEST(Scene, CloudsAreClippedToWhereTheHandCanBe) {
+  SourceOptions options;
+  options.policy.policy = Policy::average;
+  options.policy.history = 1;
+  options.policy.clip_to_reach = true;
+  Scene scene;
+  Source& source = scene.add("sensor", options);
+  SceneField field(scene);
+  PointCloud cloud;
+  cloud.viewpoint = Vector3d(0, 0, 1);
+  for (int i = -20; i <= 500; ++i) {
+    for (int j = -5; j <= 5; ++j) cloud.positions.push_back({4e-3f * i, 4e-3f * j, 0});
+  }
+  for (int tick = 0; tick < 1200; ++tick) {
+    const double now = 1e-3 * tick;
+    const Vector3d hand(0.5 * now, 0, 0);
+    field.update(now, hand, hand);
+    if (tick % 200 == 0) source.push(cloud, now, [=] { return now + 0.01; });
+    if (tick <= 250) continue;
+    EXPECT_GT(field.sample(hand, 1).support, 0.9) << now;
+  }
+  EXPECT_LT(source.state().points, cloud.size() * 3 / 4);
+}
+
 TEST(Scene, RefusesSourcesThatAFieldWouldNeverSee) {
   Scene scene;
   scene.add("early");

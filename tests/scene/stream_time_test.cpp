@@ -30,9 +30,10 @@ class StreamTimeTest : public testing::Test {
     return options;
   }
 
-  // A frame of a plane at `height` that is ready at `ready` and felt a little later.
-  void push(double stamp, double ready, double height) {
-    run_.at(ready, [=, this] {
+  // A frame of a plane at `height` that is ready at `ready` and felt a little later. From asking
+  // for the start to publishing `rest` passes.
+  void push(double stamp, double ready, double height, double rest = 0) {
+    run_.at(ready + rest, [=, this] {
       source_.push(frame_of(small_camera(), stamp, wall(0.5 - height)),
                    [=] { return ready + kLead; });
     });
@@ -81,6 +82,102 @@ TEST_F(StreamTimeTest, FramesThatComeEarlyAndLateMakeNoStep) {
   press(0.3, 1.95, 5e-3);
   EXPECT_EQ(lost_, 0);
   EXPECT_LT(step_, 2.5 * kStiffness * 0.02e-3) << "a hard swap makes steps of 0.33 N";
+}
+
+// The same when publishing takes longer than the lead.
+TEST_F(StreamTimeTest, FramesThatArePublishedLateMakeNoStep) {
+  for (const double rest : {0.004, 0.008, 0.012}) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> jitter(-0.015, 0.015);
+    Scene scene;
+    Source& source = scene.add("camera", options());
+    StreamRun run(scene);
+    double ready = 0;
+    for (int k = 0; k < 60; ++k) {
+      const double stamp = k * kFrame;
+      ready = std::max(ready + rest, stamp + 0.02 + jitter(random));
+      run.at(ready + rest, [=, &source] {
+        source.push(frame_of(small_camera(), stamp, wall(0.5 - 0.02 * stamp)),
+                    [=] { return ready + kLead; });
+      });
+    }
+    double last = 0;
+    double step = 0;
+    run.until(
+        1.95, [](double t) { return Vector3d(0, 0, t < 0.2 ? 0.03 : -5e-3); },
+        [&](double t, const Contact& contact) {
+          if (t > 0.3) step = std::max(step, std::abs(contact.force.z() - last));
+          last = contact.force.z();
+        });
+    EXPECT_LT(step, 3 * kStiffness * 0.02e-3) << rest;
+  }
+}
+
+// What is kept goes on from where it is, however late it is kept.
+TEST_F(StreamTimeTest, AKeptSurfaceStaysWhereItIs) {
+  for (const double late : {0.005, 0.05, 0.2}) {
+    Scene scene;
+    Source& source = scene.add("camera", options());
+    StreamRun run(scene);
+    for (int k = 0; k < 15; ++k) {
+      const double stamp = k * kFrame;
+      run.at(stamp, [=, &source] {
+        source.push(frame_of(small_camera(), stamp, wall(0.5 - 0.1 * stamp)),
+                    [=] { return stamp; });
+      });
+    }
+    run.at(14 * kFrame + late, [&] { source.keep(); });
+    double last = 0;
+    double step = 0;
+    run.until(
+        2, [](double t) { return Vector3d(0, 0, t < 0.1 ? 0.08 : 0.03); },
+        [&](double t, const Contact& contact) {
+          if (t > 0.45) step = std::max(step, std::abs(contact.force.z() - last));
+          last = contact.force.z();
+        });
+    EXPECT_LT(step, 1.6 * kStiffness * 0.1e-3) << late;
+    EXPECT_NEAR(last, kStiffness * (0.1 * 14 * kFrame - 0.03), 0.02) << "it does not fade";
+  }
+}
+
+// One that had begun to fade becomes sure again no faster than it fades.
+TEST_F(StreamTimeTest, ASurfaceThatIsKeptTooLateComesBackSlowly) {
+  for (int k = 0; k < 12; ++k) push(k * kFrame, k * kFrame, 0);
+  run_.at(0.9, [this] { source_.keep(); });
+  press(0.25, 1.8, 3e-3);
+  EXPECT_LT(least_, 1.2);
+  EXPECT_LT(step_, 0.01);
+}
+
+// What another camera sees stays as it is when one falls silent, 3 mm beside it.
+TEST_F(StreamTimeTest, ASilentSensorLeavesTheSurfaceToTheOthers) {
+  Source& other = scene_.add("other", options());
+  StreamRun run(scene_);
+  for (int k = 0; k < 70; ++k) {
+    const double stamp = k * kFrame;
+    run.at(stamp, [=, this, &other] {
+      const auto start = [=] { return stamp; };
+      if (k < 15) source_.push(frame_of(small_camera(), stamp, wall(0.497)), start);
+      other.push(frame_of(small_camera(), stamp, wall(0.5)), start);
+    });
+  }
+  double last = 0;
+  double step = 0;
+  double most = 0;
+  run.until(
+      2.2, [](double t) { return Vector3d(2e-3, 0, t < 0.1 ? 0.03 : -5e-3); },
+      [&](double t, const Contact& contact) {
+        if (t > 0.3) {
+          step = std::max(step, (contact.force.norm() - last));
+          step = std::max(step, (last - contact.force.norm()));
+          most = std::max(most, contact.force.norm());
+          EXPECT_GT(contact.force.norm(), 2.45) << t;
+        }
+        last = contact.force.norm();
+      });
+  EXPECT_NEAR(most, kStiffness * 6.5e-3, 0.1) << "between the two";
+  EXPECT_NEAR(last, kStiffness * 5e-3, 0.02) << "that of the other alone";
+  EXPECT_LT(step, 0.02);
 }
 
 TEST_F(StreamTimeTest, StampsThatAreIrregularMakeNoStepEither) {

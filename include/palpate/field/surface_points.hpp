@@ -38,7 +38,8 @@ struct SurfacePoints {
 
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for
 
-  std::vector<float> cell_reach;  ///< for each cell: the largest R_i plus way to go in it, m
+  std::vector<float> cell_reach;  ///< for each cell: how far its points reach out of its box
+                                  ///< on their way, m
   double radius = 0;              ///< a typical R (median), m
   double smallest_radius = 0;     ///< smallest R_i, m
 

@@ -50,7 +50,11 @@ class CellGrid {
   /// already, as those of a depth image do: `codes`, which never fall, say where on it, two bits a
   /// level. A cell's points agree in their leading bits; those that agree in all of them stay
   /// together, however many. Their order is kept. Allocates only to grow. Positions are finite.
-  void rebuild(std::span<const Eigen::Vector3f> positions, std::span<const std::uint32_t> codes);
+  ///
+  /// `ends`: where the points are going, empty when they stay: the cells' boxes hold both, so a
+  /// search finds what passes by on its way too. within() and nearest() see the positions alone.
+  void rebuild(std::span<const Eigen::Vector3f> positions, std::span<const std::uint32_t> codes,
+               std::span<const Eigen::Vector3f> ends = {});
 
   [[nodiscard]] std::size_t size() const { return points_.size(); }
   [[nodiscard]] std::span<const Cell> cells() const { return cells_; }
@@ -71,6 +75,7 @@ class CellGrid {
 
  private:
   void divide(std::size_t cell, std::span<const std::uint32_t> codes);
+  void stretch_boxes(std::span<const Eigen::Vector3f> ends);
 
   std::vector<Eigen::Vector3f> points_;
   std::vector<std::uint32_t> order_;

@@ -139,7 +139,9 @@ class Handoff {
  private:
   static constexpr int kTries = 4;
   static constexpr std::size_t kCacheLine = 64;
-  static constexpr std::size_t kMostValues = kReaders * kHeld + 2;  // one is being published
+  // What readers hold, the newest and one that is being published; and a reader that changes a slot
+  // while it is being looked at may keep two values by it.
+  static constexpr std::size_t kMostValues = kReaders * kHeld + kReaders + 2;
 
   using Values = std::array<std::shared_ptr<const T>, kMostValues>;
 

@@ -31,6 +31,7 @@ struct Snapshot {
   /// to publish for a silent sensor's surface to fade away. Infinite: never.
   double silent_from = std::numeric_limits<double>::infinity();
   double fade = 0.5;           ///< s
+  double interval = 0;         ///< time between its source's frames, s; 0: nothing follows
   double stamp = 0;            ///< when the newest data in it was taken, s, same clock
   std::uint64_t sequence = 0;  ///< counts a source's snapshots
   std::vector<Layer> layers;

@@ -35,10 +35,12 @@ struct SourceOptions {
   DepthFilterOptions depth = {};  ///< for depth frames that are pushed
 };
 
-/// Asked once, when a pushed frame or cloud has been filtered: when its surface is to start being
-/// felt, s, on the clock that SceneField::update is given. Live: now plus a lead of 2 ms, in which
-/// the rest is done. In simulated time: the frame's stamp plus the latency. A start before that of
-/// the surface pushed last counts as the same.
+/// Asked once, when of a pushed frame or cloud all is done that can be done before: when its
+/// surface is to start being felt, s, on the clock that SceneField::update is given. Live: now plus
+/// a lead in which the rest is done (some ms for a depth frame); a surface that comes after its
+/// start all the same begins where the last one waits and catches up. In simulated time: the
+/// frame's stamp plus the latency. A start before that of the surface pushed last counts as the
+/// same.
 using StartTime = std::function<double()>;
 
 /// One sensor or file: its pose, and the newest snapshot of what it sees.

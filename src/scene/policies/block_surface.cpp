@@ -26,8 +26,12 @@ float weight(Kernel kernel, float q) {
   return s * s * (5 + 4 * s) * (1.0f / 9);
 }
 
+// Is there a point to build on? A filter that is fed garbage may put one behind the camera.
 bool present(const FilteredDepth& depth, std::size_t block) {
-  return depth.states[block] != BlockState::empty;
+  if (depth.states[block] == BlockState::empty || !(depth.positions[block].z() > 0)) return false;
+  const float all = depth.positions[block].sum() + depth.normals[block].sum() +
+                    depth.spacings[block] + depth.confidences[block];
+  return std::isfinite(all);
 }
 
 }  // namespace

@@ -4,16 +4,18 @@
 #include <cmath>
 #include <utility>
 
+#include "palpate/base/error.hpp"
 #include "palpate/geometry/filters.hpp"
 #include "prepare/count_weights.hpp"
 
 namespace palpate {
 namespace {
 
-constexpr int kMemory = 8;       // clouds
-constexpr double kParts = 16;    // of a point, to count running means of counts by
-constexpr double kFaded = 0.02;  // a voxel that counts less is gone
-constexpr double kSpacings = 2;  // leaf of a cloud that preparation would keep whole
+constexpr int kMemory = 8;           // clouds
+constexpr double kParts = 16;        // of a point, to count running means of counts by
+constexpr double kMostLeaves = 1e9;  // farther off, voxels have no number
+constexpr double kFaded = 0.02;      // a voxel that counts less is gone
+constexpr double kSpacings = 2;      // leaf of a cloud that preparation would keep whole
 
 struct Sum {
   Eigen::Vector3d total = Eigen::Vector3d::Zero();
@@ -22,21 +24,39 @@ struct Sum {
 
 }  // namespace
 
-SurfacePoints Fusion::add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor,
-                          const Moment& moment, PrepareReport& report) {
+void Fusion::add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor) {
+  const PointCloud clipped = prepare_.clip ? clip(cloud, *prepare_.clip) : cloud;
   if (leaf_ == 0) choose_leaf(cloud, T_world_sensor);
-  age(moment);
-  mix(prepare_.clip ? clip(cloud, *prepare_.clip) : cloud, T_world_sensor);
-  last_ = moment;
+  const std::vector<Eigen::Vector3d> points = usable(clipped, T_world_sensor);
+  if (points.empty() && voxels_.empty()) throw Error("no point of the cloud can be used");
+  mix(points);
   PrepareOptions options = prepare_;
   options.voxel = 0;
   options.clip.reset();
+  options.material_from_intensity = false;  // means have none
   options.viewpoint = T_world_sensor * prepare_.viewpoint.value_or(
                                            cloud.viewpoint.value_or(Eigen::Vector3d::Zero()));
-  const Prepared prepared = prepare(means(), options);
-  report = prepared.report;
-  show(prepared);
-  return place(prepared.points);
+  prepared_ = prepare(means(), options);
+}
+
+SurfacePoints Fusion::surface(const Moment& moment) {
+  age(moment);
+  last_ = moment;
+  show();
+  return place(prepared_.points);
+}
+
+/// In the world, relative to origin_.
+std::vector<Eigen::Vector3d> Fusion::usable(const PointCloud& cloud,
+                                            const Eigen::Isometry3d& T_world_sensor) const {
+  const double farthest = kMostLeaves * leaf_;
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d p = T_world_sensor * cloud.point(i) - origin_;
+    if (p.cwiseAbs().maxCoeff() < farthest && p.allFinite()) points.push_back(p);
+  }
+  return points;
 }
 
 void Fusion::choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor) {
@@ -45,7 +65,7 @@ void Fusion::choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_wor
   origin_ = T_world_sensor * cloud.origin;
 }
 
-/// Brings everything to the new start; what nobody fills any more and has faded away is dropped.
+/// Brings what is shown to the new start.
 void Fusion::age(const Moment& moment) {
   const auto u = static_cast<float>(progress(last_, moment.start));
   const auto between = [u](const auto& a, const auto& b) { return a + u * (b - a); };
@@ -57,34 +77,32 @@ void Fusion::age(const Moment& moment) {
     start.weight = between(start.weight, end.weight);
     start.radius = between(start.radius, end.radius);
     start.confidence = between(start.confidence, end.confidence);
-    voxel.filled = false;
   }
-  std::erase_if(voxels_, [](const auto& entry) {
-    return entry.second.occupancy < kFaded && entry.second.start.weight <= 0;
-  });
 }
 
-void Fusion::mix(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor) {
+/// What nobody has filled for long has faded away with the last snapshot, and is dropped.
+void Fusion::mix(const std::vector<Eigen::Vector3d>& points) {
   std::map<Key, Sum> sums;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3d p = T_world_sensor * cloud.point(i) - origin_;
+  for (const Eigen::Vector3d& p : points) {
     const Eigen::Vector3i cell = (p / leaf_).array().floor().cast<int>();
     Sum& sum = sums[{cell.x(), cell.y(), cell.z()}];
     sum.total += p;
     ++sum.count;
   }
+  for (auto& [key, voxel] : voxels_) {
+    if (!sums.contains(key)) voxel.occupancy *= 1 - 1.0 / kMemory;
+  }
   for (const auto& [key, sum] : sums) {
     Voxel& voxel = voxels_[key];
-    voxel.filled = true;
     voxel.clouds = std::min(voxel.clouds + 1, kMemory);
     const double share = 1.0 / voxel.clouds;
     voxel.sum += share * (sum.total - voxel.sum);
     voxel.count += share * (sum.count - voxel.count);
     voxel.occupancy += share * (1 - voxel.occupancy);
   }
-  for (auto& [key, voxel] : voxels_) {
-    if (!voxel.filled) voxel.occupancy *= 1 - 1.0 / kMemory;
-  }
+  std::erase_if(voxels_, [](const auto& entry) {
+    return entry.second.occupancy < kFaded && entry.second.end.weight <= 0;
+  });
 }
 
 PointCloud Fusion::means() const {
@@ -97,8 +115,8 @@ PointCloud Fusion::means() const {
 
 /// What preparation makes of the means is where the voxels' points go. Points that stand for many
 /// weigh more: a voxel that the surface only touches holds few, which lie off it.
-void Fusion::show(const Prepared& prepared) {
-  const SurfacePoints& ends = prepared.points;
+void Fusion::show() {
+  const SurfacePoints& ends = prepared_.points;
   std::vector<Voxel*> voxels;
   for (auto& [key, voxel] : voxels_) voxels.push_back(&voxel);
   std::vector<std::uint32_t> counts;

@@ -20,12 +20,20 @@ class Fusion {
  public:
   explicit Fusion(const PrepareOptions& prepare) : prepare_(prepare) {}
 
-  /// The surface after one more cloud, which is in the sensor's frame.
-  /// @throws Error as prepare() does.
-  [[nodiscard]] SurfacePoints add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor,
-                                  const Moment& moment, PrepareReport& report);
+  /// Mixes one more cloud in, which is in the sensor's frame. Points that are not finite, or lie
+  /// farther off than voxels can be counted, are left out.
+  /// @throws Error as prepare() does; then nothing has changed.
+  void add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor);
 
-  void forget() { voxels_.clear(); }
+  /// The surface from that cloud on.
+  [[nodiscard]] SurfacePoints surface(const Moment& moment);
+
+  [[nodiscard]] const PrepareReport& report() const { return prepared_.report; }
+
+  /// Nothing is shown any more; what was mixed stays, and fades in again.
+  void forget() {
+    for (auto& [key, voxel] : voxels_) voxel.start = voxel.end = {};
+  }
 
  private:
   using Key = std::array<std::int32_t, 3>;
@@ -44,24 +52,26 @@ class Fusion {
     double count = 0;                               ///< likewise
     double occupancy = 0;                           ///< 0-1: share of clouds that fill it
     int clouds = 0;
-    bool filled = false;  ///< by the newest cloud
-    Shown start;          ///< of the snapshot that is being made
+    Shown start;  ///< of the snapshot that is being made
     Shown end;
 
     [[nodiscard]] Eigen::Vector3d mean() const { return sum / count; }
   };
 
+  [[nodiscard]] std::vector<Eigen::Vector3d> usable(const PointCloud& cloud,
+                                                    const Eigen::Isometry3d& T_world_sensor) const;
   void age(const Moment& moment);
   void choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor);
-  void mix(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor);
+  void mix(const std::vector<Eigen::Vector3d>& points);
   [[nodiscard]] PointCloud means() const;
-  void show(const Prepared& prepared);
+  void show();
   [[nodiscard]] SurfacePoints place(const SurfacePoints& ends) const;
 
   PrepareOptions prepare_;
   double leaf_ = 0;  // m; 0: no cloud yet
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   Moment last_;
+  Prepared prepared_;            // of the running means
   std::map<Key, Voxel> voxels_;  // in a fixed order
 };
 

@@ -20,9 +20,6 @@ constexpr float kShare = 0.25f;
 // Single precision resolves a micrometre as far from the points' origin as this, m.
 constexpr double kFarFromOrigin = 16;
 
-// Blocks that a camera no longer looks at, in blocks of an image.
-constexpr double kMostEntries = 1.5;
-
 Eigen::Vector3f mix(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float u) {
   return a + u * (b - a);
 }
@@ -53,10 +50,18 @@ void Morph::fill_still(const MorphInput& input, const Moment& moment,
   still_ = false;
 }
 
+void Morph::look(const MorphInput& input) {
+  const FilteredDepth& depth = input.depth;
+  if (order_.columns != depth.columns || order_.rows != depth.rows) {
+    forget();
+    order_ = make_block_order(depth.columns, depth.rows);
+  }
+  measure(input);
+}
+
 void Morph::fill(const MorphInput& input, const Moment& moment,
                  const std::shared_ptr<SurfacePoints>& points) {
   start(input, moment, *points);
-  measure(input);
   if (moved_) follow_camera(input);
   by_block_.sort(entries_, order_.size());
   for (std::size_t place = 0; place < order_.size(); ++place) {
@@ -72,13 +77,12 @@ void Morph::fill(const MorphInput& input, const Moment& moment,
 
 void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& points) {
   const FilteredDepth& depth = input.depth;
-  if (order_.columns != depth.columns || order_.rows != depth.rows) {
-    forget();
-    order_ = make_block_order(depth.columns, depth.rows);
-  }
   const Eigen::Isometry3d& T_world_sensor = depth.T_world_sensor;
-  if ((T_world_sensor.translation() - origin_).norm() > kFarFromOrigin) forget();
-  if (!last_) origin_ = T_world_sensor.translation();
+  const bool far = (T_world_sensor.translation() - origin_).norm() > kFarFromOrigin;
+  if (!last_ || far) origin_ = T_world_sensor.translation();
+  old_shift_ = last_ ? Eigen::Vector3f((last_->origin - origin_).cast<float>())
+                     : Eigen::Vector3f(Eigen::Vector3f::Zero());
+  held_ = 0;
   moment_ = moment;
   progress_ = last_ ? progress(last_moment_, moment.start) : 1;
   moved_ = last_ && T_world_sensor.matrix() != T_world_sensor_.matrix();
@@ -137,11 +141,15 @@ PointState Morph::old_point(std::uint32_t i) const {
   const auto u = static_cast<float>(progress_);
   const bool fades = !p.presences.empty();
   if (progress_ >= 1) {
-    return {p.end_positions[i], p.end_normals[i],     p.end_density_weights[i],
-            p.end_radii[i],     p.end_confidences[i], fades ? p.end_presences[i] : 1.0f};
+    return {p.end_positions[i] + old_shift_,
+            p.end_normals[i],
+            p.end_density_weights[i],
+            p.end_radii[i],
+            p.end_confidences[i],
+            fades ? p.end_presences[i] : 1.0f};
   }
   const auto between = [u](float a, float b) { return a + u * (b - a); };
-  return {mix(p.grid.points()[i], p.end_positions[i], u),
+  return {mix(p.grid.points()[i], p.end_positions[i], u) + old_shift_,
           mix_normals(p.normals[i], p.end_normals[i], u),
           between(p.density_weights[i], p.end_density_weights[i]),
           between(p.radii[i], p.end_radii[i]),
@@ -173,7 +181,7 @@ void Morph::fetch(const FilteredDepth& depth, std::size_t block) const {
 void Morph::settle(const FilteredDepth& depth, std::size_t place) {
   const std::span<const std::uint32_t> old = by_block_.at(place);
   const std::size_t block = order_.blocks[place];
-  const bool shown = depth.states[block] != BlockState::empty;
+  const bool shown = surface_.radius(block) > 0;
   if (!shown && old.empty()) return;
   place_ = static_cast<std::uint32_t>(place);
   std::uint32_t partner = kNone;
@@ -247,8 +255,7 @@ void Morph::hold(std::uint32_t i) {
   const auto fall = static_cast<float>(moment_.duration / options_.fade);
   PointState to = from;
   to.presence = std::max(std::min(to.presence, sure), to.presence - fall);
-  const auto most = static_cast<std::size_t>(kMostEntries * static_cast<double>(order_.size()));
-  if (to.presence <= 0 || writer_.count() > most) return leave(i);
+  if (to.presence <= 0 || ++held_ > order_.size()) return leave(i);
   to.weight = last_->end_density_weights[i];
   add(from, to, {place_, entry.kind, false, entry.confirmed});
 }

@@ -44,7 +44,11 @@ class Morph {
  public:
   explicit Morph(const MorphOptions& options) : options_(options), surface_(options.kernel) {}
 
-  /// Fills `points`, keeping it as what the next frame starts from. Allocates only to grow.
+  /// What can be done of a frame before it is known when it starts. Allocates only to grow.
+  void look(const MorphInput& input);
+
+  /// The rest: fills `points`, keeping it as what the next frame starts from. Allocates only to
+  /// grow.
   void fill(const MorphInput& input, const Moment& moment,
             const std::shared_ptr<SurfacePoints>& points);
 
@@ -97,6 +101,8 @@ class Morph {
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3f turn_ = Eigen::Matrix3f::Identity();  // sensor to world
   Eigen::Vector3f shift_ = Eigen::Vector3f::Zero();
+  Eigen::Vector3f old_shift_ = Eigen::Vector3f::Zero();  // from the last origin to this one
+  std::size_t held_ = 0;  // points that no block shows; as many as there are blocks may be
 };
 
 }  // namespace palpate

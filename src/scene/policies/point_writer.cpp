@@ -41,12 +41,13 @@ void PointWriter::end() {
     points_->presences.clear();
     points_->end_presences.clear();
   }
-  points_->grid.rebuild(std::span(starts_).first(count_), std::span(codes_).first(count_));
+  points_->grid.rebuild(std::span(starts_).first(count_), std::span(codes_).first(count_),
+                        points_->end_positions);
   measure_reach();
   measure_radii();
 }
 
-// For each cell the largest R_i plus way to go in it.
+// For each cell the largest R_i in it: its box holds the points' ways.
 void PointWriter::measure_reach() {
   const std::span<const CellGrid::Cell> cells = points_->grid.cells();
   std::vector<float>& reach = points_->cell_reach;
@@ -58,8 +59,7 @@ void PointWriter::measure_reach() {
       largest = std::max(largest, reach[cell.first_child + k]);
     }
     for (std::uint32_t i = cell.begin; cell.children == 0 && i < cell.end; ++i) {
-      const float way = (points_->end_positions[i] - starts_[i]).norm();
-      largest = std::max(largest, std::max(points_->radii[i], points_->end_radii[i]) + way);
+      largest = std::max(largest, std::max(points_->radii[i], points_->end_radii[i]));
     }
     reach[c] = largest;
   }
