@@ -7,6 +7,7 @@
 #include "apps/palpate/info_report.hpp"
 #include "apps/palpate/live_facts.hpp"
 #include "apps/palpate/load.hpp"
+#include "apps/palpate/option_checks.hpp"
 #include "apps/palpate/output.hpp"
 #include "apps/palpate/waiting.hpp"
 
@@ -41,7 +42,8 @@ InfoReport study(const CloudArgument& argument, const ReadingOptions& options) {
 
 void add_info_options(CLI::App& command, InfoOptions& options) {
   command
-      .add_option("clouds", options.clouds, cloud_help() + "; or a camera or sequence as for touch")
+      .add_option("clouds", options.clouds,
+                  wrapped(cloud_help() + "; or a camera or sequence as for touch"))
       ->required()
       ->type_name("CLOUD");
   add_reading_options(command, options.reading);

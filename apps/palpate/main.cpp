@@ -33,11 +33,11 @@ int run(int argc, char** argv) {
   program.footer("'palpate COMMAND --help' tells more, with examples.");
   TouchOptions touch_options;
   CLI::App* touch_command =
-      program.add_subcommand("touch", "Touch clouds in simulated time and report the forces");
+      program.add_subcommand("touch", "Touch clouds and what cameras see, and report the forces");
   add_touch_options(*touch_command, touch_options);
   InfoOptions info_options;
   CLI::App* info_command =
-      program.add_subcommand("info", "Say what is in a cloud and how it will feel");
+      program.add_subcommand("info", "Say what is in a cloud or what a camera delivers");
   add_info_options(*info_command, info_options);
   CamerasOptions cameras_options;
   CLI::App* cameras_command =

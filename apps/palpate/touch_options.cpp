@@ -148,9 +148,10 @@ Exit codes: 0 done, 1 the input or the run failed, 2 the command line is wrong.)
 void add_touch_options(CLI::App& command, TouchOptions& o) {
   command
       .add_option("sources", o.clouds,
-                  cloud_help() +
-                      "; or what lives: camera:simulated[:SCENE], camera:openni2, camera:freenect, "
-                      "sequence:FOLDER, or an .oni file ('palpate cameras' lists what is there)")
+                  wrapped(cloud_help() +
+                          "; or what lives: camera:simulated[:SCENE], camera:openni2, "
+                          "camera:freenect, sequence:FOLDER, or an .oni file ('palpate cameras' "
+                          "lists what is there)"))
       ->type_name("SOURCE");
   command
       .add_option("--setup", o.setup,
