@@ -79,8 +79,10 @@ std::optional<Objection> FrameCheck::examine(const DepthFrame& frame, double lat
 
 std::optional<Objection> FrameCheck::check_stamp(double stamp, double latest) const {
   if (!std::isfinite(stamp) || stamp > latest) {
-    return Objection{&StreamDrops::late, fmt::format("a frame taken at {} s, which is {}", stamp,
-                                                     stamp > latest ? "yet to come" : "no time")};
+    return Objection{
+        &StreamDrops::late,
+        fmt::format("a frame taken at {} s, which is {}", stamp,
+                    stamp > latest ? "yet to come: is the camera on another clock?" : "no time")};
   }
   if (stamp_ && stamp <= *stamp_) {
     return Objection{

@@ -43,6 +43,11 @@ void check(const SimulatedCameraOptions& options) {
   demand(options.loop >= 0, "a loop of frames of", options.loop);
 }
 
+// May its pictures be the same bit for bit?
+bool repeats(const SimulatedCameraOptions& options) {
+  return options.noise.kind == NoiseKind::none || options.loop == 1;
+}
+
 Eigen::Vector3d direction(Random& random) {
   return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
 }
@@ -52,7 +57,7 @@ Eigen::Vector3d direction(Random& random) {
 SimulatedCamera::SimulatedCamera(SimulatedScene scene, const SimulatedCameraOptions& options)
     : scene_(std::move(scene)),
       options_(options),
-      info_{options.name, options.rate, options.clock != nullptr},
+      info_{options.name, options.rate, options.clock != nullptr, repeats(options)},
       renderer_(options.camera),
       noise_(options.noise) {
   check(options);

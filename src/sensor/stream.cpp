@@ -22,6 +22,8 @@ using namespace sensor;
 
 // A camera's clock may run ahead of the host's by so much before a stamp is thought senseless.
 constexpr double kAhead = 1;  // s
+// No frame is on its way for so long: a first one that seems to be was stamped by another clock.
+constexpr double kOtherClock = 30;  // s
 
 const StreamOptions& checked(const StreamOptions& options, const std::string& name) {
   const auto require = [&](double value, const char* what, bool good) {
@@ -54,7 +56,7 @@ struct Stream::Threads {
         ended(std::move(at_end)),
         clock(time),
         log(name, camera->info().name, options.stall, clock.now()),
-        check(options.allow_repeats),
+        check(options.allow_repeats.value_or(camera->info().repeats)),
         retry(options.first_retry, options.longest_retry),
         exchange(!camera->info().paces) {
     start(name);
@@ -69,6 +71,7 @@ struct Stream::Threads {
   void read();
   [[nodiscard]] CameraStatus ask(DepthFrame& frame);
   [[nodiscard]] bool take(DepthFrame& frame);
+  void compare_clocks(double stamp, double now);
   [[nodiscard]] bool wait_to_retry();
   void prepare();
   void prepare(const DepthFrame& frame);
@@ -83,7 +86,8 @@ struct Stream::Threads {
   FrameCheck check;  // the reading thread's
   Retry retry;       // the reading thread's
   FrameExchange exchange;
-  std::string failure;  // of the last ask(); the reading thread's
+  bool compared = false;  // the first frame's stamp with the clock; the reading thread's
+  std::string failure;    // of the last ask(); the reading thread's
   std::thread preparing;
   std::thread reading;
 };
@@ -111,7 +115,7 @@ void Stream::Threads::read() {
   DepthFrame frame;
   while (exchange.wait_for_room()) {
     const CameraStatus status = ask(frame);
-    log.look(clock.now());
+    if (status == CameraStatus::waiting) log.waiting(clock.now());
     if (status == CameraStatus::ended) break;
     if (status == CameraStatus::frame && !take(frame)) return;
     if (status == CameraStatus::failed && !wait_to_retry()) return;
@@ -133,14 +137,22 @@ CameraStatus Stream::Threads::ask(DepthFrame& frame) {
 bool Stream::Threads::take(DepthFrame& frame) {
   retry.succeeded();
   const double now = clock.now();
-  const double latest =
-      camera->info().paces ? now + kAhead : std::numeric_limits<double>::infinity();
+  const bool paces = camera->info().paces;
+  const double latest = paces ? now + kAhead : std::numeric_limits<double>::infinity();
   const auto objection = check.examine(frame, latest);
   log.came(now, objection, check.size_changes());
+  if (paces && !std::exchange(compared, true)) compare_clocks(frame.stamp, now);
   if (objection) return true;
   const auto outcome = exchange.offer(frame);
   if (outcome == FrameExchange::Offer::overtook) log.overtaken();
   return outcome != FrameExchange::Offer::stopped;
+}
+
+void Stream::Threads::compare_clocks(double stamp, double now) {
+  if (!(std::abs(stamp - now) > kOtherClock)) return;
+  log.remark(now, fmt::format("the camera is on another clock: its first frame was taken at {:.6g} "
+                              "s, and now it is {:.6g} s. Open it with the clock of the stream",
+                              stamp, now));
 }
 
 bool Stream::Threads::wait_to_retry() {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate::sensor {
 namespace {
@@ -21,6 +22,8 @@ StreamLog::StreamLog(std::string source, std::string camera, double stall, doubl
 void StreamLog::came(double now, const std::optional<Objection>& objection,
                      std::uint64_t size_changes) {
   const std::lock_guard lock(mutex_);
+  failing_ = false;
+  look(now);
   const double interval = now - state_.last_frame;
   if (state_.frames == 1) interval_ = interval;
   if (state_.frames > 1) interval_ += kSmoothing * (interval - interval_);
@@ -34,10 +37,11 @@ void StreamLog::came(double now, const std::optional<Objection>& objection,
   if (objection) {
     ++(state_.drops.*(objection->cause));
     note(now, objection->words);
-    look_locked(now);
+    look(now);
     return;
   }
   useful_ = now;
+  told_ = false;
   state_.phase = StreamPhase::running;
 }
 
@@ -64,6 +68,7 @@ void StreamLog::touchable(double latency) {
 void StreamLog::failed(double now, const std::string& why, bool repeatedly) {
   const std::lock_guard lock(mutex_);
   ++state_.failures;
+  failing_ = repeatedly;
   if (repeatedly) state_.phase = StreamPhase::failed;
   note(now, why.empty() ? "it failed without a reason" : why);
 }
@@ -78,15 +83,22 @@ void StreamLog::ended() {
   state_.phase = StreamPhase::ended;
 }
 
-void StreamLog::look(double now) {
+void StreamLog::waiting(double now) {
   const std::lock_guard lock(mutex_);
-  look_locked(now);
+  failing_ = false;
+  look(now);
 }
 
-void StreamLog::look_locked(double now) {
-  const bool quiet = state_.phase == StreamPhase::starting || state_.phase == StreamPhase::running;
-  if (!quiet || now - useful_ <= stall_) return;
+void StreamLog::remark(double now, const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  note(now, what);
+}
+
+void StreamLog::look(double now) {
+  const bool over = state_.phase == StreamPhase::stalled || state_.phase == StreamPhase::ended;
+  if (over || failing_ || now - useful_ <= stall_) return;
   state_.phase = StreamPhase::stalled;
+  if (std::exchange(told_, true)) return;
   ++state_.stalls;
   note(now, objection_.empty() ? fmt::format("no frame for {:.3g} s", now - useful_)
                                : fmt::format("no frame of use for {:.3g} s; the last: {}",
@@ -98,8 +110,9 @@ void StreamLog::note(double now, const std::string& what) {
   state_.problem_at = now;
 }
 
-StreamState StreamLog::state(double now) const {
+StreamState StreamLog::state(double now) {
   const std::lock_guard lock(mutex_);
+  look(now);
   StreamState state = state_;
   const double interval = std::max(interval_, now - state_.last_frame);
   state.rate = state_.frames > 1 && interval > 0 ? 1 / interval : 0;

@@ -20,22 +20,27 @@ class StreamLog {
   void refused(double now, const std::string& why);
   void touchable(double latency);
   void failed(double now, const std::string& why, bool repeatedly);
+  /// The camera is well and has no frame yet.
+  void waiting(double now);
+  /// To be told, though nothing is dropped for it.
+  void remark(double now, const std::string& what);
   void retried();
   void ended();
-  /// Notices silence. To be called now and then.
-  void look(double now);
 
-  [[nodiscard]] StreamState state(double now) const;
+  /// How the stream fares at `now`. Notices silence, also that of a camera that never answers.
+  [[nodiscard]] StreamState state(double now);
 
  private:
   void note(double now, const std::string& what);
-  void look_locked(double now);
+  void look(double now);
 
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   StreamState state_;
   double stall_;
-  double useful_;        // when the last frame of use came, or the stream began
-  double interval_ = 0;  // mean time between frames
+  double useful_;         // when the last frame of use came, or the stream began
+  bool failing_ = false;  // the camera's last answer was that it cannot
+  bool told_ = false;     // the stall since the last frame of use is counted
+  double interval_ = 0;   // mean time between frames
   double latency_sum_ = 0;
   std::uint64_t latencies_ = 0;
   std::string objection_;  // to the last frame; empty: none

@@ -74,8 +74,9 @@ class Script {
 
 class FakeCamera final : public DepthCamera {
  public:
-  explicit FakeCamera(std::shared_ptr<Script> script, bool paces = true)
-      : script_(std::move(script)), info_{.name = "fake", .rate = 30, .paces = paces} {}
+  explicit FakeCamera(std::shared_ptr<Script> script, bool paces = true, bool repeats = false)
+      : script_(std::move(script)),
+        info_{.name = "fake", .rate = 30, .paces = paces, .repeats = repeats} {}
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
   [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override {

@@ -27,6 +27,22 @@ TEST(OpenCamera, OpensByName) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(loop->read(frame, 0), CameraStatus::frame);
 }
 
+// What comes once again bit for bit is no frozen picture where there is no noise, or one image.
+TEST(OpenCamera, KnowsWhichCamerasRepeatThemselves) {
+  EXPECT_FALSE(open_camera("simulated:still")->info().repeats);
+  EXPECT_FALSE(open_camera("simulated:still,loop=2")->info().repeats);
+  EXPECT_TRUE(open_camera("simulated:still,loop=1")->info().repeats);
+  EXPECT_TRUE(open_camera("simulated:still,noise=none")->info().repeats);
+  const sensor::Folder folder;
+  folder.write("sequence.json", R"({"fx": 4, "fy": 4, "cx": 1.5, "cy": 1})");
+  folder.write("depth/0.pgm", sensor::pgm(2000));
+  const std::string name = "sequence:" + folder.path().string();
+  EXPECT_FALSE(open_camera(name)->info().repeats);
+  EXPECT_TRUE(open_camera(name, {.loop = true})->info().repeats);
+  folder.write("depth/1.pgm", sensor::pgm(2001));
+  EXPECT_FALSE(open_camera(name, {.loop = true})->info().repeats);
+}
+
 TEST(OpenCamera, SaysWhichCamerasThereAre) {
   for (const char* name : {"", "webcam", "simulatd:table"}) {
     try {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -57,6 +58,20 @@ TEST_F(StreamTest, LosesNothingOfACameraThatDoesNotPace) {
   EXPECT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
   EXPECT_EQ(touchable_.stamps(), stamps);
   EXPECT_EQ(stream.state().drops.total(), 0u);
+}
+
+TEST_F(StreamTest, TakesRepeatsForRealWhereTheCameraOrTheUserSaysSo) {
+  const auto dropped = [&](bool camera, std::optional<bool> user) {
+    const Stream stream(std::make_unique<FakeCamera>(script_, true, camera), "table",
+                        touchable_.sink(), clock_, {.stall = kNever, .allow_repeats = user});
+    const double now = clock_.now();
+    for (int i = 1; i <= 3; ++i) give(stream, now + i, frame_at(now + i, 2));
+    return stream.state().drops.repeated;
+  };
+  EXPECT_EQ(dropped(false, {}), 2u);
+  EXPECT_EQ(dropped(true, {}), 0u);
+  EXPECT_EQ(dropped(false, true), 0u);
+  EXPECT_EQ(dropped(true, false), 2u);
 }
 
 TEST_F(StreamTest, SaysTheRate) {

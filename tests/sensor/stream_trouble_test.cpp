@@ -1,6 +1,8 @@
 // Cameras that stall, freeze, fail, and send what is of no use.
 #include <gtest/gtest.h>
 
+#include <future>
+
 #include "sensor/stream_fixture.hpp"
 
 namespace palpate {
@@ -117,6 +119,73 @@ TEST_F(StreamTest, TakesAThrowingCameraForAFailingOne) {
   EXPECT_EQ(stream.state().problem, "table (fake): bus error");
   give(stream, 1);
   expect_touchable(stream, 1);
+}
+
+TEST_F(StreamTest, TakesACameraThatWaitsAfterItFailedForAStalledOne) {
+  const Stream stream = this->stream({.stall = 0.5, .first_retry = 1e-3, .longest_retry = 1e-3});
+  give(stream, 0.1);
+  for (std::uint64_t i = 1; i <= 2; ++i) {
+    script_->give({.status = CameraStatus::failed, .reason = "unplugged"});
+    ASSERT_TRUE(eventually([&] { return stream.state().failures == i; }));
+  }
+  EXPECT_EQ(stream.state().phase, StreamPhase::failed);
+  pass(stream, 0.2);
+  EXPECT_EQ(stream.state().problem, "table (fake): unplugged") << "it is asked again, and waits";
+  pass(stream, 0.3);
+  EXPECT_EQ(stream.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream.state().problem, "table (fake): no frame for 0.5 s");
+}
+
+// A driver that does not come back from read().
+class HangingCamera final : public DepthCamera {
+ public:
+  explicit HangingCamera(std::shared_future<void> let_go) : let_go_(std::move(let_go)) {}
+  [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] CameraStatus read(DepthFrame& frame, double /*timeout*/) override {
+    if (read_++ > 0) let_go_.wait();
+    frame = frame_at(0.1);
+    return read_ == 1 ? CameraStatus::frame : CameraStatus::ended;
+  }
+  [[nodiscard]] std::string reason() const override { return {}; }
+
+ private:
+  std::shared_future<void> let_go_;
+  CameraInfo info_{.name = "hanging"};
+  int read_ = 0;
+};
+
+TEST_F(StreamTest, TellsOfADriverThatHangs) {
+  std::promise<void> let_go;
+  clock_.set(0.1);
+  const Stream stream(std::make_unique<HangingCamera>(let_go.get_future().share()), "table",
+                      touchable_.sink(), clock_, {.stall = 0.5});
+  expect_touchable(stream, 1);
+  clock_.set(0.5);
+  EXPECT_EQ(stream.state().phase, StreamPhase::running);
+  clock_.set(0.7);
+  EXPECT_EQ(stream.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream.state().stalls, 1u);
+  EXPECT_EQ(stream.state().problem, "table (hanging): no frame for 0.6 s");
+  let_go.set_value();
+  EXPECT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
+}
+
+TEST_F(StreamTest, TellsOfACameraOnAnotherClock) {
+  {
+    const Stream behind = this->stream();
+    give(behind, 1000, frame_at(1));
+    expect_touchable(behind, 1);
+    EXPECT_NE(behind.state().problem.find("another clock"), std::string::npos)
+        << behind.state().problem;
+    give(behind, 1001, frame_at(2, 2));
+    expect_touchable(behind, 2);
+  }
+  const Stream ahead = this->stream();
+  give(ahead, 1001, frame_at(9000));
+  give(ahead, 1002, frame_at(9001));
+  EXPECT_EQ(ahead.state().drops.late, 2u);
+  EXPECT_NE(ahead.state().problem.find("another clock"), std::string::npos)
+      << ahead.state().problem;
 }
 
 }  // namespace

@@ -18,6 +18,9 @@ struct CameraInfo {
   std::string name;   ///< for messages, such as "simulated:table"
   double rate = 30;   ///< frames a second that it is made for, Hz
   bool paces = true;  ///< read() waits for frames as they happen; false: as fast as it is asked
+  /// A frame may be the one before bit for bit though all is well: there is no noise in it, or one
+  /// image is all there is. From other cameras such a frame says that the picture is frozen.
+  bool repeats = false;
 };
 
 /// A source of depth frames. One thread uses it. Construction opens it and throws Error.

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "palpate/base/clock.hpp"
@@ -17,9 +18,9 @@ struct StreamOptions {
   double patience = 0.05;  ///< one DepthCamera::read() may wait so long, s; so may the destructor
   double first_retry = 0.25;  ///< the second failure in a row waits so long, s; then twice, ...
   double longest_retry = 5;   ///< ... but no longer than this, s
-  /// Frames that repeat the one before bit for bit are real: for cameras without noise. Otherwise
-  /// they are dropped, so that a frozen camera's surface fades as a silent one's does.
-  bool allow_repeats = false;
+  /// Frames that repeat the one before bit for bit are real. Otherwise they are dropped, so that a
+  /// frozen camera's surface fades as a silent one's does. Unset: as CameraInfo::repeats says.
+  std::optional<bool> allow_repeats = {};
 };
 
 /// Takes a frame and makes it touchable, asking its second argument for the time from which on.
