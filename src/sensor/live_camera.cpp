@@ -14,11 +14,13 @@ constexpr double kLongSilence = 3;  // s
 
 }  // namespace
 
-LiveCamera::LiveCamera(CameraInfo info, Connect connect, std::string silence, const Clock* clock)
+LiveCamera::LiveCamera(CameraInfo info, Connect connect, std::string silence, const Clock* clock,
+                       Lost lost)
     : info_(std::move(info)),
       connect_(std::move(connect)),
       silence_(std::move(silence)),
-      clock_(clock) {
+      clock_(clock),
+      lost_(lost) {
   this->connect();
 }
 
@@ -30,6 +32,7 @@ void LiveCamera::connect() {
 
 CameraStatus LiveCamera::read(DepthFrame& frame, double timeout) {
   reason_.clear();
+  if (!connection_ && lost_ == Lost::ended) return CameraStatus::ended;
   try {
     if (!connection_) connect();
     return fetch(frame, timeout);
@@ -44,15 +47,24 @@ CameraStatus LiveCamera::fetch(DepthFrame& frame, double timeout) {
   double device_time = 0;
   const CameraStatus status = connection_->fetch(frame, device_time, timeout);
   const double now = (clock_ != nullptr ? *clock_ : host_).now();
+  if (status == CameraStatus::waiting) return silent(now);
+  heard_ = now;
+  if (status == CameraStatus::failed) reason_ = connection_->damage();
   if (status == CameraStatus::frame) {
-    heard_ = now;
     frame.stamp = stamp_of(device_time, now);
     frame.T_world_sensor.reset();
-  } else if (status == CameraStatus::waiting && now - heard_ > kLongSilence) {
-    throw Error(
-        fmt::format("{}: open, but silent for {:.3g} s. {}", info_.name, now - heard_, silence_));
   }
   return status;
+}
+
+CameraStatus LiveCamera::silent(double now) {
+  if (now - heard_ <= kLongSilence) return CameraStatus::waiting;
+  reason_ =
+      fmt::format("{}: open, but silent for {:.3g} s. {}", info_.name, now - heard_, silence_);
+  heard_ = now;
+  // A recording may hold long pauses; a device is better opened again.
+  if (lost_ == Lost::opened_again) connection_.reset();
+  return CameraStatus::failed;
 }
 
 double LiveCamera::stamp_of(double device_time, double now) {

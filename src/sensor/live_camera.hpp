@@ -19,10 +19,13 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   /// Fills camera, depth and colours of `frame`, and `device_time` (s, the device's clock), waiting
-  /// `timeout` s at most. Never `failed`.
-  /// @throws Error when the device is lost, or the frame is damaged.
+  /// `timeout` s at most. `failed`: this frame is damaged, the device is well.
+  /// @throws Error when the device is lost.
   [[nodiscard]] virtual CameraStatus fetch(DepthFrame& frame, double& device_time,
                                            double timeout) = 0;
+
+  /// What was wrong with the frame that fetch() called `failed`.
+  [[nodiscard]] virtual std::string damage() const { return {}; }
 
  protected:
   Connection() = default;
@@ -31,14 +34,21 @@ class Connection {
 /// @throws Error that says why the device cannot be opened.
 using Connect = std::function<std::unique_ptr<Connection>()>;
 
-/// What all drivers of real devices have in common: stamps on the host's clock, and a device that
-/// is lost is opened again when it is asked for the next frame. Where the device does not pace
-/// itself, stamps are its own times, from 0 on, that go on when a recording begins again.
+/// What becomes of a device that is lost.
+enum class Lost {
+  opened_again,  ///< when it is asked for the next frame; likewise when it is silent for long
+  ended,         ///< a recording: opened again, it would play from its beginning
+};
+
+/// What all drivers of real devices have in common: stamps on the host's clock, and what to do when
+/// the device is lost. Where the device does not pace itself, stamps are its own times, from 0 on,
+/// that go on when a recording begins again.
 class LiveCamera final : public DepthCamera {
  public:
   /// Opens the device. `silence` tells what a device that is silent for long may lack. Without a
   /// clock, the host's is taken.
-  LiveCamera(CameraInfo info, Connect connect, std::string silence, const Clock* clock);
+  LiveCamera(CameraInfo info, Connect connect, std::string silence, const Clock* clock,
+             Lost lost = Lost::opened_again);
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
   [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override;
@@ -47,6 +57,7 @@ class LiveCamera final : public DepthCamera {
  private:
   void connect();
   [[nodiscard]] CameraStatus fetch(DepthFrame& frame, double timeout);
+  [[nodiscard]] CameraStatus silent(double now);
   [[nodiscard]] double stamp_of(double device_time, double now);
 
   CameraInfo info_;
@@ -54,6 +65,7 @@ class LiveCamera final : public DepthCamera {
   std::string silence_;
   SteadyClock host_;
   const Clock* clock_;  // null: host_
+  Lost lost_;
   std::unique_ptr<Connection> connection_;
   HostStamps stamps_;
   double stamp_ = 0;  // of the last frame of a device that does not pace itself

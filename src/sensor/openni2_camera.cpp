@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <thread>
@@ -14,6 +15,7 @@
 #include "sensor/drivers.hpp"
 #include "sensor/kinect_depth.hpp"
 #include "sensor/live_camera.hpp"
+#include "sensor/openni2_frame.hpp"
 #include "sensor/openni2_library.hpp"
 
 namespace palpate::sensor {
@@ -137,7 +139,8 @@ class OpenNi2Connection final : public Connection {
     if (stream_.is_file()) {
       stream_.play(options.clock == nullptr);
       once_ = !options.loop;
-      frames_ = get(ONI_STREAM_PROPERTY_NUMBER_OF_FRAMES, 0);
+      const int frames = get(ONI_STREAM_PROPERTY_NUMBER_OF_FRAMES, 0);
+      if (frames > 0) frames_ = frames;
     } else {
       stream_.choose_mode();
     }
@@ -162,11 +165,25 @@ class OpenNi2Connection final : public Connection {
     const Frame image(raw, {library_});
     if (once_ && image->frameIndex <= last_) at_end_ = true;  // it began again
     if (at_end_) return CameraStatus::ended;
-    fill(frame, *image);
-    device_time = kMicrosecond * static_cast<double>(image->timestamp);
     last_ = image->frameIndex;
     at_end_ = once_ && last_ >= frames_;
+    if (!is_whole(*image)) {
+      damaged_ =
+          fmt::format("{} x {} pixels in {} bytes", image->width, image->height, image->dataSize);
+      return CameraStatus::failed;
+    }
+    copy_depth(*image, mirrored_, frame.depth);
+    frame.colors.clear();
+    frame.camera = {image->width, image->height, pinhole(image->width, image->height), {}};
+    device_time = kMicrosecond * static_cast<double>(image->timestamp);
     return CameraStatus::frame;
+  }
+
+  [[nodiscard]] std::string damage() const override {
+    return fmt::format("{}: a damaged frame of {}. {}", name_, damaged_,
+                       is_recording(device_name_)
+                           ? "It was left out."
+                           : "If it happens again, plug the camera into another USB socket.");
   }
 
  private:
@@ -201,33 +218,6 @@ class OpenNi2Connection final : public Connection {
             .cy = height / 2.0};
   }
 
-  void fill(DepthFrame& frame, const OniFrame& image) const {
-    const auto format = image.videoMode.pixelFormat;
-    const bool fine = format == ONI_PIXEL_FORMAT_DEPTH_100_UM;
-    const bool whole = image.data != nullptr && image.width > 0 && image.height > 0 &&
-                       image.stride >= image.width * 2 &&
-                       image.dataSize >= image.stride * (image.height - 1) + 2 * image.width;
-    if (!whole || (!fine && format != ONI_PIXEL_FORMAT_DEPTH_1_MM)) {
-      throw Error(
-          fmt::format("{}: a damaged frame of {} x {} pixels and {} bytes. If it happens "
-                      "again, plug the camera into another USB socket.",
-                      name_, image.width, image.height, image.dataSize));
-    }
-    frame.camera = {image.width, image.height, pinhole(image.width, image.height), {}};
-    frame.depth.resize(static_cast<std::size_t>(image.width) *
-                       static_cast<std::size_t>(image.height));
-    frame.colors.clear();
-    const auto* bytes = static_cast<const std::byte*>(image.data);
-    for (int v = 0; v < image.height; ++v) {
-      const auto* row = reinterpret_cast<const OniDepthPixel*>(bytes + v * image.stride);
-      float* out = frame.depth.data() + v * image.width;
-      std::transform(row, row + image.width, out, [unit = fine ? 1e-4 : 1e-3](OniDepthPixel z) {
-        return static_cast<float>(unit * z);
-      });
-      if (mirrored_) std::reverse(out, out + image.width);
-    }
-  }
-
   Library library_;
   std::string name_;
   std::string device_name_;
@@ -236,10 +226,11 @@ class OpenNi2Connection final : public Connection {
   bool mirrored_ = false;
   double across_ = 0;  // field of view, rad; 0: not known
   double down_ = 0;
-  bool once_ = false;  // a recording that is played once
-  int frames_ = 0;     // of a recording
-  int last_ = 0;       // the frame's number in it
+  bool once_ = false;                             // a recording that is played once
+  int frames_ = std::numeric_limits<int>::max();  // of a recording that tells them
+  int last_ = 0;                                  // the frame's number in it
   bool at_end_ = false;
+  std::string damaged_;  // what the last damaged frame was like
 };
 
 void list_devices(CameraDriver& driver) {
@@ -286,7 +277,7 @@ std::unique_ptr<DepthCamera> open_openni2(const std::string& device, const Camer
   return std::make_unique<LiveCamera>(
       CameraInfo{.name = name, .rate = 30, .paces = !recording || options.clock != nullptr},
       [=] { return std::make_unique<OpenNi2Connection>(library, name, device, options); }, silence,
-      options.clock);
+      options.clock, recording ? Lost::ended : Lost::opened_again);
 }
 
 }  // namespace palpate::sensor

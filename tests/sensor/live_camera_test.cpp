@@ -34,6 +34,7 @@ class DeviceConnection final : public Connection {
     device_time = device_.time;
     return device_.status;
   }
+  [[nodiscard]] std::string damage() const override { return "it is torn"; }
 
  private:
   Device& device_;
@@ -41,10 +42,11 @@ class DeviceConnection final : public Connection {
 
 class LiveCameraTest : public testing::Test {
  protected:
-  [[nodiscard]] std::unique_ptr<LiveCamera> open(bool paces = true) {
+  [[nodiscard]] std::unique_ptr<LiveCamera> open(bool paces = true,
+                                                 Lost lost = Lost::opened_again) {
     return std::make_unique<LiveCamera>(
         CameraInfo{.name = "device", .rate = 10, .paces = paces},
-        [this] { return std::make_unique<DeviceConnection>(device_); }, "Shake it.", &clock_);
+        [this] { return std::make_unique<DeviceConnection>(device_); }, "Shake it.", &clock_, lost);
   }
   // The stamp of the next frame.
   double stamp(LiveCamera& camera, double now, double device_time) {
@@ -89,6 +91,50 @@ TEST_F(LiveCameraTest, OpensASilentDeviceAgain) {
   EXPECT_EQ(camera->reason(), "device: open, but silent for 3.1 s. Shake it.");
   EXPECT_EQ(camera->read(frame_, 0), CameraStatus::waiting) << "a new start has its own time";
   EXPECT_EQ(device_.opened, 2);
+}
+
+TEST_F(LiveCameraTest, LeavesDamagedFramesOutAndStaysOpen) {
+  for (const Lost lost : {Lost::opened_again, Lost::ended}) {
+    device_ = {};
+    clock_.set(0);
+    const auto camera = open(true, lost);
+    for (int i = 1; i <= 10; ++i) {
+      clock_.set(i);
+      device_.status = CameraStatus::failed;
+      EXPECT_EQ(camera->read(frame_, 0), CameraStatus::failed);
+      EXPECT_EQ(camera->reason(), "it is torn");
+    }
+    device_.status = CameraStatus::waiting;
+    EXPECT_EQ(camera->read(frame_, 0), CameraStatus::waiting) << "damaged, but not silent";
+    device_.status = CameraStatus::frame;
+    EXPECT_EQ(camera->read(frame_, 0), CameraStatus::frame);
+    EXPECT_EQ(camera->reason(), "");
+    EXPECT_EQ(device_.opened, 1);
+  }
+}
+
+TEST_F(LiveCameraTest, EndsALostRecording) {
+  const auto camera = open(true, Lost::ended);
+  device_.lost = true;
+  EXPECT_EQ(camera->read(frame_, 0), CameraStatus::failed);
+  EXPECT_EQ(camera->reason(), "it is lost");
+  device_.lost = false;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(camera->read(frame_, 0), CameraStatus::ended);
+  EXPECT_EQ(device_.opened, 1) << "it would play from its beginning";
+}
+
+TEST_F(LiveCameraTest, WaitsForARecordingThatIsSilent) {
+  const auto camera = open(true, Lost::ended);
+  device_.status = CameraStatus::waiting;
+  for (const double now : {4.0, 8.0}) {
+    clock_.set(now);
+    EXPECT_EQ(camera->read(frame_, 0), CameraStatus::failed);
+    EXPECT_EQ(camera->reason(), "device: open, but silent for 4 s. Shake it.");
+    EXPECT_EQ(camera->read(frame_, 0), CameraStatus::waiting);
+  }
+  device_.status = CameraStatus::frame;
+  EXPECT_EQ(camera->read(frame_, 0), CameraStatus::frame);
+  EXPECT_EQ(device_.opened, 1);
 }
 
 TEST_F(LiveCameraTest, BringsStampsToTheHostsClock) {

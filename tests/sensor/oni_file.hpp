@@ -15,6 +15,7 @@ class OniFile {
   struct Kind {
     bool mirrored = false;
     bool whole = true;  ///< false: without the properties that OpenNI2's player asks for
+    int cut = 0;        ///< the frame of this number lacks half of its depths; 0: none
   };
 
   OniFile(int width, int height, int frames) : OniFile(width, height, frames, Kind{}) {}
@@ -34,7 +35,9 @@ class OniFile {
     general("xnFOV", numbers<double>({1.0, 0.8}));
     record(kNodeReady, "");
     record(kDataBegin, numbers<std::uint32_t>({count}) + numbers<std::uint64_t>({kStep * count}));
-    for (std::uint32_t k = 1; k <= count; ++k) frame(k, w * h);
+    for (std::uint32_t k = 1; k <= count; ++k) {
+      frame(k, k == static_cast<std::uint32_t>(kind.cut) ? w * h / 2 : w * h);
+    }
     record(kNodeRemoved, "");
     record(kEnd, "");
   }

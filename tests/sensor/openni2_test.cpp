@@ -5,18 +5,23 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
+#include <limits>
+#include <vector>
 
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/open_camera.hpp"
 #include "sensor/fake_camera.hpp"
 #include "sensor/folder.hpp"
 #include "sensor/oni_file.hpp"
+#include "sensor/openni2_frame.hpp"
 
 namespace palpate {
 namespace {
 
 using namespace sensor;
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::string refusal(const std::string& name) {
@@ -106,6 +111,74 @@ TEST(OpenNi2, PlaysARecordingToItsEnd) {
   EXPECT_NEAR(frame.camera.pinhole.fx, 32 / std::tan(0.5), 1e-6);
   EXPECT_NEAR(frame.camera.pinhole.cy, 24, 1e-9);
   EXPECT_EQ(next(*camera, frame), CameraStatus::ended);
+}
+
+TEST(OpenNi2, LeavesADamagedFrameOutAndPlaysOn) {
+  const Folder folder;
+  folder.write("a.oni", OniFile(64, 48, 6, {.cut = 3}).bytes());
+  const auto camera = open_camera((folder.path() / "a.oni").string());
+  std::vector<CameraStatus> came;
+  DepthFrame frame;
+  do {
+    came.push_back(next(*camera, frame));
+    if (came.back() == CameraStatus::failed) {
+      EXPECT_THAT(camera->reason(), AllOf(HasSubstr("a.oni"), HasSubstr("damaged")));
+    }
+  } while (came.back() != CameraStatus::ended && came.size() < 20);
+  constexpr auto kGood = CameraStatus::frame;
+  EXPECT_THAT(came, ElementsAre(kGood, kGood, CameraStatus::failed, kGood, kGood, kGood,
+                                CameraStatus::ended));
+}
+
+// A frame that says all that it needs to.
+OniFrame oni_frame(std::vector<OniDepthPixel>& depths, int width, int height) {
+  depths.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 1500);
+  OniFrame frame{};
+  frame.data = depths.data();
+  frame.width = width;
+  frame.height = height;
+  frame.stride = 2 * width;
+  frame.dataSize = 2 * width * height;
+  frame.videoMode.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_1_MM;
+  return frame;
+}
+
+TEST(OpenNi2Frame, IsWholeOrNot) {
+  std::vector<OniDepthPixel> depths;
+  const OniFrame good = oni_frame(depths, 4, 3);
+  EXPECT_TRUE(is_whole(good));
+  const auto with = [&](const std::function<void(OniFrame&)>& change) {
+    OniFrame frame = good;
+    change(frame);
+    return is_whole(frame);
+  };
+  EXPECT_FALSE(with([](OniFrame& frame) { frame.data = nullptr; }));
+  EXPECT_FALSE(with([](OniFrame& frame) { frame.dataSize -= 1; }));
+  EXPECT_FALSE(with([](OniFrame& frame) { frame.stride -= 1; }));
+  EXPECT_FALSE(with([](OniFrame& frame) { frame.width = 0; }));
+  EXPECT_FALSE(with([](OniFrame& frame) { frame.height = -3; }));
+  EXPECT_FALSE(
+      with([](OniFrame& frame) { frame.videoMode.pixelFormat = ONI_PIXEL_FORMAT_RGB888; }));
+  constexpr int kHuge = std::numeric_limits<int>::max();
+  EXPECT_FALSE(with([](OniFrame& frame) { frame.stride = frame.height = kHuge; }));
+  EXPECT_FALSE(with([](OniFrame& frame) { frame.width = kHuge; }));
+}
+
+TEST(OpenNi2Frame, HasItsRowsWhereItsStrideSays) {
+  std::vector<OniDepthPixel> depths;
+  OniFrame frame = oni_frame(depths, 4, 2);
+  frame.width = 3;  // the fourth of a row belongs to nothing
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    depths[i] = static_cast<OniDepthPixel>(1000 * (i + 1));
+  }
+  std::vector<float> depth;
+  copy_depth(frame, false, depth);
+  EXPECT_THAT(depth, ElementsAre(1, 2, 3, 5, 6, 7));
+  copy_depth(frame, true, depth);
+  EXPECT_THAT(depth, ElementsAre(3, 2, 1, 7, 6, 5));
+  frame.videoMode.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_100_UM;
+  copy_depth(frame, false, depth);
+  EXPECT_FLOAT_EQ(depth.at(0), 0.1F);
 }
 
 TEST(OpenNi2, LoopsARecording) {

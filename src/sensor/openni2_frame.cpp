@@ -1,0 +1,38 @@
+#include "sensor/openni2_frame.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace palpate::sensor {
+
+bool is_whole(const OniFrame& image) {
+  const auto format = image.videoMode.pixelFormat;
+  if (format != ONI_PIXEL_FORMAT_DEPTH_100_UM && format != ONI_PIXEL_FORMAT_DEPTH_1_MM) {
+    return false;
+  }
+  // These may come from a file, and their products be beyond an int.
+  const std::int64_t row = std::int64_t{sizeof(OniDepthPixel)} * image.width;
+  const std::int64_t stride = image.stride;
+  return image.data != nullptr && image.width > 0 && image.height > 0 && stride >= row &&
+         image.dataSize >= stride * (image.height - 1) + row;
+}
+
+void copy_depth(const OniFrame& image, bool mirrored, std::vector<float>& depth) {
+  const bool fine = image.videoMode.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_100_UM;
+  const auto width = static_cast<std::size_t>(image.width);
+  const auto height = static_cast<std::size_t>(image.height);
+  const auto stride = static_cast<std::size_t>(image.stride);
+  depth.resize(width * height);
+  const auto* bytes = static_cast<const std::byte*>(image.data);
+  for (std::size_t v = 0; v < height; ++v) {
+    const auto* row = reinterpret_cast<const OniDepthPixel*>(bytes + v * stride);
+    float* out = depth.data() + v * width;
+    std::transform(row, row + width, out, [unit = fine ? 1e-4 : 1e-3](OniDepthPixel z) {
+      return static_cast<float>(unit * z);
+    });
+    if (mirrored) std::reverse(out, out + width);
+  }
+}
+
+}  // namespace palpate::sensor
