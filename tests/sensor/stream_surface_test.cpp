@@ -27,8 +27,8 @@ constexpr double kDepth = 3e-3;  // of the hand below the surface, m
 constexpr double kForce = 500 * kDepth;
 // A fade takes kForce in kFade: 3.75 mN a tick. A hard end would be 1.5 N.
 constexpr double kNoStep = 0.01;
-constexpr double kGone = 1.7;   // s; by then nothing is left of what fades
-constexpr double kAgain = 2.2;  // when the hand presses again, s
+constexpr double kGone = 2;     // s; by then nothing is left of what fades
+constexpr double kAgain = 2.5;  // when the hand presses again, s
 
 SourceOptions watched() {
   SourceOptions options;
@@ -187,11 +187,11 @@ TEST_F(StreamSurfaceTest, FadesWhenThePictureFreezes) {
 TEST_F(StreamSurfaceTest, FadesWhenTheCameraIsUnpluggedAndComesBackWithIt) {
   deliver_planes(0, kGood);
   for (int i = 0; i < 20; ++i) answer(kTrouble + 0.01 + 0.05 * i, CameraStatus::failed);
-  deliver_planes(58, 90);
+  deliver_planes(67, 99);
   expect_fading_after(kTrouble);
   EXPECT_NE(stream_.state().phase, StreamPhase::running);
   EXPECT_EQ(stream_.state().problem, "camera (fake): unplugged");
-  press(3, 2.3);
+  press(3.3, 2.6);
   EXPECT_NEAR(least_, kForce, 0.01 * kForce) << "it is back";
   EXPECT_LT(step_, kNoStep);
   EXPECT_EQ(stream_.state().phase, StreamPhase::running);
@@ -230,7 +230,7 @@ TEST_F(StreamSurfaceTest, KeepsWhatARecordingShowedLast) {
   press(kGone);
   EXPECT_NEAR(least_, kForce, 0.01 * kForce);
   EXPECT_LT(step_, kNoStep);
-  press(4, 2.3);
+  press(4.3, 2.6);
   EXPECT_NEAR(least_, kForce, 0.01 * kForce);
 }
 
