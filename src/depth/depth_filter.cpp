@@ -87,7 +87,7 @@ struct DepthFilter::State {
     fit(frame);
     temporal.filter(depth::temporal_options(options.memory, options.predict, out.noise.correlation),
                     T_world_sensor, fits);
-    depth::write_points(fits, out);
+    depth::write_points(fits, {options.nearest, options.farthest}, out);
     std::copy(temporal.jumped().begin(), temporal.jumped().end(), out.jumped.begin());
     return out;
   }

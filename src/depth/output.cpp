@@ -8,6 +8,13 @@ namespace {
 
 using Eigen::Vector3f;
 
+// A plane that seems to be seen at less than 6 degrees is noise: its neighbours are not farther
+// away than so many block widths.
+constexpr float kMostGrazing = 10;
+
+// A fit may leave the range of measured depths by this share.
+constexpr double kBeyond = 0.25;
+
 // Towards the sensor: the plane (a, b, c) . p = 1 has its origin in front.
 Vector3f normal_of(const Vector3f& plane) {
   const float length = plane.norm();
@@ -30,16 +37,19 @@ void resize(const BlockGrid& grid, FilteredDepth& out) {
   out.jumped.resize(size, 1);
 }
 
-void write_points(const BlockFits& fits, FilteredDepth& out) {
+void write_points(const BlockFits& fits, const DepthRange& range, FilteredDepth& out) {
   const BlockGrid& grid = fits.grid;
   const auto step_x = static_cast<float>(grid.step_x);
   const auto step_y = static_cast<float>(grid.step_y);
+  const auto farthest = static_cast<float>(1 / ((1 + kBeyond) * range.farthest));
+  const auto nearest = static_cast<float>((1 + kBeyond) / range.nearest);
   std::size_t i = 0;
   for (int row = 0; row < grid.rows; ++row) {
     const auto y = static_cast<float>(grid.y(row));
     for (int column = 0; column < grid.columns; ++column, ++i) {
-      out.states[i] = fits.states[i];
-      if (fits.states[i] == BlockState::empty) continue;
+      const bool sane = fits.rho[i] >= farthest && fits.rho[i] <= nearest;
+      out.states[i] = sane ? fits.states[i] : BlockState::empty;
+      if (out.states[i] == BlockState::empty) continue;
       const auto x = static_cast<float>(grid.x(column));
       const Vector3f ray(x, y, 1);
       const float z = 1 / fits.rho[i];
@@ -54,7 +64,8 @@ void write_points(const BlockFits& fits, FilteredDepth& out) {
       // How far the next column's and row's points are on the tangent plane.
       const Vector3f to_right = z * step_x * (Vector3f::UnitX() - z * a * ray);
       const Vector3f below = z * step_y * (Vector3f::UnitY() - z * b * ray);
-      out.spacings[i] = std::sqrt(std::max(to_right.squaredNorm(), below.squaredNorm()));
+      const float spacing = std::sqrt(std::max(to_right.squaredNorm(), below.squaredNorm()));
+      out.spacings[i] = std::min(spacing, kMostGrazing * z * static_cast<float>(out.pitch));
     }
   }
 }

@@ -84,7 +84,7 @@ inline void size_windows(const FitInput& in, int row, Chunk& c) {
     const float sigma = (n2 + rho * (n1 + rho * n0)) * z;       // of z, per z
     float reach = std::sqrt(per_error * sigma * pixel * root);  // per z
     reach = reach < 6 * delta ? 6 * delta : reach;
-    reach = reach > 15 * delta ? 15 * delta : reach;
+    reach = reach > 18 * delta ? 18 * delta : reach;
     reach *= growth;
     c.reach_u[i] = kSide * reach / pitch_u;
     c.reach_v[i] = kSide * reach / pitch_v;

@@ -79,6 +79,7 @@ inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk
   Mask growing = ~Mask{};
   Mask affine{};  // of the largest windows that are explained
   Mask edge{};
+  Mask curved{};  // by what the first window shows that is too large
   Mask size = Mask{} - 1;  // their number
   for (int k = 0; k < kSizes && any(growing); ++k) {
     if (same_size(c, k, four)) {
@@ -88,6 +89,7 @@ inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk
     const Fits f = fit_four(in, row, c, four, c.half_u[k], c.half_v[k]);
     const Mask good = f.affine | (k < kBentSizes ? f.quadratic : Mask{});
     edge |= growing & ~good & ~f.quadratic;
+    curved |= growing & ~good & f.quadratic & f.bent;
     growing &= good;
     affine = growing ? f.affine : affine;
     size -= growing;
@@ -96,7 +98,9 @@ inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk
     const int i = four[l];
     c.edge[i] = edge[l] != 0;
     if (size[l] < 0) continue;
-    c.kind[i] = affine[l] ? kAffine : kQuadratic;
+    // Where the next window is clearly bent, this one seemed flat by luck.
+    const bool flat = affine[l] && !(curved[l] && size[l] < kBentSizes);
+    c.kind[i] = flat ? kAffine : kQuadratic;
     c.best_u[i] = c.half_u[size[l]][i];
     c.best_v[i] = c.half_v[size[l]][i];
   }

@@ -131,6 +131,7 @@ struct Fits {
   Doubles variance;  // of one block's inverse depth
   Mask affine;       // no hole, and the noise explains what the affine fit leaves
   Mask quadratic;    // or the quadratic one
+  Mask bent;         // by far more than noise would bend it
 };
 
 // Is chi^2 = left / variance one that `degrees` of freedom may have: within three deviations?
@@ -170,6 +171,7 @@ struct Fits {
   const Doubles bent = f.cuv * buv + f.cuu * buu + f.cvv * bvv;
   const Mask full = weights >= 0.0;
   f.affine = full & explained(left, f.variance, g.area - 3.0) & (bent <= 12.0 * f.variance);
+  f.bent = bent > 30.0 * f.variance;
   f.quadratic = full & explained(left - bent, f.variance, g.area - 6.0);
   return f;
 }
