@@ -224,6 +224,26 @@ TEST_F(StreamSurfaceTest, FeelsNothingOfAFewFramesOfAnotherSize) {
   EXPECT_EQ(stream_.state().drops.resized, 2u);
 }
 
+TEST_F(StreamSurfaceTest, GoesOverToAnotherSizeWithoutAStep) {
+  deliver_planes(0, kGood);
+  for (int k = kGood + 1; k < 50; ++k) deliver(k * kFrame, plane(k * kFrame, other_camera()));
+  press(1.6);
+  EXPECT_NEAR(least_, kForce, 0.1 * kForce);
+  EXPECT_NEAR(last_, kForce, 0.02 * kForce);
+  EXPECT_LT(step_, kNoStep);
+  EXPECT_EQ(stream_.state().size_changes, 1u);
+}
+
+TEST_F(StreamSurfaceTest, GoesOverToASmallerSizeWithoutAStep) {
+  for (int k = 0; k <= kGood; ++k) deliver(k * kFrame, plane(k * kFrame, other_camera()));
+  for (int k = kGood + 1; k < 50; ++k) deliver(k * kFrame, plane(k * kFrame));
+  press(1.6);
+  EXPECT_NEAR(least_, kForce, 0.1 * kForce);
+  EXPECT_NEAR(last_, kForce, 0.02 * kForce);
+  EXPECT_LT(step_, kNoStep);
+  EXPECT_EQ(stream_.state().size_changes, 1u);
+}
+
 TEST_F(StreamSurfaceTest, KeepsWhatARecordingShowedLast) {
   deliver_planes(0, kGood);
   answer(kTrouble + kFrame, CameraStatus::ended);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -53,8 +54,8 @@ void Morph::fill_still(const MorphInput& input, const Moment& moment,
 void Morph::look(const MorphInput& input) {
   const FilteredDepth& depth = input.depth;
   if (order_.columns != depth.columns || order_.rows != depth.rows) {
-    forget();
     order_ = make_block_order(depth.columns, depth.rows);
+    resized_ = true;
   }
   measure(input);
 }
@@ -85,7 +86,8 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
   held_ = 0;
   moment_ = moment;
   progress_ = last_ ? progress(last_moment_, moment.start) : 1;
-  moved_ = last_ && T_world_sensor.matrix() != T_world_sensor_.matrix();
+  const bool resized = std::exchange(resized_, false);
+  moved_ = last_ && (resized || T_world_sensor.matrix() != T_world_sensor_.matrix());
   turn_ = T_world_sensor.linear().cast<float>();
   shift_ = (T_world_sensor.translation() - origin_).cast<float>();
   points.origin = origin_;
@@ -130,8 +132,9 @@ void Morph::follow_camera(const MorphInput& input) {
       const Eigen::Array2i at = block.cast<int>();
       entry.place = place_of_block_[static_cast<std::size_t>(at.y() * order_.columns + at.x())];
       if (entry.kind == EntryKind::outside) entry.kind = EntryKind::live;
-    } else if (entry.kind == EntryKind::live) {
-      entry.kind = EntryKind::outside;
+    } else {
+      if (entry.kind == EntryKind::live) entry.kind = EntryKind::outside;
+      entry.place = std::min(entry.place, static_cast<std::uint32_t>(order_.size() - 1));
     }
   }
 }

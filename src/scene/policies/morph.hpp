@@ -94,8 +94,9 @@ class Morph {
   // What is being made.
   Moment moment_;
   double progress_ = 1;  // of what was shown last, at the new start
-  bool moved_ = false;   // the camera
+  bool moved_ = false;   // the camera, or its image has another size
   bool still_ = false;
+  bool resized_ = false;  // the image, since what was shown last
   std::uint32_t place_ = 0;
   std::vector<Entry> next_entries_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
