@@ -10,7 +10,13 @@ Probe::Probe(const Field& field, const Texture& texture, Side seen_from,
       field_(field),
       texture_(texture),
       traits_(field.traits()),
-      step_length_(step_length > 0 ? step_length : 16 * traits_.resolution) {}
+      step_length_(step_length > 0 ? step_length : 16 * traits_.resolution) {
+  field_.begin_step();
+}
+
+Probe::~Probe() {
+  field_.end_step();
+}
 
 Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   ++evaluations_;

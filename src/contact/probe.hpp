@@ -9,6 +9,9 @@ namespace palpate {
 class Probe {
  public:
   Probe(const Field& field, const Texture& texture, Side seen_from, double step_length) noexcept;
+  ~Probe();
+  Probe(const Probe&) = delete;
+  Probe& operator=(const Probe&) = delete;
 
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) noexcept;
   [[nodiscard]] bool is_free(const Ball& ball) noexcept;

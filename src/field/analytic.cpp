@@ -170,4 +170,12 @@ FieldTraits UnionField::traits() const noexcept {
   return all;
 }
 
+void UnionField::begin_step() const noexcept {
+  for (const Field* part : parts_) part->begin_step();
+}
+
+void UnionField::end_step() const noexcept {
+  for (const Field* part : parts_) part->end_step();
+}
+
 }  // namespace palpate

@@ -6,39 +6,40 @@
 #include <span>
 #include <vector>
 
+#include "field/active_layer.hpp"
+#include "field/selection.hpp"
 #include "field/simd/sums.hpp"
 #include "palpate/field/field.hpp"
 #include "palpate/field/surface_points.hpp"
 
 namespace palpate {
 
-/// One layer of points as it counts at the present moment.
-struct ActiveLayer {
-  const SurfacePoints* points = nullptr;
-  int source = 0;
-  double weight = 1;    ///< C_k
-  double progress = 0;  ///< 0 at the points' start (A), 1 at their end (B)
-  double rate = 0;      ///< d progress / dt, 1/s
-};
-
 struct GatherOptions {
   double radius = 0;         ///< R of all points, m; 0: each has its own
   bool raw_weights = false;  ///< leave out the density weights
   bool normals = true;       ///< copy normals and confidences; metaballs need none
+  int most_visits = 1 << 30;
 };
 
 /// The points around a place, copied into columns relative to that place: what the sums run over.
 ///
 /// It holds every point whose support reaches into the ball (center, extra), so a sample anywhere
-/// in that ball is exact. All memory is taken by the constructor. When more points are near than it
-/// holds, every 2nd, 4th, ... of the index's order is taken and weighs as much more.
+/// in that ball is exact, and stays so while the points move: advance() follows them. All memory is
+/// taken by the constructor. When more points are near than it holds, every 2nd, 4th, ... of the
+/// index's order is taken and weighs as much more.
 class Patch {
  public:
   explicit Patch(std::size_t capacity);
 
-  /// `layers` in the order of their sources.
-  void gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
+  /// `layers` in the order of their sources. False when it has looked at `most_visits` cells and
+  /// points and did not come to the end; then it covers nothing.
+  bool gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
               double extra, const GatherOptions& options = {}) noexcept;
+
+  /// Brings what was gathered to the present: the same layers, at a progress from when it was
+  /// gathered to their `until` of that time. False, and covers nothing, when they are others.
+  /// Layers whose points have become others at the same address need clear().
+  bool advance(std::span<const ActiveLayer> layers) noexcept;
 
   /// The radius of the point nearest to x (the paper's section III-D), m; 0 of an empty patch.
   [[nodiscard]] double nearest_radius(const Eigen::Vector3d& x) const noexcept;
@@ -52,7 +53,9 @@ class Patch {
   }
   [[nodiscard]] const Eigen::Vector3d& center() const noexcept { return center_; }
   [[nodiscard]] std::size_t points() const noexcept { return count_; }
-  [[nodiscard]] bool thinned() const noexcept { return stride_ > 1; }
+  [[nodiscard]] bool thinned() const noexcept { return selection_.stride() > 1; }
+  /// Cells and points that the last gather looked at.
+  [[nodiscard]] int visits() const noexcept { return selection_.visits(); }
   [[nodiscard]] double smallest_radius() const noexcept { return smallest_radius_; }
   /// Mean of the points' radii; of an empty patch, its own reach.
   [[nodiscard]] double mean_radius() const noexcept { return mean_radius_; }
@@ -91,57 +94,36 @@ class Patch {
 
   [[nodiscard]] double* column(int c) noexcept { return data_.data() + c * pitch_; }
   [[nodiscard]] const double* column(int c) const noexcept { return data_.data() + c * pitch_; }
-  [[nodiscard]] bool gather_all(std::span<const ActiveLayer> layers, int sources) noexcept;
-  [[nodiscard]] bool gather_layer(const ActiveLayer& layer) noexcept;
-  [[nodiscard]] bool take_near(const ActiveLayer& layer, std::uint32_t begin,
-                               std::uint32_t end) noexcept;
-  void fill(const ActiveLayer& layer, std::uint32_t first) noexcept;
-  void fill_normals(const ActiveLayer& layer, std::uint32_t first) noexcept;
-  void fill_sharpness(const ActiveLayer& layer, std::uint32_t first) noexcept;
+  [[nodiscard]] bool follows(std::span<const ActiveLayer> layers) const noexcept;
+  void lay_out(std::span<const ActiveLayer> layers, int sources) noexcept;
+  void fill(std::span<const ActiveLayer> layers) noexcept;
+  void fill_layer(std::size_t k) noexcept;
+  void fill_normals(std::size_t k) noexcept;
+  void fill_velocities(std::size_t k) noexcept;
+  void measure() noexcept;
   [[nodiscard]] double inverse_square(double radius) noexcept;
   void pad() noexcept;
 
   std::size_t capacity_;
   std::size_t pitch_;  // from column to column; no power of two, or they share cache sets
   std::vector<double> data_;
-  std::vector<std::uint32_t> index_;  // in its layer, for each entry of a column
+  Selection selection_;
+  std::vector<ActiveLayer> layers_;    // as they are in the columns
+  std::vector<std::uint32_t> begins_;  // of each layer in the columns
   simd::Columns columns_{};
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double extra_ = -1;
   GatherOptions options_;
   std::vector<std::uint32_t> near_;  // scratch of the sums
-  bool has_sharp_ = false;
   bool has_materials_ = false;
   bool has_presences_ = false;
   bool has_motion_ = false;
   std::uint32_t used_ = 0;  // with padding
   std::size_t count_ = 0;   // without
-  std::uint32_t stride_ = 1;
   double smallest_radius_ = 0;
-  double largest_radius_ = 0;
-  double radius_sum_ = 0;
   double mean_radius_ = 0;
   double last_radius_ = 0;
   double last_inverse_r2_ = 0;
 };
-
-/// The position of a layer's point now, relative to `center` (world frame).
-[[nodiscard]] Eigen::Vector3d position_now(const ActiveLayer& layer, std::uint32_t i,
-                                           const Eigen::Vector3d& center) noexcept;
-
-/// The support radius of a layer's point now, m.
-[[nodiscard]] double radius_now(const ActiveLayer& layer, std::uint32_t i) noexcept;
-
-/// Does a point count for nothing at any time (speckle)?
-[[nodiscard]] bool weightless(const SurfacePoints& points, std::uint32_t i) noexcept;
-
-/// Do any of the points have a presence of their own?
-[[nodiscard]] inline bool fades(const SurfacePoints& points) noexcept {
-  return !points.presences.empty() || !points.end_presences.empty();
-}
-
-/// a_i C_k now; C_k alone with `raw_weights`.
-[[nodiscard]] double weight_now(const ActiveLayer& layer, std::uint32_t i,
-                                bool raw_weights) noexcept;
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -19,6 +20,8 @@ class CellStack {
 
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   [[nodiscard]] std::uint32_t pop() noexcept { return cells_[--size_]; }
+
+  void push(std::uint32_t cell) noexcept { cells_[size_++] = cell; }
 
   /// The first child is visited next: points come in sorted order.
   void push_children(const CellGrid::Cell& cell) noexcept {
@@ -40,6 +43,12 @@ class CellTest {
 
   /// False only when the cell's box is certainly further away than `reach`, m.
   [[nodiscard]] bool near(const CellGrid::Cell& cell, double reach) const noexcept {
+    const float limit = static_cast<float>(reach) * (1 + 1e-6f) + slack_;
+    return squared_distance(cell) <= limit * limit;
+  }
+
+  /// To the cell's box, rounded, m^2.
+  [[nodiscard]] float squared_distance(const CellGrid::Cell& cell) const noexcept {
     float squared = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const float below = cell.lower[axis] - x_[axis];
@@ -47,13 +56,44 @@ class CellTest {
       const float outside = std::max(std::max(below, above), 0.0f);
       squared += outside * outside;
     }
-    const float limit = static_cast<float>(reach) * (1 + 1e-6f) + slack_;
-    return squared <= limit * limit;
+    return squared;
   }
 
  private:
   Eigen::Vector3f x_;
   float slack_;
 };
+
+/// Tells which points certainly stay away from a place on all of their way: in single precision and
+/// on the safe side, since most of a cell's points do.
+class PointTest {
+ public:
+  /// x relative to the points' origin, m.
+  PointTest(const SurfacePoints& points, const Eigen::Vector3d& x) noexcept
+      : starts_(points.grid.points().data()),
+        ends_(points.end_positions.empty() ? starts_ : points.end_positions.data()),
+        x_(x.cast<float>()),
+        slack_(4e-7f * x_.cwiseAbs().maxCoeff()) {}
+
+  /// True only when the i-th point is certainly further away than `reach`, m, at any time.
+  [[nodiscard]] bool far(std::uint32_t i, float reach) const noexcept {
+    const Eigen::Vector3f from = starts_[i] - x_;
+    const Eigen::Vector3f way = ends_[i] - starts_[i];
+    const float limit = (reach + 0.5f * std::sqrt(way.squaredNorm())) * (1 + 1e-5f) + slack_;
+    return (from + 0.5f * way).squaredNorm() > limit * limit;
+  }
+
+ private:
+  const Eigen::Vector3f* starts_;
+  const Eigen::Vector3f* ends_;
+  Eigen::Vector3f x_;
+  float slack_;
+};
+
+/// The largest support radius of a point at any time, m.
+[[nodiscard]] inline float largest_radius(const SurfacePoints& points, std::uint32_t i) noexcept {
+  return points.end_radii.empty() ? points.radii[i]
+                                  : std::max(points.radii[i], points.end_radii[i]);
+}
 
 }  // namespace palpate

@@ -11,9 +11,8 @@
 #include <utility>
 
 #include "field/evaluate.hpp"
-#include "field/free_space.hpp"
 #include "field/mean_surface.hpp"
-#include "field/patch.hpp"
+#include "scene/patches.hpp"
 #include "scene/reach_board.hpp"
 #include "scene/source_view.hpp"
 #include "scene/tool_reach.hpp"
@@ -27,6 +26,9 @@ using Eigen::Vector3d;
 // next one is gathered; in support radii.
 constexpr double kMargin = 0.35;
 constexpr double kReserve = 0.1;
+
+// The same where points move, and proxies look for the surface as far as half a radius away.
+constexpr double kMovingMargin = 0.62;
 
 // The largest tool, in support radii, that a surface is pushed out by in full.
 constexpr double kToolShare = 0.3;
@@ -44,6 +46,7 @@ constexpr double kFelt = 2;
 }  // namespace
 
 static_assert(Scene::kMaxSources <= simd::kMaxSources);
+static_assert(Scene::kMaxSources * Snapshot::kMaxLayers <= kMostLayers);
 
 struct SceneField::State {
   State(Scene& scene, const FieldOptions& options, const std::string& name)
@@ -73,13 +76,14 @@ struct SceneField::State {
     return plain_points && views.size() == 1 && views.front().presence() == 1;
   }
 
+  [[nodiscard]] bool same_snapshots() noexcept;
   void list_layers() noexcept;
+  void list_layer(std::size_t source, std::size_t k) noexcept;
   void publish_reach(const Vector3d& hip, const Vector3d& proxy) noexcept;
-  void gather(Patch& patch, const Vector3d& center, double extra) const noexcept;
-  void choose_uniform_radius(const Vector3d& proxy) noexcept;
   void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
-  [[nodiscard]] const Patch& patch_at(const Ball& ball) const noexcept;
+  [[nodiscard]] const Patch* patch_at(const Ball& ball) const noexcept;
   [[nodiscard]] double radius() const noexcept;
+  [[nodiscard]] double margin() const noexcept;
   [[nodiscard]] FieldNote standing_notes() const noexcept;
 
   ImplicitSurface surface;
@@ -90,27 +94,35 @@ struct SceneField::State {
   std::vector<SoftMaterial> soft;
   std::array<ActiveLayer, Scene::kMaxSources * Snapshot::kMaxLayers> layers;
   std::size_t layer_count = 0;
-  double typical_radius = 0;  // of the layers
+  std::array<const Snapshot*, Scene::kMaxSources> shown{};  // of the views
+  double typical_radius = 0;                                // of the layers
   double snapshot_duration = 0;
   double frame_interval = 0;  // the longest of any source
-  double uniform_radius = 0;  // R of all points; 0: each has its own
   double now = 0;
   bool other_kernel = false;
+  bool moving = false;
   bool plain_points = true;  // no materials, no motion, no fading
+  FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
-
-  // Samples away from the path are rare and take a patch of their own; that is a cache.
-  Patch near{kPatchPoints};
-  mutable Patch far{kPatchPoints};
-  mutable FieldNote notes = FieldNote::none;
-  mutable std::uint64_t gathers = 0;
+  Patches patches{surface};
 };
+
+/// Are the views' snapshots those of the last call? None comes to the address of one shown last.
+bool SceneField::State::same_snapshots() noexcept {
+  bool same = true;
+  for (std::size_t s = 0; s < views.size(); ++s) {
+    const Snapshot* const before = std::exchange(shown[s], views[s].current());
+    same = same && before == shown[s];
+  }
+  return same;
+}
 
 void SceneField::State::list_layers() noexcept {
   layer_count = 0;
   snapshot_duration = 0;
   frame_interval = 0;
   other_kernel = false;
+  moving = false;
   plain_points = true;
   typical_radius = std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < views.size(); ++s) {
@@ -118,31 +130,28 @@ void SceneField::State::list_layers() noexcept {
     if (!snapshot) continue;
     snapshot_duration = std::max(snapshot_duration, snapshot->end - snapshot->start);
     frame_interval = std::max({frame_interval, snapshot->interval, snapshot_duration});
-    for (std::size_t k = 0; k < snapshot->layers.size(); ++k) {
-      const ActiveLayer layer = views[s].layer(k, static_cast<int>(s));
-      if (layer.points->size() == 0) continue;  // a sensor that sees nothing
-      other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
-      typical_radius = std::min(typical_radius, layer.points->radius);
-      plain_points = plain_points && layer.points->materials.empty() && !fades(*layer.points) &&
-                     layer.rate == 0;
-      layers[layer_count++] = layer;
-    }
+    for (std::size_t k = 0; k < snapshot->layers.size(); ++k) list_layer(s, k);
   }
   if (layer_count == 0) typical_radius = 0;
 }
 
-void SceneField::State::gather(Patch& patch, const Vector3d& center, double extra) const noexcept {
-  patch.gather(active(), sources(), center, extra,
-               {.radius = uniform_radius,
-                .raw_weights = surface.options.raw_weights,
-                .normals = surface.options.kind != FieldKind::metaball});
-  if (patch.thinned()) notes = notes | FieldNote::thinned;
-  ++gathers;
+void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
+  ActiveLayer layer = views[source].layer(k, static_cast<int>(source));
+  if (layer.points->size() == 0) return;  // a sensor that sees nothing
+  layer.until = 1;
+  layer.last_weight = shown[source]->layers[k].weight_end;
+  other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
+  typical_radius = std::min(typical_radius, layer.points->radius);
+  plain_points =
+      plain_points && layer.points->materials.empty() && !fades(*layer.points) && layer.rate == 0;
+  moving = moving || layer.rate > 0;
+  layers[layer_count++] = layer;
 }
 
 /// Notes that hold whatever is sampled.
 FieldNote SceneField::State::standing_notes() const noexcept {
   FieldNote found = layer_count > 0 ? FieldNote::none : FieldNote::no_surface;
+  const Patch& near = patches.near();
   if (near.thinned()) found = found | FieldNote::thinned;
   if (other_kernel && !surface.options.raw_weights) found = found | FieldNote::other_kernel;
   const double largest_tool = (1 + 1e-6) * kToolShare * near.smallest_radius();
@@ -153,7 +162,12 @@ FieldNote SceneField::State::standing_notes() const noexcept {
 }
 
 double SceneField::State::radius() const noexcept {
-  return near.points() > 0 ? near.mean_radius() : typical_radius;
+  return patches.near().points() > 0 ? patches.near().mean_radius() : typical_radius;
+}
+
+/// How far a patch reaches beyond what it is gathered for, m.
+double SceneField::State::margin() const noexcept {
+  return (moving ? kMovingMargin : kMargin) * radius();
 }
 
 /// Points around the proxy and the first stretch of its way to the hand.
@@ -163,25 +177,14 @@ void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) 
   const double length = way.norm();
   const double stretch = std::min(length, r);
   const Vector3d end = length > 0 ? Vector3d(proxy + way * (stretch / length)) : proxy;
+  const Patch& near = patches.near();
   const bool covered = near.covers({proxy, kReserve * r}) && near.covers({end, kReserve * r});
-  if (!covered) gather(near, 0.5 * (proxy + end), 0.5 * stretch + kMargin * r);
+  if (!covered) patches.gather_near(0.5 * (proxy + end), 0.5 * stretch + margin());
 }
 
-/// The paper's section III-D: the radius of the point nearest to the proxy is that of all. Where no
-/// point is near, it stays what it was.
-void SceneField::State::choose_uniform_radius(const Vector3d& proxy) noexcept {
-  const double before = std::exchange(uniform_radius, 0);
-  gather(far, proxy, 0);
-  const double nearest = far.nearest_radius(proxy);
-  uniform_radius = nearest > 0 ? nearest : before > 0 ? before : typical_radius;
-  far.clear();
-  if (uniform_radius != before) near.clear();
-}
-
-const Patch& SceneField::State::patch_at(const Ball& ball) const noexcept {
-  if (near.covers(ball)) return near;
-  if (!far.covers(ball)) gather(far, ball.center, std::max(kMargin * radius(), ball.radius));
-  return far;
+/// nullptr: there is no telling.
+const Patch* SceneField::State::patch_at(const Ball& ball) const noexcept {
+  return patches.at(ball, margin());
 }
 
 /// Tells every source where the tool can be.
@@ -201,25 +204,27 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   bool changed = false;
   for (SourceView& view : state.views) changed = view.advance(state.now) || changed;
   if (changed) {
+    const bool same = state.same_snapshots();
     state.list_layers();
-    state.near.clear();
-    state.far.clear();
+    state.patches.show(state.active(), state.sources(), same);
     ++state.revision;
   }
-  state.notes = FieldNote::none;
+  state.patches.clear_notes();
   if (hip.allFinite() && proxy.allFinite()) {
-    if (options_.nearest_radius) state.choose_uniform_radius(proxy);
+    if (options_.nearest_radius) state.patches.choose_radius(proxy, state.typical_radius);
     state.gather_path(hip, proxy);
     state.publish_reach(hip, proxy);
   }
-  state.notes = state.notes | state.standing_notes();
+  state.notes = state.standing_notes();
   if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;
 }
 
 Sample SceneField::sample(const Vector3d& x, Side side) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free; of no length
-  return evaluate(state.surface, state.patch_at({x, 0}), x, side);
+  const Patch* const patch = state.patch_at({x, 0});
+  if (patch) return evaluate(state.surface, *patch, x, side);
+  return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid: unknown
 }
 
 bool SceneField::is_free(const Ball& ball) const noexcept {
@@ -227,10 +232,16 @@ bool SceneField::is_free(const Ball& ball) const noexcept {
   if (state.layer_count == 0) return true;
   if (!ball.center.allFinite() || !std::isfinite(ball.radius)) return false;
   const bool small = ball.radius <= 0.5 * kMargin * state.radius();
-  if (small || state.near.covers(ball) || state.far.covers(ball)) {
-    return palpate::is_free(state.surface, state.patch_at(ball), ball);
-  }
-  return is_free_space(state.surface, state.active(), state.sources(), ball, state.uniform_radius);
+  if (!small && !state.patches.covers(ball)) return state.patches.walk_is_free(ball);
+  const Patch* const patch = state.patch_at(ball);
+  return patch && palpate::is_free(state.surface, *patch, ball);
+}
+
+void SceneField::begin_step() const noexcept {
+  state_->patches.begin_step();
+}
+void SceneField::end_step() const noexcept {
+  state_->patches.end_step();
 }
 
 Surface SceneField::surface(const Vector3d& x) const noexcept {
@@ -241,10 +252,12 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
     result.source = 0;
     return result;
   }
+  const Patch* const patch = state.patch_at({x, 0});
+  if (!patch) return result;
   std::array<double, Scene::kMaxSources> presences{};
   std::ranges::transform(state.views, presences.begin(), &SourceView::presence);
-  const PatchSurface mean = mean_surface(state.surface, state.patch_at({x, 0}), x,
-                                         std::span(presences).first(state.views.size()));
+  const PatchSurface mean =
+      mean_surface(state.surface, *patch, x, std::span(presences).first(state.views.size()));
   if (mean.source < 0) return result;
   const SoftMaterial& soft = state.soft[static_cast<std::size_t>(mean.source)];
   result.source = mean.source;
@@ -260,7 +273,8 @@ FieldTraits SceneField::traits() const noexcept {
   const bool metaball = options_.kind == FieldKind::metaball;
   // One finely sampled spot must not make sweeps fine everywhere.
   const double smallest =
-      std::max(state.near.points() > 0 ? state.near.smallest_radius() : state.typical_radius,
+      std::max(state.patches.near().points() > 0 ? state.patches.near().smallest_radius()
+                                                 : state.typical_radius,
                kFinest * state.radius());
   FieldTraits traits;
   traits.two_sided = options_.two_sided && !metaball;
@@ -271,13 +285,16 @@ FieldTraits SceneField::traits() const noexcept {
 }
 
 FieldNote SceneField::notes() const noexcept {
-  return state_->notes;
+  return state_->notes | state_->patches.notes();
 }
 std::size_t SceneField::patch_points() const noexcept {
-  return state_->near.points();
+  return state_->patches.near().points();
 }
 std::uint64_t SceneField::gathers() const noexcept {
-  return state_->gathers;
+  return state_->patches.gathers();
+}
+std::uint64_t SceneField::visits() const noexcept {
+  return state_->patches.visits();
 }
 
 }  // namespace palpate

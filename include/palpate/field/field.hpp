@@ -57,6 +57,11 @@ class Field {
 
   [[nodiscard]] virtual FieldTraits traits() const noexcept = 0;
 
+  /// A proxy's step begins and ends. What is asked in between is bounded together: a field that has
+  /// spent its work answers on the safe side, which is that all it does not know is solid.
+  virtual void begin_step() const noexcept {}
+  virtual void end_step() const noexcept {}
+
  protected:
   Field() = default;
   Field(const Field&) = default;

@@ -20,6 +20,7 @@ enum class FieldNote : std::uint32_t {
   other_kernel = 1u << 3,     ///< points were prepared for another kernel than FieldOptions::kernel
   tool_too_large = 1u << 4,   ///< tool_radius is above 0.3 R here, so it counts for less. Remedy:
                               ///< PrepareOptions::minimum_radius = tool_radius / 0.3
+  work_spent = 1u << 5,       ///< a step had looked at kStepVisits; what it did not know was solid
 };
 
 [[nodiscard]] constexpr FieldNote operator|(FieldNote a, FieldNote b) noexcept {
@@ -35,6 +36,8 @@ enum class FieldNote : std::uint32_t {
 class SceneField final : public Field {
  public:
   static constexpr std::size_t kPatchPoints = 2048;  ///< room of a patch
+  /// Cells and points of the index that update() looks at, and likewise a proxy's step.
+  static constexpr int kStepVisits = 40960;
 
   /// `name`: for reports of fields that stand still.
   /// @throws Error when an option is out of range or the scene has too many readers.
@@ -54,6 +57,9 @@ class SceneField final : public Field {
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] FieldTraits traits() const noexcept override;
 
+  void begin_step() const noexcept override;
+  void end_step() const noexcept override;
+
   [[nodiscard]] const FieldOptions& options() const noexcept { return options_; }
 
   /// Notes since the last update() began.
@@ -62,6 +68,8 @@ class SceneField final : public Field {
   [[nodiscard]] std::size_t patch_points() const noexcept;
   /// Patches gathered since construction.
   [[nodiscard]] std::uint64_t gathers() const noexcept;
+  /// Cells and points of the index that were looked at since construction.
+  [[nodiscard]] std::uint64_t visits() const noexcept;
 
  private:
   struct State;

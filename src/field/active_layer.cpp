@@ -1,0 +1,57 @@
+#include "field/active_layer.hpp"
+
+namespace palpate {
+namespace {
+
+double lerp(double a, double b, double u) noexcept {
+  return a + u * (b - a);
+}
+
+}  // namespace
+
+Eigen::Vector3d normal_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  if (points.normals.empty()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d start = points.normals[i].cast<double>();
+  if (points.end_normals.empty()) return start;
+  const Eigen::Vector3d mixed =
+      start + layer.progress * (points.end_normals[i].cast<double>() - start);
+  const double length = mixed.norm();
+  return length > 1e-6 ? Eigen::Vector3d(mixed / length) : start;
+}
+
+Eigen::Vector3d velocity_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  if (points.end_positions.empty()) return Eigen::Vector3d::Zero();
+  return layer.rate * (points.end_positions[i] - points.grid.points()[i]).cast<double>();
+}
+
+double weight_now(const ActiveLayer& layer, std::uint32_t i, bool raw_weights) noexcept {
+  if (raw_weights) return layer.weight;
+  const SurfacePoints& points = *layer.points;
+  const double start = points.density_weights[i];
+  if (points.end_density_weights.empty()) return layer.weight * start;
+  return layer.weight * lerp(start, points.end_density_weights[i], layer.progress);
+}
+
+double radius_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  const double start = points.radii[i];
+  return points.end_radii.empty() ? start : lerp(start, points.end_radii[i], layer.progress);
+}
+
+double confidence_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  const double start = points.confidences[i];
+  return points.end_confidences.empty() ? start
+                                        : lerp(start, points.end_confidences[i], layer.progress);
+}
+
+double presence_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  const double start = points.presences.empty() ? 1.0 : points.presences[i];
+  if (points.end_presences.empty()) return start;
+  return lerp(start, points.end_presences[i], layer.progress);
+}
+
+}  // namespace palpate

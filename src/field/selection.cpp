@@ -1,0 +1,160 @@
+#include "field/selection.hpp"
+
+#include <algorithm>
+
+#include "field/simd/sums.hpp"
+#include "field/traversal.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint32_t kLargestStride = std::uint32_t{1} << 31;
+
+/// From the origin to the way from a to b.
+double squared_distance(const Vector3d& a, const Vector3d& b) noexcept {
+  const Vector3d way = b - a;
+  const double length = way.squaredNorm();
+  if (!(length > 0)) return a.squaredNorm();
+  return (a + std::clamp(-a.dot(way) / length, 0.0, 1.0) * way).squaredNorm();
+}
+
+}  // namespace
+
+Selection::Selection(std::size_t capacity) : places_(capacity, 0) {
+  runs_.reserve(kMostLayers);
+}
+
+bool Selection::choose(std::span<const ActiveLayer> layers, const Ball& ball,
+                       const SelectOptions& options) noexcept {
+  ball_ = ball;
+  options_ = options;
+  runs_.clear();
+  used_ = 0;
+  stride_ = 1;
+  visits_ = 0;
+  if (layers.size() <= kMostLayers && choose_all(layers)) return true;
+  runs_.clear();
+  return false;
+}
+
+bool Selection::choose_all(std::span<const ActiveLayer> layers) noexcept {
+  for (const ActiveLayer& layer : layers) {
+    const bool counts = layer.weight > 0 || (layer.until > layer.progress && layer.last_weight > 0);
+    runs_.push_back({layer.progress, std::max(layer.progress, layer.until), counts, used_, 0});
+    if (counts && !walk(layer)) return false;
+    runs_.back().count = used_ - runs_.back().first;
+  }
+  while (filled_up(layers) > places_.size()) {
+    if (stride_ == kLargestStride) return false;
+    thin();
+  }
+  return true;
+}
+
+bool Selection::walk(const ActiveLayer& layer) noexcept {
+  const SurfacePoints& points = *layer.points;
+  ActiveLayer last = layer;
+  last.progress = runs_.back().until;
+  const CellTest test(ball_.center - points.origin);
+  CellStack stack(points);
+  while (!stack.empty()) {
+    if (visits_ >= options_.most_visits) return false;
+    ++visits_;
+    const std::uint32_t index = stack.pop();
+    const CellGrid::Cell& cell = points.grid.cells()[index];
+    const double reach = std::max<double>(points.cell_reach[index], options_.radius);
+    if (!test.near(cell, reach + ball_.radius)) continue;
+    if (cell.children > 0 && cell.size() > stride_) {
+      stack.push_children(cell);
+    } else if (!take_near(layer, last, cell.begin, cell.end)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Of a run of points those that reach into the ball, every stride_-th of them.
+bool Selection::take_near(const ActiveLayer& start, const ActiveLayer& last, std::uint32_t begin,
+                          std::uint32_t end) noexcept {
+  const SurfacePoints& points = *start.points;
+  const PointTest test(points, ball_.center - points.origin);
+  const auto extra = static_cast<float>(ball_.radius);
+  const auto radius = static_cast<float>(options_.radius);
+  std::uint64_t i = (std::uint64_t{begin} + stride_ - 1) / stride_ * stride_;
+  while (i < end) {
+    if (visits_ >= options_.most_visits) return false;
+    ++visits_;
+    const auto place = static_cast<std::uint32_t>(i);
+    const float own = radius > 0 ? radius : largest_radius(points, place);
+    if (!test.far(place, own + extra) && reaches(start, last, place) &&
+        counts(start, last, place)) {
+      if (!make_room(1)) return false;
+      if (place % stride_ == 0) places_[used_++] = place;
+    }
+    i = (i / stride_ + 1) * stride_;  // the stride may have grown
+  }
+  return true;
+}
+
+bool Selection::reaches(const ActiveLayer& start, const ActiveLayer& last,
+                        std::uint32_t i) const noexcept {
+  const Vector3d a = position_now(start, i, ball_.center);
+  const bool moves = last.progress > start.progress;
+  const double own =
+      moves ? std::max(radius_now(start, i), radius_now(last, i)) : radius_now(start, i);
+  const double reach = (options_.radius > 0 ? options_.radius : own) + ball_.radius;
+  if (a.squaredNorm() <= reach * reach) return true;
+  if (!moves || start.points->end_positions.empty()) return false;
+  return squared_distance(a, position_now(last, i, ball_.center)) <= reach * reach;
+}
+
+bool Selection::counts(const ActiveLayer& start, const ActiveLayer& last,
+                       std::uint32_t i) const noexcept {
+  const SurfacePoints& points = *start.points;
+  if (options_.raw_weights || points.end_density_weights.empty()) return !weightless(points, i);
+  const auto weight_at = [&](double u) {
+    const double a = points.density_weights[i];
+    return a + u * (points.end_density_weights[i] - a);
+  };
+  return weight_at(start.progress) > 0 || weight_at(last.progress) > 0;
+}
+
+bool Selection::make_room(std::size_t room) noexcept {
+  while (used_ + room > places_.size()) {
+    if (stride_ == kLargestStride) return false;
+    thin();
+  }
+  return true;
+}
+
+void Selection::thin() noexcept {
+  stride_ *= 2;
+  runs_.back().count = used_ - runs_.back().first;
+  std::uint32_t kept = 0;
+  for (Run& run : runs_) {
+    const std::uint32_t end = run.first + run.count;
+    const std::uint32_t first = kept;
+    for (std::uint32_t k = run.first; k < end; ++k) {
+      if (places_[k] % stride_ == 0) places_[kept++] = places_[k];
+    }
+    run.first = first;
+    run.count = kept - first;
+  }
+  used_ = kept;
+}
+
+/// The places when every source's are filled up.
+std::size_t Selection::filled_up(std::span<const ActiveLayer> layers) const noexcept {
+  std::size_t total = 0;
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    if (k > 0 && layers[k].source != layers[k - 1].source) {
+      total = (total + simd::kLanes - 1) / simd::kLanes * simd::kLanes;
+    }
+    total += runs_[k].count;
+  }
+  return (total + simd::kLanes - 1) / simd::kLanes * simd::kLanes;
+}
+
+}  // namespace palpate

@@ -1,0 +1,79 @@
+#include "scene/patches.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "field/free_space.hpp"
+
+namespace palpate {
+
+using Eigen::Vector3d;
+
+void Patches::show(std::span<const ActiveLayer> layers, int sources, bool same) noexcept {
+  layers_ = layers;
+  sources_ = sources;
+  if (!same) {
+    near_.clear();
+    far_.clear();
+  }
+  near_.advance(layers_);
+  far_is_late_ = true;
+}
+
+void Patches::choose_radius(const Vector3d& x, double first) noexcept {
+  const double before = std::exchange(radius_, 0);
+  const double nearest = gather(far_, x, 0) ? far_.nearest_radius(x) : 0;
+  radius_ = nearest > 0 ? nearest : before > 0 ? before : first;
+  far_.clear();
+  if (radius_ != before) near_.clear();
+}
+
+void Patches::gather_near(const Vector3d& center, double extra) noexcept {
+  gather(near_, center, extra);
+}
+
+const Patch* Patches::at(const Ball& ball, double margin) const noexcept {
+  if (near_.covers(ball)) return &near_;
+  if (far_.covers(ball) && (!far_is_late_ || far_.advance(layers_))) {
+    far_is_late_ = false;
+    return &far_;
+  }
+  far_is_late_ = false;
+  return gather(far_, ball.center, std::max(margin, ball.radius)) ? &far_ : nullptr;
+}
+
+bool Patches::walk_is_free(const Ball& ball) const noexcept {
+  int left = stepping_ ? free_visits_ : kFreeVisits;
+  const int before = left;
+  const bool free = is_free_space(*surface_, layers_, sources_, ball, radius_, left);
+  if (stepping_) free_visits_ = left;
+  if (left <= 0) notes_ = notes_ | FieldNote::work_spent;
+  visits_ += static_cast<std::uint64_t>(before - left);
+  return free;
+}
+
+bool Patches::gather(Patch& patch, const Vector3d& center, double extra) const noexcept {
+  const bool whole = patch.gather(layers_, sources_, center, extra,
+                                  {.radius = radius_,
+                                   .raw_weights = surface_->options.raw_weights,
+                                   .normals = surface_->options.kind != FieldKind::metaball,
+                                   .most_visits = stepping_ ? gather_visits_ : kGatherVisits});
+  if (stepping_) gather_visits_ -= patch.visits();
+  if (patch.thinned()) notes_ = notes_ | FieldNote::thinned;
+  if (!whole) notes_ = notes_ | FieldNote::work_spent;
+  visits_ += static_cast<std::uint64_t>(patch.visits());
+  ++gathers_;
+  return whole;
+}
+
+void Patches::begin_step() const noexcept {
+  stepping_ = true;
+  gather_visits_ = kGatherVisits;
+  free_visits_ = kFreeVisits;
+}
+
+void Patches::end_step() const noexcept {
+  stepping_ = false;
+}
+
+}  // namespace palpate

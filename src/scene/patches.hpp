@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "field/evaluate.hpp"
+#include "field/patch.hpp"
+#include "palpate/scene/scene_field.hpp"
+
+namespace palpate {
+
+/// What a field has gathered: a patch around the proxy and its way, and one of wherever else it was
+/// asked for last. Counts the work and bounds it: of each gather and each walk by itself, and in a
+/// proxy's step of all of them together. Real-time but for construction.
+class Patches {
+ public:
+  explicit Patches(const ImplicitSurface& surface) : surface_(&surface) {}
+
+  /// The layers as they are now; the caller keeps them. `same`: they are those of the last call,
+  /// later.
+  void show(std::span<const ActiveLayer> layers, int sources, bool same) noexcept;
+
+  /// The paper's section III-D: from now on the radius of the point nearest to x is that of all.
+  /// Where x is in no point's support, it stays what it was; `first`, m, when there was none.
+  void choose_radius(const Eigen::Vector3d& x, double first) noexcept;
+
+  /// The patch around the proxy. Covers nothing when the visits did not suffice.
+  void gather_near(const Eigen::Vector3d& center, double extra) noexcept;
+  [[nodiscard]] const Patch& near() const noexcept { return near_; }
+
+  /// A patch that covers the ball; `margin`, m: how far one that is gathered for it reaches at
+  /// least. nullptr: the visits did not suffice, and there is no telling.
+  [[nodiscard]] const Patch* at(const Ball& ball, double margin) const noexcept;
+
+  /// Does either patch cover it already?
+  [[nodiscard]] bool covers(const Ball& ball) const noexcept {
+    return near_.covers(ball) || far_.covers(ball);
+  }
+
+  /// Is the ball free? Asks the index; false when there is no telling.
+  [[nodiscard]] bool walk_is_free(const Ball& ball) const noexcept;
+
+  void begin_step() const noexcept;
+  void end_step() const noexcept;
+
+  /// thinned and work_spent, since they were cleared.
+  [[nodiscard]] FieldNote notes() const noexcept { return notes_; }
+  void clear_notes() noexcept { notes_ = FieldNote::none; }
+  [[nodiscard]] std::uint64_t gathers() const noexcept { return gathers_; }
+  [[nodiscard]] std::uint64_t visits() const noexcept { return visits_; }
+
+ private:
+  // Of SceneField::kStepVisits.
+  static constexpr int kFreeVisits = SceneField::kStepVisits / 5;  // whether a ball is free
+  static constexpr int kGatherVisits = SceneField::kStepVisits - kFreeVisits;
+
+  bool gather(Patch& patch, const Eigen::Vector3d& center, double extra) const noexcept;
+
+  const ImplicitSurface* surface_;
+  std::span<const ActiveLayer> layers_;
+  int sources_ = 1;
+  double radius_ = 0;  // R of all points, m; 0: each has its own
+
+  // Samples away from the path are rare and take a patch of their own; that is a cache.
+  Patch near_{SceneField::kPatchPoints};
+  mutable Patch far_{SceneField::kPatchPoints};
+  mutable bool far_is_late_ = false;  // it is of an earlier moment
+  mutable bool stepping_ = false;
+  mutable int gather_visits_ = kGatherVisits;  // that are left
+  mutable int free_visits_ = kFreeVisits;
+  mutable FieldNote notes_ = FieldNote::none;
+  mutable std::uint64_t gathers_ = 0;
+  mutable std::uint64_t visits_ = 0;
+};
+
+}  // namespace palpate
