@@ -63,8 +63,14 @@ void SourceView::move(double now) noexcept {
 
 void SourceView::fade(double now, double dt) noexcept {
   const double wanted = current_ ? palpate::presence(*current_, now) : 0;
+  const double duration = current_ ? current_->end - current_->start : 0;
+  const double rise =
+      duration > 0 ? (current_->presence_end - current_->presence_start) / duration : 0;
   const bool rises = current_ && share_ > 0 && wanted > presence_ && current_->fade > 0;
-  presence_ = rises ? std::min(wanted, presence_ + std::max(dt, 0.0) / current_->fade) : wanted;
+  // A step from one snapshot to the next is made as slowly as a surface fades; what a snapshot
+  // says of itself is followed.
+  const double rate = rises ? std::max(1 / current_->fade, rise) : 0;
+  presence_ = rises ? std::min(wanted, presence_ + std::max(dt, 0.0) * rate) : wanted;
   faded_ = presence_ > 0 ? 0 : share_ > 0 ? faded_ + std::max(dt, 0.0) : faded_;
   share_ = !current_       ? 0
            : presence_ > 0 ? 1

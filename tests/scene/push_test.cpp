@@ -78,6 +78,15 @@ TEST(Push, ReplaceIsAHardSwap) {
   EXPECT_NEAR(height_at(field, 0.0101 + kFrame), 3e-3, 20e-6);
 }
 
+TEST(Push, ACrossfadeIsSureOfItsFirstFrameOnceItHasFadedIn) {
+  Scene scene;
+  Source& source = scene.add("camera", depth_source(Policy::crossfade));
+  SceneField field(scene);
+  push(source, 0, 0);
+  for (int tick = 0; tick < 60; ++tick) height_at(field, 1e-3 * tick);
+  EXPECT_EQ(field.surface(Vector3d::Zero()).presence, 1);
+}
+
 TEST(Push, FusionOfFramesIsARunningMean) {
   Scene scene;
   Source& source = scene.add("camera", depth_source(Policy::fusion));

@@ -151,13 +151,15 @@ TEST_F(StreamTimeTest, ASurfaceThatIsKeptTooLateComesBackSlowly) {
 
 // What another camera sees stays as it is when one falls silent, 3 mm beside it.
 TEST_F(StreamTimeTest, ASilentSensorLeavesTheSurfaceToTheOthers) {
-  Source& other = scene_.add("other", options());
-  StreamRun run(scene_);
+  Scene scene;
+  Source& first = scene.add("first", options());
+  Source& other = scene.add("other", options());
+  StreamRun run(scene);
   for (int k = 0; k < 70; ++k) {
     const double stamp = k * kFrame;
-    run.at(stamp, [=, this, &other] {
+    run.at(stamp, [=, &first, &other] {
       const auto start = [=] { return stamp; };
-      if (k < 15) source_.push(frame_of(small_camera(), stamp, wall(0.497)), start);
+      if (k < 15) first.push(frame_of(small_camera(), stamp, wall(0.497)), start);
       other.push(frame_of(small_camera(), stamp, wall(0.5)), start);
     });
   }
