@@ -22,14 +22,14 @@ void Patches::show(std::span<const ActiveLayer> layers, int sources, bool same) 
 
 void Patches::choose_radius(const Vector3d& x, double first) noexcept {
   const double before = std::exchange(radius_, 0);
-  const double nearest = gather(far_, x, 0) ? far_.nearest_radius(x) : 0;
+  const double nearest = gather(far_, x, 0, update_visits_) ? far_.nearest_radius(x) : 0;
   radius_ = nearest > 0 ? nearest : before > 0 ? before : first;
   far_.clear();
   if (radius_ != before) near_.clear();
 }
 
 void Patches::gather_near(const Vector3d& center, double extra) noexcept {
-  gather(near_, center, extra);
+  gather(near_, center, extra, update_visits_);
 }
 
 const Patch* Patches::at(const Ball& ball, double margin) const noexcept {
@@ -39,7 +39,9 @@ const Patch* Patches::at(const Ball& ball, double margin) const noexcept {
     return &far_;
   }
   far_is_late_ = false;
-  return gather(far_, ball.center, std::max(margin, ball.radius)) ? &far_ : nullptr;
+  int alone = kGatherVisits;
+  int& left = stepping_ ? gather_visits_ : alone;
+  return gather(far_, ball.center, std::max(margin, ball.radius), left) ? &far_ : nullptr;
 }
 
 bool Patches::walk_is_free(const Ball& ball) const noexcept {
@@ -52,18 +54,23 @@ bool Patches::walk_is_free(const Ball& ball) const noexcept {
   return free;
 }
 
-bool Patches::gather(Patch& patch, const Vector3d& center, double extra) const noexcept {
+bool Patches::gather(Patch& patch, const Vector3d& center, double extra, int& left) const noexcept {
   const bool whole = patch.gather(layers_, sources_, center, extra,
                                   {.radius = radius_,
                                    .raw_weights = surface_->options.raw_weights,
                                    .normals = surface_->options.kind != FieldKind::metaball,
-                                   .most_visits = stepping_ ? gather_visits_ : kGatherVisits});
-  if (stepping_) gather_visits_ -= patch.visits();
+                                   .most_visits = left});
+  left -= patch.visits();
   if (patch.thinned()) notes_ = notes_ | FieldNote::thinned;
   if (!whole) notes_ = notes_ | FieldNote::work_spent;
   visits_ += static_cast<std::uint64_t>(patch.visits());
   ++gathers_;
   return whole;
+}
+
+void Patches::begin_update() noexcept {
+  update_visits_ = kGatherVisits;
+  notes_ = FieldNote::none;
 }
 
 void Patches::begin_step() const noexcept {

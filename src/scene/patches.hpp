@@ -12,8 +12,8 @@
 namespace palpate {
 
 /// What a field has gathered: a patch around the proxy and its way, and one of wherever else it was
-/// asked for last. Counts the work and bounds it: of each gather and each walk by itself, and in a
-/// proxy's step of all of them together. Real-time but for construction.
+/// asked for last. Counts the work and bounds it: of each gather and each walk by itself, and in an
+/// update and a proxy's step of all of them together. Real-time but for construction.
 class Patches {
  public:
   explicit Patches(const ImplicitSurface& surface) : surface_(&surface) {}
@@ -42,12 +42,13 @@ class Patches {
   /// Is the ball free? Asks the index; false when there is no telling.
   [[nodiscard]] bool walk_is_free(const Ball& ball) const noexcept;
 
+  /// No notes yet, and all visits left for choose_radius() and gather_near() together.
+  void begin_update() noexcept;
   void begin_step() const noexcept;
   void end_step() const noexcept;
 
-  /// thinned and work_spent, since they were cleared.
+  /// thinned and work_spent, since begin_update().
   [[nodiscard]] FieldNote notes() const noexcept { return notes_; }
-  void clear_notes() noexcept { notes_ = FieldNote::none; }
   [[nodiscard]] std::uint64_t gathers() const noexcept { return gathers_; }
   [[nodiscard]] std::uint64_t visits() const noexcept { return visits_; }
 
@@ -56,7 +57,7 @@ class Patches {
   static constexpr int kFreeVisits = SceneField::kStepVisits / 5;  // whether a ball is free
   static constexpr int kGatherVisits = SceneField::kStepVisits - kFreeVisits;
 
-  bool gather(Patch& patch, const Eigen::Vector3d& center, double extra) const noexcept;
+  bool gather(Patch& patch, const Eigen::Vector3d& center, double extra, int& left) const noexcept;
 
   const ImplicitSurface* surface_;
   std::span<const ActiveLayer> layers_;
@@ -66,7 +67,8 @@ class Patches {
   // Samples away from the path are rare and take a patch of their own; that is a cache.
   Patch near_{SceneField::kPatchPoints};
   mutable Patch far_{SceneField::kPatchPoints};
-  mutable bool far_is_late_ = false;  // it is of an earlier moment
+  mutable bool far_is_late_ = false;   // it is of an earlier moment
+  int update_visits_ = kGatherVisits;  // that are left
   mutable bool stepping_ = false;
   mutable int gather_visits_ = kGatherVisits;  // that are left
   mutable int free_visits_ = kFreeVisits;

@@ -209,7 +209,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
     state.patches.show(state.active(), state.sources(), same);
     ++state.revision;
   }
-  state.patches.clear_notes();
+  state.patches.begin_update();
   if (hip.allFinite() && proxy.allFinite()) {
     if (options_.nearest_radius) state.patches.choose_radius(proxy, state.typical_radius);
     state.gather_path(hip, proxy);
