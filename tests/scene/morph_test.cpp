@@ -241,15 +241,21 @@ TEST_F(MorphTest, PointsThatAreNoneAreLeftOut) {
   EXPECT_EQ(points_->size(), depth.size() - 4);
 }
 
-TEST_F(MorphTest, AnotherImageSizeStartsAnew) {
+TEST_F(MorphTest, AnotherImageSizeKeepsTheSurface) {
   show(0, wall(0.5));
-  const DepthFrame frame = frame_of({80, 60, {190, 190, 39.5, 29.5}, {}}, kFrame, wall(0.5));
-  DepthFilter filter;
-  const FilteredDepth& depth = filter.filter(frame, T_world_sensor_);
-  points_ = std::make_shared<SurfacePoints>();
-  morph_.look({depth, frame.camera.pinhole});
-  morph_.fill({depth, frame.camera.pinhole}, {kFrame, kFrame, kFrame}, points_);
-  EXPECT_EQ(coming(), points_->size());
+  const auto show_as = [&](const CameraModel& camera, double stamp) {
+    const DepthFrame frame = frame_of(camera, stamp, wall(0.5));
+    DepthFilter filter;
+    const FilteredDepth& depth = filter.filter(frame, T_world_sensor_);
+    points_ = std::make_shared<SurfacePoints>();
+    morph_.look({depth, frame.camera.pinhole});
+    morph_.fill({depth, frame.camera.pinhole}, {stamp, stamp, kFrame}, points_);
+    check(*points_);
+  };
+  show_as({80, 60, {190, 190, 39.5, 29.5}, {}}, kFrame);
+  EXPECT_EQ(coming(), 0u);
+  EXPECT_GT(staying(), 1000u);
+  for (std::size_t i = 0; i < points_->size(); i += 7) EXPECT_NEAR(end(i).z(), 0, 1e-5);
 }
 
 TEST_F(MorphTest, AnImageWithoutDepthIsNoSurface) {

@@ -57,6 +57,7 @@ void Morph::look(const MorphInput& input) {
     order_ = make_block_order(depth.columns, depth.rows);
     resized_ = true;
   }
+  if (order_.size() == 0) forget();  // an image without a block has no place for old points
   measure(input);
 }
 
