@@ -10,8 +10,8 @@ namespace {
 constexpr std::array<ContactNote, 5> kContactNotes = {ContactNote::sweep_truncated,
                                                       ContactNote::lost, ContactNote::not_converged,
                                                       ContactNote::reanchored, ContactNote::fault};
-constexpr std::array<FieldNote, 3> kFieldNotes = {FieldNote::thinned, FieldNote::no_surface,
-                                                  FieldNote::tool_too_large};
+constexpr std::array<FieldNote, 4> kFieldNotes = {FieldNote::thinned, FieldNote::no_surface,
+                                                  FieldNote::tool_too_large, FieldNote::work_spent};
 
 constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
     {"sweep_truncated",
@@ -34,6 +34,9 @@ constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
     {"tool_too_large",
      "the tool is too large for the surface's R, so it counted for less; give a smaller "
      "--tool-radius"},
+    {"work_spent",
+     "looking for points took all the work that a step may do, so the proxy stopped short; give a "
+     "larger --voxel, or clip the cloud"},
 }};
 
 }  // namespace

@@ -31,7 +31,7 @@ struct StepTimes {
 /// Sums up a run, step by step.
 class TouchStatistics {
  public:
-  static constexpr std::size_t kNotes = 8;  ///< five of ContactNote, three of FieldNote
+  static constexpr std::size_t kNotes = 9;  ///< five of ContactNote, four of FieldNote
 
   /// Room for `steps`, so that adding does not disturb the run.
   explicit TouchStatistics(std::size_t steps = 0) { times_.reserve(steps); }
