@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -24,6 +25,11 @@ using namespace sensor;
 constexpr double kAhead = 1;  // s
 // No frame is on its way for so long: a first one that seems to be was stamped by another clock.
 constexpr double kOtherClock = 30;  // s
+
+// What preparation still does after it asked for a start is foreseen from the frames before: a
+// share of the longest of them, frame by frame, and no more than a hiccup should cost.
+constexpr double kForget = 0.9;
+constexpr double kLongestTail = 0.02;  // s
 
 const StreamOptions& checked(const StreamOptions& options, const std::string& name) {
   const auto require = [&](double value, const char* what, bool good) {
@@ -88,6 +94,7 @@ struct Stream::Threads {
   FrameExchange exchange;
   bool compared = false;  // the first frame's stamp with the clock; the reading thread's
   std::string failure;    // of the last ask(); the reading thread's
+  double tail = 0;        // s from asking for a start to the end, of late; the preparing thread's
   std::thread preparing;
   std::thread reading;
 };
@@ -182,14 +189,18 @@ void Stream::Threads::finish() {
 }
 
 void Stream::Threads::prepare(const DepthFrame& frame) {
-  std::optional<double> start;
+  std::optional<double> asked;
   const StartTime ask_start = [&] {
-    start = clock.now() + options.lead;
-    return *start;
+    asked = clock.now();
+    return *asked + tail + options.lead;
   };
   try {
+    const double lead = tail + options.lead;
     sink(frame, ask_start);
-    if (start) log.touchable(*start - frame.stamp);
+    if (!asked) return;
+    const double now = clock.now();
+    log.touchable(std::max(*asked + lead, now) - frame.stamp);
+    tail = std::min(std::max(kForget * tail, now - *asked), kLongestTail);
   } catch (const std::exception& error) {
     log.refused(clock.now(), error.what());
   }

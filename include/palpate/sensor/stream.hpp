@@ -13,7 +13,8 @@
 namespace palpate {
 
 struct StreamOptions {
-  double lead = 2e-3;      ///< a surface is felt from so long after it is ready, s
+  double lead = 2e-3;      ///< a surface is felt from so long after it is ready, as far as that can
+                           ///< be foreseen, s
   double stall = 0.5;      ///< a camera silent or frozen for longer has stalled, s
   double patience = 0.05;  ///< one DepthCamera::read() may wait so long, s; so may the destructor
   double first_retry = 0.25;  ///< the second failure in a row waits so long, s; then twice, ...
