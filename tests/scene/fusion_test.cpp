@@ -8,6 +8,7 @@
 
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
+#include "support/effort.hpp"
 #include "support/snapshots.hpp"
 
 namespace palpate {
@@ -64,6 +65,7 @@ TEST(Fusion, AveragesNoiseAwayAndNeverSteps) {
 }
 
 TEST(Fusion, WhatIsNoLongerSeenFadesAway) {
+  if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   Fusion fusion({});
   const auto add = [&](int k, double height) {
     const double t = k * kFrame;
