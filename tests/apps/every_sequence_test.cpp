@@ -75,7 +75,9 @@ TEST(EverySequence, PlaysThroughAndIsTouchedWithoutAFault) {
     const Felt felt = play(options, touched, hand, scene);
     EXPECT_EQ(felt.bad, 0u) << "steps with a fault, or not finite";
     // A hand that has a tenth of the time is still on its way.
-    if (test::effort(10) == 10) EXPECT_GT(felt.touching, felt.steps / 100);
+    if (test::effort(10) == 10) {
+      EXPECT_GT(felt.touching, felt.steps / 100);
+    }
     EXPECT_LE(felt.without_surface, 10u) << "before the first frame is touchable";
     const StreamState& state = touched.sources[0].feed.state;
     EXPECT_GT(state.touchable, 2u);

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "apps/program.hpp"
+#include "support/effort.hpp"
 
 namespace palpate::app {
 namespace {
@@ -22,6 +23,7 @@ double deviation(const std::vector<std::string>& cells) {
 }
 
 TEST(Paper, Fig5HasThePapersSizesAndTimesBesideOurs) {
+  if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   Shell shell;
   const Outcome outcome = shell.run("paper fig5 --repeats 1 --csv times.csv");
   ASSERT_EQ(outcome.code, 0) << outcome.err;

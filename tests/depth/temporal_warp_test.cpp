@@ -5,6 +5,7 @@
 
 #include "depth/temporal_filter.hpp"
 #include "depth/temporal_frames.hpp"
+#include "support/effort.hpp"
 
 namespace palpate::depth {
 namespace {
@@ -93,6 +94,7 @@ TEST_F(TemporalWarpTest, ATurnByOneBlockAndBackLosesNothing) {
 
 // 5 cm/s and 10 degrees a second at 30 frames a second.
 TEST_F(TemporalWarpTest, AMovingCameraKeepsWhatTheFilterHasGained) {
+  if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   const BlockScene scene{.plane_normal = Vector3d(0, 0.4, -1).normalized(), .ball_radius = 0.06};
   Random same(2);
   BlockFits raw;

@@ -41,6 +41,7 @@ SourceOptions options() {
 }
 
 TEST(Fusion, AveragesNoiseAwayAndNeverSteps) {
+  if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   Scene scene;
   Source& source = scene.add("sensor", options());
   SceneField field(scene);

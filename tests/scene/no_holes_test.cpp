@@ -5,6 +5,7 @@
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
+#include "support/effort.hpp"
 
 namespace palpate {
 namespace {
@@ -67,6 +68,7 @@ int passes(SceneField& field, double x0, double x1, double y1, double step, doub
 }
 
 TEST(NoHoles, RoundNearDuplicates) {
+  if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   for (const int count : {1, 4, 9, 20, 60}) {
     for (const double size : {2e-5, 2e-4}) {
       Sheet sheet;
@@ -81,6 +83,7 @@ TEST(NoHoles, RoundNearDuplicates) {
 }
 
 TEST(NoHoles, WhereDensityChangesAtOnce) {
+  if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   for (const int ratio : {2, 3, 4, 6, 8, 12}) {
     const double fine = 1e-3;
     Sheet sheet;

@@ -6,6 +6,7 @@
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/depth_frames.hpp"
+#include "support/effort.hpp"
 #include "support/snapshots.hpp"
 
 namespace palpate {
@@ -88,6 +89,7 @@ TEST(Push, ACrossfadeIsSureOfItsFirstFrameOnceItHasFadedIn) {
 }
 
 TEST(Push, FusionOfFramesIsARunningMean) {
+  if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   Scene scene;
   Source& source = scene.add("camera", depth_source(Policy::fusion));
   SceneField field(scene);

@@ -8,6 +8,7 @@
 #include "scene/reach_board.hpp"
 #include "scene/tool_reach.hpp"
 #include "support/depth_frames.hpp"
+#include "support/effort.hpp"
 
 namespace palpate {
 namespace {
@@ -109,6 +110,7 @@ TEST(Scene, FieldsTellSourcesWhereTheyFeel) {
 // A hand that moves at 0.5 m/s over clouds that come five times a second, each clipped to where it
 // can be: it never comes to their end.
 TEST(Scene, CloudsAreClippedToWhereTheHandCanBe) {
+  if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   SourceOptions options;
   options.policy.policy = Policy::average;
   options.policy.history = 1;

@@ -6,6 +6,7 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/simulated_table.hpp"
+#include "support/effort.hpp"
 
 namespace palpate {
 namespace {
@@ -41,6 +42,7 @@ double traced(const std::vector<Solid>& solids, const Eigen::Isometry3d& camera,
 }
 
 TEST(DepthRenderer, AgreesWithSphereTracing) {
+  if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   for (int layout = 0; layout < kTableLayouts; ++layout) {
     const SimulatedTable table = make_simulated_table(layout);
     const std::vector<Solid> solids = solids_at(table.scene, 0);
