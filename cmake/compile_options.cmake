@@ -16,3 +16,13 @@ function(palpate_target target)
     ${PALPATE_WARNINGS} ${PALPATE_BASELINE} -ffp-contract=off)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
 endfunction()
+
+# Headers that most sources include are compiled once a target, if asked. Sources compiled in another
+# way than their target have to skip them.
+function(palpate_precompile target)
+  if(PALPATE_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry>
+      <algorithm> <array> <atomic> <cmath> <deque> <filesystem> <fstream> <functional> <memory>
+      <optional> <span> <sstream> <string> <thread> <vector>)
+  endif()
+endfunction()
