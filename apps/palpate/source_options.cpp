@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/palpate/names.hpp"
 #include "apps/palpate/option_checks.hpp"
 #include "palpate/io/synthetic.hpp"
 
@@ -37,7 +38,7 @@ void add_stream_options(CLI::App& command, SourceChoices& o) {
   add("--policy", o.policy,
       "how frames become one surface in time: replace (hard swap), average (of N, the paper), "
       "crossfade, fusion or morph (default of depth cameras)")
-      ->check(one_of({"replace", "average", "crossfade", "fusion", "morph"}))
+      ->check(one_of(names_of(kPolicies)))
       ->type_name("NAME");
   add("--history", o.history, "N of average and crossfade, 1 to 7 (4)")
       ->check(number("a whole number from 1 to 7",

@@ -7,6 +7,7 @@
 
 #include "apps/palpate/live_run.hpp"
 #include "apps/palpate/log.hpp"
+#include "apps/palpate/names.hpp"
 #include "apps/palpate/output.hpp"
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
@@ -34,7 +35,7 @@ std::string subtitle(const TouchReport& report) {
   return fmt::format(
       "{} field, K = {:.4g} N/m, {} steps in {:.3g} s, {} contacts, energy given to the "
       "hand {}",
-      name_of(report.field.kind), report.proxy.stiffness, grouped(s.steps()), s.duration(),
+      name_in(kFields, report.field.kind), report.proxy.stiffness, grouped(s.steps()), s.duration(),
       grouped(s.contacts()), energy(energy_at_hand(report).given));
 }
 

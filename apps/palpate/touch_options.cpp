@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "apps/palpate/names.hpp"
 #include "apps/palpate/option_checks.hpp"
 
 namespace palpate::app {
@@ -15,18 +16,18 @@ void add_surface_options(CLI::App& command, TouchOptions& o) {
     return command.add_option(name, value, wrapped(help))->group(group);
   };
   add("--field", o.field, "balanced (default), pointset or metaball")
-      ->check(one_of({"balanced", "pointset", "metaball"}))
+      ->check(one_of(names_of(kFields)))
       ->type_name("NAME");
   add("--preset", o.preset,
       "default, or paper: the method of Leeper, Chan and Salisbury 2012 as they ran it")
       ->check(one_of({"default", "paper"}))
       ->type_name("NAME");
   add("--kernel", o.kernel, "wyvill (default) or wendland")
-      ->check(one_of({"wyvill", "wendland"}))
+      ->check(one_of(names_of(kKernels)))
       ->type_name("NAME");
   add("--gradient", o.gradient,
       "exact (default), normal (eq. 8) or printed (eq. 4 as printed, which points inward)")
-      ->check(one_of({"exact", "normal", "printed"}))
+      ->check(one_of(names_of(kGradients)))
       ->type_name("NAME");
   add("--threshold", o.threshold, "level of the metaball, 0 to 1; lower is farther out (0.4)")
       ->check(number("between 0 and 1", [](double x) { return x > 0 && x < 1; }))

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/palpate/live_report.hpp"
+#include "apps/palpate/names.hpp"
 #include "apps/palpate/picture_script.hpp"
 #include "apps/palpate/source_report.hpp"
 #include "apps/palpate/words.hpp"
@@ -96,18 +97,13 @@ std::vector<std::string> advice(const TouchReport& report) {
   return sentences;
 }
 
-const char* name_of(FieldKind kind) {
-  if (kind == FieldKind::metaball) return "metaball";
-  return kind == FieldKind::pointset ? "pointset" : "balanced";
-}
-
 void print_report(const TouchReport& report, std::FILE* out) {
   const Style style(out);
   for (const TouchedSource& source : report.touched.sources) print_source(source, out);
   const TouchStatistics& s = report.statistics;
   const StepTimes times = s.times();
   fmt::print(out, "{} {} field, {:.4g} N/m, {} device\n", style.heading("touched"),
-             name_of(report.field.kind), report.proxy.stiffness, report.device);
+             name_in(kFields, report.field.kind), report.proxy.stiffness, report.device);
   if (report.plan != nullptr) print_plan(*report.plan, out);
   fmt::print(out, "  steps      {} in {:.4g} s of {} time\n", grouped(s.steps()), s.duration(),
              report.live == nullptr ? "simulated" : "real");
@@ -137,7 +133,7 @@ Json json_report(const TouchReport& report) {
       {"palpate", std::string(version())},
       {"sources", sources},
       {"preset", report.options.preset},
-      {"field", name_of(report.field.kind)},
+      {"field", name_in(kFields, report.field.kind)},
       {"stiffness_N_per_m", report.proxy.stiffness},
       {"device", json_device(report)},
       {"steps", s.steps()},

@@ -36,9 +36,6 @@ struct HandEnergy {
 /// What to do differently, in whole sentences; empty: nothing.
 [[nodiscard]] std::vector<std::string> advice(const TouchReport& report);
 
-/// As on the command line.
-[[nodiscard]] const char* name_of(FieldKind kind);
-
 /// For a person.
 void print_report(const TouchReport& report, std::FILE* stream);
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "apps/palpate/errors.hpp"
+#include "apps/palpate/names.hpp"
 
 namespace palpate::app {
 
@@ -15,14 +16,12 @@ namespace {
 constexpr double kDeepestTexture = 0.2;  // R
 
 FieldKind field_kind(const TouchOptions& options) {
-  if (options.field == "pointset") return FieldKind::pointset;
-  if (options.field == "metaball") return FieldKind::metaball;
-  if (options.field.empty() && options.preset == "paper") return FieldKind::metaball;
-  return FieldKind::balanced;
+  const FieldKind preset = options.preset == "paper" ? FieldKind::metaball : FieldOptions{}.kind;
+  return choice_of(kFields, options.field).value_or(preset);
 }
 
 Kernel kernel(const TouchOptions& options) {
-  return options.kernel == "wendland" ? Kernel::wendland : Kernel::wyvill;
+  return choice_of(kKernels, options.kernel).value_or(Kernel::wyvill);
 }
 
 PrepareOptions prepare_options(const TouchOptions& options, const SourceChoices& choices) {
@@ -41,22 +40,12 @@ PrepareOptions prepare_options(const TouchOptions& options, const SourceChoices&
   return result;
 }
 
-Policy policy_of(const std::string& name) {
-  if (name == "replace") return Policy::replace;
-  if (name == "average") return Policy::average;
-  if (name == "crossfade") return Policy::crossfade;
-  return name == "fusion" ? Policy::fusion : Policy::morph;
-}
-
 // A recording's last surface stays; a sensor that falls silent is no longer believed.
 PolicyOptions policy_options(const TouchOptions& options, const ChosenSource& source) {
   PolicyOptions result;
   const SourceChoices& choices = source.choices;
-  if (!choices.policy.empty()) {
-    result.policy = policy_of(choices.policy);
-  } else if (options.preset == "paper") {
-    result.policy = Policy::average;
-  }
+  result.policy = choice_of(kPolicies, choices.policy);
+  if (!result.policy && options.preset == "paper") result.policy = Policy::average;
   result.history = choices.history.value_or(result.history);
   result.silence = choices.silence.value_or(result.silence);
   result.fade = choices.fade.value_or(result.fade);
@@ -91,9 +80,7 @@ FieldOptions field_options(const TouchOptions& options) {
   result.kind = kind;
   if (options.preset == "paper") result = paper_field(kind);
   if (!options.kernel.empty()) result.kernel = kernel(options);
-  if (options.gradient == "exact") result.gradient = GradientKind::exact;
-  if (options.gradient == "normal") result.gradient = GradientKind::normal;
-  if (options.gradient == "printed") result.gradient = GradientKind::printed;
+  result.gradient = choice_of(kGradients, options.gradient).value_or(result.gradient);
   if (options.threshold) result.threshold = *options.threshold;
   result.tool_radius = options.tool_radius;
   if (options.one_sided) result.two_sided = false;

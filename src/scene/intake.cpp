@@ -50,8 +50,8 @@ double time_of(const char* what, double time) {
 
 Intake::Intake(const SourceOptions& options)
     : options_((check(options.policy), options)),
-      frames_(options.policy.policy.value_or(Policy::morph)),
-      clouds_(options.policy.policy.value_or(Policy::crossfade)),
+      frames_(options.policy.policy.value_or(kDepthPolicy)),
+      clouds_(options.policy.policy.value_or(kCloudPolicy)),
       filter_(options.depth),
       morph_({.silence = options.policy.silence,
               .fade = options.policy.fade,

@@ -13,8 +13,12 @@ enum class Policy {
   morph,      ///< blocks of a depth image, filtered in time and by the noise-sized fit
 };
 
+/// What stands for a policy that is not set.
+inline constexpr Policy kDepthPolicy = Policy::morph;      ///< of depth frames
+inline constexpr Policy kCloudPolicy = Policy::crossfade;  ///< of clouds
+
 struct PolicyOptions {
-  std::optional<Policy> policy = {};  ///< unset: morph for depth frames, crossfade for clouds
+  std::optional<Policy> policy = {};  ///< unset: kDepthPolicy or kCloudPolicy
   int history = 4;       ///< N of `average` and `crossfade`, 1 to 7; unset by `replace`, `morph`
   double silence = 0.3;  ///< a surface that nothing confirmed for so long begins to fade, s
   double fade = 0.5;     ///< in which it fades away, s

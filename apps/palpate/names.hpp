@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "palpate/field/field_options.hpp"
+#include "palpate/scene/policy.hpp"
+
+namespace palpate::app {
+
+/// What a choice is called on the command line, in set-up files and in reports.
+template <class Choice>
+struct Named {
+  const char* name;
+  Choice choice;
+};
+
+inline constexpr std::array<Named<Policy>, 5> kPolicies = {{{"replace", Policy::replace},
+                                                            {"average", Policy::average},
+                                                            {"crossfade", Policy::crossfade},
+                                                            {"fusion", Policy::fusion},
+                                                            {"morph", Policy::morph}}};
+
+inline constexpr std::array<Named<FieldKind>, 3> kFields = {{{"balanced", FieldKind::balanced},
+                                                             {"pointset", FieldKind::pointset},
+                                                             {"metaball", FieldKind::metaball}}};
+
+inline constexpr std::array<Named<Kernel>, 2> kKernels = {
+    {{"wyvill", Kernel::wyvill}, {"wendland", Kernel::wendland}}};
+
+inline constexpr std::array<Named<GradientKind>, 3> kGradients = {
+    {{"exact", GradientKind::exact},
+     {"normal", GradientKind::normal},
+     {"printed", GradientKind::printed}}};
+
+/// The choice of that name, if there is one.
+template <class Choice, std::size_t N>
+[[nodiscard]] std::optional<Choice> choice_of(const std::array<Named<Choice>, N>& table,
+                                              std::string_view name) {
+  for (const Named<Choice>& each : table) {
+    if (each.name == name) return each.choice;
+  }
+  return {};
+}
+
+/// The choice's name; every choice has one.
+template <class Choice, std::size_t N>
+[[nodiscard]] const char* name_in(const std::array<Named<Choice>, N>& table, Choice choice) {
+  for (const Named<Choice>& each : table) {
+    if (each.choice == choice) return each.name;
+  }
+  return "";
+}
+
+/// All of them, in the table's order.
+template <class Choice, std::size_t N>
+[[nodiscard]] std::vector<std::string> names_of(const std::array<Named<Choice>, N>& table) {
+  std::vector<std::string> names;
+  for (const Named<Choice>& each : table) names.emplace_back(each.name);
+  return names;
+}
+
+}  // namespace palpate::app
