@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/palpate/open_live.hpp"
+#include "apps/palpate/quantile.hpp"
 #include "apps/palpate/waiting.hpp"
 #include "apps/palpate/words.hpp"
 #include "palpate/depth/depth_filter.hpp"
@@ -27,13 +28,9 @@ void look_at_depths(const DepthFrame& frame, LiveFacts& facts) {
   facts.valid = static_cast<double>(depths.size()) / static_cast<double>(frame.depth.size());
   if (depths.empty()) return;
   std::sort(depths.begin(), depths.end());
-  const auto share = [&](double s) {
-    return static_cast<double>(
-        depths[static_cast<std::size_t>(s * static_cast<double>(depths.size() - 1))]);
-  };
-  facts.nearest = share(0.01);
-  facts.depth = share(0.5);
-  facts.farthest = share(0.99);
+  facts.nearest = quantile(depths, 0.01);
+  facts.depth = quantile(depths, 0.5);
+  facts.farthest = quantile(depths, 0.99);
 }
 
 }  // namespace

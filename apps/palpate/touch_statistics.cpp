@@ -1,7 +1,8 @@
 #include "apps/palpate/touch_statistics.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "apps/palpate/quantile.hpp"
 
 namespace palpate::app {
 
@@ -76,12 +77,7 @@ StepTimes TouchStatistics::times() const {
   if (times_.empty()) return {};
   std::vector<double> sorted = times_;
   std::sort(sorted.begin(), sorted.end());
-  const auto percentile = [&](double share) {
-    const auto rank =
-        static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
-    return sorted[std::max<std::size_t>(rank, 1) - 1];
-  };
-  return {percentile(0.5), percentile(0.99), percentile(0.999), sorted.back()};
+  return {quantile(sorted, 0.5), quantile(sorted, 0.99), quantile(sorted, 0.999), sorted.back()};
 }
 
 const NoteText& note_text(std::size_t note) {
