@@ -1,0 +1,179 @@
+#include "apps/palpate/depth_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/palpate/names.hpp"
+#include "apps/palpate/quantile.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A phase at the end of a run: its name in data, and what is said of it.
+struct PhaseText {
+  StreamPhase phase;
+  const char* name;
+  const char* words;
+};
+
+constexpr std::array<PhaseText, 5> kPhases = {
+    {{StreamPhase::starting, "starting", "no frame came"},
+     {StreamPhase::running, "running", "running"},
+     {StreamPhase::stalled, "stalled", "stalled"},
+     {StreamPhase::failed, "failed", "failed"},
+     {StreamPhase::ended, "ended", "ended; its last surface stayed"}}};
+
+const PhaseText& text_of(StreamPhase phase) {
+  return *std::ranges::find(kPhases, phase, &PhaseText::phase);
+}
+
+// A cause for which frames are dropped, likewise.
+struct DropText {
+  std::uint64_t StreamDrops::*count;
+  const char* name;
+  const char* words;
+};
+
+constexpr std::array<DropText, 7> kDrops = {{{&StreamDrops::overtaken, "overtaken", "overtaken"},
+                                             {&StreamDrops::repeated, "repeated", "repeated"},
+                                             {&StreamDrops::late, "late", "late"},
+                                             {&StreamDrops::empty, "empty", "empty"},
+                                             {&StreamDrops::garbage, "garbage", "garbage"},
+                                             {&StreamDrops::resized, "resized", "of another size"},
+                                             {&StreamDrops::refused, "refused", "refused"}}};
+
+// "overtaken 3, late 1".
+std::string in_words(const StreamDrops& drops) {
+  std::string words;
+  for (const DropText& each : kDrops) {
+    const std::uint64_t count = drops.*each.count;
+    if (count > 0) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, each.words);
+  }
+  return words.empty() ? "none" : words;
+}
+
+Json json_drops(const StreamDrops& drops) {
+  Json json;
+  for (const DropText& each : kDrops) json[each.name] = drops.*each.count;
+  return json;
+}
+
+Policy policy_of(const TouchedSource& source) {
+  return source.options.policy.policy.value_or(source.as_cloud ? kCloudPolicy : kDepthPolicy);
+}
+
+bool keeps_history(const TouchedSource& source) {
+  const Policy policy = policy_of(source);
+  return policy == Policy::average || policy == Policy::crossfade;
+}
+
+// Of the preparation of a frame, ms.
+struct PrepareTimes {
+  double p50 = 0;
+  double longest = 0;
+};
+
+PrepareTimes prepare_times(std::vector<double> ms) {
+  std::ranges::sort(ms);
+  return {quantile(ms, 0.5), quantile(ms, 1)};
+}
+
+void print_seen(const SourceState& state, std::FILE* out) {
+  fmt::print(out, "  points     {} felt", grouped(state.points));
+  if (state.depth > 0) {
+    fmt::print(out, ", the middle of the image {} away\n", length(state.depth));
+    fmt::print(out, "  noise      {} a pixel there{}", length(state.noise),
+               state.correlation > 1.01
+                   ? fmt::format(", {:.2f} times that in means of neighbours", state.correlation)
+                   : "");
+  }
+  fmt::print(out, "\n");
+  if (state.disagreement) {
+    fmt::print(out, "  disagrees  {} with the other sources where both see a surface\n",
+               length(*state.disagreement));
+  }
+}
+
+Json json_seen(const SourceState& state) {
+  Json json = {{"points_felt", state.points},
+               {"depth_m", state.depth},
+               {"noise_m", state.noise},
+               {"noise_correlation", state.correlation}};
+  if (state.disagreement) json["disagreement_m"] = *state.disagreement;
+  return json;
+}
+
+}  // namespace
+
+void print_camera(const TouchedSource& source, const Style& style, std::FILE* out) {
+  const FeedReport& feed = source.feed;
+  const StreamState& state = feed.state;
+  const PrepareTimes times = prepare_times(feed.prepare_ms);
+  fmt::print(out, "{} {} ({} x {} pixels), {}\n", style.heading(source.argument.name),
+             source.argument.path, feed.width, feed.height, text_of(state.phase).words);
+  fmt::print(out, "  frames     {} touchable of {}, {:.1f} a second; {} dropped\n",
+             grouped(state.touchable), grouped(state.frames), state.rate, in_words(state.drops));
+  fmt::print(
+      out, "  latency    {} from frame to touchable, {} at worst; prepared in {} (p50), {} (max)\n",
+      duration(state.latency_mean), duration(state.latency_worst), duration(1e-3 * times.p50),
+      duration(1e-3 * times.longest));
+  fmt::print(out, "  policy     {}", name_in(kPolicies, policy_of(source)));
+  if (keeps_history(source)) fmt::print(out, " of {}", source.options.policy.history);
+  fmt::print(out, "\n");
+  print_seen(source.state, out);
+  if (state.problem.empty()) return;
+  fmt::print(out, "  {} {} (at {:.3f} s; {} failed reads, {} without an answer)\n",
+             style.warning("problem   "), state.problem, state.problem_at, state.failures,
+             state.stalls);
+}
+
+Json json_camera(const TouchedSource& source) {
+  const FeedReport& feed = source.feed;
+  const StreamState& state = feed.state;
+  const PrepareTimes times = prepare_times(feed.prepare_ms);
+  Json policy = {{"name", name_in(kPolicies, policy_of(source))}};
+  if (keeps_history(source)) policy["history"] = source.options.policy.history;
+  Json json = {{"name", source.argument.name},
+               {"camera", source.argument.path},
+               {"width", feed.width},
+               {"height", feed.height},
+               {"phase", text_of(state.phase).name},
+               {"frames", state.frames},
+               {"frames_touchable", state.touchable},
+               {"rate_Hz", state.rate},
+               {"drops", json_drops(state.drops)},
+               {"failures", state.failures},
+               {"stalls", state.stalls},
+               {"problem", state.problem},
+               {"latency_s", {{"mean", state.latency_mean}, {"worst", state.latency_worst}}},
+               {"prepare_ms", {{"p50", times.p50}, {"max", times.longest}}},
+               {"policy", policy}};
+  json.update(json_seen(source.state));
+  return json;
+}
+
+void print_depth_image(const TouchedSource& source, const Style& style, std::FILE* out) {
+  fmt::print(out, "{} {} ({})\n", style.heading(source.argument.name), source.argument.path,
+             source.format);
+  print_seen(source.state, out);
+  fmt::print(out, "  prepared   {} after {} of reading\n", duration(source.prepare_seconds),
+             duration(source.read_seconds));
+}
+
+Json json_depth_image(const TouchedSource& source) {
+  Json json = {{"name", source.argument.name},
+               {"file", source.argument.path},
+               {"format", source.format},
+               {"seconds", {{"read", source.read_seconds}, {"prepare", source.prepare_seconds}}}};
+  json.update(json_seen(source.state));
+  return json;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+
+#include "apps/palpate/touched.hpp"
+#include "apps/palpate/words.hpp"
+
+namespace palpate::app {
+
+/// What a run knows of a camera and of what became of its frames, for a person.
+void print_camera(const TouchedSource& source, const Style& style, std::FILE* out);
+
+/// The same as data: SI units, named in the keys.
+[[nodiscard]] nlohmann::ordered_json json_camera(const TouchedSource& source);
+
+/// What it knows of a depth image, which is filtered as a camera's frame is.
+void print_depth_image(const TouchedSource& source, const Style& style, std::FILE* out);
+
+[[nodiscard]] nlohmann::ordered_json json_depth_image(const TouchedSource& source);
+
+}  // namespace palpate::app
