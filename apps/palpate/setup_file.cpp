@@ -152,14 +152,14 @@ std::string SetupFile::text_of(const SetupKey& key, const toml::node& node) cons
 
 void SetupFile::give(CLI::App& command, const SetupKey& key, const toml::node& node,
                      std::string_view section) const {
-  CLI::Option* option = command.get_option(std::string(key.option));
+  CLI::Option* option = command.get_option(option_of(key.key));
   const std::string text = text_of(key, node);
   try {
     option->add_result(text);
     option->run_callback();
   } catch (const CLI::Error& error) {
     fail(node.source(), fmt::format("'{}' of [{}]: {}", key.key, section,
-                                    without_option(error.what(), key.option)));
+                                    without_option(error.what(), option_of(key.key))));
   }
 }
 
@@ -171,7 +171,7 @@ void SetupFile::fill_section(CLI::App& command, std::string_view section,
       fail(key.source(), fmt::format("'{}' is no key of [{}]; its keys are {}", key.str(), section,
                                      key_names(section)));
     }
-    if (command.get_option(std::string(known->option))->count() > 0) continue;
+    if (command.get_option(option_of(known->key))->count() > 0) continue;
     give(command, *known, node, section);
   }
 }
@@ -185,7 +185,7 @@ Eigen::Isometry3d SetupFile::pose(const toml::node& node) const {
 }
 
 std::string SetupFile::name(const toml::node& node) const {
-  std::string name = text_of({"name", "", KeyKind::text}, node);
+  std::string name = text_of({"name", KeyKind::text}, node);
   if (!is_name(name)) {
     fail(node.source(),
          fmt::format("'name' is '{}'; give letters, digits, '-', '_' and '.' alone", name));
@@ -203,13 +203,13 @@ SourceSetup SetupFile::source(const Names& given, const toml::table& table,
     if (key.str() == "name") {
       result.name = name(node);
     } else if (key.str() == "from") {
-      result.from = text_of({"from", "", KeyKind::path}, node);
+      result.from = text_of({"from", KeyKind::path}, node);
     } else if (key.str() == "pose") {
       result.pose = pose(node);
     } else if (known == nullptr) {
       fail(key.source(), fmt::format("'{}' is no key of [[source]]; its keys are {}", key.str(),
                                      key_names("source")));
-    } else if (!given.contains(known->option)) {
+    } else if (!given.contains(option_of(known->key))) {
       give(own, *known, node, "[source]");
     } else {
       (void)text_of(*known, node);  // the command line wins, but the type has to be right

@@ -1,87 +1,88 @@
 #include "apps/palpate/setup_keys.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace palpate::app {
 
 namespace {
 
-constexpr std::array<SetupKey, 4> kReading = {{
-    {"scale", "--scale", KeyKind::number},
-    {"intrinsics", "--intrinsics", KeyKind::numbers},
-    {"depth_unit", "--depth-unit", KeyKind::number},
-    {"unorganised", "--unorganised", KeyKind::flag},
-}};
+using enum KeyKind;
 
-constexpr std::array<SetupKey, 8> kStream = {{
-    {"policy", "--policy", KeyKind::text},
-    {"history", "--history", KeyKind::integer},
-    {"silence", "--silence", KeyKind::number},
-    {"fade", "--fade", KeyKind::number},
-    {"noise", "--noise", KeyKind::numbers_or_text},
-    {"loop", "--loop", KeyKind::flag},
-    {"simulated_time", "--simulated-time", KeyKind::flag},
-    {"latency", "--latency", KeyKind::number},
-}};
+// The keys of all parts, one after the other.
+template <std::size_t... N>
+constexpr auto joined(const std::array<SetupKey, N>&... parts) {
+  std::array<SetupKey, (N + ...)> all;
+  auto end = all.begin();
+  ((end = std::ranges::copy(parts, end).out), ...);
+  return all;
+}
 
-constexpr std::array<SetupKey, 9> kSurface = {{
-    {"field", "--field", KeyKind::text},
-    {"preset", "--preset", KeyKind::text},
-    {"kernel", "--kernel", KeyKind::text},
-    {"gradient", "--gradient", KeyKind::text},
-    {"radius", "--radius", KeyKind::number},
-    {"voxel", "--voxel", KeyKind::number},
-    {"threshold", "--threshold", KeyKind::number},
-    {"tool_radius", "--tool-radius", KeyKind::number},
-    {"one_sided", "--one-sided", KeyKind::flag},
-}};
+constexpr auto kReading = std::to_array<SetupKey>({
+    {"scale", number},
+    {"intrinsics", numbers},
+    {"depth_unit", number},
+    {"unorganised", flag},
+    {"viewpoint", numbers},
+});
 
-constexpr std::array<SetupKey, 8> kMaterial = {{
-    {"stiffness", "--stiffness", KeyKind::number},
-    {"soft_stiffness", "--soft-stiffness", KeyKind::number},
-    {"soft_friction", "--soft-friction", KeyKind::number},
-    {"friction_static", "--friction-static", KeyKind::number},
-    {"friction_dynamic", "--friction-dynamic", KeyKind::number},
-    {"friction_viscous", "--friction-viscous", KeyKind::number},
-    {"texture_amplitude", "--texture-amplitude", KeyKind::number},
-    {"texture_wavelength", "--texture-wavelength", KeyKind::number},
-}};
+constexpr auto kDetail = std::to_array<SetupKey>({{"radius", number}, {"voxel", number}});
 
-constexpr std::array<SetupKey, 5> kHand = {{
-    {"device", "--device", KeyKind::text},
-    {"trajectory", "--trajectory", KeyKind::path},
-    {"duration", "--duration", KeyKind::number},
-    {"seed", "--seed", KeyKind::integer},
-    {"rate", "--rate", KeyKind::number},
-}};
+constexpr auto kFrames = std::to_array<SetupKey>({
+    {"policy", text},
+    {"history", integer},
+    {"silence", number},
+    {"fade", number},
+    {"noise", numbers_or_text},
+    {"loop", flag},
+});
 
-constexpr std::array<SetupKey, 13> kSource = {{
-    {"scale", "--scale", KeyKind::number},
-    {"intrinsics", "--intrinsics", KeyKind::numbers},
-    {"depth_unit", "--depth-unit", KeyKind::number},
-    {"unorganised", "--unorganised", KeyKind::flag},
-    {"viewpoint", "--viewpoint", KeyKind::numbers},
-    {"radius", "--radius", KeyKind::number},
-    {"voxel", "--voxel", KeyKind::number},
-    {"policy", "--policy", KeyKind::text},
-    {"history", "--history", KeyKind::integer},
-    {"silence", "--silence", KeyKind::number},
-    {"fade", "--fade", KeyKind::number},
-    {"noise", "--noise", KeyKind::numbers_or_text},
-    {"loop", "--loop", KeyKind::flag},
-}};
+constexpr auto kTime = std::to_array<SetupKey>({{"simulated_time", flag}, {"latency", number}});
+
+constexpr auto kField = std::to_array<SetupKey>({
+    {"field", text},
+    {"preset", text},
+    {"kernel", text},
+    {"gradient", text},
+    {"threshold", number},
+    {"tool_radius", number},
+    {"one_sided", flag},
+});
+
+constexpr auto kMaterial = std::to_array<SetupKey>({
+    {"stiffness", number},
+    {"soft_stiffness", number},
+    {"soft_friction", number},
+    {"friction_static", number},
+    {"friction_dynamic", number},
+    {"friction_viscous", number},
+    {"texture_amplitude", number},
+    {"texture_wavelength", number},
+});
+
+constexpr auto kHand = std::to_array<SetupKey>({
+    {"device", text},
+    {"trajectory", path},
+    {"duration", number},
+    {"seed", integer},
+    {"rate", number},
+});
+
+constexpr auto kSource = joined(kReading, kDetail, kFrames);
+constexpr auto kStream = joined(kFrames, kTime);
+constexpr auto kSurface = joined(kField, kDetail);
 
 struct Section {
   std::string_view name;
   std::span<const SetupKey> keys;
 };
 
-constexpr std::array<Section, 6> kSections = {{{"source", kSource},
-                                               {"reading", kReading},
-                                               {"stream", kStream},
-                                               {"surface", kSurface},
-                                               {"material", kMaterial},
-                                               {"hand", kHand}}};
+constexpr auto kSections = std::to_array<Section>({{"source", kSource},
+                                                   {"reading", kReading},
+                                                   {"stream", kStream},
+                                                   {"surface", kSurface},
+                                                   {"material", kMaterial},
+                                                   {"hand", kHand}});
 
 void append(std::string& list, std::string_view name) {
   if (!list.empty()) list += ", ";
@@ -89,6 +90,12 @@ void append(std::string& list, std::string_view name) {
 }
 
 }  // namespace
+
+std::string option_of(std::string_view key) {
+  std::string option = "--" + std::string(key);
+  std::ranges::replace(option, '_', '-');
+  return option;
+}
 
 std::span<const SetupKey> keys_of(std::string_view section) {
   for (const Section& each : kSections) {
