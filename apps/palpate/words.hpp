@@ -23,7 +23,6 @@ class Style {
  public:
   explicit Style(std::FILE* stream);
   [[nodiscard]] std::string heading(const std::string& text) const { return paint("1;36", text); }
-  [[nodiscard]] std::string strong(const std::string& text) const { return paint("1", text); }
   [[nodiscard]] std::string warning(const std::string& text) const { return paint("33", text); }
   [[nodiscard]] std::string error(const std::string& text) const { return paint("1;31", text); }
   [[nodiscard]] bool colored() const { return colored_; }
