@@ -1,6 +1,7 @@
 #include "field/patch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -43,44 +44,62 @@ bool Patch::gather(std::span<const ActiveLayer> layers, int sources, const Eigen
   center_ = center;
   extra_ = extra;
   options_ = options;
-  layers_.clear();
-  begins_.clear();
   const bool whole = selection_.choose(layers, {center, extra},
                                        {.radius = options.radius,
                                         .raw_weights = options.raw_weights,
                                         .most_visits = options.most_visits});
+  copy(layers, sources, whole);
+  return whole;
+}
+
+bool Patch::advance(std::span<const ActiveLayer> layers) noexcept {
+  if (extra_ < 0 || outdated_) return false;
+  outdated_ = layers.size() != layers_.size();
+  for (std::size_t k = 0; !outdated_ && k < layers.size(); ++k) outdated_ = !follows(layers[k], k);
+  if (outdated_) return false;
+  fill(layers);
+  return true;
+}
+
+bool Patch::renew(std::span<const ActiveLayer> layers, int sources, int most_visits) noexcept {
+  std::array<std::size_t, kMostLayers> before{};
+  std::transform(layers.begin(), layers.begin() + std::min(layers.size(), kMostLayers),
+                 before.begin(), [this](const ActiveLayer& layer) { return followed_by(layer); });
+  const bool whole = selection_.renew(layers, before, most_visits);
+  copy(layers, sources, whole);
+  return whole;
+}
+
+/// Copies what was chosen into the columns.
+void Patch::copy(std::span<const ActiveLayer> layers, int sources, bool whole) noexcept {
   if (!whole) {
     extra_ = -1;
     layers = {};
   }
+  outdated_ = false;
+  layers_.clear();
+  begins_.clear();
   has_materials_ =
       any(layers, [](const ActiveLayer& layer) { return !layer.points->materials.empty(); });
   has_presences_ = any(layers, [](const ActiveLayer& layer) { return fades(*layer.points); });
   lay_out(layers, sources);
   fill(layers);
-  return whole;
 }
 
-bool Patch::advance(std::span<const ActiveLayer> layers) noexcept {
-  if (extra_ < 0) return false;
-  if (!follows(layers)) {
-    clear();
-    return false;
-  }
-  fill(layers);
-  return true;
+/// Is a layer the k-th that was gathered, on its way?
+bool Patch::follows(const ActiveLayer& now, std::size_t k) const noexcept {
+  const Selection::Run& run = selection_.runs()[k];
+  const bool same = now.points == layers_[k].points && now.source == layers_[k].source;
+  const bool on_the_way = now.progress >= run.from && now.progress <= run.until;
+  return same && on_the_way && (run.counts || !(now.weight > 0));
 }
 
-bool Patch::follows(std::span<const ActiveLayer> layers) const noexcept {
-  if (layers.size() != layers_.size()) return false;
-  for (std::size_t k = 0; k < layers.size(); ++k) {
-    const Selection::Run& run = selection_.runs()[k];
-    const bool same =
-        layers[k].points == layers_[k].points && layers[k].source == layers_[k].source;
-    const bool on_the_way = layers[k].progress >= run.from && layers[k].progress <= run.until;
-    if (!same || !on_the_way || (layers[k].weight > 0 && !run.counts)) return false;
+/// Which of the layers that were gathered.
+std::size_t Patch::followed_by(const ActiveLayer& now) const noexcept {
+  for (std::size_t k = 0; k < layers_.size(); ++k) {
+    if (follows(now, k)) return k;
   }
-  return true;
+  return Selection::kNone;
 }
 
 /// Gives every layer its place in the columns.

@@ -41,16 +41,24 @@ class Patch {
   /// Layers whose points have become others at the same address need clear().
   bool advance(std::span<const ActiveLayer> layers) noexcept;
 
+  /// Gathers anew at the same place after advance() was refused, and looks for points in those
+  /// layers alone that are others. False as gather() says it.
+  bool renew(std::span<const ActiveLayer> layers, int sources, int most_visits) noexcept;
+
   /// The radius of the point nearest to x (the paper's section III-D), m; 0 of an empty patch.
   [[nodiscard]] double nearest_radius(const Eigen::Vector3d& x) const noexcept;
 
   /// Covers nothing until the next gather.
   void clear() noexcept { extra_ = -1; }
 
-  [[nodiscard]] bool covers(const Ball& ball) const noexcept {
+  [[nodiscard]] bool covers(const Ball& ball) const noexcept { return !outdated_ && reaches(ball); }
+  /// Would it cover the ball, once renewed?
+  [[nodiscard]] bool reaches(const Ball& ball) const noexcept {
     const double slack = extra_ - ball.radius;
     return slack >= 0 && (ball.center - center_).squaredNorm() <= slack * slack;
   }
+  /// Has advance() been refused since it was gathered?
+  [[nodiscard]] bool outdated() const noexcept { return outdated_; }
   [[nodiscard]] const Eigen::Vector3d& center() const noexcept { return center_; }
   [[nodiscard]] std::size_t points() const noexcept { return count_; }
   [[nodiscard]] bool thinned() const noexcept { return selection_.stride() > 1; }
@@ -94,7 +102,9 @@ class Patch {
 
   [[nodiscard]] double* column(int c) noexcept { return data_.data() + c * pitch_; }
   [[nodiscard]] const double* column(int c) const noexcept { return data_.data() + c * pitch_; }
-  [[nodiscard]] bool follows(std::span<const ActiveLayer> layers) const noexcept;
+  void copy(std::span<const ActiveLayer> layers, int sources, bool whole) noexcept;
+  [[nodiscard]] bool follows(const ActiveLayer& now, std::size_t k) const noexcept;
+  [[nodiscard]] std::size_t followed_by(const ActiveLayer& now) const noexcept;
   void lay_out(std::span<const ActiveLayer> layers, int sources) noexcept;
   void fill(std::span<const ActiveLayer> layers) noexcept;
   void fill_layer(std::size_t k) noexcept;
@@ -113,6 +123,7 @@ class Patch {
   simd::Columns columns_{};
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double extra_ = -1;
+  bool outdated_ = false;
   GatherOptions options_;
   std::vector<std::uint32_t> near_;  // scratch of the sums
   bool has_materials_ = false;

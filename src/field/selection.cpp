@@ -1,6 +1,7 @@
 #include "field/selection.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "field/simd/sums.hpp"
 #include "field/traversal.hpp"
@@ -22,35 +23,65 @@ double squared_distance(const Vector3d& a, const Vector3d& b) noexcept {
 
 }  // namespace
 
-Selection::Selection(std::size_t capacity) : places_(capacity, 0) {
+Selection::Selection(std::size_t capacity) : places_(capacity, 0), places_before_(capacity, 0) {
   runs_.reserve(kMostLayers);
+  runs_before_.reserve(kMostLayers);
+}
+
+void Selection::begin() noexcept {
+  runs_.clear();
+  used_ = 0;
+  stride_ = 1;
+  visits_ = 0;
 }
 
 bool Selection::choose(std::span<const ActiveLayer> layers, const Ball& ball,
                        const SelectOptions& options) noexcept {
   ball_ = ball;
   options_ = options;
-  runs_.clear();
-  used_ = 0;
-  stride_ = 1;
-  visits_ = 0;
-  if (layers.size() <= kMostLayers && choose_all(layers)) return true;
-  runs_.clear();
-  return false;
+  begin();
+  return choose_all(layers, {});
 }
 
-bool Selection::choose_all(std::span<const ActiveLayer> layers) noexcept {
-  for (const ActiveLayer& layer : layers) {
+bool Selection::renew(std::span<const ActiveLayer> layers, std::span<const std::size_t> before,
+                      int most_visits) noexcept {
+  options_.most_visits = most_visits;
+  const bool whole = stride_ == 1;  // thinned runs lack points that there may be room for now
+  std::swap(places_, places_before_);
+  std::swap(runs_, runs_before_);
+  begin();
+  return choose_all(layers, whole ? before : std::span<const std::size_t>());
+}
+
+bool Selection::choose_all(std::span<const ActiveLayer> layers,
+                           std::span<const std::size_t> before) noexcept {
+  bool chosen = layers.size() <= kMostLayers;
+  for (std::size_t k = 0; chosen && k < layers.size(); ++k) {
+    const ActiveLayer& layer = layers[k];
     const bool counts = layer.weight > 0 || (layer.until > layer.progress && layer.last_weight > 0);
     runs_.push_back({layer.progress, std::max(layer.progress, layer.until), counts, used_, 0});
-    if (counts && !walk(layer)) return false;
+    if (!before.empty() && before[k] != kNone) {
+      chosen = take_over(runs_before_[before[k]]);
+    } else if (counts) {
+      chosen = walk(layer);
+    }
     runs_.back().count = used_ - runs_.back().first;
   }
-  while (filled_up(layers) > places_.size()) {
-    if (stride_ == kLargestStride) return false;
-    thin();
+  while (chosen && filled_up(layers) > places_.size()) {
+    chosen = stride_ < kLargestStride;
+    if (chosen) thin();
   }
-  return true;
+  if (!chosen) runs_.clear();
+  return chosen;
+}
+
+bool Selection::take_over(const Run& run) noexcept {
+  Run& now = runs_.back();
+  now.from = run.from;
+  now.until = run.until;
+  now.counts = run.counts;
+  return std::ranges::all_of(std::span(places_before_).subspan(run.first, run.count),
+                             [this](std::uint32_t place) { return take(place); });
 }
 
 bool Selection::walk(const ActiveLayer& layer) noexcept {
@@ -90,8 +121,7 @@ bool Selection::take_near(const ActiveLayer& start, const ActiveLayer& last, std
     const float own = radius > 0 ? radius : largest_radius(points, place);
     if (!test.far(place, own + extra) && reaches(start, last, place) &&
         counts(start, last, place)) {
-      if (!make_room(1)) return false;
-      if (place % stride_ == 0) places_[used_++] = place;
+      if (!take(place)) return false;
     }
     i = (i / stride_ + 1) * stride_;  // the stride may have grown
   }
@@ -121,11 +151,13 @@ bool Selection::counts(const ActiveLayer& start, const ActiveLayer& last,
   return weight_at(start.progress) > 0 || weight_at(last.progress) > 0;
 }
 
-bool Selection::make_room(std::size_t room) noexcept {
-  while (used_ + room > places_.size()) {
+/// False when there is no room for it, however few are taken.
+bool Selection::take(std::uint32_t place) noexcept {
+  while (used_ == places_.size()) {
     if (stride_ == kLargestStride) return false;
     thin();
   }
+  if (place % stride_ == 0) places_[used_++] = place;
   return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,13 @@ class Selection {
   [[nodiscard]] bool choose(std::span<const ActiveLayer> layers, const Ball& ball,
                             const SelectOptions& options) noexcept;
 
+  /// Chooses once more in the same ball. `before`: for each layer, which of the runs so far is also
+  /// what would be chosen of it now, and is taken over; kNone: there is none.
+  [[nodiscard]] bool renew(std::span<const ActiveLayer> layers, std::span<const std::size_t> before,
+                           int most_visits) noexcept;
+
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
   /// One for each layer.
   [[nodiscard]] std::span<const Run> runs() const noexcept { return runs_; }
   /// Indices in the layer's sorted order, rising.
@@ -49,7 +57,11 @@ class Selection {
   [[nodiscard]] int visits() const noexcept { return visits_; }
 
  private:
-  [[nodiscard]] bool choose_all(std::span<const ActiveLayer> layers) noexcept;
+  void begin() noexcept;
+  [[nodiscard]] bool choose_all(std::span<const ActiveLayer> layers,
+                                std::span<const std::size_t> before) noexcept;
+  [[nodiscard]] bool take_over(const Run& run) noexcept;
+  [[nodiscard]] bool take(std::uint32_t place) noexcept;
   [[nodiscard]] bool walk(const ActiveLayer& layer) noexcept;
   [[nodiscard]] bool take_near(const ActiveLayer& start, const ActiveLayer& last,
                                std::uint32_t begin, std::uint32_t end) noexcept;
@@ -57,12 +69,11 @@ class Selection {
                              std::uint32_t i) const noexcept;
   [[nodiscard]] bool counts(const ActiveLayer& start, const ActiveLayer& last,
                             std::uint32_t i) const noexcept;
-  [[nodiscard]] bool make_room(std::size_t room) noexcept;
   void thin() noexcept;
   [[nodiscard]] std::size_t filled_up(std::span<const ActiveLayer> layers) const noexcept;
 
-  std::vector<std::uint32_t> places_;
-  std::vector<Run> runs_;
+  std::vector<std::uint32_t> places_, places_before_;
+  std::vector<Run> runs_, runs_before_;
   std::uint32_t used_ = 0;
   std::uint32_t stride_ = 1;
   int visits_ = 0;

@@ -12,10 +12,7 @@ using Eigen::Vector3d;
 void Patches::show(std::span<const ActiveLayer> layers, int sources, bool same) noexcept {
   layers_ = layers;
   sources_ = sources;
-  if (!same) {
-    near_.clear();
-    far_.clear();
-  }
+  if (!same) far_.clear();
   near_.advance(layers_);
   far_is_late_ = true;
 }
@@ -30,6 +27,14 @@ void Patches::choose_radius(const Vector3d& x, double first) noexcept {
 
 void Patches::gather_near(const Vector3d& center, double extra) noexcept {
   gather(near_, center, extra, update_visits_);
+}
+
+bool Patches::near_covers(std::span<const Ball> balls) noexcept {
+  const auto reached = [this](const Ball& ball) { return near_.reaches(ball); };
+  if (near_.outdated() && std::ranges::all_of(balls, reached)) {
+    count(near_, near_.renew(layers_, sources_, update_visits_), update_visits_);
+  }
+  return std::ranges::all_of(balls, [this](const Ball& ball) { return near_.covers(ball); });
 }
 
 const Patch* Patches::at(const Ball& ball, double margin) const noexcept {
@@ -60,12 +65,17 @@ bool Patches::gather(Patch& patch, const Vector3d& center, double extra, int& le
                                    .raw_weights = surface_->options.raw_weights,
                                    .normals = surface_->options.kind != FieldKind::metaball,
                                    .most_visits = left});
+  count(patch, whole, left);
+  return whole;
+}
+
+/// The work of a gather.
+void Patches::count(const Patch& patch, bool whole, int& left) const noexcept {
   left -= patch.visits();
   if (patch.thinned()) notes_ = notes_ | FieldNote::thinned;
   if (!whole) notes_ = notes_ | FieldNote::work_spent;
   visits_ += static_cast<std::uint64_t>(patch.visits());
   ++gathers_;
-  return whole;
 }
 
 void Patches::begin_update() noexcept {

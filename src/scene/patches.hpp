@@ -30,6 +30,10 @@ class Patches {
   void gather_near(const Eigen::Vector3d& center, double extra) noexcept;
   [[nodiscard]] const Patch& near() const noexcept { return near_; }
 
+  /// Does it cover all of these balls? Where snapshots have changed, their points are looked for
+  /// again, if that is all that it takes.
+  [[nodiscard]] bool near_covers(std::span<const Ball> balls) noexcept;
+
   /// A patch that covers the ball; `margin`, m: how far one that is gathered for it reaches at
   /// least. nullptr: the visits did not suffice, and there is no telling.
   [[nodiscard]] const Patch* at(const Ball& ball, double margin) const noexcept;
@@ -58,6 +62,7 @@ class Patches {
   static constexpr int kGatherVisits = SceneField::kStepVisits - kFreeVisits;
 
   bool gather(Patch& patch, const Eigen::Vector3d& center, double extra, int& left) const noexcept;
+  void count(const Patch& patch, bool whole, int& left) const noexcept;
 
   const ImplicitSurface* surface_;
   std::span<const ActiveLayer> layers_;

@@ -177,9 +177,9 @@ void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) 
   const double length = way.norm();
   const double stretch = std::min(length, r);
   const Vector3d end = length > 0 ? Vector3d(proxy + way * (stretch / length)) : proxy;
-  const Patch& near = patches.near();
-  const bool covered = near.covers({proxy, kReserve * r}) && near.covers({end, kReserve * r});
-  if (!covered) patches.gather_near(0.5 * (proxy + end), 0.5 * stretch + margin());
+  const std::array balls{Ball{proxy, kReserve * r}, Ball{end, kReserve * r}};
+  if (!patches.near_covers(balls))
+    patches.gather_near(0.5 * (proxy + end), 0.5 * stretch + margin());
 }
 
 /// nullptr: there is no telling.

@@ -104,6 +104,63 @@ TEST(PatchAdvance, RefusesWhatItDoesNotCover) {
   EXPECT_FALSE(patch.advance(std::vector<ActiveLayer>{{points.data(), 0, 1, 0.6, 30}}));
 }
 
+TEST(PatchRenew, IsAsGatheringAfreshAndLooksAtChangedLayersAlone) {
+  std::vector<SurfacePoints> points;
+  for (unsigned seed = 1; seed <= 4; ++seed) points.push_back(moving_sheet(seed));
+  const ImplicitSurface surface{FieldOptions{}};
+  const double extra = 4e-3;
+  const auto layers_with = [&](double u, std::size_t second, double second_u) {
+    return std::vector<ActiveLayer>{{&points[0], 0, 1, u, 30, 1, 1},
+                                    {&points[second], 1, 1, second_u, 30, 1, 1},
+                                    {&points[2], 2, 1, u, 30, 1, 1}};
+  };
+  Patch renewed(2048);
+  Patch afresh(2048);
+  ASSERT_TRUE(renewed.gather(layers_with(0, 1, 0), 3, Vector3d::Zero(), extra));
+  const int whole = renewed.visits();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int k = 0; k < 9; ++k) {
+    const double u = 0.1 * (k + 1);
+    const auto layers = layers_with(u, k % 2 == 0 ? 3 : 1, 0);
+    ASSERT_FALSE(renewed.advance(layers));
+    EXPECT_TRUE(renewed.outdated());
+    ASSERT_TRUE(renewed.renew(layers, 3, 100000));
+    EXPECT_FALSE(renewed.outdated());
+    EXPECT_LT(renewed.visits(), whole / 2);
+    ASSERT_TRUE(renewed.advance(layers_with(u + 0.05, k % 2 == 0 ? 3 : 1, 0.05)));
+    ASSERT_TRUE(
+        afresh.gather(layers_with(u + 0.05, k % 2 == 0 ? 3 : 1, 0.05), 3, Vector3d::Zero(), extra));
+    EXPECT_LE(afresh.points(), renewed.points());
+    const Vector3d way(unit(random), unit(random), unit(random));
+    expect_same(renewed, afresh, surface, extra * way.normalized());
+  }
+}
+
+TEST(PatchRenew, LooksAtEverythingAgainWhereThePatchWasThinned) {
+  const std::vector<SurfacePoints> points = {moving_sheet(1), moving_sheet(2), moving_sheet(3)};
+  Patch patch(256);
+  Patch afresh(256);
+  ASSERT_TRUE(patch.gather(layers_at(0.5, points), 2, Vector3d::Zero(), 12e-3));
+  ASSERT_TRUE(patch.thinned());
+  auto layers = layers_at(0.6, points);
+  layers.resize(1);
+  layers.front().weight = 1;
+  ASSERT_FALSE(patch.advance(layers));
+  ASSERT_TRUE(patch.renew(layers, 2, 100000));
+  ASSERT_TRUE(afresh.gather(layers, 2, Vector3d::Zero(), 12e-3));
+  EXPECT_EQ(patch.points(), afresh.points());
+}
+
+TEST(PatchRenew, CoversNothingWhenItsVisitsAreSpent) {
+  const std::vector<SurfacePoints> points = {moving_sheet(1), moving_sheet(2), moving_sheet(3)};
+  Patch patch(2048);
+  ASSERT_TRUE(patch.gather(layers_at(0.5, points), 2, Vector3d::Zero(), 5e-3));
+  ASSERT_FALSE(patch.advance(layers_at(0.4, points)));
+  EXPECT_FALSE(patch.renew(layers_at(0.4, points), 2, 10));
+  EXPECT_FALSE(patch.reaches({Vector3d::Zero(), 0}));
+}
+
 TEST(PatchAdvance, GatheringStopsWhenItsVisitsAreSpent) {
   const std::vector<SurfacePoints> points = {moving_sheet(1), moving_sheet(2), moving_sheet(3)};
   const auto layers = layers_at(0.5, points);
