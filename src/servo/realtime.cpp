@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <system_error>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -65,17 +66,12 @@ RealtimeRequest ask_for_memory() {
   return request;
 }
 
-RealtimeRequest ask_for_processor(int processor) {
-  RealtimeRequest request;
-  request.what = fmt::format("pinned to processor {}", processor);
-  int error = EINVAL;
-  if (processor >= 0 && processor < CPU_SETSIZE) {
-    cpu_set_t set;
-    CPU_ZERO(&set);
-    CPU_SET(static_cast<std::size_t>(processor), &set);
-    error = pthread_setaffinity_np(pthread_self(), sizeof set, &set);
-  }
-  request.granted = error == 0;
+bool is_processor(int processor) {
+  return processor >= 0 && processor < CPU_SETSIZE;
+}
+
+RealtimeRequest answered(std::string what, int error) {
+  RealtimeRequest request{std::move(what), error == 0, {}};
   if (!request.granted) {
     request.remedy = fmt::format(
         "{}; there is none of that number, or this process may not use "
@@ -83,6 +79,17 @@ RealtimeRequest ask_for_processor(int processor) {
         reason(error));
   }
   return request;
+}
+
+RealtimeRequest ask_for_processor(int processor) {
+  int error = EINVAL;
+  if (is_processor(processor)) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    CPU_SET(static_cast<std::size_t>(processor), &set);
+    error = pthread_setaffinity_np(pthread_self(), sizeof set, &set);
+  }
+  return answered(fmt::format("pinned to processor {}", processor), error);
 }
 
 // Touches the stack once, so that no step is the first to do so.
@@ -104,6 +111,22 @@ std::string in_words(const RealtimeReport& report) {
                              : fmt::format("{}: not granted ({})\n", request.what, request.remedy);
   }
   return words;
+}
+
+RealtimeRequest leave_processor(int processor) {
+  std::string what = fmt::format("processor {} left to the servo", processor);
+  cpu_set_t set;
+  int error = pthread_getaffinity_np(pthread_self(), sizeof set, &set);
+  if (error != 0) return answered(std::move(what), error);
+  if (!is_processor(processor) || !CPU_ISSET(static_cast<std::size_t>(processor), &set)) {
+    return answered(std::move(what), EINVAL);
+  }
+  CPU_CLR(static_cast<std::size_t>(processor), &set);
+  if (CPU_COUNT(&set) == 0) {
+    return {std::move(what), false, "it is the only one that this process may use"};
+  }
+  error = pthread_setaffinity_np(pthread_self(), sizeof set, &set);
+  return answered(std::move(what), error);
 }
 
 RealtimeReport make_realtime(const RealtimeOptions& options) {

@@ -41,14 +41,51 @@ TEST(Realtime, SaysWhatIsWrongWithWhatCannotBe) {
   EXPECT_NE(words.find("not granted"), std::string::npos);
 }
 
-TEST(Realtime, PinsToAProcessorThatThereIs) {
-  cpu_set_t allowed;
-  ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
+// That the calling thread may run on.
+cpu_set_t allowed() {
+  cpu_set_t set;
+  EXPECT_EQ(sched_getaffinity(0, sizeof set, &set), 0);
+  return set;
+}
+
+int first_of(const cpu_set_t& set) {
   int processor = 0;
-  while (!CPU_ISSET(static_cast<std::size_t>(processor), &allowed)) ++processor;
+  while (!CPU_ISSET(static_cast<std::size_t>(processor), &set)) ++processor;
+  return processor;
+}
+
+TEST(Realtime, PinsToAProcessorThatThereIs) {
   const RealtimeReport report =
-      asked({.realtime_priority = false, .lock_memory = false, .processor = processor});
+      asked({.realtime_priority = false, .lock_memory = false, .processor = first_of(allowed())});
   EXPECT_TRUE(report.all_granted()) << in_words(report);
+}
+
+TEST(Realtime, LeavesAProcessorToTheServoWhichStillCanBePinnedToIt) {
+  const cpu_set_t before = allowed();
+  if (CPU_COUNT(&before) < 2) GTEST_SKIP() << "there is one processor alone";
+  const int processor = first_of(before);
+  std::jthread([&] {
+    EXPECT_TRUE(leave_processor(processor).granted);
+    const cpu_set_t left = allowed();
+    EXPECT_FALSE(CPU_ISSET(static_cast<std::size_t>(processor), &left));
+    EXPECT_EQ(CPU_COUNT(&left), CPU_COUNT(&before) - 1);
+    EXPECT_FALSE(leave_processor(processor).granted);  // it is gone already
+    EXPECT_TRUE(asked({.realtime_priority = false, .lock_memory = false, .processor = processor})
+                    .all_granted());
+  }).join();
+}
+
+TEST(Realtime, KeepsTheLastProcessor) {
+  std::jthread([&] {
+    const int processor = first_of(allowed());
+    ASSERT_TRUE(
+        make_realtime({.realtime_priority = false, .lock_memory = false, .processor = processor})
+            .all_granted());
+    const RealtimeRequest last = leave_processor(processor);
+    EXPECT_FALSE(last.granted);
+    EXPECT_NE(last.remedy.find("only one"), std::string::npos);
+    EXPECT_FALSE(leave_processor(-1).granted);
+  }).join();
 }
 
 }  // namespace

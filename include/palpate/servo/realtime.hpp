@@ -35,4 +35,9 @@ struct RealtimeReport {
 /// for what is refused.
 [[nodiscard]] RealtimeReport make_realtime(const RealtimeOptions& options);
 
+/// Leaves a processor to the servo that is pinned there: the calling thread and those that it
+/// starts from now on run on the others, and never sweep out the caches of a step. Refused where
+/// there is no other.
+[[nodiscard]] RealtimeRequest leave_processor(int processor);
+
 }  // namespace palpate
