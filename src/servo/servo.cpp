@@ -11,6 +11,9 @@ using Eigen::Vector3d;
 
 constexpr double kSilencePeriods = 2.5;
 
+// Of a device that does not tell its rate: what the first step takes, s.
+constexpr double kFirstStep = 1e-3;
+
 // A device that renders no force is given what would be felt.
 GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
   if (device.maximum_force > 0) {
@@ -24,6 +27,10 @@ GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
 ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
   options.guard = guard_for(device, options.guard);
   return options;
+}
+
+double first_step(const DeviceInfo& device) noexcept {
+  return device.rate > 0 ? 1 / device.rate : kFirstStep;
 }
 
 GuardFault known_fault(const ServoState& state) noexcept {
@@ -58,7 +65,7 @@ const ServoState& Servo::tick() noexcept {
 const ServoState& Servo::step(const DeviceState& device, double now) noexcept {
   const Workspace& workspace = options_.workspace;
   const bool goes_on = started_ && std::isfinite(state_.time);
-  state_.dt = goes_on ? now - state_.time : 1 / device_.info().rate;
+  state_.dt = goes_on ? now - state_.time : first_step(device_.info());
   state_.time = now;
   state_.hip = workspace.position_to_world(device.position);
   state_.velocity = workspace.velocity_to_world(device.velocity);

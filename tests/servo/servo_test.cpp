@@ -188,6 +188,18 @@ TEST(Servo, WaitsAsLongForSlowDevicesAsTheyTake) {
   EXPECT_EQ(Servo(device, scene).options().guard.silence, GuardOptions().silence);
 }
 
+TEST(Servo, TakesItsFirstStepAlsoOfADeviceThatDoesNotTellItsRate) {
+  Scene scene;
+  test::add_sheet(scene);
+  FreeDevice device;
+  device.info().rate = 0;
+  Servo servo(device, scene);
+  const ServoState state = servo.tick(0);
+  EXPECT_EQ(state.guard.fault, GuardFault::none);
+  EXPECT_GT(state.dt, 0);
+  EXPECT_LT(state.dt, 0.01);
+}
+
 TEST(Servo, FeelsNothingWhilePaused) {
   Scene scene;
   test::add_sheet(scene);
