@@ -35,7 +35,8 @@ void touch(const char* name) {
   palpate::Scene scene;
   palpate::Source& source = scene.add("camera");
   palpate::SceneField field(scene);
-  const palpate::Stream stream(palpate::open_camera(name, {.clock = &clock}), source, clock);
+  const auto camera = palpate::open_camera(name, {.clock = &clock});
+  const palpate::Stream stream(*camera, source, clock);
 
   for (int i = 0; i < 500 && !source.points(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

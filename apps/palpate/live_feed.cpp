@@ -7,30 +7,11 @@
 
 namespace palpate::app {
 
-namespace {
-
-// A stream owns its camera; here what is touched goes on owning it.
-class LentCamera final : public DepthCamera {
- public:
-  explicit LentCamera(DepthCamera& camera) : camera_(camera) {}
-
-  [[nodiscard]] const CameraInfo& info() const noexcept override { return camera_.info(); }
-  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override {
-    return camera_.read(frame, timeout);
-  }
-  [[nodiscard]] std::string reason() const override { return camera_.reason(); }
-
- private:
-  DepthCamera& camera_;
-};
-
-}  // namespace
-
 // What the sink notes is its thread's until the stream has ended.
 struct LiveFeed::Lane {
   Lane(TouchedSource& from, Source& to, const Clock& clock) : touched(from), felt(to) {
     stream.emplace(
-        std::make_unique<LentCamera>(*from.camera), to.name(),
+        *from.camera, to.name(),
         [this](const DepthFrame& frame, const StartTime& start) { take(frame, start); }, clock,
         StreamOptions{}, [this] { felt.keep(); });
   }

@@ -22,19 +22,6 @@ constexpr double kLongest = 3600;  // s; a moving surface moves all the while
 constexpr float kShift = 1e-4F;    // m, over that time
 constexpr double kWarm = 1;        // s that cameras run before the servo does, in every run
 
-class LentCamera final : public DepthCamera {
- public:
-  explicit LentCamera(DepthCamera& camera) : camera_(camera) {}
-  [[nodiscard]] const CameraInfo& info() const noexcept override { return camera_.info(); }
-  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override {
-    return camera_.read(frame, timeout);
-  }
-  [[nodiscard]] std::string reason() const override { return camera_.reason(); }
-
- private:
-  DepthCamera& camera_;
-};
-
 // Counts how often its thread slept. Every step of a paced servo waits for the clock once, at most.
 class CountingDevice final : public Device {
  public:
@@ -80,7 +67,7 @@ std::deque<Lane> start_cameras(CameraRig& rig, Scene& scene, const Clock& clock)
     Lane& lane = lanes[static_cast<std::size_t>(k)];
     lane.source = &scene.source(static_cast<std::size_t>(k));
     lane.stream.emplace(
-        std::make_unique<LentCamera>(rig.camera(k)), lane.source->name(),
+        rig.camera(k), lane.source->name(),
         [&lane](const DepthFrame& frame, const StartTime& start) { lane.take(frame, start); },
         clock);
   }

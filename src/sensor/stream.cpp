@@ -46,25 +46,20 @@ const StreamOptions& checked(const StreamOptions& options, const std::string& na
   return options;
 }
 
-std::unique_ptr<DepthCamera> checked(std::unique_ptr<DepthCamera> camera, const std::string& name) {
-  if (!camera) throw Error(fmt::format("stream to {}: there is no camera. Open one first.", name));
-  return camera;
-}
-
 }  // namespace
 
 struct Stream::Threads {
-  Threads(std::unique_ptr<DepthCamera> given, const std::string& name, FrameSink to,
-          const Clock& time, const StreamOptions& wishes, std::function<void()> at_end)
+  Threads(DepthCamera& from, const std::string& name, FrameSink to, const Clock& time,
+          const StreamOptions& wishes, std::function<void()> at_end)
       : options(checked(wishes, name)),
-        camera(checked(std::move(given), name)),
+        camera(from),
         sink(std::move(to)),
         ended(std::move(at_end)),
         clock(time),
-        log(name, camera->info().name, options.stall, clock.now()),
-        check(options.allow_repeats.value_or(camera->info().repeats)),
+        log(name, camera.info().name, options.stall, clock.now()),
+        check(options.allow_repeats.value_or(camera.info().repeats)),
         retry(options.first_retry, options.longest_retry),
-        exchange(!camera->info().paces) {
+        exchange(!camera.info().paces) {
     start(name);
   }
 
@@ -84,9 +79,9 @@ struct Stream::Threads {
   void finish();
 
   const StreamOptions options;
-  const std::unique_ptr<DepthCamera> camera;  // the reading thread's
-  const FrameSink sink;                       // the preparing thread's
-  const std::function<void()> ended;          // likewise; may be empty
+  DepthCamera& camera;                // the reading thread's
+  const FrameSink sink;               // the preparing thread's
+  const std::function<void()> ended;  // likewise; may be empty
   const Clock& clock;
   StreamLog log;
   FrameCheck check;  // the reading thread's
@@ -132,8 +127,8 @@ void Stream::Threads::read() {
 
 CameraStatus Stream::Threads::ask(DepthFrame& frame) {
   try {
-    const CameraStatus status = camera->read(frame, options.patience);
-    if (status == CameraStatus::failed) failure = camera->reason();
+    const CameraStatus status = camera.read(frame, options.patience);
+    if (status == CameraStatus::failed) failure = camera.reason();
     return status;
   } catch (const std::exception& error) {
     failure = error.what();
@@ -144,7 +139,7 @@ CameraStatus Stream::Threads::ask(DepthFrame& frame) {
 bool Stream::Threads::take(DepthFrame& frame) {
   retry.succeeded();
   const double now = clock.now();
-  const bool paces = camera->info().paces;
+  const bool paces = camera.info().paces;
   const double latest = paces ? now + kAhead : std::numeric_limits<double>::infinity();
   const auto objection = check.examine(frame, latest);
   log.came(now, objection, check.size_changes());
@@ -206,9 +201,9 @@ void Stream::Threads::prepare(const DepthFrame& frame) {
   }
 }
 
-Stream::Stream(std::unique_ptr<DepthCamera> camera, const std::string& name, FrameSink sink,
-               const Clock& clock, const StreamOptions& options, std::function<void()> ended)
-    : threads_(std::make_unique<Threads>(std::move(camera), name, std::move(sink), clock, options,
+Stream::Stream(DepthCamera& camera, const std::string& name, FrameSink sink, const Clock& clock,
+               const StreamOptions& options, std::function<void()> ended)
+    : threads_(std::make_unique<Threads>(camera, name, std::move(sink), clock, options,
                                          std::move(ended))) {}
 
 Stream::~Stream() = default;

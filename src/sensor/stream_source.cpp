@@ -1,8 +1,6 @@
 // Apart, so that a stream into another sink needs no Source.
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/stream.hpp"
 
@@ -21,9 +19,9 @@ FrameSink sink_of(Source& source) {
 
 }  // namespace
 
-Stream::Stream(std::unique_ptr<DepthCamera> camera, Source& source, const Clock& clock,
+Stream::Stream(DepthCamera& camera, Source& source, const Clock& clock,
                const StreamOptions& options)
-    : Stream(std::move(camera), source.name(), sink_of(source), clock, options,
-             [&source] { source.keep(); }) {}
+    : Stream(camera, source.name(), sink_of(source), clock, options, [&source] { source.keep(); }) {
+}
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <condition_variable>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -69,8 +70,11 @@ class StreamTest : public testing::Test {
   static constexpr double kNever = 1e9;
 
   [[nodiscard]] Stream stream(const StreamOptions& options = {.stall = kNever}, bool paces = true) {
-    return {std::make_unique<FakeCamera>(script_, paces), "table", touchable_.sink(), clock_,
-            options};
+    return {camera(paces), "table", touchable_.sink(), clock_, options};
+  }
+  // It lives as long as the test does.
+  [[nodiscard]] FakeCamera& camera(bool paces = true, bool repeats = false) {
+    return cameras_.emplace_back(script_, paces, repeats);
   }
 
   // Gives the frame of time `t` and waits until the stream has seen it.
@@ -96,6 +100,7 @@ class StreamTest : public testing::Test {
   }
 
   std::shared_ptr<Script> script_ = std::make_shared<Script>();
+  std::deque<FakeCamera> cameras_;
   Touchable touchable_;
   ManualClock clock_;
 };

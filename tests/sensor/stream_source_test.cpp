@@ -35,7 +35,8 @@ TEST(StreamSource, MakesFramesASurface) {
   const Eigen::Vector3d hand(0, 0, 0.98);
   field.update(0, hand, hand);
   EXPECT_TRUE(has(field.notes(), FieldNote::no_surface));
-  const Stream stream(open_camera("sequence:" + folder.path().string()), source, clock);
+  const auto camera = open_camera("sequence:" + folder.path().string());
+  const Stream stream(*camera, source, clock);
   ASSERT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
   const StreamState state = stream.state();
   EXPECT_EQ(state.frames, 6u);
@@ -55,7 +56,8 @@ TEST(StreamSource, KeepsWhatARecordingShowedLast) {
   ManualClock clock;
   Scene scene;
   Source& source = scene.add("camera");
-  const Stream stream(open_camera("sequence:" + folder.path().string()), source, clock);
+  const auto camera = open_camera("sequence:" + folder.path().string());
+  const Stream stream(*camera, source, clock);
   ASSERT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
   EXPECT_EQ(source.state().silent_from, std::numeric_limits<double>::infinity());
 }

@@ -135,7 +135,8 @@ class StreamSurfaceTest : public testing::Test {
   Source& source_ = scene_.add("camera", watched());
   ManualClock clock_;
   std::shared_ptr<Script> script_ = std::make_shared<Script>();
-  Stream stream_{std::make_unique<FakeCamera>(script_),
+  FakeCamera camera_{script_};
+  Stream stream_{camera_,
                  source_,
                  clock_,
                  {.lead = kLead,

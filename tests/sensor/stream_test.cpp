@@ -62,8 +62,8 @@ TEST_F(StreamTest, LosesNothingOfACameraThatDoesNotPace) {
 
 TEST_F(StreamTest, TakesRepeatsForRealWhereTheCameraOrTheUserSaysSo) {
   const auto dropped = [&](bool camera, std::optional<bool> user) {
-    const Stream stream(std::make_unique<FakeCamera>(script_, true, camera), "table",
-                        touchable_.sink(), clock_, {.stall = kNever, .allow_repeats = user});
+    const Stream stream(this->camera(true, camera), "table", touchable_.sink(), clock_,
+                        {.stall = kNever, .allow_repeats = user});
     const double now = clock_.now();
     for (int i = 1; i <= 3; ++i) give(stream, now + i, frame_at(now + i, 2));
     return stream.state().drops.repeated;
@@ -98,7 +98,7 @@ TEST_F(StreamTest, EndsWhenTheLastFrameIsPrepared) {
 
 TEST_F(StreamTest, TellsOfTheEndAfterTheLastFrame) {
   std::atomic<std::size_t> pushed_at_end{99};
-  const Stream stream(std::make_unique<FakeCamera>(script_), "table", touchable_.sink(), clock_, {},
+  const Stream stream(camera(), "table", touchable_.sink(), clock_, {},
                       [&] { pushed_at_end = touchable_.stamps().size(); });
   give(stream, 0.1);
   script_->give({.status = CameraStatus::ended});
@@ -138,7 +138,6 @@ TEST_F(StreamTest, RefusesSenselessOptions) {
   EXPECT_THROW((void)stream({.stall = 0}), Error);
   EXPECT_THROW((void)stream({.patience = std::nan("")}), Error);
   EXPECT_THROW((void)stream({.first_retry = 2, .longest_retry = 1}), Error);
-  EXPECT_THROW(Stream(nullptr, "table", touchable_.sink(), clock_), Error);
 }
 
 TEST_F(StreamTest, ManyLookOnWhileItRuns) {

@@ -157,8 +157,8 @@ class HangingCamera final : public DepthCamera {
 TEST_F(StreamTest, TellsOfADriverThatHangs) {
   std::promise<void> let_go;
   clock_.set(0.1);
-  const Stream stream(std::make_unique<HangingCamera>(let_go.get_future().share()), "table",
-                      touchable_.sink(), clock_, {.stall = 0.5});
+  HangingCamera camera(let_go.get_future().share());
+  const Stream stream(camera, "table", touchable_.sink(), clock_, {.stall = 0.5});
   expect_touchable(stream, 1);
   clock_.set(0.5);
   EXPECT_EQ(stream.state().phase, StreamPhase::running);

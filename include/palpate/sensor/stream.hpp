@@ -38,15 +38,16 @@ using FrameSink = std::function<void(const DepthFrame&, const StartTime&)>;
 /// last frames of a recording showed stays (Source::keep).
 class Stream {
  public:
-  /// Starts the threads. Source and clock outlive the stream, and nobody else pushes.
-  /// @throws Error when an option is out of range or there is no camera.
-  Stream(std::unique_ptr<DepthCamera> camera, Source& source, const Clock& clock,
+  /// Starts the threads. Camera, source and clock outlive the stream, and nobody else reads or
+  /// pushes.
+  /// @throws Error when an option is out of range.
+  Stream(DepthCamera& camera, Source& source, const Clock& clock,
          const StreamOptions& options = {});
 
   /// The same into any sink; `name` stands for it in messages. `ended`, if any, is called after the
   /// last frame of a recording, on the thread that calls the sink.
-  Stream(std::unique_ptr<DepthCamera> camera, const std::string& name, FrameSink sink,
-         const Clock& clock, const StreamOptions& options = {}, std::function<void()> ended = {});
+  Stream(DepthCamera& camera, const std::string& name, FrameSink sink, const Clock& clock,
+         const StreamOptions& options = {}, std::function<void()> ended = {});
 
   /// Stops: waits for a read() and a preparation that are under way, and for nothing else.
   ~Stream();
