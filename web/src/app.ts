@@ -1,0 +1,226 @@
+// Holds the parts together: what the program says goes to the parts, what the person does to the program.
+
+import { Hand } from "./input/hand";
+import { Input } from "./input/input";
+import { Keys } from "./input/keys";
+import { PointerInput } from "./input/pointer";
+import { SpaceMouse } from "./input/space_mouse";
+import { Session } from "./model/session";
+import { Bar } from "./panel/bar";
+import { byId } from "./panel/dom";
+import { HoldPanel } from "./panel/hold";
+import { LookPanel } from "./panel/look";
+import { Notices } from "./panel/notices";
+import { Overlay } from "./panel/overlay";
+import { Plots } from "./panel/plots";
+import { Readout } from "./panel/readout";
+import { SettingsPanel } from "./panel/settings";
+import { SourcesPanel } from "./panel/sources";
+import { Status } from "./panel/status";
+import { Backoff } from "./protocol/backoff";
+import { Connection } from "./protocol/connection";
+import { Kind, type BinaryMessage } from "./protocol/decode";
+import { settingFromText, type Link } from "./protocol/link";
+import { kVersion, type FromProgram, type ToProgram, type Welcome } from "./protocol/messages";
+import { Sound } from "./sound/sound";
+import { World } from "./view/world";
+
+const kPlotInterval = 50; // ms
+const kCalmInterval = 250; // ms, where less motion is asked for
+
+export class App {
+  private readonly session = new Session();
+  private readonly notices = new Notices();
+  private readonly sound = new Sound();
+  private readonly readout = new Readout();
+  private readonly world: World;
+  private readonly overlay: Overlay;
+  private readonly plots = new Plots(this.session);
+  private readonly sources = new SourcesPanel();
+  private readonly settings: SettingsPanel;
+  private readonly look: LookPanel;
+  private readonly status: Status;
+  private readonly hand: Hand;
+  private readonly hold: HoldPanel;
+  private readonly bar: Bar;
+  private readonly input: Input;
+  private readonly connection: Connection;
+  private readonly plotInterval: number;
+  private plotted = 0;
+  private scene: string | undefined;
+
+  constructor(private readonly link: Link) {
+    const send = (message: ToProgram) => this.send(message);
+    this.world = new World(byId<HTMLCanvasElement>("view"));
+    this.overlay = new Overlay(this.world);
+    this.settings = new SettingsPanel(
+      (key, value) => send({ type: "set", key, value }),
+      (name) => send({ type: "preset", name }),
+    );
+    this.look = new LookPanel(() => this.relook(), (points) => send({ type: "points", points }));
+    this.hand = new Hand(send, () => this.hold.update());
+    this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
+    const take = () => this.hold.take();
+    this.bar = new Bar(this.session, this.world, this.sound, this.notices, link.token, send);
+    const keys = new Keys(byId("view"), {
+      toggleTool: () => this.hold.toggle(),
+      letGo: () => this.hand.letGo(),
+      togglePause: () => this.bar.pause(),
+      reset: () => send({ type: "reset" }),
+      fit: () => this.world.fit(),
+      help: () => this.bar.help(),
+      freeze: () => this.freeze(),
+      sayForce: () => (byId("polite").textContent = this.readout.sentence(this.session.tool)),
+    });
+    const spaceMouse = new SpaceMouse();
+    this.input = new Input(this.world, this.hand, keys, spaceMouse, take);
+    this.hold.offer(spaceMouse, this.notices);
+    new PointerInput(byId("view-area"), byId<HTMLCanvasElement>("view"), this.world, this.hand, take);
+    this.status = new Status(() => this.connection.open());
+    this.connection = new Connection(
+      new URL("live", location.href.replace(/^http/, "ws").replace(/#.*/, "")).href,
+      link.token,
+      () => this.look.points,
+      new Backoff(Math.random),
+      {
+        link: (state) => {
+          if (state.phase !== "open") this.hand.letGo();
+          this.status.show(state);
+          this.hold.update();
+        },
+        message: (message) => this.take(message),
+        binary: (message) => this.takeBinary(message),
+        garbled: (text) => this.notices.add("warning", `a message could not be read (${text})`),
+      },
+    );
+    this.plotInterval = matchMedia("(prefers-reduced-motion: reduce)").matches ? kCalmInterval : kPlotInterval;
+    this.watchPage();
+  }
+
+  start(): void {
+    this.relook();
+    this.world.start((now) => this.frame(now));
+    if (this.link.token === "") this.status.withoutToken();
+    else this.connection.open();
+  }
+
+  private send(message: ToProgram): void {
+    this.connection.send(message);
+  }
+
+  private take(message: FromProgram): void {
+    switch (message.type) {
+      case "welcome":
+        return this.welcome(message);
+      case "settings":
+        for (const [key, value] of Object.entries(message.values)) this.session.values.set(key, value);
+        return this.settings.show(this.session.values);
+      case "sources":
+        message.sources.forEach((report, i) => this.session.sources[i]?.take(report, performance.now()));
+        this.world.takeSources(message.sources);
+        return this.sources.update();
+      case "notice":
+        return this.notices.add(message.level, message.text);
+      case "record":
+        return this.bar.recording(message.on, message.file);
+      case "refused":
+        this.settings.show(this.session.values);
+        return this.notices.add("warning", message.text);
+      case "pong":
+        return this.bar.roundTrip(this.connection.roundTrip);
+    }
+  }
+
+  private welcome(welcome: Welcome): void {
+    const first = this.scene === undefined;
+    const again = this.scene === welcome.scene;
+    this.scene = welcome.scene;
+    if (welcome.version !== kVersion) {
+      this.notices.add("warning", `the program speaks version ${welcome.version}, this page ${kVersion}: reload the page`);
+    }
+    this.session.begin(welcome);
+    this.world.begin(welcome, again);
+    this.settings.begin(welcome.settings, welcome.presets);
+    this.sources.begin(this.session.sources, () => this.relook());
+    this.plots.begin();
+    this.hold.begin();
+    this.bar.begin(welcome);
+    this.relook();
+    if (first) this.applyLink(welcome);
+  }
+
+  /** Settings of the address, once: a new connection finds the program as it is. */
+  private applyLink(welcome: Welcome): void {
+    for (const [key, text] of this.link.values) {
+      const setting = welcome.settings.find((one) => one.key === key);
+      const value = setting === undefined ? undefined : settingFromText(setting, text);
+      if (value === undefined) this.notices.add("warning", `the link's ${key} = ${text} is nothing that can be set here`);
+      else if (value !== setting?.value) this.send({ type: "set", key, value });
+    }
+  }
+
+  private takeBinary(message: BinaryMessage): void {
+    if (message.kind === Kind.cloud) {
+      const source = this.session.sources[message.source];
+      if (source === undefined) return;
+      source.stamp = message.stamp;
+      source.shown = message.count;
+      this.world.takeCloud(message);
+    } else if (message.kind === Kind.surface) {
+      this.world.takeSurface(message);
+    } else {
+      const tool = this.session.devices[message.device];
+      if (tool === undefined) return;
+      const now = performance.now();
+      tool.take(message, now);
+      this.world.takeState(message);
+      if (message.device !== this.session.device) return;
+      this.readout.note(tool, now);
+      this.sound.hear(message);
+    }
+  }
+
+  /** Before every picture. */
+  private frame(now: number): void {
+    this.input.update(now);
+    this.overlay.update();
+    if (now - this.plotted < this.plotInterval) return;
+    this.plotted = now;
+    this.readout.update(this.session.tool, now);
+    this.bar.update();
+    this.hold.update();
+    this.plots.update(now);
+  }
+
+  private relook(): void {
+    this.world.look = this.look.look;
+    this.world.visible = this.session.sources.map((source) => source.visible);
+    this.world.stage.request();
+  }
+
+  private freeze(): void {
+    this.plots.frozen = !this.plots.frozen;
+    byId("freeze").setAttribute("aria-pressed", String(this.plots.frozen));
+  }
+
+  private watchPage(): void {
+    byId("freeze").addEventListener("click", () => this.freeze());
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      this.world.retint();
+      this.plots.redraw();
+    });
+    document.addEventListener("visibilitychange", () => {
+      if (document.hidden) this.hand.letGo();
+    });
+    for (const tab of document.querySelectorAll<HTMLElement>(".tabs [data-tab]")) {
+      tab.addEventListener("click", () => this.openTab(tab.dataset["tab"] ?? "force"));
+    }
+  }
+
+  private openTab(name: string): void {
+    document.body.dataset["tab"] = name;
+    for (const tab of document.querySelectorAll<HTMLElement>(".tabs [data-tab]")) {
+      tab.setAttribute("aria-current", String(tab.dataset["tab"] === name));
+    }
+  }
+}

@@ -1,0 +1,61 @@
+// Everything that moves the hand without a drag: keys, controllers, the two buttons for depth.
+
+import type { World } from "../view/world";
+import { Gamepads } from "./gamepad";
+import type { Hand } from "./hand";
+import type { Keys } from "./keys";
+import type { SpaceMouse } from "./space_mouse";
+
+const kKeyPace = 0.07; // of the picture's height a second
+const kPadPace = 0.35;
+const kButtonPace = 0.05;
+
+export class Input {
+  depth = 0; // of the buttons: 1 away, -1 closer
+  private readonly pads = new Gamepads();
+  private before = 0; // buttons of controllers
+  private last = 0;
+
+  constructor(
+    private readonly world: World,
+    private readonly hand: Hand,
+    private readonly keys: Keys,
+    private readonly spaceMouse: SpaceMouse,
+    private readonly take: () => boolean,
+  ) {}
+
+  update(now: number): void {
+    const passed = Math.min(0.1, Math.max(0, (now - this.last) / 1000));
+    this.last = now;
+    this.usePads(passed);
+    const [right, up, away] = this.keys.velocity();
+    if (!this.hand.held) {
+      if (right !== 0 || up !== 0 || away !== 0) {
+        this.world.navigation.turn(right, up, away, passed);
+      }
+      return;
+    }
+    const depth = this.depth * kButtonPace;
+    this.move(right * kKeyPace, up * kKeyPace, away * kKeyPace + depth, passed);
+  }
+
+  private usePads(passed: number): void {
+    for (const reading of [this.pads.read(), this.spaceMouse.read()]) {
+      if (reading === undefined) continue;
+      const pressed = reading.buttons & ~this.before;
+      this.before = reading.buttons;
+      if ((pressed & 1) !== 0 && !this.hand.held) this.take();
+      else if ((pressed & 2) !== 0) this.hand.letGo();
+      if (!this.hand.held) continue;
+      this.hand.press(reading.buttons & ~3);
+      this.move(reading.right * kPadPace, reading.up * kPadPace, reading.away * kPadPace, passed);
+    }
+  }
+
+  /** Velocities in heights of the picture a second. */
+  private move(right: number, up: number, away: number, passed: number): void {
+    const { stage } = this.world;
+    const height = stage.pixelAt(this.hand.place) * stage.height * passed;
+    this.hand.nudge(stage.camera, right * height, up * height, away * height);
+  }
+}

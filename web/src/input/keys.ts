@@ -1,0 +1,79 @@
+// Keys. Those that move are held down; the others act once. None acts while one writes into a field.
+
+export interface Actions {
+  toggleTool(): void;
+  letGo(): void;
+  togglePause(): void;
+  reset(): void;
+  fit(): void;
+  help(): void;
+  freeze(): void;
+  sayForce(): void;
+}
+
+const kMoves: Record<string, readonly [number, number, number]> = {
+  ArrowRight: [1, 0, 0],
+  ArrowLeft: [-1, 0, 0],
+  ArrowUp: [0, 1, 0],
+  ArrowDown: [0, -1, 0],
+  PageUp: [0, 0, 1],
+  PageDown: [0, 0, -1],
+};
+
+const kFast = 4;
+const kFine = 0.2;
+
+export class Keys {
+  private readonly down = new Set<string>();
+  private pace = 1;
+
+  constructor(
+    private readonly view: HTMLElement,
+    actions: Actions,
+  ) {
+    const once: Record<string, () => void> = {
+      t: () => actions.toggleTool(),
+      p: () => actions.togglePause(),
+      r: () => actions.reset(),
+      f: () => actions.fit(),
+      h: () => actions.freeze(),
+      s: () => actions.sayForce(),
+      "?": () => actions.help(),
+    };
+    window.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") actions.letGo();
+      if (event.ctrlKey || event.metaKey || writes(event.target) || dialogIsOpen()) return;
+      const act = once[event.key.toLowerCase()];
+      if (act !== undefined && !event.repeat) act();
+      else if (!this.press(event)) return;
+      event.preventDefault();
+    });
+    window.addEventListener("keyup", (event) => this.down.delete(event.key));
+    window.addEventListener("blur", () => this.down.clear());
+  }
+
+  /** Right, up and away, -1 to 1 and times the pace. */
+  velocity(): [number, number, number] {
+    const sum: [number, number, number] = [0, 0, 0];
+    for (const key of this.down) {
+      kMoves[key]?.forEach((part, axis) => (sum[axis as 0 | 1 | 2] += part * this.pace));
+    }
+    return sum;
+  }
+
+  private press(event: KeyboardEvent): boolean {
+    if (kMoves[event.key] === undefined) return false;
+    if (document.activeElement !== this.view && document.activeElement !== document.body) return false;
+    this.pace = event.shiftKey ? kFast : event.altKey ? kFine : 1;
+    this.down.add(event.key);
+    return true;
+  }
+}
+
+function writes(target: EventTarget | null): boolean {
+  return target instanceof Element && target.matches("input, select, textarea");
+}
+
+function dialogIsOpen(): boolean {
+  return document.querySelector("dialog[open]") !== null;
+}

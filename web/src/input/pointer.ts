@@ -1,0 +1,100 @@
+// Mouse, pen and finger. A drag that begins on the hand, or any drag while the tool is held, moves the
+// hand in the plane through it that faces the eye; the wheel meanwhile changes its depth. Everything
+// else is left to the navigation.
+
+import { Plane, Raycaster, Vector2, Vector3 } from "three";
+import type { World } from "../view/world";
+import type { Hand } from "./hand";
+
+const kGrasp = 26; // pixels around the hand
+const kNotch = 0.012; // of the distance, a notch of the wheel
+
+export class PointerInput {
+  private dragging: number | undefined; // the pointer's id
+  private touches = new Set<number>();
+  private readonly offset = new Vector3();
+  private readonly ray = new Raycaster();
+
+  constructor(
+    area: HTMLElement,
+    private readonly canvas: HTMLCanvasElement,
+    private readonly world: World,
+    private readonly hand: Hand,
+    private readonly take: () => boolean,
+  ) {
+    area.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
+    area.addEventListener("pointermove", (event) => this.move(event), { capture: true });
+    for (const type of ["pointerup", "pointercancel"] as const) {
+      area.addEventListener(type, (event) => this.end(event), { capture: true });
+    }
+    area.addEventListener("wheel", (event) => this.wheel(event), { capture: true, passive: false });
+  }
+
+  private down(event: PointerEvent): void {
+    if (event.target !== this.canvas) return;
+    if (event.pointerType === "touch") this.touches.add(event.pointerId);
+    const plain = event.button === 0 && !event.altKey && !event.ctrlKey && !event.metaKey;
+    const mine = plain && this.touches.size <= 1 && (this.hand.held || this.onHand(event));
+    this.world.navigation.turnByDrag(!mine && !(this.hand.held && this.touches.size > 0));
+    if (this.touches.size > 1) this.dragging = undefined;
+    if (!mine || !this.take()) return;
+    this.dragging = event.pointerId;
+    this.canvas.setPointerCapture(event.pointerId);
+    this.offset.copy(this.hand.place).sub(this.onPlane(event) ?? this.hand.place);
+  }
+
+  private move(event: PointerEvent): void {
+    if (this.dragging === undefined) {
+      if (event.target === this.canvas && event.buttons === 0) {
+        this.canvas.classList.toggle("graspable", this.onHand(event));
+      }
+      return;
+    }
+    if (event.pointerId !== this.dragging) return;
+    const place = this.onPlane(event);
+    if (place !== undefined) this.hand.moveTo(place.add(this.offset));
+  }
+
+  private end(event: PointerEvent): void {
+    this.touches.delete(event.pointerId);
+    if (event.pointerId === this.dragging) this.dragging = undefined;
+  }
+
+  private wheel(event: WheelEvent): void {
+    if (this.dragging === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const camera = this.world.stage.camera;
+    const notches = -event.deltaY / (event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 100 : 3);
+    const away = notches * kNotch * camera.position.distanceTo(this.hand.place);
+    this.hand.nudge(camera, 0, 0, away);
+    this.offset.copy(this.hand.place).sub(this.onPlane(event) ?? this.hand.place);
+  }
+
+  private seen(event: MouseEvent): Vector2 {
+    const box = this.canvas.getBoundingClientRect();
+    return new Vector2(
+      (2 * (event.clientX - box.left)) / box.width - 1,
+      1 - (2 * (event.clientY - box.top)) / box.height,
+    );
+  }
+
+  private onPlane(event: MouseEvent): Vector3 | undefined {
+    const camera = this.world.stage.camera;
+    this.ray.setFromCamera(this.seen(event), camera);
+    const plane = new Plane().setFromNormalAndCoplanarPoint(
+      camera.getWorldDirection(new Vector3()), this.hand.place,
+    );
+    return this.ray.ray.intersectPlane(plane, new Vector3()) ?? undefined;
+  }
+
+  private onHand(event: MouseEvent): boolean {
+    const tool = this.world.tools[this.hand.device];
+    if (tool === undefined || !tool.group.visible) return false;
+    const place = this.hand.held ? this.hand.place : tool.hipPlace;
+    const at = place.clone().project(this.world.stage.camera);
+    const box = this.canvas.getBoundingClientRect();
+    const seen = this.seen(event);
+    return Math.hypot((at.x - seen.x) * box.width, (at.y - seen.y) * box.height) / 2 < kGrasp;
+  }
+}

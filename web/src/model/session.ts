@@ -1,0 +1,88 @@
+// What the page knows of the program now: the newest of everything, and the past that plots need.
+
+import { Flag, type StateMessage } from "../protocol/decode";
+import type { SettingValue, SourceReport, Welcome } from "../protocol/messages";
+import { Ring } from "./ring";
+
+export const kForceSpan = 5; // s
+export const kTimingSpan = 30; // s
+export const kFrameSpan = 60; // s
+const kSteps = 1 << 15;
+
+export class DeviceHistory {
+  latest: StateMessage | undefined;
+  received = 0; // ms, performance.now()
+  readonly force = new Ring(kSteps, 5); // time, x, y, z, magnitude
+  readonly timing = new Ring(4096, 5); // time, step p50 and p99, lateness p50 and p99; us
+
+  take(state: StateMessage, now: number): void {
+    if (this.latest !== undefined && state.time < this.latest.time) this.clear();
+    this.latest = state;
+    this.received = now;
+    const n = state.samples.length / 3;
+    for (let i = 0; i < n; i += 1) {
+      const x = state.samples[3 * i]!;
+      const y = state.samples[3 * i + 1]!;
+      const z = state.samples[3 * i + 2]!;
+      const time = state.time - (n - 1 - i) * state.interval;
+      this.force.push(time, x, y, z, Math.hypot(x, y, z));
+    }
+    const [p50, p99] = state.step;
+    const [late50, late99] = state.lateness;
+    this.timing.push(state.time, p50 * 1e6, p99 * 1e6, late50 * 1e6, late99 * 1e6);
+  }
+
+  has(flag: keyof typeof Flag): boolean {
+    return ((this.latest?.flags ?? 0) & Flag[flag]) !== 0;
+  }
+
+  clear(): void {
+    this.latest = undefined;
+    this.force.clear();
+    this.timing.clear();
+  }
+}
+
+export class SourceHistory {
+  report: SourceReport | undefined;
+  stamp = NaN; // s, of the newest cloud
+  shown = 0; // points of the newest cloud
+  visible = true;
+  readonly frames = new Ring(512, 3); // time (s, the page's), latency and age in ms
+
+  constructor(
+    readonly name: string,
+    readonly camera: boolean,
+  ) {}
+
+  take(report: SourceReport, now: number): void {
+    this.report = report;
+    this.frames.push(now / 1000, report.latency * 1000, report.age * 1000);
+  }
+}
+
+export class Session {
+  welcome: Welcome | undefined;
+  device = 0; // whose force is shown, and which a hand moves
+  devices: DeviceHistory[] = [];
+  sources: SourceHistory[] = [];
+  values = new Map<string, SettingValue>();
+
+  /** Visibility of sources survives a new connection to the same scene. */
+  begin(welcome: Welcome): void {
+    const visible = new Map(this.sources.map((source) => [source.name, source.visible]));
+    this.welcome = welcome;
+    this.devices = welcome.devices.map(() => new DeviceHistory());
+    this.sources = welcome.sources.map(({ name, camera }) => {
+      const source = new SourceHistory(name, camera);
+      source.visible = visible.get(name) ?? true;
+      return source;
+    });
+    this.values = new Map(welcome.settings.map(({ key, value }) => [key, value]));
+    if (this.device >= this.devices.length) this.device = 0;
+  }
+
+  get tool(): DeviceHistory | undefined {
+    return this.devices[this.device];
+  }
+}

@@ -1,0 +1,112 @@
+// The bar: pause, reset, record, sound, picture, link, help.
+
+import type { Session } from "../model/session";
+import { writeLink } from "../protocol/link";
+import type { ToProgram, Welcome } from "../protocol/messages";
+import type { Sound } from "../sound/sound";
+import type { World } from "../view/world";
+import { byId, icon, say } from "./dom";
+import type { Notices } from "./notices";
+import { whole } from "./numbers";
+
+export class Bar {
+  private isRecording = false;
+  private delay = NaN;
+
+  constructor(
+    private readonly session: Session,
+    private readonly world: World,
+    private readonly sound: Sound,
+    private readonly notices: Notices,
+    private readonly token: string,
+    private readonly send: (message: ToProgram) => void,
+  ) {
+    const click = (id: string, act: () => unknown) => byId(id).addEventListener("click", () => void act());
+    click("pause", () => this.pause());
+    click("reset", () => this.send({ type: "reset" }));
+    click("record", () => this.send({ type: "record", on: !this.isRecording }));
+    click("sound", () => this.toggleSound());
+    click("picture", () => this.savePicture());
+    click("share", () => this.share());
+    click("help", () => this.help());
+    click("fit", () => this.world.fit());
+  }
+
+  begin(welcome: Welcome): void {
+    say(byId("scene"), welcome.scene);
+    document.title = `${welcome.scene} – palpate`;
+    this.showRecording(false);
+  }
+
+  /** What the program says of itself shows on the buttons: they may be pressed elsewhere. */
+  update(): void {
+    const paused = this.session.tool?.has("paused") ?? false;
+    this.press("pause", paused, paused ? "play" : "pause", paused ? "Go on" : "Pause");
+    const open = byId("link-state").dataset["phase"] === "open";
+    const rate = this.session.tool?.latest?.rate;
+    if (open && rate !== undefined) say(byId("link-words"), `${whole(rate)} steps a second`);
+    const delay = Number.isNaN(this.delay) ? "" : `; answers in ${(1000 * this.delay).toFixed(1)} ms`;
+    byId("link-state").title = `connected${delay}; a picture every ${this.world.stage.frameTime.toFixed(0)} ms`;
+  }
+
+  pause(): void {
+    this.send({ type: "pause", on: !(this.session.tool?.has("paused") ?? false) });
+  }
+
+  recording(on: boolean, file: string | undefined): void {
+    if (on !== this.isRecording) this.notices.add("info", on ? `recording to ${file ?? "a file"}` : `recorded ${file ?? ""}`);
+    this.showRecording(on);
+  }
+
+  roundTrip(seconds: number): void {
+    this.delay = seconds;
+  }
+
+  help(): void {
+    byId<HTMLDialogElement>("keys").showModal();
+  }
+
+  private showRecording(on: boolean): void {
+    this.isRecording = on;
+    this.press("record", on, "record", on ? "Recording" : "Record");
+  }
+
+  private press(id: string, on: boolean, picture: string, words: string): void {
+    const button = byId(id);
+    button.setAttribute("aria-pressed", String(on));
+    icon(button, picture);
+    say(button.querySelector("span")!, words);
+  }
+
+  private async toggleSound(): Promise<void> {
+    const on = await this.sound.toggle();
+    byId("sound").setAttribute("aria-pressed", String(on));
+    icon(byId("sound"), on ? "sound" : "mute");
+  }
+
+  private async savePicture(): Promise<void> {
+    const picture = await this.world.stage.picture();
+    if (picture === null) return;
+    const address = URL.createObjectURL(picture);
+    const link = document.createElement("a");
+    const time = new Date().toISOString().slice(0, 19).replace(/:/g, "-");
+    const name = (this.session.welcome?.scene ?? "scene").replace(/[^\w.-]+/g, "_");
+    link.href = address;
+    link.download = `palpate_${name}_${time}.png`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(address), 10_000);
+  }
+
+  private async share(): Promise<void> {
+    const address = location.href.replace(/#.*/, "") + writeLink(this.token, this.session.values);
+    try {
+      await navigator.clipboard.writeText(address);
+      this.notices.add("info", "copied a link with these settings; it holds the token, so mind who gets it");
+    } catch {
+      const field = byId<HTMLInputElement>("share-link");
+      field.value = address;
+      byId<HTMLDialogElement>("share-dialog").showModal();
+      field.select();
+    }
+  }
+}

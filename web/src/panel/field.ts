@@ -1,0 +1,89 @@
+// One setting as a row: a slider with a number beside it, a choice, or a switch.
+
+import type { Setting, SettingValue } from "../protocol/messages";
+import { make, throttle } from "./dom";
+import { inStep, Scale } from "./numbers";
+
+export interface FieldRow {
+  row: HTMLElement;
+  show(value: SettingValue): void;
+}
+
+type Wanted = (value: SettingValue) => void;
+
+const kSlider = 1000;
+const kInterval = 60; // ms between messages of a moving slider
+let made = 0;
+
+function label(setting: Setting, id: string): HTMLElement {
+  const text = make("label", { for: id }, setting.label);
+  if (setting.unit) text.append(" ", make("span", { class: "unit" }, setting.unit));
+  return text;
+}
+
+function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
+  const { least = 0, most = 1, step } = setting;
+  const scale = new Scale(least, most);
+  const inUnit = setting.unit ? `${setting.label}, ${setting.unit}` : setting.label;
+  const slider = make("input", { type: "range", min: 0, max: kSlider, step: 1, "aria-label": inUnit });
+  const field = make("input", {
+    type: "number", id, min: least, max: most, step: step ?? "any", inputmode: "decimal",
+  });
+  const later = throttle<number>(kInterval, wanted);
+  const snapped = (value: number) => {
+    const near = step ? least + Math.round((value - least) / step) * step : value;
+    return Math.min(most, Math.max(least, Number(near.toPrecision(9))));
+  };
+  const shown = (value: number) => {
+    slider.value = String(Math.round(scale.place(value) * kSlider));
+    slider.setAttribute("aria-valuetext", `${inStep(value, step)} ${setting.unit ?? ""}`.trim());
+  };
+  slider.addEventListener("input", () => {
+    const value = snapped(scale.value(Number(slider.value) / kSlider));
+    field.value = inStep(value, step);
+    later(value);
+  });
+  field.addEventListener("change", () => {
+    if (field.value === "" || !field.checkValidity()) {
+      field.reportValidity();
+      return;
+    }
+    shown(Number(field.value));
+    wanted(Number(field.value));
+  });
+  return {
+    row: make("div", { class: "field number" }, label(setting, id), field, slider),
+    show: (value) => {
+      if (document.activeElement !== slider) shown(Number(value));
+      if (document.activeElement !== field) field.value = inStep(Number(value), step);
+    },
+  };
+}
+
+function choiceRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
+  const options = (setting.choices ?? []).map((choice) => make("option", { value: choice }, choice));
+  const select = make("select", { id, change: () => wanted(select.value) }, ...options);
+  return {
+    row: make("div", { class: "field choice" }, label(setting, id), select),
+    show: (value) => (select.value = String(value)),
+  };
+}
+
+function switchRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
+  const box = make("input", {
+    type: "checkbox", role: "switch", id, change: () => wanted(box.checked),
+  });
+  return {
+    row: make("div", { class: "field switch" }, label(setting, id), box),
+    show: (value) => (box.checked = value === true),
+  };
+}
+
+const kRows = { number: numberRow, choice: choiceRow, switch: switchRow };
+
+export function fieldRow(setting: Setting, wanted: Wanted): FieldRow {
+  made += 1;
+  const field = kRows[setting.kind](setting, `field-${made}`, wanted);
+  field.show(setting.value);
+  return field;
+}

@@ -1,0 +1,108 @@
+// Who holds the tool, in words, and the buttons around it.
+
+import type { Hand } from "../input/hand";
+import { hid, type SpaceMouse } from "../input/space_mouse";
+import type { Session } from "../model/session";
+import type { World } from "../view/world";
+import { byId, make, say } from "./dom";
+import type { Notices } from "./notices";
+
+const kCoarse = matchMedia("(pointer: coarse)");
+
+export class HoldPanel {
+  private held = false;
+
+  constructor(
+    private readonly session: Session,
+    private readonly hand: Hand,
+    private readonly world: World,
+    depth: (direction: number) => void,
+  ) {
+    byId("take").addEventListener("click", () => this.toggle());
+    for (const [id, direction] of [["away", 1], ["closer", -1]] as const) {
+      const button = byId(id);
+      button.addEventListener("pointerdown", () => depth(direction));
+      for (const type of ["pointerup", "pointerleave", "pointercancel"]) {
+        button.addEventListener(type, () => depth(0));
+      }
+      button.addEventListener("contextmenu", (event) => event.preventDefault());
+    }
+    byId("device").addEventListener("change", () => {
+      this.hand.letGo();
+      this.session.device = Number(byId<HTMLSelectElement>("device").value);
+      this.hand.device = this.session.device;
+      this.update();
+    });
+  }
+
+  begin(): void {
+    const devices = this.session.welcome?.devices ?? [];
+    byId("device").replaceChildren(
+      ...devices.map(({ name }, i) => make("option", { value: i, selected: i === this.session.device }, name)),
+    );
+    byId("which").hidden = devices.length < 2;
+    this.hand.device = this.session.device;
+    this.update();
+  }
+
+  toggle(): void {
+    if (this.hand.held) this.hand.letGo();
+    else this.take();
+  }
+
+  /** Where the tool is now; false where it cannot be taken. */
+  take(): boolean {
+    if (this.hand.held) return true;
+    const state = this.session.tool?.latest;
+    if (!this.takeable() || state === undefined) return false;
+    this.hand.take(this.session.device, this.world.tools[this.session.device]!.hipPlace);
+    return true;
+  }
+
+  update(): void {
+    const button = byId<HTMLButtonElement>("take");
+    button.disabled = !this.takeable() || this.session.tool?.latest === undefined;
+    const held = this.hand.held;
+    say(byId("hint"), this.hint());
+    if (held === this.held) return;
+    this.held = held;
+    button.setAttribute("aria-pressed", String(held));
+    say(byId("take-words"), held ? "Let go" : "Take the tool");
+    byId("depth").hidden = !held;
+    byId("view-area").classList.toggle("held", held);
+    say(byId("polite"), held ? "You hold the tool." : "The tool is let go.");
+  }
+
+  offer(spaceMouse: SpaceMouse, notices: Notices): void {
+    const text = make("p", { class: "soft" },
+      "Mouse, touch and keys move the tool; game controllers and 3D mice that the browser shows too, " +
+      "once a button on them is pressed.");
+    const parts: HTMLElement[] = [text];
+    if (hid() !== undefined) {
+      const choose = async () => {
+        const name = await spaceMouse.choose();
+        if (name !== undefined) notices.add("info", `${name} moves the tool; its first button takes it`);
+      };
+      const failed = (error: unknown) => notices.add("warning", `the 3D mouse cannot be opened: ${String(error)}`);
+      parts.push(make("button", { type: "button", class: "button", click: () => void choose().catch(failed) },
+        "Choose a 3D mouse"));
+      void spaceMouse.resume().catch(failed);
+    }
+    byId("inputs").replaceChildren(...parts);
+  }
+
+  private takeable(): boolean {
+    return this.session.welcome?.devices[this.session.device]?.takeable === true;
+  }
+
+  private hint(): string {
+    if (this.hand.held) {
+      return kCoarse.matches
+        ? "One finger moves the tool, two turn the view"
+        : "Drag to move it, wheel while dragging for depth; Alt and drag turns the view";
+    }
+    if (this.session.tool?.latest === undefined) return "";
+    if (!this.takeable()) return "A device moves this tool";
+    return kCoarse.matches ? "Drag the red hand to touch" : "Drag the red hand to touch; drag elsewhere to look around";
+  }
+}

@@ -1,0 +1,69 @@
+// What the page draws, and how: its own affair, kept in this browser.
+
+import type { Setting, SettingValue } from "../protocol/messages";
+import { kColourings, type Colouring } from "../view/cloud";
+import { kFirstLook, type Look } from "../view/world";
+import { byId } from "./dom";
+import { fieldRow, type FieldRow } from "./field";
+import { remember, recall } from "./memory";
+
+export const kPointCounts = ["10000", "30000", "60000", "100000", "200000", "300000"];
+
+const kColouringNames: Record<Colouring, string> = {
+  source: "source", height: "height", normal: "normal", age: "age", own: "own colours",
+};
+
+function switchOf(key: keyof Look, label: string, value: boolean): Setting {
+  return { key, label, kind: "switch", value };
+}
+
+export class LookPanel {
+  readonly look: Look;
+  points: number;
+  private readonly fields: FieldRow[] = [];
+
+  constructor(private readonly changed: () => void, private readonly count: (points: number) => void) {
+    this.look = { ...kFirstLook, ...recall<Partial<Look>>("look", {}) };
+    if (!kColourings.includes(this.look.colouring)) this.look.colouring = kFirstLook.colouring;
+    const small = matchMedia("(max-width: 50rem), (pointer: coarse)").matches;
+    this.points = recall("points", small ? 60_000 : 200_000);
+    this.build();
+  }
+
+  private build(): void {
+    const names = kColourings.map((colouring) => kColouringNames[colouring]);
+    this.add({
+      key: "colouring", label: "Colour by", kind: "choice", choices: names,
+      value: kColouringNames[this.look.colouring],
+    }, (value) => (this.look.colouring = kColourings[names.indexOf(String(value))] ?? "height"));
+    this.add({
+      key: "pointSize", label: "Point size", unit: "× spacing", kind: "number", least: 0.4, most: 4,
+      step: 0.1, value: this.look.pointSize,
+    }, (value) => (this.look.pointSize = Number(value)));
+    this.add({
+      key: "count", label: "Points, at most", kind: "choice", choices: kPointCounts,
+      value: String(this.points),
+    }, (value) => this.choosePoints(Number(value)));
+    for (const [key, label] of [
+      ["points", "Points"], ["surface", "Surface at the proxy"], ["support", "Support radius"],
+      ["cameras", "Cameras"], ["trail", "Trail"],
+    ] as const) {
+      this.add(switchOf(key, label, this.look[key]), (value) => (this.look[key] = value === true));
+    }
+    byId("look").replaceChildren(...this.fields.map(({ row }) => row));
+  }
+
+  private add(setting: Setting, take: (value: SettingValue) => void): void {
+    this.fields.push(fieldRow(setting, (value) => {
+      take(value);
+      remember("look", this.look);
+      this.changed();
+    }));
+  }
+
+  private choosePoints(points: number): void {
+    this.points = points;
+    remember("points", points);
+    this.count(points);
+  }
+}

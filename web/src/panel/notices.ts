@@ -1,0 +1,73 @@
+// What a person should know, in words: over the view for a while, then in the list of messages.
+
+import type { NoticeLevel } from "../protocol/messages";
+import { byId, make, say } from "./dom";
+
+const kLife: Record<NoticeLevel, number> = { info: 6000, warning: 12000, fault: Infinity }; // ms
+const kShown = 3;
+const kLogged = 50;
+const kWords: Record<NoticeLevel, string> = { info: "", warning: "Warning: ", fault: "Fault: " };
+
+interface Notice {
+  level: NoticeLevel;
+  text: string;
+  times: number;
+  card: HTMLElement;
+  entry: HTMLElement;
+  timer: number;
+}
+
+export class Notices {
+  private shown: Notice[] = [];
+
+  add(level: NoticeLevel, text: string): void {
+    const same = this.shown.find((notice) => notice.text === text && notice.level === level);
+    if (same !== undefined) {
+      this.repeat(same);
+      return;
+    }
+    const notice = this.makeNotice(level, text);
+    this.shown.push(notice);
+    if (this.shown.length > kShown) this.remove(this.shown[0]!);
+    byId("notices").append(notice.card);
+    this.log(notice.entry);
+    say(byId(level === "fault" ? "urgent" : "polite"), kWords[level] + text);
+    this.limit(notice);
+  }
+
+  private makeNotice(level: NoticeLevel, text: string): Notice {
+    const close = make("button", { type: "button", class: "close", "aria-label": "Dismiss" }, "×");
+    const card = make("div", { class: `notice ${level}` },
+      make("span", {}, make("b", {}, kWords[level]), text), make("span", { class: "times" }), close);
+    const time = new Date();
+    const entry = make("li", { class: level },
+      make("time", { datetime: time.toISOString() }, time.toLocaleTimeString()), " ", kWords[level] + text);
+    const notice: Notice = { level, text, times: 1, card, entry, timer: 0 };
+    close.addEventListener("click", () => this.remove(notice));
+    return notice;
+  }
+
+  private repeat(notice: Notice): void {
+    notice.times += 1;
+    say(notice.card.querySelector(".times")!, `×${notice.times}`);
+    this.limit(notice);
+  }
+
+  private limit(notice: Notice): void {
+    clearTimeout(notice.timer);
+    const life = kLife[notice.level];
+    if (Number.isFinite(life)) notice.timer = window.setTimeout(() => this.remove(notice), life);
+  }
+
+  private remove(notice: Notice): void {
+    clearTimeout(notice.timer);
+    notice.card.remove();
+    this.shown = this.shown.filter((other) => other !== notice);
+  }
+
+  private log(entry: HTMLElement): void {
+    const log = byId("log");
+    log.prepend(entry);
+    while (log.children.length > kLogged) log.lastElementChild?.remove();
+  }
+}

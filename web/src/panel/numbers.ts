@@ -1,0 +1,56 @@
+// Numbers as people read them.
+
+export function decimals(step: number | undefined): number {
+  if (step === undefined || !(step > 0)) return 3;
+  return Math.min(6, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
+}
+
+export function inStep(value: number, step: number | undefined): string {
+  return Number(value.toFixed(decimals(step))).toString();
+}
+
+/** Thousands apart by a narrow space. */
+export function whole(value: number): string {
+  return Math.round(value).toString().replace(/\B(?=(\d{3})+$)/g, "\u202f");
+}
+
+export function short(value: number): string {
+  if (value < 10_000) return whole(value);
+  return value < 1e6 ? `${Math.round(value / 1000)}k` : `${(value / 1e6).toFixed(1)}M`;
+}
+
+export function seconds(value: number): string {
+  if (!Number.isFinite(value)) return "–";
+  if (value < 0.9995) return `${whole(value * 1000)} ms`;
+  return value < 9.95 ? `${value.toFixed(1)} s` : `${whole(value)} s`;
+}
+
+export function millimetres(value: number): string {
+  const mm = value * 1000;
+  return `${mm.toFixed(mm < 10 ? 2 : 1)} mm`;
+}
+
+/** Bounds of a slider: even for small ranges, by ratio for wide ones that stay above zero. */
+export class Scale {
+  private readonly byRatio: boolean;
+
+  constructor(
+    private readonly least: number,
+    private readonly most: number,
+  ) {
+    this.byRatio = least > 0 && most / least >= 50;
+  }
+
+  /** 0 to 1. */
+  place(value: number): number {
+    const part = this.byRatio
+      ? Math.log(value / this.least) / Math.log(this.most / this.least)
+      : (value - this.least) / (this.most - this.least);
+    return Math.min(1, Math.max(0, part));
+  }
+
+  value(place: number): number {
+    if (this.byRatio) return this.least * (this.most / this.least) ** place;
+    return this.least + place * (this.most - this.least);
+  }
+}

@@ -1,0 +1,64 @@
+// What lies over the view and follows the eye: scale, axes, the ramp of colours.
+
+import { Quaternion, Vector3 } from "three";
+import type { World } from "../view/world";
+import { byId, say } from "./dom";
+import { lengthInWords, scaleBar } from "../view/scale_bar";
+
+const kArm = 18;
+const kSpace = "http://www.w3.org/2000/svg";
+
+function svg(tag: string, parent: Element, name: string): Element {
+  const element = document.createElementNS(kSpace, tag);
+  element.setAttribute("class", name);
+  parent.append(element);
+  return element;
+}
+
+export class Overlay {
+  private readonly axes = ["x", "y", "z"].map((name) => {
+    const line = svg("line", byId("axes"), `axis-${name}`);
+    const text = svg("text", byId("axes"), `axis-${name}`);
+    text.textContent = name;
+    return { line, text };
+  });
+
+  constructor(private readonly world: World) {}
+
+  update(): void {
+    this.showAxes();
+    this.showScale();
+    this.showRamp();
+  }
+
+  private showAxes(): void {
+    const turn = new Quaternion().copy(this.world.stage.camera.quaternion).invert();
+    this.axes.forEach(({ line, text }, i) => {
+      const way = new Vector3().setComponent(i, 1).applyQuaternion(turn);
+      line.setAttribute("x2", (kArm * way.x).toFixed(1));
+      line.setAttribute("y2", (-kArm * way.y).toFixed(1));
+      line.setAttribute("opacity", way.z < -0.3 ? "0.4" : "1");
+      text.setAttribute("x", ((kArm + 6) * way.x).toFixed(1));
+      text.setAttribute("y", (-(kArm + 6) * way.y).toFixed(1));
+    });
+  }
+
+  private showScale(): void {
+    const { pixels, label } = scaleBar(this.world.stage.pixelAt(this.world.navigation.controls.target));
+    const end = (pixels + 1).toFixed(1);
+    byId("scale-bar").setAttribute("width", String(Math.ceil(pixels + 2)));
+    byId("scale-path").setAttribute("d", `M1 1v6M1 4H${end}M${end} 1v6`);
+    say(byId("scale-label"), label);
+  }
+
+  private showRamp(): void {
+    const asked = this.world.look.colouring;
+    const colouring = asked === "own" && !this.world.hasColours() ? "height" : asked;
+    const ramp = byId("ramp");
+    ramp.hidden = colouring !== "height" && colouring !== "age";
+    ramp.classList.toggle("age", colouring === "age");
+    const { x: low, y: high } = this.world.heights;
+    say(byId("ramp-low"), colouring === "age" ? "now" : "0");
+    say(byId("ramp-high"), colouring === "age" ? "1 s old" : `${lengthInWords(high - low)} high`);
+  }
+}

@@ -1,0 +1,112 @@
+// Four plots: force, its spectrum, the servo's time, the frames' time.
+
+import { kForceSpan, kFrameSpan, kTimingSpan, type Session } from "../model/session";
+import { kWindow, Spectrum } from "../model/spectrum";
+import { sourceColour } from "../view/colours";
+import { byId } from "./dom";
+import { Plot } from "./plot";
+
+const kFloor = 0.01; // mN, least amplitude that the spectrum shows
+const kHighest = 500; // Hz
+
+export class Plots {
+  frozen = false;
+  private readonly spectrum = new Spectrum();
+  private readonly force = new Plot({
+    name: "force", title: "Force on the hand", unit: "N", xUnit: "s", x: [-kForceSpan, 0], least: 0.5,
+    curves: [
+      { label: "size", colour: "--force", width: 1.75, filled: true },
+      { label: "x", colour: "--x" },
+      { label: "y", colour: "--y" },
+      { label: "z", colour: "--z" },
+    ],
+  });
+  private readonly tones = new Plot({
+    name: "spectrum", title: "Spectrum", unit: "mN over Hz", xUnit: "Hz", x: [0, kHighest], least: kFloor, most: 1000,
+    logarithmic: true, curves: [{ label: "all directions", colour: "--force", filled: true }],
+  });
+  private readonly steps = new Plot({
+    name: "steps", title: "Servo", unit: "µs", xUnit: "s", x: [-kTimingSpan, 0], least: 1, most: 100,
+    logarithmic: true,
+    curves: [
+      { label: "step", colour: "--x", width: 1.75 },
+      { label: "99 %", colour: "--x", dash: [4, 3] },
+      { label: "late 99 %", colour: "--z" },
+    ],
+  });
+  private readonly frames = new Plot({
+    name: "frames", title: "Frames", unit: "ms", xUnit: "s", x: [-kFrameSpan, 0], least: 50, curves: [],
+  });
+  private readonly all = [this.force, this.tones, this.steps, this.frames];
+
+  constructor(private readonly session: Session) {
+    byId("strip").prepend(...this.all.map((plot) => plot.figure));
+  }
+
+  begin(): void {
+    const cameras = this.cameras();
+    this.frames.replace(cameras.flatMap(({ source, index }, i) => [
+      { label: `${source.name}${i === 0 ? " latency" : ""}`, colour: sourceColour(index), width: 1.75 },
+      { label: i === 0 ? "age" : "", colour: sourceColour(index), dash: [3, 3] },
+    ]));
+    this.frames.figure.classList.toggle("none", cameras.length === 0);
+  }
+
+  update(now: number): void {
+    if (this.frozen) return;
+    if (this.force.visible) this.showForce();
+    if (this.tones.visible) this.showSpectrum();
+    if (this.steps.visible) this.showSteps();
+    if (this.frames.visible) this.showFrames(now / 1000);
+  }
+
+  redraw(): void {
+    for (const plot of this.all) plot.redraw();
+  }
+
+  private cameras() {
+    return this.session.sources
+      .map((source, index) => ({ source, index }))
+      .filter(({ source }) => source.camera);
+  }
+
+  private showForce(): void {
+    const ring = this.session.tool?.force;
+    if (ring === undefined || ring.length === 0) return;
+    const newest = ring.at(0, ring.length - 1);
+    const first = ring.from(newest - kForceSpan);
+    const times = ring.copy(0, first).map((time) => time - newest);
+    this.force.set([times, ...[4, 1, 2, 3].map((column) => ring.copy(column, first))]);
+  }
+
+  private showSpectrum(): void {
+    const ring = this.session.tool?.force;
+    const interval = this.session.tool?.latest?.interval ?? 0;
+    if (ring === undefined || ring.length < kWindow || !(interval > 0)) return;
+    const parts = [1, 2, 3].map((column) => ring.copy(column, ring.length - kWindow));
+    const amplitudes = this.spectrum.update(parts);
+    const tone = 1 / (interval * kWindow); // Hz
+    const count = Math.min(amplitudes.length, Math.ceil(kHighest / tone) + 1);
+    this.tones.set([
+      Float64Array.from({ length: count }, (_, k) => k * tone),
+      amplitudes.slice(0, count).map((amplitude) => Math.max(1000 * amplitude, kFloor)),
+    ]);
+  }
+
+  private showSteps(): void {
+    const ring = this.session.tool?.timing;
+    if (ring === undefined || ring.length === 0) return;
+    const newest = ring.at(0, ring.length - 1);
+    const first = ring.from(newest - kTimingSpan);
+    const shown = (column: number) => ring.copy(column, first).map((us) => Math.max(us, 0.1));
+    this.steps.set([ring.copy(0, first).map((time) => time - newest), shown(1), shown(2), shown(4)]);
+  }
+
+  private showFrames(now: number): void {
+    const cameras = this.cameras();
+    const ring = cameras[0]?.source.frames;
+    if (ring === undefined) return;
+    const times = ring.copy(0).map((time) => time - now);
+    this.frames.set([times, ...cameras.flatMap(({ source }) => [source.frames.copy(1), source.frames.copy(2)])]);
+  }
+}

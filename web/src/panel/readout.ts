@@ -1,0 +1,74 @@
+// The force as a number, and what the servo notes, in words.
+
+import type { DeviceHistory } from "../model/session";
+import { Flag } from "../protocol/decode";
+import { byId, make, say } from "./dom";
+import { millimetres } from "./numbers";
+
+type Name = keyof typeof Flag;
+
+const kFlagWords: Partial<Record<Name, [level: string, words: string]>> = {
+  paused: ["info", "paused: no force"],
+  fault: ["fault", "fault: no force until reset"],
+  watchdog: ["fault", "watchdog: the servo was late"],
+  clamped: ["warning", "force at its bound"],
+  slewed: ["warning", "force change slowed"],
+  thinned: ["warning", "surface thinned: too many points near"],
+};
+const kLinger = 700; // ms that a flag stays readable
+const kStale = 1000; // ms without a state
+
+export class Readout {
+  private readonly force = byId("force");
+  private readonly touch = byId("touch");
+  private readonly parts = [0, 1, 2].map(() => make("dd"));
+  private readonly flags = new Map<Name, { element: HTMLElement; until: number }>();
+
+  constructor() {
+    const names = ["x", "y", "z"];
+    byId("parts").replaceChildren(
+      ...this.parts.map((part, i) => make("div", {}, make("dt", {}, names[i]!), part)),
+    );
+    for (const [name, [level, words]] of Object.entries(kFlagWords)) {
+      const element = make("li", { class: level, hidden: true }, words);
+      this.flags.set(name as Name, { element, until: 0 });
+    }
+    byId("flags").replaceChildren(...[...this.flags.values()].map(({ element }) => element));
+  }
+
+  /** For every state, so that short flags are seen too. */
+  note(tool: DeviceHistory, now: number): void {
+    for (const [name, flag] of this.flags) if (tool.has(name)) flag.until = now + kLinger;
+  }
+
+  update(tool: DeviceHistory | undefined, now: number): void {
+    const state = tool?.latest;
+    for (const { element, until } of this.flags.values()) element.hidden = until < now;
+    if (tool === undefined || state === undefined) {
+      say(this.touch, "no tool yet");
+      return;
+    }
+    say(this.force, Math.hypot(...state.force).toFixed(2));
+    this.parts.forEach((part, i) => say(part, signed(state.force[i as 0 | 1 | 2])));
+    say(this.touch, now - tool.received > kStale ? "nothing heard for a while" : this.words(tool));
+    byId("view-area").classList.toggle("touching", tool.has("touching"));
+  }
+
+  /** For a screen reader that asks. */
+  sentence(tool: DeviceHistory | undefined): string {
+    const state = tool?.latest;
+    if (tool === undefined || state === undefined) return "No tool yet.";
+    return `${this.words(tool)}, ${Math.hypot(...state.force).toFixed(2)} newtons.`;
+  }
+
+  private words(tool: DeviceHistory): string {
+    const state = tool.latest!;
+    if (!tool.has("touching")) return "free";
+    const deep = Math.hypot(...state.proxy.map((p, i) => p - state.hip[i as 0 | 1 | 2]));
+    return `touching, ${millimetres(deep)} deep`;
+  }
+}
+
+function signed(value: number): string {
+  return `${value < -0.005 ? "−" : "+"}${Math.abs(value).toFixed(2)}`;
+}

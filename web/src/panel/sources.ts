@@ -1,0 +1,67 @@
+// Table of what is felt: who sends, how often, how much, how old.
+
+import type { SourceHistory } from "../model/session";
+import { sourceColour } from "../view/colours";
+import { byId, make, say } from "./dom";
+import { millimetres, seconds, short } from "./numbers";
+
+interface Row {
+  rows: HTMLTableSectionElement;
+  update(): void;
+}
+
+function cell(title: string): HTMLTableCellElement {
+  return make("td", { title });
+}
+
+function makeRow(source: SourceHistory, index: number, changed: () => void): Row {
+  const box = make("input", {
+    type: "checkbox", class: "swatch", "aria-label": `Show ${source.name}`, title: "Show in the view",
+    change: () => {
+      source.visible = box.checked;
+      changed();
+    },
+  });
+  box.checked = source.visible;
+  box.style.setProperty("--swatch", `var(${sourceColour(index)})`);
+  const phase = make("td", { colspan: 5 });
+  const rate = cell("frames a second");
+  const points = cell("points");
+  const age = cell("age of what is felt");
+  const dropped = cell("frames left out");
+  const name = make("th", { scope: "row" }, make("label", {}, box, make("span", {}, source.name)));
+  return {
+    rows: make("tbody", {},
+      make("tr", {}, name, rate, points, age, dropped), make("tr", { class: "phase" }, phase)),
+    update: () => {
+      const report = source.report;
+      if (report === undefined) return;
+      const apart = report.disagreement > 0 ? ` · ${millimetres(report.disagreement)} apart` : "";
+      say(phase, report.phase + apart);
+      say(rate, report.rate > 0 ? report.rate.toFixed(report.rate < 9.95 ? 1 : 0) : "–");
+      say(points, short(report.points));
+      say(age, source.camera ? seconds(report.age) : "–");
+      say(dropped, short(report.dropped));
+    },
+  };
+}
+
+export class SourcesPanel {
+  private rows: Row[] = [];
+
+  begin(sources: readonly SourceHistory[], changed: () => void): void {
+    this.rows = sources.map((source, i) => makeRow(source, i, changed));
+    const head = ["Source", "Hz", "Points", "Age", "Drops"].map((text) =>
+      make("th", { scope: "col" }, text),
+    );
+    byId("sources").replaceChildren(
+      make("table", { class: "table" },
+        make("thead", {}, make("tr", {}, ...head)),
+        ...this.rows.map(({ rows }) => rows)),
+    );
+  }
+
+  update(): void {
+    for (const row of this.rows) row.update();
+  }
+}

@@ -1,0 +1,86 @@
+// Is the program there? In the bar, and over the view where nothing can go on without an answer.
+
+import type { Link } from "../protocol/connection";
+import { byId, say } from "./dom";
+
+export class Status {
+  private timer = 0;
+  private everOpen = false;
+
+  constructor(again: () => void) {
+    byId("cover-again").addEventListener("click", again);
+    byId("cover-form").addEventListener("submit", (event) => {
+      event.preventDefault();
+      const text = byId<HTMLInputElement>("cover-token").value.trim();
+      const token = text.slice(text.indexOf("#") + 1);
+      if (token === "") return;
+      location.hash = token;
+    });
+  }
+
+  show(link: Link): void {
+    clearInterval(this.timer);
+    byId("link-state").dataset["phase"] = link.phase;
+    if (link.phase === "open") {
+      if (this.everOpen) say(byId("polite"), "Connected again.");
+      this.everOpen = true;
+      this.uncover();
+      this.words("connected");
+    } else if (link.phase === "connecting") {
+      this.words("connecting");
+    } else if (link.phase === "refused") {
+      this.words("not let in");
+      this.ask("The program does not know this page",
+        `It said: ${link.reason}. Each start of the program has a token of its own: ` +
+        "open the address that it printed last, or put it here.");
+    } else {
+      this.wait(link.seconds);
+    }
+  }
+
+  withoutToken(): void {
+    byId("link-state").dataset["phase"] = "refused";
+    this.words("no token");
+    this.ask("Open the address that palpate printed",
+      "It ends in # and a token, which lets this page watch and move the tool. " +
+      "Nothing is shown without one. Put the address, or the token alone, here.");
+  }
+
+  private wait(seconds: number): void {
+    let left = Math.ceil(seconds);
+    const title = this.everOpen ? "The connection is lost" : "The program does not answer";
+    say(byId("polite"), `${title}. Trying again by itself.`);
+    const tell = () => {
+      this.words(left > 0 ? `again in ${left} s` : "connecting");
+      this.cover(title, "The tool is let go. This page tries again by itself" +
+        (left > 0 ? ` in ${left} s.` : " now."));
+      left -= 1;
+    };
+    tell();
+    byId("cover-again").hidden = false;
+    this.timer = window.setInterval(tell, 1000);
+  }
+
+  private ask(title: string, text: string): void {
+    this.cover(title, text);
+    byId("cover-form").hidden = false;
+    byId("cover-again").hidden = true;
+    byId("cover-token").focus();
+  }
+
+  private cover(title: string, text: string): void {
+    say(byId("cover-title"), title);
+    say(byId("cover-text"), text);
+    byId("cover").hidden = false;
+  }
+
+  private uncover(): void {
+    byId("cover").hidden = true;
+    byId("cover-form").hidden = true;
+    byId("cover-again").hidden = true;
+  }
+
+  private words(text: string): void {
+    say(byId("link-words"), text);
+  }
+}

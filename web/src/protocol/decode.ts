@@ -1,0 +1,153 @@
+// Binary messages of the program. Places are metres relative to the scene's origin.
+// Typed arrays look into the message itself: nothing is copied. They read in the host's byte order,
+// which is little-endian wherever a browser runs.
+
+import type { Vector } from "./messages";
+
+export const Kind = { state: 1, cloud: 2, surface: 3 } as const;
+
+export const Flag = {
+  touching: 1,
+  paused: 2,
+  taken: 4,
+  clamped: 8,
+  slewed: 16,
+  watchdog: 32,
+  fault: 64,
+  thinned: 128,
+} as const;
+
+export interface StateMessage {
+  kind: typeof Kind.state;
+  device: number;
+  flags: number;
+  time: number; // s
+  hip: Vector;
+  proxy: Vector;
+  normal: Vector; // of the tangent constraint
+  force: Vector; // N, on the hand
+  radius: number; // support radius R, m
+  rate: number; // steps a second
+  step: [number, number]; // s, p50 and p99
+  lateness: [number, number]; // s, p50 and p99
+  interval: number; // s, between samples
+  samples: Float32Array; // N, x y z of each step, oldest first
+}
+
+export interface CloudMessage {
+  kind: typeof Kind.cloud;
+  source: number;
+  count: number;
+  stamp: number; // s
+  lower: Vector;
+  extent: Vector;
+  places: Uint16Array; // lower + extent * u / 65535
+  colours: Uint8Array | undefined;
+  normals: Int8Array | undefined; // octahedral
+}
+
+export interface SurfaceMessage {
+  kind: typeof Kind.surface;
+  device: number;
+  centre: Vector;
+  extent: number; // centre + extent * v / 32767
+  vertices: Int16Array;
+  triangles: Uint16Array;
+}
+
+export type BinaryMessage = StateMessage | CloudMessage | SurfaceMessage;
+
+export class DecodeError extends Error {}
+
+function need(buffer: ArrayBuffer, bytes: number, what: string): void {
+  if (buffer.byteLength < bytes) {
+    throw new DecodeError(`${what}: ${buffer.byteLength} bytes where ${bytes} are needed`);
+  }
+}
+
+function vector(view: DataView, offset: number): Vector {
+  return [
+    view.getFloat32(offset, true),
+    view.getFloat32(offset + 4, true),
+    view.getFloat32(offset + 8, true),
+  ];
+}
+
+function pair(view: DataView, offset: number): [number, number] {
+  return [view.getFloat32(offset, true), view.getFloat32(offset + 4, true)];
+}
+
+function decodeState(buffer: ArrayBuffer, view: DataView): StateMessage {
+  need(buffer, 92, "state");
+  const samples = view.getUint16(2, true);
+  need(buffer, 92 + 12 * samples, `state with ${samples} samples`);
+  return {
+    kind: Kind.state,
+    device: view.getUint8(1),
+    flags: view.getUint32(4, true),
+    time: view.getFloat64(8, true),
+    hip: vector(view, 16),
+    proxy: vector(view, 28),
+    normal: vector(view, 40),
+    force: vector(view, 52),
+    radius: view.getFloat32(64, true),
+    rate: view.getFloat32(68, true),
+    step: pair(view, 72),
+    lateness: pair(view, 80),
+    interval: view.getFloat32(88, true),
+    samples: new Float32Array(buffer, 92, 3 * samples),
+  };
+}
+
+function decodeCloud(buffer: ArrayBuffer, view: DataView): CloudMessage {
+  need(buffer, 40, "cloud");
+  const flags = view.getUint16(2, true);
+  const count = view.getUint32(4, true);
+  const colours = (flags & 1) !== 0;
+  const normals = (flags & 2) !== 0;
+  const afterPlaces = 40 + 6 * count;
+  const afterColours = afterPlaces + (colours ? 3 * count : 0);
+  need(buffer, afterColours + (normals ? 2 * count : 0), `cloud of ${count} points`);
+  return {
+    kind: Kind.cloud,
+    source: view.getUint8(1),
+    count,
+    stamp: view.getFloat64(8, true),
+    lower: vector(view, 16),
+    extent: vector(view, 28),
+    places: new Uint16Array(buffer, 40, 3 * count),
+    colours: colours ? new Uint8Array(buffer, afterPlaces, 3 * count) : undefined,
+    normals: normals ? new Int8Array(buffer, afterColours, 2 * count) : undefined,
+  };
+}
+
+function decodeSurface(buffer: ArrayBuffer, view: DataView): SurfaceMessage {
+  need(buffer, 24, "surface");
+  const vertices = view.getUint16(2, true);
+  const triangles = view.getUint32(4, true);
+  const afterVertices = 24 + 6 * vertices;
+  need(buffer, afterVertices + 6 * triangles, `surface of ${triangles} triangles`);
+  const message: SurfaceMessage = {
+    kind: Kind.surface,
+    device: view.getUint8(1),
+    centre: vector(view, 8),
+    extent: view.getFloat32(20, true),
+    vertices: new Int16Array(buffer, 24, 3 * vertices),
+    triangles: new Uint16Array(buffer, afterVertices, 3 * triangles),
+  };
+  if (message.triangles.some((vertex) => vertex >= vertices)) {
+    throw new DecodeError(`surface: a triangle beyond its ${vertices} vertices`);
+  }
+  return message;
+}
+
+/** Throws DecodeError for what is cut short or of an unknown kind. */
+export function decode(buffer: ArrayBuffer): BinaryMessage {
+  need(buffer, 1, "message");
+  const view = new DataView(buffer);
+  const kind = view.getUint8(0);
+  if (kind === Kind.state) return decodeState(buffer, view);
+  if (kind === Kind.cloud) return decodeCloud(buffer, view);
+  if (kind === Kind.surface) return decodeSurface(buffer, view);
+  throw new DecodeError(`message of kind ${kind}`);
+}

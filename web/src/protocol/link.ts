@@ -1,0 +1,48 @@
+// The part of the address after '#': the program's token, then settings as key=value.
+// Whoever has such a link may steer the program: it says so where it is copied.
+
+import type { Setting, SettingValue } from "./messages";
+
+export interface Link {
+  token: string;
+  values: Map<string, string>;
+}
+
+export function readLink(fragment: string): Link {
+  const [token = "", ...rest] = fragment.replace(/^#/, "").split("&");
+  const values = new Map<string, string>();
+  for (const part of rest) {
+    const at = part.indexOf("=");
+    if (at <= 0) continue;
+    values.set(unescapePart(part.slice(0, at)), unescapePart(part.slice(at + 1)));
+  }
+  return { token: token.includes("=") ? "" : unescapePart(token), values };
+}
+
+export function writeLink(token: string, values: Iterable<[string, SettingValue]>): string {
+  const parts = [encodeURIComponent(token)];
+  for (const [key, value] of values) {
+    parts.push(`${encodeURIComponent(key)}=${encodeURIComponent(String(value))}`);
+  }
+  return `#${parts.join("&")}`;
+}
+
+/** The value that a link's text means for a setting; undefined where it cannot be one. */
+export function settingFromText(setting: Setting, text: string): SettingValue | undefined {
+  if (setting.kind === "switch") {
+    return text === "true" ? true : text === "false" ? false : undefined;
+  }
+  if (setting.kind === "choice") return setting.choices?.includes(text) ? text : undefined;
+  const value = Number(text);
+  if (text.trim() === "" || !Number.isFinite(value)) return undefined;
+  const { least = -Infinity, most = Infinity } = setting;
+  return value >= least && value <= most ? value : undefined;
+}
+
+function unescapePart(text: string): string {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}

@@ -1,0 +1,88 @@
+// What page and program say to each other as JSON: docs/viewer_protocol.md.
+
+export const kVersion = 1;
+
+export type Vector = [number, number, number];
+export type SettingValue = number | string | boolean;
+
+export interface Setting {
+  key: string;
+  label: string;
+  unit?: string;
+  kind: "number" | "choice" | "switch";
+  least?: number;
+  most?: number;
+  step?: number;
+  choices?: string[];
+  value: SettingValue;
+}
+
+export interface DeviceInfo {
+  name: string;
+  takeable: boolean;
+}
+
+export interface SourceInfo {
+  name: string;
+  camera: boolean;
+}
+
+export interface SourceReport {
+  name: string;
+  phase: string;
+  rate: number; // Hz
+  points: number;
+  latency: number; // s, from frame to touchable
+  age: number; // s, of what is felt
+  dropped: number;
+  disagreement: number; // m
+  pose?: { position: Vector; quaternion: [number, number, number, number] };
+  frustum?: Vector; // tan of half the width, of half the height; far in m
+}
+
+export interface Welcome {
+  type: "welcome";
+  version: number;
+  scene: string;
+  origin: Vector;
+  up: Vector;
+  radius: number; // m
+  devices: DeviceInfo[];
+  sources: SourceInfo[];
+  settings: Setting[];
+  presets: string[];
+}
+
+export type NoticeLevel = "info" | "warning" | "fault";
+
+export type FromProgram =
+  | Welcome
+  | { type: "settings"; values: Record<string, SettingValue> }
+  | { type: "sources"; sources: SourceReport[] }
+  | { type: "notice"; level: NoticeLevel; text: string }
+  | { type: "record"; on: boolean; file?: string }
+  | { type: "refused"; text: string }
+  | { type: "pong"; id: number };
+
+export type ToProgram =
+  | { type: "hello"; token: string; points: number }
+  | { type: "hand"; device: number; position: Vector; buttons: number }
+  | { type: "release"; device: number }
+  | { type: "set"; key: string; value: SettingValue }
+  | { type: "preset"; name: string }
+  | { type: "pause"; on: boolean }
+  | { type: "reset" }
+  | { type: "record"; on: boolean }
+  | { type: "points"; points: number }
+  | { type: "ping"; id: number };
+
+const kTypes = new Set(["welcome", "settings", "sources", "notice", "record", "refused", "pong"]);
+
+/** A text message; undefined where this page does not know its type. Throws SyntaxError. */
+export function parseMessage(text: string): FromProgram | undefined {
+  const message = JSON.parse(text) as { type?: unknown } | null;
+  if (message === null || typeof message.type !== "string" || !kTypes.has(message.type)) {
+    return undefined;
+  }
+  return message as FromProgram;
+}

@@ -1,0 +1,109 @@
+// One source's points. What the program sends goes to the graphics card as it is; the place of the
+// cloud is the object's position and scale.
+
+import {
+  BufferAttribute, BufferGeometry, GLSL3, Points, ShaderMaterial, Vector2, Vector3, type Texture,
+} from "three";
+import type { CloudMessage } from "../protocol/decode";
+import { kCloudFragment, kCloudVertex } from "./cloud_shader";
+import { screenColour, sourceColour } from "./colours";
+
+export const kColourings = ["source", "height", "normal", "age", "own"] as const;
+export type Colouring = (typeof kColourings)[number];
+
+const kStale = 1; // s, the age that shows as stale
+
+function makeMaterial(ramps: Texture): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: kCloudVertex,
+    fragmentShader: kCloudFragment,
+    uniforms: {
+      mode: { value: 0 },
+      hasNormals: { value: false },
+      sourceColour: { value: [0.5, 0.5, 0.5] },
+      age: { value: 0 },
+      heights: { value: new Vector2(0, 1) },
+      up: { value: new Vector3(0, 0, 1) },
+      size: { value: 0.002 },
+      pixels: { value: 1000 },
+      ramps: { value: ramps },
+    },
+  });
+}
+
+export class Cloud {
+  readonly points: Points<BufferGeometry, ShaderMaterial>;
+  stamp = NaN;
+  count = 0;
+  spacing = 0.002; // m, about
+  hasColours = false;
+  hasNormals = false;
+  private capacity = 0;
+
+  constructor(
+    private readonly source: number,
+    ramps: Texture,
+  ) {
+    this.points = new Points(new BufferGeometry(), makeMaterial(ramps));
+    this.points.frustumCulled = false;
+    this.retint();
+  }
+
+  retint(): void {
+    this.points.material.uniforms["sourceColour"]!.value = screenColour(sourceColour(this.source));
+  }
+
+  take(message: CloudMessage): void {
+    if (message.count > this.capacity) this.grow(message.count);
+    this.count = message.count;
+    this.stamp = message.stamp;
+    this.hasColours = message.colours !== undefined;
+    this.hasNormals = message.normals !== undefined;
+    this.fill("position", message.places);
+    if (message.colours !== undefined) this.fill("own", message.colours);
+    if (message.normals !== undefined) this.fill("bend", message.normals);
+    const [x, y, z] = message.extent;
+    this.points.position.set(...message.lower);
+    this.points.scale.set(Math.max(x, 1e-9), Math.max(y, 1e-9), Math.max(z, 1e-9));
+    this.points.geometry.setDrawRange(0, message.count);
+    this.spacing = Math.sqrt((x * y + y * z + z * x) / Math.max(message.count, 1));
+  }
+
+  shade(colouring: Colouring, age: number, heights: Vector2, up: Vector3): void {
+    const uniforms = this.points.material.uniforms;
+    const known = colouring === "own" && !this.hasColours ? "height" : colouring;
+    uniforms["mode"]!.value = kColourings.indexOf(known);
+    uniforms["hasNormals"]!.value = this.hasNormals;
+    uniforms["age"]!.value = Math.min(Math.max(age / kStale, 0), 1);
+    uniforms["heights"]!.value = heights;
+    uniforms["up"]!.value = up;
+  }
+
+  scale(size: number, pixels: number): void {
+    this.points.material.uniforms["size"]!.value = size * this.spacing;
+    this.points.material.uniforms["pixels"]!.value = pixels;
+  }
+
+  dispose(): void {
+    this.points.geometry.dispose();
+    this.points.material.dispose();
+  }
+
+  private grow(count: number): void {
+    this.capacity = Math.ceil(count * 1.25);
+    const geometry = this.points.geometry;
+    geometry.dispose();
+    geometry.setAttribute("position", new BufferAttribute(new Uint16Array(3 * this.capacity), 3, true));
+    geometry.setAttribute("own", new BufferAttribute(new Uint8Array(3 * this.capacity), 3, true));
+    geometry.setAttribute("bend", new BufferAttribute(new Int8Array(2 * this.capacity), 2, true));
+  }
+
+  private fill(name: string, values: Uint16Array | Uint8Array | Int8Array): void {
+    const attribute = this.points.geometry.getAttribute(name) as BufferAttribute;
+    (attribute.array as Uint16Array).set(values);
+    attribute.clearUpdateRanges();
+    attribute.addUpdateRange(0, values.length);
+    attribute.needsUpdate = true;
+  }
+}

@@ -1,0 +1,67 @@
+// Points as small disks that lie in the surface where normals are known. Colours are screen colours:
+// the shader mixes and shades them as they are.
+
+export const kCloudVertex = /* glsl */ `
+  uniform int mode;
+  uniform bool hasNormals;
+  uniform vec3 sourceColour;
+  uniform float age;        // 0 fresh to 1 stale
+  uniform vec2 heights;     // low, high
+  uniform vec3 up;
+  uniform float size;       // m
+  uniform float pixels;     // pixels per unit of size over depth
+  uniform sampler2D ramps;
+  in vec2 bend;      // octahedral normal
+  in vec3 own;
+  out vec3 colour;
+  out vec3 facing;
+
+  vec3 unbend(vec2 p) {
+    vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
+    return normalize(n);
+  }
+
+  void main() {
+    vec4 world = modelMatrix * vec4(position, 1.0);
+    vec4 seen = viewMatrix * world;
+    gl_Position = projectionMatrix * seen;
+    gl_PointSize = clamp(size * pixels / -seen.z, 1.5, 40.0);
+
+    vec3 normal = hasNormals ? unbend(bend) : up;
+    if (mode == 1) {
+      float h = (dot(world.xyz, up) - heights.x) / max(heights.y - heights.x, 1e-9);
+      colour = texture(ramps, vec2(clamp(h, 0.0, 1.0) * 0.996 + 0.002, 0.25)).rgb;
+    } else if (mode == 2 && hasNormals) {
+      colour = 0.5 + 0.5 * normal;
+    } else if (mode == 3) {
+      colour = texture(ramps, vec2(age * 0.996 + 0.002, 0.75)).rgb;
+    } else if (mode == 4) {
+      colour = own;
+    } else {
+      colour = sourceColour;
+    }
+
+    facing = vec3(0.0, 0.0, 1.0);
+    if (hasNormals) {
+      facing = mat3(viewMatrix) * normal;
+      if (dot(facing, seen.xyz) > 0.0) facing = -facing;
+      vec3 light = normalize(vec3(0.35, 0.55, 0.75));
+      float shade = 0.52 + 0.56 * max(dot(facing, light), 0.0);
+      colour *= mode == 2 || mode == 4 ? mix(1.0, shade, 0.35) : shade;
+    }
+  }
+`;
+
+export const kCloudFragment = /* glsl */ `
+  out vec4 shown;
+  in vec3 colour;
+  in vec3 facing;
+
+  void main() {
+    vec2 p = vec2(2.0, -2.0) * gl_PointCoord + vec2(-1.0, 1.0);
+    float slope = dot(facing.xy, p) / max(facing.z, 0.35);
+    if (dot(p, p) + slope * slope > 1.0) discard;
+    shown = vec4(colour, 1.0);
+  }
+`;

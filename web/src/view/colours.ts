@@ -1,0 +1,63 @@
+// Colours of the view come from the style sheet, so that light and dark are decided in one place.
+
+import { Color, DataTexture, LinearFilter, RGBAFormat, SRGBColorSpace } from "three";
+
+export const kSourceColours = 8;
+
+function style(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+export function colourOf(name: string): Color {
+  return new Color(style(name) || "#888888");
+}
+
+/** As the style sheet writes it: for plots. */
+export function cssColour(name: string): string {
+  return style(name) || "#888888";
+}
+
+export function sourceColour(source: number): string {
+  return `--source-${source % kSourceColours}`;
+}
+
+/** Red, green, blue as a screen takes them, 0 to 1: for shaders that compute in these. */
+export function screenColour(name: string): [number, number, number] {
+  const { r, g, b } = colourOf(name).getRGB({ r: 0, g: 0, b: 0 }, SRGBColorSpace);
+  return [r, g, b];
+}
+
+// Viridis (S. van der Walt and N. Smith, CC0) at ten places, and a ramp for age: fresh to stale.
+const kHeight = [
+  "#440154", "#482878", "#3e4989", "#31688e", "#26828e",
+  "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725",
+];
+const kAge = ["#0b8f86", "#5aa37c", "#b39b4c", "#b8763f", "#8d5a4f", "#6f6a70"];
+
+function fillRow(pixels: Uint8Array, row: number, width: number, stops: string[]): void {
+  const colours = stops.map((stop) => new Color(stop).getRGB({ r: 0, g: 0, b: 0 }, SRGBColorSpace));
+  for (let i = 0; i < width; i += 1) {
+    const place = (i / (width - 1)) * (colours.length - 1);
+    const k = Math.min(Math.floor(place), colours.length - 2);
+    const part = place - k;
+    const [a, b] = [colours[k]!, colours[k + 1]!];
+    const at = 4 * (row * width + i);
+    pixels[at] = 255 * (a.r + part * (b.r - a.r));
+    pixels[at + 1] = 255 * (a.g + part * (b.g - a.g));
+    pixels[at + 2] = 255 * (a.b + part * (b.b - a.b));
+    pixels[at + 3] = 255;
+  }
+}
+
+/** Two rows: height at v = 0.25, age at v = 0.75. */
+export function rampTexture(): DataTexture {
+  const width = 256;
+  const pixels = new Uint8Array(4 * width * 2);
+  fillRow(pixels, 0, width, kHeight);
+  fillRow(pixels, 1, width, kAge);
+  const texture = new DataTexture(pixels, width, 2, RGBAFormat);
+  texture.magFilter = LinearFilter;
+  texture.minFilter = LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
+}

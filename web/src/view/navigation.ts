@@ -1,0 +1,120 @@
+// The eye: orbit, zoom, pan; a first place that shows what the cameras see.
+
+import { MOUSE, TOUCH, Vector3, type PerspectiveCamera } from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { Bounds } from "./bounds";
+
+const kTurn = 1.6; // radians a second by keys
+const kAside = 0.55; // radians beside a camera's own direction
+const kRaise = 0.5; // of the distance, upward
+const kMargin = 0.82; // of the picture that is used
+const kLoose = 0.8; // of the radius, while no place is known
+const kRounds = 4;
+
+/** From the middle to the eye: from the cameras' side, turned and raised a little. */
+export function firstDirection(up: Vector3, cameras: readonly Vector3[], centre: Vector3): Vector3 {
+  const from = cameras.reduce((sum, place) => sum.add(place.clone().sub(centre)), new Vector3());
+  from.addScaledVector(up, -from.dot(up));
+  if (from.lengthSq() < 1e-12) {
+    const x = new Vector3(1, 0, 0);
+    const y = new Vector3(0, 1, 0);
+    from.crossVectors(Math.abs(up.x) < 0.9 ? x : y, up);
+  }
+  return from.normalize().applyAxisAngle(up, kAside).addScaledVector(up, kRaise).normalize();
+}
+
+export class Navigation {
+  controls: OrbitControls;
+  private radius = 0.5;
+
+  constructor(
+    private readonly camera: PerspectiveCamera,
+    private readonly canvas: HTMLCanvasElement,
+    private readonly changed: () => void,
+  ) {
+    this.controls = this.makeControls();
+  }
+
+  /** The controls learn what is up only when they are made. */
+  setUp(up: Vector3): void {
+    if (this.camera.up.distanceTo(up) < 1e-6) return;
+    this.camera.up.copy(up);
+    this.controls.dispose();
+    this.controls = this.makeControls();
+  }
+
+  /** Shows all places, from a direction. */
+  frame(bounds: Bounds, direction: Vector3): void {
+    this.radius = bounds.radius;
+    const { target, distance } = this.fitting(bounds, direction);
+    this.camera.near = 0.004 * distance;
+    this.camera.far = 60 * distance;
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(target);
+    this.camera.position.copy(target).addScaledVector(direction, distance);
+    this.controls.minDistance = 0.02 * bounds.radius;
+    this.controls.maxDistance = 12 * bounds.radius;
+    this.controls.update();
+    this.changed();
+  }
+
+  /** Middle and distance from which all places are seen, with a margin. */
+  private fitting(bounds: Bounds, direction: Vector3): { target: Vector3; distance: number } {
+    const right = new Vector3().crossVectors(this.camera.up, direction).normalize();
+    const upward = new Vector3().crossVectors(direction, right);
+    const tall = Math.tan((this.camera.fov * Math.PI) / 360) * kMargin;
+    const wide = tall * this.camera.aspect;
+    const target = bounds.centre.clone();
+    let distance = (kLoose * bounds.radius) / Math.min(tall, wide);
+    for (let round = 0; round < kRounds && bounds.places.length > 0; round += 1) {
+      let [left, most, low, high, needed] = [Infinity, -Infinity, Infinity, -Infinity, 0];
+      for (const place of bounds.places) {
+        const from = place.clone().sub(target);
+        const [x, y, near] = [from.dot(right), from.dot(upward), from.dot(direction)];
+        needed = Math.max(needed, near + Math.max(Math.abs(x) / wide, Math.abs(y) / tall));
+        const depth = Math.max(distance - near, 1e-9);
+        [left, most] = [Math.min(left, x / depth), Math.max(most, x / depth)];
+        [low, high] = [Math.min(low, y / depth), Math.max(high, y / depth)];
+      }
+      target.addScaledVector(right, ((left + most) / 2) * distance);
+      target.addScaledVector(upward, ((low + high) / 2) * distance);
+      distance = needed;
+    }
+    return { target, distance };
+  }
+
+  /** Whether a drag with the main button, or one finger, turns the view. */
+  turnByDrag(on: boolean): void {
+    this.controls.mouseButtons.LEFT = on ? MOUSE.ROTATE : null;
+    this.controls.touches.ONE = on ? TOUCH.ROTATE : null;
+    this.controls.touches.TWO = on ? TOUCH.DOLLY_PAN : TOUCH.DOLLY_ROTATE;
+  }
+
+  /** Keys: right and up in turns, closer; -1 to 1 each. */
+  turn(right: number, up: number, closer: number, seconds: number): void {
+    const arm = this.camera.position.clone().sub(this.controls.target);
+    const axis = this.camera.up;
+    const side = new Vector3().crossVectors(axis, arm).normalize();
+    const tilt = Math.acos(Math.min(1, Math.max(-1, arm.clone().normalize().dot(axis))));
+    const wanted = Math.min(Math.PI - 0.05, Math.max(0.05, tilt - up * kTurn * seconds));
+    arm.applyAxisAngle(side, wanted - tilt);
+    arm.applyAxisAngle(axis, right * kTurn * seconds);
+    arm.multiplyScalar(Math.exp(-closer * 1.2 * seconds));
+    this.camera.position.copy(this.controls.target).add(arm);
+    this.changed();
+  }
+
+  update(): void {
+    this.controls.update();
+  }
+
+  private makeControls(): OrbitControls {
+    const controls = new OrbitControls(this.camera, this.canvas);
+    controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    controls.dampingFactor = 0.12;
+    controls.rotateSpeed = 0.8;
+    controls.maxDistance = 12 * this.radius;
+    controls.addEventListener("change", this.changed);
+    return controls;
+  }
+}

@@ -1,0 +1,104 @@
+// Renderer, camera and light; draws when something asked for it. Sharpness gives way where the
+// graphics card cannot follow.
+
+import {
+  DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
+} from "three";
+import { colourOf } from "./colours";
+
+const kFieldOfView = 40; // degrees
+const kSlow = 45; // ms a picture
+const kPatience = 40; // slow pictures before sharpness gives way
+
+export class Stage {
+  readonly scene = new Scene();
+  readonly camera = new PerspectiveCamera(kFieldOfView, 1, 0.001, 100);
+  readonly renderer: WebGLRenderer;
+  frameTime = NaN; // ms between pictures, smoothed
+  width = 1;
+  height = 1;
+  private sharpness = Math.min(devicePixelRatio, 2);
+  private wanted = true;
+  private last = 0;
+  private slow = 0;
+
+  private beforeDraw: (now: number) => void = () => {};
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    const lamp = new DirectionalLight(0xffffff, 2.0);
+    lamp.position.set(0.35, 0.55, 0.75);
+    this.camera.add(lamp);
+    this.scene.add(this.camera, new HemisphereLight(0xffffff, 0x8a8f98, 1.4));
+    this.retint();
+    this.resize();
+  }
+
+  /** Draws from now on; the function is called before every picture. */
+  start(beforeDraw: (now: number) => void): void {
+    this.beforeDraw = beforeDraw;
+    new ResizeObserver(() => this.resize()).observe(this.canvas);
+    requestAnimationFrame((now) => this.tick(now));
+  }
+
+  retint(): void {
+    this.renderer.setClearColor(colourOf("--view"));
+    this.wanted = true;
+  }
+
+  request(): void {
+    this.wanted = true;
+  }
+
+  /** The length of one style-sheet pixel at a place, m. */
+  pixelAt(place: Vector3): number {
+    const depth = place.clone().applyMatrix4(this.camera.matrixWorldInverse).z;
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    return (2 * half * Math.max(-depth, this.camera.near)) / this.height;
+  }
+
+  /** Drawn pixels per metre at a depth of one. */
+  get pixelScale(): number {
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    return (this.height * this.sharpness) / (2 * half);
+  }
+
+  picture(): Promise<Blob | null> {
+    this.draw(performance.now());
+    return new Promise((resolve) => this.canvas.toBlob(resolve, "image/png"));
+  }
+
+  private resize(): void {
+    this.width = Math.max(1, this.canvas.clientWidth);
+    this.height = Math.max(1, this.canvas.clientHeight);
+    this.renderer.setPixelRatio(this.sharpness);
+    this.renderer.setSize(this.width, this.height, false);
+    this.camera.aspect = this.width / this.height;
+    this.camera.updateProjectionMatrix();
+    this.draw(performance.now());
+  }
+
+  private tick(now: number): void {
+    requestAnimationFrame((next) => this.tick(next));
+    this.measure(now - this.last);
+    this.last = now;
+    this.draw(now);
+  }
+
+  private draw(now: number): void {
+    this.beforeDraw(now);
+    if (!this.wanted) return;
+    this.wanted = false;
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  private measure(interval: number): void {
+    if (!(interval > 0) || interval > 1000) return;
+    this.frameTime = Number.isNaN(this.frameTime) ? interval : 0.95 * this.frameTime + 0.05 * interval;
+    this.slow = interval > kSlow ? this.slow + 1 : Math.max(0, this.slow - 1);
+    if (this.slow < kPatience || this.sharpness <= 1) return;
+    this.slow = 0;
+    this.sharpness = Math.max(1, this.sharpness / 1.4);
+    this.resize();
+  }
+}

@@ -1,0 +1,168 @@
+// The tool in the manner of Leeper, Chan and Salisbury's figures: the proxy a dark sphere, the
+// constraint's tangent plane a green disk, the hand (HIP) light red, the force an arrow.
+
+import {
+  CircleGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial,
+  MeshLambertMaterial, RingGeometry, SphereGeometry, Vector3, type Material,
+} from "three";
+import type { StateMessage } from "../protocol/decode";
+import { Flag } from "../protocol/decode";
+import { colourOf } from "./colours";
+import { HaloMaterial } from "./halo";
+import { Trail } from "./trail";
+
+const kUp = new Vector3(0, 1, 0);
+const kForward = new Vector3(0, 0, 1);
+const kProxyPixels = 9;
+const kHandPixels = 7.5;
+const kLeastForce = 0.01; // N that shows
+
+function ball(material: Material, order: number): Mesh {
+  const mesh = new Mesh(new SphereGeometry(1, 32, 20), material);
+  mesh.renderOrder = order;
+  return mesh;
+}
+
+function ghostOf(material: MeshLambertMaterial, opacity: number): MeshBasicMaterial {
+  const ghost = new MeshBasicMaterial({
+    transparent: true, opacity, depthTest: false, depthWrite: false,
+  });
+  ghost.color = material.color; // shared: it follows the theme
+  return ghost;
+}
+
+export interface Sizes {
+  pixel: number; // the length of one at the tool, m
+  perNewton: number; // the arrow's length, m
+  eye: Vector3;
+  lift: number; // of the disk towards the eye, above the points, m
+}
+
+export class Tool {
+  readonly group = new Group();
+  readonly trail = new Trail();
+  readonly hipPlace = new Vector3();
+  readonly proxyPlace = new Vector3();
+  showSupport = true;
+  private readonly handMaterial = new MeshLambertMaterial();
+  private readonly proxyMaterial = new MeshLambertMaterial();
+  private readonly forceMaterial = new MeshLambertMaterial({ emissiveIntensity: 0.35 });
+  private readonly diskMaterial = new MeshBasicMaterial({
+    side: DoubleSide, transparent: true, opacity: 0.5, depthWrite: false,
+  });
+  private readonly rimMaterial = new MeshBasicMaterial({
+    side: DoubleSide, transparent: true, opacity: 0.95, depthWrite: false,
+  });
+  private readonly springMaterial = new MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.8 });
+  private readonly haloMaterial = new HaloMaterial();
+  private readonly hand = ball(this.handMaterial, 4);
+  private readonly handGhost = ball(ghostOf(this.handMaterial, 0.7), 6);
+  private readonly proxy = ball(this.proxyMaterial, 4);
+  private readonly proxyGhost = ball(ghostOf(this.proxyMaterial, 0.35), 5);
+  private readonly halo = ball(this.haloMaterial, 3);
+  private readonly disk = new Mesh(new CircleGeometry(1, 64), this.diskMaterial);
+  private readonly rim = new Mesh(new RingGeometry(0.95, 1, 64), this.rimMaterial);
+  private readonly spring = new Mesh(new CylinderGeometry(1, 1, 1, 8), this.springMaterial);
+  private readonly shaft = new Mesh(new CylinderGeometry(1, 1, 1, 16), this.forceMaterial);
+  private readonly head = new Mesh(new ConeGeometry(1, 1, 24), this.forceMaterial);
+  private readonly force = new Vector3();
+  private readonly normal = new Vector3();
+  private radius = 0;
+  private touching = false;
+
+  constructor() {
+    this.disk.renderOrder = 2;
+    this.rim.renderOrder = 2;
+    this.spring.renderOrder = 4;
+    this.group.add(
+      this.halo, this.disk, this.rim, this.spring, this.shaft, this.head,
+      this.hand, this.handGhost, this.proxy, this.proxyGhost, this.trail.line,
+    );
+    this.group.visible = false;
+    this.retint();
+  }
+
+  retint(): void {
+    this.handMaterial.color.copy(colourOf("--hip"));
+    this.proxyMaterial.color.copy(colourOf("--proxy"));
+    this.forceMaterial.color.copy(colourOf("--force"));
+    this.forceMaterial.emissive.copy(colourOf("--force"));
+    this.diskMaterial.color.copy(colourOf("--disk"));
+    this.rimMaterial.color.copy(colourOf("--disk"));
+    this.springMaterial.color.copy(colourOf("--hip"));
+    this.haloMaterial.tint(colourOf("--proxy"));
+    this.trail.retint();
+  }
+
+  take(state: StateMessage): void {
+    this.group.visible = true;
+    this.hipPlace.set(...state.hip);
+    this.proxyPlace.set(...state.proxy);
+    this.force.set(...state.force);
+    this.normal.set(...state.normal);
+    this.radius = state.radius;
+    this.touching = (state.flags & Flag.touching) !== 0;
+    this.trail.take(this.proxyPlace, state.time);
+  }
+
+  update({ pixel, perNewton, eye, lift }: Sizes): void {
+    const proxySize = Math.max(0.16 * this.radius, kProxyPixels * pixel);
+    this.proxy.visible = this.touching; // elsewhere it is where the hand is
+    this.proxyGhost.visible = this.touching;
+    this.proxy.position.copy(this.proxyPlace);
+    this.proxy.scale.setScalar(proxySize);
+    this.hand.position.copy(this.hipPlace);
+    this.hand.scale.setScalar(Math.max(0.14 * this.radius, kHandPixels * pixel));
+    this.proxyGhost.position.copy(this.proxy.position);
+    this.proxyGhost.scale.copy(this.proxy.scale);
+    this.handGhost.position.copy(this.hand.position);
+    this.handGhost.scale.copy(this.hand.scale);
+    this.halo.visible = this.showSupport && this.radius > 2 * proxySize;
+    this.halo.position.copy(this.proxyPlace);
+    this.halo.scale.setScalar(Math.max(this.radius, 1e-9));
+    const towards = eye.clone().sub(this.proxyPlace).normalize().multiplyScalar(lift);
+    this.placeDisk(Math.max(0.9 * this.radius, 2.8 * proxySize), towards);
+    this.placeSpring(pixel);
+    this.placeArrow(proxySize, pixel, perNewton);
+  }
+
+  private placeDisk(size: number, towards: Vector3): void {
+    const known = this.touching && this.normal.lengthSq() > 0.5;
+    this.disk.visible = known;
+    this.rim.visible = known;
+    if (!known) return;
+    for (const mesh of [this.disk, this.rim]) {
+      mesh.position.copy(this.proxyPlace).add(towards);
+      mesh.quaternion.setFromUnitVectors(kForward, this.normal);
+      mesh.scale.setScalar(size);
+    }
+  }
+
+  private placeSpring(pixel: number): void {
+    const way = this.proxyPlace.clone().sub(this.hipPlace);
+    const length = way.length();
+    this.spring.visible = length > 2 * pixel;
+    if (!this.spring.visible) return;
+    this.spring.position.copy(this.hipPlace).addScaledVector(way, 0.5);
+    this.spring.quaternion.setFromUnitVectors(kUp, way.divideScalar(length));
+    this.spring.scale.set(pixel, length, pixel);
+  }
+
+  private placeArrow(start: number, pixel: number, perNewton: number): void {
+    const size = this.force.length();
+    const shown = size > kLeastForce;
+    this.shaft.visible = shown;
+    this.head.visible = shown;
+    if (!shown) return;
+    const along = this.force.clone().divideScalar(size);
+    const length = Math.max(size * perNewton, 10 * pixel);
+    const headLength = Math.min(17 * pixel, 0.5 * length);
+    const shaftLength = length - headLength;
+    this.shaft.position.copy(this.proxyPlace).addScaledVector(along, start + shaftLength / 2);
+    this.shaft.quaternion.setFromUnitVectors(kUp, along);
+    this.shaft.scale.set(2.8 * pixel, shaftLength, 2.8 * pixel);
+    this.head.position.copy(this.proxyPlace).addScaledVector(along, start + length - headLength / 2);
+    this.head.quaternion.copy(this.shaft.quaternion);
+    this.head.scale.set(headLength * 0.45, headLength, headLength * 0.45);
+  }
+}

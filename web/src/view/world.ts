@@ -1,0 +1,175 @@
+// Everything that is drawn, and what of it is shown.
+
+import { Vector2, Vector3 } from "three";
+import type { CloudMessage, StateMessage, SurfaceMessage } from "../protocol/decode";
+import type { SourceReport, Welcome } from "../protocol/messages";
+import { boundsOf, samplePlaces, type Bounds } from "./bounds";
+import { Cloud, type Colouring } from "./cloud";
+import { rampTexture } from "./colours";
+import { Frustum } from "./frustum";
+import { firstDirection, Navigation } from "./navigation";
+import { Stage } from "./stage";
+import { Surface } from "./surface";
+import { Tool } from "./tool";
+
+export interface Look {
+  colouring: Colouring;
+  pointSize: number; // 1 is the spacing of points
+  points: boolean;
+  surface: boolean;
+  support: boolean;
+  cameras: boolean;
+  trail: boolean;
+}
+
+const kArrow = 0.16; // of the radius, an arrow for a newton
+
+export const kFirstLook: Look = {
+  colouring: "own", pointSize: 1.7, points: true, surface: true, support: true, cameras: true, trail: true,
+};
+
+export class World {
+  readonly stage: Stage;
+  readonly navigation: Navigation;
+  readonly up = new Vector3(0, 0, 1);
+  look: Look = { ...kFirstLook };
+  clouds: Cloud[] = [];
+  tools: Tool[] = [];
+  visible: boolean[] = [];
+  private surfaces: Surface[] = [];
+  private frusta: Frustum[] = [];
+  private places: Vector3[][] = [];
+  private cameras: Vector3[] = [];
+  private bounds: Bounds | undefined;
+  private readonly ramps = rampTexture();
+  readonly heights = new Vector2(0, 1); // along up, low and high, m
+  private radius = 0.5;
+  private time = NaN;
+  private framed = false;
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.stage = new Stage(canvas);
+    this.navigation = new Navigation(this.stage.camera, canvas, () => this.stage.request());
+  }
+
+  /** Draws from now on; the function is called before every picture. */
+  start(beforeDraw: (now: number) => void): void {
+    this.stage.start((now) => {
+      beforeDraw(now);
+      this.update(now);
+    });
+  }
+
+  /** What was there before goes, unless it is the same scene come back. */
+  begin(welcome: Welcome, again: boolean): void {
+    this.clear();
+    this.up.set(...welcome.up).normalize();
+    this.radius = welcome.radius;
+    this.bounds = undefined;
+    this.navigation.setUp(this.up);
+    this.clouds = welcome.sources.map((_, i) => new Cloud(i, this.ramps));
+    this.frusta = welcome.sources.map((_, i) => new Frustum(i));
+    this.tools = welcome.devices.map(() => new Tool());
+    this.surfaces = welcome.devices.map(() => new Surface());
+    this.places = welcome.sources.map(() => []);
+    this.visible = welcome.sources.map(() => true);
+    this.stage.scene.add(
+      ...this.clouds.map((cloud) => cloud.points), ...this.frusta.map((frustum) => frustum.lines),
+      ...this.surfaces.map((surface) => surface.mesh), ...this.tools.map((tool) => tool.group),
+    );
+    this.framed = again && this.framed;
+    if (!this.framed) this.fit();
+    this.stage.request();
+  }
+
+  takeState(state: StateMessage): void {
+    this.tools[state.device]?.take(state);
+    this.time = state.time;
+    this.stage.request();
+  }
+
+  takeCloud(message: CloudMessage): void {
+    const cloud = this.clouds[message.source];
+    if (cloud === undefined) return;
+    cloud.take(message);
+    this.places[message.source] = samplePlaces(message);
+    this.bounds = boundsOf(this.places.flat(), this.up);
+    if (this.bounds !== undefined) this.heights.copy(this.bounds.heights);
+    if (!this.framed && this.places.every((places) => places.length > 0)) {
+      this.fit();
+      this.framed = true;
+    }
+    this.stage.request();
+  }
+
+  takeSurface(message: SurfaceMessage): void {
+    this.surfaces[message.device]?.take(message, performance.now());
+    this.stage.request();
+  }
+
+  takeSources(reports: readonly SourceReport[]): void {
+    reports.forEach((report, i) => this.frusta[i]?.take(report, 0.12 * this.radius));
+    this.cameras = reports.flatMap(({ pose }) => (pose ? [new Vector3(...pose.position)] : []));
+    this.stage.request();
+  }
+
+  fit(): void {
+    const nothing = { places: [], centre: new Vector3(), radius: this.radius, heights: this.heights };
+    const bounds = this.bounds ?? nothing;
+    this.navigation.frame(bounds, firstDirection(this.up, this.cameras, bounds.centre));
+  }
+
+  retint(): void {
+    this.stage.retint();
+    for (const each of [...this.clouds, ...this.frusta, ...this.tools, ...this.surfaces]) each.retint();
+  }
+
+  hasColours(): boolean {
+    return this.clouds.some((cloud) => cloud.hasColours);
+  }
+
+  hasNormals(): boolean {
+    return this.clouds.some((cloud) => cloud.hasNormals);
+  }
+
+  private update(now: number): void {
+    this.navigation.update();
+    const { look, stage } = this;
+    this.clouds.forEach((cloud, i) => {
+      cloud.points.visible = look.points && cloud.count > 0 && this.visible[i] === true;
+      cloud.shade(look.colouring, this.time - cloud.stamp, this.heights, this.up);
+      cloud.scale(look.pointSize, stage.pixelScale);
+    });
+    this.frusta.forEach((frustum, i) => {
+      frustum.lines.visible = look.cameras && this.visible[i] === true;
+    });
+    for (const surface of this.surfaces) {
+      surface.shown = look.surface;
+      surface.update(now, stage.camera.position, this.lift());
+    }
+    for (const tool of this.tools) {
+      tool.showSupport = look.support;
+      tool.trail.line.visible = look.trail;
+      tool.update({
+        pixel: stage.pixelAt(tool.proxyPlace),
+        perNewton: kArrow * this.radius,
+        eye: stage.camera.position,
+        lift: this.lift(),
+      });
+    }
+  }
+
+  /** How far points stand out towards the eye: what lies in the surface is lifted above them. */
+  private lift(): number {
+    const spacing = this.clouds.reduce((most, cloud) => Math.max(most, cloud.spacing), 0);
+    return this.look.points ? spacing * this.look.pointSize : 0;
+  }
+
+  private clear(): void {
+    for (const cloud of this.clouds) cloud.dispose();
+    this.stage.scene.remove(
+      ...this.clouds.map((cloud) => cloud.points), ...this.frusta.map((frustum) => frustum.lines),
+      ...this.surfaces.map((surface) => surface.mesh), ...this.tools.map((tool) => tool.group),
+    );
+  }
+}

@@ -1,0 +1,43 @@
+// Pictures of the page to look at: node test/browser/pictures.mjs [FOLDER] [NAME...]
+
+import { mkdir } from "node:fs/promises";
+import { serve } from "../fake_server.mjs";
+import { openBrowser, openPage } from "./browser.mjs";
+
+const folder = process.argv[2] ?? "pictures";
+const wanted = process.argv.slice(3);
+const kDesktop = { viewport: { width: 1440, height: 900 } };
+const kPhone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
+const tab = (name) => (page) => page.click(`.tabs [data-tab="${name}"]`);
+const kPictures = [
+  ["desktop_light", kDesktop, "light"],
+  ["desktop_dark", kDesktop, "dark"],
+  ["laptop_light", { viewport: { width: 1180, height: 660 } }, "light"],
+  ["phone_light", kPhone, "light"],
+  ["phone_dark", kPhone, "dark", tab("settings")],
+  ["phone_sources", kPhone, "light", tab("sources")],
+  ["phone_timing", kPhone, "dark", tab("timing")],
+  ["desktop_held", kDesktop, "light", async (page) => {
+    await page.keyboard.press("t");
+    await page.selectOption("#look select", { label: "own colours" });
+    await page.click("#record");
+  }],
+  ["desktop_source", kDesktop, "dark", (page) => page.selectOption("#look select", { label: "source" })],
+  ["desktop_help", kDesktop, "light", (page) => page.click("#help")],
+];
+
+await mkdir(folder, { recursive: true });
+const server = await serve();
+const browser = await openBrowser();
+for (const [name, options, scheme, act] of kPictures) {
+  if (wanted.length > 0 && !wanted.includes(name)) continue;
+  const page = await openPage(browser, server.address, { ...options, colorScheme: scheme });
+  await page.waitForTimeout(6500);
+  await act?.(page);
+  await page.waitForTimeout(1500);
+  await page.screenshot({ path: `${folder}/${name}.png`, timeout: 120_000 });
+  console.log(name, ...page.troubles);
+  await page.context().close();
+}
+await browser.close();
+await server.close();

@@ -1,0 +1,165 @@
+// The fake program behind the socket: settings, messages of pages, what is sent when.
+
+import { encodeCloud, encodeState } from "./encode.mjs";
+import { kCameras, lookAtOrigin, randomFrom, seenPoints } from "./scene.mjs";
+import { Servo } from "./servo.mjs";
+import { patchAround } from "./surface.mjs";
+
+const kStateHz = 60;
+const kCloudHz = 10;
+const kClouds = 4; // frames that are played in turn
+
+const settings = () => [
+  { key: "stiffness", label: "Stiffness", unit: "N/m", kind: "number", least: 10, most: 2000, step: 10, value: 500 },
+  { key: "friction", label: "Friction", unit: "", kind: "number", least: 0, most: 1, step: 0.05, value: 0.2 },
+  { key: "bound", label: "Force, at most", unit: "N", kind: "number", least: 0.5, most: 20, step: 0.1, value: 6 },
+  { key: "field", label: "Surface", unit: "", kind: "choice", choices: ["balanced", "pointset", "metaball"], value: "balanced" },
+  { key: "policy", label: "Time", unit: "", kind: "choice", choices: ["morph", "replace", "average", "crossfade", "fusion"], value: "morph" },
+  { key: "texture", label: "Texture", unit: "", kind: "switch", value: false },
+];
+const kPresets = { default: { stiffness: 500, field: "balanced", texture: false }, paper: { stiffness: 300, field: "pointset", policy: "average" }, hard: { stiffness: 1500 } };
+
+export class FakeProgram {
+  clients = new Set();
+  received = []; // for tests
+  settings = settings();
+  recording = false;
+  playing = 0;
+
+  constructor({ points = 30000, token, pace = 1 }) {
+    this.token = token;
+    this.pace = pace;
+    const random = randomFrom(7);
+    this.servo = new Servo(random);
+    this.frames = kCameras.map((camera) =>
+      Array.from({ length: kClouds }, () => seenPoints(camera, Math.round(points / kCameras.length), random)),
+    );
+    this.encoded = new Map();
+    this.timers = [
+      setInterval(() => this.tellState(), 1000 / kStateHz),
+      setInterval(() => this.tellClouds(), 1000 / kCloudHz),
+      setInterval(() => this.tellSources(), 500),
+    ];
+    this.last = performance.now();
+  }
+
+  close() {
+    this.timers.forEach(clearInterval);
+  }
+
+  /** Sends what a client is ready to take; otherwise leaves it out. */
+  broadcast(data) {
+    for (const client of this.clients) {
+      if (client.welcome && client.socket.bufferedAmount < 2_000_000) client.socket.send(data);
+    }
+  }
+
+  tell(message) {
+    this.broadcast(JSON.stringify(message));
+  }
+
+  tellState() {
+    const now = performance.now();
+    this.servo.advance(Math.min(0.1, (now - this.last) / 1000) * this.pace);
+    this.last = now;
+    this.broadcast(encodeState(this.servo.report()));
+  }
+
+  tellClouds() {
+    this.playing += 1;
+    for (const client of this.clients) {
+      if (!client.welcome || client.socket.bufferedAmount > 2_000_000) continue;
+      for (let source = 0; source < kCameras.length; source += 1) {
+        client.socket.send(this.cloud(source, client.points));
+      }
+    }
+    if (this.servo.contact) this.broadcast(patchAround(this.servo.contact, 0.022));
+  }
+
+  cloud(source, most) {
+    const frame = this.frames[source][this.playing % kClouds];
+    const count = Math.min(frame.length, Math.floor(most / kCameras.length));
+    const key = `${source}/${this.playing % kClouds}/${count}`;
+    if (!this.encoded.has(key)) this.encoded.set(key, encodeCloud(source, 0, frame.slice(0, count)));
+    const bytes = this.encoded.get(key);
+    bytes.writeDoubleLE(this.servo.time - 0.03, 8);
+    return bytes;
+  }
+
+  tellSources() {
+    const wobble = Math.sin(this.servo.time * 0.7);
+    this.tell({
+      type: "sources",
+      sources: kCameras.map((camera, i) => ({
+        name: camera.name, phase: "streaming", rate: 29.6 + 0.5 * wobble, points: this.frames[i][0].length,
+        latency: 0.021 + 0.003 * wobble + 0.004 * i, age: 0.041 + 0.006 * Math.cos(this.servo.time + i),
+        dropped: Math.floor(this.servo.time / 9), disagreement: 0.0012,
+        pose: { position: camera.eye, quaternion: lookAtOrigin(camera.eye) }, frustum: [0.55, 0.41, 0.9],
+      })),
+    });
+  }
+
+  welcome() {
+    return {
+      type: "welcome", version: 1, scene: "table with a ball", origin: [0, 0, 0], up: [0, 0, 1], radius: 0.35,
+      devices: [{ name: "simulated", takeable: true }], sources: kCameras.map(({ name }) => ({ name, camera: true })),
+      settings: this.settings, presets: Object.keys(kPresets),
+    };
+  }
+
+  set(key, value) {
+    const setting = this.settings.find((one) => one.key === key);
+    if (setting === undefined) return `there is no setting ${key}`;
+    if (setting.kind === "number" && !(value >= setting.least && value <= setting.most)) {
+      return `${key} = ${value} is not between ${setting.least} and ${setting.most} ${setting.unit}`;
+    }
+    if (setting.kind === "choice" && !setting.choices.includes(value)) return `${key} cannot be ${value}`;
+    setting.value = value;
+    this.servo.stiffness = this.settings.find((one) => one.key === "stiffness").value;
+    this.servo.bound = this.settings.find((one) => one.key === "bound").value;
+    this.servo.texture = this.settings.find((one) => one.key === "texture").value ? 1 : 0;
+    return undefined;
+  }
+
+  tellSettings() {
+    this.tell({ type: "settings", values: Object.fromEntries(this.settings.map(({ key, value }) => [key, value])) });
+  }
+
+  /** A message of a page. */
+  take(client, text) {
+    const message = JSON.parse(text);
+    this.received.push(message);
+    const answer = (reply) => client.socket.send(JSON.stringify(reply));
+    if (!client.welcome && message.type !== "hello") return answer({ type: "refused", text: "say hello first" });
+    const act = {
+      hello: () => this.hello(client, message),
+      hand: () => Object.assign(this.servo, { taken: true, hand: message.position }),
+      release: () => (this.servo.taken = false),
+      set: () => this.changed(answer, this.set(message.key, message.value)),
+      preset: () => Object.entries(kPresets[message.name] ?? {}).forEach(([k, v]) => this.set(k, v)) ?? this.tellSettings(),
+      pause: () => (this.servo.paused = message.on),
+      reset: () => this.tell({ type: "notice", level: "info", text: "reset: the proxy is at the hand" }),
+      record: () => this.record(message.on),
+      points: () => (client.points = message.points),
+      ping: () => answer({ type: "pong", id: message.id }),
+    }[message.type];
+    if (act === undefined) answer({ type: "refused", text: `a message of type ${message.type} is not known` });
+    else act();
+  }
+
+  hello(client, { token, points }) {
+    if (token !== this.token) return client.socket.close(1008, "wrong token");
+    Object.assign(client, { welcome: true, points });
+    client.socket.send(JSON.stringify(this.welcome()));
+  }
+
+  changed(answer, refusal) {
+    if (refusal !== undefined) answer({ type: "refused", text: refusal });
+    else this.tellSettings();
+  }
+
+  record(on) {
+    this.recording = on;
+    this.tell({ type: "record", on, file: "steps_2026-11-20.csv" });
+  }
+}

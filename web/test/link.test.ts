@@ -1,0 +1,53 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Backoff } from "../src/protocol/backoff";
+import { readLink, settingFromText, writeLink } from "../src/protocol/link";
+import { parseMessage, type Setting } from "../src/protocol/messages";
+
+const kNumber: Setting = { key: "k", label: "Stiffness", kind: "number", least: 0, most: 2000, value: 500 };
+const kChoice: Setting = { key: "f", label: "Surface", kind: "choice", choices: ["a", "b"], value: "a" };
+const kSwitch: Setting = { key: "s", label: "Texture", kind: "switch", value: false };
+
+test("a link gives back what was put into it", () => {
+  const values: [string, string | number | boolean][] = [
+    ["stiffness", 812.5], ["field", "point set & more = 100 %"], ["texture", true],
+  ];
+  const link = readLink(writeLink("0f3a", values));
+  assert.equal(link.token, "0f3a");
+  assert.deepEqual([...link.values], values.map(([key, value]) => [key, String(value)]));
+});
+
+test("a token alone, nothing, and nonsense are borne", () => {
+  assert.deepEqual(readLink("#abc"), { token: "abc", values: new Map() });
+  assert.deepEqual(readLink(""), { token: "", values: new Map() });
+  assert.equal(readLink("#stiffness=3").token, "");
+  assert.deepEqual([...readLink("#t&&=3&x&k=%zz").values], [["k", "%zz"]]);
+});
+
+test("a link's text becomes a value of the setting's kind, within its bounds", () => {
+  assert.equal(settingFromText(kNumber, "812.5"), 812.5);
+  assert.equal(settingFromText(kNumber, "2001"), undefined);
+  assert.equal(settingFromText(kNumber, ""), undefined);
+  assert.equal(settingFromText(kNumber, "Infinity"), undefined);
+  assert.equal(settingFromText(kChoice, "b"), "b");
+  assert.equal(settingFromText(kChoice, "c"), undefined);
+  assert.equal(settingFromText(kSwitch, "true"), true);
+  assert.equal(settingFromText(kSwitch, "1"), undefined);
+});
+
+test("waiting doubles up to its bound, scattered, and begins anew", () => {
+  const slow = new Backoff(() => 1);
+  assert.deepEqual(Array.from({ length: 7 }, () => slow.next()), [0.5, 1, 2, 4, 8, 10, 10]);
+  const quick = new Backoff(() => 0);
+  quick.next();
+  assert.equal(quick.next(), 0.75);
+  quick.reset();
+  assert.equal(quick.next(), 0.375);
+});
+
+test("messages of unknown types are left aside, broken ones are errors", () => {
+  assert.equal(parseMessage('{"type":"weather"}'), undefined);
+  assert.equal(parseMessage("null"), undefined);
+  assert.deepEqual(parseMessage('{"type":"pong","id":3}'), { type: "pong", id: 3 });
+  assert.throws(() => parseMessage("{"), SyntaxError);
+});

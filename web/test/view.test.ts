@@ -1,0 +1,67 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Vector3 } from "three";
+import { bend, readPad } from "../src/input/gamepad";
+import { readTranslation } from "../src/input/space_mouse";
+import { decimals, inStep, millimetres, Scale, seconds, short, whole } from "../src/panel/numbers";
+import { boundsOf } from "../src/view/bounds";
+import { lengthInWords, scaleBar } from "../src/view/scale_bar";
+
+test("a scale bar is a round length between 60 and 150 pixels", () => {
+  for (let power = -6; power < 2; power += 0.07) {
+    const metresPerPixel = 10 ** power / 100;
+    const { pixels, label } = scaleBar(metresPerPixel);
+    assert.ok(pixels >= 59.9 && pixels <= 150.1, `${pixels} pixels for ${label}`);
+    assert.match(label, /^[125]0*(\.0+)? (µm|mm|m)$|^0\.[125] /);
+  }
+});
+
+test("lengths take the unit that suits them", () => {
+  assert.equal(lengthInWords(0.05), "50 mm");
+  assert.equal(lengthInWords(2), "2 m");
+  assert.equal(lengthInWords(0.0002), "200 µm");
+});
+
+test("numbers read well", () => {
+  assert.equal(decimals(0.05), 2);
+  assert.equal(decimals(10), 0);
+  assert.equal(inStep(0.30000000000000004, 0.1), "0.3");
+  assert.equal(whole(1234567), "1\u202f234\u202f567");
+  assert.equal(short(30_000), "30k");
+  assert.equal(seconds(0.0412), "41 ms");
+  assert.equal(seconds(NaN), "–");
+  assert.equal(millimetres(0.00068), "0.68 mm");
+});
+
+test("a slider's scale is even for small ranges and by ratio for wide ones", () => {
+  assert.equal(new Scale(0, 10).place(2.5), 0.25);
+  const wide = new Scale(10, 1000);
+  assert.ok(Math.abs(wide.place(100) - 0.5) < 1e-12);
+  for (const value of [10, 57, 1000]) assert.ok(Math.abs(wide.value(wide.place(value)) - value) < 1e-9);
+});
+
+test("sticks rest inside their dead zone and reach one at their end", () => {
+  assert.equal(bend(0.1), 0);
+  assert.equal(bend(1), 1);
+  assert.equal(bend(-1), -1);
+});
+
+test("controllers and 3D mice mean the same directions", () => {
+  const buttons = [{ pressed: true }, { pressed: false }, { pressed: true }] as GamepadButton[];
+  const pad = readPad({ id: "Standard", axes: [1, -1, 0, -1], buttons });
+  assert.deepEqual(pad, { right: 1, up: 1, away: 1, buttons: 5 });
+  const mouse = readPad({ id: "3Dconnexion SpaceMouse", axes: [1, -1, -1], buttons: [] });
+  assert.deepEqual(mouse, { right: 1, up: 1, away: 1, buttons: 0 });
+  const report = new DataView(new ArrayBuffer(6));
+  [350, -350, -350].forEach((value, i) => report.setInt16(2 * i, value, true));
+  assert.deepEqual(readTranslation(report), { right: 1, up: 1, away: 1 });
+});
+
+test("bounds leave outliers out", () => {
+  const places = Array.from({ length: 1000 }, (_, i) => new Vector3((i % 10) / 10, Math.floor(i / 100) / 10, 0));
+  places.push(new Vector3(1000, 0, 0));
+  const bounds = boundsOf(places, new Vector3(0, 0, 1));
+  assert.ok(bounds !== undefined && bounds.radius < 1);
+  assert.ok(bounds.places.every((place) => place.x < 2));
+  assert.equal(boundsOf([], new Vector3(0, 0, 1)), undefined);
+});
