@@ -104,7 +104,8 @@ std::vector<double> ages(const std::deque<Lane>& lanes, double start, double end
 
 }  // namespace
 
-RunResult run_servo(CameraRig& rig, const Trajectory& hand, Beside beside, WaitingClock& clock) {
+RunResult run_servo(CameraRig& rig, const Trajectory& hand, Beside beside, WaitingClock& clock,
+                    std::optional<int> processor) {
   Scene scene;
   CameraRig::add_sources(scene);
   ScriptedDevice script(hand);
@@ -124,20 +125,22 @@ RunResult run_servo(CameraRig& rig, const Trajectory& hand, Beside beside, Waiti
   RunResult result;
   const double start = clock.now();
   {
-    const ServoThread thread(servo, clock, {.rate = kRate});
+    const ServoThread thread(servo, clock, {.rate = kRate, .realtime = {.processor = processor}});
     result.realtime = thread.realtime();
     while (thread.running()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
       while (const std::optional<ServoState> state = steps.pop()) {
         result.touching += state->contact.touching ? 1 : 0;
+        result.computing.push_back(state->timing.computing);
       }
     }
     result.skipped = thread.skipped();
   }
   result.ages = ages(lanes, start, clock.now());
+  std::ranges::sort(result.ages);
   for (const Lane& lane : lanes) result.streams.push_back(lane.stream->state());
   lanes.clear();
-  result.computing = servo.computing();
+  std::ranges::sort(result.computing);
   result.lateness = servo.lateness();
   result.steps = servo.state().step;
   result.faults = servo.state().guard.counts.faults;

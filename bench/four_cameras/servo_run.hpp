@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "four_cameras/camera_rig.hpp"
@@ -18,7 +19,7 @@ enum class Beside {
 };
 
 struct RunResult {
-  Durations computing;  ///< thread time of a step, s
+  std::vector<double> computing;  ///< thread time of every step, s; in rising order
   Durations lateness;
   std::uint64_t steps = 0;
   std::uint64_t skipped = 0;
@@ -30,8 +31,8 @@ struct RunResult {
   RealtimeReport realtime;
 };
 
-/// Runs a servo at 1 kHz along `hand` until that ends.
+/// Runs a servo at 1 kHz along `hand` until that ends. `processor`: it is pinned there.
 [[nodiscard]] RunResult run_servo(CameraRig& rig, const Trajectory& hand, Beside beside,
-                                  WaitingClock& clock);
+                                  WaitingClock& clock, std::optional<int> processor);
 
 }  // namespace palpate::four_cameras
