@@ -13,6 +13,7 @@
 #include "io/pgm.hpp"
 #include "io/png.hpp"
 #include "io/swapped.hpp"
+#include "palpate/depth/to_metres.hpp"
 #include "palpate/io/read_cloud.hpp"
 
 namespace palpate {
@@ -55,15 +56,14 @@ void straighten(const Input& input, DepthImage& image, bool swapped) {
   }
 }
 
-void fill(DepthFrame& frame, const DepthImage& image, double unit,
-          const std::vector<std::uint16_t>& invalid) {
-  frame.depth.resize(image.samples.size());
-  std::ranges::transform(image.samples, frame.depth.begin(), [&](std::uint16_t sample) {
-    const bool measured =
-        is_depth(image, sample) && std::ranges::find(invalid, sample) == invalid.end();
-    return measured ? static_cast<float>(unit * sample) : 0.0F;
-  });
-  frame.colors.clear();
+// Makes marks for "nothing measured" the usual one.
+void blank(DepthImage& image, const std::vector<std::uint16_t>& invalid) {
+  std::ranges::replace_if(
+      image.samples,
+      [&](std::uint16_t sample) {
+        return !is_depth(image, sample) || std::ranges::find(invalid, sample) != invalid.end();
+      },
+      std::uint16_t{0});
 }
 
 void read_bytes_into(std::span<const std::byte> bytes, const std::string& name,
@@ -81,7 +81,10 @@ void read_bytes_into(std::span<const std::byte> bytes, const std::string& name,
     straighten(input, image, options.swapped);
     camera.width = static_cast<int>(image.width);
     camera.height = static_cast<int>(image.height);
-    fill(frame, image, unit, options.invalid);
+    blank(image, options.invalid);
+    frame.depth.resize(image.samples.size());
+    to_metres(image.samples, unit, frame.depth);
+    frame.colors.clear();
     frame.camera = camera;
   } catch (const std::bad_alloc&) {
     fail(input, "not enough memory for its pixels", "Close other programs");

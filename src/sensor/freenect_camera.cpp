@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
+#include <span>
 
 #include "palpate/base/error.hpp"
+#include "palpate/depth/to_metres.hpp"
 #include "sensor/drivers.hpp"
 #include "sensor/kinect_depth.hpp"
 #include "sensor/live_camera.hpp"
@@ -102,16 +103,21 @@ class FreenectConnection final : public Connection {
     frame.camera = {mode_.width, mode_.height, kinect_pinhole(mode_.width, mode_.height), {}};
     frame.depth.resize(static_cast<std::size_t>(mode_.width) *
                        static_cast<std::size_t>(mode_.height));
-    std::transform(samples_.begin(), samples_.begin() + std::ssize(frame.depth),
-                   frame.depth.begin(), [this](std::uint16_t sample) { return metres(sample); });
+    convert(frame.depth);
     frame.colors.clear();
     return CameraStatus::frame;
   }
 
  private:
-  [[nodiscard]] float metres(std::uint16_t sample) const {
-    if (mode_.depth_format == FREENECT_DEPTH_11BIT) return kinect_metres(sample);
-    return sample >= kNoMillimetres ? 0.0F : static_cast<float>(1e-3 * sample);
+  void convert(std::span<float> depth) {
+    const std::span samples(samples_.data(), depth.size());
+    if (mode_.depth_format == FREENECT_DEPTH_11BIT) {
+      std::ranges::transform(samples, depth.begin(), kinect_metres);
+      return;
+    }
+    std::ranges::replace_if(
+        samples, [](std::uint16_t sample) { return sample >= kNoMillimetres; }, std::uint16_t{0});
+    to_metres(samples, 1e-3, depth);
   }
 
   void check(int code, std::string_view what) const {

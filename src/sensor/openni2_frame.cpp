@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+
+#include "palpate/depth/to_metres.hpp"
 
 namespace palpate::sensor {
 
@@ -20,6 +23,7 @@ bool is_whole(const OniFrame& image) {
 
 void copy_depth(const OniFrame& image, bool mirrored, std::vector<float>& depth) {
   const bool fine = image.videoMode.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_100_UM;
+  const double unit = fine ? 1e-4 : 1e-3;
   const auto width = static_cast<std::size_t>(image.width);
   const auto height = static_cast<std::size_t>(image.height);
   const auto stride = static_cast<std::size_t>(image.stride);
@@ -27,11 +31,9 @@ void copy_depth(const OniFrame& image, bool mirrored, std::vector<float>& depth)
   const auto* bytes = static_cast<const std::byte*>(image.data);
   for (std::size_t v = 0; v < height; ++v) {
     const auto* row = reinterpret_cast<const OniDepthPixel*>(bytes + v * stride);
-    float* out = depth.data() + v * width;
-    std::transform(row, row + width, out, [unit = fine ? 1e-4 : 1e-3](OniDepthPixel z) {
-      return static_cast<float>(unit * z);
-    });
-    if (mirrored) std::reverse(out, out + width);
+    const std::span out(depth.data() + v * width, width);
+    to_metres({row, width}, unit, out);
+    if (mirrored) std::ranges::reverse(out);
   }
 }
 

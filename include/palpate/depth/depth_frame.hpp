@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-/// One image of a depth camera.
+/// One image of a depth camera. Depth in 16 bits is put into it by to_metres().
 struct DepthFrame {
   CameraModel camera;
   double stamp = 0;  ///< when it was taken, s, on the host's clock
