@@ -8,6 +8,7 @@
 
 #include "base/random.hpp"
 #include "depth/depth_view.hpp"
+#include "depth/shapes.hpp"
 #include "palpate/sensor/simulated_depth.hpp"
 #include "palpate/sensor/simulated_noise.hpp"
 
@@ -21,29 +22,12 @@ inline depth::DepthView view_of(const std::vector<float>& image,
   return {image, camera.width, camera.height, camera.pinhole.fx, 0.1F, 20.0F};
 }
 
-/// A half space whose surface holds `point` and looks along `normal`.
-inline Solid half_space(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
-  Solid solid;
-  solid.T_world_solid.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal).toRotationMatrix();
-  solid.T_world_solid.translation() = point;
-  return solid;
-}
-
-inline Solid ball(const Eigen::Vector3d& center, double radius) {
-  Solid solid;
-  solid.kind = SolidKind::ball;
-  solid.T_world_solid.translation() = center;
-  solid.size = Eigen::Vector3d::Constant(radius);
-  return solid;
-}
-
 /// A table under a camera that looks down 27 degrees, 0.7 m away, and a wall behind it.
 inline std::vector<Solid> table_and_wall() {
   const double tilt = 27 * std::numbers::pi / 180;
   const Eigen::Vector3d up(0, -std::cos(tilt), -std::sin(tilt));
   const Eigen::Vector3d back(0, std::sin(tilt), -std::cos(tilt));
-  return {half_space({0, 0, 0.7}, up), half_space(Eigen::Vector3d(0, 0, 0.7) - 0.5 * back, back)};
+  return {plane({0, 0, 0.7}, up), plane(Eigen::Vector3d(0, 0, 0.7) - 0.5 * back, back)};
 }
 
 /// The same with balls of 3 to 7 cm all over it.
@@ -54,7 +38,7 @@ inline std::vector<Solid> clutter(int balls) {
     const double z = 0.5 + 0.5 * random.uniform();
     const double x = 1.2 * z * (random.uniform() - 0.5);
     const double y = 0.9 * z * (random.uniform() - 0.5);
-    solids.push_back(ball({x, y, z}, 0.03 + 0.04 * random.uniform()));
+    solids.push_back(sphere({x, y, z}, 0.03 + 0.04 * random.uniform()));
   }
   return solids;
 }

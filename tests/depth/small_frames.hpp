@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <vector>
 
 #include "depth/blocks.hpp"
 #include "depth/neighbors.hpp"
+#include "depth/shapes.hpp"
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/sensor/simulated_depth.hpp"
 #include "palpate/sensor/simulated_noise.hpp"
@@ -13,35 +13,6 @@ namespace palpate::test {
 
 /// The middle of a 640 x 480 image.
 inline constexpr CameraModel kSmall{160, 120, {525, 525, 79.5, 59.5}, {}};
-
-/// A half space whose surface holds `point` and looks along `normal`.
-inline Solid plane(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
-  Solid solid;
-  solid.T_world_solid.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal).toRotationMatrix();
-  solid.T_world_solid.translation() = point;
-  return solid;
-}
-
-inline Solid sphere(const Eigen::Vector3d& center, double radius) {
-  Solid solid;
-  solid.kind = SolidKind::ball;
-  solid.T_world_solid.translation() = center;
-  solid.size = Eigen::Vector3d::Constant(radius);
-  return solid;
-}
-
-/// One of whose edges looks at the camera.
-inline Solid box(const Eigen::Vector3d& center, double half, double turn, double tilt) {
-  Solid solid;
-  solid.kind = SolidKind::block;
-  solid.T_world_solid.linear() = (Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()) *
-                                  Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()))
-                                     .toRotationMatrix();
-  solid.T_world_solid.translation() = center;
-  solid.size = Eigen::Vector3d::Constant(half);
-  return solid;
-}
 
 inline DepthFrame exact_frame(const std::vector<Solid>& solids,
                               const CameraModel& camera = kSmall) {
