@@ -7,7 +7,7 @@
 #include "depth/blocks.hpp"
 #include "depth/check_input.hpp"
 #include "depth/neighbors.hpp"
-#include "depth/noise_estimate.hpp"
+#include "depth/noise_tracker.hpp"
 #include "depth/output.hpp"
 #include "depth/temporal_filter.hpp"
 #include "depth/undistort.hpp"

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "depth/noise_estimate.hpp"
+#include "depth/noise_tracker.hpp"
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/depth/sensor_profiles.hpp"
 #include "palpate/io/read_cloud.hpp"
@@ -79,7 +79,8 @@ TEST_F(NoiseDataTest, ARealSensesNoiseIsThatOfItsKind) {
 TEST_F(NoiseDataTest, AKinectsNoiseIsThatOfItsKind) {
   const std::vector<float> depth = image("pcl_tabletop/osd_test0.pcd", 525, 319.5, 239.5);
   if (depth.empty()) GTEST_SKIP() << "no Kinect frames in PALPATE_DATA";
-  const NoiseModel model = depth::estimate_noise(view_of(depth, 525), unknown_sensor_noise());
+  depth::NoiseTracker tracker(unknown_sensor_noise());
+  const NoiseModel& model = tracker.update(view_of(depth, 525));
   EXPECT_GT(model.sigma(1), 1.1e-3);
   EXPECT_LT(model.sigma(1), 2.5e-3);
   EXPECT_GT(model.correlation, 1.5);

@@ -1,4 +1,4 @@
-#include "depth/noise_estimate.hpp"
+#include "depth/noise_tracker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -41,12 +41,17 @@ void expect_sigma(const NoiseModel& model, double tolerance) {
   EXPECT_LT(ratio.high, 1 + tolerance);
 }
 
-NoiseModel from_one_frame(const std::vector<Solid>& solids, const SimulatedNoiseOptions& options) {
-  const std::vector<float> image = test::noisy_image(test::exact_image(solids), options);
-  return depth::estimate_noise(view_of(image), unknown_sensor_noise());
+NoiseModel from_one_frame(const DepthView& frame,
+                          const NoiseModel& prior = unknown_sensor_noise()) {
+  return NoiseTracker(prior).update(frame);
 }
 
-TEST(NoiseEstimate, FindsIndependentNoiseInOneFrame) {
+NoiseModel from_one_frame(const std::vector<Solid>& solids, const SimulatedNoiseOptions& options) {
+  const std::vector<float> image = test::noisy_image(test::exact_image(solids), options);
+  return from_one_frame(view_of(image));
+}
+
+TEST(NoiseTracker, FindsIndependentNoiseInOneFrame) {
   for (const int balls : {0, 6, 60}) {
     SCOPED_TRACE(balls);
     const NoiseModel model = from_one_frame(test::clutter(balls), {.seed = 3});
@@ -57,7 +62,7 @@ TEST(NoiseEstimate, FindsIndependentNoiseInOneFrame) {
 }
 
 // Two pixels of blur: n_c = 4 pi 2^2 = 50 pixels per independent one, c = sqrt(50 / 4) = 3.5.
-TEST(NoiseEstimate, FindsCorrelatedNoiseInOneFrame) {
+TEST(NoiseTracker, FindsCorrelatedNoiseInOneFrame) {
   for (const int balls : {0, 6}) {
     for (const std::uint64_t seed : {1U, 2U}) {
       SCOPED_TRACE(balls);
@@ -69,14 +74,14 @@ TEST(NoiseEstimate, FindsCorrelatedNoiseInOneFrame) {
   }
 }
 
-TEST(NoiseEstimate, ErrsHighByLittleWhereClutterLooksLikeCorrelation) {
+TEST(NoiseTracker, ErrsHighByLittleWhereClutterLooksLikeCorrelation) {
   const NoiseModel model = from_one_frame(test::clutter(60), {.kind = NoiseKind::blurred});
   EXPECT_GT(model.correlation, 0.85 * 3.5);
   EXPECT_LT(model.correlation, 1.5 * 3.5);
 }
 
 // Four pixels of blur: c = sqrt(201) / 2 = 7.1, of which windows of 40 pixels see a part.
-TEST(NoiseEstimate, FindsQuantisedNoiseInOneFrame) {
+TEST(NoiseTracker, FindsQuantisedNoiseInOneFrame) {
   const NoiseModel model =
       from_one_frame(test::clutter(6), {.kind = NoiseKind::quantised, .silhouettes = true});
   const Range ratio = sigma_ratio(model);
@@ -86,13 +91,13 @@ TEST(NoiseEstimate, FindsQuantisedNoiseInOneFrame) {
   EXPECT_LT(model.correlation, 9);
 }
 
-TEST(NoiseEstimate, SilhouettesDoNotDisturb) {
+TEST(NoiseTracker, SilhouettesDoNotDisturb) {
   const NoiseModel model = from_one_frame(test::clutter(20), {.silhouettes = true});
   expect_sigma(model, 0.1);
   EXPECT_LT(model.correlation, 1.5);
 }
 
-TEST(NoiseEstimate, StepsOfASensorAreNotTakenForSilence) {
+TEST(NoiseTracker, StepsOfASensorAreNotTakenForSilence) {
   // No noise, but steps of 4 mm: rounding alone errs by step / sqrt(12).
   const SimulatedNoiseOptions options{.kind = NoiseKind::none, .rounding = 4e-3};
   const NoiseModel model = from_one_frame(test::table_and_wall(), options);
@@ -102,19 +107,19 @@ TEST(NoiseEstimate, StepsOfASensorAreNotTakenForSilence) {
   }
 }
 
-TEST(NoiseEstimate, ExactDepthsKeepASmallNoise) {
+TEST(NoiseTracker, ExactDepthsKeepASmallNoise) {
   const std::vector<float> image = test::exact_image(test::table_and_wall());
-  const NoiseModel model = depth::estimate_noise(view_of(image), unknown_sensor_noise());
+  const NoiseModel model = from_one_frame(view_of(image));
   for (const double z : kDepths) {
     EXPECT_GT(model.sigma(z), 0.5e-4 * z);
     EXPECT_LT(model.sigma(z), 5e-4 * z);
   }
 }
 
-TEST(NoiseEstimate, FallsBackWhereAFrameTellsNothing) {
+TEST(NoiseTracker, FallsBackWhereAFrameTellsNothing) {
   const NoiseModel prior = unknown_sensor_noise();
   const auto expect_prior = [&](const std::vector<float>& image) {
-    const NoiseModel model = depth::estimate_noise(view_of(image), prior);
+    const NoiseModel model = from_one_frame(view_of(image), prior);
     EXPECT_EQ(model.coefficients, prior.coefficients);
     EXPECT_EQ(model.correlation, prior.correlation);
   };
@@ -128,17 +133,17 @@ TEST(NoiseEstimate, FallsBackWhereAFrameTellsNothing) {
   expect_prior(few);
 }
 
-TEST(NoiseEstimate, TakesSmallImages) {
+TEST(NoiseTracker, TakesSmallImages) {
   const CameraModel camera{64, 48, {52.5, 52.5, 31.5, 23.5}, {}};
   const std::vector<float> image = test::noisy_image(
       test::exact_image(test::table_and_wall(), camera), {.rounding = 0}, 0, camera);
-  const NoiseModel model = depth::estimate_noise(view_of(image, camera), unknown_sensor_noise());
+  const NoiseModel model = from_one_frame(view_of(image, camera));
   EXPECT_GT(sigma_ratio(model).low, 0.5);
   EXPECT_LT(sigma_ratio(model).high, 2);
   for (const int side : {0, 1, 9}) {
     const std::vector<float> tiny(static_cast<std::size_t>(side) * side, 1.0F);
     const DepthView view{tiny, side, side, 50, 0.1F, 20};
-    EXPECT_EQ(depth::estimate_noise(view, kTruth).coefficients, kTruth.coefficients);
+    EXPECT_EQ(from_one_frame(view, kTruth).coefficients, kTruth.coefficients);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "depth/noise_estimate.hpp"
+#include "depth/noise_tracker.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,16 +34,6 @@ bool differs(const NoiseModel& a, const NoiseModel& b, double z) {
 }
 
 }  // namespace
-
-NoiseModel estimate_noise(const DepthView& frame, const NoiseModel& prior) {
-  NoiseSurvey survey;
-  survey.resize(frame.width, frame.height);
-  survey.advance(frame, 1);
-  if (survey.noise().samples.empty()) return prior;
-  NoiseModel model = fit_noise_curve(survey.noise().samples, prior);
-  model.correlation = correlation(survey.noise(), 0, survey.misfit(model));
-  return model;
-}
 
 struct NoiseTracker::State {
   NoiseModel prior;

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+
+#include "depth/depth_view.hpp"
+#include "palpate/depth/noise_model.hpp"
+
+namespace palpate::depth {
+
+/// Follows a sensor's sigma(z) and c (nss_fast.md section 2) from frame to frame: the first frame
+/// gives a start by what quadratic surfaces leave of its windows, differences of frames replace it
+/// where the scene stands still, and from then on every frame adds a bounded share. What they do
+/// not tell (too few pixels, all of one value) is taken from the prior. The model that is handed
+/// out changes only when the evidence has moved by a tenth, so that the fits of a still scene stay
+/// the same. One thread uses it; it allocates only when the size of the frames changes.
+class NoiseTracker {
+ public:
+  explicit NoiseTracker(const NoiseModel& prior);
+  ~NoiseTracker();
+  NoiseTracker(NoiseTracker&&) noexcept;
+  NoiseTracker& operator=(NoiseTracker&&) noexcept;
+
+  /// Looks at the next frame and says what to take for it. A frame that repeats the one before
+  /// changes nothing.
+  const NoiseModel& update(const DepthView& frame);
+
+  [[nodiscard]] const NoiseModel& model() const;
+
+  /// Back to the prior.
+  void reset();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace palpate::depth
