@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "depth/block_grid.hpp"
+#include "depth/simd/fit_row.hpp"
 #include "palpate/depth/filtered_depth.hpp"
 
 namespace palpate::depth {
@@ -34,6 +35,18 @@ struct BlockFits {
     for (auto* column : {&rho, &variance, &slope_x, &slope_y, &slope_variance, &confidences}) {
       column->resize(size);
     }
+  }
+
+  /// Where a row begins in each of the columns.
+  [[nodiscard]] simd::FitRow row(int row) {
+    const std::size_t i = grid.index(0, row);
+    return {reinterpret_cast<std::uint8_t*>(&states[i]),
+            &rho[i],
+            &variance[i],
+            &slope_x[i],
+            &slope_y[i],
+            &slope_variance[i],
+            &confidences[i]};
   }
 };
 

@@ -48,16 +48,8 @@ void fit_plain(const Blocks& blocks, const NoiseModel& noise, BlockFits& fits) {
   const auto per_y = static_cast<float>(1 / blocks.grid.step_y);
   for (int row = 0; row < blocks.grid.rows; ++row) {
     const std::size_t from = blocks.at(0, row);
-    const std::size_t to = fits.grid.index(0, row);
-    const simd::PlainRow out{reinterpret_cast<std::uint8_t*>(fits.states.data()) + to,
-                             fits.rho.data() + to,
-                             fits.variance.data() + to,
-                             fits.slope_x.data() + to,
-                             fits.slope_y.data() + to,
-                             fits.slope_variance.data() + to,
-                             fits.confidences.data() + to};
     simd::best_plain().fit(blocks.rho.data() + from, blocks.counts.data() + from, stride,
-                           blocks.grid.columns, limits, per_x, per_y, out);
+                           blocks.grid.columns, limits, per_x, per_y, fits.row(row));
   }
 }
 

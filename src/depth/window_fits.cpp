@@ -60,13 +60,7 @@ void WindowFits::fit_row(const simd::FitInput& in, const Blocks& blocks, const S
   const std::size_t first = fits.grid.index(0, row);
   constexpr float kUnfit = -1;
   for (const std::int32_t column : columns) fits.confidences[first + column] = kUnfit;
-  const simd::FitRow out{fits.rho.data() + first,
-                         fits.variance.data() + first,
-                         fits.slope_x.data() + first,
-                         fits.slope_y.data() + first,
-                         fits.slope_variance.data() + first,
-                         fits.confidences.data() + first};
-  functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), out);
+  functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), fits.row(row));
   for (const std::int32_t column : columns) {
     fits.states[first + column] = BlockState::fitted;
     if (fits.confidences[first + column] == kUnfit) fit_masked(blocks, same, column, row, fits);

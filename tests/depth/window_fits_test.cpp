@@ -18,13 +18,14 @@ using Eigen::Vector3d;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-depth::BlockFits fit_all(const depth::Blocks& blocks, const NoiseModel& noise) {
+depth::BlockFits fit_all(const depth::Blocks& blocks, const NoiseModel& noise,
+                         const simd::FitFunctions& functions = simd::best_fits()) {
   depth::BlockFits fits;
   fits.resize(blocks.grid);
   depth::fit_plain(blocks, noise, fits);
   depth::FitRegion region;
   region.set(blocks.grid);
-  depth::WindowFits windows;
+  depth::WindowFits windows(functions);
   windows.fit(blocks, noise, 0.0035, region, fits);
   return fits;
 }
@@ -188,13 +189,7 @@ TEST(WindowFits, GiveTheSameBitsOnOlderProcessors) {
   std::vector<std::vector<float>> columns[2];
   int level = 0;
   for (const simd::FitFunctions* functions : {&simd::kFitsBaseline, &simd::kFitsV3}) {
-    depth::BlockFits fits;
-    fits.resize(blocks.grid);
-    depth::fit_plain(blocks, noise, fits);
-    depth::FitRegion region;
-    region.set(blocks.grid);
-    depth::WindowFits windows(*functions);
-    windows.fit(blocks, noise, 0.0035, region, fits);
+    const depth::BlockFits fits = fit_all(blocks, noise, *functions);
     columns[level] = {fits.rho,     fits.variance,       fits.slope_x,
                       fits.slope_y, fits.slope_variance, fits.confidences};
     ++level;
@@ -209,7 +204,7 @@ TEST(PlainFits, GiveTheSameBitsOnOlderProcessors) {
   CameraModel camera = kSmall;
   camera.width = 154;  // 77 blocks: the last ones are no whole eight
   const DepthFrame frame = noisy_frame(solids, {.silhouettes = true}, 0, camera);
-  const simd::BlockGate gate{0.1F, 20, {0.004F, 0.006F, 0.005F}};
+  const simd::DepthGate gate{0.1F, 20, {0.004F, 0.006F, 0.005F}};
   const simd::BlockLimits limits{{0.0008F, -0.0008F, 0.001F}, 4.3F, 0.01F, 7.3F};
   depth::Blocks blocks[2];
   depth::BlockFits fits[2];
@@ -221,21 +216,20 @@ TEST(PlainFits, GiveTheSameBitsOnOlderProcessors) {
     f.resize(b.grid);
     const auto stride = static_cast<std::ptrdiff_t>(b.stride);
     const auto each_row = [&](auto action) {
-      for (int row = 0; row < b.grid.rows; ++row) action(row, b.at(0, row), f.grid.index(0, row));
+      for (int row = 0; row < b.grid.rows; ++row) action(row, b.at(0, row));
     };
-    each_row([&](int row, std::size_t at, std::size_t) {
+    each_row([&](int row, std::size_t at) {
       functions->average(frame.depth.data() + std::ptrdiff_t{2} * row * camera.width, camera.width,
                          b.grid.columns, gate, &b.rho[at], &b.counts[at]);
     });
     const std::vector<float> before = b.rho;
-    each_row([&](int, std::size_t at, std::size_t) {
+    each_row([&](int, std::size_t at) {
       functions->reject(&before[at], stride, b.grid.columns, limits, 2, &b.rho[at], &b.counts[at]);
     });
     EXPECT_NE(b.rho, before);
-    each_row([&](int, std::size_t at, std::size_t to) {
+    each_row([&](int row, std::size_t at) {
       functions->fit(&b.rho[at], &b.counts[at], stride, b.grid.columns, limits, 262.5F, 262.5F,
-                     {reinterpret_cast<std::uint8_t*>(&f.states[to]), &f.rho[to], &f.variance[to],
-                      &f.slope_x[to], &f.slope_y[to], &f.slope_variance[to], &f.confidences[to]});
+                     f.row(row));
     });
   }
   EXPECT_EQ(blocks[0].rho, blocks[1].rho);

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "depth/simd/fit_row.hpp"
+
 // The noise-sized fit of nss_fast.md section 1: the code that is compiled once for each level of
 // the instruction set. Plain pointers and numbers alone cross this border.
 
@@ -40,20 +42,10 @@ struct FitInput {
   double growth;          // min(2, sqrt c): how much larger windows are for correlated noise
 };
 
-// A row of the columns of BlockFits: plain fits on entry.
-struct FitRow {
-  float* rho;
-  float* variance;
-  float* slope_x;
-  float* slope_y;
-  float* slope_variance;
-  float* confidences;
-};
-
 struct FitFunctions {
   // Writes all places of the table.
   void (*table)(const WindowTable& table, const BlockRows& filled) noexcept;
-  // Fits `count` blocks of one row, rising columns.
+  // Fits `count` blocks of one row, rising columns. `out` holds plain fits on entry; states stay.
   void (*fit)(const FitInput& input, int row, const std::int32_t* columns, int count,
               const FitRow& out) noexcept;
 };

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "depth/simd/fit_row.hpp"
+
 // What is done to every block of every frame: the code that is compiled once for each level of the
 // instruction set. Plain pointers and numbers alone cross this border. All functions do one row;
 // rows of blocks have at least kPlainLanes empty blocks before and behind them.
@@ -11,9 +13,9 @@ namespace palpate::simd {
 
 constexpr int kPlainLanes = 8;
 
-// Depths that are believed, and how far a pixel may be from its block's median: width[0] +
-// width[1] z + width[2] z^2.
-struct BlockGate {
+// Depths that are believed, and what those of one surface may differ by: width[0] + width[1] z +
+// width[2] z^2.
+struct DepthGate {
   float nearest, farthest;  // m
   float width[3];
 };
@@ -26,20 +28,10 @@ struct BlockLimits {
   float close, steep, straight;
 };
 
-// Places of a row in the columns of BlockFits.
-struct PlainRow {
-  std::uint8_t* states;
-  float* rho;
-  float* variance;
-  float* slope_x;
-  float* slope_y;
-  float* slope_variance;
-  float* confidences;
-};
-
 struct PlainFunctions {
-  // Means of 2x2 pixels: `pixels` is the upper row of them, `width` apart from the lower one.
-  void (*average)(const float* pixels, std::ptrdiff_t width, int columns, const BlockGate& gate,
+  // Means of 2x2 pixels, of those near their median: `pixels` is the upper row of them, `width`
+  // apart from the lower one.
+  void (*average)(const float* pixels, std::ptrdiff_t width, int columns, const DepthGate& gate,
                   float* rho, std::uint8_t* counts) noexcept;
   // `rho` is what the image was, with rows `stride` apart; blocks with fewer than `supporters`
   // neighbours that continue them are emptied in `to` and `counts`.
@@ -47,7 +39,7 @@ struct PlainFunctions {
                  int supporters, float* to, std::uint8_t* counts) noexcept;
   // Slopes by least squares over 3x3 blocks. `per_x`, `per_y`: blocks for one unit of the ray.
   void (*fit)(const float* rho, const std::uint8_t* counts, std::ptrdiff_t stride, int columns,
-              const BlockLimits& limits, float per_x, float per_y, const PlainRow& out) noexcept;
+              const BlockLimits& limits, float per_x, float per_y, const FitRow& out) noexcept;
 };
 
 extern const PlainFunctions kPlainBaseline;

@@ -77,7 +77,7 @@ struct Pixels {
            __builtin_shufflevector(c, d, 1, 3, 5, 7, 9, 11, 13, 15)}};
 }
 
-[[gnu::always_inline]] inline void average_eight(Pixels p, const BlockGate& gate, Floats& rho,
+[[gnu::always_inline]] inline void average_eight(Pixels p, const DepthGate& gate, Floats& rho,
                                                  Ints& count) {
   Ints valid{};
   for (Floats& z : p.z) {
@@ -105,7 +105,7 @@ struct Pixels {
   rho = keep(count > 0, number(count) / larger(sum, same(gate.nearest)));
 }
 
-void average(const float* pixels, std::ptrdiff_t width, int columns, const BlockGate& gate,
+void average(const float* pixels, std::ptrdiff_t width, int columns, const DepthGate& gate,
              float* rho, std::uint8_t* counts) noexcept {
   for (int column = 0; column < columns; column += kLanes) {
     const int count = columns - column < kLanes ? columns - column : kLanes;
@@ -195,7 +195,7 @@ struct Sums {
 }
 
 void fit(const float* rho, const std::uint8_t* counts, std::ptrdiff_t stride, int columns,
-         const BlockLimits& limits, float per_x, float per_y, const PlainRow& out) noexcept {
+         const BlockLimits& limits, float per_x, float per_y, const FitRow& out) noexcept {
   constexpr float kOnOneLine = .3F;
   constexpr std::uint8_t kPlain = 1;  // BlockState::plain
   const float spread = per_x * per_x > per_y * per_y ? per_x * per_x : per_y * per_y;

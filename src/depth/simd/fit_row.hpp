@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+namespace palpate::simd {
+
+// A row of the columns of BlockFits.
+struct FitRow {
+  std::uint8_t* states;
+  float* rho;
+  float* variance;
+  float* slope_x;
+  float* slope_y;
+  float* slope_variance;
+  float* confidences;
+};
+
+}  // namespace palpate::simd
