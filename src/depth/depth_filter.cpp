@@ -64,7 +64,7 @@ struct DepthFilter::State {
 
   // Fits, in this view, without regard to earlier frames.
   void fit(const DepthFrame& frame) {
-    const float* image = undistorter.undistort(frame.camera, frame.depth);
+    const float* image = undistorter.undistort(frame.camera, frame.depth, out.noise, options);
     depth::average_blocks(image, frame.camera.width, out.noise, options, blocks);
     depth::reject_flying(out.noise, blocks, scratch);
     depth::fit_plain(blocks, out.noise, fits);

@@ -1,7 +1,11 @@
 #include "depth/undistort.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "depth/block_grid.hpp"
+#include "depth/depth_gate.hpp"
 
 namespace palpate::depth {
 namespace {
@@ -22,6 +26,29 @@ bool grows(const Distortion& d, double x, double y) {
   return 1 + r2 * (3 * d.k1 + r2 * (5 * d.k2 + r2 * 7 * d.k3)) > 0;
 }
 
+// A coordinate between the pixels of a row or a column.
+struct Place {
+  bool inside = false;
+  int nearest = 0;
+  int next = 0;     // on the side where it lies; at the image's border the nearest one itself
+  float apart = 0;  // from the nearest one towards the next
+};
+
+Place place(double coordinate, int size) {
+  const double nearest = std::round(coordinate);
+  if (!(nearest >= 0 && nearest < size)) return {};
+  const double apart = coordinate - nearest;
+  const int pixel = static_cast<int>(nearest);
+  return {true, pixel, std::clamp(pixel + (apart < 0 ? -1 : 1), 0, size - 1),
+          static_cast<float>(std::abs(apart))};
+}
+
+// False too for an `other` that is no depth.
+bool same_surface(const simd::DepthGate& gate, float z, float other) {
+  const float width = gate.width[0] + z * (gate.width[1] + z * gate.width[2]);
+  return other >= gate.nearest && std::abs(other - z) <= width;
+}
+
 }  // namespace
 
 ImagePoint distort(const Distortion& d, double x, double y) {
@@ -31,33 +58,44 @@ ImagePoint distort(const Distortion& d, double x, double y) {
           y * radial + 2 * d.p2 * x * y + d.p1 * (r2 + 2 * y * y)};
 }
 
-void Undistorter::make_map(const CameraModel& camera) {
+Undistorter::Origin Undistorter::origin_of(const CameraModel& camera, int u, int v) {
   const Pinhole& p = camera.pinhole;
-  map_.resize(static_cast<std::size_t>(camera.width) * camera.height);
-  std::int32_t* to = map_.data();
+  const double x = (u - p.cx) / p.fx;
+  const double y = (v - p.cy) / p.fy;
+  const ImagePoint at = distort(camera.distortion, x, y);
+  const Place across = place(at.x * p.fx + p.cx, camera.width);
+  const Place down = place(at.y * p.fy + p.cy, camera.height);
+  if (!across.inside || !down.inside || !grows(camera.distortion, x, y)) return {};
+  const auto pixel = [&](int column, int row) { return row * camera.width + column; };
+  return {pixel(across.nearest, down.nearest), pixel(across.next, down.nearest),
+          pixel(across.nearest, down.next), across.apart, down.apart};
+}
+
+float Undistorter::Origin::depth_in(const float* image, const simd::DepthGate& gate) const {
+  const float z = nearest < 0 ? 0.0F : image[nearest];
+  if (!(z >= gate.nearest && z <= gate.farthest)) return 0;
+  const auto ratio = [&](std::int32_t neighbor) {
+    return same_surface(gate, z, image[neighbor]) ? z / image[neighbor] : 1.0F;
+  };
+  return z / (1 + across * (ratio(beside) - 1) + down * (ratio(below) - 1));
+}
+
+void Undistorter::make_map(const CameraModel& camera) {
+  map_.clear();
   for (int v = 0; v < camera.height; ++v) {
-    for (int u = 0; u < camera.width; ++u) {
-      const double x = (u - p.cx) / p.fx;
-      const double y = (v - p.cy) / p.fy;
-      const ImagePoint at = distort(camera.distortion, x, y);
-      const double du = std::round(at.x * p.fx + p.cx);
-      const double dv = std::round(at.y * p.fy + p.cy);
-      const bool inside = du >= 0 && dv >= 0 && du < camera.width && dv < camera.height &&
-                          grows(camera.distortion, x, y);
-      *to++ = inside ? static_cast<std::int32_t>(dv) * camera.width + static_cast<std::int32_t>(du)
-                     : -1;
-    }
+    for (int u = 0; u < camera.width; ++u) map_.push_back(origin_of(camera, u, v));
   }
   image_.resize(map_.size());
   camera_ = camera;
 }
 
-const float* Undistorter::undistort(const CameraModel& camera, const std::vector<float>& depth) {
+const float* Undistorter::undistort(const CameraModel& camera, const std::vector<float>& depth,
+                                    const NoiseModel& noise, const DepthFilterOptions& range) {
   if (camera.distortion.none()) return depth.data();
   if (!camera_ || !same(*camera_, camera)) make_map(camera);
-  for (std::size_t i = 0; i < map_.size(); ++i) {
-    image_[i] = map_[i] < 0 ? 0.0F : depth[static_cast<std::size_t>(map_[i])];
-  }
+  const simd::DepthGate gate = depth_gate(block_grid(camera), 1, noise, range);
+  std::ranges::transform(map_, image_.begin(),
+                         [&](const Origin& from) { return from.depth_in(depth.data(), gate); });
   return image_.data();
 }
 

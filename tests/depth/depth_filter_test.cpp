@@ -188,7 +188,7 @@ TEST(DepthFilter, SeesThroughDistortion) {
     ++count;
   }
   EXPECT_GT(count, 0.98 * static_cast<double>(out.size()));
-  EXPECT_LT(std::sqrt(angle / count), 2.5 * kDegree);  // pixels are half a pixel off at most
+  EXPECT_LT(std::sqrt(angle / count), 0.5 * kDegree);
 }
 
 TEST(DepthFilter, DoesNotDependOnTheNumberOfThreads) {
