@@ -23,7 +23,8 @@ export default tseslint.config(
       globals: {
         Buffer: "readonly", console: "readonly", document: "readonly", performance: "readonly",
         process: "readonly", setInterval: "readonly", clearInterval: "readonly", setTimeout: "readonly",
-        window: "readonly", URL: "readonly",
+        window: "readonly", URL: "readonly", WebSocket: "readonly", navigator: "readonly",
+        requestAnimationFrame: "readonly",
       },
     },
   },

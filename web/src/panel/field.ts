@@ -13,6 +13,10 @@ type Wanted = (value: SettingValue) => void;
 
 const kSlider = 1000;
 const kInterval = 60; // ms between messages of a moving slider
+// Keys move a slider by whole steps of its setting, wherever on its scale it stands.
+const kNotches: Record<string, number> = {
+  ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10,
+};
 let made = 0;
 
 function label(setting: Setting, id: string): HTMLElement {
@@ -41,6 +45,15 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
   slider.addEventListener("input", () => {
     const value = snapped(scale.value(Number(slider.value) / kSlider));
     field.value = inStep(value, step);
+    later(value);
+  });
+  slider.addEventListener("keydown", (event) => {
+    const notches = kNotches[event.key];
+    if (notches === undefined) return;
+    event.preventDefault();
+    const value = snapped(Number(field.value) + notches * (step ?? (most - least) / 100));
+    field.value = inStep(value, step);
+    shown(value);
     later(value);
   });
   field.addEventListener("change", () => {

@@ -70,7 +70,7 @@ function axis(options: PlotOptions, side: 2 | 3): uPlot.Axis {
     grid: { stroke: () => cssColour("--grid"), width: 1 },
     ticks: { show: false },
     values: (_, splits) => splits.map(tick),
-    ...(!flat && options.logarithmic ? { splits: decades } : {}),
+    ...(!flat && options.logarithmic ? { splits: decades, filter: (_: uPlot, splits: number[]) => splits } : {}),
   };
 }
 

@@ -15,10 +15,10 @@ export class Plots {
   private readonly force = new Plot({
     name: "force", title: "Force on the hand", unit: "N", xUnit: "s", x: [-kForceSpan, 0], least: 0.5,
     curves: [
-      { label: "size", colour: "--force", width: 1.75, filled: true },
       { label: "x", colour: "--x" },
       { label: "y", colour: "--y" },
       { label: "z", colour: "--z" },
+      { label: "size", colour: "--force", width: 1.75, filled: true },
     ],
   });
   private readonly tones = new Plot({
@@ -76,7 +76,7 @@ export class Plots {
     const newest = ring.at(0, ring.length - 1);
     const first = ring.from(newest - kForceSpan);
     const times = ring.copy(0, first).map((time) => time - newest);
-    this.force.set([times, ...[4, 1, 2, 3].map((column) => ring.copy(column, first))]);
+    this.force.set([times, ...[1, 2, 3, 4].map((column) => ring.copy(column, first))]);
   }
 
   private showSpectrum(): void {

@@ -18,6 +18,7 @@ function makeMaterial(ramps: Texture): ShaderMaterial {
     glslVersion: GLSL3,
     vertexShader: kCloudVertex,
     fragmentShader: kCloudFragment,
+    alphaToCoverage: true,
     uniforms: {
       mode: { value: 0 },
       hasNormals: { value: false },

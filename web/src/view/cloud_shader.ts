@@ -61,7 +61,9 @@ export const kCloudFragment = /* glsl */ `
   void main() {
     vec2 p = vec2(2.0, -2.0) * gl_PointCoord + vec2(-1.0, 1.0);
     float slope = dot(facing.xy, p) / max(facing.z, 0.35);
-    if (dot(p, p) + slope * slope > 1.0) discard;
-    shown = vec4(colour, 1.0);
+    float edge = dot(p, p) + slope * slope;
+    float soft = fwidth(edge);
+    if (edge > 1.0 + soft) discard;
+    shown = vec4(colour, clamp((1.0 + soft - edge) / (2.0 * soft), 0.0, 1.0));
   }
 `;

@@ -1,0 +1,248 @@
+// The page in a headless chromium against the made-up program: npm run build first.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { serve } from "../fake_server.mjs";
+import { openBrowser, openPage } from "./browser.mjs";
+
+const kPatience = 30_000; // ms, where the machine is busy
+const kSmall = { viewport: { width: 900, height: 600 } };
+const kPhone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true };
+let browser;
+
+before(async () => (browser = await openBrowser()));
+after(async () => browser.close());
+
+/** Waits for something to become true. */
+async function until(what, condition) {
+  const end = Date.now() + kPatience;
+  while (!(await condition())) {
+    if (Date.now() > end) assert.fail(`waited in vain: ${what}`);
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
+const text = (page, selector) => page.locator(selector).innerText();
+const ready = (page) => until("the tool can be taken", () => page.locator("#take").isEnabled());
+
+async function withPage(options, act, points = 4000) {
+  const server = await serve({ points });
+  const page = await openPage(browser, server.address, options);
+  try {
+    await ready(page);
+    await act(page, server.program, server);
+    assert.deepEqual(page.troubles, [], "the browser complains");
+  } finally {
+    await page.context().close();
+    await server.close();
+  }
+}
+
+const hands = (program) => program.received.filter(({ type }) => type === "hand");
+const sent = (program, type) => program.received.filter((message) => message.type === type);
+
+test("shows the scene and its force, and the browser has nothing to complain of", () =>
+  withPage(kSmall, async (page) => {
+    assert.equal(await text(page, "#scene"), "table with a ball");
+    await until("force", async () => Number(await text(page, "#force")) > 0);
+    assert.match(await text(page, "#sources"), /left[\s\S]*streaming/);
+    assert.equal(await page.locator("#settings .field").count(), 6);
+  }));
+
+test("keys take the tool, push it against the table, and let go", () =>
+  withPage(kSmall, async (page, program) => {
+    await page.focus("#view");
+    await page.keyboard.press("t");
+    await until("held", () => program.servo.taken);
+    await page.keyboard.down("Shift");
+    await page.keyboard.down("ArrowDown");
+    await until("in contact", () => program.servo.contact !== undefined && Math.hypot(...program.servo.force) > 0.5);
+    await page.keyboard.up("ArrowDown");
+    await page.keyboard.up("Shift");
+    const { hip, contact } = program.servo;
+    assert.ok(contact.proxy[2] > hip[2], "the proxy stays above the hand");
+    await until("words", async () => /touching/.test(await text(page, "#touch")));
+    const before = hands(program).at(-1).position;
+    await page.keyboard.down("PageUp");
+    await until("pushed away", () => Math.hypot(...hands(program).at(-1).position.map((c, i) => c - before[i])) > 0.002);
+    await page.keyboard.up("PageUp");
+    await page.keyboard.press("Escape");
+    await until("released", () => sent(program, "release").length === 1);
+  }));
+
+test("a drag moves the hand while the tool is held, and turns the view otherwise", () =>
+  withPage(kSmall, async (page, program) => {
+    const axis = () => page.locator("line.axis-x").getAttribute("x2");
+    const drag = async () => {
+      await page.mouse.move(300, 250);
+      await page.mouse.down();
+      await page.mouse.move(380, 260, { steps: 8 });
+      await page.waitForTimeout(100);
+    };
+    const turned = await axis();
+    await drag();
+    await page.mouse.up();
+    await until("the view turned", async () => (await axis()) !== turned);
+    assert.equal(hands(program).length, 0);
+
+    await page.keyboard.press("t");
+    await until("held", () => hands(program).length > 0);
+    let rest = "";
+    await until("the view rests", async () => {
+      const before = rest;
+      await page.waitForTimeout(400);
+      rest = await axis();
+      return rest === before;
+    });
+    const begin = hands(program)[0].position;
+    await drag();
+    await until("moved", () => Math.hypot(...hands(program).at(-1).position.map((c, i) => c - begin[i])) > 0.01);
+    const flat = hands(program).at(-1).position;
+    await page.mouse.wheel(0, -300);
+    await until("deeper", () => Math.hypot(...hands(program).at(-1).position.map((c, i) => c - flat[i])) > 0.004);
+    await page.mouse.up();
+    assert.equal(await axis(), rest, "the view stays");
+  }));
+
+test("the hand speaks 125 times a second at most", () =>
+  withPage(kSmall, async (page) => {
+    await page.evaluate(() => {
+      window.times = [];
+      const send = WebSocket.prototype.send;
+      WebSocket.prototype.send = function (data) {
+        if (JSON.parse(data).type === "hand") window.times.push(performance.now());
+        return send.call(this, data);
+      };
+    });
+    await page.keyboard.press("t");
+    await page.mouse.move(300, 250);
+    await page.mouse.down();
+    for (let i = 0; i < 60; i += 1) await page.mouse.move(300 + i, 250);
+    await page.mouse.up();
+    const gaps = await page.evaluate(() => window.times.slice(1).map((time, i) => time - window.times[i]));
+    assert.ok(gaps.length > 3);
+    assert.ok(Math.min(...gaps) > 7.8, `${Math.min(...gaps)} ms between two`);
+  }));
+
+test("on a phone one finger moves the tool and two turn the view", () =>
+  withPage(kPhone, async (page, program) => {
+    const touch = await page.context().newCDPSession(page);
+    const fingers = (type, ...places) =>
+      touch.send("Input.dispatchTouchEvent", { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });
+    await page.tap("#take");
+    await until("held", () => program.servo.taken);
+    const axis = () => page.locator("line.axis-x").getAttribute("x2");
+    await page.waitForTimeout(300);
+    const rest = await axis();
+    const begin = hands(program).at(-1).position;
+    await fingers("touchStart", [150, 250]);
+    for (let i = 1; i <= 8; i += 1) await fingers("touchMove", [150 + 6 * i, 250]);
+    await fingers("touchEnd");
+    await until("moved", () => Math.hypot(...hands(program).at(-1).position.map((c, i) => c - begin[i])) > 0.01);
+    assert.equal(await axis(), rest, "the view stays");
+    const still = hands(program).at(-1).position;
+    await fingers("touchStart", [120, 250], [220, 250]);
+    for (let i = 1; i <= 8; i += 1) await fingers("touchMove", [120 + 6 * i, 250], [220 + 6 * i, 250]);
+    await fingers("touchEnd");
+    await until("the view turned", async () => (await axis()) !== rest);
+    assert.deepEqual(hands(program).at(-1).position, still, "the tool stays");
+  }));
+
+test("settings, presets and buttons reach the program", () =>
+  withPage(kSmall, async (page, program) => {
+    const stiffness = () => program.settings.find(({ key }) => key === "stiffness").value;
+    await page.getByRole("spinbutton", { name: "Stiffness" }).fill("800");
+    await page.keyboard.press("Enter");
+    await until("set", () => stiffness() === 800);
+    await page.getByRole("slider", { name: /Stiffness/ }).press("ArrowRight");
+    await until("slid", () => stiffness() > 800 && stiffness() % 10 === 0);
+    await page.getByRole("button", { name: "hard" }).click();
+    await until("shown", async () => (await page.getByRole("spinbutton", { name: "Stiffness" }).inputValue()) === "1500");
+    await page.getByRole("switch", { name: "Texture" }).click();
+    await until("switched", () => program.servo.texture === 1);
+    await page.click("#pause");
+    await until("paused", async () => program.servo.paused && (await text(page, "#flags")).includes("paused"));
+    await page.click("#pause");
+    await until("goes on", () => !program.servo.paused);
+    await page.click("#record");
+    await until("recording", async () => (await page.getAttribute("#record", "aria-pressed")) === "true");
+    await page.click("#reset");
+    await until("reset", () => sent(program, "reset").length === 1);
+    program.tell({ type: "notice", level: "fault", text: "the device is gone" });
+    await until("a fault is said", async () => (await page.locator("#urgent").textContent()).includes("the device is gone"));
+  }));
+
+test("a picture is saved", () =>
+  withPage(kSmall, async (page) => {
+    const download = page.waitForEvent("download");
+    await page.click("#picture");
+    assert.match((await download).suggestedFilename(), /^palpate_table_with_a_ball_.*\.png$/);
+  }));
+
+test("a link brings its settings, says what it cannot, and a link gives them back", async () => {
+  const server = await serve({ points: 1000 });
+  const page = await openPage(browser, `${server.address}&stiffness=900&texture=true&weather=fine`, kSmall);
+  await ready(page);
+  const value = (key) => server.program.settings.find((one) => one.key === key).value;
+  await until("set", () => value("stiffness") === 900 && value("texture") === true);
+  assert.match(await text(page, "#notices"), /weather = fine/);
+  await page.evaluate(() => Object.defineProperty(navigator, "clipboard", { value: undefined }));
+  await page.click("#share");
+  const link = await page.inputValue("#share-link");
+  assert.ok(link.startsWith(`${server.address}&stiffness=900`) && link.includes("texture=true"));
+  await page.context().close();
+  await server.close();
+});
+
+test("comes back by itself when the program is gone for a while", async () => {
+  const server = await serve({ points: 1000 });
+  const page = await openPage(browser, server.address, kSmall);
+  await ready(page);
+  await server.close();
+  await until("says so", async () => /connection is lost/.test(await page.locator("#cover").innerText()));
+  const again = await serve({ points: 1000, port: server.port, token: server.token });
+  await until("connected", async () => (await page.getAttribute("#link-state", "data-phase")) === "open");
+  assert.ok(await page.locator("#cover").isHidden());
+  await page.context().close();
+  await again.close();
+});
+
+test("without a token, and with a wrong one, says what to do", async () => {
+  const server = await serve({ points: 1000 });
+  const bare = await openPage(browser, server.address.replace(/#.*/, ""), kSmall);
+  assert.match(await text(bare, "#cover"), /Open the address that palpate printed/);
+  await bare.fill("#cover-token", server.address);
+  await bare.keyboard.press("Enter");
+  await ready(bare);
+  await bare.context().close();
+  const wrong = await openPage(browser, server.address.replace(/#.*/, "#0123"), kSmall);
+  await until("refused", async () => /does not know this page/.test(await wrong.locator("#cover").innerText()));
+  await wrong.waitForTimeout(1500);
+  assert.equal(sent(server.program, "hello").filter(({ token }) => token === "0123").length, 1, "no second try");
+  await wrong.context().close();
+  await server.close();
+});
+
+test("the view follows the window's size", () =>
+  withPage(kSmall, async (page) => {
+    await page.setViewportSize({ width: 640, height: 700 });
+    await until("follows", () => page.evaluate(() => {
+      const canvas = document.getElementById("view");
+      return canvas.clientWidth === 640 && canvas.width >= 640 && document.documentElement.scrollWidth <= 640;
+    }));
+  }));
+
+test("everything that can be pressed has a name, and Tab reaches it", () =>
+  withPage(kSmall, async (page) => {
+    const nameless = await page.evaluate(() =>
+      [...document.querySelectorAll("button, input, select")]
+        .filter((one) => !(one.getAttribute("aria-label") || one.textContent.trim() || one.labels?.length))
+        .map((one) => one.outerHTML));
+    assert.deepEqual(nameless, []);
+    const reached = new Set();
+    for (let i = 0; i < 60; i += 1) {
+      await page.keyboard.press("Tab");
+      reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.textContent));
+    }
+    for (const id of ["view", "take", "pause", "record", "share", "fit", "freeze"]) assert.ok(reached.has(id), id);
+  }));
