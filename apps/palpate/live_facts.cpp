@@ -63,7 +63,8 @@ LiveFacts study_live(const CloudArgument& argument) {
       last = frame.stamp;
     }
     status = camera->read(frame, kWait);
-    facts.failures += status == CameraStatus::failed ? 1 : 0;
+    const bool failed = status == CameraStatus::damaged || status == CameraStatus::failed;
+    facts.failures += failed ? 1 : 0;
   }
   if (last > start) facts.rate = static_cast<double>(facts.frames - 1) / (last - start);
   return facts;

@@ -9,11 +9,12 @@ namespace palpate::app {
 
 // What the sink notes is its thread's until the stream has ended.
 struct LiveFeed::Lane {
-  Lane(TouchedSource& from, Source& to, const Clock& clock) : touched(from), felt(to) {
+  Lane(TouchedSource& from, Source& to, const Clock& clock, const StreamOptions& options)
+      : touched(from), felt(to) {
     stream.emplace(
         *from.camera, to.name(),
         [this](const DepthFrame& frame, const StartTime& start) { take(frame, start); }, clock,
-        StreamOptions{}, [this] { felt.keep(); });
+        options, [this] { felt.keep(); });
   }
 
   void take(const DepthFrame& frame, const StartTime& start) {
@@ -32,11 +33,13 @@ struct LiveFeed::Lane {
   std::optional<Stream> stream;
 };
 
-LiveFeed::LiveFeed(Touched& touched, Scene& felt, const Clock& clock)
-    : touched_(touched), felt_(felt) {
+LiveFeed::LiveFeed(Touched& touched, Scene& felt, const Clock& clock, double start)
+    : touched_(touched), felt_(felt), start_(start) {
+  StreamOptions options;
+  options.start = start;
   for (std::size_t i = 0; i < touched.sources.size(); ++i) {
     TouchedSource& source = touched.sources[i];
-    if (source.camera) lanes_.emplace_back(source, felt.source(i), clock);
+    if (source.camera) lanes_.emplace_back(source, felt.source(i), clock, options);
   }
 }
 
@@ -48,15 +51,15 @@ std::vector<StreamState> LiveFeed::states() const {
   return states;
 }
 
-void LiveFeed::finish(double start) {
+void LiveFeed::finish() {
   for (Lane& lane : lanes_) {
     StreamState state = lane.stream->state();
     lane.stream.reset();
     lane.report.state = std::move(state);
-    lane.report.state.problem_at -= start;
-    lane.report.state.last_frame -= start;
-    lane.report.first_stamp -= start;
-    lane.report.last_stamp -= start;
+    lane.report.state.problem_at -= start_;
+    lane.report.state.last_frame -= start_;
+    lane.report.first_stamp -= start_;
+    lane.report.last_stamp -= start_;
     lane.touched.feed = lane.report;
   }
   for (std::size_t i = 0; i < felt_.size(); ++i) {

@@ -12,7 +12,8 @@ namespace palpate::app {
 /// The streams of everything in `touched` that lives, into its sources in `felt`; all outlive it.
 class LiveFeed {
  public:
-  LiveFeed(Touched& touched, Scene& felt, const Clock& clock);
+  /// Recordings begin together at `start`, s on the clock.
+  LiveFeed(Touched& touched, Scene& felt, const Clock& clock, double start);
   ~LiveFeed();
   LiveFeed(const LiveFeed&) = delete;
   LiveFeed& operator=(const LiveFeed&) = delete;
@@ -20,14 +21,14 @@ class LiveFeed {
   /// How each stream fares, in the order of the sources.
   [[nodiscard]] std::vector<StreamState> states() const;
 
-  /// Ends the streams and puts what they were like into `touched`, times counted from `start` (s on
-  /// the clock).
-  void finish(double start);
+  /// Ends the streams and puts what they were like into `touched`, times counted from the start.
+  void finish();
 
  private:
   struct Lane;
   Touched& touched_;
   Scene& felt_;
+  double start_;
   std::deque<Lane> lanes_;
 };
 

@@ -10,7 +10,6 @@
 #include "apps/palpate/interruption.hpp"
 #include "apps/palpate/live_feed.hpp"
 #include "apps/palpate/live_status.hpp"
-#include "apps/palpate/waiting.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/paced.hpp"
 #include "palpate/servo/servo_thread.hpp"
@@ -21,7 +20,6 @@ namespace {
 
 constexpr double kQueue = 4;  // s of steps that writing them down may fall behind
 constexpr std::chrono::milliseconds kLook{20};
-constexpr double kPatience = 3;  // s
 
 // A trajectory may have few rows or many; the clock has its own.
 double rate_of(const Run& run) {
@@ -92,19 +90,6 @@ class Watcher {
   Durations computing_;
 };
 
-// The hand begins when there is something to feel; a camera that shows nothing is not waited for.
-void wait_for_surfaces(const LiveFeed& feed, const Clock& clock, const Interruption& interruption) {
-  const Waiting waiting("waiting for the first surfaces");
-  const double start = clock.now();
-  const auto waits = [](const StreamState& state) {
-    return state.touchable == 0 && state.phase != StreamPhase::ended;
-  };
-  while (std::ranges::any_of(feed.states(), waits) && clock.now() - start < kPatience &&
-         !interruption.asked()) {
-    std::this_thread::sleep_for(kLook);
-  }
-}
-
 void check_device(const Run& run, const ServoState& last) {
   if (last.device != DeviceStatus::failed) return;
   const Device& device = *run.hand.device;
@@ -120,9 +105,8 @@ LiveReport run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   StepQueue steps(static_cast<std::size_t>(kQueue * report.rate));
   Servo servo(device, run.felt, servo_options(run, steps));
   const Interruption interruption;
-  LiveFeed feed(run.touched, run.felt, clock);
-  wait_for_surfaces(feed, clock, interruption);
   const double start = clock.now();
+  LiveFeed feed(run.touched, run.felt, clock, start);
   Watcher watcher(servo, steps, each, start);
   {
     LiveStatus status;
@@ -138,7 +122,7 @@ LiveReport run_live(Run& run, WaitingClock& clock, const EachStep& each) {
     report.skipped = thread.skipped();
   }
   watcher.take_steps();
-  feed.finish(start);
+  feed.finish();
   report.lateness = servo.lateness();
   report.unwritten = steps.dropped();
   report.guard = servo.state().guard;

@@ -20,10 +20,12 @@ struct LiveReport {
 };
 
 /// Cameras, preparation and servo on threads of their own, in the time of `clock`, on which the
-/// cameras were opened. Shows on standard error how it goes. Ends with the hand's way, or when it
-/// is interrupted. Hands every step to `each`, on the calling thread, with the force that was felt
-/// and times from 0. Fills in what `touched` tells of its cameras.
-/// @throws Error when the device fails or there are no threads to be had.
+/// cameras were opened. Recordings begin together when the run does, at its time 0, and the hand at
+/// once after them. Shows on standard error how it goes. Ends with the hand's way, or when it is
+/// interrupted. Hands every step to `each`, on the calling thread, with the force that was felt and
+/// times from 0. Fills in what `touched` tells of its cameras.
+/// @throws Error when the device fails, a recording cannot begin, or there are no threads to be
+/// had.
 LiveReport run_live(Run& run, WaitingClock& clock, const EachStep& each);
 
 }  // namespace palpate::app

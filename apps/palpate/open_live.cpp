@@ -13,6 +13,7 @@ namespace {
 
 // s; a sensor's motor and lamp may take one or two to start.
 constexpr double kPatience = 5;
+constexpr double kWait = 0.1;  // s, for one answer
 // Answers of a camera that waits for nothing.
 constexpr int kTries = 100;
 
@@ -45,11 +46,11 @@ DepthFrame first_frame(DepthCamera& camera) {
   const Waiting waiting(fmt::format("waiting for the first frame of {}", camera.info().name));
   DepthFrame frame;
   std::string problem = "no frame came";
-  const int tries = camera.info().paces ? static_cast<int>(kPatience / 0.1) : kTries;
+  const int tries = camera.info().paces ? static_cast<int>(kPatience / kWait) : kTries;
   for (int i = 0; i < tries; ++i) {
-    const CameraStatus status = camera.read(frame, camera.info().paces ? 0.1 : 0);
+    const CameraStatus status = camera.read(frame, kWait);
     if (status == CameraStatus::frame) return frame;
-    if (status == CameraStatus::failed) problem = camera.reason();
+    if (!camera.reason().empty()) problem = camera.reason();
     if (status == CameraStatus::ended) break;
   }
   throw Error(fmt::format("{} gave no frame: {}", camera.info().name, problem));

@@ -17,6 +17,7 @@ class PosedCamera final : public DepthCamera {
       : camera_(std::move(camera)), T_world_recording_(T_world_recording) {}
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return camera_->info(); }
+  void begin(double start) override { camera_->begin(start); }
   [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override {
     const CameraStatus status = camera_->read(frame, timeout);
     if (status == CameraStatus::frame && frame.T_world_sensor) {

@@ -87,7 +87,7 @@ void SimulatedFeed::read_next(Lane& lane) {
       lane.ended();
       return;
     }
-    if (status == CameraStatus::failed) {
+    if (status == CameraStatus::damaged || status == CameraStatus::failed) {
       ++state.failures;
       state.problem = lane.camera->reason();
     } else {

@@ -68,6 +68,10 @@ std::uint64_t sum_of(std::span<const float> depth) {
 
 }  // namespace
 
+Objection damage(const std::string& reason) {
+  return {&StreamDrops::garbage, reason.empty() ? "a damaged frame" : reason};
+}
+
 std::optional<Objection> FrameCheck::examine(const DepthFrame& frame, double latest) {
   if (auto objection = check_form(frame)) return objection;
   if (auto objection = check_stamp(frame.stamp, latest)) return objection;

@@ -15,6 +15,9 @@ struct Objection {
   std::string words;
 };
 
+/// That to a frame which the camera itself calls damaged.
+[[nodiscard]] Objection damage(const std::string& reason);
+
 /// Looks at the frames of one camera, in the order in which they come.
 class FrameCheck {
  public:

@@ -30,6 +30,14 @@ void LiveCamera::connect() {
   heard_ = (clock_ != nullptr ? *clock_ : host_).now();
 }
 
+void LiveCamera::begin(double start) {
+  if (lost_ != Lost::ended) return;
+  connection_.reset();  // two at once may not be had
+  connect();
+  stamp_ = start;
+  device_time_.reset();
+}
+
 CameraStatus LiveCamera::read(DepthFrame& frame, double timeout) {
   reason_.clear();
   if (!connection_ && lost_ == Lost::ended) return CameraStatus::ended;
@@ -49,7 +57,7 @@ CameraStatus LiveCamera::fetch(DepthFrame& frame, double timeout) {
   const double now = (clock_ != nullptr ? *clock_ : host_).now();
   if (status == CameraStatus::waiting) return silent(now);
   heard_ = now;
-  if (status == CameraStatus::failed) reason_ = connection_->damage();
+  if (status == CameraStatus::damaged) reason_ = connection_->damage();
   if (status == CameraStatus::frame) {
     frame.stamp = stamp_of(device_time, now);
     frame.T_world_sensor.reset();

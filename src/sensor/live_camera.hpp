@@ -19,12 +19,12 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   /// Fills camera, depth and colours of `frame`, and `device_time` (s, the device's clock), waiting
-  /// `timeout` s at most. `failed`: this frame is damaged, the device is well.
+  /// `timeout` s at most. Never `failed`: it throws then.
   /// @throws Error when the device is lost.
   [[nodiscard]] virtual CameraStatus fetch(DepthFrame& frame, double& device_time,
                                            double timeout) = 0;
 
-  /// What was wrong with the frame that fetch() called `failed`.
+  /// What was wrong with the frame that fetch() called `damaged`.
   [[nodiscard]] virtual std::string damage() const { return {}; }
 
  protected:
@@ -37,7 +37,7 @@ using Connect = std::function<std::unique_ptr<Connection>()>;
 /// What becomes of a device that is lost.
 enum class Lost {
   opened_again,  ///< when it is asked for the next frame; likewise when it is silent for long
-  ended,         ///< a recording: opened again, it would play from its beginning
+  ended,         ///< a recording: opened again, it plays from its beginning
 };
 
 /// What all drivers of real devices have in common: stamps on the host's clock, and what to do when
@@ -51,6 +51,7 @@ class LiveCamera final : public DepthCamera {
              Lost lost = Lost::opened_again);
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
+  void begin(double start) override;
   [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override;
   [[nodiscard]] std::string reason() const override { return reason_; }
 

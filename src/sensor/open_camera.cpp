@@ -41,7 +41,7 @@ std::unique_ptr<DepthCamera> open_camera(const std::string& name, const CameraOp
   if (driver == "simulated") return open_simulated(device, options.clock);
   if (driver == "sequence") {
     return open_sequence(read_sequence(device),
-                         {.clock = options.clock, .start = {}, .loop = options.loop});
+                         {.clock = options.clock, .loop = options.loop});
   }
   if (driver == "openni2") return open_openni2(device, options);
   if (driver == "freenect") return open_freenect(device, options);

@@ -170,7 +170,7 @@ class OpenNi2Connection final : public Connection {
     if (!is_whole(*image)) {
       damaged_ =
           fmt::format("{} x {} pixels in {} bytes", image->width, image->height, image->dataSize);
-      return CameraStatus::failed;
+      return CameraStatus::damaged;
     }
     copy_depth(*image, mirrored_, frame.depth);
     frame.colors.clear();

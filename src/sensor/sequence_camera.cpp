@@ -29,6 +29,13 @@ SequenceCamera::SequenceCamera(Sequence sequence, const SequenceOptions& options
   lap_ = sequence_.frames.back().stamp - sequence_.frames.front().stamp + 1 / sequence_.rate;
 }
 
+void SequenceCamera::begin(double start) {
+  start_ = start;
+  next_ = 0;
+  laps_ = 0;
+  loaded_ = false;
+}
+
 CameraStatus SequenceCamera::read(DepthFrame& frame, double timeout) {
   reason_.clear();
   if (next_ == sequence_.frames.size()) {
@@ -36,7 +43,7 @@ CameraStatus SequenceCamera::read(DepthFrame& frame, double timeout) {
     next_ = 0;
     ++laps_;
   }
-  if (!options_.start) options_.start = options_.clock != nullptr ? options_.clock->now() : 0;
+  if (!start_) start_ = options_.clock != nullptr ? options_.clock->now() : 0;
   load();  // beforehand, so that it is there when its time comes
   if (!wait(timeout)) return CameraStatus::waiting;
   return show(frame);
@@ -44,7 +51,7 @@ CameraStatus SequenceCamera::read(DepthFrame& frame, double timeout) {
 
 double SequenceCamera::stamp() const {
   const double since = sequence_.frames[next_].stamp - sequence_.frames.front().stamp;
-  return *options_.start + since + static_cast<double>(laps_) * lap_;
+  return *start_ + since + static_cast<double>(laps_) * lap_;
 }
 
 void SequenceCamera::load() {
@@ -84,7 +91,7 @@ CameraStatus SequenceCamera::show(DepthFrame& frame) {
   ++next_;
   if (!failure_.empty()) {
     reason_ = std::exchange(failure_, "");
-    return CameraStatus::failed;
+    return CameraStatus::damaged;
   }
   std::swap(frame, loaded_frame_);
   frame.stamp = time;

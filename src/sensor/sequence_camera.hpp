@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "palpate/io/read_depth.hpp"
@@ -13,6 +14,7 @@ class SequenceCamera final : public DepthCamera {
   SequenceCamera(Sequence sequence, const SequenceOptions& options);
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
+  void begin(double start) override;
   [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override;
   [[nodiscard]] std::string reason() const override { return reason_; }
 
@@ -29,6 +31,7 @@ class SequenceCamera final : public DepthCamera {
   ReadDepthOptions images_;
   double lap_ = 0;  // s from the first frame to the first frame of the next lap
   std::string reason_;
+  std::optional<double> start_;  // stamp of the first frame, s; unset until it is asked for
   std::size_t next_ = 0;
   std::size_t laps_ = 0;
   bool loaded_ = false;  // the next frame is in loaded_frame_, or failed to get there

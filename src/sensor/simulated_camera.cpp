@@ -73,6 +73,12 @@ SimulatedCamera::SimulatedCamera(SimulatedScene scene, const SimulatedCameraOpti
   }
 }
 
+void SimulatedCamera::begin(double start) {
+  if (options_.clock) return;
+  start_ = start;
+  first_ = next_ = 0;
+}
+
 Eigen::Isometry3d SimulatedCamera::true_pose(double t) const {
   return moved(options_.T_world_camera, options_.motion, t);
 }

@@ -11,8 +11,10 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
+#include "sensor/ask.hpp"
 #include "sensor/frame_check.hpp"
 #include "sensor/frame_exchange.hpp"
+#include "sensor/require_time.hpp"
 #include "sensor/retry.hpp"
 #include "sensor/stream_log.hpp"
 
@@ -32,17 +34,16 @@ constexpr double kForget = 0.9;
 constexpr double kLongestTail = 0.02;  // s
 
 const StreamOptions& checked(const StreamOptions& options, const std::string& name) {
-  const auto require = [&](double value, const char* what, bool good) {
-    if (good && std::isfinite(value)) return;
-    throw Error(
-        fmt::format("stream to {}: {} cannot be {} s. Give a time in seconds.", name, what, value));
+  const auto require = [&](bool good, double seconds, const char* what) {
+    require_time(good, seconds, what, name);
   };
-  require(options.lead, "the lead", options.lead >= 0);
-  require(options.stall, "the time after which a camera has stalled", options.stall > 0);
-  require(options.patience, "the wait for a frame", options.patience > 0);
-  require(options.first_retry, "the wait before a retry", options.first_retry > 0);
-  require(options.longest_retry, "the longest wait before a retry",
-          options.longest_retry >= options.first_retry);
+  require(options.lead >= 0, options.lead, "the lead");
+  require(options.stall > 0, options.stall, "the time after which a camera has stalled");
+  require(options.patience > 0, options.patience, "the wait for a frame");
+  require(options.first_retry > 0, options.first_retry, "the wait before a retry");
+  require(options.longest_retry >= options.first_retry, options.longest_retry,
+          "the longest wait before a retry");
+  if (options.start) require(true, *options.start, "the start");
   return options;
 }
 
@@ -60,6 +61,7 @@ struct Stream::Threads {
         check(options.allow_repeats.value_or(camera.info().repeats)),
         retry(options.first_retry, options.longest_retry),
         exchange(!camera.info().paces) {
+    camera.begin(options.start.value_or(clock.now()));
     start(name);
   }
 
@@ -70,8 +72,8 @@ struct Stream::Threads {
   void start(const std::string& name);
   void stop();
   void read();
-  [[nodiscard]] CameraStatus ask(DepthFrame& frame);
   [[nodiscard]] bool take(DepthFrame& frame);
+  void leave_out();
   void compare_clocks(double stamp, double now);
   [[nodiscard]] bool wait_to_retry();
   void prepare();
@@ -88,7 +90,7 @@ struct Stream::Threads {
   Retry retry;       // the reading thread's
   FrameExchange exchange;
   bool compared = false;  // the first frame's stamp with the clock; the reading thread's
-  std::string failure;    // of the last ask(); the reading thread's
+  std::string reason;     // why the last answer was no frame; the reading thread's
   double tail = 0;        // s from asking for a start to the end, of late; the preparing thread's
   std::thread preparing;
   std::thread reading;
@@ -116,24 +118,14 @@ void Stream::Threads::stop() {
 void Stream::Threads::read() {
   DepthFrame frame;
   while (exchange.wait_for_room()) {
-    const CameraStatus status = ask(frame);
+    const CameraStatus status = ask(camera, frame, options.patience, reason);
     if (status == CameraStatus::waiting) log.waiting(clock.now());
+    if (status == CameraStatus::damaged) leave_out();
     if (status == CameraStatus::ended) break;
     if (status == CameraStatus::frame && !take(frame)) return;
     if (status == CameraStatus::failed && !wait_to_retry()) return;
   }
   exchange.end();
-}
-
-CameraStatus Stream::Threads::ask(DepthFrame& frame) {
-  try {
-    const CameraStatus status = camera.read(frame, options.patience);
-    if (status == CameraStatus::failed) failure = camera.reason();
-    return status;
-  } catch (const std::exception& error) {
-    failure = error.what();
-  }
-  return CameraStatus::failed;
 }
 
 bool Stream::Threads::take(DepthFrame& frame) {
@@ -150,6 +142,12 @@ bool Stream::Threads::take(DepthFrame& frame) {
   return outcome != FrameExchange::Offer::stopped;
 }
 
+// A device that sends damaged frames is there: it is asked for the next at once.
+void Stream::Threads::leave_out() {
+  retry.succeeded();
+  log.came(clock.now(), damage(reason), check.size_changes());
+}
+
 void Stream::Threads::compare_clocks(double stamp, double now) {
   if (!(std::abs(stamp - now) > kOtherClock)) return;
   log.remark(now, fmt::format("the camera is on another clock: its first frame was taken at {:.6g} "
@@ -160,7 +158,7 @@ void Stream::Threads::compare_clocks(double stamp, double now) {
 bool Stream::Threads::wait_to_retry() {
   const double now = clock.now();
   const double until = now + retry.failed();
-  log.failed(now, failure, retry.repeatedly());
+  log.failed(now, reason, retry.repeatedly());
   while (clock.now() < until) {
     if (!exchange.pause(options.patience)) return false;
   }

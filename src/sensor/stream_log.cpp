@@ -114,7 +114,8 @@ StreamState StreamLog::state(double now) {
   const std::lock_guard lock(mutex_);
   look(now);
   StreamState state = state_;
-  const double interval = std::max(interval_, now - state_.last_frame);
+  const bool over = state_.phase == StreamPhase::ended;
+  const double interval = over ? interval_ : std::max(interval_, now - state_.last_frame);
   state.rate = state_.frames > 1 && interval > 0 ? 1 / interval : 0;
   return state;
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
@@ -38,6 +39,27 @@ TEST(LiveProgram, TouchesACameraInRealTimeAndTellsHowItWent) {
     for (const std::string& force : log.at(name)) {
       ASSERT_TRUE(std::isfinite(std::strtod(force.c_str(), nullptr)));
     }
+  }
+}
+
+// Planning takes a first look at it, which takes nothing from it.
+TEST(LiveProgram, RecordingsBeginTogetherWhenTheRunDoes) {
+  Shell shell;
+  for (const std::string name : {"a", "b"}) {
+    std::filesystem::create_directory(shell.path(name));
+    shell.write(name + "/sequence.json",
+                R"({"fx": 60, "fy": 60, "cx": 31.5, "cy": 23.5, "fps": 10})");
+    for (int i = 0; i < 4; ++i) {
+      std::string image = "P5 64 48 65535\n";
+      for (int k = 0; k < 64 * 48; ++k) image += {'\x02', static_cast<char>(i + k % 7)};
+      shell.write(fmt::format("{}/{}.pgm", name, i), image);
+    }
+  }
+  const Outcome outcome = shell.run("touch sequence:a sequence:b --duration 2 --json run.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const Json& source : Json::parse(shell.read("run.json"))["sources"]) {
+    EXPECT_EQ(source["frames"], 4) << "the first one, too: it was looked at before";
+    EXPECT_EQ(source["drops"]["late"], 0);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -79,6 +80,9 @@ class FakeCamera final : public DepthCamera {
         info_{.name = "fake", .rate = 30, .paces = paces, .repeats = repeats} {}
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
+  void begin(double start) override { begun_ = start; }
+  /// When it was told to begin last.
+  [[nodiscard]] std::optional<double> begun() const { return begun_; }
   [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override {
     Answer answer = script_->next(timeout);
     reason_ = answer.reason;
@@ -91,6 +95,7 @@ class FakeCamera final : public DepthCamera {
  private:
   std::shared_ptr<Script> script_;
   CameraInfo info_;
+  std::optional<double> begun_;
   std::string reason_;
 };
 

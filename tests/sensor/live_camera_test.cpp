@@ -100,8 +100,8 @@ TEST_F(LiveCameraTest, LeavesDamagedFramesOutAndStaysOpen) {
     const auto camera = open(true, lost);
     for (int i = 1; i <= 10; ++i) {
       clock_.set(i);
-      device_.status = CameraStatus::failed;
-      EXPECT_EQ(camera->read(frame_, 0), CameraStatus::failed);
+      device_.status = CameraStatus::damaged;
+      EXPECT_EQ(camera->read(frame_, 0), CameraStatus::damaged);
       EXPECT_EQ(camera->reason(), "it is torn");
     }
     device_.status = CameraStatus::waiting;
@@ -121,6 +121,19 @@ TEST_F(LiveCameraTest, EndsALostRecording) {
   device_.lost = false;
   for (int i = 0; i < 3; ++i) EXPECT_EQ(camera->read(frame_, 0), CameraStatus::ended);
   EXPECT_EQ(device_.opened, 1) << "it would play from its beginning";
+}
+
+TEST_F(LiveCameraTest, BeginsARecordingAgainAndNoDevice) {
+  const auto recording = open(false, Lost::ended);
+  EXPECT_DOUBLE_EQ(stamp(*recording, 5, 7.0), 0);
+  EXPECT_DOUBLE_EQ(stamp(*recording, 5, 7.5), 0.5);
+  recording->begin(3);
+  EXPECT_EQ(device_.opened, 2) << "opened again, it plays from its beginning";
+  EXPECT_DOUBLE_EQ(stamp(*recording, 6, 7.0), 3);
+  EXPECT_DOUBLE_EQ(stamp(*recording, 6, 7.5), 3.5);
+  const auto device = open();
+  device->begin(3);
+  EXPECT_EQ(device_.opened, 3);
 }
 
 TEST_F(LiveCameraTest, WaitsForARecordingThatIsSilent) {

@@ -121,12 +121,12 @@ TEST(OpenNi2, LeavesADamagedFrameOutAndPlaysOn) {
   DepthFrame frame;
   do {
     came.push_back(next(*camera, frame));
-    if (came.back() == CameraStatus::failed) {
+    if (came.back() == CameraStatus::damaged) {
       EXPECT_THAT(camera->reason(), AllOf(HasSubstr("a.oni"), HasSubstr("damaged")));
     }
   } while (came.back() != CameraStatus::ended && came.size() < 20);
   constexpr auto kGood = CameraStatus::frame;
-  EXPECT_THAT(came, ElementsAre(kGood, kGood, CameraStatus::failed, kGood, kGood, kGood,
+  EXPECT_THAT(came, ElementsAre(kGood, kGood, CameraStatus::damaged, kGood, kGood, kGood,
                                 CameraStatus::ended));
 }
 

@@ -81,7 +81,7 @@ TEST(Sequence, KnowsTheTumLayout) {
   EXPECT_NEAR(sequence.frames[1].T_world_sensor->translation().x(), 0.5, 1e-9);
   const auto camera = open_sequence(sequence);
   DepthFrame frame;
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::failed);
+  EXPECT_EQ(camera->read(frame, 0), CameraStatus::damaged);
   EXPECT_THAT(camera->reason(), AllOf(HasSubstr("a.pgm"), HasSubstr("no pose")));
   EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame);
   EXPECT_EQ(frame.depth[0], 1.0F);
@@ -159,10 +159,35 @@ TEST(SequenceCamera, KeepsTheTimeOfItsClock) {
   EXPECT_EQ(camera->read(frame, 0), CameraStatus::ended);
 }
 
+// Who plans by the first frame for a while leaves no backlog behind.
+TEST(SequenceCamera, BeginsAgainWhenItIsTold) {
+  const Folder folder;
+  write_images(folder, 3);
+  ManualClock clock;
+  const auto camera = open_sequence(read_sequence(folder.path()), {.clock = &clock});
+  DepthFrame frame;
+  EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame);
+  clock.set(50);
+  camera->begin(51);
+  EXPECT_EQ(camera->read(frame, 0), CameraStatus::waiting) << "not yet";
+  for (int i = 0; i < 3; ++i) {
+    clock.set(51 + 0.1 * i);
+    ASSERT_EQ(camera->read(frame, 0), CameraStatus::frame);
+    EXPECT_EQ(frame.stamp, clock.now());
+    EXPECT_EQ(frame.depth[0], static_cast<float>(i + 1));
+    EXPECT_NE(camera->read(frame, 0), CameraStatus::frame);
+  }
+  camera->begin(60);
+  clock.set(60);
+  EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame) << "also after its end";
+  EXPECT_EQ(frame.depth[0], 1.0F);
+}
+
 TEST(SequenceCamera, LoopsWithStampsThatGoOn) {
   const Folder folder;
   write_images(folder, 2);
-  const auto camera = open_sequence(read_sequence(folder.path()), {.start = 7, .loop = true});
+  const auto camera = open_sequence(read_sequence(folder.path()), {.loop = true});
+  camera->begin(7);
   DepthFrame frame;
   for (int i = 0; i < 7; ++i) {
     ASSERT_EQ(camera->read(frame, 0), CameraStatus::frame);
@@ -190,7 +215,7 @@ TEST(SequenceCamera, GoesOnAfterEveryKindOfDamage) {
   ASSERT_EQ(camera->read(frame, 0), CameraStatus::frame);
   for (const char* why :
        {"pixels", "002.pgm", "8 x 6 pixels from a camera of 4 x 3", "no such file"}) {
-    EXPECT_EQ(camera->read(frame, 0), CameraStatus::failed);
+    EXPECT_EQ(camera->read(frame, 0), CameraStatus::damaged);
     EXPECT_THAT(camera->reason(), HasSubstr(why));
   }
   EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame);
@@ -198,7 +223,7 @@ TEST(SequenceCamera, GoesOnAfterEveryKindOfDamage) {
   EXPECT_NEAR(frame.stamp, 0.5, 1e-12);
   folder.write("depth/000.pgm", swapped);
   const auto again = open_sequence(read_sequence(folder.path()));
-  EXPECT_EQ(again->read(frame, 0), CameraStatus::failed);
+  EXPECT_EQ(again->read(frame, 0), CameraStatus::damaged);
   EXPECT_THAT(again->reason(), HasSubstr("byte_order"));
 }
 

@@ -46,6 +46,25 @@ std::vector<DepthFrame> frames_of(SimulatedCamera& camera, int count) {
   return frames;
 }
 
+TEST(SimulatedCamera, BeginsAgainWithoutAClockAlone) {
+  SimulatedCamera camera = table_camera(small());
+  const std::vector<DepthFrame> before = frames_of(camera, 3);
+  camera.begin(5);
+  for (int k = 0; const DepthFrame& frame : frames_of(camera, 3)) {
+    EXPECT_NEAR(frame.stamp, 5 + k / 30.0, 1e-12);
+    EXPECT_EQ(frame.depth, before[static_cast<std::size_t>(k)].depth);
+    ++k;
+  }
+  const FakeClock clock(100, 1e-3);
+  SimulatedCameraOptions options = small();
+  options.clock = &clock;
+  SimulatedCamera live = table_camera(options);
+  live.begin(5);
+  DepthFrame frame;
+  ASSERT_EQ(live.read(frame, 1), CameraStatus::frame);
+  EXPECT_GE(frame.stamp, 100) << "it sees what happens now";
+}
+
 TEST(SimulatedCamera, TakesFrameKAtItsTime) {
   SimulatedCameraOptions options = small();
   options.phase = 0.013;

@@ -74,6 +74,14 @@ TEST_F(StreamTest, TakesRepeatsForRealWhereTheCameraOrTheUserSaysSo) {
   EXPECT_EQ(dropped(true, false), 2u);
 }
 
+TEST_F(StreamTest, LetsTheCameraBeginWhenItDoesOrWhenItIsTold) {
+  clock_.set(7);
+  const Stream now = this->stream();
+  EXPECT_EQ(cameras_.back().begun(), 7);
+  const Stream told = this->stream({.start = 6.5});
+  EXPECT_EQ(cameras_.back().begun(), 6.5);
+}
+
 TEST_F(StreamTest, SaysTheRate) {
   const Stream stream = this->stream();
   for (int i = 0; i <= 10; ++i) give(stream, 0.125 * i);
@@ -138,6 +146,7 @@ TEST_F(StreamTest, RefusesSenselessOptions) {
   EXPECT_THROW((void)stream({.stall = 0}), Error);
   EXPECT_THROW((void)stream({.patience = std::nan("")}), Error);
   EXPECT_THROW((void)stream({.first_retry = 2, .longest_retry = 1}), Error);
+  EXPECT_THROW((void)stream({.start = std::nan("")}), Error);
 }
 
 TEST_F(StreamTest, ManyLookOnWhileItRuns) {

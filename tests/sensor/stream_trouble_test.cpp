@@ -112,6 +112,37 @@ TEST_F(StreamTest, AsksACameraThatFailsEverMoreRarely) {
   ASSERT_TRUE(retried(count)) << "a good frame begins anew";
 }
 
+TEST_F(StreamTest, AsksADeviceThatSendsDamagedFramesAgainAtOnce) {
+  const Stream stream = this->stream({.stall = 0.5, .first_retry = 1e9, .longest_retry = 1e9});
+  give(stream, 0.1);
+  for (std::uint64_t i = 1; i <= 20; ++i) {
+    clock_.set(0.1 + 0.01 * static_cast<double>(i));
+    script_->give({.status = CameraStatus::damaged, .reason = "cut off"});
+    ASSERT_TRUE(eventually([&] { return stream.state().drops.garbage == i; })) << i;
+  }
+  EXPECT_EQ(stream.state().phase, StreamPhase::running);
+  EXPECT_EQ(stream.state().problem, "table (fake): cut off");
+  EXPECT_EQ(stream.state().failures, 0u) << "the device is there";
+  clock_.set(0.7);
+  EXPECT_EQ(stream.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream.state().problem, "table (fake): no frame of use for 0.6 s; the last: cut off");
+  give(stream, 0.8);
+  expect_touchable(stream, 2);
+  EXPECT_EQ(stream.state().frames, 22u);
+}
+
+// One that is damaged between two failures tells that the device is back.
+TEST_F(StreamTest, BeginsAnewWithItsWaitsAfterADamagedFrame) {
+  const Stream stream = this->stream({.stall = kNever, .first_retry = 1e9, .longest_retry = 1e9});
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    script_->give({.status = CameraStatus::failed, .reason = "unplugged"});
+    ASSERT_TRUE(eventually([&] { return stream.state().failures == i; }));
+    script_->give({.status = CameraStatus::damaged, .reason = "cut off"});
+    ASSERT_TRUE(eventually([&] { return stream.state().drops.garbage == i; }));
+  }
+  EXPECT_EQ(stream.state().phase, StreamPhase::starting);
+}
+
 TEST_F(StreamTest, TakesAThrowingCameraForAFailingOne) {
   const Stream stream = this->stream();
   script_->give({.reason = "bus error", .throws = true});

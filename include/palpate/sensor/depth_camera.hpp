@@ -10,6 +10,7 @@ namespace palpate {
 enum class CameraStatus {
   frame,    ///< a new frame
   waiting,  ///< none within the time that was given
+  damaged,  ///< one that cannot be used (cut, garbage): reason() says why; the next may be good
   ended,    ///< a recording has come to its end
   failed,   ///< unplugged, out of order: reason() says why; asking again may help
 };
@@ -30,11 +31,16 @@ class DepthCamera {
 
   [[nodiscard]] virtual const CameraInfo& info() const noexcept = 0;
 
+  /// What can begin does so again with its first frame, which is taken at `start`, s on the clock
+  /// that stamps are told by: recordings, and simulations that wait for no clock. Cameras that see
+  /// what happens now go on. Streams call it, so that what was read before takes nothing from them.
+  /// @throws Error when a recording cannot be opened again.
+  virtual void begin(double /*start*/) {}
+
   /// Fills `frame` with the next image, reusing its memory, waiting for it at most `timeout` s.
-  /// A frame that cannot be used (cut, garbage) is `failed` with a reason; the next may be good.
   [[nodiscard]] virtual CameraStatus read(DepthFrame& frame, double timeout) = 0;
 
-  /// Why the last read() failed and what to do; empty otherwise.
+  /// Why the last read() failed or what damaged its frame, and what to do; empty otherwise.
   [[nodiscard]] virtual std::string reason() const = 0;
 
  protected:

@@ -36,17 +36,16 @@ struct Sequence {
 [[nodiscard]] Sequence read_sequence(const std::filesystem::path& folder);
 
 struct SequenceOptions {
-  const Clock* clock = nullptr;      ///< frames are shown at their time on it; outlives the camera.
-                                     ///< Null: as fast as they are asked for
-  std::optional<double> start = {};  ///< the first frame's stamp, s; unset: when it is first asked
-                                     ///< for, and 0 without a clock
-  bool loop = false;                 ///< begins again at the end, one frame's time after the last
+  const Clock* clock = nullptr;  ///< frames are shown at their time on it; outlives the camera.
+                                 ///< Null: as fast as they are asked for
+  bool loop = false;             ///< begins again at the end, one frame's time after the last
 };
 
 /// A camera that plays a sequence. Every frame is shown, in order: one that is asked for too late
-/// is shown at once. Stamps go on as recorded, from SequenceOptions::start. An image that is
-/// missing, broken, of another size, or without the pose that others have fails when its turn
-/// comes, and the next is as good as ever.
+/// is shown at once. Stamps go on as recorded, from DepthCamera::begin() on; without that from when
+/// the first frame is asked for, and from 0 without a clock. An image that is missing, broken, of
+/// another size, or without the pose that others have is damaged when its turn comes, and the next
+/// is as good as ever.
 /// @throws Error when there is no frame.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_sequence(Sequence sequence,
                                                          const SequenceOptions& options = {});

@@ -41,6 +41,7 @@ class SimulatedCamera final : public DepthCamera {
   SimulatedCamera(SimulatedScene scene, const SimulatedCameraOptions& options);
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
+  void begin(double start) override;
   [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override;
   [[nodiscard]] std::string reason() const override { return {}; }
 

@@ -19,6 +19,9 @@ struct StreamOptions {
   double patience = 0.05;  ///< one DepthCamera::read() may wait so long, s; so may the destructor
   double first_retry = 0.25;  ///< the second failure in a row waits so long, s; then twice, ...
   double longest_retry = 5;   ///< ... but no longer than this, s
+  /// When a recording begins (DepthCamera::begin), s on the clock; streams that are given one start
+  /// play recordings in step. Unset: as soon as the stream is there.
+  std::optional<double> start = {};
   /// Frames that repeat the one before bit for bit are real. Otherwise they are dropped, so that a
   /// frozen camera's surface fades as a silent one's does. Unset: as CameraInfo::repeats says.
   std::optional<bool> allow_repeats = {};
@@ -38,9 +41,9 @@ using FrameSink = std::function<void(const DepthFrame&, const StartTime&)>;
 /// last frames of a recording showed stays (Source::keep).
 class Stream {
  public:
-  /// Starts the threads. Camera, source and clock outlive the stream, and nobody else reads or
-  /// pushes.
-  /// @throws Error when an option is out of range.
+  /// Lets the camera begin and starts the threads. Camera, source and clock outlive the stream, and
+  /// nobody else reads or pushes.
+  /// @throws Error when an option is out of range or the camera cannot begin.
   Stream(DepthCamera& camera, Source& source, const Clock& clock,
          const StreamOptions& options = {});
 

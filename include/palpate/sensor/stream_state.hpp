@@ -20,7 +20,7 @@ struct StreamDrops {
   std::uint64_t repeated = 0;   ///< bit for bit the one before
   std::uint64_t late = 0;       ///< taken no later than the one before, or at no sensible time
   std::uint64_t empty = 0;      ///< not one pixel with a depth: a covered lens
-  std::uint64_t garbage = 0;    ///< contradicts itself
+  std::uint64_t garbage = 0;    ///< damaged, or contradicts itself
   std::uint64_t resized = 0;    ///< of another size than those before, until that size lasts
   std::uint64_t refused = 0;    ///< preparation threw
 
@@ -34,7 +34,7 @@ struct StreamState {
   std::string source;  ///< name of the source that is fed
   std::string camera;  ///< CameraInfo::name
   StreamPhase phase = StreamPhase::starting;
-  double rate = 0;           ///< of frames that come, Hz, over the last 8 or so; falls in silence
+  double rate = 0;           ///< of the last 8 frames, Hz; falls in silence, but not after the end
   std::uint64_t frames = 0;  ///< that the camera delivered, whatever became of them
   std::uint64_t touchable = 0;  ///< of them prepared and published
   StreamDrops drops;
