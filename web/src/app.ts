@@ -26,6 +26,8 @@ import { Sound } from "./sound/sound";
 import { World } from "./view/world";
 
 const kPlotInterval = 50; // ms
+const kSettled = 10_000; // ms, from when on the speed of drawing counts
+const kSlow = 100; // ms a picture
 const kCalmInterval = 250; // ms, where less motion is asked for
 
 export class App {
@@ -47,6 +49,7 @@ export class App {
   private readonly connection: Connection;
   private readonly plotInterval: number;
   private plotted = 0;
+  private saidSlow = false;
   private scene: string | undefined;
 
   constructor(private readonly link: Link) {
@@ -67,7 +70,8 @@ export class App {
       letGo: () => this.hand.letGo(),
       togglePause: () => this.bar.pause(),
       reset: () => send({ type: "reset" }),
-      fit: () => this.world.fit(),
+      fit: () => this.world.followTool(undefined),
+      follow: () => this.bar.follow(),
       help: () => this.bar.help(),
       freeze: () => this.freeze(),
       sayForce: () => (byId("polite").textContent = this.readout.sentence(this.session.tool)),
@@ -190,6 +194,16 @@ export class App {
     this.bar.update();
     this.hold.update();
     this.plots.update(now);
+    this.watchSpeed(now);
+  }
+
+  /** Says once where drawing is too slow to work with, and what helps. */
+  private watchSpeed(now: number): void {
+    const { frameTime, software } = this.world.stage;
+    if (this.saidSlow || now < kSettled || !(frameTime > kSlow)) return;
+    this.saidSlow = true;
+    this.notices.add("info", `a picture takes ${frameTime.toFixed(0)} ms: show fewer points (View)` +
+      (software ? ", or let the browser use the graphics card, which it does not" : ""));
   }
 
   private relook(): void {

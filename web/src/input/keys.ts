@@ -6,6 +6,7 @@ export interface Actions {
   togglePause(): void;
   reset(): void;
   fit(): void;
+  follow(): void;
   help(): void;
   freeze(): void;
   sayForce(): void;
@@ -36,6 +37,7 @@ export class Keys {
       p: () => actions.togglePause(),
       r: () => actions.reset(),
       f: () => actions.fit(),
+      c: () => actions.follow(),
       h: () => actions.freeze(),
       s: () => actions.sayForce(),
       "?": () => actions.help(),

@@ -10,7 +10,7 @@ const kGrasp = 26; // pixels around the hand
 const kNotch = 0.012; // of the distance, a notch of the wheel
 
 export class PointerInput {
-  private dragging: number | undefined; // the pointer's id
+  private pointer: number | undefined; // that drags the hand
   private touches = new Set<number>();
   private readonly offset = new Vector3();
   private readonly ray = new Raycaster();
@@ -36,32 +36,37 @@ export class PointerInput {
     const plain = event.button === 0 && !event.altKey && !event.ctrlKey && !event.metaKey;
     const mine = plain && this.touches.size <= 1 && (this.hand.held || this.onHand(event));
     this.world.navigation.turnByDrag(!mine && !(this.hand.held && this.touches.size > 0));
-    if (this.touches.size > 1) this.dragging = undefined;
+    if (this.touches.size > 1) this.drag(undefined);
     if (!mine || !this.take()) return;
-    this.dragging = event.pointerId;
+    this.drag(event.pointerId);
     this.canvas.setPointerCapture(event.pointerId);
     this.offset.copy(this.hand.place).sub(this.onPlane(event) ?? this.hand.place);
   }
 
   private move(event: PointerEvent): void {
-    if (this.dragging === undefined) {
+    if (this.pointer === undefined) {
       if (event.target === this.canvas && event.buttons === 0) {
         this.canvas.classList.toggle("graspable", this.onHand(event));
       }
       return;
     }
-    if (event.pointerId !== this.dragging) return;
+    if (event.pointerId !== this.pointer) return;
     const place = this.onPlane(event);
     if (place !== undefined) this.hand.moveTo(place.add(this.offset));
   }
 
   private end(event: PointerEvent): void {
     this.touches.delete(event.pointerId);
-    if (event.pointerId === this.dragging) this.dragging = undefined;
+    if (event.pointerId === this.pointer) this.drag(undefined);
+  }
+
+  private drag(pointer: number | undefined): void {
+    this.pointer = pointer;
+    this.world.dragging = pointer !== undefined;
   }
 
   private wheel(event: WheelEvent): void {
-    if (this.dragging === undefined) return;
+    if (this.pointer === undefined) return;
     event.preventDefault();
     event.stopPropagation();
     const camera = this.world.stage.camera;

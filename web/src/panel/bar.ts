@@ -29,7 +29,8 @@ export class Bar {
     click("picture", () => this.savePicture());
     click("share", () => this.share());
     click("help", () => this.help());
-    click("fit", () => this.world.fit());
+    click("fit", () => this.world.followTool(undefined));
+    click("follow", () => this.follow());
   }
 
   begin(welcome: Welcome): void {
@@ -42,6 +43,7 @@ export class Bar {
   update(): void {
     const paused = this.session.tool?.has("paused") ?? false;
     this.press("pause", paused, paused ? "play" : "pause", paused ? "Go on" : "Pause");
+    byId("follow").setAttribute("aria-pressed", String(this.world.followed !== undefined));
     const open = byId("link-state").dataset["phase"] === "open";
     const rate = this.session.tool?.latest?.rate;
     if (open && rate !== undefined) say(byId("link-words"), `${whole(rate)} steps a second`);
@@ -56,6 +58,10 @@ export class Bar {
   recording(on: boolean, file: string | undefined): void {
     if (on !== this.isRecording) this.notices.add("info", on ? `recording to ${file ?? "a file"}` : `recorded ${file ?? ""}`);
     this.showRecording(on);
+  }
+
+  follow(): void {
+    this.world.followTool(this.world.followed === undefined ? this.session.device : undefined);
   }
 
   roundTrip(seconds: number): void {

@@ -24,6 +24,8 @@ export interface PlotOptions {
   most?: number; // of a logarithmic one the smallest top
 }
 
+const kLabelHeight = 18; // pixels
+
 type Range = [number, number];
 
 /** The next round number. */
@@ -51,10 +53,11 @@ function tick(value: number | null): string {
   return String(Number(value.toPrecision(4))).replace("-", "−");
 }
 
-function decades(_: uPlot, _axis: number, low: number, high: number): number[] {
+function decades(plot: uPlot, _axis: number, low: number, high: number): number[] {
   const first = Math.round(Math.log10(low));
   const count = Math.round(Math.log10(high)) - first;
-  const every = Math.ceil(count / 4);
+  const room = Math.max(1, Math.floor(plot.bbox.height / devicePixelRatio / kLabelHeight));
+  const every = Math.ceil(count / room);
   return Array.from({ length: Math.floor(count / every) + 1 }, (_, i) => 10 ** (first + i * every));
 }
 
@@ -69,7 +72,7 @@ function axis(options: PlotOptions, side: 2 | 3): uPlot.Axis {
     stroke: () => cssColour("--soft"),
     grid: { stroke: () => cssColour("--grid"), width: 1 },
     ticks: { show: false },
-    values: (_, splits) => splits.map(tick),
+    values: (_, splits) => splits.map((value, i) => `${tick(value)}${flat && i === 0 ? ` ${options.xUnit}` : ""}`),
     ...(!flat && options.logarithmic ? { splits: decades, filter: (_: uPlot, splits: number[]) => splits } : {}),
   };
 }

@@ -2,7 +2,8 @@
 // cloud is the object's position and scale.
 
 import {
-  BufferAttribute, BufferGeometry, GLSL3, Points, ShaderMaterial, Vector2, Vector3, type Texture,
+  BufferAttribute, BufferGeometry, CustomBlending, GLSL3, OneFactor, Points, ShaderMaterial, Vector2,
+  Vector3, ZeroFactor, type Texture,
 } from "three";
 import type { CloudMessage } from "../protocol/decode";
 import { kCloudFragment, kCloudVertex } from "./cloud_shader";
@@ -18,7 +19,12 @@ function makeMaterial(ramps: Texture): ShaderMaterial {
     glslVersion: GLSL3,
     vertexShader: kCloudVertex,
     fragmentShader: kCloudFragment,
-    alphaToCoverage: true,
+    alphaToCoverage: true, // soft edges; the canvas itself stays opaque
+    blending: CustomBlending,
+    blendSrc: OneFactor,
+    blendDst: ZeroFactor,
+    blendSrcAlpha: ZeroFactor,
+    blendDstAlpha: OneFactor,
     uniforms: {
       mode: { value: 0 },
       hasNormals: { value: false },

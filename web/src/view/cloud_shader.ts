@@ -26,7 +26,7 @@ export const kCloudVertex = /* glsl */ `
     vec4 world = modelMatrix * vec4(position, 1.0);
     vec4 seen = viewMatrix * world;
     gl_Position = projectionMatrix * seen;
-    gl_PointSize = clamp(size * pixels / -seen.z, 1.5, 40.0);
+    gl_PointSize = clamp(size * pixels / -seen.z, 1.5, 160.0);
 
     vec3 normal = hasNormals ? unbend(bend) : up;
     if (mode == 1) {

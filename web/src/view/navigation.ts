@@ -10,6 +10,7 @@ const kRaise = 0.5; // of the distance, upward
 const kMargin = 0.82; // of the picture that is used
 const kLoose = 0.8; // of the radius, while no place is known
 const kRounds = 4;
+const kLag = 0.25; // s
 
 /** From the middle to the eye: from the cameras' side, turned and raised a little. */
 export function firstDirection(up: Vector3, cameras: readonly Vector3[], centre: Vector3): Vector3 {
@@ -90,6 +91,22 @@ export class Navigation {
     this.controls.touches.TWO = on ? TOUCH.DOLLY_PAN : TOUCH.DOLLY_ROTATE;
   }
 
+  /** Looks at a place from a distance. */
+  approach(place: Vector3, distance: number): void {
+    const arm = this.camera.position.clone().sub(this.controls.target).setLength(distance);
+    this.controls.target.copy(place);
+    this.camera.position.copy(place).add(arm);
+    this.changed();
+  }
+
+  /** Goes along with a place, softly. */
+  follow(place: Vector3, seconds: number): void {
+    const way = place.clone().sub(this.controls.target).multiplyScalar(1 - Math.exp(-seconds / kLag));
+    this.controls.target.add(way);
+    this.camera.position.add(way);
+    this.changed();
+  }
+
   /** Keys: right and up in turns, closer; -1 to 1 each. */
   turn(right: number, up: number, closer: number, seconds: number): void {
     const arm = this.camera.position.clone().sub(this.controls.target);
@@ -113,6 +130,7 @@ export class Navigation {
     controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     controls.dampingFactor = 0.12;
     controls.rotateSpeed = 0.8;
+    controls.zoomToCursor = true;
     controls.maxDistance = 12 * this.radius;
     controls.addEventListener("change", this.changed);
     return controls;

@@ -10,6 +10,15 @@ const kFieldOfView = 40; // degrees
 const kSlow = 45; // ms a picture
 const kPatience = 40; // slow pictures before sharpness gives way
 
+/** Whether pictures are computed by the processor: soft edges cost too much there. */
+function drawnBySoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const names = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl && names ? String(gl.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
 export class Stage {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(kFieldOfView, 1, 0.001, 100);
@@ -17,7 +26,8 @@ export class Stage {
   frameTime = NaN; // ms between pictures, smoothed
   width = 1;
   height = 1;
-  private sharpness = Math.min(devicePixelRatio, 2);
+  readonly software = drawnBySoftware();
+  private sharpness = this.software ? 1 : Math.min(devicePixelRatio, 2);
   private wanted = true;
   private last = 0;
   private slow = 0;
@@ -25,7 +35,9 @@ export class Stage {
   private beforeDraw: (now: number) => void = () => {};
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({
+      canvas, antialias: !this.software, powerPreference: "high-performance",
+    });
     const lamp = new DirectionalLight(0xffffff, 2.0);
     lamp.position.set(0.35, 0.55, 0.75);
     this.camera.add(lamp);

@@ -35,7 +35,7 @@ export interface Sizes {
   pixel: number; // the length of one at the tool, m
   perNewton: number; // the arrow's length, m
   eye: Vector3;
-  lift: number; // of the disk towards the eye, above the points, m
+  lift: number; // of disk and proxy towards the eye, above the points, m
 }
 
 export class Tool {
@@ -94,6 +94,10 @@ export class Tool {
     this.trail.retint();
   }
 
+  get support(): number {
+    return this.radius;
+  }
+
   take(state: StateMessage): void {
     this.group.visible = true;
     this.hipPlace.set(...state.hip);
@@ -109,7 +113,8 @@ export class Tool {
     const proxySize = Math.max(0.16 * this.radius, kProxyPixels * pixel);
     this.proxy.visible = this.touching; // elsewhere it is where the hand is
     this.proxyGhost.visible = this.touching;
-    this.proxy.position.copy(this.proxyPlace);
+    const towards = eye.clone().sub(this.proxyPlace).normalize().multiplyScalar(lift);
+    this.proxy.position.copy(this.proxyPlace).add(towards);
     this.proxy.scale.setScalar(proxySize);
     this.hand.position.copy(this.hipPlace);
     this.hand.scale.setScalar(Math.max(0.14 * this.radius, kHandPixels * pixel));
@@ -120,7 +125,6 @@ export class Tool {
     this.halo.visible = this.showSupport && this.radius > 2 * proxySize;
     this.halo.position.copy(this.proxyPlace);
     this.halo.scale.setScalar(Math.max(this.radius, 1e-9));
-    const towards = eye.clone().sub(this.proxyPlace).normalize().multiplyScalar(lift);
     this.placeDisk(Math.max(0.9 * this.radius, 2.8 * proxySize), towards);
     this.placeSpring(pixel);
     this.placeArrow(proxySize, pixel, perNewton);

@@ -22,7 +22,9 @@ export interface Look {
   trail: boolean;
 }
 
-const kArrow = 0.16; // of the radius, an arrow for a newton
+const kClose = 12; // support radii
+const kArrow = 0.16; // of the radius, an arrow for a newton; from close by:
+const kArrowPixels = 80;
 
 export const kFirstLook: Look = {
   colouring: "own", pointSize: 1.7, points: true, surface: true, support: true, cameras: true, trail: true,
@@ -33,6 +35,8 @@ export class World {
   readonly navigation: Navigation;
   readonly up = new Vector3(0, 0, 1);
   look: Look = { ...kFirstLook };
+  followed: number | undefined; // device
+  dragging = false; // a hand that is dragged against the picture: the eye stands still
   clouds: Cloud[] = [];
   tools: Tool[] = [];
   visible: boolean[] = [];
@@ -46,6 +50,7 @@ export class World {
   private radius = 0.5;
   private time = NaN;
   private framed = false;
+  private before = 0;
 
   constructor(canvas: HTMLCanvasElement) {
     this.stage = new Stage(canvas);
@@ -119,6 +124,15 @@ export class World {
     this.navigation.frame(bounds, firstDirection(this.up, this.cameras, bounds.centre));
   }
 
+  /** Comes so close to a tool that its support radius shows, and goes along with it; or back. */
+  followTool(device: number | undefined): void {
+    this.followed = device;
+    const tool = device === undefined ? undefined : this.tools[device];
+    if (tool === undefined) return this.fit();
+    const distance = Math.max(kClose * tool.support, 0.02 * this.radius);
+    this.navigation.approach(tool.proxyPlace, Math.min(distance, this.radius));
+  }
+
   retint(): void {
     this.stage.retint();
     for (const each of [...this.clouds, ...this.frusta, ...this.tools, ...this.surfaces]) each.retint();
@@ -133,6 +147,11 @@ export class World {
   }
 
   private update(now: number): void {
+    const followed = this.followed === undefined ? undefined : this.tools[this.followed];
+    if (followed?.group.visible && !this.dragging) {
+      this.navigation.follow(followed.proxyPlace, Math.min(0.5, (now - this.before) / 1000));
+    }
+    this.before = now;
     this.navigation.update();
     const { look, stage } = this;
     this.clouds.forEach((cloud, i) => {
@@ -150,9 +169,10 @@ export class World {
     for (const tool of this.tools) {
       tool.showSupport = look.support;
       tool.trail.line.visible = look.trail;
+      const pixel = stage.pixelAt(tool.proxyPlace);
       tool.update({
-        pixel: stage.pixelAt(tool.proxyPlace),
-        perNewton: kArrow * this.radius,
+        pixel,
+        perNewton: Math.min(kArrow * this.radius, kArrowPixels * pixel),
         eye: stage.camera.position,
         lift: this.lift(),
       });

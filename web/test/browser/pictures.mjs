@@ -22,6 +22,11 @@ const kPictures = [
     await page.selectOption("#look select", { label: "own colours" });
     await page.click("#record");
   }],
+  ["desktop_close", kDesktop, "light", (page) => page.click("#follow")],
+  ["desktop_close_dark", kDesktop, "dark", async (page) => {
+    await page.selectOption("#look select", { label: "height" });
+    await page.click("#follow");
+  }],
   ["desktop_source", kDesktop, "dark", (page) => page.selectOption("#look select", { label: "source" })],
   ["desktop_help", kDesktop, "light", (page) => page.click("#help")],
 ];
@@ -34,7 +39,7 @@ for (const [name, options, scheme, act] of kPictures) {
   const page = await openPage(browser, server.address, { ...options, colorScheme: scheme });
   await page.waitForTimeout(6500);
   await act?.(page);
-  await page.waitForTimeout(1500);
+  await page.waitForTimeout(1800);
   await page.screenshot({ path: `${folder}/${name}.png`, timeout: 120_000 });
   console.log(name, ...page.troubles);
   await page.context().close();

@@ -80,7 +80,7 @@ function pointOf(random, next, camera) {
     const place = kBall.centre.map((c, i) => c + kBall.radius * normal[i]);
     const facing = normal.reduce((sum, n, i) => sum + n * (camera.eye[i] - place[i]), 0);
     if (facing < 0.05 || place[2] < 0.003) return undefined;
-    return { place, normal, colour: [196, 92, 74] };
+    return { place, normal, colour: [92, 128, 158] };
   }
   const [x, y] = [kTable.half[0] * (2 * p - 1), kTable.half[1] * (2 * q - 1)];
   const place = [x, y, tableHeight(x, y)];
