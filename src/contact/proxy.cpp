@@ -69,15 +69,17 @@ void Proxy::reset(const Eigen::Vector3d& position) noexcept {
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
 }
 
-bool Proxy::change(double stiffness, const Friction& friction) noexcept {
+bool Proxy::change(double stiffness, const Friction& friction, const Texture& texture) noexcept {
   const auto good = [](double x) { return std::isfinite(x) && x >= 0; };
   if (!good(stiffness) || !good(friction.static_coefficient) ||
       !good(friction.dynamic_coefficient) || !good(friction.viscous) ||
-      friction.dynamic_coefficient > friction.static_coefficient) {
+      friction.dynamic_coefficient > friction.static_coefficient || !good(texture.amplitude) ||
+      !(good(texture.wavelength) && texture.wavelength > 0)) {
     return false;
   }
   options_.stiffness = stiffness;
   options_.friction = friction;
+  options_.texture = texture;
   return true;
 }
 

@@ -1,13 +1,10 @@
 #include "field/evaluate.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "field/oriented.hpp"
 #include "field/sharp_edges.hpp"
-#include "palpate/base/error.hpp"
 
 // Notation as in docs/architecture.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
 // A = sum v q / sum v, Nb = sum v n / sum v, W the united support, R(x) = sum w R / sum w.
@@ -157,25 +154,16 @@ Value capped(const ImplicitSurface& surface, const simd::Sums& sums, const Suppo
           trust.f * cap.grad + (1 - trust.f) * blob.grad + (cap.f - blob.f) * trust.grad};
 }
 
-void require(bool condition, const char* option, double value, const char* range) {
-  if (condition) return;
-  throw Error(fmt::format("field option {} is {}: it must be {}", option, value, range));
-}
-
 }  // namespace
 
-ImplicitSurface::ImplicitSurface(const FieldOptions& given) : options(given), sums(&simd::best()) {
-  require(given.threshold > 0 && std::isfinite(given.threshold), "threshold", given.threshold,
-          "above 0");
-  require(given.raw_weights || given.threshold < 1, "threshold", given.threshold,
-          "below 1 with density-normalised weights (0.4 unless there is a reason)");
-  require(given.minimum_support > 0 && given.minimum_support < 1, "minimum_support",
-          given.minimum_support, "between 0 and 1");
-  require(given.tool_radius >= 0 && std::isfinite(given.tool_radius), "tool_radius",
-          given.tool_radius, "0 or more, in metres");
-  require(given.tool_radius == 0 || !given.raw_weights, "tool_radius", given.tool_radius,
-          "0 with raw weights (the preset `paper` has a point for a tool)");
-  if (!given.raw_weights) offset = plane_offset(given.kernel, given.threshold);
+ImplicitSurface::ImplicitSurface(const FieldOptions& given) : sums(&simd::best()) {
+  check(given);
+  change(given);
+}
+
+void ImplicitSurface::change(const FieldOptions& checked) noexcept {
+  options = checked;
+  offset = options.raw_weights ? 0 : plane_offset(options.kernel, options.threshold);
 }
 
 double united(const double* w, int sources) noexcept {

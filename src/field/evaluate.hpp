@@ -12,6 +12,9 @@ struct ImplicitSurface {
   /// @throws Error when an option is out of its range.
   explicit ImplicitSurface(const FieldOptions& options);
 
+  /// Real-time. `checked`: check() has passed it.
+  void change(const FieldOptions& checked) noexcept;
+
   FieldOptions options;
   double offset = 0;  ///< of the metaball level, in support radii, without a tool
   const simd::Functions* sums;

@@ -17,6 +17,12 @@ void Patches::show(std::span<const ActiveLayer> layers, int sources, bool same) 
   far_is_late_ = true;
 }
 
+void Patches::forget() noexcept {
+  near_.clear();
+  far_.clear();
+  radius_ = 0;
+}
+
 void Patches::choose_radius(const Vector3d& x, double first) noexcept {
   const double before = std::exchange(radius_, 0);
   const double nearest = gather(far_, x, 0, update_visits_) ? far_.nearest_radius(x) : 0;

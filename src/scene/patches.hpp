@@ -22,6 +22,9 @@ class Patches {
   /// later.
   void show(std::span<const ActiveLayer> layers, int sources, bool same) noexcept;
 
+  /// Gathers everything anew: the surface is another one.
+  void forget() noexcept;
+
   /// The paper's section III-D: from now on the radius of the point nearest to x is that of all.
   /// Where x is in no point's support, it stays what it was; `first`, m, when there was none.
   void choose_radius(const Eigen::Vector3d& x, double first) noexcept;

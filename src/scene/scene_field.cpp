@@ -12,6 +12,7 @@
 
 #include "field/evaluate.hpp"
 #include "field/mean_surface.hpp"
+#include "scene/felt_surface.hpp"
 #include "scene/patches.hpp"
 #include "scene/reach_board.hpp"
 #include "scene/source_view.hpp"
@@ -237,6 +238,13 @@ bool SceneField::is_free(const Ball& ball) const noexcept {
   return patch && palpate::is_free(state.surface, *patch, ball);
 }
 
+void SceneField::change(const FieldOptions& checked) noexcept {
+  options_ = checked;
+  state_->surface.change(checked);
+  state_->patches.forget();
+  ++state_->revision;
+}
+
 void SceneField::begin_step() const noexcept {
   state_->patches.begin_step();
 }
@@ -247,25 +255,15 @@ void SceneField::end_step() const noexcept {
 Surface SceneField::surface(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {};
-  Surface result;
-  if (state.plain()) {
-    result.source = 0;
-    return result;
-  }
+  if (state.plain()) return {.source = 0};
   const Patch* const patch = state.patch_at({x, 0});
-  if (!patch) return result;
+  if (!patch) return {};
   std::array<double, Scene::kMaxSources> presences{};
   std::ranges::transform(state.views, presences.begin(), &SourceView::presence);
   const PatchSurface mean =
       mean_surface(state.surface, *patch, x, std::span(presences).first(state.views.size()));
-  if (mean.source < 0) return result;
-  const SoftMaterial& soft = state.soft[static_cast<std::size_t>(mean.source)];
-  result.source = mean.source;
-  result.presence = mean.presence;
-  result.velocity = mean.velocity;
-  result.stiffness_factor = soft.stiffness_factor + mean.material * (1 - soft.stiffness_factor);
-  result.friction_factor = soft.friction_factor + mean.material * (1 - soft.friction_factor);
-  return result;
+  if (mean.source < 0) return {};
+  return felt_surface(mean, state.soft[static_cast<std::size_t>(mean.source)]);
 }
 
 FieldTraits SceneField::traits() const noexcept {

@@ -65,6 +65,26 @@ Source::Source(std::string name, const SourceOptions& options)
 
 Source::~Source() = default;
 
+SourceOptions Source::options() const {
+  const std::lock_guard lock(mutex_);
+  return options_;
+}
+
+void Source::change(const SourceOptions& options) {
+  std::unique_ptr<Intake> changed;
+  named(name_, [&] { changed = std::make_unique<Intake>(options); });
+  const std::lock_guard lock(mutex_);
+  changed_ = std::move(changed);
+  options_.prepare = options.prepare;
+  options_.policy = options.policy;
+  options_.depth = options.depth;
+}
+
+void Source::take_change() {
+  const std::lock_guard lock(mutex_);
+  if (changed_) intake_ = std::move(changed_);
+}
+
 PrepareReport Source::report() const {
   const std::lock_guard lock(mutex_);
   return report_;
@@ -82,7 +102,7 @@ void Source::set_pose(const Eigen::Isometry3d& T_world_sensor) {
 }
 
 void Source::set(const PointCloud& cloud) {
-  Prepared prepared = named(name_, [&] { return prepare(cloud, options_.prepare, pose()); });
+  Prepared prepared = named(name_, [&] { return prepare(cloud, options().prepare, pose()); });
   {
     const std::lock_guard lock(mutex_);
     report_ = prepared.report;
@@ -94,6 +114,7 @@ void Source::set(const PointCloud& cloud) {
 }
 
 bool Source::push(const DepthFrame& frame, const StartTime& start) {
+  take_change();
   if (!room_for(false)) return false;
   reaches_->read(found_);
   named(name_, [&] {
@@ -109,6 +130,7 @@ bool Source::push(const DepthFrame& frame, const StartTime& start) {
 }
 
 bool Source::push(const PointCloud& cloud, double stamp, const StartTime& start) {
+  take_change();
   if (!room_for(true)) return false;
   reaches_->read(found_);
   PrepareReport report;

@@ -33,6 +33,16 @@ double first_step(const DeviceInfo& device) noexcept {
   return device.rate > 0 ? 1 / device.rate : kFirstStep;
 }
 
+/// What was set since it was seen last.
+template <class T>
+std::optional<T> news(const Latest<T>& wish, std::uint64_t& seen) noexcept {
+  const std::uint64_t generation = wish.generation();
+  if (generation == seen) return std::nullopt;
+  const std::optional<T> found = wish.look();
+  if (found) seen = generation;
+  return found;
+}
+
 GuardFault known_fault(const ServoState& state) noexcept {
   if (state.device == DeviceStatus::failed) return GuardFault::device;
   return has(state.contact.notes, ContactNote::fault) ? GuardFault::proxy : GuardFault::none;
@@ -89,11 +99,11 @@ void Servo::take_wishes(const Vector3d& hip) noexcept {
     proxy_.reset(hip);
     guard_.reset();
   }
-  const std::uint64_t generation = feel_.generation();
-  if (generation == feel_seen_) return;
-  if (const std::optional<Feel> feel = feel_.look()) {
-    proxy_.change(feel->stiffness, feel->friction);
-    feel_seen_ = generation;
+  if (const std::optional<Feel> feel = news(feel_, feel_seen_)) {
+    proxy_.change(feel->stiffness, feel->friction, feel->texture);
+  }
+  if (const std::optional<FieldOptions> field = news(wanted_field_, field_seen_)) {
+    field_.change(*field);
   }
 }
 
@@ -120,9 +130,16 @@ void Servo::set_feel(const Feel& feel) {
   ProxyOptions checked = options_.proxy;
   checked.stiffness = feel.stiffness;
   checked.friction = feel.friction;
+  checked.texture = feel.texture;
   static_cast<void>(Proxy(checked));  // throws what is out of range
-  const std::lock_guard lock(feel_mutex_);
+  const std::lock_guard lock(wish_mutex_);
   feel_.set(feel);
+}
+
+void Servo::set_field(const FieldOptions& field) {
+  check(field);
+  const std::lock_guard lock(wish_mutex_);
+  wanted_field_.set(field);
 }
 
 }  // namespace palpate

@@ -97,6 +97,25 @@ TEST(Push, FusionOfFramesIsARunningMean) {
   EXPECT_NEAR(height_at(field, 0.01 + 10 * kFrame), 0.5e-3, 0.15e-3);
 }
 
+TEST(Push, AChangedSourceGoesOnInItsNewWay) {
+  Scene scene;
+  Source& source = scene.add("camera", depth_source(Policy::morph));
+  SceneField field(scene);
+  for (int k = 0; k < 3; ++k) push(source, k * kFrame, 0);
+  height_at(field, 0.01 + 3 * kFrame);
+  source.change(depth_source(Policy::replace));
+  EXPECT_EQ(*source.options().policy.policy, Policy::replace);
+  EXPECT_NEAR(height_at(field, 0.01 + 3.5 * kFrame), 0, 20e-6) << "until the next frame";
+  push(source, 4 * kFrame, 3e-3);
+  EXPECT_NEAR(height_at(field, 0.0099 + 4 * kFrame), 0, 20e-6);
+  EXPECT_NEAR(height_at(field, 0.0101 + 4 * kFrame), 3e-3, 20e-6);
+  SourceOptions none = depth_source(Policy::average);
+  none.policy.history = 0;
+  EXPECT_THROW(source.change(none), Error);
+  push(source, 5 * kFrame, 1e-3);
+  EXPECT_NEAR(height_at(field, 0.0101 + 5 * kFrame), 1e-3, 20e-6) << "as it was before";
+}
+
 TEST(Push, CloudsCannotMorph) {
   Source source("cloud", depth_source(Policy::morph));
   PointCloud cloud;

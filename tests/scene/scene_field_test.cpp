@@ -74,6 +74,28 @@ TEST(SceneField, ChangesOverAtTheNextSnapshotsStart) {
   EXPECT_GT(field.traits().revision, revision);
 }
 
+TEST(SceneField, ChangesToWhatAFieldOfThoseOptionsIs) {
+  Scene scene;
+  scene.add("plane").publish(still(plane(0)));
+  const FieldOptions metaball{.kind = FieldKind::metaball, .threshold = 0.5};
+  SceneField changed(scene);
+  SceneField made(scene, metaball);
+  const Vector3d x(1e-3, 2e-3, 6e-3);
+  changed.update(0, x, x);
+  const auto revision = changed.traits().revision;
+  changed.change(metaball);
+  changed.update(1e-3, x, x);
+  made.update(1e-3, x, x);
+  EXPECT_GT(changed.traits().revision, revision);
+  EXPECT_EQ(changed.sample(x, 1).value, made.sample(x, 1).value);
+  EXPECT_EQ(changed.sample(x, 1).gradient, made.sample(x, 1).gradient);
+  changed.change(paper_field());  // one R for all, and back
+  changed.update(2e-3, x, x);
+  changed.change(metaball);
+  changed.update(3e-3, x, x);
+  EXPECT_EQ(changed.sample(x, 1).value, made.sample(x, 1).value);
+}
+
 TEST(SceneField, ASurfaceThatIsTakenAwayIsGone) {
   Scene scene;
   Source& source = scene.add("plane");

@@ -237,10 +237,33 @@ TEST(Servo, ChangesWhatIsFeltWithoutAStep) {
   EXPECT_NEAR(before, 0.4, 0.02);
 }
 
+TEST(Servo, ChangesTheSurfaceAndTheGuardLeadsTheForceThere) {
+  Scene scene;
+  test::add_sheet(scene);
+  FreeDevice device({0, 0, 15e-3});
+  Servo servo(device, scene);
+  servo.tick(0);
+  device.state().position = {0, 0, 2e-3};
+  EXPECT_EQ(servo.tick(1e-3).force.norm(), 0) << "above the sheet";
+  servo.set_field({.kind = FieldKind::metaball});  // stands 0.49 R = 4.9 mm before its points
+  double before = 0;
+  for (int i = 2; i < 100; ++i) {
+    const double force = servo.tick(1e-3 * i).force.norm();
+    ASSERT_LE(force, before + 0.3 + 1e-9);
+    before = force;
+  }
+  EXPECT_NEAR(before, 500 * 2.9e-3, 0.1);
+  servo.set_field({});
+  for (int i = 100; i < 200; ++i) servo.tick(1e-3 * i);
+  EXPECT_EQ(servo.state().force.norm(), 0);
+}
+
 TEST(Servo, RefusesWhatCannotBeFelt) {
   Scene scene;
   FreeDevice device;
   Servo servo(device, scene);
+  EXPECT_THROW(servo.set_field({.threshold = -1}), Error);
+  EXPECT_THROW(servo.set_feel({.texture = {.amplitude = kNan}}), Error);
   EXPECT_THROW(servo.set_feel({.stiffness = -1}), Error);
   EXPECT_THROW(servo.set_feel({.stiffness = kNan}), Error);
   EXPECT_THROW(servo.set_feel({.friction = {.static_coefficient = 0.1, .dynamic_coefficient = 1}}),

@@ -78,9 +78,10 @@ class Proxy {
   /// each constrained sub-step allowed (and what a Newton takes), and recovery.
   [[nodiscard]] int max_evaluations() const noexcept { return 900 + 20 * options_.max_iterations; }
 
-  /// Feels stiffness (N/m) and friction like this from the next step on; in contact, stiffness goes
-  /// there as EnergyTank allows. False, and nothing changes, where a number is out of its range.
-  bool change(double stiffness, const Friction& friction) noexcept;
+  /// Feels stiffness (N/m), friction and texture like this from the next step on; in contact,
+  /// stiffness goes there as EnergyTank allows. False, and nothing changes, where a number is out
+  /// of its range.
+  bool change(double stiffness, const Friction& friction, const Texture& texture) noexcept;
 
   /// Puts the proxy at `position`, in free space, and forgets contact, side and faults.
   void reset(const Eigen::Vector3d& position) noexcept;

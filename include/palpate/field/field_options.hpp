@@ -35,6 +35,9 @@ struct FieldOptions {
   bool nearest_radius = false;  ///< use the R of the point nearest to the proxy for all (the paper)
 };
 
+/// @throws Error when an option is out of its range.
+void check(const FieldOptions& options);
+
 /// The paper's field: raw weights, T = 0.5, R of the nearest point, no cap.
 [[nodiscard]] FieldOptions paper_field(FieldKind kind = FieldKind::metaball);
 

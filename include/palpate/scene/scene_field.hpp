@@ -57,6 +57,10 @@ class SceneField final : public Field {
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] FieldTraits traits() const noexcept override;
 
+  /// Is another surface of the same points from the next update() on. Real-time. `checked`: check()
+  /// has passed it. How the force changes with it is for a Guard to soften.
+  void change(const FieldOptions& checked) noexcept;
+
   void begin_step() const noexcept override;
   void end_step() const noexcept override;
 

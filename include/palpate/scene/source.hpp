@@ -53,7 +53,8 @@ class Source {
   Source& operator=(const Source&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] const SourceOptions& options() const { return options_; }
+  /// Any thread but a servo's.
+  [[nodiscard]] SourceOptions options() const;
   /// Of the newest cloud that was prepared here. Any thread but a servo's.
   [[nodiscard]] PrepareReport report() const;
 
@@ -62,6 +63,11 @@ class Source {
   /// Moves the sensor, from the next push() or set() on. Any thread but a servo's.
   /// @throws Error when the pose is not rigid.
   void set_pose(const Eigen::Isometry3d& T_world_sensor);
+
+  /// Prepares what comes from the next push() or set() on in another way; the surface begins anew
+  /// with it. Pose and soft material stay as they are. Any thread but a servo's.
+  /// @throws Error when an option is out of its range.
+  void change(const SourceOptions& options);
 
   /// Prepares a cloud that stands still and makes it this source's surface. Not real-time.
   /// @throws Error as prepare() does.
@@ -104,13 +110,15 @@ class Source {
   friend class Scene;
   friend class SceneField;
 
+  void take_change();
   [[nodiscard]] bool room_for(bool clouds);
   void hand_over(std::shared_ptr<const Snapshot> snapshot);
   void note(const Snapshot& snapshot);
 
   std::string name_;
-  SourceOptions options_;
   mutable std::mutex mutex_;  // of what follows; whoever draws, and the preparing thread
+  SourceOptions options_;
+  std::unique_ptr<Intake> changed_;  // for the next push
   Eigen::Isometry3d pose_;
   PrepareReport report_;
   std::shared_ptr<const SurfacePoints> points_;

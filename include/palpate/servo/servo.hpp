@@ -31,6 +31,7 @@ struct ServoOptions {
 struct Feel {
   double stiffness = 500;  ///< K, N/m
   Friction friction = {};
+  Texture texture = {};
 };
 
 /// One hand in a scene: SceneField, Proxy and Guard between a device's place and its force.
@@ -87,6 +88,11 @@ class Servo {
   /// @throws Error when a value is out of its range.
   void set_feel(const Feel& feel);
 
+  /// Makes another surface of the same points from the next step on; the guard sees to it that the
+  /// force goes there softly. Any thread; not real-time.
+  /// @throws Error when an option is out of its range.
+  void set_field(const FieldOptions& field);
+
  private:
   void take_wishes(const Eigen::Vector3d& hip) noexcept;
   [[nodiscard]] Eigen::Vector3d guarded() noexcept;
@@ -99,12 +105,14 @@ class Servo {
   ServoState state_;  // of the stepping thread; the others see what was shown
   bool started_ = false;
   std::uint64_t feel_seen_ = 0;
+  std::uint64_t field_seen_ = 0;
 
   Latest<ServoState> shown_;
   Histogram lateness_;
   Histogram computing_;
-  std::mutex feel_mutex_;  // between those who change what is felt; the step never takes it
+  std::mutex wish_mutex_;  // between those who change what is felt; the step never takes it
   Latest<Feel> feel_;
+  Latest<FieldOptions> wanted_field_;
   std::atomic<bool> paused_{false};
   std::atomic<bool> reset_{false};
 };
