@@ -20,17 +20,30 @@ using Eigen::Vector3d;
 constexpr double kPi = std::numbers::pi;
 constexpr double kJitter = 0.2;  // of the spacing
 
-constexpr std::array<SyntheticName, 5> kNames = {{
+constexpr std::array<SyntheticName, 7> kNames = {{
     {"bumps", "a 20 x 20 cm relief of rounded bumps, seen from above"},
     {"sheet", "a gently waved 20 x 15 cm sheet that can be touched from both sides"},
     {"sphere", "a closed ball of 12 cm"},
     {"torus", "a closed ring of 20 cm, 6 cm thick"},
     {"table", "a table-top with a ball and a box on it"},
+    {"rabbit", "a closed rabbit of 20 cm, as a scan would show it"},
+    {"room", "a room of 4 x 3 m with furniture; points are five times as far apart"},
 }};
 
 struct Oriented {
   Vector3d position;
   Vector3d normal;
+};
+
+struct Ellipsoid {
+  Vector3d center;
+  Vector3d axes;  // half lengths along the turned x, y, z, m
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+
+  [[nodiscard]] bool contains(const Vector3d& x) const {
+    const Vector3d local = turn.conjugate() * (x - center);
+    return local.cwiseQuotient(axes).squaredNorm() < 1;
+  }
 };
 
 // Collects points with noise along their normals.
@@ -61,6 +74,24 @@ class Builder {
       const double r = std::sqrt(1 - z * z);
       const Vector3d direction(r * std::cos(angle), r * std::sin(angle), z);
       add({center + radius * direction, direction});
+    }
+  }
+
+  // The part of an ellipsoid that is outside of others.
+  void ellipsoid(const Ellipsoid& shape, const std::function<bool(const Vector3d&)>& hidden) {
+    const Vector3d& a = shape.axes;
+    const double mean = std::cbrt((std::pow(a.x() * a.y(), 1.6) + std::pow(a.x() * a.z(), 1.6) +
+                                   std::pow(a.y() * a.z(), 1.6)) /
+                                  3);  // Thomsen's area, to the power 1.6 / 3
+    const double area = 4 * kPi * std::pow(mean, 3 / 1.6);
+    const int points = std::max(8, static_cast<int>(area / (options_.spacing * options_.spacing)));
+    for (int i = 0; i < points; ++i) {
+      const double z = 1 - 2 * (i + 0.5) / points;
+      const double angle = i * kPi * (3 - std::sqrt(5.0));
+      const double r = std::sqrt(1 - z * z);
+      const Vector3d unit(r * std::cos(angle), r * std::sin(angle), z);
+      const Vector3d place = shape.center + shape.turn * a.cwiseProduct(unit);
+      if (!hidden(place)) add({place, (shape.turn * unit.cwiseQuotient(a)).normalized()});
     }
   }
 
@@ -182,6 +213,56 @@ PointCloud table(Builder builder) {
   return cloud;
 }
 
+Eigen::Quaterniond leaning(double forward, double aside) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(aside, Vector3d::UnitX()) *
+                            Eigen::AngleAxisd(forward, Vector3d::UnitY()));
+}
+
+// It sits on z = 0 and looks along +x.
+PointCloud rabbit(Builder builder) {
+  const std::array<Ellipsoid, 9> parts = {{
+      {{-0.020, 0, 0.055}, {0.070, 0.050, 0.055}, leaning(-0.35, 0)},  // body
+      {{0.035, 0, 0.060}, {0.038, 0.036, 0.050}, leaning(0.25, 0)},    // chest
+      {{0.055, 0, 0.115}, {0.036, 0.028, 0.029}, leaning(0.30, 0)},    // head
+      {{0.030, 0.016, 0.165}, {0.013, 0.008, 0.045}, leaning(-0.35, -0.2)},
+      {{0.030, -0.016, 0.165}, {0.013, 0.008, 0.045}, leaning(-0.35, 0.2)},
+      {{-0.010, 0.040, 0.030}, {0.045, 0.020, 0.030}},  // hind legs
+      {{-0.010, -0.040, 0.030}, {0.045, 0.020, 0.030}},
+      {{0.058, 0.018, 0.014}, {0.026, 0.012, 0.014}},  // paws
+      {{-0.090, 0, 0.040}, {0.018, 0.018, 0.018}},     // tail
+  }};
+  for (const Ellipsoid& part : parts) {
+    builder.ellipsoid(part, [&](const Vector3d& x) {
+      return x.z() < 0 || std::ranges::any_of(parts, [&](const Ellipsoid& other) {
+               return &other != &part && other.contains(x);
+             });
+    });
+  }
+  return builder.take();
+}
+
+// Floor and two walls, a table with a ball on it, a cupboard; seen from the free corner.
+PointCloud room(const SyntheticOptions& options) {
+  constexpr double kCoarser = 5;
+  constexpr double kHeight = 2.4;
+  SyntheticOptions coarse = options;
+  coarse.spacing *= kCoarser;
+  Builder builder(coarse);
+  add_relief(builder, 4, 3, [](double, double) { return Relief{}; });
+  builder.patch(4, kHeight, [](double u, double v) {
+    return Oriented{{u - 2, 1.5, v}, -Vector3d::UnitY()};
+  });
+  builder.patch(3, kHeight, [](double u, double v) {
+    return Oriented{{2, u - 1.5, v}, -Vector3d::UnitX()};
+  });
+  add_box(builder, {0.2, 0.4, 0.37}, {1.4, 0.8, 0.74}, 0.1);
+  add_box(builder, {1.4, 1.1, 0.9}, {0.9, 0.5, 1.8}, 0);
+  builder.ball({0.3, 0.4, 0.89}, 0.15);
+  PointCloud cloud = builder.take();
+  cloud.viewpoint = Vector3d(-1.8, -1.4, 1.6);
+  return cloud;
+}
+
 void check(const SyntheticOptions& options) {
   if (!(options.spacing >= 1e-5 && options.spacing <= 0.02)) {
     throw Error(fmt::format("synthetic cloud: spacing {} m is out of range: give 1e-5 to 0.02 m",
@@ -207,6 +288,8 @@ PointCloud synthetic_cloud(std::string_view name, const SyntheticOptions& option
   if (name == "sphere") return sphere(builder);
   if (name == "torus") return torus(builder);
   if (name == "table") return table(builder);
+  if (name == "rabbit") return rabbit(builder);
+  if (name == "room") return room(options);
   std::string known;
   for (const SyntheticName& each : kNames) known += fmt::format(" {}", each.name);
   throw Error(fmt::format("there is no synthetic cloud '{}': choose one of{}", name, known));

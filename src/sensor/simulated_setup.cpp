@@ -38,6 +38,16 @@ SimulatedSetup table() {
   return setup;
 }
 
+// With a wire across it, 8 mm thick.
+SimulatedSetup desk() {
+  SimulatedSetup setup = table();
+  Isometry3d wire = Isometry3d::Identity();
+  wire.linear() = Eigen::AngleAxisd(90 * kDegree, Vector3d::UnitX()).toRotationMatrix();
+  wire.translation() = Vector3d(-0.12, 0, 0.06);
+  setup.scene.solids.push_back({{SolidKind::cylinder, wire, Vector3d(4e-3, 4e-3, 0.12)}, {}});
+  return setup;
+}
+
 // The same table from the other side of its sphere and box.
 SimulatedSetup turned(double angle) {
   SimulatedSetup setup = still();
@@ -80,12 +90,15 @@ struct Named {
   SimulatedSetup (*make)();
 };
 
-constexpr std::array<Named, 6> kNamed = {{
+constexpr std::array<Named, 7> kNamed = {{
     {"table", "table-top with sphere, box, cylinder and plate; the sphere moves", table},
-    {"still", "the same, nothing moves", still},
-    {"left", "the same from 40 degrees to the left", [] { return turned(-40 * kDegree); }},
-    {"right", "the same from 40 degrees to the right", [] { return turned(40 * kDegree); }},
-    {"wander", "the same with a camera that moves", wandering},
+    {"desk", "the same with a wire across it", desk},
+    {"still", "the table, nothing moves", still},
+    {"left", "the table that stands still from 40 degrees to the left",
+     [] { return turned(-40 * kDegree); }},
+    {"right", "the table that stands still from 40 degrees to the right",
+     [] { return turned(40 * kDegree); }},
+    {"wander", "the table that stands still with a camera that moves", wandering},
     {"approach", "a wall and a ball that come and go", approach},
 }};
 
