@@ -129,7 +129,7 @@ void print_camera(const TouchedSource& source, const Style& style, std::FILE* ou
   fmt::print(out, "\n");
   print_seen(source.state, out);
   if (state.problem.empty()) return;
-  fmt::print(out, "  {} {} (at {:.3f} s; {} failed reads, {} without an answer)\n",
+  fmt::print(out, "  {} {} (at {:.3f} s; {} failed reads, stalled {} times)\n",
              style.warning("problem   "), state.problem, state.problem_at, state.failures,
              state.stalls);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <vector>
 
 #include "apps/palpate/touched.hpp"
@@ -14,9 +13,6 @@ class LiveFeed {
  public:
   /// Recordings begin together at `start`, s on the clock.
   LiveFeed(Touched& touched, Scene& felt, const Clock& clock, double start);
-  ~LiveFeed();
-  LiveFeed(const LiveFeed&) = delete;
-  LiveFeed& operator=(const LiveFeed&) = delete;
 
   /// How each stream fares, in the order of the sources.
   [[nodiscard]] std::vector<StreamState> states() const;
@@ -25,11 +21,10 @@ class LiveFeed {
   void finish();
 
  private:
-  struct Lane;
   Touched& touched_;
   Scene& felt_;
   double start_;
-  std::deque<Lane> lanes_;
+  std::vector<Stream> streams_;
 };
 
 }  // namespace palpate::app

@@ -15,6 +15,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
+#include "palpate/sensor/simulated_stream.hpp"
 
 namespace palpate::app {
 
@@ -28,7 +29,6 @@ constexpr double kHigh = 20e-3;      // of the hand above it at first, m
 constexpr double kDown = 0.4;        // when the hand is down, s
 constexpr double kSettled = 1;       // when the samples begin, s
 constexpr double kPeriod = 1e-3;     // of the servo, s
-constexpr double kLatency = 0.01;    // from stamp to touchable, s
 constexpr double kAround = 0.08;     // half of the box that the paper's clouds are clipped to, m
 constexpr double kFitRadius = 0.04;  // of the points that tell the surface's normal, m
 
@@ -102,9 +102,7 @@ class Feelers {
     feelers_.back().press.name = "palpate";
   }
 
-  void push(const DepthFrame& frame) {
-    const double touchable = frame.stamp + kLatency;
-    const auto start = [touchable] { return touchable; };
+  void push(const DepthFrame& frame, const StartTime& start) {
     const PointCloud cloud = cloud_of(frame);
     for (Scene& scene : clouds_) {
       if (frame.T_world_sensor) scene.source(0).set_pose(*frame.T_world_sensor);
@@ -199,11 +197,23 @@ void sum_up(Press& press) {
   press.touching /= static_cast<double>(press.samples.size());
 }
 
+// Every way feels every frame of the press, or they could not be compared.
+void check(const StreamState& stream, double time, double whole) {
+  if (stream.phase == StreamPhase::ended) {
+    throw Error(
+        fmt::format("{} ended after {} frames, before the press of {} s did; give a shorter "
+                    "--duration or --loop{}",
+                    stream.camera, stream.frames, whole,
+                    stream.problem.empty() ? "" : " (" + stream.problem + ")"));
+  }
+  if (stream.phase != StreamPhase::failed && stream.phase != StreamPhase::stalled) return;
+  throw Error(fmt::format("{:.3g} s into the press of {} s: {}", time, whole, stream.problem));
+}
+
 }  // namespace
 
 Fig7 measure_fig7(DepthCamera& camera, const Fig7Options& options) {
-  DepthFrame frame = first_frame(camera);
-  const double start = frame.stamp;
+  const DepthFrame frame = first_frame(camera);
   const Place place = place_of(frame);
   Feelers feelers(place, options);
   Fig7 result;
@@ -212,27 +222,22 @@ Fig7 measure_fig7(DepthCamera& camera, const Fig7Options& options) {
   result.radius_given = options.radius.has_value();
   const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());
   result.angle = std::asin(std::min(1.0, std::abs(pose.linear().col(2).dot(place.normal))));
-  const int steps = static_cast<int>(std::lround((kSettled + options.duration) / kPeriod));
+  const double whole = kSettled + options.duration;
+  const int steps = static_cast<int>(std::lround(whole / kPeriod));
   Progress progress("pressing");
-  bool pending = true;
+  SimulatedStream stream(camera, "the press", [&](const DepthFrame& next, const StartTime& start) {
+    feelers.push(next, start);
+  });
   for (int i = 0; i < steps; ++i) {
     const double time = i * kPeriod;
-    while (pending && frame.stamp - start + kLatency <= time) {
-      frame.stamp -= start;
-      feelers.push(frame);
-      ++result.frames;
-      pending = camera.read(frame, 0) == CameraStatus::frame;
-      progress.update(static_cast<double>(i) / steps);
-    }
-    if (!pending)
-      throw Error(
-          fmt::format("{} ended after {} frames, before the press of {} s did; "
-                      "give a shorter --duration or --loop",
-                      camera.info().name, result.frames, kSettled + options.duration));
+    stream.advance(time);
+    check(stream.state(), time, whole);
+    progress.update(static_cast<double>(i) / steps);
     const bool sampled = time >= kSettled;
     if (sampled) result.times.push_back(time);
     feelers.step(time, hand_at(place, time), sampled);
   }
+  result.frames = stream.state().touchable;
   result.presses = feelers.presses();
   for (Press& press : result.presses) sum_up(press);
   return result;

@@ -1,21 +1,27 @@
+#include <vector>
+
+#include "apps/palpate/computing_time.hpp"
+#include "apps/palpate/feeding.hpp"
 #include "apps/palpate/run.hpp"
 #include "apps/palpate/touch_run.hpp"
+#include "palpate/sensor/simulated_stream.hpp"
 
 namespace palpate::app {
 
 namespace {
 
-constexpr double kLatency = 0.01;  // from stamp to touchable, s
-
-void keep_reports(Run& run, const SimulatedFeed& feed) {
-  std::vector<FeedReport> reports = feed.reports();
-  auto next = reports.begin();
+std::vector<SimulatedStream> make_streams(Run& run) {
+  SimulatedStreamOptions options;
+  options.latency = run.options.latency.value_or(options.latency);
+  std::vector<SimulatedStream> streams;
   for (std::size_t i = 0; i < run.felt.size(); ++i) {
-    TouchedSource& source = run.touched.sources[i];
-    if (!source.camera) continue;
-    source.feed = std::move(*next++);
-    source.state = run.felt.state(i);
+    TouchedSource& touched = run.touched.sources[i];
+    if (!touched.camera) continue;
+    Source& felt = run.felt.source(i);
+    streams.emplace_back(*touched.camera, felt.name(), feeding(touched, felt, computing_seconds),
+                         options, [&felt] { felt.keep(); });
   }
+  return streams;
 }
 
 }  // namespace
@@ -23,11 +29,14 @@ void keep_reports(Run& run, const SimulatedFeed& feed) {
 void run_simulated(Run& run, const EachStep& each) {
   SceneField field(run.felt, run.field);
   Proxy proxy(run.proxy);
-  SimulatedFeed feed = make_feed(run.touched, run.felt, run.options.latency.value_or(kLatency));
-  run_touch(
-      *run.hand.device, run.hand.workspace, field, proxy, [&](double time) { feed.advance(time); },
-      each);
-  keep_reports(run, feed);
+  std::vector<SimulatedStream> streams = make_streams(run);
+  const auto see = [&](double time) {
+    for (SimulatedStream& stream : streams) stream.advance(time);
+  };
+  run_touch(*run.hand.device, run.hand.workspace, field, proxy, see, each);
+  std::vector<StreamState> states;
+  for (const SimulatedStream& stream : streams) states.push_back(stream.state());
+  keep_states(run.touched, run.felt, states);
 }
 
 }  // namespace palpate::app

@@ -123,11 +123,11 @@ void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& cho
               const Clock* clock, TouchedSource& result) {
   if (wants_material(options)) refuse_material(chosen.argument);
   result.camera = open_live(chosen, clock);
-  result.first = first_frame(*result.camera);
+  const DepthFrame first = first_frame(*result.camera);
   result.as_cloud = taken_as_cloud(options, chosen);
-  believe_no_farther(result.first, result.options.depth);
+  believe_no_farther(first, result.options.depth);
   Source& source = scene.add(chosen.argument.name, result.options);
-  if (explored) push_alone(source, result.first, result);
+  if (explored) push_alone(source, first, result);
 }
 
 }  // namespace
@@ -170,21 +170,6 @@ void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& fr
   }
   if (frame.T_world_sensor) felt.set_pose(*frame.T_world_sensor);
   felt.push(cloud_of(frame), frame.stamp, start);
-}
-
-SimulatedFeed make_feed(Touched& touched, Scene& felt, double latency) {
-  std::vector<SimulatedFeed::Feeding> cameras;
-  for (std::size_t i = 0; i < touched.sources.size(); ++i) {
-    TouchedSource& each = touched.sources[i];
-    if (!each.camera) continue;
-    Source& source = felt.source(i);
-    cameras.push_back({each.camera.get(), std::move(each.first), source.name(),
-                       [&each, &source](const DepthFrame& frame, const StartTime& start) {
-                         push_frame(each, source, frame, start);
-                       },
-                       [&source] { source.keep(); }});
-  }
-  return SimulatedFeed(std::move(cameras), latency);
 }
 
 }  // namespace palpate::app

@@ -6,7 +6,8 @@
 
 #include "apps/palpate/chosen_source.hpp"
 #include "apps/palpate/cloud_facts.hpp"
-#include "apps/palpate/simulated_feed.hpp"
+#include "apps/palpate/feed_report.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 
@@ -30,7 +31,6 @@ struct TouchedSource {
 
   // Of what lives:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
-  DepthFrame first;                     ///< the camera's first frame
   bool as_cloud = false;                ///< its frames are taken as clouds
   FeedReport feed;                      ///< after the run
 };
@@ -58,8 +58,5 @@ void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft);
 /// cloud. @throws Error as Source::push() does.
 void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
                 const StartTime& start);
-
-/// Cameras and their sources in `felt`, which outlives the feed, on a simulated clock.
-[[nodiscard]] SimulatedFeed make_feed(Touched& touched, Scene& felt, double latency);
 
 }  // namespace palpate::app

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <memory>
+#include <string>
 
 #include "accuracy/truth_frame.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
+#include "palpate/sensor/simulated_stream.hpp"
 
 namespace palpate::streams {
 namespace {
@@ -16,16 +19,6 @@ using Eigen::Vector3d;
 constexpr double kLead = 0.002;   // s, from publishing to the start of a surface
 constexpr double kSlack = 1e-6;   // ticks
 constexpr double kMargin = 0.07;  // clouds are cut to so much around the path, m
-
-struct Feed {
-  Feed(const Setup& setup, std::size_t i, Source& its)
-      : camera(setup.scene, setup.cameras[i]), source(&its) {}
-
-  SimulatedCamera camera;
-  Source* source;
-  DepthFrame frame;
-  bool waiting = false;  // the frame has been taken and is not felt yet
-};
 
 struct Hand {
   Hand(Scene& scene, const Tool& tool) : field(scene, tool.field, tool.name), proxy(tool.proxy) {}
@@ -53,14 +46,19 @@ PointCloud cut(const DepthFrame& frame, const Ball& ball) {
   return cloud;
 }
 
-void push(Feed& feed, const Contender& contender, const Ball& ball, double start) {
-  const auto when = [start] { return start; };
-  if (contender.clouds) {
-    feed.source->set_pose(*feed.frame.T_world_sensor);
-    feed.source->push(cut(feed.frame, ball), feed.frame.stamp, when);
+void push(Source& source, const DepthFrame& frame, const StartTime& start, bool as_cloud,
+          const Ball& ball) {
+  if (as_cloud) {
+    source.set_pose(*frame.T_world_sensor);
+    source.push(cut(frame, ball), frame.stamp, start);
   } else {
-    feed.source->push(feed.frame, when);
+    source.push(frame, start);
   }
+}
+
+// The tick at which what starts at a time (s) is felt first.
+std::size_t tick_of(double start) {
+  return static_cast<std::size_t>(std::max(0.0, std::ceil(start / kTick - kSlack)));
 }
 
 void step(Hand& hand, double now, const Vector3d& hip, StreamTrace& trace) {
@@ -75,42 +73,46 @@ void step(Hand& hand, double now, const Vector3d& hip, StreamTrace& trace) {
   trace.normal.push_back(slope.norm() > 0 ? Vector3d(slope.normalized()) : Vector3d::Zero());
 }
 
-std::vector<std::unique_ptr<Feed>> make_feeds(const Setup& setup, const Contender& contender,
-                                              Scene& scene) {
-  std::vector<std::unique_ptr<Feed>> feeds;
-  for (std::size_t i = 0; i < setup.cameras.size(); ++i) {
-    Source& source = scene.add("camera " + std::to_string(i), contender.source);
-    feeds.push_back(std::make_unique<Feed>(setup, i, source));
-  }
-  return feeds;
-}
+// A camera and what it shows to a source of the scene; ticks at which that is felt go to `swaps`.
+struct Feed {
+  Feed(const Setup& setup, std::size_t i, const Contender& contender, Scene& scene,
+       std::vector<std::size_t>& swaps)
+      : ball(around(setup.path)),
+        camera(setup.scene, setup.cameras[i]),
+        source(scene.add("camera " + std::to_string(i), contender.source)),
+        stream(camera, source.name(),
+               [&, as_cloud = contender.clouds](const DepthFrame& frame, const StartTime& start) {
+                 push(source, frame, start, as_cloud, ball);
+                 swaps.push_back(tick_of(start()));
+               },
+               {.latency = setup.latency, .lead = kLead}) {}
+
+  Ball ball;
+  SimulatedCamera camera;
+  Source& source;
+  SimulatedStream stream;
+};
 
 }  // namespace
 
 std::vector<StreamTrace> run_stream(const Setup& setup, const Contender& contender) {
   Scene scene;
-  const auto feeds = make_feeds(setup, contender, scene);
+  std::vector<std::size_t> swaps;
+  std::deque<Feed> feeds;
+  for (std::size_t i = 0; i < setup.cameras.size(); ++i) {
+    feeds.emplace_back(setup, i, contender, scene, swaps);
+  }
   std::vector<std::unique_ptr<Hand>> hands;
   for (const Tool& tool : contender.tools) hands.push_back(std::make_unique<Hand>(scene, tool));
   std::vector<StreamTrace> traces(hands.size());
-  const Ball ball = around(setup.path);
   for (std::size_t i = 0; i < setup.path.hip.size(); ++i) {
     const double now = static_cast<double>(i) * kTick;
-    for (const auto& feed : feeds) {
-      if (!feed->waiting) {
-        feed->waiting = feed->camera.read(feed->frame, 0) == CameraStatus::frame;
-      }
-      const double start = feed->frame.stamp + setup.latency;
-      if (!feed->waiting || start - kLead > now) continue;
-      push(*feed, contender, ball, start);
-      feed->waiting = false;
-      const auto swap = static_cast<std::size_t>(std::max(0.0, std::ceil(start / kTick - kSlack)));
-      for (StreamTrace& trace : traces) trace.swaps.push_back(swap);
-    }
+    for (Feed& feed : feeds) feed.stream.advance(now);
     for (std::size_t k = 0; k < hands.size(); ++k) {
       step(*hands[k], now, setup.path.hip[i], traces[k]);
     }
   }
+  for (StreamTrace& trace : traces) trace.swaps = swaps;
   return traces;
 }
 

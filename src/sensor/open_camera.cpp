@@ -40,8 +40,7 @@ std::unique_ptr<DepthCamera> open_camera(const std::string& name, const CameraOp
   const std::string device = colon == std::string::npos ? "" : name.substr(colon + 1);
   if (driver == "simulated") return open_simulated(device, options.clock);
   if (driver == "sequence") {
-    return open_sequence(read_sequence(device),
-                         {.clock = options.clock, .loop = options.loop});
+    return open_sequence(read_sequence(device), {.clock = options.clock, .loop = options.loop});
   }
   if (driver == "openni2") return open_openni2(device, options);
   if (driver == "freenect") return open_freenect(device, options);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "palpate/base/error.hpp"
+#include "palpate/sensor/simulated_stream.hpp"
 #include "palpate/sensor/stream.hpp"
 
 namespace palpate {
@@ -23,5 +24,10 @@ Stream::Stream(DepthCamera& camera, Source& source, const Clock& clock,
                const StreamOptions& options)
     : Stream(camera, source.name(), sink_of(source), clock, options, [&source] { source.keep(); }) {
 }
+
+SimulatedStream::SimulatedStream(DepthCamera& camera, Source& source,
+                                 const SimulatedStreamOptions& options)
+    : SimulatedStream(camera, source.name(), sink_of(source), options,
+                      [&source] { source.keep(); }) {}
 
 }  // namespace palpate

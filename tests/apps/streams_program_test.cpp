@@ -150,7 +150,25 @@ TEST(Streams, BrokenImageIsReportedAndTheRestIsFelt) {
   EXPECT_NE(outcome.out.find("003.pgm"), std::string::npos) << outcome.out;
   const Json source = Json::parse(shell.read("r.json"))["sources"][0];
   EXPECT_EQ(source["frames_touchable"], 5);
-  EXPECT_EQ(source["failures"], 1);
+  EXPECT_EQ(source["drops"]["garbage"], 1);
+}
+
+TEST(Streams, FramesOfNoUseAreDroppedInSimulatedTimeAndTheReportSaysWhy) {
+  Shell shell;
+  write_wall(shell, 40);
+  for (int i = 20; i < 40; ++i) shell.write(fmt::format("wall/{:03}.pgm", i), wall_pgm(19));
+  shell.write("wall/005.pgm", "P5 64 48 65535\n" + std::string(std::size_t{2} * 64 * 48, '\0'));
+  shell.write("way.csv", into_wall(1250));
+  const Outcome outcome =
+      shell.run("touch wall=sequence:wall --simulated-time --trajectory way.csv --json r.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("wall (sequence:wall): no frame of use"), std::string::npos)
+      << outcome.out;
+  const Json source = Json::parse(shell.read("r.json"))["sources"][0];
+  EXPECT_EQ(source["frames"], 38) << "38 had come at 1.25 s";
+  EXPECT_EQ(source["drops"]["empty"], 1);
+  EXPECT_EQ(source["drops"]["repeated"], 18);
+  EXPECT_EQ(source["phase"], "stalled") << "the picture froze";
 }
 
 TEST(Streams, DepthImageGoesThroughTheDepthFilterUnlessUnorganised) {

@@ -6,6 +6,7 @@
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/sensor/open_camera.hpp"
+#include "palpate/sensor/simulated_stream.hpp"
 #include "palpate/sensor/stream.hpp"
 #include "sensor/fake_camera.hpp"
 #include "sensor/folder.hpp"
@@ -47,6 +48,27 @@ TEST(StreamSource, MakesFramesASurface) {
   EXPECT_FALSE(has(field.notes(), FieldNote::no_surface));
   EXPECT_GT(field.patch_points(), 0u);
   EXPECT_EQ(field.surface({0, 0, 1.0}).source, 0);
+}
+
+TEST(StreamSource, MakesFramesTheSameSurfaceInSimulatedTime) {
+  const Folder folder;
+  write_plates(folder, 6);
+  Scene scene;
+  Source& source = scene.add("camera");
+  SceneField field(scene);
+  const Eigen::Vector3d hand(0, 0, 0.98);
+  const auto camera = open_camera("sequence:" + folder.path().string());
+  SimulatedStream stream(*camera, source);
+  for (int i = 0; i < 300; ++i) {
+    const double now = 1e-3 * i;
+    stream.advance(now);
+    field.update(now, hand, hand);
+    EXPECT_EQ(has(field.notes(), FieldNote::no_surface), now < 0.01) << now;
+  }
+  EXPECT_EQ(stream.state().phase, StreamPhase::ended);
+  EXPECT_EQ(stream.state().touchable, 6u);
+  EXPECT_EQ(field.surface({0, 0, 1.0}).source, 0);
+  EXPECT_EQ(source.state().silent_from, std::numeric_limits<double>::infinity());
 }
 
 // Where nobody looks any more the recording's last surface stays.

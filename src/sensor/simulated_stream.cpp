@@ -1,0 +1,177 @@
+#include "palpate/sensor/simulated_stream.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include "palpate/base/error.hpp"
+#include "sensor/ask.hpp"
+#include "sensor/frame_check.hpp"
+#include "sensor/require_time.hpp"
+#include "sensor/stream_log.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace sensor;
+
+constexpr double kEver = std::numeric_limits<double>::infinity();
+
+const SimulatedStreamOptions& checked(const SimulatedStreamOptions& options,
+                                      const std::string& name) {
+  require_time(options.latency >= 0, options.latency, "the latency", name);
+  require_time(options.lead >= 0 && options.lead <= options.latency, options.lead, "the lead",
+               name);
+  require_time(options.stall > 0, options.stall, "the time after which a camera has stalled", name);
+  require_time(options.patience >= 0, options.patience, "the wait for a frame", name);
+  return options;
+}
+
+double frame_time_of(const CameraInfo& camera, const std::string& name) {
+  if (camera.paces) {
+    throw Error(
+        fmt::format("stream to {}: {} keeps its own time. Open it without a clock, or play "
+                    "a recording of it.",
+                    name, camera.name));
+  }
+  if (!(camera.rate > 0 && camera.rate < kEver)) {
+    throw Error(
+        fmt::format("stream to {}: {} tells a rate of {} Hz. Let it tell how many frames a "
+                    "second it is made for.",
+                    name, camera.name, camera.rate));
+  }
+  return 1 / camera.rate;
+}
+
+}  // namespace
+
+struct SimulatedStream::Player {
+  Player(DepthCamera& from, const std::string& name, FrameSink to,
+         const SimulatedStreamOptions& wishes, std::function<void()> at_end)
+      : options(checked(wishes, name)),
+        frame_time(frame_time_of(from.info(), name)),
+        camera(from),
+        sink(std::move(to)),
+        ended(std::move(at_end)),
+        log(name, from.info().name, options.stall, 0),
+        check(options.allow_repeats.value_or(from.info().repeats)) {
+    camera.begin(0);
+  }
+
+  void advance(double time);
+  void look();
+  void schedule();
+  void do_without(CameraStatus status);
+  void take();
+  void prepare();
+  void finish();
+
+  const SimulatedStreamOptions options;
+  const double frame_time;  // s
+  DepthCamera& camera;
+  const FrameSink sink;
+  const std::function<void()> ended;  // may be empty
+  StreamLog log;
+  FrameCheck check;
+  DepthFrame frame;
+  std::string reason;      // why the last answer was no frame
+  bool waits = false;      // is there a frame that waits for its time?
+  bool silent = false;     // was the last answer none?
+  bool over = false;       // none will come any more
+  int failures = 0;        // in a row
+  double next = 0;         // when the frame is due, or the camera is asked again, s
+  double newest = -kEver;  // when the newest frame so far was due, s
+  double now = 0;          // s
+};
+
+void SimulatedStream::Player::advance(double time) {
+  now = time;
+  while (!over && next <= now) {
+    if (waits) {
+      take();
+    } else {
+      look();
+    }
+  }
+}
+
+void SimulatedStream::Player::look() {
+  if (failures > 0) log.retried();
+  const CameraStatus status = ask(camera, frame, silent ? 0 : options.patience, reason);
+  silent = status == CameraStatus::waiting;
+  failures = status == CameraStatus::failed ? failures + 1 : 0;
+  waits = status == CameraStatus::frame;
+  if (waits) return schedule();
+  if (status == CameraStatus::ended) return finish();
+  do_without(status);
+}
+
+// A stamp that is none, or not after the one before, takes a frame's time: time goes on.
+void SimulatedStream::Player::schedule() {
+  const double due = frame.stamp + options.latency - options.lead;
+  if (due > newest && due < kEver) {
+    newest = due;
+    next = std::max(next, due);
+  } else {
+    next += frame_time;
+  }
+}
+
+void SimulatedStream::Player::do_without(CameraStatus status) {
+  if (status == CameraStatus::damaged) log.came(next, damage(reason), check.size_changes());
+  if (status == CameraStatus::waiting) log.waiting(next);
+  if (status == CameraStatus::failed) log.failed(next, reason, failures > 1);
+  next += frame_time;
+}
+
+void SimulatedStream::Player::take() {
+  waits = false;
+  const auto objection = check.examine(frame, kEver);
+  log.came(next, objection, check.size_changes());
+  if (!objection) prepare();
+}
+
+void SimulatedStream::Player::prepare() {
+  bool asked = false;
+  const double start = frame.stamp + options.latency;
+  try {
+    sink(frame, [&] {
+      asked = true;
+      return start;
+    });
+    if (asked) log.touchable(options.latency);
+  } catch (const std::exception& error) {
+    log.refused(next, error.what());
+  }
+}
+
+void SimulatedStream::Player::finish() {
+  over = true;
+  try {
+    if (ended) ended();
+  } catch (const std::exception& error) {
+    log.refused(next, error.what());
+  }
+  log.ended();
+}
+
+SimulatedStream::SimulatedStream(DepthCamera& camera, const std::string& name, FrameSink sink,
+                                 const SimulatedStreamOptions& options, std::function<void()> ended)
+    : player_(std::make_unique<Player>(camera, name, std::move(sink), options, std::move(ended))) {}
+
+SimulatedStream::~SimulatedStream() = default;
+SimulatedStream::SimulatedStream(SimulatedStream&&) noexcept = default;
+SimulatedStream& SimulatedStream::operator=(SimulatedStream&&) noexcept = default;
+
+void SimulatedStream::advance(double now) {
+  player_->advance(now);
+}
+
+StreamState SimulatedStream::state() const {
+  return player_->log.state(player_->now);
+}
+
+}  // namespace palpate
