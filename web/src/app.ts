@@ -202,8 +202,8 @@ export class App {
     const { frameTime, software } = this.world.stage;
     if (this.saidSlow || now < kSettled || !(frameTime > kSlow)) return;
     this.saidSlow = true;
-    this.notices.add("info", `a picture takes ${frameTime.toFixed(0)} ms: show fewer points (View)` +
-      (software ? ", or let the browser use the graphics card, which it does not" : ""));
+    this.notices.add("info", `drawing is slow (${frameTime.toFixed(0)} ms a picture): show fewer points` +
+      (software ? ", or let the browser use the graphics card" : ""));
   }
 
   private relook(): void {

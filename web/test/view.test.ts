@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { Vector3 } from "three";
 import { bend, readPad } from "../src/input/gamepad";
 import { readTranslation } from "../src/input/space_mouse";
-import { decimals, inStep, millimetres, Scale, seconds, short, whole } from "../src/panel/numbers";
+import { decimals, inStep, millimetres, Scale, seconds, short, threeDigits, whole } from "../src/panel/numbers";
 import { boundsOf } from "../src/view/bounds";
 import { lengthInWords, scaleBar } from "../src/view/scale_bar";
 
@@ -27,6 +27,8 @@ test("numbers read well", () => {
   assert.equal(decimals(10), 0);
   assert.equal(inStep(0.30000000000000004, 0.1), "0.3");
   assert.equal(whole(1234567), "1\u202f234\u202f567");
+  assert.equal(threeDigits(-8.4e-11), "0");
+  assert.equal(threeDigits(-1.2345), "−1.23");
   assert.equal(short(30_000), "30k");
   assert.equal(seconds(0.0412), "41 ms");
   assert.equal(seconds(NaN), "–");

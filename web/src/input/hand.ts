@@ -1,18 +1,16 @@
-// The hand of this page: where it wants the tool to be, and who hears of it. It is held from `take` on
-// until `letGo`; while it rests, its place is repeated now and then.
+// The hand of this page: where it wants the tool to be. It is held from `take` on until `letGo`; the
+// program hears of every move, though not more often than it listens.
 
 import { Vector3, type PerspectiveCamera } from "three";
 import type { ToProgram } from "../protocol/messages";
 
 const kInterval = 8; // ms: 125 messages a second at most
-const kRepeat = 200; // ms
 
 export class Hand {
   held = false;
   device = 0;
   readonly place = new Vector3();
   private buttons = 0;
-  private dirty = false;
   private sent = -Infinity;
   private timer = 0;
 
@@ -58,24 +56,18 @@ export class Hand {
   }
 
   private mark(): void {
-    this.dirty = true;
-    if (this.timer !== 0 && performance.now() - this.sent < kInterval) return;
-    clearTimeout(this.timer);
-    this.flush();
+    const wait = this.sent + kInterval - performance.now();
+    if (wait <= 0) this.tell();
+    else if (this.timer === 0) this.timer = window.setTimeout(() => this.tell(), wait + 1);
   }
 
-  private flush(): void {
+  private tell(): void {
+    clearTimeout(this.timer);
     this.timer = 0;
     if (!this.held) return;
-    const now = performance.now();
-    const due = this.sent + (this.dirty ? kInterval : kRepeat);
-    if (now >= due) {
-      this.send({
-        type: "hand", device: this.device, position: this.place.toArray(), buttons: this.buttons,
-      });
-      this.sent = now;
-      this.dirty = false;
-    }
-    this.timer = window.setTimeout(() => this.flush(), this.dirty ? kInterval : kRepeat);
+    this.sent = performance.now();
+    this.send({
+      type: "hand", device: this.device, position: this.place.toArray(), buttons: this.buttons,
+    });
   }
 }

@@ -85,7 +85,9 @@ export class Bar {
   }
 
   private async toggleSound(): Promise<void> {
+    const asked = !this.sound.on;
     const on = await this.sound.toggle();
+    if (asked && !on) this.notices.add("warning", "the browser finds no device for sound");
     byId("sound").setAttribute("aria-pressed", String(on));
     icon(byId("sound"), on ? "sound" : "mute");
   }

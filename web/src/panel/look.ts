@@ -5,9 +5,10 @@ import { kColourings, type Colouring } from "../view/cloud";
 import { kFirstLook, type Look } from "../view/world";
 import { byId } from "./dom";
 import { fieldRow, type FieldRow } from "./field";
+import { whole } from "./numbers";
 import { remember, recall } from "./memory";
 
-export const kPointCounts = ["10000", "30000", "60000", "100000", "200000", "300000"];
+const kPointCounts = [10_000, 30_000, 60_000, 100_000, 200_000, 300_000];
 
 const kColouringNames: Record<Colouring, string> = {
   source: "source", height: "height", normal: "normal", age: "age", own: "own colours",
@@ -41,9 +42,9 @@ export class LookPanel {
       step: 0.1, value: this.look.pointSize,
     }, (value) => (this.look.pointSize = Number(value)));
     this.add({
-      key: "count", label: "Points, at most", kind: "choice", choices: kPointCounts,
-      value: String(this.points),
-    }, (value) => this.choosePoints(Number(value)));
+      key: "count", label: "Points, at most", kind: "choice", choices: kPointCounts.map(whole),
+      value: whole(this.points),
+    }, (value) => this.choosePoints(kPointCounts.find((count) => whole(count) === value) ?? this.points));
     for (const [key, label] of [
       ["points", "Points"], ["surface", "Surface at the proxy"], ["support", "Support radius"],
       ["cameras", "Cameras"], ["trail", "Trail"],

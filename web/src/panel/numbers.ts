@@ -9,6 +9,12 @@ export function inStep(value: number, step: number | undefined): string {
   return Number(value.toFixed(decimals(step))).toString();
 }
 
+/** Three digits that matter; what is next to nothing is nothing. */
+export function threeDigits(value: number): string {
+  if (Math.abs(value) < 5e-4) return "0";
+  return Number(value.toPrecision(3)).toString().replace("-", "−");
+}
+
 /** Thousands apart by a narrow space. */
 export function whole(value: number): string {
   return Math.round(value).toString().replace(/\B(?=(\d{3})+$)/g, "\u202f");

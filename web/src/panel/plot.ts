@@ -3,6 +3,7 @@
 import uPlot from "uplot";
 import { cssColour } from "../view/colours";
 import { make } from "./dom";
+import { threeDigits } from "./numbers";
 
 export interface Curve {
   label: string;
@@ -91,7 +92,8 @@ export function seriesOf(curve: Curve): uPlot.Series {
 export class Plot {
   readonly figure: HTMLElement;
   private readonly legend = make("span", { class: "curves" });
-  private readonly value = make("span", { class: "at" });
+  private readonly place = make("span", { class: "at" });
+  private readonly values: HTMLElement[] = []; // of the curves, at the cursor
   private readonly box = make("div", { class: "plot" });
   private readonly plot: uPlot;
   private curves: Curve[] = [];
@@ -101,7 +103,7 @@ export class Plot {
     this.figure = make("figure", { class: `chart ${options.name}` },
       make("figcaption", {},
         make("span", {}, make("b", {}, options.title), " ", make("span", { class: "unit" }, options.unit)),
-        this.value, this.legend),
+        this.legend, this.place),
       this.box);
     const range = options.logarithmic ? logRange(least, options.most ?? 1) : linearRange(least);
     this.plot = new uPlot({
@@ -143,25 +145,24 @@ export class Plot {
 
   private name(curves: Curve[]): void {
     this.curves = curves;
-    this.legend.replaceChildren(...curves.filter(({ label }) => label !== "").map(({ label, colour, dash }) => {
+    this.values.splice(0);
+    this.legend.replaceChildren(...curves.map(({ label, colour, dash }) => {
       const swatch = make("i", { class: dash ? "dashed" : "" });
       swatch.style.setProperty("--swatch", `var(${colour})`);
-      return make("span", {}, swatch, label);
+      const value = make("b");
+      this.values.push(value);
+      return make("span", { hidden: label === "" }, swatch, label, value);
     }));
   }
 
   private showValues(): void {
     const at = this.plot.cursor.idx;
-    if (at === null || at === undefined) {
-      this.value.textContent = "";
-      return;
-    }
-    const numbers = this.curves.map((_, i) => {
-      const value = this.plot.data[i + 1]?.[at];
-      return typeof value === "number" && Number.isFinite(value) ? Number(value.toPrecision(3)) : "–";
+    const x = at === null || at === undefined ? undefined : this.plot.data[0][at];
+    this.place.textContent = x === undefined ? "" : `${tick(x)} ${this.options.xUnit}`;
+    this.values.forEach((element, i) => {
+      const value = x === undefined ? undefined : this.plot.data[i + 1]?.[at!];
+      element.textContent = typeof value === "number" ? ` ${threeDigits(value)}` : "";
     });
-    const x = Number((this.plot.data[0][at] ?? NaN).toPrecision(4));
-    this.value.textContent = `${x} ${this.options.xUnit}: ${numbers.join(", ")}`;
   }
 
   private resize(): void {

@@ -3,6 +3,8 @@
 import type { Link } from "../protocol/connection";
 import { byId, say } from "./dom";
 
+const kNeedProgram = ["pause", "reset", "record"];
+
 export class Status {
   private timer = 0;
   private everOpen = false;
@@ -20,6 +22,8 @@ export class Status {
 
   show(link: Link): void {
     clearInterval(this.timer);
+    for (const id of kNeedProgram) byId<HTMLButtonElement>(id).disabled = link.phase !== "open";
+    byId("panel-settings").inert = link.phase !== "open";
     byId("link-state").dataset["phase"] = link.phase;
     if (link.phase === "open") {
       if (this.everOpen) say(byId("polite"), "Connected again.");

@@ -3,6 +3,7 @@
 import { Flag, type StateMessage } from "../protocol/decode";
 import type { Vector } from "../protocol/messages";
 
+const kPatience = 1500; // ms; without a device for sound a browser never answers
 const kSmooth = 0.03; // s
 const kLoud = 0.5;
 const kFullSpeed = 0.15; // m/s that sounds loudest
@@ -25,9 +26,10 @@ export class Sound {
 
   /** Has to come from a click: browsers let nothing sound before. */
   async toggle(): Promise<boolean> {
+    const wasOn = this.on; // a new context may run at once
     if (this.context === undefined) this.build();
-    if (this.on) await this.context!.suspend();
-    else await this.context!.resume();
+    if (wasOn) await this.context!.suspend();
+    else await Promise.race([this.context!.resume(), new Promise((late) => setTimeout(late, kPatience))]);
     return this.on;
   }
 

@@ -92,11 +92,6 @@ export class Cloud {
     this.points.material.uniforms["pixels"]!.value = pixels;
   }
 
-  dispose(): void {
-    this.points.geometry.dispose();
-    this.points.material.dispose();
-  }
-
   private grow(count: number): void {
     this.capacity = Math.ceil(count * 1.25);
     const geometry = this.points.geometry;

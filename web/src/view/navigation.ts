@@ -26,6 +26,7 @@ export function firstDirection(up: Vector3, cameras: readonly Vector3[], centre:
 
 export class Navigation {
   controls: OrbitControls;
+  touched = false; // somebody moved the eye
   private radius = 0.5;
 
   constructor(
@@ -133,6 +134,7 @@ export class Navigation {
     controls.zoomToCursor = true;
     controls.maxDistance = 12 * this.radius;
     controls.addEventListener("change", this.changed);
+    controls.addEventListener("start", () => (this.touched = true));
     return controls;
   }
 }

@@ -1,6 +1,8 @@
 // Everything that is drawn, and what of it is shown.
 
-import { Vector2, Vector3 } from "three";
+import {
+  Line, Mesh, Points, Vector2, Vector3, type BufferGeometry, type Material, type Object3D,
+} from "three";
 import type { CloudMessage, StateMessage, SurfaceMessage } from "../protocol/decode";
 import type { SourceReport, Welcome } from "../protocol/messages";
 import { boundsOf, samplePlaces, type Bounds } from "./bounds";
@@ -22,6 +24,7 @@ export interface Look {
   trail: boolean;
 }
 
+const kSettling = 3000; // ms
 const kClose = 12; // support radii
 const kArrow = 0.16; // of the radius, an arrow for a newton; from close by:
 const kArrowPixels = 80;
@@ -50,6 +53,8 @@ export class World {
   private radius = 0.5;
   private time = NaN;
   private framed = false;
+  private heard = false; // of the sources: where cameras are
+  private begun = 0;
   private before = 0;
 
   constructor(canvas: HTMLCanvasElement) {
@@ -78,11 +83,10 @@ export class World {
     this.surfaces = welcome.devices.map(() => new Surface());
     this.places = welcome.sources.map(() => []);
     this.visible = welcome.sources.map(() => true);
-    this.stage.scene.add(
-      ...this.clouds.map((cloud) => cloud.points), ...this.frusta.map((frustum) => frustum.lines),
-      ...this.surfaces.map((surface) => surface.mesh), ...this.tools.map((tool) => tool.group),
-    );
+    this.stage.scene.add(...this.objects());
     this.framed = again && this.framed;
+    this.heard = false;
+    this.begun = performance.now();
     if (!this.framed) this.fit();
     this.stage.request();
   }
@@ -100,10 +104,7 @@ export class World {
     this.places[message.source] = samplePlaces(message);
     this.bounds = boundsOf(this.places.flat(), this.up);
     if (this.bounds !== undefined) this.heights.copy(this.bounds.heights);
-    if (!this.framed && this.places.every((places) => places.length > 0)) {
-      this.fit();
-      this.framed = true;
-    }
+    this.settle();
     this.stage.request();
   }
 
@@ -115,6 +116,8 @@ export class World {
   takeSources(reports: readonly SourceReport[]): void {
     reports.forEach((report, i) => this.frusta[i]?.take(report, 0.12 * this.radius));
     this.cameras = reports.flatMap(({ pose }) => (pose ? [new Vector3(...pose.position)] : []));
+    this.heard = true;
+    this.settle();
     this.stage.request();
   }
 
@@ -144,6 +147,14 @@ export class World {
 
   hasNormals(): boolean {
     return this.clouds.some((cloud) => cloud.hasNormals);
+  }
+
+  /** The first place of the eye: gets better until all is known or somebody takes it. */
+  private settle(): void {
+    if (this.framed) return;
+    const known = this.heard && this.places.every((places) => places.length > 0);
+    this.framed = known || this.navigation.touched || performance.now() - this.begun > kSettling;
+    if (!this.navigation.touched) this.fit();
   }
 
   private update(now: number): void {
@@ -185,11 +196,21 @@ export class World {
     return this.look.points ? spacing * this.look.pointSize : 0;
   }
 
-  private clear(): void {
-    for (const cloud of this.clouds) cloud.dispose();
-    this.stage.scene.remove(
+  private objects(): Object3D[] {
+    return [
       ...this.clouds.map((cloud) => cloud.points), ...this.frusta.map((frustum) => frustum.lines),
       ...this.surfaces.map((surface) => surface.mesh), ...this.tools.map((tool) => tool.group),
-    );
+    ];
+  }
+
+  private clear(): void {
+    for (const object of this.objects()) {
+      this.stage.scene.remove(object);
+      object.traverse((part) => {
+        if (!(part instanceof Mesh || part instanceof Points || part instanceof Line)) return;
+        (part.geometry as BufferGeometry).dispose();
+        (part.material as Material).dispose();
+      });
+    }
   }
 }

@@ -22,6 +22,22 @@ const kPictures = [
     await page.selectOption("#look select", { label: "own colours" });
     await page.click("#record");
   }],
+  ["phone_landscape", { ...kPhone, viewport: { width: 844, height: 390 } }, "light"],
+  ["desktop_hover", kDesktop, "light", async (page) => {
+    await page.keyboard.press("h");
+    await page.mouse.move(250, 800);
+  }],
+  ["desktop_notices", kDesktop, "dark", async () => {
+    for (const [level, text] of [["info", "the right camera is back"], ["warning", "left: 12 of 30 frames came too late"],
+      ["fault", "the device answers no more: check its cable, then press Reset"]]) {
+      server.program.tell({ type: "notice", level, text });
+    }
+    server.program.servo.bound = 0.5;
+  }],
+  ["desktop_cover", kDesktop, "light", async (page) => {
+    await page.goto("about:blank");
+    await page.goto(server.address.replace(/#.*/, ""));
+  }],
   ["desktop_close", kDesktop, "light", (page) => page.click("#follow")],
   ["desktop_close_dark", kDesktop, "dark", async (page) => {
     await page.selectOption("#look select", { label: "height" });

@@ -172,6 +172,17 @@ test("settings, presets and buttons reach the program", () =>
     await until("a fault is said", async () => (await page.locator("#urgent").textContent()).includes("the device is gone"));
   }));
 
+test("sound is off until it is asked for, and can be put off again", () =>
+  withPage(kSmall, async (page) => {
+    const on = () => page.getAttribute("#sound", "aria-pressed");
+    assert.equal(await on(), "false");
+    await page.click("#sound");
+    await until("on", async () => (await on()) === "true");
+    await page.waitForTimeout(300);
+    await page.click("#sound");
+    await until("off", async () => (await on()) === "false");
+  }));
+
 test("a picture is saved", () =>
   withPage(kSmall, async (page) => {
     const download = page.waitForEvent("download");
