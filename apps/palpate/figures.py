@@ -1,26 +1,13 @@
 """Draws the paper's figures from palpate's measurements.
 
-Usage: figures.py FOLDER PICTURE. FOLDER holds facts.json and table.csv. Ends with 3 where matplotlib
-is missing.
+Usage: figures.py FOLDER PICTURE. FOLDER holds facts.json and table.csv.
 """
 
-import json
 import os
 import sys
 
-try:
-    import matplotlib
-    import numpy as np
+from drawing import FAINT, INK, load_facts, np, plt, use_style
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-except ImportError as error:
-    print(error, file=sys.stderr)
-    sys.exit(3)
-
-INK = "#1f2933"
-FAINT = "#8492a6"
-GRID = "#e4e7eb"
 METABALL = "#dd8a00"
 POINTSET = "#2b6cb0"
 OURS = "#c53030"
@@ -31,10 +18,8 @@ SHOWN_SECONDS = 2.0
 
 def load(folder):
     """The facts and the table, column by column."""
-    with open(os.path.join(folder, "facts.json"), encoding="utf-8") as file:
-        facts = json.load(file)
     table = np.genfromtxt(os.path.join(folder, "table.csv"), delimiter=",", names=True)
-    return facts, table
+    return load_facts(folder), table
 
 
 def head(figure, title, subtitle):
@@ -145,11 +130,7 @@ def fig7(facts, table, picture):
 
 def main(folder, picture):
     facts, table = load(folder)
-    plt.rcParams.update({"font.size": 10.5, "font.family": "DejaVu Sans", "text.color": INK,
-                         "axes.labelcolor": INK, "axes.edgecolor": FAINT, "xtick.color": INK,
-                         "ytick.color": INK, "axes.grid": True, "grid.color": GRID,
-                         "axes.axisbelow": True, "axes.spines.top": False,
-                         "axes.spines.right": False})
+    use_style()
     if facts["figure"] == "fig5":
         fig5(facts, picture)
     else:

@@ -1,27 +1,15 @@
 """Draws a run of palpate: the cloud, the ways of hand and proxy, the force.
 
 Usage: picture.py FOLDER PICTURE. FOLDER holds cloud.f32 (x, y, z, normal, source), steps.f32 (t, hip,
-proxy, force, touching, us) and facts.json. Ends with 3 where matplotlib is missing.
+proxy, force, touching, us) and facts.json.
 """
 
-import json
 import os
 import sys
 
-try:
-    import matplotlib
-    import numpy as np
+from drawing import FAINT, INK, load_facts, np, plt, use_style
+from matplotlib.collections import LineCollection
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    from matplotlib.collections import LineCollection
-except ImportError as error:
-    print(error, file=sys.stderr)
-    sys.exit(3)
-
-INK = "#1f2933"
-FAINT = "#8492a6"
-GRID = "#e4e7eb"
 HAND = "#2b6cb0"
 PROXY = "#c53030"
 FORCE = "#dd8a00"
@@ -29,11 +17,9 @@ FORCE = "#dd8a00"
 
 def load(folder):
     """The facts, the cloud and the steps that the program left in a folder."""
-    with open(os.path.join(folder, "facts.json"), encoding="utf-8") as file:
-        facts = json.load(file)
     cloud = np.fromfile(os.path.join(folder, "cloud.f32"), np.float32).reshape(-1, 7).astype(float)
     steps = np.fromfile(os.path.join(folder, "steps.f32"), np.float32).reshape(-1, 12).astype(float)
-    return facts, cloud, steps
+    return load_facts(folder), cloud, steps
 
 
 class Run:
@@ -239,11 +225,7 @@ def main(folder, picture):
     extent = np.ptp(np.vstack([steps[:, 1:4], steps[:, 4:7]]), axis=0).max()
     unit, unit_name = unit_of(extent)
     run = Run(steps, unit)
-    plt.rcParams.update({"font.size": 10.5, "font.family": "DejaVu Sans", "text.color": INK,
-                         "axes.labelcolor": INK, "axes.edgecolor": FAINT, "xtick.color": INK,
-                         "ytick.color": INK, "axes.grid": True, "grid.color": GRID,
-                         "axes.axisbelow": True, "axes.spines.top": False,
-                         "axes.spines.right": False})
+    use_style()
     figure = plt.figure(figsize=(14.4, 8.6), dpi=150, facecolor="white")
     cells = figure.add_gridspec(2, 2, width_ratios=[1.55, 1], height_ratios=[1.25, 1], left=0.02,
                                 right=0.985, top=0.895, bottom=0.07, wspace=0.09, hspace=0.3)

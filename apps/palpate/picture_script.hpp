@@ -4,7 +4,10 @@
 
 namespace palpate::app {
 
-/// picture.py, as CMake found it.
+/// drawing.py, which the others import, as CMake found it.
+[[nodiscard]] std::string_view drawing_script();
+
+/// picture.py likewise.
 [[nodiscard]] std::string_view picture_script();
 
 /// figures.py likewise.

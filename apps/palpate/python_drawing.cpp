@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "apps/palpate/picture_script.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
@@ -104,6 +105,7 @@ void draw_by_python(std::string_view script, const std::vector<DrawingData>& dat
                     const std::string& path, OutputFile& picture) {
   const TemporaryFolder folder;
   for (const DrawingData& each : data) write_file(folder.file(each.name), each.bytes);
+  write_file(folder.file("drawing.py"), drawing_script());
   write_file(folder.file("draw.py"), script);
   const std::string complaints = folder.file("complaints.txt");
   const int code =
