@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -22,15 +23,21 @@ std::string guard_words(const GuardCounts& counts) {
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", grouped(count), text);
   };
   add(counts.slewed, "steps slowed that the hand did not cause");
-  add(counts.clamped, "steps shortened to the device's maximum");
+  add(counts.clamped, "steps shortened");
   add(counts.silences, "silences ended by zero force");
   add(counts.faults, "faults");
   return words;
 }
 
-void print_guard(const GuardState& guard, const Style& style, std::FILE* out) {
+void print_guard(const LiveReport& report, const Style& style, std::FILE* out) {
+  const GuardState& guard = report.guard;
   const std::string words = guard_words(guard.counts);
-  fmt::print(out, "  guard      {}\n", words.empty() ? "let every force pass" : words);
+  const GuardOptions& limits = report.limits;
+  const std::string most = std::isfinite(limits.maximum_force)
+                               ? fmt::format("{:.3g} N at most", limits.maximum_force)
+                               : "any force";
+  fmt::print(out, "  guard      {}, {:.3g} N/s, watchdog {}: {}\n", most, limits.slew,
+             duration(limits.silence), words.empty() ? "let every force pass" : words);
   if (guard.fault == GuardFault::none) return;
   fmt::print(out, "  {} {}\n", style.warning("fault     "), in_words(guard.fault));
 }
@@ -44,6 +51,11 @@ void print_requests(const RealtimeReport& report, const Style& style, std::FILE*
                  request.remedy);
     }
   }
+}
+
+// JSON has no infinity: null is no limit.
+Json limit(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
 }
 
 Json json_requests(const RealtimeReport& report) {
@@ -68,7 +80,7 @@ void print_live(const LiveReport& report, std::FILE* out) {
     fmt::print(out, "  {} {} steps came too fast to be written down; they are in no log\n",
                style.warning("unwritten "), grouped(report.unwritten));
   }
-  print_guard(report.guard, style, out);
+  print_guard(report, style, out);
   print_requests(report.realtime, style, out);
   if (report.interrupted) fmt::print(out, "  ended      by Ctrl-C\n");
 }
@@ -82,7 +94,10 @@ Json json_live(const LiveReport& report) {
           {"steps_left_out", report.skipped},
           {"steps_unwritten", report.unwritten},
           {"guard",
-           {{"slewed", counts.slewed},
+           {{"maximum_force_N", limit(report.limits.maximum_force)},
+            {"slew_N_per_s", report.limits.slew},
+            {"watchdog_s", report.limits.silence},
+            {"slewed", counts.slewed},
             {"clamped", counts.clamped},
             {"silences", counts.silences},
             {"faults", counts.faults},

@@ -30,9 +30,14 @@ ServoOptions servo_options(const Run& run, StepQueue& steps) {
   ServoOptions options;
   options.field = run.field;
   options.proxy = run.proxy;
+  options.guard = guard_options(run.options.live);
   options.workspace = run.hand.workspace;
   options.steps = &steps;
   return options;
+}
+
+ServoThreadOptions thread_options(const Run& run, double rate) {
+  return {.rate = rate, .realtime = realtime_options(run.options.live)};
 }
 
 // With the force that was felt, which the guard may have changed.
@@ -110,7 +115,7 @@ LiveReport run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   Watcher watcher(servo, steps, each, start);
   {
     LiveStatus status;
-    ServoThread thread(servo, clock, {.rate = report.rate});
+    ServoThread thread(servo, clock, thread_options(run, report.rate));
     report.realtime = thread.realtime();
     while (thread.running() && !interruption.asked()) {
       std::this_thread::sleep_for(kLook);
@@ -125,6 +130,7 @@ LiveReport run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   feed.finish();
   report.lateness = servo.lateness();
   report.unwritten = steps.dropped();
+  report.limits = servo.options().guard;
   report.guard = servo.state().guard;
   report.interrupted = interruption.asked();
   check_device(run, servo.state());

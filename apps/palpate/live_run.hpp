@@ -15,6 +15,7 @@ struct LiveReport {
   Durations lateness;
   std::uint64_t skipped = 0;    ///< steps left out because one before them was late
   std::uint64_t unwritten = 0;  ///< steps that came faster than they could be written down
+  GuardOptions limits;          ///< of the guard, as they held
   GuardState guard;             ///< at the end
   bool interrupted = false;     ///< by Ctrl-C
 };

@@ -9,6 +9,7 @@
 #include "apps/palpate/paper_command.hpp"
 #include "apps/palpate/picture_script.hpp"
 #include "apps/palpate/setup_file.hpp"
+#include "apps/palpate/suggestion.hpp"
 #include "apps/palpate/touch_command.hpp"
 #include "apps/palpate/words.hpp"
 
@@ -52,9 +53,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& done) {  // --help, --version
     return program.exit(done);
   } catch (const CLI::ParseError& error) {
-    return complain(
-        fmt::format("{}\n'palpate --help' and 'palpate COMMAND --help' tell more.", error.what()),
-        kUsage);
+    return complain(fmt::format("{}{}\n'palpate --help' and 'palpate COMMAND --help' tell more.",
+                                error.what(), hint(program)),
+                    kUsage);
   }
   if (program.get_subcommands().empty()) {
     throw UsageError(

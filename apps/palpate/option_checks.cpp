@@ -4,12 +4,18 @@
 
 #include <cmath>
 
+#include "apps/palpate/errors.hpp"
+
 namespace palpate::app {
 
 CLI::Validator number(const std::string& range, std::function<bool(double)> good) {
   const auto check = [range, good = std::move(good)](const std::string& text) -> std::string {
     double value = 0;
-    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && good(value)) return "";
+    const bool is_number = CLI::detail::lexical_cast(text, value);
+    if (is_number && !std::isfinite(value)) {
+      return fmt::format("'{}' is not finite; give {}", text, range);
+    }
+    if (is_number && good(value)) return "";
     return fmt::format("'{}' is not {}", text, range);
   };
   return CLI::Validator(check, "");
@@ -23,8 +29,34 @@ CLI::Validator not_negative() {
   return number("a number of 0 or more", [](double x) { return x >= 0; });
 }
 
+CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
+  const auto check = [least, most](const std::string& text) -> std::string {
+    std::int64_t value = 0;
+    if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return "";
+    return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+  };
+  return CLI::Validator(check, "");
+}
+
 CLI::Validator one_of(const std::vector<std::string>& words) {
   return CLI::IsMember(words);
+}
+
+CLI::Validator parsed_by(std::function<void(const std::string&)> parse) {
+  const auto check = [parse = std::move(parse)](const std::string& text) -> std::string {
+    try {
+      parse(text);
+    } catch (const UsageError& error) {
+      return without_option(error.what());
+    }
+    return "";
+  };
+  return CLI::Validator(check, "");
+}
+
+std::string without_option(const std::string& message) {
+  const std::size_t end = message.find(": ");
+  return message.starts_with("--") && end != std::string::npos ? message.substr(end + 2) : message;
 }
 
 std::string wrapped(const std::string& text) {

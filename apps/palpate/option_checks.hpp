@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,7 +12,14 @@ namespace palpate::app {
 [[nodiscard]] CLI::Validator number(const std::string& range, std::function<bool(double)> good);
 [[nodiscard]] CLI::Validator positive();
 [[nodiscard]] CLI::Validator not_negative();
+[[nodiscard]] CLI::Validator whole_number(std::int64_t least, std::int64_t most);
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& words);
+
+/// A check that takes what `parse` takes, and otherwise says what its UsageError does.
+[[nodiscard]] CLI::Validator parsed_by(std::function<void(const std::string&)> parse);
+
+/// What an error of an option says behind the option's name.
+[[nodiscard]] std::string without_option(const std::string& message);
 
 /// Help in lines that fit beside the options' names.
 [[nodiscard]] std::string wrapped(const std::string& text);

@@ -10,6 +10,7 @@
 
 #include "apps/palpate/arguments.hpp"
 #include "apps/palpate/errors.hpp"
+#include "apps/palpate/option_checks.hpp"
 #include "apps/palpate/setup_keys.hpp"
 #include "palpate/base/error.hpp"
 
@@ -28,11 +29,9 @@ const char* type_name(const toml::node& node) {
   return node.is_table() ? "a table" : "a date or time";
 }
 
-using Names = std::set<std::string, std::less<>>;
-
 // The options that the command line has.
-Names given_options(const CLI::App& command) {
-  Names names;
+std::set<std::string, std::less<>> given_options(const CLI::App& command) {
+  std::set<std::string, std::less<>> names;
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() > 0) names.insert(option->get_name());
   }
@@ -52,20 +51,19 @@ class SetupFile {
     folder_ = folder_.parent_path();
   }
 
-  void apply(CLI::App& command, TouchOptions& options) const;
+  void apply(TouchOptions& options) const;
 
  private:
   [[nodiscard]] toml::table parse() const;
   [[noreturn]] void fail(const toml::source_region& place, const std::string& what) const;
-  void fill_section(CLI::App& command, std::string_view section, const toml::table& table) const;
-  [[nodiscard]] std::vector<SourceSetup> sources(const Names& given, const toml::node& node,
-                                                 const SourceChoices& common) const;
-  [[nodiscard]] SourceSetup source(const Names& given, const toml::table& table,
-                                   const SourceChoices& common) const;
+  void check_sections(const toml::table& file) const;
+  [[nodiscard]] std::vector<SourceSetup> sources(const TouchOptions& options,
+                                                 const toml::node& node) const;
+  [[nodiscard]] SourceSetup source(const TouchOptions& options, const toml::table& table) const;
   [[nodiscard]] std::string name(const toml::node& node) const;
   [[nodiscard]] Eigen::Isometry3d pose(const toml::node& node) const;
-  void give(CLI::App& command, const SetupKey& key, const toml::node& node,
-            std::string_view section) const;
+  void take(CLI::App& taker, const TouchOptions& options, std::string_view section,
+            const toml::key& key, const toml::node& node) const;
   [[nodiscard]] std::string text_of(const SetupKey& key, const toml::node& node) const;
   [[nodiscard]] std::string numbers(std::string_view key, const toml::node& node) const;
   [[nodiscard]] std::string resolved(const std::string& path) const;
@@ -73,12 +71,6 @@ class SetupFile {
   std::string path_;
   fs::path folder_;
 };
-
-// CLI11 puts the option's name in front.
-std::string without_option(const std::string& message, std::string_view option) {
-  const std::string front = fmt::format("{}: ", option);
-  return message.starts_with(front) ? message.substr(front.size()) : message;
-}
 
 void SetupFile::fail(const toml::source_region& place, const std::string& what) const {
   throw Error(fmt::format("{}, line {}: {}", path_, place.begin.line, what));
@@ -147,32 +139,25 @@ std::string SetupFile::text_of(const SetupKey& key, const toml::node& node) cons
   }
   if (!node.is_string()) wrong("text in quotes");
   const std::string text = *node.value<std::string>();
+  if (text.empty()) fail(node.source(), fmt::format("'{}' is empty; leave it out", key.key));
   return key.kind == KeyKind::path ? resolved(text) : text;
 }
 
-void SetupFile::give(CLI::App& command, const SetupKey& key, const toml::node& node,
-                     std::string_view section) const {
-  CLI::Option* option = command.get_option(option_of(key.key));
-  const std::string text = text_of(key, node);
+// Gives a key's value to the option of its name, unless the command line has that; its type has to
+// be right all the same.
+void SetupFile::take(CLI::App& taker, const TouchOptions& options, std::string_view section,
+                     const toml::key& key, const toml::node& node) const {
+  const SetupKey* known = find(section, key.str());
+  if (known == nullptr) fail(key.source(), unknown_key(section, key.str()));
+  const std::string text = text_of(*known, node);
+  if (options.given.contains(option_of(known->key))) return;
+  CLI::Option* option = taker.get_option(option_of(known->key));
   try {
     option->add_result(text);
     option->run_callback();
   } catch (const CLI::Error& error) {
-    fail(node.source(), fmt::format("'{}' of [{}]: {}", key.key, section,
-                                    without_option(error.what(), option_of(key.key))));
-  }
-}
-
-void SetupFile::fill_section(CLI::App& command, std::string_view section,
-                             const toml::table& table) const {
-  for (const auto& [key, node] : table) {
-    const SetupKey* known = find(section, key.str());
-    if (known == nullptr) {
-      fail(key.source(), fmt::format("'{}' is no key of [{}]; its keys are {}", key.str(), section,
-                                     key_names(section)));
-    }
-    if (command.get_option(option_of(known->key))->count() > 0) continue;
-    give(command, *known, node, section);
+    fail(node.source(), fmt::format("'{}' of {}: {}", known->key, in_brackets(section),
+                                    without_option(error.what())));
   }
 }
 
@@ -193,26 +178,20 @@ std::string SetupFile::name(const toml::node& node) const {
   return name;
 }
 
-SourceSetup SetupFile::source(const Names& given, const toml::table& table,
-                              const SourceChoices& common) const {
-  SourceSetup result{.name = "", .from = "", .pose = {}, .choices = common};
-  CLI::App own;
-  add_source_options(own, result.choices);
+SourceSetup SetupFile::source(const TouchOptions& options, const toml::table& table) const {
+  SourceSetup result{.name = "", .from = "", .pose = {}, .choices = options.choices};
+  CLI::App taker;
+  add_source_options(taker, result.choices);
+  add_source_setup_options(taker, result.choices);
   for (const auto& [key, node] : table) {
-    const SetupKey* known = find("source", key.str());
     if (key.str() == "name") {
       result.name = name(node);
     } else if (key.str() == "from") {
       result.from = text_of({"from", KeyKind::path}, node);
     } else if (key.str() == "pose") {
       result.pose = pose(node);
-    } else if (known == nullptr) {
-      fail(key.source(), fmt::format("'{}' is no key of [[source]]; its keys are {}", key.str(),
-                                     key_names("source")));
-    } else if (!given.contains(option_of(known->key))) {
-      give(own, *known, node, "[source]");
     } else {
-      (void)text_of(*known, node);  // the command line wins, but the type has to be right
+      take(taker, options, "source", key, node);
     }
   }
   if (result.from.empty()) {
@@ -221,8 +200,8 @@ SourceSetup SetupFile::source(const Names& given, const toml::table& table,
   return result;
 }
 
-std::vector<SourceSetup> SetupFile::sources(const Names& given, const toml::node& node,
-                                            const SourceChoices& common) const {
+std::vector<SourceSetup> SetupFile::sources(const TouchOptions& options,
+                                            const toml::node& node) const {
   const toml::array* list = node.as_array();
   if (list == nullptr || !list->is_homogeneous(toml::node_type::table)) {
     fail(node.source(), "'source' is not written as [[source]], once for each source");
@@ -230,7 +209,7 @@ std::vector<SourceSetup> SetupFile::sources(const Names& given, const toml::node
   std::vector<SourceSetup> result;
   std::set<std::string> names;
   for (const toml::node& each : *list) {
-    result.push_back(source(given, *each.as_table(), common));
+    result.push_back(source(options, *each.as_table()));
     const std::string& name = result.back().name;
     if (name.empty() || names.insert(name).second) continue;
     fail(each.source(), fmt::format("two sources are named '{}'; give each its own name", name));
@@ -238,32 +217,37 @@ std::vector<SourceSetup> SetupFile::sources(const Names& given, const toml::node
   return result;
 }
 
-void SetupFile::apply(CLI::App& command, TouchOptions& options) const {
-  const toml::table file = parse();
+void SetupFile::check_sections(const toml::table& file) const {
   for (const auto& [key, node] : file) {
-    if (key.str() == "source") continue;
-    if (keys_of(key.str()).empty()) {
-      fail(key.source(), fmt::format("'{}' is no part of a set-up; its parts are {}", key.str(),
-                                     section_names()));
-    }
-    if (!node.is_table()) {
+    if (keys_of(key.str()).empty()) fail(key.source(), unknown_section(key.str()));
+    if (key.str() != "source" && !node.is_table()) {
       fail(node.source(), fmt::format("'{0}' is {1}; write [{0}] and its keys in lines below",
                                       key.str(), type_name(node)));
     }
   }
-  const Names given = given_options(command);  // before any section counts as given
-  for (const auto& [key, node] : file) {
-    if (key.str() != "source") fill_section(command, key.str(), *node.as_table());
+}
+
+void SetupFile::apply(TouchOptions& options) const {
+  const toml::table file = parse();
+  check_sections(file);
+  CLI::App taker;
+  add_touch_options(taker, options);
+  add_setup_options(taker, options);
+  for (const auto& [section, node] : file) {
+    if (section.str() == "source") continue;
+    for (const auto& [key, value] : *node.as_table()) {
+      take(taker, options, section.str(), key, value);
+      options.described.insert(option_of(key.str()));
+    }
   }
-  if (const toml::node* list = file.get("source")) {
-    options.setup_sources = sources(given, *list, options.choices);
-  }
+  if (const toml::node* list = file.get("source")) options.setup_sources = sources(options, *list);
 }
 
 }  // namespace
 
-void apply_setup(CLI::App& command, TouchOptions& options) {
-  if (!options.setup.empty()) SetupFile(options.setup).apply(command, options);
+void apply_setup(const CLI::App& command, TouchOptions& options) {
+  options.given = given_options(command);
+  if (!options.setup.empty()) SetupFile(options.setup).apply(options);
 }
 
 }  // namespace palpate::app

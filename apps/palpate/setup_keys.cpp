@@ -1,7 +1,12 @@
 #include "apps/palpate/setup_keys.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <vector>
+
+#include "apps/palpate/suggestion.hpp"
 
 namespace palpate::app {
 
@@ -26,7 +31,8 @@ constexpr auto kReading = std::to_array<SetupKey>({
     {"viewpoint", numbers},
 });
 
-constexpr auto kDetail = std::to_array<SetupKey>({{"radius", number}, {"voxel", number}});
+constexpr auto kDetail =
+    std::to_array<SetupKey>({{"radius", number}, {"voxel", number}, {"normal_error", number}});
 
 constexpr auto kFrames = std::to_array<SetupKey>({
     {"policy", text},
@@ -34,6 +40,12 @@ constexpr auto kFrames = std::to_array<SetupKey>({
     {"silence", number},
     {"fade", number},
     {"noise", numbers_or_text},
+    {"nearest", number},
+    {"farthest", number},
+    {"memory", integer},
+    {"predict", flag},
+    {"fit_everywhere", flag},
+    {"clip_to_reach", flag},
     {"loop", flag},
 });
 
@@ -47,6 +59,7 @@ constexpr auto kField = std::to_array<SetupKey>({
     {"threshold", number},
     {"tool_radius", number},
     {"one_sided", flag},
+    {"sharp_edges", flag},
 });
 
 constexpr auto kMaterial = std::to_array<SetupKey>({
@@ -68,6 +81,19 @@ constexpr auto kHand = std::to_array<SetupKey>({
     {"rate", number},
 });
 
+constexpr auto kGuard = std::to_array<SetupKey>({
+    {"maximum_force", number},
+    {"slew", number},
+    {"watchdog", number},
+});
+
+constexpr auto kServo = std::to_array<SetupKey>({
+    {"processor", integer},
+    {"realtime", flag},
+    {"priority", integer},
+    {"lock_memory", flag},
+});
+
 constexpr auto kSource = joined(kReading, kDetail, kFrames);
 constexpr auto kStream = joined(kFrames, kTime);
 constexpr auto kSurface = joined(kField, kDetail);
@@ -82,11 +108,37 @@ constexpr auto kSections = std::to_array<Section>({{"source", kSource},
                                                    {"stream", kStream},
                                                    {"surface", kSurface},
                                                    {"material", kMaterial},
-                                                   {"hand", kHand}});
+                                                   {"hand", kHand},
+                                                   {"guard", kGuard},
+                                                   {"servo", kServo}});
 
-void append(std::string& list, std::string_view name) {
-  if (!list.empty()) list += ", ";
-  list += name;
+std::vector<std::string> section_names() {
+  std::vector<std::string> names;
+  for (const Section& each : kSections) names.emplace_back(each.name);
+  return names;
+}
+
+std::vector<std::string> key_names(std::string_view section) {
+  std::vector<std::string> names;
+  if (section == "source") names = {"name", "from", "pose"};
+  for (const SetupKey& each : keys_of(section)) names.emplace_back(each.key);
+  return names;
+}
+
+// "did you mean 'radius'? "; empty: nothing is near.
+std::string question(std::string_view word, const std::vector<std::string>& names) {
+  const std::string near = meant(word, names);
+  return near.empty() ? "" : fmt::format("did you mean '{}'? ", near);
+}
+
+// "it is one of [hand]; ", where another part has such a key.
+std::string elsewhere(std::string_view key) {
+  std::vector<std::string> places;
+  for (const Section& each : kSections) {
+    const std::vector<std::string> names = key_names(each.name);
+    if (std::ranges::find(names, key) != names.end()) places.push_back(in_brackets(each.name));
+  }
+  return places.empty() ? "" : fmt::format("it is one of {}; ", fmt::join(places, ", "));
 }
 
 }  // namespace
@@ -104,16 +156,20 @@ std::span<const SetupKey> keys_of(std::string_view section) {
   return {};
 }
 
-std::string section_names() {
-  std::string list;
-  for (const Section& each : kSections) append(list, each.name);
-  return list;
+std::string in_brackets(std::string_view section) {
+  return section == "source" ? "[[source]]" : fmt::format("[{}]", section);
 }
 
-std::string key_names(std::string_view section) {
-  std::string list = section == "source" ? "name, from, pose" : "";
-  for (const SetupKey& each : keys_of(section)) append(list, each.key);
-  return list;
+std::string unknown_section(std::string_view section) {
+  return fmt::format("'{}' is no part of a set-up; {}its parts are {}", section,
+                     question(section, section_names()), fmt::join(section_names(), ", "));
+}
+
+std::string unknown_key(std::string_view section, std::string_view key) {
+  const std::string there = elsewhere(key);
+  return fmt::format("'{}' is no key of {}; {}its keys are {}", key, in_brackets(section),
+                     there.empty() ? question(key, key_names(section)) : there,
+                     fmt::join(key_names(section), ", "));
 }
 
 }  // namespace palpate::app

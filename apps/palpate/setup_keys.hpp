@@ -10,7 +10,7 @@ namespace palpate::app {
 enum class KeyKind { text, path, number, integer, flag, numbers, numbers_or_text };
 
 /// A key of a set-up file. It means what the option of its name means: both take the same values
-/// and are checked alike.
+/// and are checked alike. Some have an option in set-up files alone (add_setup_options()).
 struct SetupKey {
   std::string_view key;
   KeyKind kind = KeyKind::text;
@@ -23,10 +23,14 @@ struct SetupKey {
 /// [[source]]; `name`, `from` and `pose` belong there as well.
 [[nodiscard]] std::span<const SetupKey> keys_of(std::string_view section);
 
-/// "stream, surface, ..."
-[[nodiscard]] std::string section_names();
+/// "[surface]" or "[[source]]", as it is written.
+[[nodiscard]] std::string in_brackets(std::string_view section);
 
-/// "radius, voxel, ..."
-[[nodiscard]] std::string key_names(std::string_view section);
+/// What is wrong with a part that no set-up has, and which it has.
+[[nodiscard]] std::string unknown_section(std::string_view section);
+
+/// What is wrong with a key that `section` does not have: where it belongs or what may be meant,
+/// and which keys there are.
+[[nodiscard]] std::string unknown_key(std::string_view section, std::string_view key);
 
 }  // namespace palpate::app

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/palpate/arguments.hpp"
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/option_checks.hpp"
 #include "palpate/io/synthetic.hpp"
@@ -41,8 +42,7 @@ void add_stream_options(CLI::App& command, SourceChoices& o) {
       ->check(one_of(names_of(kPolicies)))
       ->type_name("NAME");
   add("--history", o.history, "N of average and crossfade, 1 to 7 (4)")
-      ->check(number("a whole number from 1 to 7",
-                     [](double x) { return x >= 1 && x <= 7 && x == static_cast<int>(x); }))
+      ->check(whole_number(1, 7))
       ->type_name("N");
   add("--silence", o.silence, "a surface that nothing confirmed for so long begins to fade (0.3)")
       ->check(positive())
@@ -52,7 +52,25 @@ void add_stream_options(CLI::App& command, SourceChoices& o) {
       "sd of a depth pixel, S0 + S1 z + S2 z^2 at z metres, and how much neighbours err together "
       "(C >= 1); or a sensor: kinect1, xtion, realsense, tof. Measured from the frames unless "
       "given")
+      ->check(parsed_by([](const std::string& text) { (void)parse_noise(text); }))
       ->type_name("S0,S1,S2[,C]");
+  add("--nearest", o.nearest, "the depth filter takes no depth nearer than this (0.1)")
+      ->check(number("a depth of 0.001 m or more", [](double x) { return x >= 1e-3; }))
+      ->type_name("METRES");
+  add("--farthest", o.farthest,
+      "nor one beyond this (20, or ten times the first frame's median where that is less)")
+      ->check(positive())
+      ->type_name("METRES");
+  command
+      .add_flag("--predict", o.predict,
+                wrapped("put what moves where it will be in a frame's time, as far as the depth "
+                        "filter can tell: less lag, more noise"))
+      ->group("Streams");
+  command
+      .add_flag("--clip-to-reach", o.clip_to_reach,
+                wrapped("of frames taken as clouds, prepare only what the tool can come to before "
+                        "the next one, as the paper does"))
+      ->group("Streams");
   command.add_flag("--loop", o.loop, "sequences begin anew at their end")->group("Streams");
 }
 
@@ -73,6 +91,7 @@ void add_reading_options(CLI::App& command, ReadingOptions& o) {
       ->check(positive())
       ->type_name("FACTOR");
   add("--intrinsics", o.intrinsics, "of a depth image, in pixels; needed for one")
+      ->check(parsed_by([](const std::string& text) { (void)parse_intrinsics(text); }))
       ->type_name("FX,FY,CX,CY");
   add("--depth-unit", o.depth_unit, "metres a step of a depth image (0.001)")
       ->check(positive())
@@ -84,6 +103,7 @@ void add_source_options(CLI::App& command, SourceChoices& o) {
   command
       .add_option("--viewpoint", o.viewpoint,
                   "where the sensor stood, in the cloud's frame: orients normals")
+      ->check(parsed_by([](const std::string& text) { (void)parse_point(text, "--viewpoint"); }))
       ->type_name("X,Y,Z")
       ->group("Reading");
   command
@@ -93,6 +113,14 @@ void add_source_options(CLI::App& command, SourceChoices& o) {
       ->group("Reading");
   add_surface_of_source(command, o);
   add_stream_options(command, o);
+}
+
+void add_source_setup_options(CLI::App& file, SourceChoices& o) {
+  file.add_option("--memory", o.memory)->check(whole_number(1, 255));
+  file.add_option("--normal-error", o.normal_error)
+      ->check(number("an angle from 0.0005 to 0.2 rad",
+                     [](double x) { return x >= 5e-4 && x <= 0.2; }));
+  file.add_flag("--fit-everywhere", o.fit_everywhere);
 }
 
 }  // namespace palpate::app

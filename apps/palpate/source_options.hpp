@@ -28,9 +28,16 @@ struct SourceChoices {
   std::optional<double> voxel;
   std::string policy;
   std::optional<int> history;
-  std::optional<double> silence;  ///< s
-  std::optional<double> fade;     ///< s
-  std::string noise;              ///< "s0,s1,s2[,correlation]"; empty: measured
+  std::optional<double> silence;       ///< s
+  std::optional<double> fade;          ///< s
+  std::string noise;                   ///< "s0,s1,s2[,correlation]"; empty: measured
+  std::optional<double> nearest;       ///< depth, m
+  std::optional<double> farthest;      ///< depth, m
+  std::optional<int> memory;           ///< frames
+  std::optional<double> normal_error;  ///< rad
+  bool predict = false;
+  bool fit_everywhere = false;
+  bool clip_to_reach = false;
   bool loop = false;
 };
 
@@ -45,8 +52,11 @@ struct SourceSetup {
 /// Adds the options that say how the bytes of a file become points.
 void add_reading_options(CLI::App& command, ReadingOptions& options);
 
-/// Adds every option of SourceChoices.
+/// Adds the options of the command line.
 void add_source_options(CLI::App& command, SourceChoices& choices);
+
+/// Adds those that a set-up file alone has.
+void add_source_setup_options(CLI::App& file, SourceChoices& choices);
 
 /// What a command takes as sources, for its help.
 [[nodiscard]] std::string cloud_help();

@@ -17,6 +17,7 @@
 #include "apps/palpate/touch_usage.hpp"
 #include "apps/palpate/words.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/servo/realtime.hpp"
 
 namespace palpate::app {
 
@@ -82,6 +83,12 @@ std::optional<LiveReport> play(Run& run, WaitingClock* clock, TouchStatistics& s
   return live;
 }
 
+// Cameras and preparation, whose threads are started later, stay off the servo's processor.
+std::optional<RealtimeRequest> leave_to_servo(const TouchOptions& options, bool real_time) {
+  if (!real_time || !options.live.processor) return {};
+  return leave_processor(*options.live.processor);
+}
+
 // The picture comes last: everything else is there if it cannot be drawn.
 void tell(const TouchReport& report, Outputs& outputs) {
   const TouchOptions& options = report.options;
@@ -107,6 +114,7 @@ void touch(const TouchOptions& options) {
   const bool explored = way.empty() || options.texture_amplitude > 0;
   SteadyWaitingClock steady;
   WaitingClock* clock = in_real_time(options) ? &steady : nullptr;
+  const std::optional<RealtimeRequest> left = leave_to_servo(options, clock != nullptr);
   Touched touched = prepare_touched(options, explored, clock);
   check_texture(options, touched.scene);
   const FieldOptions field = field_options(options);
@@ -115,7 +123,8 @@ void touch(const TouchOptions& options) {
   fill_felt(felt, touched, soft_material(options, hand.stiffness));
   Run run{options, touched, felt, hand, field, proxy_options(options, hand.stiffness)};
   TouchStatistics statistics(hand.steps);
-  const std::optional<LiveReport> live = play(run, clock, statistics, outputs);
+  std::optional<LiveReport> live = play(run, clock, statistics, outputs);
+  if (live && left) live->realtime.requests.push_back(*left);
   tell({touched, felt, options, statistics, field, run.proxy, hand.device->info().name,
         hand.plan ? &*hand.plan : nullptr, live ? &*live : nullptr},
        outputs);

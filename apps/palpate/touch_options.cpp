@@ -1,7 +1,6 @@
 #include "apps/palpate/touch_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/option_checks.hpp"
@@ -9,6 +8,8 @@
 namespace palpate::app {
 
 namespace {
+
+constexpr std::int64_t kLargestSeed = 1'000'000'000'000'000;
 
 void add_surface_options(CLI::App& command, TouchOptions& o) {
   const std::string group = "Surface (chosen from the data unless given)";
@@ -93,8 +94,7 @@ void add_hand_options(CLI::App& command, TouchOptions& o) {
       ->check(number("between 0.01 and 3600 s", [](double x) { return x >= 0.01 && x <= 3600; }))
       ->type_name("SECONDS");
   add("--seed", o.seed, "of the exploration: another one touches other places (1)")
-      ->check(number("a whole number of 0 or more",
-                     [](double x) { return x >= 0 && x <= 1e15 && x == std::floor(x); }))
+      ->check(whole_number(0, kLargestSeed))
       ->type_name("N");
   add("--rate", o.rate, "steps a second of the exploration and of a simulated device (1000)")
       ->check(number("between 500 and 10000 Hz", [](double x) { return x >= 500 && x <= 1e4; }))
@@ -172,8 +172,15 @@ void add_touch_options(CLI::App& command, TouchOptions& o) {
   add_feel_options(command, o);
   add_hand_options(command, o);
   add_time_options(command, o);
+  add_live_options(command, o.live);
   add_output_options(command, o);
   command.footer(kFooter);
+}
+
+void add_setup_options(CLI::App& file, TouchOptions& o) {
+  add_source_setup_options(file, o.choices);
+  file.add_flag("--sharp-edges", o.sharp_edges);
+  add_live_setup_options(file, o.live);
 }
 
 }  // namespace palpate::app

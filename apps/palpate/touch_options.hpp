@@ -2,17 +2,21 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "apps/palpate/live_options.hpp"
 #include "apps/palpate/source_options.hpp"
 
 namespace palpate::app {
 
 /// The command line of `palpate touch`. Lengths in metres; what is not set is chosen from the data.
 struct TouchOptions {
-  std::vector<std::string> clouds;  ///< sources of the command line
-  std::string setup;                ///< file that describes a set-up
+  std::set<std::string, std::less<>> given;      ///< that the command line itself has, as "--rate"
+  std::set<std::string, std::less<>> described;  ///< that the set-up file has for every source
+  std::vector<std::string> clouds;               ///< sources of the command line
+  std::string setup;                             ///< file that describes a set-up
   std::vector<SourceSetup> setup_sources;
   std::vector<std::string> poses;
   SourceChoices choices;  ///< of every source that the set-up file says nothing else of
@@ -24,6 +28,7 @@ struct TouchOptions {
   std::optional<double> threshold;
   double tool_radius = 0;
   bool one_sided = false;
+  bool sharp_edges = true;
 
   std::optional<double> stiffness;        ///< N/m
   std::optional<double> friction_static;  ///< the dynamic one unless given
@@ -42,6 +47,7 @@ struct TouchOptions {
 
   bool simulated_time = false;
   std::optional<double> latency;  ///< from stamp to touchable in simulated time, s
+  LiveOptions live;
 
   std::string log;
   std::string json;
@@ -50,5 +56,8 @@ struct TouchOptions {
 
 /// Adds every option of `palpate touch`.
 void add_touch_options(CLI::App& command, TouchOptions& options);
+
+/// Adds those that a set-up file alone has.
+void add_setup_options(CLI::App& file, TouchOptions& options);
 
 }  // namespace palpate::app

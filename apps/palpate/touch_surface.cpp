@@ -29,6 +29,7 @@ PrepareOptions prepare_options(const TouchOptions& options, const SourceChoices&
   result.voxel = choices.voxel;
   result.radius = choices.radius;
   result.minimum_radius = smallest_radius(options);
+  result.normal_error = choices.normal_error.value_or(result.normal_error);
   result.kernel = kernel(options);
   result.paper = options.preset == "paper";
   result.material_from_intensity = wants_material(options);
@@ -49,13 +50,22 @@ PolicyOptions policy_options(const TouchOptions& options, const ChosenSource& so
   result.history = choices.history.value_or(result.history);
   result.silence = choices.silence.value_or(result.silence);
   result.fade = choices.fade.value_or(result.fade);
+  result.fit_everywhere = choices.fit_everywhere;
+  result.clip_to_reach = choices.clip_to_reach;
   return result;
 }
 
 DepthFilterOptions depth_options(const SourceChoices& choices) {
   DepthFilterOptions result;
   if (!choices.noise.empty()) result.noise = parse_noise(choices.noise);
-  return result;
+  result.normal_error = choices.normal_error.value_or(result.normal_error);
+  result.memory = choices.memory.value_or(result.memory);
+  result.predict = choices.predict;
+  result.nearest = choices.nearest.value_or(result.nearest);
+  result.farthest = choices.farthest.value_or(result.farthest);
+  if (result.nearest < result.farthest) return result;
+  throw UsageError(fmt::format("--nearest {} is not below --farthest {}; no depth is between them",
+                               result.nearest, result.farthest));
 }
 
 }  // namespace
@@ -84,6 +94,7 @@ FieldOptions field_options(const TouchOptions& options) {
   if (options.threshold) result.threshold = *options.threshold;
   result.tool_radius = options.tool_radius;
   if (options.one_sided) result.two_sided = false;
+  if (!options.sharp_edges) result.sharp_edges = false;
   return result;
 }
 

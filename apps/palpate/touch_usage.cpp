@@ -8,6 +8,7 @@
 #include "apps/palpate/depth_file.hpp"
 #include "apps/palpate/distinct_files.hpp"
 #include "apps/palpate/errors.hpp"
+#include "apps/palpate/option_uses.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
@@ -58,9 +59,6 @@ void check_surface(const TouchOptions& options) {
 
 void check_source(const TouchOptions& options, const ChosenSource& source) {
   const SourceOptions checked = source_options(options, source);  // parses what is text
-  if (!source.choices.reading.intrinsics.empty()) {
-    (void)parse_intrinsics(source.choices.reading.intrinsics);
-  }
   const double smallest = smallest_radius(options);
   if (checked.prepare.radius && *checked.prepare.radius < smallest) {
     throw UsageError(
@@ -72,54 +70,6 @@ void check_source(const TouchOptions& options, const ChosenSource& source) {
               !(source.choices.unorganised || options.preset == "paper"),
           "--policy morph is for depth images with rows and columns; leave --unorganised and "
           "--preset paper out or choose another policy");
-}
-
-// What the sources are, all together.
-struct Kinds {
-  bool lives = false;
-  bool recorded = false;  // and may begin anew
-  bool depth = false;     // seen by the depth filter, or could be
-  bool cloud = false;     // taken as points alone
-};
-
-Kinds kinds_of(const TouchOptions& options, const std::vector<ChosenSource>& sources) {
-  Kinds kinds;
-  for (const ChosenSource& source : sources) {
-    const std::string& path = source.argument.path;
-    const bool live = lives(path);
-    const bool depth = live || is_depth_image(path);
-    kinds.lives = kinds.lives || live;
-    kinds.recorded =
-        kinds.recorded || (live && (!path.starts_with("camera:") || path.ends_with(".oni")));
-    kinds.depth = kinds.depth || depth;
-    kinds.cloud = kinds.cloud || !depth || taken_as_cloud(options, source);
-  }
-  return kinds;
-}
-
-// Options that none of the sources has a use for.
-void check_use(const SourceChoices& choices, const Kinds& kinds) {
-  const bool in_time =
-      !choices.policy.empty() || choices.history || choices.silence || choices.fade;
-  require(kinds.lives || !in_time,
-          "--policy, --history, --silence and --fade are of cameras and sequences; what stands "
-          "still needs none");
-  require(kinds.recorded || !choices.loop, "--loop is of sequences; no source is one");
-  require(kinds.depth || choices.noise.empty(), "--noise is of depths; no source has any");
-  require(kinds.depth || !choices.unorganised,
-          "--unorganised is of depth images; no source is one");
-  const bool of_clouds = choices.radius || choices.voxel || !choices.viewpoint.empty();
-  require(
-      kinds.cloud || !of_clouds,
-      "--radius, --voxel and --viewpoint are of clouds; the depth filter chooses by itself what "
-      "pixels and noise allow: leave them out, or add --unorganised");
-}
-
-void check_time(const TouchOptions& options, bool any_lives) {
-  require(any_lives || !options.latency,
-          "--latency is of cameras and sequences; what stands still is there from the start");
-  require(options.simulated_time || !options.latency,
-          "--latency is of simulated time; add --simulated-time");
 }
 
 void check_feel(const TouchOptions& options) {
@@ -148,14 +98,7 @@ void check_usage(const TouchOptions& options) {
   check_feel(options);
   const std::vector<ChosenSource> sources = choose_sources(options);
   for (const ChosenSource& source : sources) check_source(options, source);
-  const Kinds kinds = kinds_of(options, sources);
-  check_use(options.choices, kinds);
-  check_time(options, kinds.lives);
-  if (options.trajectory.empty()) return;
-  require(!options.duration, "--duration is of the exploration; a --trajectory has its own");
-  require(!options.rate || options.device == "simulated",
-          "--rate is of the exploration or of --device simulated; a --trajectory has its own");
-  require(!options.seed, "--seed is of the exploration; a --trajectory is played as it is");
+  check_use(options, sources);
 }
 
 void check_trajectory(const TouchOptions& options, const Trajectory& trajectory) {

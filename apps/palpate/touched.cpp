@@ -112,7 +112,7 @@ void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSour
   result.format = fmt::format("depth image, {} x {}", frame.camera.width, frame.camera.height);
   result.depth_image = true;
   result.options.policy.fit_everywhere = true;
-  believe_no_farther(frame, result.options.depth);
+  if (!chosen.choices.farthest) believe_no_farther(frame, result.options.depth);
   const Waiting waiting(fmt::format("preparing {}", chosen.argument.name));
   const auto start = WallClock::now();
   push_alone(scene.add(chosen.argument.name, result.options), frame, result);
@@ -125,7 +125,7 @@ void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& cho
   result.camera = open_live(chosen, clock);
   const DepthFrame first = first_frame(*result.camera);
   result.as_cloud = taken_as_cloud(options, chosen);
-  believe_no_farther(first, result.options.depth);
+  if (!chosen.choices.farthest) believe_no_farther(first, result.options.depth);
   Source& source = scene.add(chosen.argument.name, result.options);
   if (explored) push_alone(source, first, result);
 }

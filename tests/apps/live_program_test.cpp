@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -78,6 +79,33 @@ TEST(LiveProgram, EndsWithItsReportWhenInterrupted) {
   const Json run = Json::parse(shell.read("run.json"));
   EXPECT_EQ(run["live"]["interrupted"], true);
   EXPECT_GT(run["steps"], 10);
+}
+
+TEST(LiveProgram, GuardAndServoAreAsTheSetUpSays) {
+  Shell shell;
+  std::string way = "t,hip_x,hip_y,hip_z\n";
+  for (int i = 0; i < 1500; ++i) {
+    way += fmt::format("{},0,0,{}\n", 1e-3 * i, std::max(-4e-3, 0.02 - 1e-4 * i));
+  }
+  shell.write("way.csv", way);
+  shell.write("live.toml",
+              "[[source]]\nfrom = \"camera:simulated:still\"\n"
+              "[hand]\ntrajectory = \"way.csv\"\n"
+              "[guard]\nmaximum_force = 0.5\nslew = 50\nwatchdog = 0.1\n"
+              "[servo]\nprocessor = 1023\nrealtime = false\nlock_memory = false\n");
+  const Outcome outcome = shell.run("touch --setup live.toml --json run.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json run = Json::parse(shell.read("run.json"));
+  const Json& guard = run["live"]["guard"];
+  EXPECT_EQ(guard["maximum_force_N"], 0.5);
+  EXPECT_EQ(guard["slew_N_per_s"], 50);
+  EXPECT_EQ(guard["watchdog_s"], 0.1);
+  EXPECT_GT(guard["clamped"], 0) << "500 N/m and 4 mm are 2 N";
+  EXPECT_LE(run["largest_force_N"].get<double>(), 0.5 + 1e-9);
+  EXPECT_GT(run["largest_force_N"].get<double>(), 0.4);
+  ASSERT_EQ(run["live"]["realtime"].size(), 2u) << "nothing else was asked for";
+  EXPECT_EQ(run["live"]["realtime"][0]["what"], "pinned to processor 1023");
+  EXPECT_EQ(run["live"]["realtime"][1]["what"], "processor 1023 left to the servo");
 }
 
 TEST(LiveProgram, RefusesRatesThatNoServoKeepsInRealTime) {

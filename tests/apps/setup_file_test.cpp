@@ -7,6 +7,8 @@
 
 #include "apps/palpate/chosen_source.hpp"
 #include "apps/palpate/errors.hpp"
+#include "apps/palpate/setup_keys.hpp"
+#include "apps/palpate/touch_surface.hpp"
 #include "apps/program.hpp"
 #include "palpate/base/error.hpp"
 
@@ -85,6 +87,115 @@ TEST(SetupFile, FillsInWhatTheCommandLineDoesNotSay) {
   EXPECT_EQ(sources[1].choices.policy, "morph") << "of [stream], for sources that say nothing else";
 }
 
+constexpr const char* kEverything = R"([[source]]
+from = "camera:simulated"
+memory = 3
+[[source]]
+name = "other"
+from = "camera:simulated"
+predict = false
+fit_everywhere = false
+normal_error = 0.005
+
+[reading]
+viewpoint = [0, 0, 1.2]
+unorganised = false
+
+[stream]
+silence = 0.7
+fade = 0.9
+nearest = 0.4
+farthest = 2
+memory = 12
+predict = true
+fit_everywhere = true
+clip_to_reach = true
+
+[surface]
+normal_error = 0.01
+sharp_edges = false
+
+[guard]
+maximum_force = 2.5
+slew = 150
+watchdog = 0.02
+
+[servo]
+processor = 1
+realtime = false
+priority = 60
+lock_memory = false
+)";
+
+TEST(SetupFile, EveryChoiceReachesTheLibrary) {
+  const Shell shell;
+  const TouchOptions options = parsed(shell, kEverything, "");
+  const std::vector<ChosenSource> sources = choose_sources(options);
+  ASSERT_EQ(sources.size(), 2u);
+  const SourceOptions first = source_options(options, sources[0]);
+  EXPECT_EQ(first.policy.silence, 0.7);
+  EXPECT_EQ(first.policy.fade, 0.9);
+  EXPECT_TRUE(first.policy.fit_everywhere);
+  EXPECT_TRUE(first.policy.clip_to_reach);
+  EXPECT_EQ(first.depth.nearest, 0.4);
+  EXPECT_EQ(first.depth.farthest, 2);
+  EXPECT_EQ(first.depth.memory, 3) << "its own";
+  EXPECT_TRUE(first.depth.predict);
+  EXPECT_EQ(first.depth.normal_error, 0.01);
+  EXPECT_EQ(first.prepare.normal_error, 0.01);
+  ASSERT_TRUE(first.prepare.viewpoint);
+  EXPECT_EQ(first.prepare.viewpoint->z(), 1.2);
+  const SourceOptions second = source_options(options, sources[1]);
+  EXPECT_EQ(second.depth.memory, 12) << "of [stream]";
+  EXPECT_FALSE(second.depth.predict);
+  EXPECT_FALSE(second.policy.fit_everywhere);
+  EXPECT_EQ(second.depth.normal_error, 0.005);
+  EXPECT_FALSE(field_options(options).sharp_edges);
+  const GuardOptions guard = guard_options(options.live);
+  EXPECT_EQ(guard.maximum_force, 2.5);
+  EXPECT_EQ(guard.slew, 150);
+  EXPECT_EQ(guard.silence, 0.02);
+  const RealtimeOptions realtime = realtime_options(options.live);
+  EXPECT_EQ(realtime.processor, 1);
+  EXPECT_FALSE(realtime.realtime_priority);
+  EXPECT_EQ(realtime.priority, 60);
+  EXPECT_FALSE(realtime.lock_memory);
+}
+
+TEST(SetupFile, WhatIsNotSaidIsAsTheLibraryHasIt) {
+  const Shell shell;
+  const TouchOptions options = parsed(shell, "[[source]]\nfrom = \"camera:simulated\"\n", "");
+  const SourceOptions source = source_options(options, choose_sources(options).front());
+  EXPECT_EQ(source.policy.silence, PolicyOptions{}.silence);
+  EXPECT_FALSE(source.policy.fit_everywhere);
+  EXPECT_FALSE(source.policy.clip_to_reach);
+  EXPECT_FALSE(source.depth.predict);
+  EXPECT_EQ(source.depth.memory, DepthFilterOptions{}.memory);
+  EXPECT_EQ(source.depth.farthest, DepthFilterOptions{}.farthest);
+  EXPECT_EQ(source.depth.normal_error, DepthFilterOptions{}.normal_error);
+  EXPECT_EQ(source.prepare.normal_error, PrepareOptions{}.normal_error);
+  EXPECT_TRUE(field_options(options).sharp_edges);
+  EXPECT_EQ(guard_options(options.live).slew, GuardOptions{}.slew);
+  EXPECT_EQ(guard_options(options.live).maximum_force, GuardOptions{}.maximum_force);
+  EXPECT_EQ(guard_options(options.live).silence, GuardOptions{}.silence);
+  EXPECT_TRUE(realtime_options(options.live).realtime_priority);
+  EXPECT_FALSE(realtime_options(options.live).processor);
+}
+
+TEST(SetupFile, EveryPartAndKeyIsTaken) {
+  for (const char* section :
+       {"source", "reading", "stream", "surface", "material", "hand", "guard", "servo"}) {
+    ASSERT_FALSE(keys_of(section).empty()) << section;
+    TouchOptions options;
+    CLI::App taker;
+    add_touch_options(taker, options);
+    add_setup_options(taker, options);
+    for (const SetupKey& key : keys_of(section)) {
+      EXPECT_NE(taker.get_option_no_throw(option_of(key.key)), nullptr) << key.key;
+    }
+  }
+}
+
 TEST(SetupFile, CommandLineWins) {
   const Shell shell;
   const TouchOptions options = parsed(
@@ -107,17 +218,46 @@ TEST(SetupFile, ErrorsNameFileLineAndKey) {
     std::vector<const char*> words;
   };
   const Case cases[] = {
-      {"[surface]\nfield = \"pointset\"\nraduis = 0.01\n", {"line 3", "'raduis'", "radius"}},
-      {"[surfaces]\nradius = 1\n", {"line 1", "'surfaces'", "surface"}},
+      {"[surface]\nfield = \"pointset\"\nraduis = 0.01\n",
+       {"line 3", "'raduis'", "did you mean 'radius'?", "keys are field"}},
+      {"[surfaces]\nradius = 1\n", {"line 1", "'surfaces'", "did you mean 'surface'?"}},
+      {"[hand]\nradius = 1\n", {"line 2", "no key of [hand]", "one of [[source]], [surface]"}},
+      {"[material]\nsurface_colour = 1\n", {"line 2", "'surface_colour'", "keys are stiffness"}},
       {"[surface]\nradius = \"wide\"\n", {"line 2", "'radius'", "text", "a number"}},
       {"[surface]\n\nradius = -0.5\n", {"line 3", "'radius'", "above 0"}},
-      {"[surface]\nradius = nan\n", {"line 2", "'radius'", "above 0"}},
+      {"[surface]\nradius = nan\n", {"line 2", "'radius'", "not finite", "above 0"}},
+      {"[stream]\nsilence = inf\n", {"line 2", "'silence'", "not finite"}},
+      {"[stream]\nmemory = 0\n", {"line 2", "'memory'", "from 1 to 255"}},
+      {"[stream]\nmemory = -1\n", {"line 2", "'memory'", "'-1'", "from 1 to 255"}},
+      {"[stream]\nhistory = -1\n", {"line 2", "'history'", "'-1'"}},
+      {"[stream]\npredict = \"yes\"\n", {"line 2", "'predict'", "text", "true or false"}},
+      {"[stream]\nnearest = 0\n", {"line 2", "'nearest'", "0.001 m or more"}},
+      {"[stream]\nnoise = [1, inf, 1]\n", {"line 2", "'noise'", "not a finite number"}},
+      {"[stream]\nnoise = \"radar\"\n", {"line 2", "'noise'", "radar"}},
+      {"[stream]\npolicy = \"\"\n", {"line 2", "'policy'", "empty"}},
+      {"[surface]\nnormal_error = 1\n", {"line 2", "'normal_error'", "0.2 rad"}},
+      {"[reading]\nviewpoint = [0, 1]\n", {"line 2", "'viewpoint'", "2 numbers instead of 3"}},
+      {"[guard]\nmaximum_force = 0\n", {"line 2", "'maximum_force'", "above 0"}},
+      {"[guard]\nmaximum_force = inf\n", {"line 2", "'maximum_force'", "not finite"}},
+      {"[guard]\nslew = -300\n", {"line 2", "'slew'", "above 0"}},
+      {"[guard]\nwatchdog = 5\n", {"line 2", "'watchdog'", "0.001 to 1 s"}},
+      {"[guard]\nforce = 3\n", {"line 2", "no key of [guard]", "maximum_force"}},
+      {"[servo]\nprocessor = -1\n", {"line 2", "'processor'", "'-1'", "from 0"}},
+      {"[servo]\nprocessor = 1.0\n", {"line 2", "'processor'", "a whole number"}},
+      {"[servo]\npriority = 100\n", {"line 2", "'priority'", "from 1 to 99"}},
+      {"[servo]\nrealtime = 1\n", {"line 2", "'realtime'", "true or false"}},
       {"[surface]\nfield = 3\n", {"line 2", "'field'", "a whole number", "text"}},
       {"[surface]\nfield = \"mesh\"\n", {"line 2", "'field'", "mesh"}},
       {"[stream]\nhistory = 2.5\n", {"line 2", "'history'", "a whole number"}},
       {"[stream]\nhistory = 9\n", {"line 2", "'history'", "1 to 7"}},
       {"[stream]\nloop = 1\n", {"line 2", "'loop'", "true or false"}},
-      {"[hand]\nseed = -1\n", {"line 2", "'seed'", "-1"}},
+      {"[hand]\nseed = -1\n", {"line 2", "'seed'", "'-1'", "whole number from 0"}},
+      {"[hand]\nseed = 1.5\n", {"line 2", "'seed'", "a whole number"}},
+      {"[hand]\nseed = 9223372036854775807\n", {"line 2", "'seed'", "whole number from 0"}},
+      {"[[source]]\nfrom = \"\"\n", {"line 2", "'from'", "empty"}},
+      {"[[source]]\nfrom = \"a.ply\"\npose = [0, 0, nan, 0, 0, 0, 1]\n",
+       {"line 3", "not a finite number"}},
+      {"[[source]]\nfrom = \"a.ply\"\npredcit = true\n", {"line 3", "did you mean 'predict'?"}},
       {"[[source]]\nfrom = \"a.ply\"\n[[source]]\nname = \"b\"\n", {"line 3", "'from'"}},
       {"[[source]]\nfrom = \"a.ply\"\npose = [1, 2]\n", {"line 3", "2 numbers instead of 7"}},
       {"[[source]]\nfrom = \"a.ply\"\npose = [0, 0, 0, 0, 0, 0, 2]\n", {"line 3", "quaternion"}},
@@ -138,6 +278,11 @@ TEST(SetupFile, ErrorsNameFileLineAndKey) {
       EXPECT_NE(text.find(word), std::string::npos) << each.toml << "\n" << text << "\n" << word;
     }
   }
+}
+
+TEST(SetupFile, TypesHaveToBeRightEvenWhereTheCommandLineWins) {
+  const Shell shell;
+  EXPECT_THROW((void)parsed(shell, "[surface]\nradius = \"wide\"\n", "--radius 0.01"), Error);
 }
 
 TEST(SetupFile, OneThatIsNotThereIsAnError) {
@@ -165,6 +310,21 @@ TEST(SetupFile, ProgramTouchesWhatItDescribes) {
   ASSERT_EQ(wrong.code, 0) << wrong.err;
   log = columns(shell.read("log.csv"));
   EXPECT_NEAR(std::stod(log["fz"][200]), 600 * 3e-3, 0.04);
+}
+
+TEST(SetupFile, ServesRunsOfSeveralKindsButNotOtherSources) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  shell.write("hand.csv", press_and_slide());
+  const std::string common =
+      "[[source]]\nfrom = \"plane.xyz\"\n[guard]\nmaximum_force = 1\n[hand]\nseed = 3\n";
+  shell.write("desk.toml", common + "[stream]\nlatency = 0.02\n");
+  const Outcome played = shell.run("touch --setup desk.toml --trajectory hand.csv");
+  EXPECT_EQ(played.code, 0) << played.err;
+  shell.write("desk.toml", common + "[stream]\npredict = true\n");
+  const Outcome useless = shell.run("touch --setup desk.toml --trajectory hand.csv");
+  EXPECT_EQ(useless.code, 2) << useless.err;
+  EXPECT_NE(useless.err.find("--predict"), std::string::npos) << useless.err;
 }
 
 }  // namespace

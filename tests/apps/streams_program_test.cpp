@@ -140,6 +140,54 @@ TEST(Streams, SequenceEndsAndItsLastSurfaceStaysOrLoops) {
   EXPECT_EQ(report["sources"][0]["frames_touchable"], 75);
 }
 
+TEST(Streams, DepthsOutOfRangeAreNotBelieved) {
+  Shell shell;
+  write_wall(shell, 6);
+  shell.write("way.csv", into_wall(300));
+  const std::string command =
+      "touch sequence:wall --simulated-time --trajectory way.csv --log log.csv ";
+  for (const auto& [range, force] :
+       std::initializer_list<std::pair<const char*, double>>{{"", -2},
+                                                             {"--nearest 0.4 --farthest 0.6", -2},
+                                                             {"--farthest 0.4", 0},
+                                                             {"--nearest 0.6", 0}}) {
+    const Outcome outcome = shell.run(command + range);
+    ASSERT_EQ(outcome.code, 0) << range << "\n" << outcome.err;
+    EXPECT_NEAR(number(columns(shell.read("log.csv"))["fz"].back()), force, 0.1) << range;
+  }
+}
+
+TEST(Streams, ClippingToReachLeavesTheForceAndMostPointsOut) {
+  Shell shell;
+  write_wall(shell, 12);
+  shell.write("way.csv", into_wall(380));
+  const std::string command =
+      "touch sequence:wall --unorganised --simulated-time --trajectory way.csv --log log.csv "
+      "--json r.json ";
+  double points[2] = {};
+  for (const int clipped : {0, 1}) {
+    const Outcome outcome = shell.run(command + (clipped == 1 ? "--clip-to-reach" : ""));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NEAR(number(columns(shell.read("log.csv"))["fz"].back()), -2, 0.1) << clipped;
+    points[clipped] = Json::parse(shell.read("r.json"))["sources"][0]["points_felt"];
+  }
+  EXPECT_GT(points[1], 0);
+  EXPECT_LT(points[1], 0.9 * points[0]);
+}
+
+TEST(Streams, PredictionChangesWhatMovesAndIsOffUnlessAsked) {
+  Shell shell;
+  const std::string command =
+      "touch camera:simulated:approach,noise=a --simulated-time --duration 1 --log ";
+  ASSERT_EQ(shell.run(command + "a.csv").code, 0);
+  shell.write("no.toml", "[stream]\npredict = false\n");
+  ASSERT_EQ(shell.run(command + "b.csv --setup no.toml").code, 0);
+  EXPECT_EQ(without_times(shell, "a.csv"), without_times(shell, "b.csv"));
+  const Outcome outcome = shell.run(command + "c.csv --predict");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(without_times(shell, "a.csv"), without_times(shell, "c.csv"));
+}
+
 TEST(Streams, BrokenImageIsReportedAndTheRestIsFelt) {
   Shell shell;
   write_wall(shell, 6);
