@@ -70,13 +70,33 @@ bool is_processor(int processor) {
   return processor >= 0 && processor < CPU_SETSIZE;
 }
 
+// Those that the calling thread may run on: "0-3, 6".
+std::string allowed_processors() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (pthread_getaffinity_np(pthread_self(), sizeof set, &set) != 0) return "unknown ones";
+  const auto allowed = [&set](int i) {
+    return is_processor(i) && CPU_ISSET(static_cast<std::size_t>(i), &set);
+  };
+  std::string list;
+  for (int first = 0; first < CPU_SETSIZE; ++first) {
+    if (!allowed(first)) continue;
+    int last = first;
+    while (allowed(last + 1)) ++last;
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", first);
+    if (last > first) list += fmt::format("-{}", last);
+    first = last;
+  }
+  return list;
+}
+
 RealtimeRequest answered(std::string what, int error) {
   RealtimeRequest request{std::move(what), error == 0, {}};
   if (!request.granted) {
     request.remedy = fmt::format(
-        "{}; there is none of that number, or this process may not use "
-        "it: 'taskset -p $$' tells which it may",
-        reason(error));
+        "{}; this thread may run on {}: give one of these, or permit others where the program is "
+        "started (systemd: AllowedCPUs=, containers: --cpuset-cpus, or without taskset)",
+        reason(error), allowed_processors());
   }
   return request;
 }

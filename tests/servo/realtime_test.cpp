@@ -1,5 +1,6 @@
 #include "palpate/servo/realtime.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sched.h>
 
@@ -8,6 +9,19 @@
 
 namespace palpate {
 namespace {
+
+// That the calling thread may run on.
+cpu_set_t allowed() {
+  cpu_set_t set;
+  EXPECT_EQ(sched_getaffinity(0, sizeof set, &set), 0);
+  return set;
+}
+
+int first_of(const cpu_set_t& set) {
+  int processor = 0;
+  while (!CPU_ISSET(static_cast<std::size_t>(processor), &set)) ++processor;
+  return processor;
+}
 
 RealtimeReport asked(const RealtimeOptions& options) {
   RealtimeReport report;
@@ -34,30 +48,37 @@ TEST(Realtime, SaysWhatIsWrongWithWhatCannotBe) {
       {.realtime_priority = true, .priority = 1000, .lock_memory = false, .processor = 100'000});
   ASSERT_EQ(report.requests.size(), 2u);
   EXPECT_FALSE(report.all_granted());
-  EXPECT_NE(report.requests[0].remedy.find("taskset"), std::string::npos);
+  const std::string& pinned = report.requests[0].remedy;
+  EXPECT_NE(pinned.find("AllowedCPUs="), std::string::npos) << pinned;
+  EXPECT_NE(pinned.find(fmt::format("may run on {}", first_of(allowed()))), std::string::npos)
+      << pinned;
   EXPECT_NE(report.requests[1].remedy.find("1 to 99"), std::string::npos);
   const std::string words = in_words(report);
   EXPECT_EQ(std::ranges::count(words, '\n'), 2) << words;
   EXPECT_NE(words.find("not granted"), std::string::npos);
 }
 
-// That the calling thread may run on.
-cpu_set_t allowed() {
-  cpu_set_t set;
-  EXPECT_EQ(sched_getaffinity(0, sizeof set, &set), 0);
-  return set;
-}
-
-int first_of(const cpu_set_t& set) {
-  int processor = 0;
-  while (!CPU_ISSET(static_cast<std::size_t>(processor), &set)) ++processor;
-  return processor;
-}
-
 TEST(Realtime, PinsToAProcessorThatThereIs) {
-  const RealtimeReport report =
-      asked({.realtime_priority = false, .lock_memory = false, .processor = first_of(allowed())});
-  EXPECT_TRUE(report.all_granted()) << in_words(report);
+  const int processor = first_of(allowed());
+  std::jthread([&] {
+    const RealtimeReport report =
+        make_realtime({.realtime_priority = false, .lock_memory = false, .processor = processor});
+    EXPECT_TRUE(report.all_granted()) << in_words(report);
+    const cpu_set_t pinned = allowed();
+    EXPECT_EQ(CPU_COUNT(&pinned), 1);
+    EXPECT_EQ(first_of(pinned), processor);
+  }).join();
+}
+
+TEST(Realtime, WhatIsNotThereLeavesTheThreadWhereItMayRun) {
+  const cpu_set_t before = allowed();
+  std::jthread([&] {
+    const RealtimeReport report =
+        make_realtime({.realtime_priority = false, .lock_memory = false, .processor = -1});
+    EXPECT_FALSE(report.all_granted());
+    const cpu_set_t after = allowed();
+    EXPECT_TRUE(CPU_EQUAL(&before, &after));
+  }).join();
 }
 
 TEST(Realtime, LeavesAProcessorToTheServoWhichStillCanBePinnedToIt) {
