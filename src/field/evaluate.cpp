@@ -5,6 +5,7 @@
 
 #include "field/oriented.hpp"
 #include "field/sharp_edges.hpp"
+#include "field/united_height.hpp"
 
 // Notation as in docs/architecture.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
 // A = sum v q / sum v, Nb = sum v n / sum v, W the united support, R(x) = sum w R / sum w.
@@ -139,6 +140,17 @@ Value height_at(const ImplicitSurface& surface, const simd::Columns& columns, co
   return {oriented.f, oriented.base + vector(sum)};
 }
 
+/// The same, where several sources may tell of one surface at different heights.
+Value united_height_at(const ImplicitSurface& surface, const simd::Columns& columns,
+                       const double x[3], const simd::Sums& sums, const Value& radius,
+                       double sign) noexcept {
+  const FieldOptions& options = surface.options;
+  const Value height = height_at(surface, columns, x, sums, radius, sign);
+  if (columns.sources == 1 || options.gradient != GradientKind::exact) return height;
+  const Value shift = united_shift({surface.sums, &columns, options.kernel, x, &sums, radius});
+  return {height.f + shift.f, height.grad + shift.grad};
+}
+
 /// Cap, tool and blend around the normals' surface (algorithm.md 1.4, 1.5).
 Value capped(const ImplicitSurface& surface, const simd::Sums& sums, const Support& support,
              const Value& height, double sign) noexcept {
@@ -192,7 +204,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   if (has_normals(options, sums, support.plain)) {
     const double sign = options.two_sided && side < 0 ? -1 : 1;
     const Value height =
-        height_at(surface, patch.columns(), local.data(), sums, support.radius, sign);
+        united_height_at(surface, patch.columns(), local.data(), sums, support.radius, sign);
     sample.height = height.f;
     value = capped(surface, sums, support, height, sign);
   } else {

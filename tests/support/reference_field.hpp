@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -9,47 +8,10 @@
 #include "palpate/field/field_options.hpp"
 #include "palpate/field/kernel.hpp"
 #include "palpate/field/surface_points.hpp"
+#include "support/dual.hpp"
+#include "support/united_reference.hpp"
 
 namespace palpate::test {
-
-/// A number and its gradient with respect to the place x. The product rule does the rest, so the
-/// formulas below carry no gradient of their own that could share a mistake with the fast ones.
-struct Dual {
-  double v = 0;
-  Eigen::Vector3d g = Eigen::Vector3d::Zero();
-};
-inline Dual constant(double v) {
-  return {v, Eigen::Vector3d::Zero()};
-}
-inline Dual operator+(const Dual& a, const Dual& b) {
-  return {a.v + b.v, a.g + b.g};
-}
-inline Dual operator-(const Dual& a, const Dual& b) {
-  return {a.v - b.v, a.g - b.g};
-}
-inline Dual operator*(const Dual& a, const Dual& b) {
-  return {a.v * b.v, a.v * b.g + b.v * a.g};
-}
-inline Dual operator*(double a, const Dual& b) {
-  return {a * b.v, a * b.g};
-}
-inline Dual operator/(const Dual& a, const Dual& b) {
-  return {a.v / b.v, (a.g - (a.v / b.v) * b.g) / b.v};
-}
-inline Dual sqrt(const Dual& a) {
-  const double root = std::sqrt(a.v);
-  return {root, a.g / (2 * root)};
-}
-inline Dual exp(const Dual& a) {
-  return {std::exp(a.v), std::exp(a.v) * a.g};
-}
-using DualVector = std::array<Dual, 3>;
-inline Dual dot(const DualVector& a, const DualVector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline DualVector operator/(const DualVector& a, const Dual& b) {
-  return {a[0] / b, a[1] / b, a[2] / b};
-}
 
 struct ReferencePoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
@@ -85,7 +47,8 @@ class ReferenceField final : public Field {
     Dual value = blob;
     if (s.trusted.v > 1e-9 * s.plain.v && options_.kind != FieldKind::metaball) {
       const double sign = options_.two_sided && side < 0 ? -1 : 1;
-      const Dual height = sharpened(s, radius, sign);
+      Dual height = sharpened(s, radius, sign);
+      if (sources_ > 1) height = height + united_shift(s.own, radius, options_.kernel);
       result.height = height.v;
       value = blend(s, capped(height, radius, support, sign), blob);
     }
@@ -133,6 +96,7 @@ class ReferenceField final : public Field {
     Dual nq;             // sum v n . (p - x)
     Dual sharp;          // sum v of points that may be sharpened
     std::vector<Term> terms;
+    std::vector<OwnSums> own;  // of each source
   };
 
   static std::vector<ReferencePoint> points_of(const std::vector<const SurfacePoints*>& sources) {
@@ -157,6 +121,7 @@ class ReferenceField final : public Field {
   [[nodiscard]] Sums sums_at(const Eigen::Vector3d& x) const {
     Sums s;
     s.by_source.resize(static_cast<std::size_t>(sources_));
+    s.own.resize(static_cast<std::size_t>(sources_));
     for (const ReferencePoint& p : points_) {
       const Eigen::Vector3d away = x - p.position;
       const double r2 = p.radius * p.radius;
@@ -175,6 +140,7 @@ class ReferenceField final : public Field {
         term.q[static_cast<std::size_t>(k)] = {-away[k], -Eigen::Vector3d::Unit(k)};
       }
       add(s, v, term);
+      add_own(p, w, v, term, s.own[static_cast<std::size_t>(p.source)]);
       if (v.v > 0) s.terms.push_back(term);
     }
     return s;
@@ -186,6 +152,18 @@ class ReferenceField final : public Field {
       s.q[axis] = s.q[axis] + v * term.q[axis];
       s.n[axis] = s.n[axis] + n * v;
       s.nq = s.nq + n * (v * term.q[axis]);
+    }
+  }
+
+  static void add_own(const ReferencePoint& p, const Dual& w, const Dual& v, const Term& term,
+                      OwnSums& own) {
+    own.w = own.w + w;
+    own.wr = own.wr + p.radius * w;
+    own.v = own.v + v;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double n = term.n[static_cast<Eigen::Index>(axis)];
+      own.n[axis] = own.n[axis] + n * v;
+      own.nq = own.nq + n * (v * term.q[axis]);
     }
   }
 

@@ -38,10 +38,20 @@ struct Moments {
   double vnq;    // sum v_i n_i . q_i
 };
 
+// The same of one source's points, as far as its own height needs them.
+struct SourceMoments {
+  double v;
+  double vn[3];
+  double vnq;
+};
+
 struct Sums : Moments {
-  double w[kMaxSources];  // sum w_i, for each source
+  SourceMoments of[kMaxSources];  // for each source
+  double w[kMaxSources];          // sum w_i, for each source
   double grad_w[kMaxSources][3];
-  double wr;  // sum w_i R_i
+  double wr_of[kMaxSources];  // sum w_i R_i, for each source
+  double grad_wr_of[kMaxSources][3];
+  double wr;  // of all
   double grad_wr[3];
   double grad_v[3];
 };
@@ -76,6 +86,9 @@ struct Functions {
   void (*all)(const Columns&, bool wendland, const double x[3], Sums&) noexcept;
   // sum grad v_i b_i, with the slopes that `all` left for the same x.
   void (*gradient)(const Columns&, const double x[3], const Linear&, double out[3]) noexcept;
+  // The same sum over one source's points.
+  void (*source_gradient)(const Columns&, int source, const double x[3], const Linear&,
+                          double out[3]) noexcept;
   // For each source an upper bound of sum w_i over the ball (x, h).
   void (*bound)(const Columns&, bool wendland, const double x[3], double h,
                 double out[kMaxSources]) noexcept;

@@ -95,11 +95,13 @@ struct WeightSums {
   void finish(const Columns& c, int source, double scale_w, double scale_grad, Sums& out) const {
     out.w[source] = scale_w * sum(w);
     store(grad_w, scale_grad, out.grad_w[source]);
-    out.wr += kUneven ? scale_w * sum(wr) : c.uniform_radius * out.w[source];
-    double grad[3];
+    out.wr_of[source] = kUneven ? scale_w * sum(wr) : c.uniform_radius * out.w[source];
+    out.wr += out.wr_of[source];
+    double* const grad = out.grad_wr_of[source];
     store(kUneven ? grad_wr : grad_w, scale_grad, grad);
     for (int axis = 0; axis < 3; ++axis) {
-      out.grad_wr[axis] += kUneven ? grad[axis] : c.uniform_radius * grad[axis];
+      if constexpr (!kUneven) grad[axis] *= c.uniform_radius;
+      out.grad_wr[axis] += grad[axis];
     }
   }
 };
@@ -145,21 +147,37 @@ struct NormalSums {
     add(vn, vi, n);
   }
 
-  void finish(Sums& out) const {
-    out.v = sum(v);
-    out.vnq = sum(vnq);
-    store(grad_v, 1, out.grad_v);
-    store(vq, 1, out.vq);
-    store(vn, 1, out.vn);
+  void finish(int source, Sums& out) const {
+    SourceMoments& of = out.of[source];
+    of.v = sum(v);
+    of.vnq = sum(vnq);
+    store(vn, 1, of.vn);
+    out.v += of.v;
+    out.vnq += of.vnq;
+    double grad[3];
+    double first[3];
+    store(grad_v, 1, grad);
+    store(vq, 1, first);
+    for (int axis = 0; axis < 3; ++axis) {
+      out.grad_v[axis] += grad[axis];
+      out.vq[axis] += first[axis];
+      out.vn[axis] += of.vn[axis];
+    }
   }
 };
 
+inline void clear_normals(Sums& out) {
+  out.v = out.vnq = 0;
+  for (int axis = 0; axis < 3; ++axis) out.grad_v[axis] = out.vq[axis] = out.vn[axis] = 0;
+}
+
 template <bool kWendland, bool kUneven>
 void all(const Columns& c, const double x[3], Sums& out) noexcept {
-  NormalSums normals;
   clear_radius(out);
+  clear_normals(out);
   for (int s = 0; s < c.sources; ++s) {
     WeightSums<kUneven> sums;
+    NormalSums normals;
     for (std::uint32_t i = c.source_begin[s]; i < c.source_begin[s + 1]; i += kLanes) {
       const Vector q = offsets(c, i, x);
       const Lanes inverse_r2 = load(c.inverse_r2 + i);
@@ -172,21 +190,31 @@ void all(const Columns& c, const double x[3], Sums& out) noexcept {
       normals.add_point(c, i, q, w, slope);
     }
     sums.finish(c, s, 1, 1, out);
+    normals.finish(s, out);
   }
-  normals.finish(out);
 }
 
-void gradient(const Columns& c, const double x[3], const Linear& b, double out[3]) noexcept {
+inline void gradient_between(const Columns& c, std::uint32_t begin, std::uint32_t end,
+                             const double x[3], const Linear& b, double out[3]) {
   const Vector alpha{b.alpha[0], b.alpha[1], b.alpha[2]};
   const Vector beta{b.beta[0], b.beta[1], b.beta[2]};
   Vector total;
-  for (std::uint32_t i = 0; i < c.source_begin[c.sources]; i += kLanes) {
+  for (std::uint32_t i = begin; i < end; i += kLanes) {
     const Vector q = offsets(c, i, x);
     const Vector n = load3(c.normal, i);
     const Lanes bi = dot(n, alpha) + dot(q, beta) + dot(n, q) * b.gamma + b.delta;
     add(total, load(c.slope + i) * load(c.confidence + i) * bi, q);
   }
   store(total, 1, out);
+}
+
+void gradient(const Columns& c, const double x[3], const Linear& b, double out[3]) noexcept {
+  gradient_between(c, 0, c.source_begin[c.sources], x, b, out);
+}
+
+void source_gradient(const Columns& c, int source, const double x[3], const Linear& b,
+                     double out[3]) noexcept {
+  gradient_between(c, c.source_begin[source], c.source_begin[source + 1], x, b, out);
 }
 
 template <bool kWendland>
