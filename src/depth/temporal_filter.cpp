@@ -81,11 +81,14 @@ void average(const Measured& now, int memory, BlockMemory& m) {
 // Takes the frame as it is: whatever lags or runs ahead of what moves is felt.
 void follow(const Measured& now, float gate2, BlockMemory& m) {
   const float d = now.rho - m.rho;
-  const bool calm = squared(d) <= gate2 * (m.variance + now.variance);
+  // Of what comes slowly, each frame alone looks calm.
+  const float way = std::max(std::abs(d), std::abs(now.rho - m.calm_since));
+  const bool calm = squared(way) <= gate2 * (m.variance + now.variance);
   const std::uint8_t calm_frames = calm ? m.calm + 1 : 0;
   m.speed += kFollow * (d - m.speed);
   restart(now, m);
   m.calm = calm_frames;
+  if (!calm) m.calm_since = now.rho;
   if (calm_frames >= kCalmFrames) stop(m);
 }
 
@@ -105,6 +108,7 @@ void step(const Measured& now, const TemporalOptions& options, float gate2, Bloc
     m.speed = d;
     m.moving = true;
     restart(now, m);
+    m.calm_since = now.rho;
   }
 }
 

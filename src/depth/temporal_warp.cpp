@@ -157,6 +157,7 @@ bool TemporalWarp::put(const BlockGrid& grid, const std::vector<BlockMemory>& me
   to.slope_x = plane.x() + bend.xx * dx + bend.xy * dy;
   to.slope_y = plane.y() + bend.xy * dx + bend.yy * dy;
   to.rho = rho + 0.5F * (bend.xx * dx * dx + bend.yy * dy * dy) + bend.xy * dx * dy;
+  to.calm_since += to.rho - from.rho;
   to.extra += (kInflation * from.variance + from.slope_variance * (dx * dx + dy * dy)) /
               static_cast<float>(from.count);
   return true;

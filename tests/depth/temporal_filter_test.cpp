@@ -95,6 +95,18 @@ TEST_F(TemporalFilterTest, AMovingPlaneIsWhereItIsMeasured) {
   }
 }
 
+TEST_F(TemporalFilterTest, WhatComesSlowlyIsNotTakenForStill) {
+  BlockScene scene;
+  const double way = 5 * depth_sd(0.8);  // of a frame, which alone would be within the gate
+  for (int frame = 0; frame < 40; ++frame) {
+    scene.plane_point.z() = 0.8 - way * frame;
+    show(scene);
+    if (frame >= 5) {
+      EXPECT_LT(std::abs(errors_of(fits_, scene, kStill).mean), 0.3 * depth_sd(0.8)) << frame;
+    }
+  }
+}
+
 TEST_F(TemporalFilterTest, ABallThatMovesDoesNotSmear) {
   BlockScene scene{.ball_radius = 0.06};
   for (int frame = 0; frame < 40; ++frame) {
