@@ -40,10 +40,11 @@ ServoThreadOptions thread_options(const Run& run, double rate) {
   return {.rate = rate, .realtime = realtime_options(run.options.live)};
 }
 
-// With the force that was felt, which the guard may have changed.
+// With the force that was felt, which the guard may have changed. The first may come a little
+// before the start.
 TouchStep step_of(const ServoState& state, double start) {
   TouchStep step;
-  step.time = state.time - start;
+  step.time = std::max(0.0, state.time - start);
   step.hip = state.hip;
   step.contact = state.contact;
   step.contact.force = state.force;
@@ -110,22 +111,21 @@ LiveReport run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   StepQueue steps(static_cast<std::size_t>(kQueue * report.rate));
   Servo servo(device, run.felt, servo_options(run, steps));
   const Interruption interruption;
+  LiveStatus status;
+  // Setting it up may take half a second; recordings begin when the hand does.
+  ServoThread thread(servo, clock, thread_options(run, report.rate));
+  report.realtime = thread.realtime();
   const double start = clock.now();
   LiveFeed feed(run.touched, run.felt, clock, start);
   Watcher watcher(servo, steps, each, start);
-  {
-    LiveStatus status;
-    ServoThread thread(servo, clock, thread_options(run, report.rate));
-    report.realtime = thread.realtime();
-    while (thread.running() && !interruption.asked()) {
-      std::this_thread::sleep_for(kLook);
-      watcher.take_steps();
-      const double now = clock.now();
-      if (status.due(now - start)) status.show(watcher.moment(now, feed));
-    }
-    thread.stop();
-    report.skipped = thread.skipped();
+  while (thread.running() && !interruption.asked()) {
+    std::this_thread::sleep_for(kLook);
+    watcher.take_steps();
+    const double now = clock.now();
+    if (status.due(now - start)) status.show(watcher.moment(now, feed));
   }
+  thread.stop();
+  report.skipped = thread.skipped();
   watcher.take_steps();
   feed.finish();
   report.lateness = servo.lateness();
