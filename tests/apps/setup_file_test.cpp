@@ -1,39 +1,17 @@
 #include "apps/palpate/setup_file.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
 
 #include "apps/palpate/chosen_source.hpp"
-#include "apps/palpate/errors.hpp"
 #include "apps/palpate/setup_keys.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/program.hpp"
-#include "palpate/base/error.hpp"
+#include "apps/setup_parsed.hpp"
 
 namespace palpate::app {
 namespace {
-
-// As the program does with a command line after "palpate touch".
-TouchOptions parsed(const Shell& shell, const std::string& toml, const std::string& arguments) {
-  shell.write("desk.toml", toml);
-  TouchOptions options;
-  CLI::App command;
-  add_touch_options(command, options);
-  command.parse(fmt::format("--setup {} {}", shell.path("desk.toml"), arguments), false);
-  apply_setup(command, options);
-  return options;
-}
-
-std::string complaint(const Shell& shell, const std::string& toml) {
-  try {
-    (void)parsed(shell, toml, "");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "none";
-}
 
 constexpr const char* kDesk = R"(# two things on a desk
 [[source]]
@@ -209,89 +187,6 @@ TEST(SetupFile, CommandLineWins) {
   EXPECT_NEAR(sources[0].pose.translation().x(), 0.5, 1e-12) << "the pose stays";
   EXPECT_NEAR(sources[1].pose.translation().x(), 1, 1e-12);
   EXPECT_EQ(sources[2].argument.name, "other");
-}
-
-TEST(SetupFile, ErrorsNameFileLineAndKey) {
-  const Shell shell;
-  struct Case {
-    const char* toml;
-    std::vector<const char*> words;
-  };
-  const Case cases[] = {
-      {"[surface]\nfield = \"pointset\"\nraduis = 0.01\n",
-       {"line 3", "'raduis'", "did you mean 'radius'?", "keys are field"}},
-      {"[surfaces]\nradius = 1\n", {"line 1", "'surfaces'", "did you mean 'surface'?"}},
-      {"[hand]\nradius = 1\n", {"line 2", "no key of [hand]", "one of [[source]], [surface]"}},
-      {"[material]\nsurface_colour = 1\n", {"line 2", "'surface_colour'", "keys are stiffness"}},
-      {"[surface]\nradius = \"wide\"\n", {"line 2", "'radius'", "text", "a number"}},
-      {"[surface]\n\nradius = -0.5\n", {"line 3", "'radius'", "above 0"}},
-      {"[surface]\nradius = nan\n", {"line 2", "'radius'", "not finite", "above 0"}},
-      {"[stream]\nsilence = inf\n", {"line 2", "'silence'", "not finite"}},
-      {"[stream]\nmemory = 0\n", {"line 2", "'memory'", "from 1 to 255"}},
-      {"[stream]\nmemory = -1\n", {"line 2", "'memory'", "'-1'", "from 1 to 255"}},
-      {"[stream]\nhistory = -1\n", {"line 2", "'history'", "'-1'"}},
-      {"[stream]\npredict = \"yes\"\n", {"line 2", "'predict'", "text", "true or false"}},
-      {"[stream]\nnearest = 0\n", {"line 2", "'nearest'", "0.001 m or more"}},
-      {"[stream]\nnoise = [1, inf, 1]\n", {"line 2", "'noise'", "not a finite number"}},
-      {"[stream]\nnoise = \"radar\"\n", {"line 2", "'noise'", "radar"}},
-      {"[stream]\npolicy = \"\"\n", {"line 2", "'policy'", "empty"}},
-      {"[surface]\nnormal_error = 1\n", {"line 2", "'normal_error'", "0.2 rad"}},
-      {"[reading]\nviewpoint = [0, 1]\n", {"line 2", "'viewpoint'", "2 numbers instead of 3"}},
-      {"[guard]\nmaximum_force = 0\n", {"line 2", "'maximum_force'", "above 0"}},
-      {"[guard]\nmaximum_force = inf\n", {"line 2", "'maximum_force'", "not finite"}},
-      {"[guard]\nslew = -300\n", {"line 2", "'slew'", "above 0"}},
-      {"[guard]\nwatchdog = 5\n", {"line 2", "'watchdog'", "0.001 to 1 s"}},
-      {"[guard]\nforce = 3\n", {"line 2", "no key of [guard]", "maximum_force"}},
-      {"[servo]\nprocessor = -1\n", {"line 2", "'processor'", "'-1'", "from 0"}},
-      {"[servo]\nprocessor = 1.0\n", {"line 2", "'processor'", "a whole number"}},
-      {"[servo]\npriority = 100\n", {"line 2", "'priority'", "from 1 to 99"}},
-      {"[servo]\nrealtime = 1\n", {"line 2", "'realtime'", "true or false"}},
-      {"[surface]\nfield = 3\n", {"line 2", "'field'", "a whole number", "text"}},
-      {"[surface]\nfield = \"mesh\"\n", {"line 2", "'field'", "mesh"}},
-      {"[stream]\nhistory = 2.5\n", {"line 2", "'history'", "a whole number"}},
-      {"[stream]\nhistory = 9\n", {"line 2", "'history'", "1 to 7"}},
-      {"[stream]\nloop = 1\n", {"line 2", "'loop'", "true or false"}},
-      {"[hand]\nseed = -1\n", {"line 2", "'seed'", "'-1'", "whole number from 0"}},
-      {"[hand]\nseed = 1.5\n", {"line 2", "'seed'", "a whole number"}},
-      {"[hand]\nseed = 9223372036854775807\n", {"line 2", "'seed'", "whole number from 0"}},
-      {"[[source]]\nfrom = \"\"\n", {"line 2", "'from'", "empty"}},
-      {"[[source]]\nfrom = \"a.ply\"\npose = [0, 0, nan, 0, 0, 0, 1]\n",
-       {"line 3", "not a finite number"}},
-      {"[[source]]\nfrom = \"a.ply\"\npredcit = true\n", {"line 3", "did you mean 'predict'?"}},
-      {"[[source]]\nfrom = \"a.ply\"\n[[source]]\nname = \"b\"\n", {"line 3", "'from'"}},
-      {"[[source]]\nfrom = \"a.ply\"\npose = [1, 2]\n", {"line 3", "2 numbers instead of 7"}},
-      {"[[source]]\nfrom = \"a.ply\"\npose = [0, 0, 0, 0, 0, 0, 2]\n", {"line 3", "quaternion"}},
-      {"[[source]]\nfrom = \"a.ply\"\nintrinsics = [1, \"x\"]\n",
-       {"line 3", "'intrinsics'", "text"}},
-      {"[[source]]\nfrom = \"a.ply\"\nfield = \"metaball\"\n", {"line 3", "'field'", "[[source]]"}},
-      {"[[source]]\nfrom = \"a.ply\"\nname = \"a b\"\n", {"line 3", "'name'", "a b"}},
-      {"[[source]]\nname = \"a\"\nfrom = \"a\"\n[[source]]\nname = \"a\"\nfrom = \"b\"\n",
-       {"line 4", "two sources", "'a'"}},
-      {"source = \"a.ply\"\n", {"line 1", "[[source]]"}},
-      {"surface = 3\n", {"line 1", "'surface'", "[surface]"}},
-      {"[surface\n", {"line 1", "TOML"}},
-  };
-  for (const Case& each : cases) {
-    const std::string text = complaint(shell, each.toml);
-    EXPECT_NE(text.find("desk.toml"), std::string::npos) << each.toml << "\n" << text;
-    for (const char* word : each.words) {
-      EXPECT_NE(text.find(word), std::string::npos) << each.toml << "\n" << text << "\n" << word;
-    }
-  }
-}
-
-TEST(SetupFile, TypesHaveToBeRightEvenWhereTheCommandLineWins) {
-  const Shell shell;
-  EXPECT_THROW((void)parsed(shell, "[surface]\nradius = \"wide\"\n", "--radius 0.01"), Error);
-}
-
-TEST(SetupFile, OneThatIsNotThereIsAnError) {
-  const Shell shell;
-  TouchOptions options;
-  CLI::App command;
-  add_touch_options(command, options);
-  command.parse("--setup nowhere.toml", false);
-  EXPECT_THROW(apply_setup(command, options), Error);
 }
 
 TEST(SetupFile, ProgramTouchesWhatItDescribes) {
