@@ -107,6 +107,11 @@ test("a surface is read, and must not point beyond its vertices", () => {
   assert.throws(() => decode(surface(3)), DecodeError);
 });
 
+test("a surface may be empty: nothing is near", () => {
+  const message = decode(new Writer().u8(3, 0).u16(0).u32(0).f32(0, 0, 0).f32(0).buffer) as SurfaceMessage;
+  assert.equal(message.vertices.length + message.triangles.length, 0);
+});
+
 test("what is cut short anywhere is refused, never read beyond its end", () => {
   for (const whole of [state(2), cloud(3), surface(2)]) {
     for (let bytes = 0; bytes < whole.byteLength; bytes += 1) {

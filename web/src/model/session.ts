@@ -57,7 +57,7 @@ export class SourceHistory {
 
   take(report: SourceReport, now: number): void {
     this.report = report;
-    this.frames.push(now / 1000, report.latency * 1000, report.age * 1000);
+    this.frames.push(now / 1000, (report.latency ?? NaN) * 1000, (report.age ?? NaN) * 1000);
   }
 }
 

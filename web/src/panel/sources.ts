@@ -10,6 +10,8 @@ interface Row {
   update(): void;
 }
 
+const kBad = new Set(["stalled", "failed"]);
+
 function cell(title: string): HTMLTableCellElement {
   return make("td", { title });
 }
@@ -36,12 +38,14 @@ function makeRow(source: SourceHistory, index: number, changed: () => void): Row
     update: () => {
       const report = source.report;
       if (report === undefined) return;
-      const apart = report.disagreement > 0 ? ` · ${millimetres(report.disagreement)} apart` : "";
+      const { rate: hertz = 0, disagreement = 0 } = report;
+      const apart = disagreement > 0 ? ` · ${millimetres(disagreement)} apart` : "";
       say(phase, report.phase + apart);
-      say(rate, report.rate > 0 ? report.rate.toFixed(report.rate < 9.95 ? 1 : 0) : "–");
-      say(points, short(report.points));
-      say(age, source.camera ? seconds(report.age) : "–");
-      say(dropped, short(report.dropped));
+      phase.classList.toggle("bad", kBad.has(report.phase));
+      say(rate, hertz > 0 ? hertz.toFixed(hertz < 9.95 ? 1 : 0) : "–");
+      say(points, short(report.points ?? 0));
+      say(age, source.camera ? seconds(report.age ?? NaN) : "–");
+      say(dropped, short(report.dropped ?? 0));
     },
   };
 }

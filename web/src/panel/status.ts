@@ -38,7 +38,7 @@ export class Status {
         `It said: ${link.reason}. Each start of the program has a token of its own: ` +
         "open the address that it printed last, or put it here.");
     } else {
-      this.wait(link.seconds);
+      this.wait(link.seconds, link.reason);
     }
   }
 
@@ -50,14 +50,14 @@ export class Status {
       "Nothing is shown without one. Put the address, or the token alone, here.");
   }
 
-  private wait(seconds: number): void {
+  private wait(seconds: number, reason: string): void {
     let left = Math.ceil(seconds);
     const title = this.everOpen ? "The connection is lost" : "The program does not answer";
     say(byId("polite"), `${title}. Trying again by itself.`);
     const tell = () => {
       this.words(left > 0 ? `again in ${left} s` : "connecting");
-      this.cover(title, "The tool is let go. This page tries again by itself" +
-        (left > 0 ? ` in ${left} s.` : " now."));
+      this.cover(title, (reason === "" ? "" : `It said: ${reason}. `) +
+        "The tool is let go. This page tries again by itself" + (left > 0 ? ` in ${left} s.` : " now."));
       left -= 1;
     };
     tell();

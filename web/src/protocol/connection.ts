@@ -7,7 +7,7 @@ import { parseMessage, type FromProgram, type ToProgram } from "./messages";
 export type Link =
   | { phase: "connecting" }
   | { phase: "open" }
-  | { phase: "waiting"; seconds: number; reason: string }
+  | { phase: "waiting"; seconds: number; reason: string } // in the program's words, or empty
   | { phase: "refused"; reason: string }; // trying again would not help
 
 export interface Listener {
@@ -118,7 +118,7 @@ export class Connection {
       return;
     }
     const seconds = this.backoff.next();
-    this.listener.link({ phase: "waiting", seconds, reason: reason || "no connection" });
+    this.listener.link({ phase: "waiting", seconds, reason });
     this.retry = window.setTimeout(() => this.open(), seconds * 1000);
   }
 }

@@ -27,15 +27,16 @@ export interface SourceInfo {
   camera: boolean;
 }
 
+/** What is not known is left out. */
 export interface SourceReport {
   name: string;
-  phase: string;
-  rate: number; // Hz
-  points: number;
-  latency: number; // s, from frame to touchable
-  age: number; // s, of what is felt
-  dropped: number;
-  disagreement: number; // m
+  phase: string; // starting, running, stalled, failed, ended; still without a stream
+  rate?: number; // Hz
+  points?: number;
+  latency?: number; // s, from frame to touchable
+  age?: number; // s, of what is felt
+  dropped?: number;
+  disagreement?: number; // m
   pose?: { position: Vector; quaternion: [number, number, number, number] };
   frustum?: Vector; // tan of half the width, of half the height; far in m
 }

@@ -31,13 +31,11 @@ const kFragment = /* glsl */ `
   }
 `;
 
-const kLife = 400; // ms; nothing is sent where nothing is near
-
 export class Surface {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   shown = true;
   private readonly place = new Vector3();
-  private received = -Infinity;
+  private some = false; // a surface without vertices says that nothing is near
 
   constructor() {
     const material = new ShaderMaterial({
@@ -59,19 +57,20 @@ export class Surface {
     this.mesh.material.uniforms["colour"]!.value = screenColour("--disk");
   }
 
-  take(message: SurfaceMessage, now: number): void {
+  take(message: SurfaceMessage): void {
+    this.some = message.triangles.length > 0;
+    if (!this.some) return;
     const geometry = this.mesh.geometry;
     geometry.dispose();
     geometry.setAttribute("position", new BufferAttribute(message.vertices, 3, true));
     geometry.setIndex(new BufferAttribute(message.triangles, 1));
     this.place.set(...message.centre);
     this.mesh.scale.setScalar(Math.max(message.extent, 1e-9));
-    this.received = now;
   }
 
   /** lift: towards the eye, above the points that lie in the surface, m. */
-  update(now: number, eye: Vector3, lift: number): void {
-    this.mesh.visible = this.shown && now - this.received < kLife;
+  update(eye: Vector3, lift: number): void {
+    this.mesh.visible = this.shown && this.some;
     const towards = eye.clone().sub(this.place).normalize();
     this.mesh.position.copy(this.place).addScaledVector(towards, lift);
   }

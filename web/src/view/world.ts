@@ -109,7 +109,7 @@ export class World {
   }
 
   takeSurface(message: SurfaceMessage): void {
-    this.surfaces[message.device]?.take(message, performance.now());
+    this.surfaces[message.device]?.take(message);
     this.stage.request();
   }
 
@@ -175,7 +175,7 @@ export class World {
     });
     for (const surface of this.surfaces) {
       surface.shown = look.surface;
-      surface.update(now, stage.camera.position, this.lift());
+      surface.update(stage.camera.position, this.lift());
     }
     for (const tool of this.tools) {
       tool.showSupport = look.support;

@@ -45,7 +45,7 @@ test("shows the scene and its force, and the browser has nothing to complain of"
   withPage(kSmall, async (page) => {
     assert.equal(await text(page, "#scene"), "table with a ball");
     await until("force", async () => Number(await text(page, "#force")) > 0);
-    assert.match(await text(page, "#sources"), /left[\s\S]*streaming/);
+    assert.match(await text(page, "#sources"), /left[\s\S]*running/);
     assert.equal(await page.locator("#settings .field").count(), 6);
   }));
 

@@ -25,6 +25,7 @@ export class FakeProgram {
   settings = settings();
   recording = false;
   playing = 0;
+  near = false;
 
   constructor({ points = 30000, token, pace = 1 }) {
     this.token = token;
@@ -73,7 +74,8 @@ export class FakeProgram {
         client.socket.send(this.cloud(source, client.points));
       }
     }
-    if (this.servo.contact) this.broadcast(patchAround(this.servo.contact, 0.022));
+    if (this.servo.contact || this.near) this.broadcast(patchAround(this.servo.contact, 0.022));
+    this.near = this.servo.contact !== undefined;
   }
 
   cloud(source, most) {
@@ -91,7 +93,7 @@ export class FakeProgram {
     this.tell({
       type: "sources",
       sources: kCameras.map((camera, i) => ({
-        name: camera.name, phase: "streaming", rate: 29.6 + 0.5 * wobble, points: this.frames[i][0].length,
+        name: camera.name, phase: "running", rate: 29.6 + 0.5 * wobble, points: this.frames[i][0].length,
         latency: 0.021 + 0.003 * wobble + 0.004 * i, age: 0.041 + 0.006 * Math.cos(this.servo.time + i),
         dropped: Math.floor(this.servo.time / 9), disagreement: 0.0012,
         pose: { position: camera.eye, quaternion: lookAtOrigin(camera.eye) }, frustum: [0.55, 0.41, 0.9],

@@ -13,7 +13,10 @@ function onSurface([x, y, z]) {
   return [x, y, tableHeight(x, y)];
 }
 
-export function patchAround({ proxy, normal }, extent) {
+/** Without a contact: that nothing is near. */
+export function patchAround(contact, extent) {
+  if (contact === undefined) return encodeSurface(0, [0, 0, 0], 0, [], []);
+  const { proxy, normal } = contact;
   const [nx, ny, nz] = normal;
   const a = Math.abs(nz) < 0.9 ? [-ny, nx, 0] : [0, -nz, ny];
   const u = a.map((c) => c / Math.hypot(...a));
