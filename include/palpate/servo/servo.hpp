@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <mutex>
 
+#include "palpate/base/latest.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/workspace.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/histogram.hpp"
-#include "palpate/servo/latest.hpp"
 #include "palpate/servo/servo_state.hpp"
 #include "palpate/servo/step_queue.hpp"
 

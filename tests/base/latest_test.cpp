@@ -1,4 +1,4 @@
-#include "palpate/servo/latest.hpp"
+#include "palpate/base/latest.hpp"
 
 #include <gtest/gtest.h>
 
