@@ -18,7 +18,7 @@ DeviceState PacedDevice::read() noexcept {
     return state_;
   }
   int steps = 0;
-  while (state_.status == DeviceStatus::ok && state_.time + 0.5 * period <= now - start_) {
+  while (!has_ended(state_.status) && state_.time + 0.5 * period <= now - start_) {
     if (++steps > kMostSteps) {
       start_ = now - state_.time;
       break;

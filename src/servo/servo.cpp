@@ -80,6 +80,7 @@ const ServoState& Servo::step(const DeviceState& device, double now) noexcept {
   state_.hip = workspace.position_to_world(device.position);
   state_.velocity = workspace.velocity_to_world(device.velocity);
   state_.device = device.status;
+  heard_ = heard_ || device.status != DeviceStatus::silent;
   state_.buttons = device.buttons;
   take_wishes(state_.hip);
   field_.update(now, state_.hip, started_ ? proxy_.position() : state_.hip);
@@ -95,7 +96,7 @@ const ServoState& Servo::step(const DeviceState& device, double now) noexcept {
 
 void Servo::take_wishes(const Vector3d& hip) noexcept {
   state_.paused = paused_.load();
-  if (reset_.exchange(false)) {
+  if (reset_.exchange(false) || !heard_) {
     proxy_.reset(hip);
     guard_.reset();
   }
@@ -109,7 +110,8 @@ void Servo::take_wishes(const Vector3d& hip) noexcept {
 
 Vector3d Servo::guarded() noexcept {
   GuardInput input;
-  input.force = state_.paused ? Vector3d::Zero().eval() : state_.contact.force;
+  const bool unfelt = state_.paused || state_.device == DeviceStatus::silent;
+  input.force = unfelt ? Vector3d::Zero().eval() : state_.contact.force;
   input.hip = state_.hip;
   input.velocity = state_.velocity;
   input.dt = state_.dt;

@@ -9,9 +9,16 @@ namespace palpate {
 /// How a device is doing.
 enum class DeviceStatus {
   ok,
+  silent,    ///< not latched: the hand is not heard, so no force may be felt; what is told of its
+             ///< place is the last that was known, or the first after the silence
   finished,  ///< a recording or a simulation has come to its end; the last state is repeated
   failed,    ///< latched: no force is applied any more; reason() says why
 };
+
+/// Will there be no more steps?
+[[nodiscard]] constexpr bool has_ended(DeviceStatus status) noexcept {
+  return status == DeviceStatus::finished || status == DeviceStatus::failed;
+}
 
 /// What one device can do.
 struct DeviceInfo {
@@ -53,7 +60,7 @@ class Device {
   /// finite count as a failure; those above the device's maximum are its driver's to limit.
   virtual void write(const Eigen::Vector3d& force) noexcept = 0;
 
-  /// Why the status is `failed`, and what to do; empty otherwise. Not real-time.
+  /// Why the status is `failed`, or `silent`, and what to do; empty otherwise. Not real-time.
   [[nodiscard]] virtual std::string reason() const = 0;
 
  protected:

@@ -38,7 +38,9 @@ struct Feel {
 ///
 /// Owns no thread: a device's callback calls tick(), or a ServoThread does, or whoever owns the
 /// loop makes a step of its parts. One thread steps; all that is marked so may be called by others
-/// meanwhile. Device and scene outlive it.
+/// meanwhile. Device and scene outlive it. While the device is silent the hand feels nothing: the
+/// force fades and comes back at the guard's rate, and the contact begins with the first hand
+/// heard.
 class Servo {
  public:
   /// Of a device's continuous maximum: what it is asked to hold (algorithm.md section 8).
@@ -104,6 +106,7 @@ class Servo {
   Guard guard_;
   ServoState state_;  // of the stepping thread; the others see what was shown
   bool started_ = false;
+  bool heard_ = false;  // the device has known where the hand is
   std::uint64_t feel_seen_ = 0;
   std::uint64_t field_seen_ = 0;
 
