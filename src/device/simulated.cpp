@@ -70,16 +70,17 @@ void check_options(const SimulatedDeviceOptions& o, std::size_t maximum_delay) {
 }  // namespace
 
 SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, Trajectory target)
-    : options_(options), target_(std::move(target)) {
+    : options_(options) {
   check_options(options_, kMaximumDelay);
-  if (!target_.empty()) check(target_);
-  if (!options_.duration && !target_.empty()) options_.duration = target_.back().time;
+  if (!target.empty()) check(target);
+  target_ = Playback(std::move(target));
+  if (!options_.duration && !target_.empty()) options_.duration = target_.end();
   info_.name = "simulated";
   info_.maximum_force = options_.maximum_force;
   info_.rate = options_.rate;
   info_.workspace_radius = options_.workspace_radius;
   info_.keeps_time = true;
-  position_ = target_.empty() ? options_.position : target_.front().position;
+  position_ = options_.position;
   velocity_ = options_.velocity;
   forces_.fill(Eigen::Vector3d::Zero());
   generator_.setZero();
@@ -90,14 +91,26 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, Trajecto
   generator_(2, 3) = 1;
   whole_step_ = exponential(generator_ / options_.rate);
   part_step_ = exponential(generator_ / (options_.rate * kParts));
+  if (!target_.empty()) position_ = target_.front().position;
+}
+
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, HandGuide& guide)
+    : SimulatedDevice(options) {
+  guide_ = &guide;
 }
 
 DeviceState SimulatedDevice::read() noexcept {
-  if (failed_ || state_.status == DeviceStatus::finished) return state_;
-  if (started_) advance();
+  if (wrong_ != nullptr || state_.status == DeviceStatus::finished) return state_;
+  if (started_) {
+    advance();
+  } else {
+    begin();
+  }
+  if (wrong_ != nullptr) return state_;
   const Eigen::Vector3d shown = quantised();
   if (started_) state_.velocity = (shown - state_.position) * options_.rate;
   state_.position = shown;
+  state_.buttons = wish_.buttons;
   state_.time = static_cast<double>(steps_) / options_.rate;
   started_ = true;
   // Half a step of slack: the end of a target need not be a whole number of steps.
@@ -108,10 +121,9 @@ DeviceState SimulatedDevice::read() noexcept {
 }
 
 void SimulatedDevice::write(const Eigen::Vector3d& force) noexcept {
-  if (failed_) return;
+  if (wrong_ != nullptr) return;
   if (!force.allFinite()) {
-    failed_ = true;
-    state_.status = DeviceStatus::failed;
+    fail("the force written");
     return;
   }
   const double length = force.norm();
@@ -120,20 +132,21 @@ void SimulatedDevice::write(const Eigen::Vector3d& force) noexcept {
 }
 
 std::string SimulatedDevice::reason() const {
-  if (!failed_) return {};
-  return fmt::format(
-      "the force written at t = {} s was not finite; look for the fault in what computed it",
-      state_.time);
+  if (wrong_ == nullptr) return {};
+  return fmt::format("{} at t = {} s was not finite; look for the fault in what computed it",
+                     wrong_, state_.time);
 }
 
-// Where the hand wants to be. Times are asked for in growing order, so the row is found at once.
-Eigen::Vector3d SimulatedDevice::wanted(double time) noexcept {
-  if (target_.empty()) return options_.position;
-  while (cursor_ + 1 < target_.size() && target_[cursor_ + 1].time <= time) ++cursor_;
-  const TrajectoryRow& a = target_[cursor_];
-  if (cursor_ + 1 == target_.size() || time <= a.time) return a.position;
-  const TrajectoryRow& b = target_[cursor_ + 1];
-  return a.position + (time - a.time) / (b.time - a.time) * (b.position - a.position);
+void SimulatedDevice::fail(const char* wrong) noexcept {
+  wrong_ = wrong;
+  state_.status = DeviceStatus::failed;
+}
+
+// Times are asked for once each, in growing order.
+HandWish SimulatedDevice::wanted(double time) noexcept {
+  if (guide_ != nullptr) return guide_->wanted(time, position_);
+  if (target_.empty()) return {options_.position, 0};
+  return {target_.at(time), 0};
 }
 
 // The goal that pulls no harder than the hand does.
@@ -149,11 +162,18 @@ Eigen::Vector3d SimulatedDevice::quantised() const noexcept {
   return (position_ / options_.resolution).array().round().matrix() * options_.resolution;
 }
 
+void SimulatedDevice::begin() noexcept {
+  wish_ = wanted(0);
+  if (!wish_.position.allFinite()) return fail("the place that the hand wanted");
+  if (guide_ != nullptr) position_ = wish_.position;
+}
+
 void SimulatedDevice::advance() noexcept {
-  const double now = static_cast<double>(steps_) / options_.rate;
   const double next = static_cast<double>(steps_ + 1) / options_.rate;
-  const Eigen::Vector3d place = wanted(now);
-  const Eigen::Vector3d goal_rate = (wanted(next) - place) * options_.rate;
+  const Eigen::Vector3d place = wish_.position;
+  wish_ = wanted(next);
+  if (!wish_.position.allFinite()) return fail("the place that the hand wanted");
+  const Eigen::Vector3d goal_rate = (wish_.position - place) * options_.rate;
   const Eigen::Vector3d goal = within_reach(place);
   const std::size_t size = forces_.size();
   const auto delay = static_cast<std::size_t>(options_.delay);

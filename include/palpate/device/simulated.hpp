@@ -5,7 +5,8 @@
 #include <optional>
 
 #include "palpate/device/device.hpp"
-#include "palpate/geometry/trajectory.hpp"
+#include "palpate/device/hand_guide.hpp"
+#include "palpate/device/playback.hpp"
 
 namespace palpate {
 
@@ -27,7 +28,8 @@ struct SimulatedDeviceOptions {
   double maximum_force = 20;  ///< N; longer forces are shortened to it
   double workspace_radius = 0.1;  ///< m; only told, never enforced
   SimulatedHand hand = {};
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< at time 0, m; a target's start wins
+  /// at time 0, m; a target's start and a guide's first wish win
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< at time 0, m/s
   /// s after which the status is `finished`, 0 for one step at least; unset: at the end of the
   /// target, never where there is none
@@ -51,6 +53,10 @@ class SimulatedDevice final : public Device {
   /// @throws Error when an option is out of range or the target is no trajectory.
   explicit SimulatedDevice(const SimulatedDeviceOptions& options = {}, Trajectory target = {});
 
+  /// The hand wants to be where `guide`, which outlives the device, says; asked once a step.
+  /// @throws Error when an option is out of range.
+  SimulatedDevice(const SimulatedDeviceOptions& options, HandGuide& guide);
+
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] DeviceState read() noexcept override;
   void write(const Eigen::Vector3d& force) noexcept override;
@@ -63,10 +69,12 @@ class SimulatedDevice final : public Device {
  private:
   static constexpr std::size_t kMaximumDelay = 16;
 
-  [[nodiscard]] Eigen::Vector3d wanted(double time) noexcept;
+  [[nodiscard]] HandWish wanted(double time) noexcept;
   [[nodiscard]] Eigen::Vector3d within_reach(const Eigen::Vector3d& goal) const noexcept;
   [[nodiscard]] Eigen::Vector3d quantised() const noexcept;
+  void begin() noexcept;
   void advance() noexcept;
+  void fail(const char* wrong) noexcept;
   void advance_with_friction(const Eigen::Vector3d& push,
                              const Eigen::Vector3d& push_rate) noexcept;
   void slide(double duration, Eigen::Vector3d push, const Eigen::Vector3d& push_rate) noexcept;
@@ -74,7 +82,9 @@ class SimulatedDevice final : public Device {
             const Eigen::Vector3d& push_rate) noexcept;
 
   SimulatedDeviceOptions options_;
-  Trajectory target_;
+  Playback target_;
+  HandGuide* guide_ = nullptr;
+  HandWish wish_;  // at the current time
   DeviceInfo info_;
   Eigen::Matrix4d generator_;   // of (x, v, push, push rate)
   Eigen::Matrix4d whole_step_;  // its exponential over one step
@@ -82,11 +92,10 @@ class SimulatedDevice final : public Device {
   Eigen::Vector3d position_;
   Eigen::Vector3d velocity_;
   std::array<Eigen::Vector3d, kMaximumDelay + 1> forces_;  // ring of written forces
-  std::size_t cursor_ = 0;  // row of the target before the current time
   std::uint64_t steps_ = 0;
   DeviceState state_;
   bool started_ = false;
-  bool failed_ = false;
+  const char* wrong_ = nullptr;  // what was not finite, once the device has failed
 };
 
 }  // namespace palpate

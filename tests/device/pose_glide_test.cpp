@@ -1,0 +1,101 @@
+#include "palpate/device/pose_glide.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kStep = 1e-3;  // s
+
+struct Told {
+  double stamp = 0;  // s, on the sender's clock
+  double heard = 0;  // s, on the listener's
+};
+
+// The speed at every step of a motion along x at 0.1 m/s, told at these times.
+std::vector<double> speeds(PoseGlide& glide, const std::vector<Told>& told, double end) {
+  std::vector<double> found;
+  std::size_t next = 0;
+  double before = glide.at(0).x();
+  for (int i = 1; i * kStep <= end; ++i) {
+    const double time = i * kStep;
+    for (; next < told.size() && told[next].heard <= time; ++next) {
+      glide.go({0.1 * told[next].stamp, 0, 0}, told[next].stamp, time);
+    }
+    const double x = glide.at(time).x();
+    found.push_back((x - before) / kStep);
+    before = x;
+  }
+  return found;
+}
+
+class PoseGlideAtRate : public testing::TestWithParam<double> {};
+
+TEST_P(PoseGlideAtRate, MakesAnEvenMotionOfEvenPlaces) {
+  std::vector<Told> told;
+  for (int i = 0; i < GetParam(); ++i) told.push_back({i / GetParam(), i / GetParam() + 1e-6});
+  PoseGlide glide;
+  glide.rest(Vector3d::Zero(), 0);
+  const std::vector<double> found = speeds(glide, told, 1 - kStep);
+  for (std::size_t i = 500; i < found.size(); ++i) ASSERT_NEAR(found[i], 0.1, 0.01) << i;
+  EXPECT_NEAR(glide.interval(), 1 / GetParam(), 0.02 / GetParam());
+  // Late by a quarter of an interval to one and a quarter, and a step.
+  EXPECT_NEAR(glide.at(0.999).x(), 0.0999, 0.1 * (1.25 / GetParam() + 1.5 * kStep));
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, PoseGlideAtRate, testing::Values(60.0, 125.0, 250.0));
+
+TEST(PoseGlide, KeepsAnEvenMotionEvenWhilePlacesComeLate) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> late(0, 1.5e-3);
+  std::vector<Told> told;
+  for (int i = 0; i < 250; ++i) told.push_back({8e-3 * i, 8e-3 * i + late(random)});
+  PoseGlide glide;
+  glide.rest(Vector3d::Zero(), 0);
+  const std::vector<double> found = speeds(glide, told, 1.9);
+  for (std::size_t i = 500; i < found.size(); ++i) {
+    ASSERT_GT(found[i], 0.05) << i;  // never a stop
+    ASSERT_LT(found[i], 0.15) << i;
+  }
+}
+
+TEST(PoseGlide, NeverGoesBeyondWhatItWasTold) {
+  PoseGlide glide;
+  glide.rest(Vector3d::Zero(), 0);
+  glide.go({0.01, 0, 0}, 0, 0);
+  glide.go({0.02, 0, 0}, 0.01, 0.01);
+  for (int i = 10; i < 1000; ++i) ASSERT_LE(glide.at(i * kStep).x(), 0.02);
+  EXPECT_EQ(glide.at(1), Vector3d(0.02, 0, 0));
+}
+
+TEST(PoseGlide, APauseIsNoInterval) {
+  PoseGlide glide;
+  glide.rest(Vector3d::Zero(), 0);
+  for (int i = 0; i < 50; ++i) glide.go({1e-4 * i, 0, 0}, 5e-3 * i, 5e-3 * i);
+  const double interval = glide.interval();
+  glide.go({0.02, 0, 0}, 10, 10);
+  EXPECT_EQ(glide.interval(), interval);
+  EXPECT_LT(glide.at(10 + kStep).x(), 0.01) << "no jump after it";
+  EXPECT_EQ(glide.at(10 + 1.3 * interval).x(), 0.02);
+}
+
+TEST(PoseGlide, StampsThatStandStillOrGoBackDoNoHarm) {
+  PoseGlide glide;
+  glide.rest(Vector3d::Zero(), 0);
+  for (const double stamp : {5.0, 5.0, 4.0, -1e300, 1e300}) {
+    glide.go(Vector3d::Constant(stamp > 0 ? 0.01 : 0), stamp, 0.1);
+    EXPECT_TRUE(glide.at(0.105).allFinite());
+    EXPECT_LE(glide.at(0.105).maxCoeff(), 0.01);
+  }
+  EXPECT_GE(glide.interval(), PoseGlide::kShortest);
+  EXPECT_LE(glide.interval(), PoseGlide::kLongest);
+}
+
+}  // namespace
+}  // namespace palpate
