@@ -18,7 +18,8 @@ def seed(target, name, data):
     folder.mkdir(parents=True, exist_ok=True)
     data = data.encode() if isinstance(data, str) else data
     (folder / name).write_bytes(data)
-    if target not in ("any", "depth", "frame_list", "poses", "sequence", "trajectory"):
+    if target not in ("any", "depth", "frame_list", "poses", "remote_state", "sequence",
+                      "trajectory"):
         seed("any", f"{target}-{name}", data)
 
 
@@ -184,5 +185,17 @@ def sequences():
          "1 0 0 5\n0 1 0 6\n0 0 1 7\n0 0 0 1\n")
 
 
-for make in (ply, pcd, las, depth, text, packed, sequences):
+def remote():
+    def state(flags=0, version=1, x=0.1, velocity=0.0, reserved=0):
+        return struct.pack("<4sHHQd3d3dII", b"plpS", version, flags, 7, 1.5, x, 0.2, -0.3,
+                           velocity, 0, 0, 5, reserved)
+    seed("remote_state", "place", state())
+    seed("remote_state", "velocity", state(flags=1, velocity=-0.5))
+    seed("remote_state", "leaving", state(flags=2))
+    seed("remote_state", "not_a_number", state(x=float("nan")))
+    seed("remote_state", "too_far", state(x=1e9))
+    seed("remote_state", "newer", state(version=2, reserved=1))
+
+
+for make in (ply, pcd, las, depth, text, packed, sequences, remote):
     make()

@@ -20,6 +20,7 @@
 #include "io/png.hpp"
 #include "io/xyz.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/device/remote_packet.hpp"
 #include "palpate/io/read_cloud.hpp"
 #include "palpate/io/read_depth.hpp"
 #include "palpate/io/trajectory.hpp"
@@ -31,9 +32,9 @@
 namespace palpate::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 14> kNames{"any",   "depth",    "frame_list", "gzip", "las",
-                                                  "obj",   "pcd",      "pgm",        "ply",  "png",
-                                                  "poses", "sequence", "trajectory", "xyz"};
+constexpr std::array<std::string_view, 15> kNames{
+    "any", "depth", "frame_list", "gzip",         "las",      "obj",        "pcd", "pgm",
+    "ply", "png",   "poses",      "remote_state", "sequence", "trajectory", "xyz"};
 
 void expect(bool promise, const char* name) {
   if (!promise) throw std::logic_error(name);
@@ -102,6 +103,17 @@ void check_frame_list(std::string_view text) {
   }
 }
 
+void check_remote_state(std::span<const std::byte> bytes) {
+  const auto [flaw, packet] = parse_state(bytes);
+  if (flaw != PacketFlaw::none) return;
+  expect(std::abs(packet.stamp) <= StatePacket::kLargestStamp, "a stamp");
+  expect(packet.position.cwiseAbs().maxCoeff() <= StatePacket::kLargestPosition, "a place");
+  expect(packet.velocity.cwiseAbs().maxCoeff() <= StatePacket::kLargestVelocity, "a velocity");
+  const auto again = encode(packet);
+  expect(parse_state(again).flaw == PacketFlaw::none, "a packet that is lost in writing");
+  expect(!packet.has_velocity || std::ranges::equal(again, bytes), "bytes that were lost");
+}
+
 // True when `name` is one of the parts of a sequence.
 bool run_sequence_target(std::string_view name, const io::Input& input) {
   if (name == "depth") {
@@ -141,7 +153,9 @@ void run_target(std::string_view name, std::span<const std::byte> bytes) {
   options.intrinsics = Pinhole{.fx = 100, .fy = 100, .cx = 2, .cy = 2};
   const io::Input input{bytes, "input", options};
   try {
-    if (name == "gzip") {
+    if (name == "remote_state") {
+      check_remote_state(bytes);
+    } else if (name == "gzip") {
       (void)io::gunzip(input);
     } else if (name == "trajectory") {
       std::istringstream stream{std::string(input.text())};

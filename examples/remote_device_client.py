@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""A haptic device in a page of Python: remote_device_client.py SOCKET [SECONDS]. It moves a hand that
+nobody holds down to 5 mm below z = 0 and up again, some hundred times a second, and tells the largest
+force (docs/remote_device.md). Standard library only."""
+
+import math
+import os
+import socket
+import struct
+import sys
+import tempfile
+import time
+
+STATE = struct.Struct("<4sHHQd3d3dII")
+FORCE = struct.Struct("<4sHHQQd3d")
+LEAVING, CLOSING = 2, 2
+
+
+def newest_force(link, seen):
+    """The newest good packet that waits: (sequence, flags, force), or None."""
+    found = None
+    while True:
+        try:
+            data = link.recv(FORCE.size + 1)
+        except BlockingIOError:
+            return found
+        if len(data) != FORCE.size:
+            continue
+        magic, version, flags, sequence, _, _, *force = FORCE.unpack(data)
+        good = magic == b"plpF" and version == 1 and all(map(math.isfinite, force))
+        if good and sequence > (found[0] if found else seen):
+            found = sequence, flags, force
+
+
+def main():
+    path, seconds = sys.argv[1], float(sys.argv[2]) if len(sys.argv) > 2 else 2
+    mine = tempfile.mktemp(prefix="palpate-client-")
+    link = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    link.bind(mine)
+    link.setblocking(False)
+    start = heard = time.monotonic()
+    sequence, seen, applied, largest, leaving = 0, 0, 0.0, 0.0, False
+    try:
+        while not leaving:
+            t = time.monotonic() - start
+            found = newest_force(link, seen)
+            if found:
+                seen, flags, force = found
+                heard = time.monotonic()
+                if flags & CLOSING:
+                    break
+                applied = math.hypot(*force)
+            if time.monotonic() - heard > 0.1:  # silence: a motor gets nothing
+                applied = 0.0
+            largest = max(largest, applied)  # here a real device drives its motors
+            leaving = t >= seconds
+            sequence += 1
+            z = 5e-3 * (abs(4 * min(t / seconds, 1) - 2) - 1)
+            try:
+                link.sendto(STATE.pack(b"plpS", 1, LEAVING if leaving else 0, sequence, 1 + t, 0, 0, z,
+                                       0, 0, 0, 0, 0), path)
+            except BlockingIOError:  # it does not read just now: the next state will do
+                pass
+            time.sleep(1e-3)
+    finally:
+        os.unlink(mine)
+    print(f"{sequence} states, {seen} forces, largest {largest:.3f} N")
+    return 0 if seen else 1
+
+
+sys.exit(main())

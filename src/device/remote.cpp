@@ -1,0 +1,178 @@
+#include "palpate/device/remote.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <system_error>
+
+#include "device/datagram_socket.hpp"
+#include "device/remote_link.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/base/latest.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+// One byte more than a good packet has: longer ones are then seen to be too long.
+constexpr std::size_t kBuffer = kStatePacketSize + 1;
+
+// What others may know.
+struct Shown {
+  RemoteCounts counts;
+  DeviceStatus status = DeviceStatus::silent;
+  int error = 0;  // errno of a broken socket; 0: a force that was not finite, where it failed
+};
+
+void require(bool good, const char* name, double value, const char* range) {
+  if (!good || !std::isfinite(value)) {
+    throw Error(fmt::format("remote device: {} = {} is out of range: give {}", name, value, range));
+  }
+}
+
+RemoteDeviceOptions checked(RemoteDeviceOptions o) {
+  require(o.maximum_force > 0, "maximum_force", o.maximum_force, "a positive force in newtons");
+  require(o.maximum_stiffness >= 0, "maximum_stiffness", o.maximum_stiffness, "0 or more N/m");
+  require(o.workspace_radius >= 0, "workspace_radius", o.workspace_radius, "0 or more metres");
+  require(o.rate > 0, "rate", o.rate, "a positive number of steps a second");
+  require(o.silence > 0, "silence", o.silence, "a positive time in seconds");
+  require(o.fade > 0, "fade", o.fade, "a positive time in seconds");
+  require(o.soft_start > 0, "soft_start", o.soft_start, "a positive time in seconds");
+  if (o.path.empty()) o.path = default_remote_path();
+  return o;
+}
+
+DeviceInfo info_of(const RemoteDeviceOptions& options) {
+  DeviceInfo info;
+  info.name = "remote";
+  info.maximum_force = options.maximum_force;
+  info.maximum_stiffness = options.maximum_stiffness;
+  info.rate = options.rate;
+  info.workspace_radius = options.workspace_radius;
+  return info;
+}
+
+}  // namespace
+
+std::string default_remote_path() {
+  const char* folder = std::getenv("XDG_RUNTIME_DIR");
+  if (folder == nullptr || *folder == '\0') {
+    throw Error(
+        "remote device: XDG_RUNTIME_DIR is not set, so there is no place for its socket; "
+        "give a path");
+  }
+  return std::string(folder) + "/palpate-device";
+}
+
+struct RemoteDevice::Inside {
+  Inside(const Clock& the_clock, const RemoteDeviceOptions& the_options)
+      : clock(the_clock),
+        options(checked(the_options)),
+        info(info_of(options)),
+        socket(options.path),
+        link(options) {}
+
+  void receive(double now) noexcept;
+  void send(const std::optional<ForcePacket>& packet) noexcept;
+  void fail(int error) noexcept;
+
+  const Clock& clock;
+  RemoteDeviceOptions options;
+  DeviceInfo info;
+  DatagramSocket socket;
+  RemoteLink link;
+  DeviceState state{.status = DeviceStatus::silent};
+  Shown shown;
+  Latest<Shown> for_others;
+};
+
+void RemoteDevice::Inside::receive(double now) noexcept {
+  std::array<std::byte, kBuffer> bytes{};
+  for (int i = 0; i < kMostPackets; ++i) {
+    const Reception reception = socket.receive(bytes);
+    if (reception.error != 0) return fail(reception.error);
+    if (!reception.any) return;
+    RemoteCounts& counts = shown.counts;
+    ++counts.received;
+    const auto used = std::span<const std::byte>(bytes).first(reception.size);
+    const PacketFlaw flaw = link.hear(used, reception.from, now);
+    if (flaw == PacketFlaw::none) {
+      ++counts.taken;
+    } else {
+      ++counts.refused[static_cast<std::size_t>(flaw)];
+      counts.last = flaw;
+    }
+  }
+}
+
+void RemoteDevice::Inside::send(const std::optional<ForcePacket>& packet) noexcept {
+  if (packet && !socket.send(encode(*packet), link.client())) ++shown.counts.unsent;
+}
+
+void RemoteDevice::Inside::fail(int error) noexcept {
+  send(link.farewell());
+  state.status = DeviceStatus::failed;
+  shown.error = error;
+  shown.status = state.status;
+  for_others.set(shown);
+}
+
+RemoteDevice::RemoteDevice(const Clock& clock, const RemoteDeviceOptions& options)
+    : inside_(std::make_unique<Inside>(clock, options)) {}
+
+RemoteDevice::~RemoteDevice() {
+  if (inside_->state.status != DeviceStatus::failed) inside_->send(inside_->link.farewell());
+}
+
+const DeviceInfo& RemoteDevice::info() const noexcept {
+  return inside_->info;
+}
+
+DeviceState RemoteDevice::read() noexcept {
+  Inside& in = *inside_;
+  if (in.state.status == DeviceStatus::failed) return in.state;
+  const double now = in.clock.now();
+  in.receive(now);
+  if (in.state.status == DeviceStatus::failed) return in.state;
+  in.state = in.link.state(now);
+  in.shown.status = in.state.status;
+  in.for_others.set(in.shown);
+  return in.state;
+}
+
+void RemoteDevice::write(const Vector3d& force) noexcept {
+  Inside& in = *inside_;
+  if (in.state.status == DeviceStatus::failed) return;
+  if (!force.allFinite()) return in.fail(0);
+  in.send(in.link.answer(force));
+}
+
+std::string RemoteDevice::reason() const {
+  const Shown shown = inside_->for_others.get();
+  if (shown.status == DeviceStatus::ok) return {};
+  if (shown.status == DeviceStatus::failed) {
+    if (shown.error != 0) {
+      return fmt::format("receiving on '{}' failed: {}; open the device again", path(),
+                         std::system_category().message(shown.error));
+    }
+    return "a force that was written was not finite; look for the fault in what computed it";
+  }
+  std::string words = fmt::format("no client is heard on '{}'; start one", path());
+  if (shown.counts.last != PacketFlaw::none) {
+    words += fmt::format("; a packet was refused: {}", in_words(shown.counts.last));
+  }
+  return words;
+}
+
+const std::string& RemoteDevice::path() const noexcept {
+  return inside_->options.path;
+}
+
+RemoteCounts RemoteDevice::counts() const noexcept {
+  return inside_->for_others.get().counts;
+}
+
+}  // namespace palpate

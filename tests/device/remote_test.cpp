@@ -1,0 +1,258 @@
+// RemoteDevice over real sockets, with a clock that the tests hold.
+#include "palpate/device/remote.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include "device/remote_client.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using test::RemoteClient;
+
+class HandClock final : public Clock {
+ public:
+  [[nodiscard]] double now() const noexcept override { return time; }
+  double time = 50;  // s
+};
+
+class RemoteDeviceTest : public testing::Test {
+ protected:
+  [[nodiscard]] RemoteDeviceOptions options() const { return {.path = folder_ / "device"}; }
+
+  DeviceState step(RemoteDevice& device, double force = 0) {
+    clock_.time += 1e-3;
+    const DeviceState state = device.read();
+    device.write({0, 0, force});
+    return state;
+  }
+  // Good packets and steps for a second: the full force may flow.
+  void talk(RemoteDevice& device, RemoteClient& client, double force = 0) {
+    for (int i = 0; i < 1000; ++i) {
+      ASSERT_TRUE(client.say(0.01));
+      step(device, force);
+      static_cast<void>(client.hear());
+    }
+  }
+
+  test::Folder folder_;
+  HandClock clock_;
+};
+
+TEST_F(RemoteDeviceTest, TellsWhereTheClientsHandIsAndTheClientTheForce) {
+  RemoteDevice device(clock_, options());
+  EXPECT_FALSE(device.info().keeps_time);
+  EXPECT_EQ(device.info().maximum_force, 5);
+  EXPECT_EQ(step(device).status, DeviceStatus::silent);
+  EXPECT_NE(device.reason().find(options().path), std::string::npos) << device.reason();
+  RemoteClient client(device.path(), folder_ / "client");
+  talk(device, client);
+  client.packet().buttons = 3;
+  client.say(0.02);
+  const DeviceState state = step(device, -1.5);
+  EXPECT_EQ(state.status, DeviceStatus::ok);
+  EXPECT_EQ(state.position, Vector3d(0, 0, 0.02));
+  EXPECT_EQ(state.buttons, 3u);
+  EXPECT_EQ(state.time, clock_.time);
+  EXPECT_EQ(device.reason(), "");
+  const auto heard = client.hear();
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(heard->z, -1.5);
+  EXPECT_EQ(heard->flags, 1u);
+  EXPECT_EQ(device.counts().taken, 1001u);
+}
+
+TEST_F(RemoteDeviceTest, TakesTheNewestOfWhatWaitsAndABoundedNumber) {
+  RemoteDevice device(clock_, options());
+  RemoteClient client(device.path(), folder_ / "client");
+  int sent = 0;
+  while (sent < 300 && client.say(1e-3 * sent)) ++sent;  // until its queue is full
+  ASSERT_GT(sent, 5);
+  const int taken = std::min(sent, RemoteDevice::kMostPackets);
+  EXPECT_EQ(step(device).position.z(), 1e-3 * (taken - 1));
+  EXPECT_EQ(device.counts().received, static_cast<std::uint64_t>(taken));
+}
+
+TEST_F(RemoteDeviceTest, CountsWhatItRefusesAndSaysWhy) {
+  RemoteDevice device(clock_, options());
+  RemoteClient client(device.path(), folder_ / "client");
+  RemoteClient nameless(device.path(), "");
+  const std::vector<std::byte> junk(1000, std::byte{7});
+  client.send(std::span(junk).first(0));
+  client.send(std::span(junk).first(80));
+  client.send(junk);
+  step(device);
+  client.packet().position.x() = std::nan("");
+  client.say(0);
+  client.packet().position.x() = 1e6;
+  client.say(0);
+  client.packet().position.x() = 0;
+  step(device);
+  nameless.say(0);
+  step(device);
+  const RemoteCounts counts = device.counts();
+  EXPECT_EQ(counts.received, 6u);
+  EXPECT_EQ(counts.taken, 0u);
+  EXPECT_EQ(counts.refused_for(PacketFlaw::length), 2u);
+  EXPECT_EQ(counts.refused_for(PacketFlaw::magic), 1u);
+  EXPECT_EQ(counts.refused_for(PacketFlaw::number), 1u);
+  EXPECT_EQ(counts.refused_for(PacketFlaw::range), 1u);
+  EXPECT_EQ(counts.refused_for(PacketFlaw::nameless), 1u);
+  EXPECT_NE(device.reason().find("bind it"), std::string::npos) << device.reason();
+  EXPECT_EQ(step(device).status, DeviceStatus::silent);
+}
+
+TEST_F(RemoteDeviceTest, SilenceIsToldAndNoForceComesAndItComesBack) {
+  RemoteDevice device(clock_, options());
+  RemoteClient client(device.path(), folder_ / "client");
+  talk(device, client, 4);
+  double felt = 4;
+  DeviceState state;
+  for (int i = 0; i < 200; ++i) {
+    state = step(device, 4);
+    if (const auto heard = client.hear()) felt = heard->z;
+  }
+  EXPECT_EQ(state.status, DeviceStatus::silent);
+  EXPECT_EQ(felt, 0);
+  for (int i = 0; i < 3; ++i) {
+    client.say(0.01);
+    step(device, 4);
+  }
+  EXPECT_EQ(step(device, 4).status, DeviceStatus::ok);
+  EXPECT_LT(client.hear()->z, 0.1) << "a soft start";
+}
+
+TEST_F(RemoteDeviceTest, AClientThatIsGoneIsSilentAndNoFailure) {
+  RemoteDevice device(clock_, options());
+  {
+    RemoteClient client(device.path(), folder_ / "client");
+    talk(device, client);
+  }
+  for (int i = 0; i < 300; ++i) ASSERT_NE(step(device, 1).status, DeviceStatus::failed);
+  EXPECT_GT(device.counts().unsent, 0u);
+  RemoteClient next(device.path(), folder_ / "client");
+  next.say(0);
+  step(device);
+  next.say(0);
+  EXPECT_EQ(step(device).status, DeviceStatus::ok);
+}
+
+TEST_F(RemoteDeviceTest, ForcesThatAreNotFiniteLatchAndTheClientIsToldSo) {
+  RemoteDevice device(clock_, options());
+  RemoteClient client(device.path(), folder_ / "client");
+  talk(device, client);
+  client.say(0.01);
+  step(device, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(step(device).status, DeviceStatus::failed);
+  EXPECT_NE(device.reason().find("not finite"), std::string::npos) << device.reason();
+  const auto heard = client.hear();
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(heard->z, 0);
+  EXPECT_EQ(heard->flags, 2u);
+}
+
+TEST_F(RemoteDeviceTest, SaysGoodbyeAndLeavesNoFile) {
+  RemoteClient client(folder_ / "device", folder_ / "client");
+  {
+    RemoteDevice device(clock_, options());
+    talk(device, client, 1);
+    client.say(0.01);
+    step(device, 1);
+    static_cast<void>(client.hear());
+  }
+  const auto heard = client.hear();
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(heard->z, 0);
+  EXPECT_EQ(heard->flags, 2u);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "device"));
+}
+
+TEST_F(RemoteDeviceTest, OnlyItsOwnerMayOpenIt) {
+  const mode_t before = ::umask(0);
+  const RemoteDevice device(clock_, options());
+  ::umask(before);
+  struct stat file {};
+  ASSERT_EQ(::stat(options().path.c_str(), &file), 0);
+  EXPECT_EQ(file.st_mode & 0777, 0600u);
+}
+
+// A socket's file without a program behind it, as a crash leaves it.
+void leave_socket(const std::string& path) {
+  const int handle = ::socket(AF_UNIX, SOCK_DGRAM, 0);
+  const sockaddr_un address = test::socket_address(path);
+  static_cast<void>(::bind(handle, reinterpret_cast<const sockaddr*>(&address), sizeof address));
+  ::close(handle);
+}
+
+TEST_F(RemoteDeviceTest, TakesThePlaceOfASocketThatNobodyListensTo) {
+  leave_socket(folder_ / "device");
+  ASSERT_TRUE(std::filesystem::exists(folder_ / "device"));
+  RemoteDevice device(clock_, options());
+  RemoteClient client(device.path(), folder_ / "client");
+  client.say(0);
+  step(device);
+  EXPECT_EQ(device.counts().taken, 1u);
+}
+
+std::string complaint(const Clock& clock, const RemoteDeviceOptions& options) {
+  try {
+    const RemoteDevice device(clock, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_F(RemoteDeviceTest, RefusesPathsThatAreTakenOrNoSockets) {
+  const RemoteDevice device(clock_, options());
+  EXPECT_NE(complaint(clock_, options()).find("another program"), std::string::npos);
+  std::ofstream(folder_ / "letter") << "do not lose me";
+  EXPECT_NE(complaint(clock_, {.path = folder_ / "letter"}).find("no socket"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "letter"));
+  EXPECT_NE(complaint(clock_, {.path = folder_ / "absent/device"}).find("folder"),
+            std::string::npos);
+  EXPECT_NE(complaint(clock_, {.path = std::string(200, 'x')}).find("characters"),
+            std::string::npos);
+}
+
+TEST_F(RemoteDeviceTest, RefusesOptionsOutOfRange) {
+  const auto with = [this](auto change) {
+    RemoteDeviceOptions changed = options();
+    change(changed);
+    return complaint(clock_, changed);
+  };
+  EXPECT_NE(with([](auto& o) { o.maximum_force = 0; }), "");
+  EXPECT_NE(with([](auto& o) { o.rate = std::nan(""); }), "");
+  EXPECT_NE(with([](auto& o) { o.silence = 0; }), "");
+  EXPECT_NE(with([](auto& o) { o.fade = -1; }), "");
+  EXPECT_NE(with([](auto& o) { o.soft_start = 0; }), "");
+  EXPECT_EQ(with([](auto&) {}), "");
+}
+
+TEST_F(RemoteDeviceTest, OthersMayLookAtItWhileItSteps) {
+  RemoteDevice device(clock_, options());
+  RemoteClient client(device.path(), folder_ / "client");
+  std::jthread watcher([&](const std::stop_token& stop) {
+    std::uint64_t last = 0;
+    while (!stop.stop_requested()) {
+      const RemoteCounts counts = device.counts();
+      EXPECT_GE(counts.taken, last);
+      last = counts.taken;
+      static_cast<void>(device.reason());
+    }
+  });
+  talk(device, client);
+}
+
+}  // namespace
+}  // namespace palpate
