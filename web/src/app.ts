@@ -65,7 +65,7 @@ export class App {
     this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
     const take = () => this.hold.take();
     this.bar = new Bar(this.session, this.world, this.sound, this.notices, link.token, send);
-    const keys = new Keys(byId("view"), {
+    const keys = new Keys({
       toggleTool: () => this.hold.toggle(),
       letGo: () => this.hand.letGo(),
       togglePause: () => this.bar.pause(),

@@ -1,5 +1,5 @@
 // A program that is none: speaks docs/viewer_protocol.md over a made-up scene and serves dist/ under the
-// strict policy of the real one. node test/fake_server.mjs [--port 8421] [--points 30000] [--token TOKEN]
+// strict policy of the real one. node test/fake_server.mjs [--port 8421] [--points 30000] [--token TOKEN] [--still]
 
 import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";
@@ -29,8 +29,8 @@ async function answer(request, response) {
 }
 
 /** Resolves to { address, program, close } once it listens on 127.0.0.1; port 0 takes a free one. */
-export async function serve({ port = 0, points = 30000, token = randomBytes(16).toString("hex") } = {}) {
-  const program = new FakeProgram({ points, token });
+export async function serve({ port = 0, points = 30000, still = false, token = randomBytes(16).toString("hex") } = {}) {
+  const program = new FakeProgram({ points, still, token });
   const http = createServer((request, response) => void answer(request, response));
   const sockets = new WebSocketServer({ server: http, path: "/live", maxPayload: 64_000 });
   sockets.on("connection", (socket) => {
@@ -62,7 +62,7 @@ if (import.meta.url === pathToFileURL(process.argv[1] ?? "").href) {
     return at > 0 ? process.argv[at + 1] : otherwise;
   };
   const { address } = await serve({
-    port: Number(option("port", 8421)), points: Number(option("points", 30000)),
+    port: Number(option("port", 8421)), points: Number(option("points", 30000)), still: process.argv.includes("--still"),
     ...(option("token") ? { token: option("token") } : {}),
   });
   console.log(address);

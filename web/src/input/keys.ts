@@ -28,10 +28,7 @@ export class Keys {
   private readonly down = new Set<string>();
   private pace = 1;
 
-  constructor(
-    private readonly view: HTMLElement,
-    actions: Actions,
-  ) {
+  constructor(actions: Actions) {
     const once: Record<string, () => void> = {
       t: () => actions.toggleTool(),
       p: () => actions.togglePause(),
@@ -43,7 +40,7 @@ export class Keys {
       "?": () => actions.help(),
     };
     window.addEventListener("keydown", (event) => {
-      if (event.key === "Escape") actions.letGo();
+      if (event.key === "Escape" && !dialogIsOpen()) actions.letGo();
       if (event.ctrlKey || event.metaKey || writes(event.target) || dialogIsOpen()) return;
       const act = once[event.key.toLowerCase()];
       if (act !== undefined && !event.repeat) act();
@@ -65,7 +62,7 @@ export class Keys {
 
   private press(event: KeyboardEvent): boolean {
     if (kMoves[event.key] === undefined) return false;
-    if (document.activeElement !== this.view && document.activeElement !== document.body) return false;
+    if (event.target instanceof Element && event.target.closest(".side") !== null) return false;
     this.pace = event.shiftKey ? kFast : event.altKey ? kFine : 1;
     this.down.add(event.key);
     return true;

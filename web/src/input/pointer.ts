@@ -6,7 +6,8 @@ import { Plane, Raycaster, Vector2, Vector3 } from "three";
 import type { World } from "../view/world";
 import type { Hand } from "./hand";
 
-const kGrasp = 26; // pixels around the hand
+const kGrasp = 24; // pixels around the hand
+const kFinger = 40;
 const kNotch = 0.012; // of the distance, a notch of the wheel
 
 export class PointerInput {
@@ -93,13 +94,13 @@ export class PointerInput {
     return this.ray.ray.intersectPlane(plane, new Vector3()) ?? undefined;
   }
 
-  private onHand(event: MouseEvent): boolean {
+  private onHand(event: PointerEvent): boolean {
     const tool = this.world.tools[this.hand.device];
     if (tool === undefined || !tool.group.visible) return false;
     const place = this.hand.held ? this.hand.place : tool.hipPlace;
     const at = place.clone().project(this.world.stage.camera);
     const box = this.canvas.getBoundingClientRect();
     const seen = this.seen(event);
-    return Math.hypot((at.x - seen.x) * box.width, (at.y - seen.y) * box.height) / 2 < kGrasp;
+    return Math.hypot((at.x - seen.x) * box.width, (at.y - seen.y) * box.height) / 2 < (event.pointerType === "touch" ? kFinger : kGrasp);
   }
 }

@@ -18,11 +18,17 @@ export class HoldPanel {
     private readonly world: World,
     depth: (direction: number) => void,
   ) {
-    byId("take").addEventListener("click", () => this.toggle());
+    byId("take").addEventListener("click", () => {
+      this.toggle();
+      if (this.hand.held) byId("view").focus({ preventScroll: true }); // for the keys that move it
+    });
     for (const [id, direction] of [["away", 1], ["closer", -1]] as const) {
       const button = byId(id);
       button.addEventListener("pointerdown", () => depth(direction));
-      for (const type of ["pointerup", "pointerleave", "pointercancel"]) {
+      button.addEventListener("keydown", (event) => {
+        if (event.key === "Enter" || event.key === " ") depth(direction);
+      });
+      for (const type of ["pointerup", "pointerleave", "pointercancel", "keyup", "blur"]) {
         button.addEventListener(type, () => depth(0));
       }
       button.addEventListener("contextmenu", (event) => event.preventDefault());

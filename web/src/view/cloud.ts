@@ -50,6 +50,7 @@ export class Cloud {
 
   constructor(
     private readonly source: number,
+    readonly live: boolean, // what stands still does not age
     ramps: Texture,
   ) {
     this.points = new Points(new BufferGeometry(), makeMaterial(ramps));
@@ -82,7 +83,7 @@ export class Cloud {
     const known = colouring === "own" && !this.hasColours ? "height" : colouring;
     uniforms["mode"]!.value = kColourings.indexOf(known);
     uniforms["hasNormals"]!.value = this.hasNormals;
-    uniforms["age"]!.value = Math.min(Math.max(age / kStale, 0), 1);
+    uniforms["age"]!.value = Number.isFinite(age) ? Math.min(Math.max(age / kStale, 0), 1) : 0;
     uniforms["heights"]!.value = heights;
     uniforms["up"]!.value = up;
   }

@@ -27,10 +27,10 @@ export function screenColour(name: string): [number, number, number] {
   return [r, g, b];
 }
 
-// Viridis (S. van der Walt and N. Smith, CC0) at ten places, and a ramp for age: fresh to stale.
+// Viridis (S. van der Walt and N. Smith, CC0) without its darkest fifth, where shading would not show;
+// and a ramp for age: fresh to stale. view.css has the same.
 const kHeight = [
-  "#440154", "#482878", "#3e4989", "#31688e", "#26828e",
-  "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725",
+  "#414487", "#355f8d", "#2a788e", "#21918c", "#22a884", "#44bf70", "#7ad151", "#bddf26", "#fde725",
 ];
 const kAge = ["#0b8f86", "#5aa37c", "#b39b4c", "#b8763f", "#8d5a4f", "#6f6a70"];
 

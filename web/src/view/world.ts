@@ -77,7 +77,7 @@ export class World {
     this.radius = welcome.radius;
     this.bounds = undefined;
     this.navigation.setUp(this.up);
-    this.clouds = welcome.sources.map((_, i) => new Cloud(i, this.ramps));
+    this.clouds = welcome.sources.map(({ camera }, i) => new Cloud(i, camera, this.ramps));
     this.frusta = welcome.sources.map((_, i) => new Frustum(i));
     this.tools = welcome.devices.map(() => new Tool());
     this.surfaces = welcome.devices.map(() => new Surface());
@@ -167,7 +167,7 @@ export class World {
     const { look, stage } = this;
     this.clouds.forEach((cloud, i) => {
       cloud.points.visible = look.points && cloud.count > 0 && this.visible[i] === true;
-      cloud.shade(look.colouring, this.time - cloud.stamp, this.heights, this.up);
+      cloud.shade(look.colouring, cloud.live ? this.time - cloud.stamp : 0, this.heights, this.up);
       cloud.scale(look.pointSize, stage.pixelScale);
     });
     this.frusta.forEach((frustum, i) => {

@@ -23,6 +23,8 @@ const kPictures = [
     await page.click("#record");
   }],
   ["phone_landscape", { ...kPhone, viewport: { width: 844, height: 390 } }, "light"],
+  ["light_to_dark", kDesktop, "light", (page) => page.emulateMedia({ colorScheme: "dark" })],
+  ["still_desktop", kDesktop, "light"],
   ["desktop_hover", kDesktop, "light", async (page) => {
     await page.keyboard.press("h");
     await page.mouse.move(250, 800);
@@ -49,10 +51,11 @@ const kPictures = [
 
 await mkdir(folder, { recursive: true });
 const server = await serve();
+const still = await serve({ still: true });
 const browser = await openBrowser();
 for (const [name, options, scheme, act] of kPictures) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
-  const page = await openPage(browser, server.address, { ...options, colorScheme: scheme });
+  const page = await openPage(browser, (name.startsWith("still") ? still : server).address, { ...options, colorScheme: scheme });
   await page.waitForTimeout(6500);
   await act?.(page);
   await page.waitForTimeout(1800);
@@ -62,3 +65,4 @@ for (const [name, options, scheme, act] of kPictures) {
 }
 await browser.close();
 await server.close();
+await still.close();

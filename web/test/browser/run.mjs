@@ -6,7 +6,7 @@ import { serve } from "../fake_server.mjs";
 import { openBrowser, openPage } from "./browser.mjs";
 
 const kPatience = 30_000; // ms, where the machine is busy
-const kSmall = { viewport: { width: 900, height: 600 } };
+const kSmall = { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" };
 const kPhone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true };
 let browser;
 
@@ -49,6 +49,18 @@ test("shows the scene and its force, and the browser has nothing to complain of"
     assert.equal(await page.locator("#settings .field").count(), 6);
   }));
 
+test("clouds that stand still, without colours and normals, show too", async () => {
+  const server = await serve({ points: 4000, still: true });
+  const page = await openPage(browser, server.address, kSmall);
+  await ready(page);
+  await until("sources", async () => /left[\s\S]*still/.test(await text(page, "#sources")));
+  assert.ok(await page.locator("#ramp").isVisible(), "coloured by height");
+  assert.ok(await page.locator(".chart.frames").isHidden(), "no frames to time");
+  assert.deepEqual(page.troubles, []);
+  await page.context().close();
+  await server.close();
+});
+
 test("keys take the tool, push it against the table, and let go", () =>
   withPage(kSmall, async (page, program) => {
     await page.focus("#view");
@@ -87,13 +99,7 @@ test("a drag moves the hand while the tool is held, and turns the view otherwise
 
     await page.keyboard.press("t");
     await until("held", () => hands(program).length > 0);
-    let rest = "";
-    await until("the view rests", async () => {
-      const before = rest;
-      await page.waitForTimeout(400);
-      rest = await axis();
-      return rest === before;
-    });
+    const rest = await axis();
     const begin = hands(program)[0].position;
     await drag();
     await until("moved", () => Math.hypot(...hands(program).at(-1).position.map((c, i) => c - begin[i])) > 0.01);
@@ -146,6 +152,21 @@ test("on a phone one finger moves the tool and two turn the view", () =>
     await fingers("touchEnd");
     await until("the view turned", async () => (await axis()) !== rest);
     assert.deepEqual(hands(program).at(-1).position, still, "the tool stays");
+  }));
+
+test("a game controller takes the tool and moves it", () =>
+  withPage(kSmall, async (page, program) => {
+    await page.evaluate(() => {
+      window.pad = { connected: true, id: "Standard", axes: [0, 0, 0, 0], buttons: [{ pressed: false }, { pressed: false }] };
+      navigator.getGamepads = () => [window.pad];
+    });
+    await page.evaluate(() => (window.pad.buttons[0].pressed = true));
+    await until("held", () => program.servo.taken);
+    const begin = hands(program).at(-1).position;
+    await page.evaluate(() => (window.pad.axes = [0, 0, 0, -1]));
+    await until("moved", () => Math.hypot(...hands(program).at(-1).position.map((c, i) => c - begin[i])) > 0.01);
+    await page.evaluate(() => (window.pad.buttons[1].pressed = true));
+    await until("released", () => sent(program, "release").length === 1);
   }));
 
 test("settings, presets and buttons reach the program", () =>

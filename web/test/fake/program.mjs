@@ -27,9 +27,9 @@ export class FakeProgram {
   playing = 0;
   near = false;
 
-  constructor({ points = 30000, token, pace = 1 }) {
+  constructor({ points = 30000, token, still = false }) {
     this.token = token;
-    this.pace = pace;
+    this.still = still;
     const random = randomFrom(7);
     this.servo = new Servo(random);
     this.frames = kCameras.map((camera) =>
@@ -61,7 +61,7 @@ export class FakeProgram {
 
   tellState() {
     const now = performance.now();
-    this.servo.advance(Math.min(0.1, (now - this.last) / 1000) * this.pace);
+    this.servo.advance(Math.min(0.1, (now - this.last) / 1000));
     this.last = now;
     this.broadcast(encodeState(this.servo.report()));
   }
@@ -70,6 +70,8 @@ export class FakeProgram {
     this.playing += 1;
     for (const client of this.clients) {
       if (!client.welcome || client.socket.bufferedAmount > 2_000_000) continue;
+      if (this.still && client.sent === client.points) continue;
+      client.sent = client.points;
       for (let source = 0; source < kCameras.length; source += 1) {
         client.socket.send(this.cloud(source, client.points));
       }
@@ -82,13 +84,17 @@ export class FakeProgram {
     const frame = this.frames[source][this.playing % kClouds];
     const count = Math.min(frame.length, Math.floor(most / kCameras.length));
     const key = `${source}/${this.playing % kClouds}/${count}`;
-    if (!this.encoded.has(key)) this.encoded.set(key, encodeCloud(source, 0, frame.slice(0, count)));
+    if (!this.encoded.has(key)) this.encoded.set(key, encodeCloud(source, 0, frame.slice(0, count), this.still));
     const bytes = this.encoded.get(key);
     bytes.writeDoubleLE(this.servo.time - 0.03, 8);
     return bytes;
   }
 
   tellSources() {
+    if (this.still) {
+      const sources = kCameras.map(({ name }, i) => ({ name, phase: "still", points: this.frames[i][0].length, rate: 0, dropped: 0 }));
+      return this.tell({ type: "sources", sources });
+    }
     const wobble = Math.sin(this.servo.time * 0.7);
     this.tell({
       type: "sources",
@@ -104,7 +110,7 @@ export class FakeProgram {
   welcome() {
     return {
       type: "welcome", version: 1, scene: "table with a ball", origin: [0, 0, 0], up: [0, 0, 1], radius: 0.35,
-      devices: [{ name: "simulated", takeable: true }], sources: kCameras.map(({ name }) => ({ name, camera: true })),
+      devices: [{ name: "simulated", takeable: true }], sources: kCameras.map(({ name }) => ({ name, camera: !this.still })),
       settings: this.settings, presets: Object.keys(kPresets),
     };
   }
