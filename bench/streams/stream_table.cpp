@@ -70,6 +70,7 @@ std::vector<Target> targets() {
       {"ball comes at 10 cm/s", kLost, lost, 0, "", ""},
       {"plane comes at 2 cm/s", kLag, lag, 0.75, "1.35-1.6", ""},
       {"plane comes at 2 cm/s", kLost, lost, 0, "", ""},
+      {"ball comes at 2 cm/s", kLag, lag, 0.75, "", ""},
       {"ball comes at 2 cm/s", kLost, lost, 0, "", ""},
       {"the setting of Fig. 7", "sd of normal, deg", normal_sd, 0.3,
        "metaball 8.6-3.9, pointset 4.4-1.75", "0.16-19"},

@@ -30,7 +30,7 @@ void expect_met(const std::vector<std::string>& names) {
   for (const Target& target : targets()) {
     for (const double value : values(results, target)) {
       // One short run scatters.
-      EXPECT_LE(std::abs(value), 1.4 * target.limit) << target.experiment << ", " << target.metric;
+      EXPECT_LE(std::abs(value), 1.15 * target.limit) << target.experiment << ", " << target.metric;
       ++compared;
     }
   }
@@ -46,11 +46,11 @@ TEST(Streams, SphereSlideMeetsTableB) {
 }
 
 TEST(Streams, SurfacesThatComeMeetTableB) {
-  expect_met({"comes at 10 cm/s"});
+  expect_met({"comes at"});
 }
 
 TEST(Streams, MovingAndSecondCamerasMeetTableB) {
-  expect_met({"camera moves", "two cameras, sphere"});
+  expect_met({"camera moves", "two cameras"});
 }
 
 // The measures on traces that are known.

@@ -73,7 +73,7 @@ TEST(BlockSurface, WeighsRimsAndHolesAsASearchWould) {
       0.12f);
 }
 
-// R = 2.5 s for a surface that faces the camera; 1.7 rows of one that does not.
+// R = 2.5 s for a surface that faces the camera; 2.2 rows of one that does not.
 TEST(BlockSurface, RadiiFollowTheSpacingOfRows) {
   const double pitch = 2 / 375.0;
   const FilteredDepth wall = depth_of(test::wall(0.5));
@@ -86,7 +86,7 @@ TEST(BlockSurface, RadiiFollowTheSpacingOfRows) {
       depth_of(test::plane_depth({0, 0, 0.5}, Vector3d(std::sin(tilt), 0, -std::cos(tilt))));
   surface.measure(slope);
   const double rows = pitch * 0.5 / std::cos(tilt);
-  EXPECT_NEAR(surface.radius(middle) / (1.7 * rows), 1, 0.1);
+  EXPECT_NEAR(surface.radius(middle) / (2.2 * rows), 1, 0.1);
 }
 
 TEST(BlockSurface, RadiiGrowByHalfTheDistanceAtMost) {

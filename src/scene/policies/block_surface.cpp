@@ -8,7 +8,7 @@ namespace palpate {
 namespace {
 
 constexpr float kSpacings = 2.5f;  // R in spacings
-constexpr float kRows = 1.7f;      // R in the largest distance to a neighbour
+constexpr float kRows = 2.2f;      // R in the largest distance to a neighbour
 constexpr float kSlope = 0.5f;     // of R over distance
 constexpr float kShareOfAround = 0.8f;
 constexpr int kLargestWindow = 8;  // blocks on either side

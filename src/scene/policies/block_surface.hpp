@@ -23,7 +23,7 @@ class BlockSurface {
   /// The same, exact everywhere.
   void measure(const FilteredDepth& depth);
 
-  /// R_i, m: max(2.5 s, 1.7 times the largest spacing of rows) (field_choice.md section 5), limited
+  /// R_i, m: max(2.5 s, 2.2 times the largest spacing of rows) (field_choice.md section 5), limited
   /// so that it grows by half the distance at most from block to block; 0 where there is no point.
   [[nodiscard]] float radius(std::size_t block) const { return radii_[block]; }
 
