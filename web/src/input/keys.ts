@@ -42,7 +42,7 @@ export class Keys {
     window.addEventListener("keydown", (event) => {
       if (event.key === "Escape" && !dialogIsOpen()) actions.letGo();
       if (event.ctrlKey || event.metaKey || writes(event.target) || dialogIsOpen()) return;
-      const act = once[event.key.toLowerCase()];
+      const act = event.altKey ? undefined : once[event.key.toLowerCase()];
       if (act !== undefined && !event.repeat) act();
       else if (!this.press(event)) return;
       event.preventDefault();

@@ -35,10 +35,11 @@ export class PointerInput {
     if (event.target !== this.canvas) return;
     if (event.pointerType === "touch") this.touches.add(event.pointerId);
     const plain = event.button === 0 && !event.altKey && !event.ctrlKey && !event.metaKey;
-    const mine = plain && this.touches.size <= 1 && (this.hand.held || this.onHand(event));
+    const wanted = plain && this.touches.size <= 1 && (this.hand.held || this.onHand(event));
+    const mine = wanted && this.take();
     this.world.navigation.turnByDrag(!mine && !(this.hand.held && this.touches.size > 0));
     if (this.touches.size > 1) this.drag(undefined);
-    if (!mine || !this.take()) return;
+    if (!mine) return;
     this.drag(event.pointerId);
     this.canvas.setPointerCapture(event.pointerId);
     this.offset.copy(this.hand.place).sub(this.onPlane(event) ?? this.hand.place);

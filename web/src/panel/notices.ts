@@ -28,7 +28,9 @@ export class Notices {
     }
     const notice = this.makeNotice(level, text);
     this.shown.push(notice);
-    if (this.shown.length > kShown) this.remove(this.shown[0]!);
+    if (this.shown.length > kShown) {
+      this.remove(this.shown.find((one) => one.level !== "fault") ?? this.shown[0]!);
+    }
     byId("notices").append(notice.card);
     this.log(notice.entry);
     say(byId(level === "fault" ? "urgent" : "polite"), kWords[level] + text);

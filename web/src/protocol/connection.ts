@@ -42,12 +42,12 @@ export class Connection {
 
   open(): void {
     clearTimeout(this.retry);
+    this.drop();
     this.listener.link({ phase: "connecting" });
     const socket = new WebSocket(this.address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
-    this.welcomed = false;
-    socket.onopen = () => this.hello();
+    socket.onopen = () => this.hello(socket);
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.take(event.data);
     socket.onclose = (event) => {
       if (this.socket === socket) this.lost(event.code, event.reason);
@@ -61,8 +61,8 @@ export class Connection {
     return true;
   }
 
-  private hello(): void {
-    this.socket?.send(
+  private hello(socket: WebSocket): void {
+    socket.send(
       JSON.stringify({ type: "hello", token: this.token, points: this.points() } satisfies ToProgram),
     );
     this.heard = performance.now();
@@ -71,9 +71,7 @@ export class Connection {
 
   private ping(): void {
     if (performance.now() - this.heard > kSilence) {
-      const silent = this.socket;
-      this.lost(1006, "the program is silent");
-      silent?.close();
+      this.lost(1006, "");
       return;
     }
     const id = this.nextPing++;
@@ -107,12 +105,21 @@ export class Connection {
     this.listener.message(message);
   }
 
-  private lost(code: number, reason: string): void {
+  private drop(): void {
     clearInterval(this.pinging);
-    this.socket = undefined;
-    const wasWelcome = this.welcomed;
+    const socket = this.socket;
+    this.socket = undefined; // from here on nobody listens to it
     this.welcomed = false;
     this.roundTrip = NaN;
+    if (socket === undefined) return;
+    socket.onopen = null;
+    socket.onmessage = null;
+    socket.close();
+  }
+
+  private lost(code: number, reason: string): void {
+    const wasWelcome = this.welcomed;
+    this.drop();
     if (code === kPolicyViolation && !wasWelcome) {
       this.listener.link({ phase: "refused", reason: reason || "the token is not the program's" });
       return;
