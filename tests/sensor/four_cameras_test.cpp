@@ -48,7 +48,7 @@ class FourCameras : public testing::Test {
     for (int k = 0; k < kCameras; ++k) {
       Lane& lane = lanes_.emplace_back();
       const std::string name = "camera " + std::to_string(k + 1);
-      lane.camera = open_simulated("still,width=160,loop=4,seed=" + std::to_string(k + 1) +
+      lane.camera = open_simulated("still,width=160,loop=8,seed=" + std::to_string(k + 1) +
                                        ",view=" + std::to_string(8 * k - 12) +
                                        ",phase=" + std::to_string(k * kInterval / kCameras) + more,
                                    nullptr);
