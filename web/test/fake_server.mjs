@@ -11,7 +11,7 @@ import { FakeProgram } from "./fake/program.mjs";
 
 const kDist = join(dirname(fileURLToPath(import.meta.url)), "..", "dist");
 const kTypes = { ".html": "text/html; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".css": "text/css; charset=utf-8" };
-const kPolicy = "default-src 'self'; connect-src 'self'; img-src 'self' data: blob:";
+const kPolicy = "default-src 'self'; connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 async function answer(request, response) {
   const path = request.url === "/" ? "/index.html" : (request.url ?? "");

@@ -26,15 +26,17 @@ function makeRow(source: SourceHistory, index: number, changed: () => void): Row
   });
   box.checked = source.visible;
   box.style.setProperty("--swatch", `var(${sourceColour(index)})`);
-  const phase = make("td", { colspan: 5 });
+  const phase = make("small");
   const rate = cell("frames a second");
   const points = cell("points");
+  const latency = cell("from a frame to what can be touched");
   const age = cell("age of what is felt");
   const dropped = cell("frames left out");
-  const name = make("th", { scope: "row" }, make("label", {}, box, make("span", {}, source.name)));
+  const name = make("th", { scope: "rowgroup", colspan: 5 },
+    make("label", {}, box, make("span", {}, source.name), phase));
   return {
     rows: make("tbody", {},
-      make("tr", {}, name, rate, points, age, dropped), make("tr", { class: "phase" }, phase)),
+      make("tr", {}, name), make("tr", {}, rate, points, latency, age, dropped)),
     update: () => {
       const report = source.report;
       if (report === undefined) return;
@@ -44,6 +46,7 @@ function makeRow(source: SourceHistory, index: number, changed: () => void): Row
       phase.classList.toggle("bad", kBad.has(report.phase));
       say(rate, hertz > 0 ? hertz.toFixed(hertz < 9.95 ? 1 : 0) : "–");
       say(points, short(report.points ?? 0));
+      say(latency, source.camera ? seconds(report.latency ?? NaN) : "–");
       say(age, source.camera ? seconds(report.age ?? NaN) : "–");
       say(dropped, short(report.dropped ?? 0));
     },
@@ -55,7 +58,7 @@ export class SourcesPanel {
 
   begin(sources: readonly SourceHistory[], changed: () => void): void {
     this.rows = sources.map((source, i) => makeRow(source, i, changed));
-    const head = ["Source", "Hz", "Points", "Age", "Drops"].map((text) =>
+    const head = ["Hz", "Points", "Latency", "Age", "Drops"].map((text) =>
       make("th", { scope: "col" }, text),
     );
     byId("sources").replaceChildren(

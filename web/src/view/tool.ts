@@ -15,6 +15,7 @@ const kUp = new Vector3(0, 1, 0);
 const kForward = new Vector3(0, 0, 1);
 const kProxyPixels = 9;
 const kHandPixels = 7.5;
+const kLongest = 240; // pixels of an arrow
 const kLeastForce = 0.01; // N that shows
 
 function ball(material: Material, order: number): Mesh {
@@ -159,7 +160,7 @@ export class Tool {
     this.head.visible = shown;
     if (!shown) return;
     const along = this.force.clone().divideScalar(size);
-    const length = Math.max(size * perNewton, 10 * pixel);
+    const length = Math.min(Math.max(size * perNewton, 10 * pixel), kLongest * pixel);
     const headLength = Math.min(17 * pixel, 0.5 * length);
     const shaftLength = length - headLength;
     this.shaft.position.copy(this.proxyPlace).addScaledVector(along, start + shaftLength / 2);
