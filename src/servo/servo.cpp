@@ -55,7 +55,8 @@ Servo::Servo(Device& device, Scene& scene, const ServoOptions& options)
       options_(options_for(device.info(), options)),
       field_(scene, options_.field),
       proxy_(options_.proxy),
-      guard_(options_.guard) {}
+      guard_(options_.guard),
+      wanted_field_(options_.field) {}
 
 const ServoState& Servo::tick(double now) noexcept {
   step(device_.read(), now);
@@ -125,6 +126,7 @@ void Servo::show(const StepTiming& timing) noexcept {
   lateness_.add(timing.lateness);
   computing_.add(timing.computing);
   shown_.set(state_);
+  recent_forces_.add(state_.force.cast<float>());
   if (options_.steps != nullptr) options_.steps->push(state_);
 }
 

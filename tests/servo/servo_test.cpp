@@ -245,7 +245,9 @@ TEST(Servo, ChangesTheSurfaceAndTheGuardLeadsTheForceThere) {
   servo.tick(0);
   device.state().position = {0, 0, 2e-3};
   EXPECT_EQ(servo.tick(1e-3).force.norm(), 0) << "above the sheet";
+  EXPECT_EQ(servo.field().kind, FieldKind::balanced);
   servo.set_field({.kind = FieldKind::metaball});  // stands 0.49 R = 4.9 mm before its points
+  EXPECT_EQ(servo.field().kind, FieldKind::metaball);
   double before = 0;
   for (int i = 2; i < 100; ++i) {
     const double force = servo.tick(1e-3 * i).force.norm();

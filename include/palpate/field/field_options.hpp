@@ -33,6 +33,8 @@ struct FieldOptions {
   bool sharp_edges = true;
   bool raw_weights = false;     ///< ignore density weights (the paper)
   bool nearest_radius = false;  ///< use the R of the point nearest to the proxy for all (the paper)
+
+  bool operator==(const FieldOptions&) const = default;
 };
 
 /// @throws Error when an option is out of its range.

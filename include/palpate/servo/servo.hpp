@@ -12,6 +12,7 @@
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/histogram.hpp"
+#include "palpate/servo/recent_forces.hpp"
 #include "palpate/servo/servo_state.hpp"
 #include "palpate/servo/step_queue.hpp"
 
@@ -80,6 +81,9 @@ class Servo {
   [[nodiscard]] Durations lateness() const noexcept { return lateness_.look(); }
   [[nodiscard]] Durations computing() const noexcept { return computing_.look(); }
 
+  /// What the guard let through in every step of late, N, world frame. Any thread.
+  [[nodiscard]] const RecentForces& recent_forces() const noexcept { return recent_forces_; }
+
   /// Lets the hand feel nothing: the force goes to zero at the guard's rate, and back. Any thread.
   void pause(bool paused) noexcept { paused_.store(paused); }
   /// Forgets faults and the contact in the next step; the proxy is put to the hand. Any thread.
@@ -94,6 +98,8 @@ class Servo {
   /// force goes there softly. Any thread; not real-time.
   /// @throws Error when an option is out of its range.
   void set_field(const FieldOptions& field);
+  /// The surface that is felt, from the next step on at the latest. Any thread.
+  [[nodiscard]] FieldOptions field() const noexcept { return wanted_field_.get(); }
 
  private:
   void take_wishes(const Eigen::Vector3d& hip) noexcept;
@@ -111,6 +117,7 @@ class Servo {
   std::uint64_t field_seen_ = 0;
 
   Latest<ServoState> shown_;
+  RecentForces recent_forces_;
   Histogram lateness_;
   Histogram computing_;
   std::mutex wish_mutex_;  // between those who change what is felt; the step never takes it
