@@ -18,8 +18,8 @@ def seed(target, name, data):
     folder.mkdir(parents=True, exist_ok=True)
     data = data.encode() if isinstance(data, str) else data
     (folder / name).write_bytes(data)
-    if target not in ("any", "depth", "frame_list", "poses", "remote_state", "sequence",
-                      "trajectory"):
+    if target not in ("any", "client_message", "depth", "frame_list", "poses", "remote_state",
+                      "sequence", "trajectory"):
         seed("any", f"{target}-{name}", data)
 
 
@@ -197,5 +197,17 @@ def remote():
     seed("remote_state", "newer", state(version=2, reserved=1))
 
 
-for make in (ply, pcd, las, depth, text, packed, sequences, remote):
+def client_messages():
+    for name, rest in (("hello", '"token":"00ff","points":500000'), ("release", '"device":0'),
+                       ("hand", '"device":0,"position":[0.1,-2,3e-3],"buttons":3'),
+                       ("set_number", '"key":"stiffness","value":750.5'),
+                       ("set_choice", '"key":"field","value":"balanced"'),
+                       ("set_switch", '"key":"friction","value":true'),
+                       ("preset", '"name":"soft"'), ("pause", '"on":true'), ("record", '"on":false'),
+                       ("points", '"points":1000'), ("ping", '"id":7')):
+        seed("client_message", name, '{"type":"%s",%s}' % (name.split("_")[0], rest))
+    seed("client_message", "reset", '{"type":"reset"}')
+
+
+for make in (ply, pcd, las, depth, text, packed, sequences, remote, client_messages):
     make()

@@ -20,7 +20,7 @@ if [ "${1:-}" = --soak ]; then
 fi
 
 say "packages"
-need_packages build cameras test fuzz lint
+need_packages build cameras viewer test fuzz lint
 find_data
 
 say "Debug"

@@ -20,7 +20,7 @@ started=$SECONDS
 status=0
 
 say "packages"
-need_packages build cameras test
+need_packages build cameras viewer test
 if [ "$fuzz" = yes ]; then need_packages fuzz; fi
 if [ "$fuzz" = yes ] && ! command -v clang++ >/dev/null; then
   note "clang++ is absent: no fuzz targets"

@@ -18,8 +18,10 @@ FLOORS = {
     "sensor": {"base", "geometry", "depth", "io", "field", "prepare", "scene"},
     "device": {"base", "geometry", "io", "field", "contact", "prepare", "scene"},
     "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "device"},
+    "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
+               "servo"},
     "apps": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "sensor",
-             "device", "servo"},
+             "device", "servo", "viewer"},
 }
 # Single headers that a floor may include of a floor that it may not see otherwise.
 ALLOWED = {("contact", "palpate/field/field.hpp")}

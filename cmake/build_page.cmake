@@ -1,0 +1,17 @@
+# Builds the page: cmake -D WEB=FOLDER -D NPM=PROGRAM -P build_page.cmake. What npm installs is asked for
+# anew only when the lock is newer.
+function(run)
+  execute_process(COMMAND ${NPM} ${ARGN} WORKING_DIRECTORY ${WEB} RESULT_VARIABLE result
+    OUTPUT_VARIABLE words ERROR_VARIABLE words)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "viewer: 'npm ${command}' failed in ${WEB}; without a network, configure with "
+      "-DPALPATE_BUILD_PAGE=OFF\n${words}")
+  endif()
+endfunction()
+
+set(installed ${WEB}/node_modules/.package-lock.json)  # npm writes it when it is done
+if(NOT EXISTS ${installed} OR ${WEB}/package-lock.json IS_NEWER_THAN ${installed})
+  run(ci --no-audit --no-fund --ignore-scripts)
+endif()
+run(run build)

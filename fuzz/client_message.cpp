@@ -1,0 +1,40 @@
+// What a viewer's page says: whatever comes is read or refused with words.
+#include "viewer/client_message.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string_view>
+
+namespace {
+
+using namespace palpate::viewer;
+
+void expect(bool promise, const char* name) {
+  if (!promise) throw std::logic_error(name);
+}
+
+void check(const Unreadable& unread) {
+  expect(!unread.text.empty(), "a refusal without words");
+}
+void check(const Hello& hello) {
+  expect(hello.points <= kMostPoints, "points");
+}
+void check(const Hand& hand) {
+  expect(hand.position.allFinite(), "a place that is not finite");
+  expect(hand.position.cwiseAbs().maxCoeff() <= kFarthestHand, "a place too far");
+  expect(hand.device < 256, "device");
+}
+void check(const Points& points) {
+  expect(points.points <= kMostPoints, "points");
+}
+template <class Other>
+void check(const Other&) {}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  std::visit([](const auto& message) { check(message); }, read_message(text));
+  return 0;
+}

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/sensor/stream_state.hpp"
+
+namespace palpate {
+
+/// What a viewer bears from those who connect (docs/viewer_protocol.md). Times in s.
+struct ViewerLimits {
+  std::size_t clients = 8;
+  std::size_t connections = 64;     ///< open at a time, of clients and of others; more are closed
+  std::size_t message = 64 * 1024;  ///< bytes of a client's message
+  int messages = 250;               ///< a second and client
+  std::uint32_t header = 8 * 1024;  ///< bytes of a request's header
+  double header_time = 10;          ///< for a request to come, and for its answer to go
+  double hello_time = 5;
+  double silence = 10;  ///< a client that takes nothing for so long is closed
+  int refusals = 20;    ///< after so many in `refusal_time` a client is closed
+  double refusal_time = 10;
+};
+
+/// What a camera sees: a pyramid along +z of its pose.
+struct ViewerFrustum {
+  double tan_half_width = 0;
+  double tan_half_height = 0;
+  double far = 0;  ///< m
+};
+
+/// A stream as the page shows it.
+struct ViewerStream {
+  StreamState state;                                     ///< `state.source` names the source
+  std::optional<ViewerFrustum> frustum = {};             ///< unset: no camera
+  std::optional<Eigen::Isometry3d> T_world_sensor = {};  ///< unset: Source::pose()
+};
+
+struct ViewerOptions {
+  /// An address of this machine, v4 or v6. 0.0.0.0 and :: listen to every network: whoever knows
+  /// the token may then move the hand, and nothing on the way is secret.
+  std::string address = "127.0.0.1";
+  /// 0: any that is free. Unset: the first free one of kFirstPort and the nine after it.
+  std::optional<std::uint16_t> port = {};
+  std::string token = {};                      ///< empty: 128 random bits of the system
+  std::string scene = "palpate";               ///< the scene's name, for people
+  std::optional<Eigen::Vector3d> origin = {};  ///< m, world; unset: the middle of all points
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  /// How the streams fare; called about twice a second, on a thread of the viewer.
+  std::function<std::vector<ViewerStream>()> streams = {};
+  ViewerLimits limits = {};
+
+  static constexpr std::uint16_t kFirstPort = 8420;
+};
+
+}  // namespace palpate

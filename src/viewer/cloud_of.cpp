@@ -1,0 +1,50 @@
+#include "viewer/cloud_of.hpp"
+
+#include <cstdint>
+#include <vector>
+
+#include "viewer/thinned.hpp"
+
+namespace palpate::viewer {
+namespace {
+
+template <class Column>
+const Column& newest(const Column& start, const Column& end) {
+  return end.empty() ? start : end;
+}
+
+/// Of what has not faded away, in the grid's order.
+std::vector<std::uint32_t> felt(const SurfacePoints& points) {
+  const auto& weights = newest(points.density_weights, points.end_density_weights);
+  const auto& presences = newest(points.presences, points.end_presences);
+  std::vector<std::uint32_t> found;
+  found.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const bool weighs = weights.empty() || weights[i] > 0;
+    if (weighs && (presences.empty() || presences[i] > 0)) found.push_back(i);
+  }
+  return found;
+}
+
+}  // namespace
+
+CloudMessage cloud_of(const SurfacePoints& points, const Eigen::Vector3d& origin,
+                      std::size_t budget) {
+  const std::vector<std::uint32_t> shown = felt(points);
+  const std::vector<std::uint32_t> kept = thinned(shown.size(), budget);
+  const auto& normals = newest(points.normals, points.end_normals);
+  const Eigen::Vector3f shift = (points.origin - origin).cast<float>();
+  CloudMessage message;
+  message.places.reserve(kept.size());
+  if (!normals.empty()) message.normals.reserve(kept.size());
+  for (const std::uint32_t k : kept) {
+    const std::uint32_t i = shown[k];
+    const Eigen::Vector3f& place =
+        points.end_positions.empty() ? points.grid.points()[i] : points.end_positions[i];
+    message.places.emplace_back(place + shift);
+    if (!normals.empty()) message.normals.push_back(normals[i]);
+  }
+  return message;
+}
+
+}  // namespace palpate::viewer

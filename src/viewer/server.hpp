@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "palpate/viewer/viewer_options.hpp"
+#include "viewer/hub.hpp"
+#include "viewer/lobby.hpp"
+
+namespace palpate::viewer {
+
+/// The network's side of a viewer: accepts connections, checks on them, and runs what is posted.
+/// All of it on the one thread that calls run().
+class Server {
+ public:
+  /// Listens. `lobby` outlives it.
+  /// @throws Error when the address or the port cannot be had.
+  Server(const ViewerOptions& options, Lobby& lobby);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  [[nodiscard]] const Listening& listening() const;
+
+  /// Calls `act` again and again on the network thread, `period` s apart. Before run().
+  void every(double period, std::function<void()> act);
+  /// Until stop(); then no connection is left.
+  void run();
+  /// Any thread.
+  void stop();
+  /// Does `act` on the network thread. Any thread.
+  void post(std::function<void()> act);
+  /// Network thread.
+  [[nodiscard]] ViewerCounts counts() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace palpate::viewer

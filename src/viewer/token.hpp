@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace palpate::viewer {
+
+/// 128 bits that nobody can guess, as 32 hexadecimal digits.
+/// @throws Error when the system gives none.
+[[nodiscard]] std::string make_token();
+
+/// Are they the same? How long it takes tells of `given`'s length alone.
+[[nodiscard]] bool same_token(std::string_view given, std::string_view token) noexcept;
+
+}  // namespace palpate::viewer

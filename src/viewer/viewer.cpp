@@ -1,0 +1,202 @@
+#include "palpate/viewer/viewer.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "palpate/base/error.hpp"
+#include "palpate/base/latest.hpp"
+#include "viewer/painter.hpp"
+#include "viewer/scene_box.hpp"
+#include "viewer/server.hpp"
+#include "viewer/state_source.hpp"
+#include "viewer/token.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace viewer;
+
+constexpr double kStatePeriod = 1.0 / 60;  // s
+constexpr double kEmptyRadius = 1;         // m, shown where there is nothing yet
+
+Message message_of(std::string bytes, bool text) {
+  return {std::make_shared<const std::string>(std::move(bytes)), text};
+}
+
+ViewerOptions complete(ViewerOptions options, const Scene& scene) {
+  if (options.token.empty()) options.token = make_token();
+  if (!options.origin) {
+    const Box box = scene_box(scene);
+    options.origin = box.empty() ? Eigen::Vector3d::Zero().eval() : box.center();
+  }
+  return options;
+}
+
+ViewerControls complete(ViewerControls controls, const std::vector<Servo*>& servos) {
+  if (!controls.pause) {
+    controls.pause = [servos](bool on) {
+      for (Servo* servo : servos) servo->pause(on);
+    };
+  }
+  if (!controls.reset) {
+    controls.reset = [servos] {
+      for (Servo* servo : servos) servo->reset();
+    };
+  }
+  return controls;
+}
+
+std::vector<DeviceLabel> labels_of(const std::vector<Servo*>& servos,
+                                   const ViewerControls& controls) {
+  if (servos.size() > std::numeric_limits<std::uint8_t>::max()) {
+    throw Error(fmt::format("viewer: {} servos; at most 255 can be shown", servos.size()));
+  }
+  std::vector<DeviceLabel> labels;
+  for (std::size_t i = 0; i < servos.size(); ++i) {
+    const bool takeable = controls.hand && (!controls.takeable || controls.takeable(i));
+    labels.push_back({servos[i]->device().info().name, takeable});
+  }
+  return labels;
+}
+
+}  // namespace
+
+struct Viewer::Parts {
+  Parts(Scene& seen, std::vector<Servo*> servos, const ViewerOptions& given,
+        const ViewerControls& controls)
+      : scene(seen),
+        options(complete(given, seen)),
+        lobby(lobby_options(complete(controls, servos), servos)),
+        server(options, lobby),
+        radii(servos.size(), 0.0),
+        painter(seen, {servos, *options.origin, options.streams,
+                       [this](Picture picture) { post(std::move(picture)); }}) {
+    for (std::size_t i = 0; i < servos.size(); ++i) {
+      states.emplace_back(*servos[i], i, *options.origin);
+    }
+    server.every(kStatePeriod, [this] { tick(); });
+    network = std::jthread([this] { server.run(); });
+  }
+  ~Parts() {
+    server.stop();
+    network.join();
+  }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
+  [[nodiscard]] LobbyOptions lobby_options(const ViewerControls& controls,
+                                           const std::vector<Servo*>& servos) {
+    return {options.token,   options.limits,
+            controls,        labels_of(servos, controls),
+            *options.origin, [this] { return welcome(); }};
+  }
+  [[nodiscard]] Welcome welcome() const;
+  void tick();
+  void post(Picture picture) {
+    auto shared = std::make_shared<Picture>(std::move(picture));
+    server.post([this, shared] { show(*shared); });
+  }
+  void show(const Picture& picture);
+
+  Scene& scene;
+  ViewerOptions options;
+  Lobby lobby;
+  Server server;
+  std::vector<StateSource> states;
+  std::vector<double> radii;  // R around each tool, m
+  Latest<ViewerCounts> counts;
+  Painter painter;
+  std::jthread network;
+};
+
+Welcome Viewer::Parts::welcome() const {
+  const Box box = scene_box(scene);
+  Welcome welcome;
+  welcome.scene = options.scene;
+  welcome.origin = *options.origin;
+  welcome.up = options.up;
+  welcome.radius = box.empty() ? kEmptyRadius : 0.5 * box.size().norm();
+  const std::vector<ViewerStream> streams =
+      options.streams ? options.streams() : std::vector<ViewerStream>{};
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const std::string& name = scene.source(i).name();
+    const bool camera = std::ranges::any_of(streams, [&](const ViewerStream& stream) {
+      return stream.state.source == name && stream.frustum;
+    });
+    welcome.sources.push_back({name, camera});
+  }
+  return welcome;
+}
+
+void Viewer::Parts::tick() {
+  std::set<std::size_t> budgets;
+  for (const Client* client : lobby.greeted()) budgets.insert(client->points);
+  const bool seen = !budgets.empty();
+  painter.look(std::move(budgets));
+  for (std::size_t i = 0; seen && i < states.size(); ++i) {
+    if (const auto state = states[i].next(Hub::now(), radii[i], lobby.taken(i))) {
+      lobby.tell_all({Topic::Kind::state, i}, message_of(encode(*state), false));
+    }
+  }
+  counts.set(server.counts());
+}
+
+void Viewer::Parts::show(const Picture& picture) {
+  for (std::size_t i = 0; i < picture.surfaces.size(); ++i) radii[i] = picture.surfaces[i].radius;
+  for (Client* client : lobby.greeted()) {
+    for (const PaintedCloud& cloud : picture.clouds) {
+      if (client->points != cloud.budget) continue;
+      Lobby::show(*client, {Topic::Kind::cloud, cloud.source}, cloud.bytes);
+    }
+    for (std::size_t i = 0; i < picture.surfaces.size(); ++i) {
+      Lobby::show(*client, {Topic::Kind::surface, i}, picture.surfaces[i].bytes);
+    }
+  }
+  if (picture.sources) lobby.tell_all({Topic::Kind::sources}, {picture.sources, true});
+  for (const auto& [level, text] : picture.notices) {
+    lobby.tell_all({Topic::Kind::answer}, message_of(notice_text(level, text), true));
+  }
+}
+
+Viewer::Viewer(Scene& scene, std::vector<Servo*> servos, const ViewerOptions& options,
+               ViewerControls controls)
+    : parts_(std::make_unique<Parts>(scene, std::move(servos), options, controls)) {}
+
+Viewer::~Viewer() = default;
+
+std::string Viewer::url() const {
+  Listening listening = parts_->server.listening();
+  if (listening.everywhere) listening.address = "127.0.0.1";
+  return fmt::format("http://{}/#{}", authority(listening), parts_->options.token);
+}
+
+std::uint16_t Viewer::port() const noexcept {
+  return parts_->server.listening().port;
+}
+
+ViewerCounts Viewer::counts() const {
+  return parts_->counts.get();
+}
+
+void Viewer::notice(NoticeLevel level, std::string text) {
+  Parts& parts = *parts_;
+  parts.server.post([&parts, level, words = std::move(text)] {
+    parts.lobby.tell_all({Topic::Kind::answer}, message_of(notice_text(level, words), true));
+  });
+}
+
+void Viewer::settings_changed() {
+  Parts& parts = *parts_;
+  parts.server.post([&parts] { parts.lobby.tell_settings(); });
+}
+
+}  // namespace palpate
