@@ -1,6 +1,7 @@
 #include "apps/palpate/hand.hpp"
 
 #include <limits>
+#include <utility>
 
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/touch_usage.hpp"
@@ -25,10 +26,20 @@ Hand scripted(const TouchOptions& options, Trajectory trajectory) {
   return hand;
 }
 
+// The hand is pulled along `target` again and again, unless somebody takes the tool.
+void guide(Hand& hand, const TouchOptions& options, SimulatedDeviceOptions device,
+           Trajectory target) {
+  device.duration = options.duration;
+  hand.remote = std::make_unique<RemoteHand>();
+  hand.guide = std::make_unique<GuidedHand>(*hand.remote, std::move(target));
+  hand.device = std::make_unique<SimulatedDevice>(device, *hand.guide);
+}
+
 // The hand is pulled along `target`, whose times begin at 0.
 void simulate(Hand& hand, const TouchOptions& options, Trajectory target) {
   SimulatedDeviceOptions device;
   device.rate = options.rate.value_or(device.rate);
+  if (options.view.wanted) return guide(hand, options, device, std::move(target));
   hand.steps = static_cast<std::size_t>(target.back().time * device.rate) + 2;
   hand.device = std::make_unique<SimulatedDevice>(device, std::move(target));
 }

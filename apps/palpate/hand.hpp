@@ -6,12 +6,16 @@
 #include "apps/palpate/exploration_plan.hpp"
 #include "apps/palpate/touch_options.hpp"
 #include "palpate/device/device.hpp"
+#include "palpate/device/guided_hand.hpp"
+#include "palpate/device/remote_hand.hpp"
 #include "palpate/device/workspace.hpp"
 
 namespace palpate::app {
 
 /// Who touches: a device, where it stands, and the surface's stiffness that goes with it.
 struct Hand {
+  std::unique_ptr<RemoteHand> remote;  ///< takes the tool from its way; null: nobody can
+  std::unique_ptr<GuidedHand> guide;   ///< what `remote` speaks to
   std::unique_ptr<Device> device;
   Workspace workspace;
   double stiffness = 0;                 ///< of the surface, N/m in the world

@@ -6,10 +6,12 @@
 #include <chrono>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "apps/palpate/interruption.hpp"
 #include "apps/palpate/live_feed.hpp"
 #include "apps/palpate/live_status.hpp"
+#include "apps/palpate/view.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/paced.hpp"
 #include "palpate/servo/servo_thread.hpp"
@@ -57,8 +59,8 @@ TouchStep step_of(const ServoState& state, double start) {
 // Takes steps from the servo to whoever wants each, and sums up what the status tells.
 class Watcher {
  public:
-  Watcher(const Servo& servo, StepQueue& steps, const EachStep& each, double start)
-      : servo_(servo), steps_(steps), each_(each), start_(start) {}
+  Watcher(const Servo& servo, StepQueue& steps, EachStep each, double start)
+      : servo_(servo), steps_(steps), each_(std::move(each)), start_(start) {}
 
   void take_steps() {
     while (const std::optional<ServoState> state = steps_.pop()) {
@@ -88,7 +90,7 @@ class Watcher {
  private:
   const Servo& servo_;
   StepQueue& steps_;
-  const EachStep& each_;
+  EachStep each_;
   double start_;
   double looked_ = start_;
   double force_ = 0;
@@ -117,10 +119,19 @@ LiveReport run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   report.realtime = thread.realtime();
   const double start = clock.now();
   LiveFeed feed(run.touched, run.felt, clock, start);
-  Watcher watcher(servo, steps, each, start);
+  std::optional<View> view;
+  if (is_viewed(run.options.view)) view.emplace(run, servo, feed);
+  Watcher watcher(
+      servo, steps,
+      [&](const TouchStep& step) {
+        each(step);
+        if (view) view->add(step);
+      },
+      start);
   while (thread.running() && !interruption.asked()) {
     std::this_thread::sleep_for(kLook);
     watcher.take_steps();
+    if (view) view->look();
     const double now = clock.now();
     if (status.due(now - start)) status.show(watcher.moment(now, feed));
   }

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "apps/palpate/cameras_command.hpp"
+#include "apps/palpate/demo_command.hpp"
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/info_command.hpp"
 #include "apps/palpate/paper_command.hpp"
@@ -48,6 +49,10 @@ int run(int argc, char** argv) {
   CLI::App* paper_app =
       program.add_subcommand("paper", "Repeat the experiments of Leeper, Chan and Salisbury 2012");
   add_paper_options(*paper_app, paper_command);
+  DemoOptions demo_options;
+  CLI::App* demo_app =
+      program.add_subcommand("demo", "Show a made-up scene on a page, to be touched with a mouse");
+  add_demo_options(*demo_app, demo_options);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version
@@ -59,7 +64,7 @@ int run(int argc, char** argv) {
   }
   if (program.get_subcommands().empty()) {
     throw UsageError(
-        "a command is missing: touch, info, cameras or paper; 'palpate --help' tells more");
+        "a command is missing: touch, info, cameras, paper or demo; 'palpate --help' tells more");
   }
   if (touch_command->parsed()) {
     apply_setup(*touch_command, touch_options);
@@ -68,6 +73,7 @@ int run(int argc, char** argv) {
   if (info_command->parsed()) info(info_options);
   if (cameras_command->parsed()) cameras(cameras_options);
   if (paper_app->parsed()) paper(paper_command);
+  if (demo_app->parsed()) demo(demo_options);
   return kSuccess;
 }
 

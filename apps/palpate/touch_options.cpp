@@ -134,6 +134,7 @@ constexpr const char* kFooter = R"(Examples:
   palpate touch depth.png --intrinsics 525,525,319.5,239.5
   palpate touch camera:simulated --simulated-time --duration 5 --picture table.png
   palpate touch sequence:recording --simulated-time --trajectory hand.csv --log forces.csv
+  palpate touch bunny.ply --view
   palpate touch --setup desk.toml left=sequence:monday
   gunzip -c dragon.ply.gz | palpate touch -
 
@@ -173,6 +174,7 @@ void add_touch_options(CLI::App& command, TouchOptions& o) {
   add_hand_options(command, o);
   add_time_options(command, o);
   add_live_options(command, o.live);
+  add_view_options(command, o.view);
   add_output_options(command, o);
   command.footer(kFooter);
 }

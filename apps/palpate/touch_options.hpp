@@ -8,6 +8,7 @@
 
 #include "apps/palpate/live_options.hpp"
 #include "apps/palpate/source_options.hpp"
+#include "apps/palpate/view_options.hpp"
 
 namespace palpate::app {
 
@@ -48,6 +49,7 @@ struct TouchOptions {
   bool simulated_time = false;
   std::optional<double> latency;  ///< from stamp to touchable in simulated time, s
   LiveOptions live;
+  ViewOptions view;
 
   std::string log;
   std::string json;

@@ -86,6 +86,7 @@ void check_feel(const TouchOptions& options) {
 }  // namespace
 
 bool in_real_time(const TouchOptions& options) {
+  if (options.view.wanted) return true;
   const std::vector<ChosenSource> sources = choose_sources(options);
   return !options.simulated_time && std::ranges::any_of(sources, [](const ChosenSource& source) {
     return lives(source.argument.path);

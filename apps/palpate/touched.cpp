@@ -54,7 +54,7 @@ void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
 
 void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& chosen,
                TouchedSource& result) {
-  const LoadedCloud loaded = load(chosen.argument, chosen.choices.reading);
+  LoadedCloud loaded = load(chosen.argument, chosen.choices.reading);
   if (wants_material(options)) check_intensities(loaded);
   result.format = loaded.file.format;
   result.declared = loaded.file.declared;
@@ -70,6 +70,9 @@ void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& ch
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();
   check_place(loaded.argument, *source.points());
+  if (options.view.wanted) {
+    result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
+  }
 }
 
 // A surface that is there from the start.
@@ -124,6 +127,7 @@ void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& cho
   if (wants_material(options)) refuse_material(chosen.argument);
   result.camera = open_live(chosen, clock);
   const DepthFrame first = first_frame(*result.camera);
+  result.lens = first.camera;
   result.as_cloud = taken_as_cloud(options, chosen);
   if (!chosen.choices.farthest) believe_no_farther(first, result.options.depth);
   Source& source = scene.add(chosen.argument.name, result.options);

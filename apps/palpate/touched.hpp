@@ -8,6 +8,8 @@
 #include "apps/palpate/cloud_facts.hpp"
 #include "apps/palpate/feed_report.hpp"
 #include "palpate/base/clock.hpp"
+#include "palpate/depth/camera_model.hpp"
+#include "palpate/geometry/point_cloud.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 
@@ -28,10 +30,12 @@ struct TouchedSource {
   double read_seconds = 0;
   UnitsGuess units;            ///< of a file that was read without --scale
   double prepare_seconds = 0;  ///< wall time of everything between reading and touching
+  std::shared_ptr<const PointCloud> cloud;  ///< where it may have to be prepared again
 
   // Of what lives:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
   bool as_cloud = false;                ///< its frames are taken as clouds
+  CameraModel lens;                     ///< of its first frame
   FeedReport feed;                      ///< after the run
 };
 

@@ -73,11 +73,10 @@ void Painter::work(const std::stop_token& stop, const std::set<std::size_t>& bud
 
 Picture Painter::paint(const std::set<std::size_t>& budgets) {
   Picture picture;
-  const double time = now();
-  picture.clouds = clouds_.paint(budgets, time);
+  picture.clouds = clouds_.paint(budgets, now());
   join_scene();
   for (const auto& surface : surfaces_) picture.surfaces.push_back(surface->paint());
-  if (host_time() - reported_ >= kReportPeriod) report(picture, time);
+  if (host_time() - reported_ >= kReportPeriod) report(picture);
   return picture;
 }
 
@@ -88,12 +87,12 @@ void Painter::join_scene() {
   }
 }
 
-void Painter::report(Picture& picture, double now) {
+void Painter::report(Picture& picture) {
   reported_ = host_time();
   const std::vector<ViewerStream> streams =
       options_.streams ? options_.streams() : std::vector<ViewerStream>{};
   picture.sources = std::make_shared<const std::string>(
-      sources_text(source_reports(scene_, streams, options_.origin, now)));
+      sources_text(source_reports(scene_, streams, options_.origin, now())));  // painting took time
   for (const ViewerStream& stream : streams) {
     warn(picture, NoticeLevel::warning, stream.state.source, stream.state.problem);
   }

@@ -54,7 +54,7 @@ class Painter {
   void work(const std::stop_token& stop, const std::set<std::size_t>& budgets);
   [[nodiscard]] Picture paint(const std::set<std::size_t>& budgets);
   void join_scene();
-  void report(Picture& picture, double now);
+  void report(Picture& picture);
   void warn(Picture& picture, NoticeLevel level, const std::string& whose, std::string problem);
   [[nodiscard]] double now() const;
 

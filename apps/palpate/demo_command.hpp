@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/palpate/view_options.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace palpate::app {
+
+struct DemoOptions {
+  std::string scene = "desk";
+  std::optional<double> duration;  ///< s; unset: until Ctrl-C
+  bool headless = false;           ///< opens no browser
+  ViewOptions view;
+};
+
+void add_demo_options(CLI::App& command, DemoOptions& options);
+
+/// Shows a scene that palpate makes itself on its page, explored by a simulated hand until somebody
+/// takes the tool. @throws Error as touch() does.
+void demo(const DemoOptions& options);
+
+}  // namespace palpate::app

@@ -1,0 +1,19 @@
+// In place of view.cpp where there is no viewer.
+#include "apps/palpate/view.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+
+struct View::Parts {};
+
+View::View(Run& run, Servo& /*servo*/, const LiveFeed& /*feed*/) {
+  if (!run.options.view.wanted) return;
+  throw Error(
+      "this palpate was built without its page; install libboost-dev and build it again, or leave "
+      "--view out");
+}
+View::~View() = default;
+void View::add(const TouchStep& /*step*/) {}
+void View::look() {}
+
+}  // namespace palpate::app

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "apps/palpate/run.hpp"
+#include "apps/palpate/view_settings.hpp"
+
+namespace palpate::app {
+
+/// Prepares the sources of a run anew, on a thread of its own, as somebody who watches wants them.
+/// Of wishes that come faster than it works the last one counts.
+class Preparer {
+ public:
+  /// `complain` is called on its thread with what preparation throws. Both outlive it.
+  Preparer(Run& run, std::function<void(const std::string&)> complain);
+  ~Preparer();
+  Preparer(const Preparer&) = delete;
+  Preparer& operator=(const Preparer&) = delete;
+
+  /// Waits for what is under way and begins nothing any more.
+  void stop();
+
+  /// Any thread; returns at once.
+  void want(const ViewSettings& settings);
+
+ private:
+  void work(const std::stop_token& stop);
+  void prepare(const ViewSettings& settings);
+
+  Run& run_;
+  std::function<void(const std::string&)> complain_;
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<ViewSettings> wanted_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+}  // namespace palpate::app

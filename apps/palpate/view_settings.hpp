@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/field/field_options.hpp"
+#include "palpate/scene/source.hpp"
+#include "palpate/servo/servo.hpp"
+#include "palpate/viewer/setting.hpp"
+
+namespace palpate::app {
+
+/// What a viewer's page may change while the tool feels.
+struct ViewSettings {
+  FieldOptions field;
+  Feel feel;
+  std::optional<Policy> policy;  ///< unset: as each kind of source has it
+  int history = 4;
+  double smoothing = 1;         ///< of what the noise asks for: windows and radii grow with it
+  std::optional<double> voxel;  ///< of clouds, m; unset: chosen from the data
+};
+
+/// What there is to set.
+struct ViewScope {
+  double stiffest = 2000;      ///< N/m, in the world
+  double deepest_texture = 0;  ///< amplitude, m
+  bool lives = false;          ///< sources follow one another in time
+  bool depth = false;          ///< ... and are depth images
+  bool clouds = false;         ///< clouds are prepared here
+};
+
+/// As a page shows them, with their bounds.
+[[nodiscard]] std::vector<Setting> list_settings(const ViewSettings& settings,
+                                                 const ViewScope& scope);
+
+/// Is a key one of those that sources are prepared by, so that they have to be again?
+[[nodiscard]] bool is_preparation(const std::string& key);
+
+/// @throws Error when there is no such key.
+void set(ViewSettings& settings, const std::string& key, const SettingValue& value);
+
+/// The names that preset() knows.
+[[nodiscard]] std::vector<std::string> preset_names();
+
+/// What a run began with, but for what the preset of that name says. @throws Error when there is
+/// none.
+[[nodiscard]] ViewSettings preset(const ViewSettings& initial, const std::string& name);
+
+/// `options`, prepared as the settings ask.
+[[nodiscard]] SourceOptions prepared_by(const ViewSettings& settings, SourceOptions options);
+
+}  // namespace palpate::app

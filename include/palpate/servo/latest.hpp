@@ -1,4 +1,0 @@
-#pragma once
-
-// Where it was before; include the other.
-#include "palpate/base/latest.hpp"
