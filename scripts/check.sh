@@ -21,6 +21,8 @@ fi
 
 say "packages"
 need_packages build cameras viewer test fuzz lint
+need_npm
+need_browser
 find_data
 
 say "Debug"

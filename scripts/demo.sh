@@ -1,20 +1,22 @@
 #!/usr/bin/env bash
-# Builds palpate and touches a cloud with it: scripts/demo.sh [CLOUD]
+# Builds palpate and shows it: scripts/demo.sh [SCENE] [OPTION...]
 #
-# Without CLOUD the cloud is one that palpate makes itself, so nothing is fetched but packages.
+# A page opens in the browser (its address is printed, too): what a depth camera sees, simulated so
+# that nothing is needed, with a tool in it that explores by itself until you take it. Scenes: desk
+# (the default), scan, two, room. Options are those of `palpate demo`, such as --duration 10
+# --headless. Ctrl-C ends it, and tells how it went; without a terminal it ends after 10 s.
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
 case "${1:-}" in -h | --help)
-  sed -n '2,4s/^# \{0,1\}//p' "$0"
+  sed -n '2,7s/^# \{0,1\}//p' "$0"
   exit
   ;;
 esac
-cloud=${1:-synthetic:bumps}
-if [ -e "$called_from/$cloud" ]; then cloud=$(realpath "$called_from/$cloud"); fi
 started=$SECONDS
 
 say "packages"
-need_packages build picture
+need_packages build viewer
+need_npm
 
 say "build"
 # A tree that holds the tests keeps them, unless packages that they need are absent.
@@ -23,12 +25,8 @@ if ! { [ -f build/release/CMakeCache.txt ] && cmake --preset release >/dev/null 
 fi
 build release palpate_app
 
-say "touch $cloud"
-mkdir -p build/demo
-build/release/apps/palpate/palpate touch "$cloud" \
-  --picture build/demo/touch.png --log build/demo/touch.csv --json build/demo/touch.json
-
-say "done in $((SECONDS - started)) s"
-note "picture: $PWD/build/demo/touch.png"
-note "log:     $PWD/build/demo/touch.csv (a servo step a row)"
-note "next:    build/release/apps/palpate/palpate touch YOUR_CLOUD --picture touch.png"
+say "demo (ready after $((SECONDS - started)) s)"
+note "a cloud of yours: build/release/apps/palpate/palpate touch YOUR_CLOUD --view"
+# Where nobody could end it, it ends by itself.
+if [ ! -t 0 ] && [[ " $* " != *" --duration"* ]]; then set -- "$@" --duration 10; fi
+exec build/release/apps/palpate/palpate demo "$@"

@@ -61,6 +61,6 @@ timed() {
   note "took $((SECONDS - started)) s: $1"
 }
 
-timed scripts/demo.sh
-timed scripts/demo.sh
+timed "scripts/demo.sh --headless --duration 5"
+timed "scripts/demo.sh --headless --duration 5"
 if [ "$with_test" = yes ]; then timed scripts/test.sh; fi

@@ -75,6 +75,24 @@ need_packages() {
     apt-get install -y -qq --no-install-recommends "${chosen[@]}" >/dev/null
 }
 
+# What builds the page; an npm that is there already, of whatever origin, will do.
+need_npm() {
+  if command -v npm >/dev/null; then
+    note "npm: there ($(npm --version))"
+  else
+    need_packages page
+  fi
+}
+
+# The browser of the page's tests, where the distribution has one that is no snap.
+need_browser() {
+  if grep -q '^ID=debian$' /etc/os-release; then
+    need_packages browser
+  else
+    note "chromium is no package of this distribution: tests in a browser are skipped"
+  fi
+}
+
 # One compiler a core, but no more than memory holds (about 1.5 GB each).
 jobs_that_fit() {
   local cores memory

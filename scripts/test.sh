@@ -21,6 +21,8 @@ status=0
 
 say "packages"
 need_packages build cameras viewer test
+need_npm
+need_browser
 if [ "$fuzz" = yes ]; then need_packages fuzz; fi
 if [ "$fuzz" = yes ] && ! command -v clang++ >/dev/null; then
   note "clang++ is absent: no fuzz targets"
