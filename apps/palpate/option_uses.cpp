@@ -88,8 +88,11 @@ std::vector<Use> uses_of_time(const TouchOptions& options, const Kinds& kinds) {
       {{"--latency"},
        options.simulated_time,
        "--latency is of simulated time; add --simulated-time"},
+      {{"--view"},
+       !options.simulated_time,
+       "--view shows a run in real time; leave it or --simulated-time out"},
       {{"--maximum-force", "--processor"},
-       kinds.lives && !options.simulated_time,
+       (kinds.lives || options.view.wanted) && !options.simulated_time,
        "--maximum-force and --processor are of runs in real time; what stands still and "
        "--simulated-time have neither a guard nor a thread of the servo's own"},
   };

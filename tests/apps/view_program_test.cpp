@@ -1,0 +1,48 @@
+// Runs that are shown on a page. What the page itself does is tested in a browser (tests/page).
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace palpate::app {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(ViewProgram, TheDemoSaysWhereItsPageIsAndEndsWhenItIsTold) {
+  Shell shell;
+  const Outcome outcome = shell.run("demo --headless --duration 1 --port 0");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("page: http://127.0.0.1:"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("camera:simulated:desk"), std::string::npos) << outcome.out;
+}
+
+TEST(ViewProgram, ACloudIsExploredInRealTimeWhileItIsShown) {
+  Shell shell;
+  const Outcome outcome =
+      shell.run("touch synthetic:sphere --view --port 0 --duration 1 --json run.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("page: http://"), std::string::npos);
+  const Json run = Json::parse(shell.read("run.json"));
+  EXPECT_EQ(run["live"]["interrupted"], false);
+  EXPECT_GE(run["real_s"], 0.9);
+}
+
+TEST(ViewProgram, WithoutATerminalThereIsNoPageUnlessOneIsAskedFor) {
+  Shell shell;
+  const Outcome outcome = shell.run("touch camera:simulated --duration 0.5");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("page:"), std::string::npos) << outcome.err;
+}
+
+TEST(ViewProgram, RefusesWhatCannotBeShown) {
+  Shell shell;
+  EXPECT_EQ(shell.run("demo nowhere").code, 2);
+  EXPECT_EQ(shell.run("demo --port 70000").code, 2);
+  EXPECT_EQ(shell.run("demo --headless --duration 1 --listen 300.0.0.1").code, 1);
+  EXPECT_EQ(shell.run("touch synthetic:sphere --view --simulated-time").code, 2);
+}
+
+}  // namespace
+}  // namespace palpate::app

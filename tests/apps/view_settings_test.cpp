@@ -1,0 +1,109 @@
+#include "apps/palpate/view_settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr ViewScope kAll = {.deepest_texture = 1e-3, .lives = true, .depth = true, .clouds = true};
+
+const Setting* find(const std::vector<Setting>& list, const std::string& key) {
+  const auto found = std::ranges::find(list, key, &Setting::key);
+  return found == list.end() ? nullptr : &*found;
+}
+
+TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
+  ViewSettings settings;
+  const std::vector<std::pair<std::string, SettingValue>> wanted = {
+      {"field", std::string("metaball")},
+      {"stiffness", 320.0},
+      {"friction", 0.3},
+      {"texture", 0.5},
+      {"smoothing", 1.5},
+      {"policy", std::string("fusion")},
+      {"history", 2.0},
+      {"voxel", 4.0}};
+  for (const auto& [key, value] : wanted) set(settings, key, value);
+  const std::vector<Setting> list = list_settings(settings, kAll);
+  EXPECT_EQ(list.size(), wanted.size());
+  for (const auto& [key, value] : wanted) {
+    const Setting* const setting = find(list, key);
+    ASSERT_NE(setting, nullptr) << key;
+    EXPECT_EQ(setting->value, value) << key;
+  }
+  EXPECT_EQ(settings.field.kind, FieldKind::metaball);
+  EXPECT_EQ(settings.feel.stiffness, 320);
+  EXPECT_DOUBLE_EQ(settings.feel.texture.amplitude, 0.5e-3);
+  EXPECT_EQ(settings.feel.friction.static_coefficient, 0.3);
+}
+
+TEST(ViewSettings, PresentValuesAreWithinTheirBounds) {
+  for (const std::string& name : preset_names()) {
+    for (const Setting& setting : list_settings(preset({}, name), kAll)) {
+      if (setting.kind == SettingKind::number) {
+        EXPECT_GE(std::get<double>(setting.value), setting.least) << name << ' ' << setting.key;
+        EXPECT_LE(std::get<double>(setting.value), setting.most) << name << ' ' << setting.key;
+      } else {
+        EXPECT_TRUE(std::ranges::count(setting.choices, std::get<std::string>(setting.value)))
+            << name << ' ' << setting.key;
+      }
+    }
+  }
+}
+
+TEST(ViewSettings, OfCloudsThatStandStillThereIsNoTimeToSet) {
+  const std::vector<Setting> list = list_settings({}, {.clouds = true});
+  EXPECT_EQ(find(list, "policy"), nullptr);
+  EXPECT_EQ(find(list, "history"), nullptr);
+  EXPECT_EQ(find(list, "texture"), nullptr) << "nothing is known that could carry one";
+  EXPECT_NE(find(list, "voxel"), nullptr);
+}
+
+TEST(ViewSettings, PresetsStartFromWhatTheRunBeganWith) {
+  ViewSettings initial;
+  initial.feel.stiffness = 200;
+  EXPECT_EQ(preset(initial, "default").feel.stiffness, 200);
+  EXPECT_LT(preset(initial, "soft").feel.stiffness, 200);
+  EXPECT_GT(preset(initial, "glass").feel.stiffness, 200);
+  const ViewSettings paper = preset(initial, "paper");
+  EXPECT_TRUE(paper.field.raw_weights);
+  EXPECT_EQ(paper.policy, Policy::average);
+  EXPECT_NO_THROW(check(paper.field));
+  EXPECT_THROW((void)preset(initial, "stone"), Error);
+}
+
+TEST(ViewSettings, AnotherKindOfThePapersSurfaceIsThePapers) {
+  ViewSettings settings = preset({}, "paper");
+  set(settings, "field", std::string("pointset"));
+  EXPECT_EQ(settings.field.kind, FieldKind::pointset);
+  EXPECT_EQ(settings.field.gradient, GradientKind::normal);
+}
+
+TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
+  ViewSettings settings;
+  set(settings, "smoothing", 2.0);
+  set(settings, "voxel", 5.0);
+  set(settings, "policy", std::string("replace"));
+  const SourceOptions options = prepared_by(settings, {});
+  EXPECT_DOUBLE_EQ(options.depth.normal_error, DepthFilterOptions().normal_error / 2);
+  EXPECT_DOUBLE_EQ(*options.prepare.radius_multiple, 5);
+  EXPECT_DOUBLE_EQ(*options.prepare.voxel, 5e-3);
+  EXPECT_EQ(*options.policy.policy, Policy::replace);
+  for (const Setting& setting : list_settings(settings, kAll)) {
+    const bool felt = setting.key == "field" || setting.key == "stiffness" ||
+                      setting.key == "friction" || setting.key == "texture";
+    EXPECT_EQ(is_preparation(setting.key), !felt) << setting.key;
+  }
+}
+
+TEST(ViewSettings, UnknownKeysAreRefused) {
+  ViewSettings settings;
+  EXPECT_THROW(set(settings, "colour", 1.0), Error);
+}
+
+}  // namespace
+}  // namespace palpate::app
