@@ -210,7 +210,8 @@ TEST(Streams, FramesOfNoUseAreDroppedInSimulatedTimeAndTheReportSaysWhy) {
   const Outcome outcome =
       shell.run("touch wall=sequence:wall --simulated-time --trajectory way.csv --json r.json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("wall (sequence:wall): a frame that repeats the one before"), std::string::npos)
+  EXPECT_NE(outcome.out.find("wall (sequence:wall): a frame that repeats the one before"),
+            std::string::npos)
       << outcome.out;
   const Json source = Json::parse(shell.read("r.json"))["sources"][0];
   EXPECT_EQ(source["frames"], 38) << "38 had come at 1.25 s";
