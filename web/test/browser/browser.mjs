@@ -1,5 +1,6 @@
 // Debian's chromium without a screen, drawing in software.
 
+import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { chromium } from "playwright-core";
 
@@ -16,9 +17,21 @@ export async function openBrowser() {
   });
 }
 
-/** A page that remembers what went wrong on it. */
-export async function openPage(browser, address, options) {
+const kPatience = 30_000; // ms, where the machine is busy
+
+/** Waits for something to become true. */
+export async function until(what, condition) {
+  const end = Date.now() + kPatience;
+  while (!(await condition())) {
+    if (Date.now() > end) assert.fail(`waited in vain: ${what}`);
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
+/** A page that remembers what went wrong on it; `before` is run in it before its own scripts. */
+export async function openPage(browser, address, options, before) {
   const context = await browser.newContext(options);
+  if (before !== undefined) await context.addInitScript(before);
   const page = await context.newPage();
   page.troubles = [];
   page.on("console", (message) => {

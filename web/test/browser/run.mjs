@@ -3,24 +3,14 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { serve } from "../fake_server.mjs";
-import { openBrowser, openPage } from "./browser.mjs";
+import { openBrowser, openPage, until } from "./browser.mjs";
 
-const kPatience = 30_000; // ms, where the machine is busy
 const kSmall = { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" };
 const kPhone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true };
 let browser;
 
 before(async () => (browser = await openBrowser()));
 after(async () => browser.close());
-
-/** Waits for something to become true. */
-async function until(what, condition) {
-  const end = Date.now() + kPatience;
-  while (!(await condition())) {
-    if (Date.now() > end) assert.fail(`waited in vain: ${what}`);
-    await new Promise((resolve) => setTimeout(resolve, 50));
-  }
-}
 
 const text = (page, selector) => page.locator(selector).innerText();
 const ready = (page) => until("the tool can be taken", () => page.locator("#take").isEnabled());

@@ -1,0 +1,52 @@
+// What a page hears of the program, for a test to measure.
+
+/** Runs in the page, before its own scripts: keeps the newest state, counts states and clouds. */
+export function listen() {
+  const Plain = window.WebSocket;
+  window.heard = { states: 0, clouds: 0, points: 0 };
+  const three = (view, at) => [0, 4, 8].map((i) => view.getFloat32(at + i, true));
+  window.WebSocket = class extends Plain {
+    constructor(...all) {
+      super(...all);
+      this.addEventListener("message", ({ data }) => {
+        if (typeof data === "string") return;
+        const view = new DataView(data);
+        const kind = view.getUint8(0);
+        if (kind === 2) {
+          window.heard.clouds += 1;
+          window.heard.points = view.getUint32(4, true);
+        }
+        if (kind !== 1) return;
+        window.heard.states += 1;
+        window.heard.state = {
+          flags: view.getUint32(4, true), hip: three(view, 16), proxy: three(view, 28),
+          normal: three(view, 40), force: three(view, 52),
+        };
+      });
+    }
+  };
+  localStorage.setItem("palpate.points", "10000"); // drawn in software
+}
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const minus = (a, b) => a.map((x, i) => x - b[i]);
+const length = (a) => Math.hypot(...a);
+
+export const heard = (page) => page.evaluate(() => window.heard);
+
+/** The newest state in numbers: force (N), depth (m) and what they make of stiffness (N/m). */
+export async function felt(page) {
+  const { state } = await heard(page);
+  if (state === undefined) return { touching: false, taken: false, paused: false, force: 0 };
+  const force = length(state.force);
+  const depth = length(minus(state.proxy, state.hip));
+  const flag = (bit) => (state.flags & bit) !== 0;
+  return { ...state, force, depth, stiffness: force / depth, touching: flag(1), paused: flag(2), taken: flag(4) };
+}
+
+/** How far hand and proxy went into the surface from one state to another, m. */
+export function waysInto(from, to) {
+  return { hip: -dot(from.normal, minus(to.hip, from.hip)), proxy: -dot(from.normal, minus(to.proxy, from.proxy)) };
+}
+
+export const distance = (a, b) => length(minus(a, b));

@@ -1,0 +1,248 @@
+// The page in a headless chromium against palpate itself: PALPATE_PROGRAM=.../palpate npm run program.
+// Pictures of what was seen stay in PALPATE_PICTURES, where that is set.
+
+import assert from "node:assert/strict";
+import { mkdir, readdir, readFile } from "node:fs/promises";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { openBrowser, openPage, until } from "./browser.mjs";
+import { distance, felt, heard, listen, waysInto } from "./heard.mjs";
+import { changed } from "./pixels.mjs";
+import { kTable, startProgram } from "./real_program.mjs";
+import { relayTo } from "./relay.mjs";
+
+const kStiffness = 500; // N/m, of kTable
+const kSmall = { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" };
+const kPhone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true, reducedMotion: "reduce" };
+let browser;
+let table;
+
+before(async () => {
+  browser = await openBrowser();
+  table = await startProgram(kTable);
+});
+after(async () => {
+  await browser?.close();
+  await table?.stop();
+});
+
+const text = (page, selector) => page.locator(selector).innerText();
+const phase = (page) => page.getAttribute("#link-state", "data-phase");
+
+async function open(address, options = kSmall) {
+  const page = await openPage(browser, address, options, listen);
+  await until("the page is connected", async () => (await phase(page)) === "open");
+  await until("the tool can be taken", () => page.locator("#take").isEnabled());
+  return page;
+}
+
+async function onTable(act, options) {
+  const page = await open(table.address, options);
+  try {
+    await act(page);
+    assert.deepEqual(page.troubles, [], "the browser complains");
+  } finally {
+    await page.context().close();
+  }
+}
+
+async function picture(page, name) {
+  const folder = process.env.PALPATE_PICTURES;
+  if (folder === undefined) return;
+  await mkdir(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${name}.png`), timeout: 120_000 });
+}
+
+/** Holds a key until something is true. */
+async function hold(page, key, what, condition) {
+  await page.keyboard.down(key);
+  await until(what, condition);
+  await page.keyboard.up(key);
+}
+
+async function lift(page) {
+  await hold(page, "ArrowUp", "lifted", async () => !(await felt(page)).touching);
+  await until("no force in the air", async () => (await felt(page)).force === 0);
+}
+
+/** Takes the tool, lifts it off and lowers it until it feels a little. */
+async function touchDown(page) {
+  await page.focus("#view");
+  await page.keyboard.press("t");
+  await until("taken", async () => (await felt(page)).taken);
+  await lift(page);
+  await hold(page, "ArrowDown", "in contact", async () => (await felt(page)).touching);
+  return felt(page);
+}
+
+const deeper = (page, than) => hold(page, "ArrowDown", "deeper", async () => (await felt(page)).force > than);
+
+test("the page comes from the program, connects and draws its cloud", () =>
+  onTable(async (page) => {
+    await until("says how it goes", async () => /steps a second/.test(await text(page, "#link-words")));
+    assert.equal(await text(page, "#scene"), "table");
+    assert.match(await text(page, "#sources"), /table[\s\S]*still/);
+    await until("a cloud", async () => (await heard(page)).clouds > 0);
+    const { points } = await heard(page);
+    assert.ok(points > 5000 && points <= 10_000, `${points} points for a page that draws 10 000`);
+    await page.click("#pause"); // little but the cloud is to change
+    await until("paused", async () => (await felt(page)).paused);
+    const canvas = () => page.locator("#view").screenshot({ timeout: 120_000 });
+    const shownPoints = page.getByRole("switch", { name: "Points" });
+    let part = 0;
+    await until("the cloud to be seen", async () => {
+      const shown = await canvas();
+      await shownPoints.click();
+      part = await changed(page, shown, await canvas());
+      await shownPoints.click();
+      return part > 0.05;
+    });
+    assert.ok(part < 0.95, `the cloud fills ${part} of the view`);
+    await page.click("#pause");
+    await until("no more", async () => !(await felt(page)).paused);
+  }));
+
+test("held by keys, the hand goes into the table, the proxy stays on it and the force grows", () =>
+  onTable(async (page) => {
+    const first = await touchDown(page);
+    await deeper(page, first.force + 1);
+    const then = await felt(page);
+    const ways = waysInto(first, then);
+    assert.ok(ways.hip > 0.001, `the hand went ${ways.hip} m`);
+    assert.ok(Math.abs(ways.proxy) < 0.1 * ways.hip, `the proxy went ${ways.proxy} m, the hand ${ways.hip}`);
+    assert.ok(then.normal[2] > 0.99, "the table is level");
+    await until("words", async () => /touching/.test(await text(page, "#touch")) && Number(await text(page, "#force")) > 1);
+    await picture(page, "touching");
+  }));
+
+test("a drag moves the program's hand", () =>
+  onTable(async (page) => {
+    await page.keyboard.press("t");
+    await until("taken", async () => (await felt(page)).taken);
+    const begin = (await felt(page)).hip;
+    await page.mouse.move(300, 250);
+    await page.mouse.down();
+    await page.mouse.move(360, 200, { steps: 6 });
+    await page.mouse.up();
+    await until("moved", async () => distance((await felt(page)).hip, begin) > 0.02);
+    await page.keyboard.press("Escape");
+    await until("let go", async () => !(await felt(page)).taken);
+  }));
+
+test("a changed stiffness is felt at the next touch, and a pause takes the force away", () =>
+  onTable(async (page) => {
+    const near = (stiffness) => async () => Math.abs((await felt(page)).stiffness / stiffness - 1) < 0.1;
+    const first = await touchDown(page);
+    await deeper(page, first.force + 1);
+    await until("as stiff as it began", near(kStiffness));
+    await page.getByRole("spinbutton", { name: "Stiffness" }).fill(String(2 * kStiffness));
+    await page.keyboard.press("Enter");
+    await page.focus("#view");
+    await lift(page); // a hand that rests in contact is given no energy, so nothing gets stiffer there
+    await hold(page, "ArrowDown", "in contact", async () => (await felt(page)).force > 1);
+    await until("twice as stiff", near(2 * kStiffness));
+    await page.getByRole("button", { name: "default" }).click();
+    await until("as before", near(kStiffness));
+    const { force } = await felt(page);
+    await page.click("#pause");
+    await until("paused", async () => (await felt(page)).paused && (await felt(page)).force === 0);
+    await page.click("#pause");
+    await until("felt again", async () => (await felt(page)).force > 0.5 * force);
+  }));
+
+test("plots move, and stand still when they are held", () =>
+  onTable(async (page) => {
+    const drawn = () => page.evaluate(() => document.querySelector("#strip canvas").toDataURL());
+    const first = await drawn();
+    await until("drawn anew", async () => (await drawn()) !== first);
+    await page.click("#freeze");
+    const held = await drawn();
+    const { states } = await heard(page);
+    await until("a second of states", async () => (await heard(page)).states > states + 60);
+    assert.equal(await drawn(), held);
+    await page.click("#freeze");
+    await until("moving again", async () => (await drawn()) !== held);
+  }));
+
+test("a log of steps is written while it is asked for", () =>
+  onTable(async (page) => {
+    await page.click("#record");
+    await until("recording", async () => (await page.getAttribute("#record", "aria-pressed")) === "true");
+    const { states } = await heard(page);
+    await until("half a second", async () => (await heard(page)).states > states + 30);
+    await page.click("#record");
+    await until("at its end", async () => (await page.getAttribute("#record", "aria-pressed")) === "false");
+    const [log] = (await readdir(table.folder)).filter((name) => /^palpate-.*\.csv$/.test(name));
+    const rows = (await readFile(join(table.folder, log), "utf8")).trim().split("\n");
+    assert.ok(rows.length > 200, `${rows.length} rows`);
+    assert.equal(new Set(rows.map((row) => row.split(",").length)).size, 1, "every row is whole");
+  }));
+
+test("two pages see the same; one holds the tool, and it is free when that one is gone", () =>
+  onTable(async (first) => {
+    const second = await open(table.address);
+    await touchDown(first);
+    await until("the other sees who holds it", async () => (await felt(second)).taken);
+    await until("at one place", async () => distance((await felt(first)).hip, (await felt(second)).hip) < 1e-4);
+    await second.getByRole("spinbutton", { name: "Friction" }).fill("0.4");
+    await second.keyboard.press("Enter");
+    await until("the other is told", async () => (await first.getByRole("spinbutton", { name: "Friction" }).inputValue()) === "0.4");
+    await first.getByRole("button", { name: "default" }).click();
+    await first.reload();
+    await until("free again", async () => !(await felt(second)).taken);
+    const { states } = await heard(second);
+    await until("the other goes on", async () => (await heard(second)).states > states + 30);
+    assert.deepEqual(second.troubles, []);
+    await second.context().close();
+  }));
+
+test("a cut connection comes back by itself, and the tool is let go meanwhile", async () => {
+  const relay = await relayTo(table.address);
+  const page = await open(relay.address);
+  const watcher = await open(table.address);
+  await touchDown(page);
+  await until("held", async () => (await felt(watcher)).taken);
+  relay.cut();
+  await until("says so", async () => /connection is lost[\s\S]*tool is let go[\s\S]*tries again/.test(await text(page, "#cover")));
+  await until("let go", async () => !(await felt(watcher)).taken);
+  relay.mend();
+  await until("connected", async () => (await phase(page)) === "open");
+  assert.ok(await page.locator("#cover").isHidden());
+  const { states } = await heard(page);
+  await until("states come", async () => (await heard(page)).states > states);
+  await page.context().close();
+  await watcher.context().close();
+  await relay.close();
+});
+
+test("live cameras are shown; a program that ends and one that follows are told apart", async () => {
+  const desk = (port) => startProgram(["demo", "desk", "--headless", "--port", String(port)]);
+  const one = await desk(0);
+  const page = await open(one.address, { viewport: { width: 1440, height: 900 } });
+  await until("a camera runs", async () => /desk[\s\S]*running/.test(await text(page, "#sources")));
+  const { clouds } = await heard(page);
+  await until("its clouds follow one another", async () => (await heard(page)).clouds > clouds + 2);
+  await picture(page, "desktop");
+  assert.equal(await one.stop(), 0);
+  await until("says so", async () => /connection is lost/.test(await text(page, "#cover")));
+  const two = await desk(one.port);
+  await until("tells what to do", async () =>
+    /does not know this page[\s\S]*open the address that it printed last/.test(await text(page, "#cover")));
+  await page.fill("#cover-token", two.address);
+  await page.keyboard.press("Enter");
+  await until("connected to the other", async () => (await phase(page)) === "open");
+  await page.context().close();
+  assert.equal(await two.stop(), 0);
+});
+
+test("on a phone everything is in reach, and a touch of the button takes the tool", () =>
+  onTable(async (page) => {
+    await page.tap("#take");
+    await until("taken", async () => (await felt(page)).taken);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= 390), "nothing is wider than the screen");
+    for (const name of ["timing", "settings", "sources", "force"]) {
+      await page.tap(`.tabs [data-tab="${name}"]`);
+      assert.equal(await page.getAttribute(`.tabs [data-tab="${name}"]`, "aria-current"), "true");
+    }
+    await picture(page, "phone");
+  }, kPhone));
