@@ -62,6 +62,7 @@ for (const [name, scene, points, look, options] of kPictures) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
   const program = await startProgram(["demo", scene, "--headless", "--port", "0"]);
   const page = await openPage(browser, program.address, { ...options, reducedMotion: "reduce" }, listen);
+  await until("the page is connected", () => page.locator("#take").isEnabled());
   await choose(page, "Points, at most", points);
   await look(page);
   await page.waitForTimeout(kPast);
