@@ -60,7 +60,7 @@ TEST(HostileClient, WhoSaysNoHelloInTimeIsClosed) {
   options.limits.hello_time = 0.2;
   ViewerRig rig(options);
   auto client = rig.connect();
-  EXPECT_EQ(client->receive_close(), 1008);
+  EXPECT_EQ(client->receive_close(), 1013);
 }
 
 TEST(HostileClient, AFrameThatAnnouncesAGigabyteIsClosedBeforeItComes) {
