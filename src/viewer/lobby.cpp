@@ -62,7 +62,8 @@ void Lobby::take_binary(Client& client, double now) {
 void Lobby::check(double now) {
   for (Client* client : clients_) {
     const bool late = !client->greeted && now - client->opened > options_.limits.hello_time;
-    if (late && !client->closing) close(*client, close_code::kTryAgainLater, "no hello came in time");
+    if (late && !client->closing)
+      close(*client, close_code::kTryAgainLater, "no hello came in time");
   }
 }
 
