@@ -41,7 +41,7 @@ void print_notes(const TouchStatistics& s, const Style& style, std::FILE* out) {
   bool any = false;
   for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
     if (s.notes()[i] == 0) continue;
-    fmt::print(out, "  {} {} ({:.2g} % of steps): {}\n",
+    fmt::print(out, "  {} {} ({:.3g} % of steps): {}\n",
                style.warning(any ? "          " : "notes     "), grouped(s.notes()[i]),
                100 * share(s.notes()[i], s.steps()), note_text(i).text);
     any = true;
