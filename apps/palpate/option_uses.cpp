@@ -15,6 +15,7 @@ namespace {
 // What the sources are, all together.
 struct Kinds {
   bool lives = false;
+  bool still = false;          // a file, or made by the program
   bool recorded = false;       // and may begin anew
   bool depth = false;          // has depths, whatever becomes of them
   bool filtered = false;       // goes through the depth filter
@@ -31,6 +32,7 @@ Kinds kinds_of(const TouchOptions& options, const std::vector<ChosenSource>& sou
     const bool depth = live || is_depth_image(path);
     const bool cloud = !depth || taken_as_cloud(options, source);
     kinds.lives |= live;
+    kinds.still |= !live;
     kinds.recorded |= live && (!path.starts_with("camera:") || path.ends_with(".oni"));
     kinds.depth |= depth;
     kinds.filtered |= !cloud;
@@ -68,6 +70,10 @@ std::vector<Use> uses_of_frames(const Kinds& kinds) {
 
 std::vector<Use> uses_of_points(const Kinds& kinds) {
   return {
+      {{"--scale", "--intrinsics", "--depth-unit"},
+       kinds.still,
+       "--scale, --intrinsics and --depth-unit are of files; a camera tells its own, and a "
+       "sequence has them in its sequence.json"},
       {{"--noise"}, kinds.depth, "--noise is of depths; no source has any"},
       {{"--nearest", "--farthest"},
        kinds.filtered,
