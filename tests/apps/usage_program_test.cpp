@@ -25,7 +25,7 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
   Shell shell;
   shell.write("long.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n1e300,0,0,0\n");
   const std::pair<const char*, const char*> cases[] = {
-      {"", "touch, info, cameras or paper"},
+      {"", "touch, info, cameras, paper or demo"},
       {"touch synthetic:torus --device simulated --trajectory long.csv", "1e+300"},
       {"tuch synthetic:torus", "did you mean touch?"},
       {"touch", "no sources"},
@@ -63,6 +63,8 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"touch synthetic:torus --unorganised", "--unorganised"},
       {"touch camera:simulated --voxel 0.01", "--unorganised"},
       {"touch camera:simulated --loop", "--loop"},
+      {"touch camera:simulated --depth-unit 0.1", "sequence.json"},
+      {"touch synthetic:torus --view --simulated-time", "real time"},
       {"touch synthetic:torus --seed -1", "whole number"},
       {"touch synthetic:torus --seed 1.5", "whole number"},
       {"touch synthetic:torus --radius inf", "not finite"},
