@@ -8,7 +8,7 @@
 namespace palpate::sensor {
 namespace {
 
-constexpr double kSmoothing = 1.0 / 8;  // what a new interval counts in the mean
+constexpr std::uint64_t kMean = 8;  // intervals that the rate is a mean of, about
 
 }  // namespace
 
@@ -25,8 +25,9 @@ void StreamLog::came(double now, const std::optional<Objection>& objection,
   failing_ = false;
   look(now);
   const double interval = now - state_.last_frame;
-  if (state_.frames == 1) interval_ = interval;
-  if (state_.frames > 1) interval_ += kSmoothing * (interval - interval_);
+  if (state_.frames > 0) {
+    interval_ += (interval - interval_) / static_cast<double>(std::min(state_.frames, kMean));
+  }
   ++state_.frames;
   state_.last_frame = now;
   objection_ = objection ? objection->words : "";
