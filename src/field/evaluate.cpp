@@ -5,6 +5,7 @@
 
 #include "field/oriented.hpp"
 #include "field/sharp_edges.hpp"
+#include "field/smooth_step.hpp"
 #include "field/united_height.hpp"
 
 // Notation as in docs/architecture.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
@@ -93,9 +94,9 @@ Value trust_of(const simd::Sums& sums, const Support& support) noexcept {
   constexpr double kFrom = 0.25;
   constexpr double kWidth = 0.3;
   const double chi = sums.v / support.plain;
-  const double u = std::clamp((chi - kFrom) / kWidth, 0.0, 1.0);
+  const SmoothStep kappa = smooth_step(chi, kFrom, kWidth);
   const Vector3d grad_chi = (vector(sums.grad_v) - chi * support.plain_grad) / support.plain;
-  return {u * u * (3 - 2 * u), 6 * u * (1 - u) / kWidth * grad_chi};
+  return {kappa.value, kappa.slope * grad_chi};
 }
 
 /// Eq. (4) to the letter: its vectors carry w where the derivative has w'.

@@ -1,6 +1,6 @@
 #include "field/sharp_edges.hpp"
 
-#include <algorithm>
+#include "field/smooth_step.hpp"
 
 namespace palpate {
 namespace {
@@ -11,17 +11,6 @@ using Eigen::Vector3d;
 // good fit leaves makes planes look convex; they need not pay for it.
 constexpr double kFrom = 0.002;
 constexpr double kFull = 0.05;
-
-/// chi of the gate, with its derivative in a.
-struct Gate {
-  double chi = 0;
-  double slope = 0;
-};
-
-Gate gate(double a) noexcept {
-  const double u = std::clamp((a - kFrom) / (kFull - kFrom), 0.0, 1.0);
-  return {u * u * (3 - 2 * u), 6 * u * (1 - u) / (kFull - kFrom)};
-}
 
 /// sum v s / sum v.
 Value share_of(const SharpPlace& place, std::uint32_t places) noexcept {
@@ -93,9 +82,9 @@ Value sharp_balanced(const SharpPlace& place) noexcept {
 
   const std::uint32_t places = place.functions->near(*place.columns, place.wendland, place.x);
   const Value sigma = share_of(place, places);
-  const Gate open = gate(a);
+  const SmoothStep open = smooth_step(a, kFrom, kFull - kFrom);
   const Oriented sharp = robust(place, places);
-  const double opening = sigma.f * open.chi;
+  const double opening = sigma.f * open.value;
   const double gain = sharp.f - mean.f;
   const double by_a = gain * sigma.f * open.slope;
   Oriented result;
@@ -103,7 +92,7 @@ Value sharp_balanced(const SharpPlace& place) noexcept {
   add(result, opening, sharp);
   add(result, by_a * inverse, bulge);
   result.f = mean.f + opening * gain;
-  result.base += gain * open.chi * sigma.grad - by_a * a / place.radius.f * place.radius.grad;
+  result.base += gain * open.value * sigma.grad - by_a * a / place.radius.f * place.radius.grad;
   return finish(place, result);
 }
 

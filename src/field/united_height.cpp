@@ -1,9 +1,10 @@
 #include "field/united_height.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
+
+#include "field/smooth_step.hpp"
 
 namespace palpate {
 namespace {
@@ -31,17 +32,6 @@ struct Own {
 };
 
 using Owns = std::array<Own, simd::kMaxSources>;
-
-/// A smooth step, with its derivative.
-struct Gate {
-  double open = 0;
-  double slope = 0;
-};
-
-Gate gate(double coherence) noexcept {
-  const double u = std::clamp((coherence - kFrom) / (kFull - kFrom), 0.0, 1.0);
-  return {u * u * (3 - 2 * u), 6 * u * (1 - u) / (kFull - kFrom)};
-}
 
 Own own(const UnitedPlace& place, int source) noexcept {
   const simd::SourceMoments& of = place.sums->of[source];
@@ -100,20 +90,20 @@ Value united_shift(const UnitedPlace& place) noexcept {
     normal += o.share * o.normal;
   }
   const double coherence = normal.norm();
-  const Gate tau = gate(coherence);
-  if (tau.open <= 0) return {};
+  const SmoothStep tau = smooth_step(coherence, kFrom, kFull - kFrom);
+  if (tau.value <= 0) return {};
   normal /= coherence;
   const double way = by_cover - by_weight;
 
   // Chain rule through f_s, V_s, the normals and R.
-  Value result{tau.open * way, Vector3d::Zero()};
+  Value result{tau.value * way, Vector3d::Zero()};
   double by_radius = 0;
   for (const Own& o : owns) {
     const double aligned = normal.dot(o.normal);
     const double by_log =
-        o.share * (tau.open * (o.height - by_cover) + tau.slope * way * (aligned - coherence));
-    const double by_height = tau.open * (o.share - o.v / v) + by_log * o.steep;
-    const double by_v = by_log / o.v - tau.open * (o.height - by_weight) / v;
+        o.share * (tau.value * (o.height - by_cover) + tau.slope * way * (aligned - coherence));
+    const double by_height = tau.value * (o.share - o.v / v) + by_log * o.steep;
+    const double by_v = by_log / o.v - tau.value * (o.height - by_weight) / v;
     by_radius -= by_log * o.steep * o.height / place.radius.f;
     simd::Linear b{};
     assign(b.alpha,
