@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <vector>
 
 #include "apps/palpate/names.hpp"
@@ -16,25 +17,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A phase at the end of a run: its name in data, and what is said of it.
-struct PhaseText {
-  StreamPhase phase;
-  const char* name;
-  const char* words;
-};
-
-constexpr std::array<PhaseText, 5> kPhases = {
-    {{StreamPhase::starting, "starting", "no frame came"},
-     {StreamPhase::running, "running", "running"},
-     {StreamPhase::stalled, "stalled", "stalled"},
-     {StreamPhase::failed, "failed", "failed"},
-     {StreamPhase::ended, "ended", "ended; its last surface stayed"}}};
-
-const PhaseText& text_of(StreamPhase phase) {
-  return *std::ranges::find(kPhases, phase, &PhaseText::phase);
+// What is said of a phase at the end of a run.
+std::string_view in_words(StreamPhase phase) {
+  if (phase == StreamPhase::starting) return "no frame came";
+  if (phase == StreamPhase::ended) return "ended; its last surface stayed";
+  return name_of(phase);
 }
 
-// A cause for which frames are dropped, likewise.
+// A cause for which frames are dropped: its name in data, and what is said of it.
 struct DropText {
   std::uint64_t StreamDrops::*count;
   const char* name;
@@ -117,7 +107,7 @@ void print_camera(const TouchedSource& source, const Style& style, std::FILE* ou
   const StreamState& state = feed.state;
   const PrepareTimes times = prepare_times(feed.prepare_ms);
   fmt::print(out, "{} {} ({} x {} pixels), {}\n", style.heading(source.argument.name),
-             source.argument.path, feed.width, feed.height, text_of(state.phase).words);
+             source.argument.path, feed.width, feed.height, in_words(state.phase));
   fmt::print(out, "  frames     {} touchable of {}, {:.1f} a second; {} dropped\n",
              grouped(state.touchable), grouped(state.frames), state.rate, in_words(state.drops));
   fmt::print(
@@ -144,7 +134,7 @@ Json json_camera(const TouchedSource& source) {
                {"camera", source.argument.path},
                {"width", feed.width},
                {"height", feed.height},
-               {"phase", text_of(state.phase).name},
+               {"phase", name_of(state.phase)},
                {"frames", state.frames},
                {"frames_touchable", state.touchable},
                {"rate_Hz", state.rate},

@@ -129,20 +129,7 @@ std::string pong_text(double id) {
 }
 
 std::string_view in_words(const StreamState* stream) {
-  if (stream == nullptr) return "still";
-  switch (stream->phase) {
-    case StreamPhase::starting:
-      return "starting";
-    case StreamPhase::running:
-      return "running";
-    case StreamPhase::stalled:
-      return "stalled";
-    case StreamPhase::failed:
-      return "failed";
-    case StreamPhase::ended:
-      break;
-  }
-  return "ended";
+  return stream == nullptr ? "still" : name_of(stream->phase);
 }
 
 }  // namespace palpate::viewer

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace palpate {
 
@@ -13,6 +14,9 @@ enum class StreamPhase {
   failed,    ///< the camera says that it cannot; it is asked again, ever more rarely
   ended,     ///< the recording is over and its last frame is prepared
 };
+
+/// "starting", "running", ... : its name in data.
+[[nodiscard]] std::string_view name_of(StreamPhase phase) noexcept;
 
 /// Frames that came and were not made touchable, by cause.
 struct StreamDrops {
