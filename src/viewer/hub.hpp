@@ -1,9 +1,9 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <unordered_set>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/viewer/viewer.hpp"
 #include "viewer/lobby.hpp"
 #include "viewer/request_check.hpp"
@@ -24,10 +24,7 @@ struct Hub {
   std::uint64_t closed_silent = 0;
 
   /// s, on the host's monotonic clock.
-  [[nodiscard]] static double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-  }
+  [[nodiscard]] static double now() { return SteadyClock().now(); }
 };
 
 /// Something that came in and is not gone yet. It lives as long as an operation of it is under way.

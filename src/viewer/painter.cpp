@@ -6,6 +6,7 @@
 #include <chrono>
 #include <exception>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "viewer/source_reports.hpp"
 
@@ -17,7 +18,7 @@ constexpr double kReportPeriod = 0.5;  // s between reports of the sources
 constexpr double kRest = 3;            // times what the last picture took
 
 double host_time() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return SteadyClock().now();
 }
 
 }  // namespace
