@@ -23,14 +23,6 @@ namespace palpate::app {
 
 namespace {
 
-std::string title(const TouchReport& report) {
-  std::string text;
-  for (const TouchedSource& source : report.touched.sources) {
-    text += fmt::format("{}{}", text.empty() ? "" : " + ", source.argument.name);
-  }
-  return text;
-}
-
 std::string subtitle(const TouchReport& report) {
   const TouchStatistics& s = report.statistics;
   return fmt::format(
@@ -99,7 +91,9 @@ void tell(const TouchReport& report, Outputs& outputs) {
     outputs.json->write("\n");
     outputs.json->close();
   }
-  if (outputs.picture) outputs.picture->draw(report.felt, title(report), subtitle(report));
+  if (outputs.picture) {
+    outputs.picture->draw(report.felt, title_of(report.touched), subtitle(report));
+  }
   const TouchStatistics& s = report.statistics;
   if (s.steps() == 0 || s.faults() < s.steps()) return;
   throw Error("every step was a fault: nothing was felt (everything was written)");

@@ -114,12 +114,17 @@ ProxyOptions proxy_options(const TouchOptions& options, double stiffness) {
   return result;
 }
 
-void check_texture(const TouchOptions& options, const Scene& scene) {
+double deepest_texture(const Scene& scene) {
   double largest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const std::shared_ptr<const SurfacePoints> points = scene.source(i).points();
     if (points && points->size() > 0) largest = std::min(largest, kDeepestTexture * points->radius);
   }
+  return largest;
+}
+
+void check_texture(const TouchOptions& options, const Scene& scene) {
+  const double largest = deepest_texture(scene);
   if (options.texture_amplitude <= largest) return;
   throw UsageError(
       fmt::format("--texture-amplitude {} is carved deeper than the surface reaches with its R; "

@@ -29,6 +29,10 @@ inline constexpr double kStiffness = 500;
 /// Does the command line ask for a material that follows the intensity?
 [[nodiscard]] bool wants_material(const TouchOptions& options);
 
+/// The largest amplitude of a texture, m, that a hand can meet on the thinnest surface of `scene`;
+/// infinite where it has none.
+[[nodiscard]] double deepest_texture(const Scene& scene);
+
 /// @throws UsageError when the texture would be carved deeper than the thinnest surface of `scene`
 /// reaches, so that no hand could meet it.
 void check_texture(const TouchOptions& options, const Scene& scene);

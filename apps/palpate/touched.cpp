@@ -136,6 +136,14 @@ void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& cho
 
 }  // namespace
 
+std::string title_of(const Touched& touched) {
+  std::string title;
+  for (const TouchedSource& source : touched.sources) {
+    title += fmt::format("{}{}", title.empty() ? "" : " + ", source.argument.name);
+  }
+  return title;
+}
+
 Touched prepare_touched(const TouchOptions& options, bool explored, const Clock* clock) {
   Touched touched;
   for (const ChosenSource& chosen : choose_sources(options)) {

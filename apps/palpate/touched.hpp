@@ -46,6 +46,9 @@ struct Touched {
   Scene scene;
 };
 
+/// The names of all sources, for pictures and pages.
+[[nodiscard]] std::string title_of(const Touched& touched);
+
 /// Reads every cloud, prepares it and puts it into the scene; opens every camera and waits for its
 /// first frame, which is prepared only if the surface is to be `explored` before the run. Cameras
 /// keep the time of `clock`, which outlives them; null: simulated time.

@@ -3,10 +3,8 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <limits>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -14,6 +12,7 @@
 #include "apps/palpate/browser.hpp"
 #include "apps/palpate/log.hpp"
 #include "apps/palpate/preparer.hpp"
+#include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/view_settings.hpp"
 #include "palpate/viewer/viewer.hpp"
 
@@ -21,8 +20,7 @@ namespace palpate::app {
 
 namespace {
 
-constexpr double kDeepestTexture = 0.2;  // amplitude in R: no hand could meet a deeper one
-constexpr double kFar = 1.5;             // of a frustum as drawn, in medians of depth
+constexpr double kFar = 1.5;  // of a frustum as drawn, in medians of depth
 
 ViewSettings initial_settings(const Run& run) {
   ViewSettings settings;
@@ -35,19 +33,11 @@ ViewSettings initial_settings(const Run& run) {
   return settings;
 }
 
-double smallest_radius(const Scene& scene) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < scene.size(); ++i) {
-    const auto points = scene.source(i).points();
-    if (points && points->size() > 0) smallest = std::min(smallest, points->radius);
-  }
-  return std::isfinite(smallest) ? smallest : 0;
-}
-
 ViewScope scope_of(const Run& run) {
   ViewScope scope;
   scope.stiffest = kStiffest / run.hand.workspace.scale;
-  scope.deepest_texture = kDeepestTexture * smallest_radius(run.touched.scene);
+  const double deepest = deepest_texture(run.touched.scene);
+  scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
   for (const TouchedSource& source : run.touched.sources) {
     scope.lives = scope.lives || source.camera;
     scope.depth = scope.depth || (source.camera && !source.as_cloud);
@@ -74,14 +64,6 @@ std::vector<ViewerStream> streams_of(const Run& run, const LiveFeed& feed) {
     stream.state = std::move(state);
   }
   return streams;
-}
-
-std::string title_of(const Run& run) {
-  std::string title;
-  for (const TouchedSource& source : run.touched.sources) {
-    title += fmt::format("{}{}", title.empty() ? "" : " + ", source.argument.name);
-  }
-  return title;
 }
 
 std::string file_name() {
@@ -111,7 +93,7 @@ struct View::Parts {
     const ViewOptions& view = run.options.view;
     if (!view.listen.empty()) options.address = view.listen;
     options.port = view.port;
-    options.scene = title_of(run);
+    options.scene = title_of(run.touched);
     options.streams = [this] { return streams_of(run, feed); };
     return options;
   }

@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cmath>
-#include <functional>
+#include <utility>
 
 #include "apps/palpate/names.hpp"
 #include "palpate/base/error.hpp"
