@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
 
 namespace palpate::app {
 
@@ -22,21 +20,10 @@ double coordinate(int i) {
 
 }  // namespace
 
-Shell::Shell() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "palpate-test-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  folder_ = pattern;
-}
-
-Shell::~Shell() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
 Outcome Shell::run(const std::string& arguments, const std::string& standard_input) {
   write("stdin", standard_input);
-  const std::string command = fmt::format("cd '{}' && '{}' {} < stdin > stdout 2> stderr", folder_,
-                                          PALPATE_PROGRAM, arguments);
+  const std::string command = fmt::format("cd '{}' && '{}' {} < stdin > stdout 2> stderr",
+                                          folder_.path().string(), PALPATE_PROGRAM, arguments);
   const int status = std::system(command.c_str());
   Outcome outcome;
   outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "support/folder.hpp"
+
 namespace palpate::app {
 
 /// What a run of the built program left behind.
@@ -16,20 +18,15 @@ struct Outcome {
 /// A folder of its own in which the built program is run as a user does, removed at the end.
 class Shell {
  public:
-  Shell();
-  ~Shell();
-  Shell(const Shell&) = delete;
-  Shell& operator=(const Shell&) = delete;
-
   /// Runs `palpate ARGUMENTS` by the system's shell.
   [[nodiscard]] Outcome run(const std::string& arguments, const std::string& standard_input = "");
 
-  [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
   void write(const std::string& name, const std::string& text) const;
   [[nodiscard]] std::string read(const std::string& name) const;
 
  private:
-  std::string folder_;
+  test::Folder folder_;
 };
 
 /// A CSV file's columns by name, as text.
