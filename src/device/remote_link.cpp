@@ -28,12 +28,7 @@ PacketFlaw RemoteLink::hear(std::span<const std::byte> bytes, const SocketAddres
   if (from.size == 0) return PacketFlaw::nameless;
   if (silent(now)) {
     if (packet.leaving) return PacketFlaw::none;
-    client_ = from;
-    newest_ = packet;
-    state_.velocity = packet.velocity;
-    listening_ = true;
-    confirmed_ = false;
-    placed_ = false;
+    begin(packet, from);
   } else {
     if (from != client_) return PacketFlaw::stranger;
     if (!is_news(packet)) return PacketFlaw::order;
@@ -43,6 +38,19 @@ PacketFlaw RemoteLink::hear(std::span<const std::byte> bytes, const SocketAddres
   state_.position = packet.position;
   state_.buttons = packet.buttons;
   return PacketFlaw::none;
+}
+
+// Nothing of what was known of the last client, and no force that was allowed to it, is the next
+// one's.
+void RemoteLink::begin(const StatePacket& packet, const SocketAddress& from) noexcept {
+  client_ = from;
+  newest_ = packet;
+  state_.velocity = packet.velocity;
+  state_.status = DeviceStatus::silent;
+  limit_ = 0;
+  listening_ = true;
+  confirmed_ = false;
+  placed_ = false;
 }
 
 void RemoteLink::take(const StatePacket& packet) noexcept {
@@ -73,7 +81,7 @@ DeviceState RemoteLink::state(double now) noexcept {
   return state_;
 }
 
-// Up only where the step before knew the hand: it begins at zero with whoever is new.
+// Up only where the step before knew the hand.
 void RemoteLink::move_limit(double now) noexcept {
   const double way = options_.maximum_force * (now - now_);
   if (silent(now)) {

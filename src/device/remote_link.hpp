@@ -31,6 +31,7 @@ class RemoteLink {
  private:
   [[nodiscard]] bool silent(double now) const noexcept;
   [[nodiscard]] bool is_news(const StatePacket& packet) const noexcept;
+  void begin(const StatePacket& packet, const SocketAddress& from) noexcept;
   void take(const StatePacket& packet) noexcept;
   void move_limit(double now) noexcept;
   [[nodiscard]] ForcePacket next_packet() noexcept;

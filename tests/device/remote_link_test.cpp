@@ -126,6 +126,30 @@ TEST_F(RemoteLinkTest, ComesBackSoftly) {
   EXPECT_LT(felt(), 0.05);
 }
 
+TEST_F(RemoteLinkTest, WhoTakesAnothersPlaceInTheSameStepStartsSoftlyToo) {
+  talk(1);
+  ASSERT_EQ(felt(), 5);
+  packet_.leaving = true;
+  EXPECT_EQ(say(0.01), PacketFlaw::none);
+  packet_ = {};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(say(0.2, kOther), PacketFlaw::none);
+    step();
+    ASSERT_LT(felt(), 0.05) << i;
+  }
+  EXPECT_EQ(link_.client(), kOther);
+}
+
+TEST_F(RemoteLinkTest, AClientThatStartsAnewAtOnceStartsSoftlyToo) {
+  talk(1);
+  packet_.leaving = true;
+  EXPECT_EQ(say(0.01), PacketFlaw::none);
+  step();
+  packet_ = {};
+  EXPECT_EQ(talk(0.003).status, DeviceStatus::ok);
+  EXPECT_LT(felt(), 0.05);
+}
+
 TEST_F(RemoteLinkTest, BelievesNeitherRepeatedNorOvertakenPackets) {
   talk(0.01);
   EXPECT_EQ(repeat(), PacketFlaw::order);
