@@ -1,6 +1,8 @@
 #include "device/datagram_socket.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -9,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <system_error>
 
 #include "palpate/base/error.hpp"
@@ -16,6 +19,7 @@
 namespace palpate {
 namespace {
 
+constexpr const char* kFolder = "the folder has to be there and yours";
 constexpr std::size_t kHead = offsetof(sockaddr_un, sun_path);
 
 struct Native {
@@ -58,6 +62,24 @@ int open_socket(const std::string& path) {
   return handle;
 }
 
+// One program at a time may look whether a path is free and take it: a lock on its folder, which
+// leaves nothing behind.
+class Turn {
+ public:
+  explicit Turn(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    folder_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder_ < 0) refuse(path, fmt::format("{}; {}", words(errno), kFolder));
+    while (::flock(folder_, LOCK_EX) != 0 && errno == EINTR) continue;
+  }
+  ~Turn() { ::close(folder_); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  int folder_ = -1;
+};
+
 // A socket file is left over when no program listens behind it.
 bool left_over(const Native& address) noexcept {
   const int probe = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -81,7 +103,7 @@ void make_room(const std::string& path, const Native& address) {
 void bind_privately(int handle, const std::string& path, const Native& address) {
   if (::fchmod(handle, S_IRUSR | S_IWUSR) != 0 ||
       ::bind(handle, address.get(), address.size) != 0) {
-    refuse(path, fmt::format("{}; the folder has to be there and yours", words(errno)));
+    refuse(path, fmt::format("{}; {}", words(errno), kFolder));
   }
 }
 
@@ -89,6 +111,7 @@ void bind_privately(int handle, const std::string& path, const Native& address) 
 
 DatagramSocket::DatagramSocket(const std::string& path) : path_(path) {
   const Native address = address_of(path);
+  const Turn turn(path);
   make_room(path, address);
   handle_ = open_socket(path);
   try {

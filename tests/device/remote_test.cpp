@@ -4,13 +4,17 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <atomic>
+#include <barrier>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <thread>
 #include <vector>
 
+#include "device/datagram_socket.hpp"
 #include "device/remote_client.hpp"
 #include "palpate/base/error.hpp"
 
@@ -211,6 +215,32 @@ std::string complaint(const Clock& clock, const RemoteDeviceOptions& options) {
     return error.what();
   }
   return {};
+}
+
+TEST_F(RemoteDeviceTest, OfManyThatTakeALeftOverPlaceTogetherOneGetsIt) {
+  constexpr int kMany = 4;
+  const std::string path = options().path;
+  for (int round = 0; round < 200; ++round) {
+    leave_socket(path);
+    std::barrier all(kMany);
+    std::atomic<int> listening{0};
+    std::vector<std::jthread> programs;
+    for (int i = 0; i < kMany; ++i) {
+      programs.emplace_back([&] {
+        all.arrive_and_wait();
+        std::optional<DatagramSocket> socket;
+        try {
+          socket.emplace(path);
+          ++listening;
+        } catch (const Error&) {
+          EXPECT_FALSE(socket);
+        }
+        all.arrive_and_wait();
+      });
+    }
+    programs.clear();
+    ASSERT_EQ(listening, 1) << round;
+  }
 }
 
 TEST_F(RemoteDeviceTest, RefusesPathsThatAreTakenOrNoSockets) {
