@@ -4,7 +4,7 @@
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/histogram.hpp"
 #include "palpate/servo/realtime.hpp"
-#include "palpate/servo/waiting_clock.hpp"
+#include "palpate/base/waiting_clock.hpp"
 
 namespace palpate::app {
 

@@ -6,7 +6,7 @@
 #include "palpate/geometry/trajectory.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/simulated_camera.hpp"
-#include "palpate/servo/waiting_clock.hpp"
+#include "palpate/base/waiting_clock.hpp"
 
 namespace palpate::four_cameras {
 

@@ -8,7 +8,7 @@
 #include "palpate/servo/deadlines.hpp"
 #include "palpate/servo/realtime.hpp"
 #include "palpate/servo/servo.hpp"
-#include "palpate/servo/waiting_clock.hpp"
+#include "palpate/base/waiting_clock.hpp"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "palpate/servo/waiting_clock.hpp"
+#include "palpate/base/waiting_clock.hpp"
 
 #include <cerrno>
 #include <cmath>
