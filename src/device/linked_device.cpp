@@ -1,0 +1,188 @@
+#include "palpate/device/linked_device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kStaleExchanges = 2.5;
+
+void require(bool good, const char* name, double value) {
+  if (good && std::isfinite(value)) return;
+  throw Error(fmt::format("linked device: {} = {} is out of range: give a positive time in seconds",
+                          name, value));
+}
+
+LinkedDeviceOptions checked(LinkedDeviceOptions options) {
+  require(options.stale > 0, "stale", options.stale);
+  require(options.deaf > 0, "deaf", options.deaf);
+  require(options.retry > 0, "retry", options.retry);
+  return options;
+}
+
+DeviceInfo info_of(const DeviceLink& link) {
+  DeviceInfo info = link.info();
+  info.keeps_time = false;
+  return info;
+}
+
+void check(const LinkReading& reading, const DeviceInfo& info) {
+  if (reading.position.allFinite() && reading.velocity.allFinite()) return;
+  throw Error(
+      fmt::format("{}: tells a place that is no number, so it got no force. It is opened again; if "
+                  "that does not help, switch it off and on, and calibrate it",
+                  info.name));
+}
+
+}  // namespace
+
+LinkedDevice::LinkedDevice(Open open, WaitingClock& clock, LinkedDeviceOptions options)
+    : open_(std::move(open)),
+      clock_(clock),
+      options_(checked(std::move(options))),
+      link_(open_()),
+      info_(info_of(*link_)) {
+  options_.stale = std::max(options_.stale, kStaleExchanges / info_.rate);
+  if (!options_.threaded) return;
+  try {
+    thread_ = std::jthread([this](const std::stop_token& stop) {
+      if (options_.begin) options_.begin();
+      run(stop);
+    });
+  } catch (const std::system_error& error) {
+    throw Error(fmt::format("{}: the system gives no thread ({}); end other programs", info_.name,
+                            error.what()));
+  }
+}
+
+LinkedDevice::~LinkedDevice() {
+  thread_ = {};  // asks it to end, and waits; then the link goes: zero force
+}
+
+void LinkedDevice::run(const std::stop_token& stop) noexcept {
+  const double period = 1 / info_.rate;
+  double due = clock_.now();
+  while (!stop.stop_requested()) {
+    turn();
+    due = std::max(due + period, clock_.now());
+    clock_.wait_until(due);
+  }
+}
+
+void LinkedDevice::turn() noexcept {
+  if (link_) {
+    exchange();
+  } else if (clock_.now() >= retry_at_) {
+    open_again();
+  }
+}
+
+void LinkedDevice::exchange() noexcept {
+  try {
+    const LinkReading reading = link_->exchange(applicable(clock_.now()));
+    check(reading, info_);
+    newest_ = {reading, clock_.now(), connection_};
+    heard_.set(newest_);
+  } catch (const std::exception& error) {
+    lose(error.what());
+  }
+}
+
+Vector3d LinkedDevice::applicable(double now) const noexcept {
+  const Wanted wanted = wanted_.get();
+  if (wanted.connection != connection_ || now - wanted.time > options_.deaf) {
+    return Vector3d::Zero();
+  }
+  const double length = wanted.force.norm();
+  const double most = info_.maximum_force;
+  return length > most ? Vector3d(most / length * wanted.force) : wanted.force;
+}
+
+void LinkedDevice::lose(const char* why) noexcept {
+  {
+    const std::lock_guard lock(words_mutex_);
+    words_ = why;
+  }
+  losses_.fetch_add(1);
+  newest_.connection = kNone;
+  heard_.set(newest_);
+  link_.reset();  // zero force
+  ++connection_;
+  retry_at_ = clock_.now() + options_.retry;
+}
+
+// The words stay those of the loss: that it is not back yet is no news.
+void LinkedDevice::open_again() noexcept {
+  try {
+    std::unique_ptr<DeviceLink> link = open_();
+    if (link->info().name != info_.name) {
+      throw Error(fmt::format("{} is there now instead of {}; start again to use it",
+                              link->info().name, info_.name));
+    }
+    link_ = std::move(link);
+    const std::lock_guard lock(words_mutex_);
+    words_.clear();
+  } catch (const std::exception&) {
+    retry_at_ = clock_.now() + options_.retry;
+  }
+}
+
+DeviceState LinkedDevice::read() noexcept {
+  if (state_.status == DeviceStatus::failed) return state_;
+  const double now = clock_.now();
+  if (const std::optional<Heard> heard = heard_.look()) seen_ = *heard;
+  const bool known = seen_.connection != kNone && now - seen_.time <= options_.stale;
+  state_.time = now;
+  if (known) {
+    const bool placed = placed_ == seen_.connection;
+    state_.status = placed ? DeviceStatus::ok : DeviceStatus::silent;
+    state_.position = seen_.reading.position;
+    state_.velocity = seen_.reading.velocity;
+    state_.buttons = seen_.reading.buttons;
+    placed_ = seen_.connection;
+  } else {
+    state_.status = DeviceStatus::silent;
+    state_.velocity.setZero();
+    state_.buttons = 0;
+    placed_ = kNone;
+  }
+  status_.store(state_.status);
+  return state_;
+}
+
+void LinkedDevice::write(const Vector3d& force) noexcept {
+  if (state_.status == DeviceStatus::failed) return;
+  if (force.allFinite()) {
+    const bool felt = state_.status == DeviceStatus::ok;
+    wanted_.set({force, clock_.now(), felt ? placed_ : kNone});
+    return;
+  }
+  wanted_.set({});
+  state_.status = DeviceStatus::failed;
+  status_.store(state_.status);
+}
+
+std::string LinkedDevice::reason() const {
+  const DeviceStatus status = status_.load();
+  if (status == DeviceStatus::failed) {
+    return "a force that was written was not finite; look for the fault in what computed it";
+  }
+  if (status == DeviceStatus::ok) return {};
+  const std::lock_guard lock(words_mutex_);
+  if (!words_.empty()) return words_;
+  return fmt::format(
+      "{}: does not answer; if that lasts, look at its cable and its power, and at what else keeps "
+      "the computer busy",
+      info_.name);
+}
+
+}  // namespace palpate
