@@ -133,6 +133,7 @@ ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
   explore_options.slide_speed = scale * std::clamp(0.5 * plan.patch / scale, 0.05, 0.2);
   explore_options.travel_speed = scale * std::clamp(plan.patch / scale, 0.1, 0.3);
   explore_options.seed = options.seed;
+  explore_options.progress = options.progress;
   plan.target = explore(all.view(), explore_options);
 
   Box way;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "palpate/device/simulated.hpp"
 #include "palpate/device/workspace.hpp"
@@ -29,7 +30,8 @@ struct PlanOptions {
   double tool_radius = 0;  ///< m
   std::uint64_t seed = 1;
   SimulatedHand hand = {};
-  double rate = 1000;  ///< steps a second
+  double rate = 1000;                         ///< steps a second
+  std::function<void(double)> progress = {};  ///< called with the share (0 to 1) that is planned
 };
 
 /// Chooses scale, patch, depth and speeds from the scene's extent and support radius, and plans the

@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "apps/palpate/progress.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/touch_usage.hpp"
 #include "palpate/device/scripted.hpp"
@@ -68,6 +69,8 @@ Hand exploring(const TouchOptions& options, const Scene& scene, const FieldOptio
   plan.rate = options.rate.value_or(plan.rate);
   const bool pulled = options.device != "scripted";
   if (!pulled) plan.hand.stiffness = std::numeric_limits<double>::infinity();
+  Progress progress("planning the exploration");
+  plan.progress = [&](double done) { progress.update(done); };
   hand.plan = plan_exploration(scene, field, plan);
   hand.workspace = hand.plan->workspace;
   hand.stiffness = hand.plan->stiffness;

@@ -27,7 +27,7 @@ void Progress::update(double done) {
 
 void Progress::show(double done) {
   shown_ = true;
-  const std::string share = fmt::format(" {:3.0f} %", 100 * done);
+  const std::string share = fmt::format(": {:.0f} %", 100 * done);
   if (terminal_) {
     fmt::print(stderr, "\r{}{}\033[K", what_, share);
   } else {

@@ -9,6 +9,7 @@ namespace palpate::app {
 /// lines of their own, after two seconds and then every five, elsewhere.
 class Progress {
  public:
+  /// `what` is being done: "reading table.ply".
   explicit Progress(std::string what);
   ~Progress();
   Progress(const Progress&) = delete;

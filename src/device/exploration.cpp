@@ -47,6 +47,7 @@ class Player {
       : origin_(origin), options_(options) {}
 
   [[nodiscard]] bool over() const { return time() > options_.duration; }
+  [[nodiscard]] double share() const { return std::min(1.0, time() / options_.duration); }
 
   void dwell(const Vector3d& place, double seconds) {
     const double end = time() + seconds;
@@ -94,6 +95,7 @@ class Explorer {
     std::vector<MapSample> stroke = next_stroke(next_start(map_.center()));
     player_.dwell(above(stroke.front()), kDwell);
     while (!player_.over()) {
+      if (options_.progress) options_.progress(player_.share());
       touch(stroke);
       const MapSample last = stroke.back();
       Route way;
@@ -128,8 +130,11 @@ class Explorer {
   [[nodiscard]] bool open(const MapSample& s) const {
     const double step = 0.5 * kClearance * options_.radius;
     const double farthest = std::max(map_.extent(), 3 * step);
-    for (double d = 2 * step; d <= farthest; d += step) {
-      if (map_.distance(s.position + d * s.normal) < 1.6 * step) return false;
+    double d = 2 * step;
+    while (d <= farthest) {
+      const double room = map_.distance(s.position + d * s.normal) - 1.6 * step;
+      if (room < 0) return false;
+      d += step * (1 + std::floor(room / step));  // nothing can be near before
     }
     return true;
   }
@@ -162,6 +167,17 @@ class Explorer {
     return best;
   }
 
+  // The higher, the better a stroke begins there; some value up to `enough` where it is no more.
+  [[nodiscard]] double score_of(const Vector3d& place, const Vector3d& here, double enough) const {
+    const double way = kNear * (place - here).norm();
+    double fresh = kFresh * map_.extent();
+    for (const Vector3d& p : touched_) {
+      fresh = std::min(fresh, (p - place).norm());
+      if (fresh - way <= enough) break;
+    }
+    return fresh - way;
+  }
+
   // Of some places at random one that is far from all that was touched before but not from here.
   MapSample next_start(const Vector3d& here) {
     MapSample best;
@@ -173,9 +189,7 @@ class Explorer {
       if (sample.normal.isZero() || !map_.inside(sample.position)) continue;
       if (i < 4 * kCandidates && !open(sample)) continue;
       ++seen;
-      double fresh = kFresh * map_.extent();
-      for (const Vector3d& p : touched_) fresh = std::min(fresh, (p - sample.position).norm());
-      const double score = fresh - kNear * (sample.position - here).norm();
+      const double score = score_of(sample.position, here, highest);
       if (score > highest) {
         highest = score;
         best = sample;
@@ -229,12 +243,18 @@ class Explorer {
     const double piece = 0.5 * kClearance * options_.radius;
     const int pieces = static_cast<int>(std::clamp(length / piece, 16.0, 200.0));
     Route way;
-    way.clear = true;
+    Vector3d seen = a;
+    double room = 0;  // free around it
     for (int i = 0; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
-      way.places.push_back((1 - u) * (1 - u) * a + 2 * u * (1 - u) * middle + u * u * b);
-      way.clear = way.clear && map_.distance(way.places.back()) > piece;
+      const Vector3d place = (1 - u) * (1 - u) * a + 2 * u * (1 - u) * middle + u * u * b;
+      way.places.push_back(place);
+      if ((place - seen).norm() < room) continue;
+      seen = place;
+      room = map_.distance(place) - piece;
+      if (room <= 0) return way;
     }
+    way.clear = true;
     return way;
   }
 

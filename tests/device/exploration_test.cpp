@@ -84,6 +84,21 @@ TEST(Exploration, SameSeedSameRowsOtherSeedOtherRows) {
   EXPECT_NE(last(1), last(2));
 }
 
+TEST(Exploration, SaysHowFarItIs) {
+  const PointCloud cloud = synthetic_cloud("sphere");
+  std::vector<double> told;
+  const ExplorationOptions options{
+      .duration = 10, .radius = 5e-3, .patch = 1, .progress = [&](double done) {
+        told.push_back(done);
+      }};
+  (void)explore(view(cloud), options);
+  EXPECT_GT(told.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GE(told.front(), 0);
+  EXPECT_LE(told.back(), 1);
+  EXPECT_GT(told.back(), 0.5);
+}
+
 TEST(Exploration, WorksWithoutNormals) {
   PointCloud cloud = synthetic_cloud("sphere");
   cloud.normals.clear();

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "palpate/geometry/trajectory.hpp"
@@ -26,6 +27,7 @@ struct ExplorationOptions {
   double slide_speed = 0.1;    ///< m/s
   double travel_speed = 0.25;  ///< m/s, through free space
   std::uint64_t seed = 1;      ///< of the places and directions chosen
+  std::function<void(double)> progress = {};  ///< called with the share (0 to 1) that is planned
 };
 
 /// Where a hand wants to be that explores a surface: it comes down along a normal, presses, slides,
