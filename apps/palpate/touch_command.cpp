@@ -116,7 +116,7 @@ void touch(const TouchOptions& options) {
   Scene felt;
   fill_felt(felt, touched, soft_material(options, hand.stiffness));
   Run run{options, touched, felt, hand, field, proxy_options(options, hand.stiffness)};
-  TouchStatistics statistics(hand.steps);
+  TouchStatistics statistics;
   std::optional<LiveReport> live = play(run, clock, statistics, outputs);
   if (live && left) live->realtime.requests.push_back(*left);
   tell({touched, felt, options, statistics, field, run.proxy, hand.device->info().name,

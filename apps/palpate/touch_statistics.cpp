@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "apps/palpate/quantile.hpp"
-
 namespace palpate::app {
 
 namespace {
@@ -44,7 +42,7 @@ constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
 
 void TouchStatistics::add(const TouchStep& step) {
   const Contact& contact = step.contact;
-  const bool first = times_.empty();
+  const bool first = steps_ == 0;
   if (first) first_time_ = step.time;
   if (!first) {
     const Eigen::Vector3d way = step.hip - last_.hip;
@@ -63,7 +61,8 @@ void TouchStatistics::add(const TouchStep& step) {
   for (std::size_t i = 0; i < kFieldNotes.size(); ++i) {
     if (has(step.notes, kFieldNotes[i])) ++notes_[kContactNotes.size() + i];
   }
-  times_.push_back(step.microseconds);
+  times_.add(1e-6 * step.microseconds);
+  ++steps_;
   last_ = step;
 }
 
@@ -74,10 +73,8 @@ std::size_t TouchStatistics::faults() const {
 }
 
 StepTimes TouchStatistics::times() const {
-  if (times_.empty()) return {};
-  std::vector<double> sorted = times_;
-  std::sort(sorted.begin(), sorted.end());
-  return {quantile(sorted, 0.5), quantile(sorted, 0.99), quantile(sorted, 0.999), sorted.back()};
+  const auto quantile = [this](double share) { return 1e6 * times_.quantile(share); };
+  return {quantile(0.5), quantile(0.99), quantile(0.999), 1e6 * times_.longest};
 }
 
 const NoteText& note_text(std::size_t note) {

@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
-#include <vector>
 
 #include "palpate/contact/contact.hpp"
 #include "palpate/scene/scene_field.hpp"
+#include "palpate/servo/histogram.hpp"
 
 namespace palpate::app {
 
@@ -33,12 +33,9 @@ class TouchStatistics {
  public:
   static constexpr std::size_t kNotes = 9;  ///< five of ContactNote, four of FieldNote
 
-  /// Room for `steps`, so that adding does not disturb the run.
-  explicit TouchStatistics(std::size_t steps = 0) { times_.reserve(steps); }
-
   void add(const TouchStep& step);
 
-  [[nodiscard]] std::size_t steps() const { return times_.size(); }
+  [[nodiscard]] std::size_t steps() const { return steps_; }
   /// Simulated time from the first to the last step, s.
   [[nodiscard]] double duration() const { return last_.time - first_time_; }
   /// Times that touching began.
@@ -60,11 +57,13 @@ class TouchStatistics {
   [[nodiscard]] const std::array<std::size_t, kNotes>& notes() const { return notes_; }
   /// Steps that the proxy could not take.
   [[nodiscard]] std::size_t faults() const;
-  /// By nearest rank. Zero without steps.
+  /// Of any number of steps in the same memory: to 5 %, and the maximum as it was. Zero without
+  /// steps.
   [[nodiscard]] StepTimes times() const;
 
  private:
-  std::vector<double> times_;
+  std::size_t steps_ = 0;
+  Durations times_;
   TouchStep last_;
   double first_time_ = 0;
   std::size_t contacts_ = 0;

@@ -22,6 +22,15 @@ double middle_of(std::size_t bin) noexcept {
 
 }  // namespace
 
+void Durations::add(double duration) noexcept {
+  if (std::isnan(duration)) return;
+  const double length = std::clamp(duration, 0.0, kLongest);
+  ++counts[bin_of(length)];
+  ++count;
+  sum += length;
+  longest = std::max(longest, length);
+}
+
 double Durations::quantile(double p) const noexcept {
   if (count == 0) return 0;
   const double wanted = std::clamp(p, 0.0, 1.0) * static_cast<double>(count);

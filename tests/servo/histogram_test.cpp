@@ -26,6 +26,11 @@ TEST(Histogram, TellsQuantilesToFivePercentAndTheLongestExactly) {
   EXPECT_EQ(seen.longest, 1e-2);
   EXPECT_LE(seen.quantile(1), seen.longest);
   EXPECT_NEAR(seen.mean(), 0.5 * 10'001 * 1e-6, 1e-12);
+  Durations alone;
+  for (int i = 1; i <= 10'000; ++i) alone.add(1e-6 * i);
+  EXPECT_EQ(alone.counts, seen.counts);
+  EXPECT_EQ(alone.count, seen.count);
+  EXPECT_EQ(alone.longest, seen.longest);
 }
 
 TEST(Histogram, TakesAnythingAndLeavesOutWhatIsNoNumber) {

@@ -18,6 +18,9 @@ struct Durations {
   double sum = 0;      ///< s
   double longest = 0;  ///< s
 
+  /// s; what is negative counts as 0, what is not a number is left out.
+  void add(double duration) noexcept;
+
   /// The duration that a share `p` (0-1) of all stays below, to 5 %: the middle of its bin, and
   /// never above the longest. 0 when there are none.
   [[nodiscard]] double quantile(double p) const noexcept;
