@@ -5,8 +5,10 @@
 
 namespace palpate::app {
 
-Preparer::Preparer(Run& run, std::function<void(const std::string&)> complain)
+Preparer::Preparer(Run& run, const ViewSettings& initial,
+                   std::function<void(const std::string&)> complain)
     : run_(run),
+      initial_(initial),
       complain_(std::move(complain)),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
@@ -45,8 +47,8 @@ void Preparer::work(const std::stop_token& stop) {
 void Preparer::prepare(const ViewSettings& settings) {
   for (std::size_t i = 0; i < run_.felt.size(); ++i) {
     Source& source = run_.felt.source(i);
-    source.change(prepared_by(settings, source.options()));
     const TouchedSource& touched = run_.touched.sources[i];
+    source.change(prepared_by(settings, initial_, touched.options));
     if (touched.cloud) source.set(*touched.cloud);
   }
 }

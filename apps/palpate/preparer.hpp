@@ -16,8 +16,9 @@ namespace palpate::app {
 /// Of wishes that come faster than it works the last one counts.
 class Preparer {
  public:
-  /// `complain` is called on its thread with what preparation throws. Both outlive it.
-  Preparer(Run& run, std::function<void(const std::string&)> complain);
+  /// `initial`: what the run began with. `complain` is called on its thread with what preparation
+  /// throws. It and the run outlive it.
+  Preparer(Run& run, const ViewSettings& initial, std::function<void(const std::string&)> complain);
   ~Preparer();
   Preparer(const Preparer&) = delete;
   Preparer& operator=(const Preparer&) = delete;
@@ -33,6 +34,7 @@ class Preparer {
   void prepare(const ViewSettings& settings);
 
   Run& run_;
+  ViewSettings initial_;
   std::function<void(const std::string&)> complain_;
   std::mutex mutex_;
   std::condition_variable_any changed_;

@@ -80,7 +80,7 @@ struct View::Parts {
         initial(initial_settings(r)),
         settings(initial),
         scope(scope_of(r)),
-        preparer(r,
+        preparer(r, initial,
                  [this](const std::string& words) { viewer.notice(NoticeLevel::warning, words); }),
         viewer(r.felt, {&s}, viewer_options(), controls()) {}
 

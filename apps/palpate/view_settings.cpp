@@ -154,14 +154,20 @@ ViewSettings preset(const ViewSettings& initial, const std::string& name) {
   throw Error(fmt::format("there is no preset '{}'", name));
 }
 
-SourceOptions prepared_by(const ViewSettings& settings, SourceOptions options) {
+SourceOptions prepared_by(const ViewSettings& settings, const ViewSettings& initial,
+                          const SourceOptions& own) {
   constexpr double kRadiusMultiple = 2.5;
-  options.policy.policy = settings.policy;
-  options.policy.history = settings.history;
-  options.depth.normal_error = DepthFilterOptions().normal_error / settings.smoothing;
-  options.prepare.voxel = settings.voxel;
-  if (settings.smoothing != 1) {
-    options.prepare.radius_multiple = kRadiusMultiple * settings.smoothing;
+  SourceOptions options = own;
+  if (settings.policy != initial.policy) options.policy.policy = settings.policy;
+  if (settings.history != initial.history) options.policy.history = settings.history;
+  if (settings.voxel != initial.voxel) options.prepare.voxel = settings.voxel;
+  if (settings.smoothing == initial.smoothing) return options;
+  const double wider = settings.smoothing / initial.smoothing;
+  options.depth.normal_error /= wider;
+  if (options.prepare.radius) {
+    *options.prepare.radius *= wider;
+  } else {
+    options.prepare.radius_multiple = own.prepare.radius_multiple.value_or(kRadiusMultiple) * wider;
   }
   return options;
 }

@@ -47,7 +47,8 @@ void set(ViewSettings& settings, const std::string& key, const SettingValue& val
 /// none.
 [[nodiscard]] ViewSettings preset(const ViewSettings& initial, const std::string& name);
 
-/// `options`, prepared as the settings ask.
-[[nodiscard]] SourceOptions prepared_by(const ViewSettings& settings, SourceOptions options);
+/// `own`, which a source began with, but for what `settings` have other than `initial`.
+[[nodiscard]] SourceOptions prepared_by(const ViewSettings& settings, const ViewSettings& initial,
+                                        const SourceOptions& own);
 
 }  // namespace palpate::app

@@ -88,7 +88,7 @@ TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
   set(settings, "smoothing", 2.0);
   set(settings, "voxel", 5.0);
   set(settings, "policy", std::string("replace"));
-  const SourceOptions options = prepared_by(settings, {});
+  const SourceOptions options = prepared_by(settings, {}, {});
   EXPECT_DOUBLE_EQ(options.depth.normal_error, DepthFilterOptions().normal_error / 2);
   EXPECT_DOUBLE_EQ(*options.prepare.radius_multiple, 5);
   EXPECT_DOUBLE_EQ(*options.prepare.voxel, 5e-3);
@@ -98,6 +98,32 @@ TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
                       setting.key == "friction" || setting.key == "texture";
     EXPECT_EQ(is_preparation(setting.key), !felt) << setting.key;
   }
+}
+
+TEST(ViewSettings, WhatASourceHasOfItsOwnStaysUnlessThePageChangesIt) {
+  SourceOptions own;
+  own.depth.normal_error = 0.01;
+  own.prepare.radius = 0.02;
+  own.prepare.voxel = 3e-3;
+  own.policy.policy = Policy::replace;
+  own.policy.history = 6;
+  const ViewSettings initial;
+  ViewSettings settings = preset(initial, "glass");
+  SourceOptions options = prepared_by(settings, initial, own);
+  EXPECT_EQ(options.depth.normal_error, 0.01);
+  EXPECT_EQ(options.prepare.radius, 0.02);
+  EXPECT_FALSE(options.prepare.radius_multiple);
+  EXPECT_EQ(options.prepare.voxel, 3e-3);
+  EXPECT_EQ(options.policy.policy, Policy::replace);
+  EXPECT_EQ(options.policy.history, 6);
+  set(settings, "smoothing", 2.0);
+  set(settings, "policy", std::string("average"));
+  options = prepared_by(settings, initial, own);
+  EXPECT_DOUBLE_EQ(options.depth.normal_error, 0.005);
+  EXPECT_DOUBLE_EQ(*options.prepare.radius, 0.04);
+  EXPECT_EQ(options.prepare.voxel, 3e-3);
+  EXPECT_EQ(options.policy.policy, Policy::average);
+  EXPECT_EQ(options.policy.history, 6);
 }
 
 TEST(ViewSettings, UnknownKeysAreRefused) {
