@@ -10,6 +10,7 @@
 
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/quantile.hpp"
+#include "apps/palpate/touch_surface.hpp"
 
 namespace palpate::app {
 
@@ -31,11 +32,12 @@ struct DropText {
   const char* words;
 };
 
-constexpr std::array<DropText, 7> kDrops = {{{&StreamDrops::overtaken, "overtaken", "overtaken"},
+constexpr std::array<DropText, 8> kDrops = {{{&StreamDrops::overtaken, "overtaken", "overtaken"},
                                              {&StreamDrops::repeated, "repeated", "repeated"},
                                              {&StreamDrops::late, "late", "late"},
                                              {&StreamDrops::empty, "empty", "empty"},
                                              {&StreamDrops::garbage, "garbage", "garbage"},
+                                             {&StreamDrops::unposed, "unposed", "without a pose"},
                                              {&StreamDrops::resized, "resized", "of another size"},
                                              {&StreamDrops::refused, "refused", "refused"}}};
 
@@ -53,15 +55,6 @@ Json json_drops(const StreamDrops& drops) {
   Json json;
   for (const DropText& each : kDrops) json[each.name] = drops.*each.count;
   return json;
-}
-
-Policy policy_of(const TouchedSource& source) {
-  return source.options.policy.policy.value_or(source.as_cloud ? kCloudPolicy : kDepthPolicy);
-}
-
-bool keeps_history(const TouchedSource& source) {
-  const Policy policy = policy_of(source);
-  return policy == Policy::average || policy == Policy::crossfade;
 }
 
 // Of the preparation of a frame, ms.
@@ -114,8 +107,9 @@ void print_camera(const TouchedSource& source, const Style& style, std::FILE* ou
       out, "  latency    {} from frame to touchable, {} at worst; prepared in {} (p50), {} (max)\n",
       duration(state.latency_mean), duration(state.latency_worst), duration(1e-3 * times.p50),
       duration(1e-3 * times.longest));
-  fmt::print(out, "  policy     {}", name_in(kPolicies, policy_of(source)));
-  if (keeps_history(source)) fmt::print(out, " of {}", source.options.policy.history);
+  const Policy policy = policy_of(source.options, source.as_cloud);
+  fmt::print(out, "  policy     {}", name_in(kPolicies, policy));
+  if (keeps_history(policy)) fmt::print(out, " of {}", source.options.policy.history);
   fmt::print(out, "\n");
   print_seen(source.state, out);
   if (state.problem.empty()) return;
@@ -128,8 +122,9 @@ Json json_camera(const TouchedSource& source) {
   const FeedReport& feed = source.feed;
   const StreamState& state = feed.state;
   const PrepareTimes times = prepare_times(feed.prepare_ms);
-  Json policy = {{"name", name_in(kPolicies, policy_of(source))}};
-  if (keeps_history(source)) policy["history"] = source.options.policy.history;
+  const Policy chosen = policy_of(source.options, source.as_cloud);
+  Json policy = {{"name", name_in(kPolicies, chosen)}};
+  if (keeps_history(chosen)) policy["history"] = source.options.policy.history;
   Json json = {{"name", source.argument.name},
                {"camera", source.argument.path},
                {"width", feed.width},

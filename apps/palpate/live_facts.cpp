@@ -65,6 +65,7 @@ LiveFacts study_live(const CloudArgument& argument) {
     status = camera->read(frame, kWait);
     const bool failed = status == CameraStatus::damaged || status == CameraStatus::failed;
     facts.failures += failed ? 1 : 0;
+    facts.unposed += status == CameraStatus::unposed ? 1 : 0;
   }
   if (last > start) facts.rate = static_cast<double>(facts.frames - 1) / (last - start);
   return facts;
@@ -80,8 +81,9 @@ void print_facts(const LiveFacts& facts, std::FILE* out) {
   fmt::print(out, "  frames     {:.1f} a second; of the first {} {} repeated, {} failed\n",
              facts.rate, facts.frames, facts.repeated, facts.failures);
   fmt::print(
-      out, "  poses      {}\n",
-      facts.posed ? "frames tell where they were taken" : "none; --pose says where it stands");
+      out, "  poses      {}{}\n",
+      facts.posed ? "frames tell where they were taken" : "none; --pose says where it stands",
+      facts.unposed > 0 ? fmt::format("; {} without one left out", facts.unposed) : "");
   fmt::print(out, "  depth      {:.0f} % of the pixels have one, {} to {}, median {}\n",
              100 * facts.valid, length(facts.nearest), length(facts.farthest), length(facts.depth));
   const auto& c = facts.noise.coefficients;
@@ -99,6 +101,7 @@ nlohmann::ordered_json json_facts(const LiveFacts& facts) {
       {"intrinsics", {p.fx, p.fy, p.cx, p.cy}},
       {"distorted", facts.distorted},
       {"posed", facts.posed},
+      {"frames_unposed", facts.unposed},
       {"rate_Hz", facts.rate},
       {"frames", facts.frames},
       {"frames_repeated", facts.repeated},

@@ -18,6 +18,7 @@ struct LiveFacts {
   std::size_t frames = 0;    ///< that were looked at
   std::size_t repeated = 0;  ///< of them bit for bit like the one before
   std::size_t failures = 0;  ///< reads that failed
+  std::size_t unposed = 0;   ///< frames without a pose among those with one
   double rate = 0;           ///< frames a second by their stamps, Hz
   double valid = 0;          ///< share of pixels with a depth
   double depth = 0;          ///< median, m

@@ -84,6 +84,14 @@ bool taken_as_cloud(const TouchOptions& options, const ChosenSource& source) {
          source.choices.policy == "fusion";
 }
 
+Policy policy_of(const SourceOptions& options, bool cloud) {
+  return options.policy.policy.value_or(cloud ? kCloudPolicy : kDepthPolicy);
+}
+
+bool keeps_history(Policy policy) {
+  return policy == Policy::average || policy == Policy::crossfade;
+}
+
 FieldOptions field_options(const TouchOptions& options) {
   const FieldKind kind = field_kind(options);
   FieldOptions result;

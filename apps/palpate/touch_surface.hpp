@@ -20,6 +20,12 @@ inline constexpr double kStiffness = 500;
 /// Are depths of this source taken as clouds, as the paper does, and not by the depth filter?
 [[nodiscard]] bool taken_as_cloud(const TouchOptions& options, const ChosenSource& source);
 
+/// What becomes of frames; `cloud`: they are taken as clouds.
+[[nodiscard]] Policy policy_of(const SourceOptions& options, bool cloud);
+
+/// Is --history a policy's?
+[[nodiscard]] bool keeps_history(Policy policy);
+
 /// The smallest R that a tool of the size asked for can be felt with, m.
 [[nodiscard]] double smallest_radius(const TouchOptions& options);
 

@@ -68,8 +68,14 @@ std::uint64_t sum_of(std::span<const float> depth) {
 
 }  // namespace
 
-Objection damage(const std::string& reason) {
-  return {&StreamDrops::garbage, reason.empty() ? "a damaged frame" : reason};
+bool left_out(CameraStatus status) noexcept {
+  return status == CameraStatus::damaged || status == CameraStatus::unposed;
+}
+
+Objection objection_to(CameraStatus status, const std::string& reason) {
+  const bool unposed = status == CameraStatus::unposed;
+  const std::string words = unposed ? "a frame without a pose" : "a damaged frame";
+  return {unposed ? &StreamDrops::unposed : &StreamDrops::garbage, reason.empty() ? words : reason};
 }
 
 std::optional<Objection> FrameCheck::examine(const DepthFrame& frame, double latest) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "palpate/depth/depth_frame.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 #include "palpate/sensor/stream_state.hpp"
 
 namespace palpate::sensor {
@@ -15,8 +16,11 @@ struct Objection {
   std::string words;
 };
 
-/// That to a frame which the camera itself calls damaged.
-[[nodiscard]] Objection damage(const std::string& reason);
+/// Does the camera itself leave a frame out that came?
+[[nodiscard]] bool left_out(CameraStatus status) noexcept;
+
+/// The objection to such a frame, for the camera's reason.
+[[nodiscard]] Objection objection_to(CameraStatus status, const std::string& reason);
 
 /// Looks at the frames of one camera, in the order in which they come.
 class FrameCheck {

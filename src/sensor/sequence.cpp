@@ -59,6 +59,15 @@ SequenceDescription describe(const fs::path& folder) {
   return sequence;
 }
 
+// Of a file that the description names in `field`.
+std::string text_named(const fs::path& folder, const std::string& file, std::string_view field) {
+  const fs::path path = folder / file;
+  if (is_file(path)) return text_of(path);
+  throw Error(
+      fmt::format("{}: no such file, which \"{}\" in {} names. Add it, or correct the name.",
+                  path.string(), field, (folder / "sequence.json").string()));
+}
+
 bool is_image(const fs::path& path) {
   const std::string ending = io::extension(path.string());
   return ending == ".png" || ending == ".pgm";
@@ -86,7 +95,7 @@ std::vector<fs::path> images_in(const fs::path& folder, const std::string& wante
 std::vector<SequenceFrame> listed_frames(const fs::path& folder, const std::string& list) {
   const fs::path path = folder / list;
   std::vector<SequenceFrame> frames;
-  for (ListedFrame& frame : parse_frame_list(text_of(path), path.string())) {
+  for (ListedFrame& frame : parse_frame_list(text_named(folder, list, "frames"), path.string())) {
     frames.push_back({.image = path.parent_path() / frame.image, .stamp = frame.stamp});
   }
   return frames;
@@ -142,7 +151,7 @@ std::optional<Eigen::Isometry3d> pose_of(const Poses& poses, const SequenceFrame
 void add_poses(const fs::path& folder, const SequenceDescription& description,
                std::vector<SequenceFrame>& frames) {
   const fs::path path = folder / description.poses;
-  const Poses poses = parse_poses(text_of(path), path.string());
+  const Poses poses = parse_poses(text_named(folder, description.poses, "pose"), path.string());
   Eigen::Isometry3d T_told_sensor = description.T_told_sensor;
   if (const auto* numbered = std::get_if<PosesByNumber>(&poses)) {
     T_told_sensor = numbered->T_told_sensor * T_told_sensor;

@@ -56,24 +56,28 @@ double SequenceCamera::stamp() const {
 
 void SequenceCamera::load() {
   if (std::exchange(loaded_, true)) return;
-  failure_ = load_image(sequence_.frames[next_]);
+  load_image(sequence_.frames[next_]);
 }
 
-std::string SequenceCamera::load_image(const SequenceFrame& frame) {
+void SequenceCamera::load_image(const SequenceFrame& frame) {
   if (sequence_.posed && !frame.T_world_sensor) {
-    return fmt::format("{}: no pose is known of it, though of others. It was left out.",
-                       frame.image.string());
+    status_ = CameraStatus::unposed;
+    failure_ = fmt::format("{}: no pose is known of it, though of others. It was left out.",
+                           frame.image.string());
+    return;
   }
   try {
     read_depth_frame(frame.image, images_, loaded_frame_);
   } catch (const Error& error) {
-    return error.what();
+    status_ = CameraStatus::damaged;
+    failure_ = error.what();
+    return;
   }
+  status_ = CameraStatus::frame;
   // The first image says what size all have, where the description does not.
   images_.camera.width = loaded_frame_.camera.width;
   images_.camera.height = loaded_frame_.camera.height;
   loaded_frame_.T_world_sensor = frame.T_world_sensor;
-  return {};
 }
 
 bool SequenceCamera::wait(double timeout) const {
@@ -89,9 +93,9 @@ CameraStatus SequenceCamera::show(DepthFrame& frame) {
   const double time = stamp();
   loaded_ = false;
   ++next_;
-  if (!failure_.empty()) {
+  if (status_ != CameraStatus::frame) {
     reason_ = std::exchange(failure_, "");
-    return CameraStatus::damaged;
+    return status_;
   }
   std::swap(frame, loaded_frame_);
   frame.stamp = time;

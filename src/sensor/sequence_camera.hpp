@@ -20,7 +20,7 @@ class SequenceCamera final : public DepthCamera {
 
  private:
   void load();
-  [[nodiscard]] std::string load_image(const SequenceFrame& frame);
+  void load_image(const SequenceFrame& frame);
   [[nodiscard]] double stamp() const;
   [[nodiscard]] bool wait(double timeout) const;
   [[nodiscard]] CameraStatus show(DepthFrame& frame);
@@ -35,7 +35,8 @@ class SequenceCamera final : public DepthCamera {
   std::size_t next_ = 0;
   std::size_t laps_ = 0;
   bool loaded_ = false;  // the next frame is in loaded_frame_, or failed to get there
-  std::string failure_;  // why it is not
+  CameraStatus status_ = CameraStatus::frame;  // of the loaded frame
+  std::string failure_;                        // why it is not good
   DepthFrame loaded_frame_;
 };
 

@@ -26,8 +26,8 @@ double draw(std::uint64_t seed, std::uint64_t frame) {
 void demand(bool right, const char* what, double value) {
   if (!right) {
     throw Error(
-        fmt::format("a simulated camera cannot have {} {:g}; see SimulatedCameraOptions "
-                    "for what it may be",
+        fmt::format("a simulated camera cannot have {} {:g}; docs/simulated_cameras.md "
+                    "says what it may be",
                     what, value));
   }
 }

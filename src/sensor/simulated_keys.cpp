@@ -20,7 +20,7 @@ double number(const std::string& text) {
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc{} || stop != end || !std::isfinite(value)) {
-    throw Error(fmt::format("simulated camera: '{}' is not a number", text));
+    throw Error(fmt::format("'{}' is not a finite number", text));
   }
   return value;
 }
@@ -28,8 +28,7 @@ double number(const std::string& text) {
 int whole(const std::string& text) {
   const double value = number(text);
   if (value != std::floor(value) || value < 0 || value > kMostWhole) {
-    throw Error(fmt::format("simulated camera: '{}' is not a whole number from 0 to {:g}", text,
-                            kMostWhole));
+    throw Error(fmt::format("'{}' is not a whole number from 0 to {:g}", text, kMostWhole));
   }
   return static_cast<int>(value);
 }
@@ -39,7 +38,7 @@ NoiseKind noise_kind(const std::string& text) {
   if (text == "a") return NoiseKind::independent;
   if (text == "b") return NoiseKind::blurred;
   if (text == "c") return NoiseKind::quantised;
-  throw Error(fmt::format("simulated camera: there is no noise '{}'; take none, a, b or c", text));
+  throw Error(fmt::format("'{}' is none of none, a, b and c", text));
 }
 
 // The same view with other pixels.
@@ -90,16 +89,26 @@ std::string known_keys() {
   return text;
 }
 
+// Says of which key a bad value was.
+void set(SimulatedSetup& setup, const Key& key, const std::string& value) {
+  try {
+    key.set(setup, value);
+  } catch (const Error& error) {
+    throw Error(fmt::format("simulated camera: {}: {}", key.name, error.what()));
+  }
+}
+
 }  // namespace
 
 void set_simulated(SimulatedSetup& setup, const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) {
-    throw Error(fmt::format("simulated camera: '{}' is not KEY=VALUE", assignment));
+    throw Error(fmt::format("a simulated camera takes KEY=VALUE, not '{}'; keys are {}", assignment,
+                            known_keys()));
   }
   const std::string name = assignment.substr(0, equals);
   for (const Key& key : kKeys) {
-    if (name == key.name) return key.set(setup, assignment.substr(equals + 1));
+    if (name == key.name) return set(setup, key, assignment.substr(equals + 1));
   }
   throw Error(fmt::format("a simulated camera has no '{}'; keys are {}", name, known_keys()));
 }

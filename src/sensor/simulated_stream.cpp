@@ -121,7 +121,7 @@ void SimulatedStream::Player::schedule() {
 }
 
 void SimulatedStream::Player::do_without(CameraStatus status) {
-  if (status == CameraStatus::damaged) log.came(next, damage(reason), check.size_changes());
+  if (left_out(status)) log.came(next, objection_to(status, reason), check.size_changes());
   if (status == CameraStatus::waiting) log.waiting(next);
   if (status == CameraStatus::failed) log.failed(next, reason, failures > 1);
   next += frame_time;

@@ -73,7 +73,7 @@ struct Stream::Threads {
   void stop();
   void read();
   [[nodiscard]] bool take(DepthFrame& frame);
-  void leave_out();
+  void leave_out(CameraStatus status);
   void compare_clocks(double stamp, double now);
   [[nodiscard]] bool wait_to_retry();
   void prepare();
@@ -120,7 +120,7 @@ void Stream::Threads::read() {
   while (exchange.wait_for_room()) {
     const CameraStatus status = ask(camera, frame, options.patience, reason);
     if (status == CameraStatus::waiting) log.waiting(clock.now());
-    if (status == CameraStatus::damaged) leave_out();
+    if (left_out(status)) leave_out(status);
     if (status == CameraStatus::ended) break;
     if (status == CameraStatus::frame && !take(frame)) return;
     if (status == CameraStatus::failed && !wait_to_retry()) return;
@@ -143,9 +143,9 @@ bool Stream::Threads::take(DepthFrame& frame) {
 }
 
 // A device that sends damaged frames is there: it is asked for the next at once.
-void Stream::Threads::leave_out() {
+void Stream::Threads::leave_out(CameraStatus status) {
   retry.succeeded();
-  log.came(clock.now(), damage(reason), check.size_changes());
+  log.came(clock.now(), objection_to(status, reason), check.size_changes());
 }
 
 void Stream::Threads::compare_clocks(double stamp, double now) {

@@ -201,6 +201,30 @@ TEST(Streams, BrokenImageIsReportedAndTheRestIsFelt) {
   EXPECT_EQ(source["drops"]["garbage"], 1);
 }
 
+TEST(Streams, AFrameWithoutAPoseIsCountedAsSuch) {
+  Shell shell;
+  write_wall(shell, 6);
+  shell.write("wall/sequence.json",
+              R"({"width": 64, "height": 48, "fx": 60, "fy": 60, "cx": 31.5, "cy": 23.5,
+                  "depth_unit_m": 0.001, "fps": 30, "pose": "poses.txt"})");
+  std::string poses;
+  for (const int i : {0, 1, 2, 4, 5}) {
+    poses += fmt::format("{} {} 6\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", i, i);
+  }
+  shell.write("wall/poses.txt", poses);
+  const Outcome outcome =
+      shell.run("touch wall=sequence:wall --simulated-time --duration 0.5 --json r.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("1 without a pose"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("003.pgm"), std::string::npos) << outcome.out;
+  const Json source = Json::parse(shell.read("r.json"))["sources"][0];
+  EXPECT_EQ(source["frames_touchable"], 5);
+  EXPECT_EQ(source["drops"]["unposed"], 1);
+  EXPECT_EQ(source["drops"]["garbage"], 0);
+  const Outcome info = shell.run("info sequence:wall");
+  EXPECT_NE(info.out.find("1 without one left out"), std::string::npos) << info.out;
+}
+
 TEST(Streams, FramesOfNoUseAreDroppedInSimulatedTimeAndTheReportSaysWhy) {
   Shell shell;
   write_wall(shell, 40);
@@ -239,6 +263,9 @@ TEST(Streams, WhatIsNotThereIsNamed) {
   Shell shell;
   for (const auto& [arguments, word] : std::initializer_list<std::pair<const char*, const char*>>{
            {"camera:simulated:nowhere --simulated-time", "nowhere"},
+           {"camera:simulated:table,rate=nan --simulated-time", "rate: 'nan'"},
+           {"camera:simulated:table,frames=1.5 --simulated-time", "frames: '1.5'"},
+           {"camera:simulated:table,rate --simulated-time", "KEY=VALUE, not 'rate'"},
            {"camera:telescope --simulated-time", "telescope"},
            {"sequence:nowhere --simulated-time", "nowhere"},
            {"missing.oni --simulated-time", "missing.oni"},

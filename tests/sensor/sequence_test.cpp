@@ -81,7 +81,7 @@ TEST(Sequence, KnowsTheTumLayout) {
   EXPECT_NEAR(sequence.frames[1].T_world_sensor->translation().x(), 0.5, 1e-9);
   const auto camera = open_sequence(sequence);
   DepthFrame frame;
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::damaged);
+  EXPECT_EQ(camera->read(frame, 0), CameraStatus::unposed);
   EXPECT_THAT(camera->reason(), AllOf(HasSubstr("a.pgm"), HasSubstr("no pose")));
   EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame);
   EXPECT_EQ(frame.depth[0], 1.0F);
@@ -115,7 +115,11 @@ TEST(Sequence, SaysWhatIsMissing) {
   folder.write("sequence.json", described(R"(, "images": "absent")"));
   EXPECT_THAT(refusal(folder.path()), HasSubstr("cannot be listed"));
   folder.write("sequence.json", described(R"(, "pose": "absent.log")"));
-  EXPECT_THAT(refusal(folder.path()), HasSubstr("absent.log"));
+  EXPECT_THAT(refusal(folder.path()), AllOf(HasSubstr("absent.log: no such file"),
+                                            HasSubstr("\"pose\" in"), HasSubstr("sequence.json")));
+  folder.write("sequence.json", described(R"(, "frames": "absent.txt")"));
+  EXPECT_THAT(refusal(folder.path()),
+              AllOf(HasSubstr("absent.txt: no such file"), HasSubstr("\"frames\" in")));
   folder.write("sequence.json", described());
   EXPECT_THROW((void)open_sequence(read_sequence(folder.path())), Error) << "without images";
 }

@@ -118,6 +118,7 @@ TEST_F(SimulatedStreamTest, ObjectsToWhatAStreamObjectsTo) {
     script.give({.frame = frame_at(0.4, 4, 8, 6)});
     script.give({.frame = frame_at(0, 5)});
     script.give({.frame = frame_at(std::nan(""), 6)});
+    script.give({.status = CameraStatus::unposed, .reason = "nowhere"});
     script.give({.status = CameraStatus::damaged, .reason = "torn"});
     script.give({.frame = frame_at(0.9, 9)});
     script.give({.status = CameraStatus::ended});
@@ -139,12 +140,14 @@ TEST_F(SimulatedStreamTest, ObjectsToWhatAStreamObjectsTo) {
   EXPECT_EQ(state.touchable, live.state().touchable);
   for (const auto cause :
        {&StreamDrops::overtaken, &StreamDrops::repeated, &StreamDrops::late, &StreamDrops::empty,
-        &StreamDrops::garbage, &StreamDrops::resized, &StreamDrops::refused}) {
+        &StreamDrops::garbage, &StreamDrops::unposed, &StreamDrops::resized,
+        &StreamDrops::refused}) {
     EXPECT_EQ(state.drops.*cause, live.state().drops.*cause);
   }
   EXPECT_EQ(state.drops.late, 2u);
   EXPECT_EQ(state.drops.garbage, 2u);
-  EXPECT_EQ(state.drops.total(), 7u);
+  EXPECT_EQ(state.drops.unposed, 1u);
+  EXPECT_EQ(state.drops.total(), 8u);
   EXPECT_EQ(state.problem, live.state().problem);
   EXPECT_EQ(state.problem, "table (fake): torn");
 }

@@ -25,11 +25,12 @@ struct StreamDrops {
   std::uint64_t late = 0;       ///< taken no later than the one before, or at no sensible time
   std::uint64_t empty = 0;      ///< not one pixel with a depth: a covered lens
   std::uint64_t garbage = 0;    ///< damaged, or contradicts itself
+  std::uint64_t unposed = 0;    ///< without a pose, in a recording that has poses
   std::uint64_t resized = 0;    ///< of another size than those before, until that size lasts
   std::uint64_t refused = 0;    ///< preparation threw
 
   [[nodiscard]] std::uint64_t total() const {
-    return overtaken + repeated + late + empty + garbage + resized + refused;
+    return overtaken + repeated + late + empty + garbage + unposed + resized + refused;
   }
 };
 
