@@ -121,6 +121,16 @@ NoiseModel parse_noise(const std::string& text) {
   return model;
 }
 
+Eigen::Isometry3d pose_of(const std::vector<double>& v, const std::string& what) {
+  const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+  if (std::abs(rotation.norm() - 1) > 0.01) {
+    throw UsageError(fmt::format(
+        "{}: the quaternion's length is {:.4g}; it must be 1 (the order is qx,qy,qz,qw)", what,
+        rotation.norm()));
+  }
+  return Eigen::Translation3d(v[0], v[1], v[2]) * rotation.normalized();
+}
+
 PoseArgument parse_pose(const std::string& text) {
   const std::string form = "NAME=x,y,z,qx,qy,qz,qw in metres and as a unit quaternion";
   const std::size_t place = text.find('=');
@@ -128,17 +138,8 @@ PoseArgument parse_pose(const std::string& text) {
     throw UsageError(fmt::format("--pose: '{}' names no source; write {}", text, form));
   }
   const std::vector<double> v = parse_numbers(text.substr(place + 1), 7, "--pose", form);
-  const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
-  if (std::abs(rotation.norm() - 1) > 0.01) {
-    throw UsageError(
-        fmt::format("--pose {}: the quaternion's length is {:.4g}; it must be 1 (the "
-                    "order is qx,qy,qz,qw)",
-                    text.substr(0, place), rotation.norm()));
-  }
-  PoseArgument result;
-  result.name = text.substr(0, place);
-  result.pose = Eigen::Translation3d(v[0], v[1], v[2]) * rotation.normalized();
-  return result;
+  const std::string name = text.substr(0, place);
+  return {name, pose_of(v, "--pose " + name)};
 }
 
 bool is_name(std::string_view text) {
@@ -160,7 +161,18 @@ bool lives(const std::string& path) {
   return path.starts_with(kCamera) || path.starts_with(kSequence) || path.ends_with(".oni");
 }
 
+bool names_something(const std::string& path) {
+  return !path.empty() && path != kCamera && path != kSequence && path != kSynthetic;
+}
+
 void name_all(std::vector<CloudArgument>& sources) {
+  for (const CloudArgument& source : sources) {
+    if (names_something(source.path)) continue;
+    throw UsageError(
+        fmt::format("'{}' names nothing; write a file's path, camera:NAME, sequence:FOLDER or "
+                    "synthetic:NAME",
+                    source.path));
+  }
   std::set<std::string> taken;
   for (const CloudArgument& source : sources) {
     if (source.name.empty() || taken.insert(source.name).second) continue;

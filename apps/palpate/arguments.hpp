@@ -37,7 +37,11 @@ struct PoseArgument {
 /// s0,s1,s2 or s0,s1,s2,correlation, where correlation >= 1; or the name of a sensor profile.
 [[nodiscard]] NoiseModel parse_noise(const std::string& text);
 
-/// NAME=x,y,z,qx,qy,qz,qw; the quaternion is normalised.
+/// Of x, y, z (m), qx, qy, qz, qw; the quaternion is normalised.
+/// @throws UsageError when its length is not 1; `what` goes into the message.
+[[nodiscard]] Eigen::Isometry3d pose_of(const std::vector<double>& values, const std::string& what);
+
+/// NAME=x,y,z,qx,qy,qz,qw.
 [[nodiscard]] PoseArgument parse_pose(const std::string& text);
 
 /// May a source be called so? Letters, digits, '-', '_' and '.'.
@@ -51,9 +55,13 @@ struct PoseArgument {
 /// a cloud that stands still?
 [[nodiscard]] bool lives(const std::string& path);
 
+/// Is there anything behind "camera:", "sequence:" or "synthetic:"?
+[[nodiscard]] bool names_something(const std::string& path);
+
 /// Names every source that has no name yet after its path, with a number where two would be the
 /// same.
-/// @throws UsageError when two names are the same, or standard input is asked for twice.
+/// @throws UsageError when two names are the same, a path names nothing, or standard input is asked
+/// for twice.
 void name_all(std::vector<CloudArgument>& sources);
 
 /// Both for each argument.

@@ -17,7 +17,8 @@ std::vector<ChosenSource> of_setup(const TouchOptions& options) {
   for (const SourceSetup& setup : options.setup_sources) {
     sources.push_back({.argument = {setup.name, setup.from},
                        .pose = setup.pose.value_or(Eigen::Isometry3d::Identity()),
-                       .choices = setup.choices});
+                       .choices = setup.choices,
+                       .described = setup.described});
   }
   return sources;
 }
@@ -42,6 +43,7 @@ void add_command_line(std::vector<ChosenSource>& sources, const TouchOptions& op
     });
     if (same != end && replaced.insert(argument.name).second) {
       same->argument.path = argument.path;
+      same->described.clear();  // keys of what it was for need not fit
     } else {
       sources.push_back({.argument = argument,
                          .pose = Eigen::Isometry3d::Identity(),

@@ -13,6 +13,7 @@ struct ChosenSource {
   CloudArgument argument;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< T_world_sensor
   SourceChoices choices;
+  DescribedOptions described = {};  ///< in its own part of the set-up file
 };
 
 /// The set-up file's sources and then those of the command line; one of these that has the name of

@@ -1,30 +1,43 @@
 #include "apps/palpate/option_uses.hpp"
 
-#include <algorithm>
-#include <set>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <span>
 #include <string>
 
 #include "apps/palpate/depth_file.hpp"
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/touch_usage.hpp"
+#include "palpate/base/error.hpp"
 
 namespace palpate::app {
 
 namespace {
 
-// What the sources are, all together.
+// What sources are, all together.
 struct Kinds {
   bool lives = false;
   bool still = false;          // a file, or made by the program
   bool recorded = false;       // and may begin anew
+  bool image = false;          // a depth image in a file
   bool depth = false;          // has depths, whatever becomes of them
   bool filtered = false;       // goes through the depth filter
   bool filtered_live = false;  // frame by frame
   bool cloud = false;          // taken as points alone
   bool cloud_live = false;     // frame by frame
+  bool history = false;        // by a policy that has one
 };
 
-Kinds kinds_of(const TouchOptions& options, const std::vector<ChosenSource>& sources) {
+// One that is not there, or a pipe, may be one.
+bool may_be_image(const std::string& path) {
+  std::error_code ignored;
+  return !path.starts_with("synthetic:") &&
+         (!std::filesystem::is_regular_file(path, ignored) || is_depth_image(path));
+}
+
+Kinds kinds_of(const TouchOptions& options, std::span<const ChosenSource> sources) {
   Kinds kinds;
   for (const ChosenSource& source : sources) {
     const std::string& path = source.argument.path;
@@ -34,94 +47,112 @@ Kinds kinds_of(const TouchOptions& options, const std::vector<ChosenSource>& sou
     kinds.lives |= live;
     kinds.still |= !live;
     kinds.recorded |= live && (!path.starts_with("camera:") || path.ends_with(".oni"));
+    kinds.image |= !live && may_be_image(path);
     kinds.depth |= depth;
     kinds.filtered |= !cloud;
     kinds.filtered_live |= live && !cloud;
     kinds.cloud |= cloud;
     kinds.cloud_live |= live && cloud;
+    kinds.history |= live && keeps_history(policy_of(source_options(options, source), cloud));
   }
   return kinds;
 }
 
-// Options that not every run has a use for.
+// Options that not every run has a use for, and what they are of.
 struct Use {
   std::vector<const char*> options;
   bool useful;
-  const char* otherwise;
+  const char* words;
 };
 
 std::vector<Use> uses_of_frames(const Kinds& kinds) {
   return {
       {{"--policy", "--history", "--silence", "--fade"},
        kinds.lives,
-       "--policy, --history, --silence and --fade are of cameras and sequences; what stands "
-       "still needs none"},
-      {{"--loop"}, kinds.recorded, "--loop is of sequences; no source is one"},
+       "is of cameras and sequences; what stands still needs none"},
+      {{"--history"},
+       kinds.history,
+       "is of the policies average and crossfade, and neither is chosen; add --policy average"},
+      {{"--loop"}, kinds.recorded, "is of sequences, and there is none"},
       {{"--predict", "--memory", "--fit-everywhere"},
        kinds.filtered_live,
-       "--predict, and memory and fit_everywhere of a set-up, are of the depth filter's frames; no "
-       "camera or sequence goes through it"},
+       "is of frames that go through the depth filter, and none do"},
       {{"--clip-to-reach"},
        kinds.cloud_live,
-       "--clip-to-reach is of frames that are taken as clouds; add --unorganised, or leave it "
-       "out: the depth filter does its costly part within reach alone by itself"},
+       "is of frames that are taken as clouds; add --unorganised, or leave it out: the depth "
+       "filter does its costly part within reach alone by itself"},
   };
 }
 
 std::vector<Use> uses_of_points(const Kinds& kinds) {
   return {
-      {{"--scale", "--intrinsics", "--depth-unit"},
+      {{"--scale"},
        kinds.still,
-       "--scale, --intrinsics and --depth-unit are of files; a camera tells its own, and a "
-       "sequence has them in its sequence.json"},
-      {{"--noise"}, kinds.depth, "--noise is of depths; no source has any"},
+       "is of files; a camera tells its own, and a sequence has it in its sequence.json"},
+      {{"--intrinsics", "--depth-unit"},
+       kinds.image,
+       "is of depth images; clouds need none, a camera tells its own, and a sequence has it in "
+       "its sequence.json"},
+      {{"--noise"}, kinds.depth, "is of depths, and there are none"},
       {{"--nearest", "--farthest"},
        kinds.filtered,
-       "--nearest and --farthest are of the depth filter; no source goes through it"},
-      {{"--unorganised"}, kinds.depth, "--unorganised is of depth images; no source is one"},
+       "is of the depth filter, and nothing goes through it"},
+      {{"--unorganised"}, kinds.depth, "is of depth images, and there is none"},
       {{"--radius", "--voxel", "--viewpoint"},
        kinds.cloud,
-       "--radius, --voxel and --viewpoint are of clouds; the depth filter chooses by itself what "
-       "pixels and noise allow: leave them out, or add --unorganised"},
+       "is of clouds; the depth filter chooses by itself what pixels and noise allow: leave it "
+       "out, or add --unorganised"},
   };
 }
 
 std::vector<Use> uses_of_time(const TouchOptions& options, const Kinds& kinds) {
+  const bool real_time = in_real_time(options);
   return {
       {{"--latency"},
        kinds.lives,
-       "--latency is of cameras and sequences; what stands still is there from the start"},
-      {{"--latency"},
-       options.simulated_time,
-       "--latency is of simulated time; add --simulated-time"},
+       "is of cameras and sequences; what stands still is there from the start"},
+      {{"--latency"}, options.simulated_time, "is of simulated time; add --simulated-time"},
       {{"--view"},
        !options.simulated_time,
-       "--view shows a run in real time; leave it or --simulated-time out"},
+       "shows a run in real time; leave it or --simulated-time out"},
+      {{"--no-view"}, !options.view.wanted, "contradicts --view; leave one of them out"},
       {{"--maximum-force", "--processor"},
-       (kinds.lives || options.view.wanted) && !options.simulated_time,
-       "--maximum-force and --processor are of runs in real time; what stands still and "
-       "--simulated-time have neither a guard nor a thread of the servo's own"},
+       real_time && !options.simulated_time,
+       "is of runs in real time; what stands still and --simulated-time have neither a guard nor a "
+       "thread of the servo's own"},
+      {{"--listen", "--port"},
+       real_time && is_viewed(options.view),
+       "is of the page, and there is none; add --view"},
   };
 }
 
 std::vector<Use> uses_of_hand(const TouchOptions& options) {
   const bool exploring = options.trajectory.empty();
   return {
-      {{"--duration"}, exploring, "--duration is of the exploration; a --trajectory has its own"},
-      {{"--seed"}, exploring, "--seed is of the exploration; a --trajectory is played as it is"},
+      {{"--duration"}, exploring, "is of the exploration; a --trajectory has its own"},
+      {{"--seed"}, exploring, "is of the exploration; a --trajectory is played as it is"},
       {{"--rate"},
        exploring || options.device == "simulated",
-       "--rate is of the exploration or of --device simulated; a --trajectory has its own"},
+       "is of the exploration or of --device simulated; a --trajectory has its own"},
   };
 }
 
-using Names = std::set<std::string, std::less<>>;
-
-void check(const std::vector<Use>& uses, const Names& names) {
+void check(const std::vector<Use>& uses, const GivenOptions& given) {
   for (const Use& use : uses) {
-    const bool there = std::ranges::any_of(
-        use.options, [&](const char* option) { return names.contains(option); });
-    if (there && !use.useful) throw UsageError(use.otherwise);
+    for (const char* option : use.options) {
+      if (use.useful || !given.contains(option)) continue;
+      throw UsageError(fmt::format("{} {}", option, use.words));
+    }
+  }
+}
+
+void check(const std::vector<Use>& uses, const DescribedOptions& described) {
+  for (const Use& use : uses) {
+    for (const char* option : use.options) {
+      const auto found = described.find(option);
+      if (use.useful || found == described.end()) continue;
+      throw Error(fmt::format("{} {}", found->second, use.words));
+    }
   }
 }
 
@@ -129,12 +160,17 @@ void check(const std::vector<Use>& uses, const Names& names) {
 
 void check_use(const TouchOptions& options, const std::vector<ChosenSource>& sources) {
   const Kinds kinds = kinds_of(options, sources);
-  for (const Names& names : {options.given, options.described}) {
-    check(uses_of_frames(kinds), names);
-    check(uses_of_points(kinds), names);
+  for (const std::vector<Use>& uses : {uses_of_frames(kinds), uses_of_points(kinds)}) {
+    check(uses, options.given);
+    check(uses, options.described);
   }
   check(uses_of_time(options, kinds), options.given);
   check(uses_of_hand(options), options.given);
+  for (const ChosenSource& source : sources) {
+    const Kinds its = kinds_of(options, {&source, 1});
+    check(uses_of_frames(its), source.described);
+    check(uses_of_points(its), source.described);
+  }
 }
 
 }  // namespace palpate::app

@@ -30,8 +30,8 @@ const char* type_name(const toml::node& node) {
 }
 
 // The options that the command line has.
-std::set<std::string, std::less<>> given_options(const CLI::App& command) {
-  std::set<std::string, std::less<>> names;
+GivenOptions given_options(const CLI::App& command) {
+  GivenOptions names;
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() > 0) names.insert(option->get_name());
   }
@@ -55,15 +55,18 @@ class SetupFile {
 
  private:
   [[nodiscard]] toml::table parse() const;
+  [[nodiscard]] std::string in_words(const toml::source_region& place,
+                                     const std::string& what) const;
   [[noreturn]] void fail(const toml::source_region& place, const std::string& what) const;
   void check_sections(const toml::table& file) const;
   [[nodiscard]] std::vector<SourceSetup> sources(const TouchOptions& options,
                                                  const toml::node& node) const;
   [[nodiscard]] SourceSetup source(const TouchOptions& options, const toml::table& table) const;
   [[nodiscard]] std::string name(const toml::node& node) const;
+  [[nodiscard]] std::string from(const toml::node& node) const;
   [[nodiscard]] Eigen::Isometry3d pose(const toml::node& node) const;
   void take(CLI::App& taker, const TouchOptions& options, std::string_view section,
-            const toml::key& key, const toml::node& node) const;
+            const toml::key& key, const toml::node& node, DescribedOptions& described) const;
   [[nodiscard]] std::string text_of(const SetupKey& key, const toml::node& node) const;
   [[nodiscard]] std::string numbers(std::string_view key, const toml::node& node) const;
   [[nodiscard]] std::string resolved(const std::string& path) const;
@@ -72,8 +75,12 @@ class SetupFile {
   fs::path folder_;
 };
 
+std::string SetupFile::in_words(const toml::source_region& place, const std::string& what) const {
+  return fmt::format("{}, line {}: {}", path_, place.begin.line, what);
+}
+
 void SetupFile::fail(const toml::source_region& place, const std::string& what) const {
-  throw Error(fmt::format("{}, line {}: {}", path_, place.begin.line, what));
+  throw Error(in_words(place, what));
 }
 
 toml::table SetupFile::parse() const {
@@ -146,10 +153,12 @@ std::string SetupFile::text_of(const SetupKey& key, const toml::node& node) cons
 // Gives a key's value to the option of its name, unless the command line has that; its type has to
 // be right all the same.
 void SetupFile::take(CLI::App& taker, const TouchOptions& options, std::string_view section,
-                     const toml::key& key, const toml::node& node) const {
+                     const toml::key& key, const toml::node& node,
+                     DescribedOptions& described) const {
   const SetupKey* known = find(section, key.str());
   if (known == nullptr) fail(key.source(), unknown_key(section, key.str()));
   const std::string text = text_of(*known, node);
+  described[option_of(known->key)] = in_words(key.source(), fmt::format("'{}'", known->key));
   if (options.given.contains(option_of(known->key))) return;
   CLI::Option* option = taker.get_option(option_of(known->key));
   try {
@@ -162,8 +171,12 @@ void SetupFile::take(CLI::App& taker, const TouchOptions& options, std::string_v
 }
 
 Eigen::Isometry3d SetupFile::pose(const toml::node& node) const {
+  constexpr const char* kWhat = "'pose' of [[source]]";
   try {
-    return parse_pose("pose=" + numbers("pose", node)).pose;
+    const std::vector<double> values =
+        parse_numbers(numbers("pose", node), 7, kWhat,
+                      "[x, y, z, qx, qy, qz, qw] in metres and as a unit quaternion");
+    return pose_of(values, kWhat);
   } catch (const UsageError& error) {
     fail(node.source(), error.what());
   }
@@ -178,8 +191,19 @@ std::string SetupFile::name(const toml::node& node) const {
   return name;
 }
 
+std::string SetupFile::from(const toml::node& node) const {
+  const std::string from = text_of({"from", KeyKind::text}, node);
+  if (!names_something(from)) {
+    fail(node.source(), fmt::format("'from' is '{}', which names nothing; write more behind the "
+                                    "colon",
+                                    from));
+  }
+  return resolved(from);
+}
+
 SourceSetup SetupFile::source(const TouchOptions& options, const toml::table& table) const {
-  SourceSetup result{.name = "", .from = "", .pose = {}, .choices = options.choices};
+  SourceSetup result{
+      .name = "", .from = "", .pose = {}, .choices = options.choices, .described = {}};
   CLI::App taker;
   add_source_options(taker, result.choices);
   add_source_setup_options(taker, result.choices);
@@ -187,11 +211,11 @@ SourceSetup SetupFile::source(const TouchOptions& options, const toml::table& ta
     if (key.str() == "name") {
       result.name = name(node);
     } else if (key.str() == "from") {
-      result.from = text_of({"from", KeyKind::path}, node);
+      result.from = from(node);
     } else if (key.str() == "pose") {
       result.pose = pose(node);
     } else {
-      take(taker, options, "source", key, node);
+      take(taker, options, "source", key, node, result.described);
     }
   }
   if (result.from.empty()) {
@@ -236,8 +260,7 @@ void SetupFile::apply(TouchOptions& options) const {
   for (const auto& [section, node] : file) {
     if (section.str() == "source") continue;
     for (const auto& [key, value] : *node.as_table()) {
-      take(taker, options, section.str(), key, value);
-      options.described.insert(option_of(key.str()));
+      take(taker, options, section.str(), key, value, options.described);
     }
   }
   if (const toml::node* list = file.get("source")) options.setup_sources = sources(options, *list);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,12 +42,17 @@ struct SourceChoices {
   bool loop = false;
 };
 
+/// Options that a set-up file has, as "--noise", each with the words for where: "desk.toml, line 3:
+/// 'noise'".
+using DescribedOptions = std::map<std::string, std::string, std::less<>>;
+
 /// A source as a set-up file has it.
 struct SourceSetup {
   std::string name;  ///< empty: after `from`
   std::string from;  ///< as on the command line, without NAME=
   std::optional<Eigen::Isometry3d> pose;
   SourceChoices choices;
+  DescribedOptions described;  ///< that it has itself
 };
 
 /// Adds the options that say how the bytes of a file become points.

@@ -30,7 +30,10 @@ void add_surface_options(CLI::App& command, TouchOptions& o) {
       "exact (default), normal (eq. 8) or printed (eq. 4 as printed, which points inward)")
       ->check(one_of(names_of(kGradients)))
       ->type_name("NAME");
-  add("--threshold", o.threshold, "level of the metaball, 0 to 1; lower is farther out (0.4)")
+  add("--threshold", o.threshold,
+      "level of the metaball, 0 to 1; lower is farther out (0.4). Other fields go over to a "
+      "metaball "
+      "where normals cannot be trusted")
       ->check(number("between 0 and 1", [](double x) { return x > 0 && x < 1; }))
       ->type_name("LEVEL");
   add("--tool-radius", o.tool_radius, "radius of the ball that touches; 0: a point")

@@ -12,12 +12,15 @@
 
 namespace palpate::app {
 
+/// Options that a command line has, as "--rate".
+using GivenOptions = std::set<std::string, std::less<>>;
+
 /// The command line of `palpate touch`. Lengths in metres; what is not set is chosen from the data.
 struct TouchOptions {
-  std::set<std::string, std::less<>> given;      ///< that the command line itself has, as "--rate"
-  std::set<std::string, std::less<>> described;  ///< that the set-up file has for every source
-  std::vector<std::string> clouds;               ///< sources of the command line
-  std::string setup;                             ///< file that describes a set-up
+  GivenOptions given;               ///< that the command line itself has
+  DescribedOptions described;       ///< that the set-up file has for every source
+  std::vector<std::string> clouds;  ///< sources of the command line
+  std::string setup;                ///< file that describes a set-up
   std::vector<SourceSetup> setup_sources;
   std::vector<std::string> poses;
   SourceChoices choices;  ///< of every source that the set-up file says nothing else of

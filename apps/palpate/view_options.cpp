@@ -1,9 +1,12 @@
 #include "apps/palpate/view_options.hpp"
 
+#include <arpa/inet.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 
+#include "apps/palpate/errors.hpp"
 #include "apps/palpate/option_checks.hpp"
 
 namespace palpate::app {
@@ -12,16 +15,28 @@ namespace {
 
 constexpr const char* kGroup = "Page";
 
+void check_address(const std::string& text) {
+  in6_addr parsed;  // has room for either kind
+  for (const int kind : {AF_INET, AF_INET6}) {
+    if (inet_pton(kind, text.c_str(), &parsed) == 1) return;
+  }
+  throw UsageError(fmt::format(
+      "'{}' is no address; give one like 127.0.0.1, ::1 or 0.0.0.0 (everywhere)", text));
+}
+
 }  // namespace
 
 void add_view_options(CLI::App& command, ViewOptions& o) {
   command
-      .add_flag("--view,!--no-view", o.wanted,
+      .add_flag("--view", o.wanted,
                 wrapped("shows the run on a page in a browser, where the tool can be taken with a "
-                        "mouse; it then goes on in real time until --duration or Ctrl-C. Live "
-                        "runs at a terminal have a page unless --no-view"))
-      ->group(kGroup)
-      ->each([&o](const std::string& value) { o.refused = value == "false"; });
+                        "mouse; it then goes on in real time until --duration or Ctrl-C"))
+      ->group(kGroup);
+  command
+      .add_flag("--no-view", o.refused,
+                wrapped("no page; without this, runs of cameras and sequences in real time have "
+                        "one where they are started at a terminal"))
+      ->group(kGroup);
   add_page_options(command, o);
 }
 
@@ -30,6 +45,7 @@ void add_page_options(CLI::App& command, ViewOptions& o) {
       .add_option("--listen", o.listen,
                   wrapped("address that the page is served on (127.0.0.1: this machine alone); "
                           "who is told the page's address may move the hand"))
+      ->check(parsed_by(check_address))
       ->type_name("ADDRESS")
       ->group(kGroup);
   command

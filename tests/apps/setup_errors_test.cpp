@@ -64,8 +64,11 @@ TEST(SetupErrors, NameFileLineAndKey) {
        {"line 3", "not a finite number"}},
       {"[[source]]\nfrom = \"a.ply\"\npredcit = true\n", {"line 3", "did you mean 'predict'?"}},
       {"[[source]]\nfrom = \"a.ply\"\n[[source]]\nname = \"b\"\n", {"line 3", "'from'"}},
-      {"[[source]]\nfrom = \"a.ply\"\npose = [1, 2]\n", {"line 3", "2 numbers instead of 7"}},
-      {"[[source]]\nfrom = \"a.ply\"\npose = [0, 0, 0, 0, 0, 0, 2]\n", {"line 3", "quaternion"}},
+      {"[[source]]\nfrom = \"sequence:\"\n", {"line 2", "'from'", "'sequence:'"}},
+      {"[[source]]\nfrom = \"a.ply\"\npose = [1, 2]\n",
+       {"line 3", "'pose' of [[source]]", "2 numbers instead of 7", "write [x, y, z, qx"}},
+      {"[[source]]\nfrom = \"a.ply\"\npose = [0, 0, 0, 0, 0, 0, 2]\n",
+       {"line 3: 'pose' of [[source]]: the quaternion"}},
       {"[[source]]\nfrom = \"a.ply\"\nintrinsics = [1, \"x\"]\n",
        {"line 3", "'intrinsics'", "text"}},
       {"[[source]]\nfrom = \"a.ply\"\nfield = \"metaball\"\n", {"line 3", "'field'", "[[source]]"}},
@@ -83,6 +86,27 @@ TEST(SetupErrors, NameFileLineAndKey) {
       EXPECT_NE(text.find(word), std::string::npos) << each.toml << "\n" << text << "\n" << word;
     }
   }
+}
+
+TEST(SetupErrors, KeysThatNothingHasAUseForAreToldWithFileAndLine) {
+  Shell shell;
+  const std::string torus = "[[source]]\nfrom = \"synthetic:torus\"\n";
+  const std::string camera = "[[source]]\nfrom = \"camera:simulated\"\n";
+  const std::pair<std::string, const char*> cases[] = {
+      {torus + "[stream]\nnoise = \"xtion\"\n", "desk.toml, line 4: 'noise' is of depths"},
+      {torus + "depth_unit = 0.1\n" + camera, "desk.toml, line 3: 'depth_unit' is of depth images"},
+      {torus + camera + "radius = 0.01\n", "desk.toml, line 5: 'radius' is of clouds"},
+      {camera + "[stream]\nhistory = 3\n", "desk.toml, line 4: 'history' is of the policies"},
+  };
+  for (const auto& [toml, words] : cases) {
+    shell.write("desk.toml", toml);
+    const Outcome outcome = shell.run("touch --setup desk.toml --simulated-time");
+    EXPECT_EQ(outcome.code, 1) << toml << outcome.err;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  }
+  shell.write("desk.toml", "[[source]]\nname = \"a\"\nfrom = \"camera:simulated\"\nfade = 1\n");
+  EXPECT_EQ(shell.run("touch --setup desk.toml a=synthetic:torus --duration 0.1").code, 0)
+      << "the key was the camera's";
 }
 
 TEST(SetupErrors, TypesHaveToBeRightEvenWhereTheCommandLineWins) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
+#include <fstream>
+#include <iterator>
 
 #include "apps/palpate/chosen_source.hpp"
 #include "apps/palpate/setup_keys.hpp"
@@ -40,6 +42,30 @@ stiffness = 700
 trajectory = "hand.csv"
 seed = 9
 )";
+
+// The nth set-up in docs/setup.md.
+std::string documented(int n) {
+  std::ifstream file(PALPATE_DOCS "/setup.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string_view fence = "```toml\n";
+  std::size_t begin = text.find(fence);
+  for (; n > 0; --n) begin = text.find(fence, begin + 1);
+  begin += fence.size();
+  return text.substr(begin, text.find("```", begin) - begin);
+}
+
+TEST(SetupFile, TheDocumentedOneRunsAsItIs) {
+  Shell shell;
+  shell.write("desk.toml", documented(0));
+  const Outcome outcome =
+      shell.run("touch --setup desk.toml --simulated-time --duration 1 --no-view");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("camera:simulated:desk"), std::string::npos) << outcome.out;
+  const std::vector<ChosenSource> hardware = choose_sources(parsed(shell, documented(1), ""));
+  ASSERT_EQ(hardware.size(), 2u);
+  EXPECT_EQ(hardware[0].argument.path, "camera:openni2");
+  EXPECT_EQ(hardware[1].argument.path, shell.path("scans/bench.ply"));
+}
 
 TEST(SetupFile, FillsInWhatTheCommandLineDoesNotSay) {
   const Shell shell;
@@ -218,8 +244,8 @@ TEST(SetupFile, ServesRunsOfSeveralKindsButNotOtherSources) {
   EXPECT_EQ(played.code, 0) << played.err;
   shell.write("desk.toml", common + "[stream]\npredict = true\n");
   const Outcome useless = shell.run("touch --setup desk.toml --trajectory hand.csv");
-  EXPECT_EQ(useless.code, 2) << useless.err;
-  EXPECT_NE(useless.err.find("--predict"), std::string::npos) << useless.err;
+  EXPECT_EQ(useless.code, 1) << useless.err;
+  EXPECT_NE(useless.err.find("desk.toml, line 8: 'predict'"), std::string::npos) << useless.err;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ TEST(Usage, HelpAndVersionSucceed) {
   EXPECT_NE(help.out.find("touch"), std::string::npos);
   const Outcome touch = shell.run("touch --help");
   EXPECT_EQ(touch.code, 0);
+  EXPECT_EQ(touch.out.find("{false}"), std::string::npos);
   for (const char* word : {"--trajectory", "--pose", "Examples:", "Exit codes", "torus", "N/M"}) {
     EXPECT_NE(touch.out.find(word), std::string::npos) << word;
   }
@@ -83,6 +84,18 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"touch synthetic:torus --trajectory long.csv --rate 2000", "--rate"},
       {"touch camera:simulated --policy smear", "smear"},
       {"touch camera:simulated --history 8", "1 to 7"},
+      {"touch camera:simulated --history 3", "average and crossfade"},
+      {"touch synthetic:torus --intrinsics 60,60,31,23", "depth images"},
+      {"touch synthetic:torus --depth-unit 0.01", "depth images"},
+      {"touch synthetic:torus --port 8500", "--view"},
+      {"touch camera:simulated --simulated-time --listen 127.0.0.1", "--view"},
+      {"touch synthetic:torus --view --listen 1.2.3", "--listen: '1.2.3'"},
+      {"touch synthetic:torus --view --no-view", "--no-view"},
+      {"touch sequence:", "'sequence:'"},
+      {"touch a=camera: --simulated-time", "'camera:'"},
+      {"touch synthetic:", "'synthetic:'"},
+      {"info sequence:", "'sequence:'"},
+      {"touch ''", "''"},
       {"touch camera:simulated --noise 1,2", "--noise"},
       {"touch camera:simulated --noise 1,2,3,0.5", "--noise"},
       {"touch camera:simulated --noise radar", "radar"},
