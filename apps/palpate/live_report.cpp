@@ -82,7 +82,6 @@ void print_live(const LiveReport& report, std::FILE* out) {
   }
   print_guard(report, style, out);
   print_requests(report.realtime, style, out);
-  if (report.interrupted) fmt::print(out, "  ended      by Ctrl-C\n");
 }
 
 Json json_live(const LiveReport& report) {
@@ -102,8 +101,7 @@ Json json_live(const LiveReport& report) {
             {"silences", counts.silences},
             {"faults", counts.faults},
             {"fault", std::string(in_words(report.guard.fault))}}},
-          {"realtime", json_requests(report.realtime)},
-          {"interrupted", report.interrupted}};
+          {"realtime", json_requests(report.realtime)}};
 }
 
 }  // namespace palpate::app

@@ -1,6 +1,7 @@
 #include "apps/palpate/log.hpp"
 
 #include <iterator>
+#include <string_view>
 
 namespace palpate::app {
 
@@ -12,9 +13,9 @@ constexpr std::size_t kFlush = 1 << 16;  // bytes
 
 TouchLog::TouchLog(const std::string& path) : file_(path) {
   buffer_.reserve(kFlush + 1024);
-  file_.write(
+  buffer_.append(std::string_view(
       "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,fx,fy,fz,us,touching,sliding,nx,ny,nz,"
-      "stiffness,iterations,evaluations,patch_points,source,notes,field_notes\n");
+      "stiffness,iterations,evaluations,patch_points,source,notes,field_notes\n"));
 }
 
 void TouchLog::add(const TouchStep& step) {

@@ -48,21 +48,36 @@ OutputFile::OutputFile(const std::string& path)
     if (protects_itself(place_)) fail("cannot be written");
     growing_ = fmt::format("{}.part-{}", place_, getpid());
   }
-  file_.reset(std::fopen(growing_.c_str(), growing_ == place_ ? "wb" : "wbx"));
-  if (!file_) fail("cannot be made");
+  open();
+  if (growing_ == place_) return;
+  file_.reset();
+  std::remove(growing_.c_str());
 }
 
 OutputFile::~OutputFile() {
   if (file_ && growing_ != place_) std::remove(growing_.c_str());
 }
 
+void OutputFile::open() {
+  if (file_) return;
+  file_.reset(std::fopen(growing_.c_str(), growing_ == place_ ? "wb" : "wbx"));
+  if (!file_) fail("cannot be made");
+}
+
+const std::string& OutputFile::growing() {
+  open();
+  return growing_;
+}
+
 void OutputFile::write(std::string_view text) {
+  open();
   if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) {
     fail("cannot be written");
   }
 }
 
 void OutputFile::close() {
+  open();
   if (std::fflush(file_.get()) != 0) fail("cannot be written");
   if (file_.get() == stdout) return;
   const bool closed = std::fclose(file_.release()) == 0;

@@ -7,13 +7,13 @@
 
 namespace palpate::app {
 
-/// A file that appears when it is complete: until close() it grows beside its place under another
-/// name, so that a run that fails leaves what was there as it was. "-" is standard output; what is
-/// no plain file (/dev/null, a pipe) is written as it is. Whatever goes wrong, a full disk
-/// included, is told as an Error that names the file.
+/// A file that appears when it is complete: from its first byte until close() it grows beside its
+/// place under another name, so that a run that fails leaves what was there as it was. "-" is
+/// standard output; what is no plain file (/dev/null, a pipe) is written as it is. Whatever goes
+/// wrong, a full disk included, is told as an Error that names the file.
 class OutputFile {
  public:
-  /// @throws Error when the file cannot be made.
+  /// Tries whether the file can be made, and leaves nothing of that. @throws Error when it cannot.
   explicit OutputFile(const std::string& path);
   /// Leaves nothing behind unless it was closed.
   ~OutputFile();
@@ -25,12 +25,14 @@ class OutputFile {
   void close();
 
   /// Where it grows, for others to write to; what they write there comes to its place as well.
-  [[nodiscard]] const std::string& growing() const { return growing_; }
+  /// @throws Error when it cannot be made.
+  [[nodiscard]] const std::string& growing();
 
  private:
   struct Closer {
     void operator()(std::FILE* file) const;
   };
+  void open();  // unless it is
   [[noreturn]] void fail(const char* what) const;
 
   std::string path_;

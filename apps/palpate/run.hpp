@@ -23,8 +23,8 @@ struct Run {
 using EachStep = std::function<void(const TouchStep&)>;
 
 /// Cameras, preparation and servo on one simulated clock, one thread, as fast as they go. The same
-/// run gives the same steps, bit for bit. Fills in what `touched` tells of its cameras.
-/// @throws Error when the device fails.
-void run_simulated(Run& run, const EachStep& each);
+/// run gives the same steps, bit for bit. Fills in what `touched` tells of its cameras. False: it
+/// was ended by Ctrl-C. @throws Error when the device fails.
+bool run_simulated(Run& run, const EachStep& each);
 
 }  // namespace palpate::app

@@ -2,6 +2,7 @@
 
 #include "apps/palpate/computing_time.hpp"
 #include "apps/palpate/feeding.hpp"
+#include "apps/palpate/interruption.hpp"
 #include "apps/palpate/run.hpp"
 #include "apps/palpate/touch_run.hpp"
 #include "palpate/sensor/simulated_stream.hpp"
@@ -26,17 +27,20 @@ std::vector<SimulatedStream> make_streams(Run& run) {
 
 }  // namespace
 
-void run_simulated(Run& run, const EachStep& each) {
+bool run_simulated(Run& run, const EachStep& each) {
   SceneField field(run.felt, run.field);
   Proxy proxy(run.proxy);
   std::vector<SimulatedStream> streams = make_streams(run);
+  const Interruption interruption;
   const auto see = [&](double time) {
     for (SimulatedStream& stream : streams) stream.advance(time);
+    return !interruption.asked();
   };
   run_touch(*run.hand.device, run.hand.workspace, field, proxy, see, each);
   std::vector<StreamState> states;
   for (const SimulatedStream& stream : streams) states.push_back(stream.state());
   keep_states(run.touched, run.felt, states);
+  return !interruption.asked();
 }
 
 }  // namespace palpate::app

@@ -46,9 +46,15 @@ struct Outputs {
   }
 };
 
-void play_simulated(Run& run, const TouchStatistics& statistics, const EachStep& keep) {
+// How a run went.
+struct Played {
+  std::optional<LiveReport> live;  // in real time
+  bool interrupted = false;
+};
+
+bool play_simulated(Run& run, const TouchStatistics& statistics, const EachStep& keep) {
   Progress progress("touching");
-  run_simulated(run, [&](const TouchStep& step) {
+  return run_simulated(run, [&](const TouchStep& step) {
     keep(step);
     if (statistics.steps() % 256 == 0) {
       progress.update(static_cast<double>(statistics.steps()) /
@@ -58,21 +64,21 @@ void play_simulated(Run& run, const TouchStatistics& statistics, const EachStep&
 }
 
 // Runs, in the time of `clock` if there is one, and hands each step to what keeps or sums it.
-std::optional<LiveReport> play(Run& run, WaitingClock* clock, TouchStatistics& statistics,
-                               Outputs& outputs) {
+Played play(Run& run, WaitingClock* clock, TouchStatistics& statistics, Outputs& outputs) {
   const EachStep keep = [&](const TouchStep& step) {
     statistics.add(step);
     if (outputs.log) outputs.log->add(step);
     if (outputs.picture) outputs.picture->add(step);
   };
-  std::optional<LiveReport> live;
+  Played played;
   if (clock == nullptr) {
-    play_simulated(run, statistics, keep);
+    played.interrupted = !play_simulated(run, statistics, keep);
   } else {
-    live = run_live(run, *clock, keep);
+    played.live = run_live(run, *clock, keep);
+    played.interrupted = played.live->interrupted;
   }
   if (outputs.log) outputs.log->close();
-  return live;
+  return played;
 }
 
 // Cameras and preparation, whose threads are started later, stay off the servo's processor.
@@ -117,10 +123,11 @@ void touch(const TouchOptions& options) {
   fill_felt(felt, touched, soft_material(options, hand.stiffness));
   Run run{options, touched, felt, hand, field, proxy_options(options, hand.stiffness)};
   TouchStatistics statistics;
-  std::optional<LiveReport> live = play(run, clock, statistics, outputs);
-  if (live && left) live->realtime.requests.push_back(*left);
+  Played played = play(run, clock, statistics, outputs);
+  LiveReport* const live = played.live ? &*played.live : nullptr;
+  if (live != nullptr && left) live->realtime.requests.push_back(*left);
   tell({touched, felt, options, statistics, field, run.proxy, hand.device->info().name,
-        hand.plan ? &*hand.plan : nullptr, live ? &*live : nullptr},
+        hand.plan ? &*hand.plan : nullptr, live, played.interrupted},
        outputs);
 }
 

@@ -107,6 +107,7 @@ void print_report(const TouchReport& report, std::FILE* out) {
   if (report.plan != nullptr) print_plan(*report.plan, out);
   fmt::print(out, "  steps      {} in {:.4g} s of {} time\n", grouped(s.steps()), s.duration(),
              report.live == nullptr ? "simulated" : "real");
+  if (report.interrupted) fmt::print(out, "  ended      by Ctrl-C\n");
   if (report.live != nullptr) print_live(*report.live, out);
   fmt::print(out, "  computing  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} us a step\n",
              times.p50, times.p99, times.p999, times.maximum);
@@ -138,6 +139,7 @@ Json json_report(const TouchReport& report) {
       {"device", json_device(report)},
       {"steps", s.steps()},
       {report.live == nullptr ? "simulated_s" : "real_s", s.duration()},
+      {"interrupted", report.interrupted},
       {"computing_us",
        {{"p50", times.p50}, {"p99", times.p99}, {"p99.9", times.p999}, {"max", times.maximum}}},
       {"contacts", s.contacts()},

@@ -24,6 +24,7 @@ struct TouchReport {
   std::string device;                     ///< its name
   const ExplorationPlan* plan = nullptr;  ///< of the built-in exploration, if it was that
   const LiveReport* live = nullptr;       ///< of a run in real time
+  bool interrupted = false;               ///< by Ctrl-C
 };
 
 /// Work done on the hand, J: in its own metres, where the cloud is magnified (workspace.hpp).

@@ -8,7 +8,7 @@
 namespace palpate::app {
 
 void run_touch(Device& device, const Workspace& workspace, SceneField& field, Proxy& proxy,
-               const std::function<void(double)>& before,
+               const std::function<bool(double)>& before,
                const std::function<void(const TouchStep&)>& each) {
   double previous = 0;
   bool first = true;
@@ -18,7 +18,7 @@ void run_touch(Device& device, const Workspace& workspace, SceneField& field, Pr
     if (state.status == DeviceStatus::failed) {
       throw Error(fmt::format("device '{}' failed: {}", device.info().name, device.reason()));
     }
-    before(state.time);
+    if (!before(state.time)) return;
     const double dt = first ? 1 / device.info().rate : state.time - previous;
     TouchStep step;
     step.time = state.time;
@@ -39,7 +39,7 @@ void run_touch(Device& device, const Workspace& workspace, SceneField& field, Pr
 void run_touch(Device& device, const Workspace& workspace, SceneField& field, Proxy& proxy,
                const std::function<void(const TouchStep&)>& each) {
   run_touch(
-      device, workspace, field, proxy, [](double) {}, each);
+      device, workspace, field, proxy, [](double) { return true; }, each);
 }
 
 }  // namespace palpate::app

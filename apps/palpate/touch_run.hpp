@@ -12,10 +12,10 @@ namespace palpate::app {
 
 /// Steps a device, a field and a proxy together in the device's time until the device is finished,
 /// and hands every step to `each`; calls `before` with each step's time (s) before it, to bring the
-/// scene there. Computing time is update() and step() alone.
+/// scene there or, by false, to end the run. Computing time is update() and step() alone.
 /// @throws Error when the device fails.
 void run_touch(Device& device, const Workspace& workspace, SceneField& field, Proxy& proxy,
-               const std::function<void(double)>& before,
+               const std::function<bool(double)>& before,
                const std::function<void(const TouchStep&)>& each);
 
 /// The same over a scene that stands still.

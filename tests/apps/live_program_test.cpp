@@ -33,7 +33,7 @@ TEST(LiveProgram, TouchesACameraInRealTimeAndTellsHowItWent) {
   EXPECT_EQ(live["steps_unwritten"], 0);
   EXPECT_EQ(live["guard"]["faults"], 0);
   EXPECT_EQ(live["realtime"].size(), 2u);
-  EXPECT_EQ(live["interrupted"], false);
+  EXPECT_EQ(run["interrupted"], false);
   const auto log = columns(shell.read("forces.csv"));
   EXPECT_EQ(log.begin()->second.size(), run["steps"]) << "every step is written down";
   for (const char* name : {"fx", "fy", "fz"}) {
@@ -80,7 +80,7 @@ TEST(LiveProgram, EndsWithItsReportWhenInterrupted) {
   EXPECT_EQ(WEXITSTATUS(status), 0) << shell.read("err");
   EXPECT_NE(shell.read("out").find("Ctrl-C"), std::string::npos);
   const Json run = Json::parse(shell.read("run.json"));
-  EXPECT_EQ(run["live"]["interrupted"], true);
+  EXPECT_EQ(run["interrupted"], true);
   EXPECT_GT(run["steps"], 10);
 }
 

@@ -1,8 +1,13 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
+#include "apps/palpate/output.hpp"
 #include "apps/program.hpp"
 
 namespace palpate::app {
@@ -41,6 +46,47 @@ TEST(Output, FailedRunLeavesWhatWasThereAndNothingElse) {
   }
   const auto entries = fs::directory_iterator(fs::path(shell.path("")));
   EXPECT_EQ(static_cast<std::size_t>(std::distance(begin(entries), end(entries))), files);
+}
+
+TEST(Output, NothingIsThereBeforeTheFirstByteNorAfterAFailure) {
+  const Shell shell;
+  const auto count = [&] {
+    const auto entries = fs::directory_iterator(fs::path(shell.path("")));
+    return std::distance(begin(entries), end(entries));
+  };
+  {
+    OutputFile file(shell.path("a.csv"));
+    EXPECT_EQ(count(), 0) << "a run that is ended now leaves nothing";
+    file.write("1\n");
+    EXPECT_EQ(count(), 1);
+    EXPECT_FALSE(fs::exists(shell.path("a.csv")));
+  }
+  EXPECT_EQ(count(), 0);
+  OutputFile file(shell.path("a.csv"));
+  file.close();
+  EXPECT_TRUE(fs::exists(shell.path("a.csv"))) << "an empty one is one";
+}
+
+// In simulated time; live_program_test.cpp has the one in real time.
+TEST(Output, AnInterruptedRunLeavesItsLogAndReport) {
+  Shell shell;
+  const int status = std::system(
+      fmt::format("cd '{}'; '{}' touch camera:simulated --simulated-time --duration 600 "
+                  "--log log.csv --json run.json > out 2> err "
+                  "& p=$!; until grep -qs touching err; do sleep 0.1; kill -0 $p || break; done; "
+                  "kill -INT $p; wait $p",
+                  shell.path("."), PALPATE_PROGRAM)
+          .c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0) << shell.read("err");
+  EXPECT_NE(shell.read("out").find("ended      by Ctrl-C"), std::string::npos);
+  const nlohmann::json run = nlohmann::json::parse(shell.read("run.json"));
+  EXPECT_EQ(run["interrupted"], true);
+  EXPECT_LT(run["steps"], 600'000);
+  EXPECT_EQ(columns(shell.read("log.csv"))["t"].size(), run["steps"]);
+  for (const auto& entry : fs::directory_iterator(fs::path(shell.path("")))) {
+    EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
+  }
 }
 
 TEST(Output, LinksAndDevicesAreWrittenThrough) {
