@@ -180,8 +180,12 @@ TEST_F(LinkedDeviceTest, SilenceIsToldAndEndsSoftlyForWhoeverComputesForces) {
     clock_.wait_until(clock_.now() + kStep);  // no turn: the device's thread waits
     const double age = clock_.now() - (end - 0.1);
     step();
-    if (age < 4.5e-3) ASSERT_EQ(state_.status, DeviceStatus::ok);
-    if (age > 5.5e-3) ASSERT_EQ(state_.status, DeviceStatus::silent);
+    if (age < 4.5e-3) {
+      ASSERT_EQ(state_.status, DeviceStatus::ok);
+    }
+    if (age > 5.5e-3) {
+      ASSERT_EQ(state_.status, DeviceStatus::silent);
+    }
   }
   EXPECT_NE(device_->reason().find("cable"), std::string::npos) << device_->reason();
   hardware_.move({0.05, 0, 0});
