@@ -1,52 +1,18 @@
 #include "four_cameras/servo_run.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
-#include <chrono>
 #include <deque>
 #include <optional>
-#include <thread>
 
-#include "palpate/device/paced.hpp"
-#include "palpate/device/scripted.hpp"
 #include "palpate/sensor/stream.hpp"
-#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::four_cameras {
 
 namespace {
 
-constexpr double kRate = 1000;     // Hz
 constexpr double kLongest = 3600;  // s; a moving surface moves all the while
 constexpr float kShift = 1e-4F;    // m, over that time
 constexpr double kWarm = 1;        // s that cameras run before the servo does, in every run
-
-// Counts how often its thread slept. Every step of a paced servo waits for the clock once, at most.
-class CountingDevice final : public Device {
- public:
-  explicit CountingDevice(Device& device) : device_(device) {}
-  [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_.info(); }
-  [[nodiscard]] DeviceState read() noexcept override {
-    rusage usage{};
-    getrusage(RUSAGE_THREAD, &usage);
-    if (reads_ == 0) first_ = usage.ru_nvcsw;
-    slept_ = usage.ru_nvcsw - first_;
-    ++reads_;
-    return device_.read();
-  }
-  void write(const Eigen::Vector3d& force) noexcept override { device_.write(force); }
-  [[nodiscard]] std::string reason() const override { return device_.reason(); }
-  [[nodiscard]] std::int64_t other_waits() const {
-    return std::max<std::int64_t>(slept_ - (reads_ - 1), 0);
-  }
-
- private:
-  Device& device_;
-  std::int64_t reads_ = 0;
-  std::int64_t first_ = 0;
-  std::int64_t slept_ = 0;
-};
 
 // Frames of one camera that became touchable: when they were taken, and from when on they are felt.
 struct Lane {
@@ -94,7 +60,7 @@ std::vector<double> ages(const std::deque<Lane>& lanes, double start, double end
   std::vector<double> all;
   for (const Lane& lane : lanes) {
     std::size_t next = 0;
-    for (double t = start; t < end; t += 1 / kRate) {
+    for (double t = start; t < end; t += 1 / servo_cost::kServoRate) {
       while (next < lane.felt.size() && lane.felt[next][0] <= t) ++next;
       if (next > 0) all.push_back(t - lane.felt[next - 1][1]);
     }
@@ -108,12 +74,6 @@ RunResult run_servo(CameraRig& rig, const Trajectory& hand, Beside beside, Waiti
                     std::optional<int> processor) {
   Scene scene;
   CameraRig::add_sources(scene);
-  ScriptedDevice script(hand);
-  PacedDevice paced(script, clock);
-  CountingDevice device(paced);
-  StepQueue steps(1 << 17);
-  ServoOptions options;
-  options.steps = &steps;
   std::deque<Lane> lanes = start_cameras(rig, scene, clock);
   clock.wait_until(clock.now() + kWarm);
   if (beside != Beside::cameras) {
@@ -121,30 +81,14 @@ RunResult run_servo(CameraRig& rig, const Trajectory& hand, Beside beside, Waiti
     for (std::size_t i = 0; i < scene.size(); ++i) scene.source(i).keep();
   }
   if (beside == Beside::moving) set_in_motion(scene, clock.now());
-  Servo servo(device, scene, options);
+  servo_cost::PacedServo servo(scene, hand, clock);
   RunResult result;
   const double start = clock.now();
-  {
-    const ServoThread thread(servo, clock, {.rate = kRate, .realtime = {.processor = processor}});
-    result.realtime = thread.realtime();
-    while (thread.running()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      while (const std::optional<ServoState> state = steps.pop()) {
-        result.touching += state->contact.touching ? 1 : 0;
-        result.computing.push_back(state->timing.computing);
-      }
-    }
-    result.skipped = thread.skipped();
-  }
+  result.servo = servo.run(processor);
   result.ages = ages(lanes, start, clock.now());
   std::ranges::sort(result.ages);
   for (const Lane& lane : lanes) result.streams.push_back(lane.stream->state());
   lanes.clear();
-  std::ranges::sort(result.computing);
-  result.lateness = servo.lateness();
-  result.steps = servo.state().step;
-  result.faults = servo.state().guard.counts.faults;
-  result.lock_waits = device.other_waits();
   return result;
 }
 

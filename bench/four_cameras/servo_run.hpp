@@ -1,13 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "four_cameras/camera_rig.hpp"
 #include "palpate/sensor/stream_state.hpp"
-#include "palpate/servo/histogram.hpp"
-#include "palpate/servo/realtime.hpp"
+#include "servo_cost/paced_servo.hpp"
 
 namespace palpate::four_cameras {
 
@@ -19,16 +17,9 @@ enum class Beside {
 };
 
 struct RunResult {
-  std::vector<double> computing;  ///< thread time of every step, s; in rising order
-  Durations lateness;
-  std::uint64_t steps = 0;
-  std::uint64_t skipped = 0;
-  std::uint64_t touching = 0;
-  std::uint64_t faults = 0;
-  std::int64_t lock_waits = 0;  ///< times the servo's thread slept for anything but the clock
+  servo_cost::ServoRun servo;
   std::vector<StreamState> streams;
   std::vector<double> ages;  ///< of what was felt, one a millisecond and source, s
-  RealtimeReport realtime;
 };
 
 /// Runs a servo at 1 kHz along `hand` until that ends. `processor`: it is pinned there.

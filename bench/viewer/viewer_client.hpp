@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace palpate::viewer_bench {
+
+/// What a client saw until its connection ended.
+struct ClientReport {
+  std::size_t points = 0;      ///< of the first cloud that was not empty
+  double seconds_to_them = 0;  ///< from hello until that cloud was there whole
+  double seconds = 0;          ///< from hello until the end
+  std::uint64_t bytes = 0;     ///< of messages
+  std::uint64_t states = 0;
+  std::uint64_t clouds = 0;
+  std::uint64_t surfaces = 0;
+};
+
+/// A page that draws nothing: a WebSocket to a viewer on this machine.
+class ViewerClient {
+ public:
+  /// Connects and says hello.
+  /// @throws std::exception where there is no viewer.
+  ViewerClient(std::uint16_t port, const std::string& token);
+  ~ViewerClient();
+  ViewerClient(ViewerClient&&) noexcept;
+  ViewerClient& operator=(ViewerClient&&) noexcept;
+
+  /// Reads until the connection ends, and calls `arrived` when the first cloud is there, or when
+  /// none will come. Who never calls it never reads.
+  [[nodiscard]] ClientReport watch(const std::function<void()>& arrived);
+
+ private:
+  struct Connection;
+  std::unique_ptr<Connection> connection_;
+};
+
+}  // namespace palpate::viewer_bench
