@@ -53,6 +53,7 @@ void check_lengths(const SurfacePoints& points) {
   require_length("confidences", points.confidences.size(), n);
   require_length("normals", points.normals.size(), optional(points.normals.size()));
   require_length("materials", points.materials.size(), optional(points.materials.size()));
+  require_length("colors", points.colors.size(), optional(points.colors.size()));
   require_length("presences", points.presences.size(), optional(points.presences.size()));
   require_length("end_presences", points.end_presences.size(),
                  optional(points.end_presences.size()));

@@ -113,6 +113,7 @@ class Preparation {
       points_.confidences.assign(points_.size(), 0.0f);
     }
     if (options_.remove_speckle && !options_.paper) silence_speckle();
+    if (!cloud_->colors.empty()) points_.colors = in_grid_order(points_.grid, cloud_->colors);
     finish(points_);
     report_.points_out = points_.size() - report_.speckle;
     report_.radius = points_.radius;

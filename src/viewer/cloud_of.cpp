@@ -37,12 +37,14 @@ CloudMessage cloud_of(const SurfacePoints& points, const Eigen::Vector3d& origin
   CloudMessage message;
   message.places.reserve(kept.size());
   if (!normals.empty()) message.normals.reserve(kept.size());
+  if (!points.colors.empty()) message.colors.reserve(kept.size());
   for (const std::uint32_t k : kept) {
     const std::uint32_t i = shown[k];
     const Eigen::Vector3f& place =
         points.end_positions.empty() ? points.grid.points()[i] : points.end_positions[i];
     message.places.emplace_back(place + shift);
     if (!normals.empty()) message.normals.push_back(normals[i]);
+    if (!points.colors.empty()) message.colors.push_back(points.colors[i]);
   }
   return message;
 }

@@ -99,6 +99,24 @@ TEST(Prepare, IntensitiesBecomeMaterials) {
   }
 }
 
+// Red tells how far a point is along x: wherever the points went, their colours went, too.
+TEST(Prepare, ColoursStayWithTheirPoints) {
+  EXPECT_TRUE(prepare(flat()).points.colors.empty());
+  PointCloud cloud = flat(1e-3);
+  for (const Vector3f& p : cloud.positions) {
+    cloud.colors.push_back({static_cast<std::uint8_t>(127 + 600 * p.x()), 40, 0});
+  }
+  const Box box{{-0.15, -0.15, -1}, {0.15, 0.15, 1}};
+  for (const double voxel : {0.0, 12e-3}) {
+    const SurfacePoints points = prepare(cloud, {.voxel = voxel, .clip = box}).points;
+    ASSERT_EQ(points.colors.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_NEAR(points.colors[i][0], 127 + 600 * points.grid.points()[i].x(), 1.6);
+      EXPECT_EQ(points.colors[i][1], 40);
+    }
+  }
+}
+
 TEST(Prepare, TakesWhatItIsGiven) {
   const PrepareReport report =
       prepare(flat(), {.voxel = 12e-3, .radius = 40e-3, .minimum_radius = 50e-3}).report;

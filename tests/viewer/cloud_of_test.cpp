@@ -50,6 +50,19 @@ TEST(CloudOf, GivesTheFeltPointsRelativeToTheOrigin) {
   }
 }
 
+TEST(CloudOf, ColoursStayWithTheirPoints) {
+  SurfacePoints points = test::make_points(test::plane(0, 4e-3, 3));
+  EXPECT_TRUE(cloud_of(points, Eigen::Vector3d::Zero(), 1000).colors.empty());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points.colors.push_back({static_cast<std::uint8_t>(i), 1, 2});
+  }
+  const CloudMessage cloud = cloud_of(points, Eigen::Vector3d::Zero(), 10);
+  ASSERT_EQ(cloud.colors.size(), 10u);
+  for (std::size_t k = 0; k < cloud.places.size(); ++k) {
+    EXPECT_EQ(points.grid.points()[cloud.colors[k][0]], cloud.places[k]);
+  }
+}
+
 TEST(CloudOf, ShowsMovingPointsWhereTheyGo) {
   SurfacePoints points = test::make_points(test::plane(0, 4e-3, 3));
   points.end_positions.assign(points.size(), Eigen::Vector3f(1, 2, 3));

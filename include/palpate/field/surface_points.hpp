@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct SurfacePoints {
   std::vector<float> confidences;        ///< c_i, 0-1
   std::vector<float> materials;          ///< 0-1; empty: all 1
   std::vector<float> presences;  ///< 0-1: is the sensor still sure of this point? Empty: all 1
+  /// Red, green, blue, for those who draw; empty: not known.
+  std::vector<std::array<std::uint8_t, 3>> colors;
   std::vector<Eigen::Vector3f> end_positions;
   std::vector<Eigen::Vector3f> end_normals;
   std::vector<float> end_density_weights;

@@ -19,6 +19,7 @@ void PointWriter::begin(SurfacePoints& points, std::size_t expected) {
   room_ = 0;
   unsure_ = false;
   points.materials.clear();
+  points.colors.clear();
   make_room(expected);
 }
 
