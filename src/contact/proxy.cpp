@@ -20,6 +20,7 @@ constexpr double kKeepLost = 0.02;     // s, for which the force of a lost conta
 constexpr double kFadeRate = 300;      // N/s, at which it then goes
 constexpr double kTextureStep = 0.25;  // of the wavelength, the longest sub-step
 constexpr int kMostIterations = 1000;
+constexpr double kMuchSofter = 0.95;  // of the stiffness that is wanted
 
 void require(bool good, const char* name, double value, const char* remedy) {
   if (!good) throw Error(fmt::format("proxy: {} is {}; {}", name, value, remedy));
@@ -230,7 +231,9 @@ void Proxy::press(const Field& field, const Eigen::Vector3d& hip, double dissipa
 void Proxy::pull(const Eigen::Vector3d& hip, double dissipated, double dt,
                  Contact& contact) noexcept {
   const Eigen::Vector3d stretch = position_ - hip;
-  contact.stiffness = tank_.follow(wanted_stiffness(), stretch.norm(), dissipated, dt);
+  const double wanted = wanted_stiffness();
+  contact.stiffness = tank_.follow(wanted, stretch.norm(), dissipated, dt);
+  if (contact.stiffness < kMuchSofter * wanted) contact.notes = contact.notes | ContactNote::softer;
   contact.force = contact.stiffness * stretch;
   contact.source = surface_.source;
   last_force_ = contact.force;

@@ -237,6 +237,27 @@ TEST(Servo, ChangesWhatIsFeltWithoutAStep) {
   EXPECT_NEAR(before, 0.4, 0.02);
 }
 
+TEST(Servo, NotesAStiffnessThatWaitsForMotion) {
+  Scene scene;
+  test::add_sheet(scene);
+  FreeDevice device({0, 0, 15e-3});
+  Servo servo(device, scene);
+  servo.tick(0);
+  const auto softer_at = [&](const Eigen::Vector3d& hand, double time) {
+    device.state().position = hand;
+    return has(servo.tick(time).contact.notes, ContactNote::softer);
+  };
+  EXPECT_FALSE(softer_at(kPressed, 1e-3));
+  servo.set_feel({.stiffness = 1000});
+  EXPECT_TRUE(softer_at(kPressed, 2e-3));
+  EXPECT_TRUE(softer_at(kPressed, 3e-3));
+  EXPECT_FALSE(softer_at({0, 0, 15e-3}, 4e-3)) << "in the air";
+  EXPECT_FALSE(softer_at(kPressed, 5e-3));
+  EXPECT_EQ(servo.state().contact.stiffness, 1000);
+  servo.set_feel({.stiffness = 100});
+  EXPECT_FALSE(softer_at(kPressed, 6e-3)) << "it is stiffer";
+}
+
 TEST(Servo, ChangesTheSurfaceAndTheGuardLeadsTheForceThere) {
   Scene scene;
   test::add_sheet(scene);

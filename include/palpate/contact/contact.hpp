@@ -13,6 +13,8 @@ enum class ContactNote : std::uint32_t {
   not_converged = 1u << 2,    ///< the step's iterations ran out before the closest point
   reanchored = 1u << 3,       ///< the surface moved over the proxy and took it along
   fault = 1u << 4,            ///< an input was not finite: zero force until reset()
+  softer = 1u << 5,           ///< stiffness is much below what is wanted: EnergyTank lets it grow
+                              ///< only as motion pays for it
 };
 
 [[nodiscard]] constexpr ContactNote operator|(ContactNote a, ContactNote b) noexcept {
