@@ -108,7 +108,8 @@ void Lobby::act(Client& client, const Hand& hand) {
     throw Error(fmt::format("there is no tool {} that a page may move", hand.device));
   }
   controls.hand(hand.device, options_.origin + hand.position, hand.buttons);
-  holders_[hand.device] = &client;
+  Client* const before = std::exchange(holders_[hand.device], &client);
+  if (before != nullptr && before != &client) answer(*before, lost_text(hand.device));
 }
 
 // Of another's tool: it was taken away in the meantime.

@@ -17,6 +17,7 @@ constexpr std::uint32_t kSlewed = 16;
 constexpr std::uint32_t kWatchdog = 32;
 constexpr std::uint32_t kFault = 64;
 constexpr std::uint32_t kThinned = 128;
+constexpr std::uint32_t kSofter = 256;
 }  // namespace state_flag
 
 /// Message 1 of docs/viewer_protocol.md. Places relative to the origin, m.

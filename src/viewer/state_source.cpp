@@ -49,6 +49,7 @@ std::uint32_t StateSource::flags(const ServoState& state, bool taken) {
   set(counts.silences > counts_.silences, state_flag::kWatchdog);
   set(state.guard.fault != GuardFault::none, state_flag::kFault);
   set(has(state.field_notes, FieldNote::thinned), state_flag::kThinned);
+  set(has(state.contact.notes, ContactNote::softer), state_flag::kSofter);
   counts_ = counts;
   return flags;
 }

@@ -124,6 +124,10 @@ std::string refused_text(std::string_view text) {
   return text_of({{"type", "refused"}, {"text", text}});
 }
 
+std::string lost_text(std::size_t device) {
+  return text_of({{"type", "lost"}, {"device", device}});
+}
+
 std::string pong_text(double id) {
   return text_of({{"type", "pong"}, {"id", static_cast<std::uint64_t>(id)}});
 }

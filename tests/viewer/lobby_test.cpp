@@ -276,5 +276,22 @@ TEST(Lobby, ARecordThatIsOnIsToldToThoseWhoComeLater) {
   EXPECT_EQ(told[1], on);
 }
 
+TEST(Lobby, WhoLosesTheToolToAnotherIsTold) {
+  Room room;
+  Client& first = room.enter();
+  Client& second = room.enter();
+  const std::string hand = R"({"type":"hand","device":0,"position":[0,0,0],"buttons":0})";
+  EXPECT_TRUE(room.answers(first, hand).empty());
+  EXPECT_TRUE(room.answers(second, hand).empty());
+  const auto told = Room::said(first);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0], (json{{"type", "lost"}, {"device", 0}}));
+  EXPECT_TRUE(room.answers(second, hand).empty());
+  EXPECT_TRUE(Room::said(first).empty());
+  room.answers(first, R"({"type":"release","device":0})");
+  EXPECT_TRUE(room.lobby->taken(0));
+  EXPECT_TRUE(room.released.empty());
+}
+
 }  // namespace
 }  // namespace palpate::viewer

@@ -120,6 +120,17 @@ TEST(Viewer, ShowsTheServosState) {
   EXPECT_NEAR(f32(frame.payload, 64), 10e-3, 1e-6);
 }
 
+TEST(Viewer, TellsThatAStiffnessWaitsForMotion) {
+  ViewerRig rig;
+  auto client = rig.enter();
+  const Frame before = client->receive_until([](const Frame& f) { return f.binary(1); });
+  EXPECT_EQ(test::u32(before.payload, 4) & 256, 0u);
+  rig.servo->set_feel({.stiffness = 2000});
+  rig.press(0.021);
+  client->receive_until(
+      [](const Frame& f) { return f.binary(1) && (test::u32(f.payload, 4) & 256) != 0; });
+}
+
 TEST(Viewer, TellsTheForceOfEveryStepOnce) {
   ViewerRig rig;
   auto client = rig.enter();

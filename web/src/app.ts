@@ -127,6 +127,9 @@ export class App {
         return this.notices.add(message.level, message.text);
       case "record":
         return this.bar.recording(message.on, message.file);
+      case "lost":
+        if (this.hand.lose(message.device)) this.notices.add("info", "another page took the tool");
+        return;
       case "refused":
         this.settings.show(this.session.values);
         return this.notices.add("warning", message.text);
@@ -191,6 +194,7 @@ export class App {
     if (now - this.plotted < this.plotInterval) return;
     this.plotted = now;
     this.readout.update(this.session.tool, now);
+    this.settings.watch(this.session.tool, now);
     this.bar.update();
     this.hold.update();
     this.plots.update(now);

@@ -2,7 +2,9 @@
 
 import "./styles/app.css";
 import { App } from "./app";
+import { canDraw, sayCannotDraw } from "./panel/cannot_draw";
 import { readLink } from "./protocol/link";
 
 window.addEventListener("hashchange", () => location.reload());
-new App(readLink(location.hash)).start();
+if (canDraw()) new App(readLink(location.hash)).start();
+else sayCannotDraw();

@@ -39,7 +39,7 @@ export async function serve({ port = 0, points = 30000, still = false, token = r
     socket.on("message", (data) => program.take(client, data.toString()));
     socket.on("close", () => {
       program.clients.delete(client);
-      program.servo.taken = false;
+      program.release(client);
     });
   });
   await new Promise((resolve, reject) => http.once("error", reject).listen(port, "127.0.0.1", resolve));

@@ -10,7 +10,7 @@ import { lengthInWords, scaleBar } from "../src/view/scale_bar";
 test("a scale bar is a round length between 60 and 150 pixels", () => {
   for (let power = -6; power < 2; power += 0.07) {
     const metresPerPixel = 10 ** power / 100;
-    const { pixels, label } = scaleBar(metresPerPixel);
+    const { pixels, label } = scaleBar(metresPerPixel, 1000);
     assert.ok(pixels >= 59.9 && pixels <= 150.1, `${pixels} pixels for ${label}`);
     assert.match(label, /^[125]0*(\.0+)? (µm|mm|m)$|^0\.[125] /);
   }

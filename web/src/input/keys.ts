@@ -70,7 +70,8 @@ export class Keys {
 }
 
 function writes(target: EventTarget | null): boolean {
-  return target instanceof Element && target.matches("input, select, textarea");
+  return target instanceof Element &&
+    target.matches("input:not([type='checkbox'], [type='range']), select, textarea");
 }
 
 function dialogIsOpen(): boolean {

@@ -44,7 +44,8 @@ export class Overlay {
   }
 
   private showScale(): void {
-    const { pixels, label } = scaleBar(this.world.stage.pixelAt(this.world.navigation.controls.target));
+    const { pixels, label } = scaleBar(
+      this.world.stage.pixelAt(this.world.navigation.controls.target), byId("view").clientWidth);
     const end = (pixels + 1).toFixed(1);
     byId("scale-bar").setAttribute("width", String(Math.ceil(pixels + 2)));
     byId("scale-path").setAttribute("d", `M1 1v6M1 4H${end}M${end} 1v6`);

@@ -15,6 +15,7 @@ export const Flag = {
   watchdog: 32,
   fault: 64,
   thinned: 128,
+  softer: 256,
 } as const;
 
 export interface StateMessage {

@@ -62,6 +62,7 @@ export type FromProgram =
   | { type: "sources"; sources: SourceReport[] }
   | { type: "notice"; level: NoticeLevel; text: string }
   | { type: "record"; on: boolean; file?: string }
+  | { type: "lost"; device: number }
   | { type: "refused"; text: string }
   | { type: "pong"; id: number };
 
@@ -77,7 +78,7 @@ export type ToProgram =
   | { type: "points"; points: number }
   | { type: "ping"; id: number };
 
-const kTypes = new Set(["welcome", "settings", "sources", "notice", "record", "refused", "pong"]);
+const kTypes = new Set(["welcome", "settings", "sources", "notice", "record", "lost", "refused", "pong"]);
 
 /** A text message; undefined where this page does not know its type. Throws SyntaxError. */
 export function parseMessage(text: string): FromProgram | undefined {

@@ -1,6 +1,7 @@
 // A length on the screen: 1, 2 or 5 times a power of ten.
 
-const kLeast = 60; // pixels
+const kLeast = 60; // pixels, and of a narrow view:
+const kPart = 1 / 8;
 
 export interface ScaleBar {
   pixels: number;
@@ -13,8 +14,9 @@ export function lengthInWords(metres: number): string {
   return `${trim(metres)} m`;
 }
 
-export function scaleBar(metresPerPixel: number): ScaleBar {
-  const wanted = kLeast * metresPerPixel;
+/** For a view of this width, pixels. */
+export function scaleBar(metresPerPixel: number, width: number): ScaleBar {
+  const wanted = Math.min(kLeast, kPart * width) * metresPerPixel;
   const power = 10 ** Math.floor(Math.log10(wanted));
   const factor = [1, 2, 5, 10].find((f) => f * power >= wanted * (1 - 1e-9)) ?? 10;
   const metres = factor * power;

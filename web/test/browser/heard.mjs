@@ -15,6 +15,9 @@ export function listen() {
         if (kind === 2) {
           window.heard.clouds += 1;
           window.heard.points = view.getUint32(4, true);
+          if (window.heard.clouds === 1) { // drawn in the next picture, which is over when the one after begins
+            requestAnimationFrame(() => requestAnimationFrame((now) => (window.heard.firstCloud = now)));
+          }
         }
         if (kind !== 1) return;
         window.heard.states += 1;
@@ -26,6 +29,14 @@ export function listen() {
     }
   };
   localStorage.setItem("palpate.points", "10000"); // drawn in software
+}
+
+/** ms from the page's request until the browser painted something of it, and until its first cloud was drawn. */
+export function firstPaint(page) {
+  return page.evaluate(() => ({
+    paint: window.performance.getEntriesByName("first-contentful-paint")[0]?.startTime,
+    cloud: window.heard.firstCloud,
+  }));
 }
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -4,7 +4,7 @@
 import { mkdir } from "node:fs/promises";
 import { join } from "node:path";
 import { openBrowser, openPage, until } from "./browser.mjs";
-import { felt, listen } from "./heard.mjs";
+import { felt, firstPaint, listen } from "./heard.mjs";
 import { startProgram } from "./real_program.mjs";
 
 const folder = process.argv[2] ?? "../docs/images";
@@ -66,10 +66,11 @@ for (const [name, scene, points, look, options] of kPictures) {
   await choose(page, "Points, at most", points);
   await look(page);
   await page.waitForTimeout(kPast);
+  const first = await firstPaint(page);
   await press(page);
   await page.evaluate(() => document.querySelectorAll("#notices button").forEach((close) => close.click()));
   await page.screenshot({ path: join(folder, `${name}.png`), timeout: 120_000 });
-  console.log(name, ...page.troubles);
+  console.log(`${name}: first paint after ${first.paint.toFixed(0)} ms, first cloud after ${first.cloud.toFixed(0)} ms`, ...page.troubles);
   await page.context().close();
   await program.stop();
 }

@@ -1,35 +1,11 @@
 // The page in a headless chromium against the made-up program: npm run build first.
 
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import { serve } from "../fake_server.mjs";
-import { openBrowser, openPage, until } from "./browser.mjs";
-
-const kSmall = { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" };
-const kPhone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true };
-let browser;
-
-before(async () => (browser = await openBrowser()));
-after(async () => browser.close());
-
-const text = (page, selector) => page.locator(selector).innerText();
-const ready = (page) => until("the tool can be taken", () => page.locator("#take").isEnabled());
-
-async function withPage(options, act, points = 4000) {
-  const server = await serve({ points });
-  const page = await openPage(browser, server.address, options);
-  try {
-    await ready(page);
-    await act(page, server.program, server);
-    assert.deepEqual(page.troubles, [], "the browser complains");
-  } finally {
-    await page.context().close();
-    await server.close();
-  }
-}
-
-const hands = (program) => program.received.filter(({ type }) => type === "hand");
-const sent = (program, type) => program.received.filter((message) => message.type === type);
+import { openPage, until } from "./browser.mjs";
+import { browser, hands, kPhone, kSmall, ready, sent, text, withPage } from "./with_page.mjs";
+import "./finer.mjs";
 
 test("shows the scene and its force, and the browser has nothing to complain of", () =>
   withPage(kSmall, async (page) => {

@@ -26,6 +26,7 @@ export class FakeProgram {
   recording = false;
   playing = 0;
   near = false;
+  holder; // the client whose hand moves the tool
 
   constructor({ points = 30000, token, still = false }) {
     this.token = token;
@@ -141,8 +142,8 @@ export class FakeProgram {
     if (!client.welcome && message.type !== "hello") return answer({ type: "refused", text: "say hello first" });
     const act = {
       hello: () => this.hello(client, message),
-      hand: () => Object.assign(this.servo, { taken: true, hand: message.position }),
-      release: () => (this.servo.taken = false),
+      hand: () => this.move(client, message.position),
+      release: () => this.release(client),
       set: () => this.changed(answer, this.set(message.key, message.value)),
       preset: () => Object.entries(kPresets[message.name] ?? {}).forEach(([k, v]) => this.set(k, v)) ?? this.tellSettings(),
       pause: () => (this.servo.paused = message.on),
@@ -159,6 +160,21 @@ export class FakeProgram {
     if (token !== this.token) return client.socket.close(1008, "wrong token");
     Object.assign(client, { welcome: true, points });
     client.socket.send(JSON.stringify(this.welcome()));
+  }
+
+  move(client, place) {
+    if (this.holder !== undefined && this.holder !== client) {
+      this.holder.socket.send(JSON.stringify({ type: "lost", device: 0 }));
+    }
+    this.holder = client;
+    Object.assign(this.servo, { taken: true, hand: place });
+  }
+
+  /** A client let go, or is gone. */
+  release(client) {
+    if (this.holder !== client) return;
+    this.holder = undefined;
+    this.servo.taken = false;
   }
 
   changed(answer, refusal) {

@@ -16,6 +16,7 @@ export class Servo {
   friction = 0;
   texture = 0;
   stiffness = 500;
+  felt = 500; // grows to that out of contact alone
   bound = 6;
   contact;
   force = [0, 0, 0];
@@ -37,7 +38,8 @@ export class Servo {
     const state = {
       device: 0,
       flags: (this.contact ? 1 : 0) | (this.paused ? 2 : 0) | (this.taken ? 4 : 0) |
-        (this.clamped ? 8 : 0) | (this.fault ? 64 : 0),
+        (this.clamped ? 8 : 0) | (this.fault ? 64 : 0) |
+        (this.contact && this.felt < 0.95 * this.stiffness ? 256 : 0),
       time: this.time,
       hip: this.hip,
       proxy: this.contact?.proxy ?? this.hip,
@@ -60,6 +62,7 @@ export class Servo {
     const part = kStep / kFollow;
     this.hip = this.hip.map((c, i) => c + part * (goal[i] - c));
     this.contact = stopAt(this.hip);
+    if (!this.contact || this.felt > this.stiffness) this.felt = this.stiffness;
     this.force = this.paused || this.fault || !this.contact ? [0, 0, 0] : this.spring();
     this.samples.push(this.force);
   }
@@ -67,7 +70,7 @@ export class Servo {
   spring() {
     const { proxy, normal } = this.contact;
     const grain = 1 + this.texture * Math.sin(2 * Math.PI * 180 * this.time) * 0.2;
-    const force = proxy.map((c, i) => this.stiffness * (c - this.hip[i]) * grain + 0.01 * (this.random() - 0.5) * normal[i]);
+    const force = proxy.map((c, i) => this.felt * (c - this.hip[i]) * grain + 0.01 * (this.random() - 0.5) * normal[i]);
     const size = Math.hypot(...force);
     if (size <= this.bound) return force;
     this.clamped = true;

@@ -1,0 +1,106 @@
+// What a person would stumble over: keys, words beside settings, other pages, narrow screens. Part of run.mjs.
+
+import assert from "node:assert/strict";
+import { once } from "node:events";
+import { test } from "node:test";
+import { WebSocket } from "ws";
+import { serve } from "../fake_server.mjs";
+import { openPage, until } from "./browser.mjs";
+import { firstPaint, listen } from "./heard.mjs";
+import { browser, kPhone, kSmall, sent, text, withPage } from "./with_page.mjs";
+
+test("letters act while a switch or a slider has the focus, and not while one writes", () =>
+  withPage(kSmall, async (page, program) => {
+    await page.getByRole("switch", { name: "Texture" }).focus();
+    await page.keyboard.press("p");
+    await until("paused", async () => (await text(page, "#flags")).includes("paused"));
+    await page.getByRole("slider", { name: /Stiffness/ }).focus();
+    await page.keyboard.press("p");
+    await until("goes on", () => !program.servo.paused);
+    await page.getByRole("spinbutton", { name: "Stiffness" }).focus();
+    await page.keyboard.press("p");
+    await page.getByRole("switch", { name: "Texture" }).focus();
+    await page.keyboard.press("r");
+    await until("reset", () => sent(program, "reset").length === 1);
+    assert.equal(sent(program, "pause").length, 2, "a letter that was written is no command");
+  }));
+
+test("a stiffness that is asked for in contact and not felt yet is said beside it", () =>
+  withPage(kSmall, async (page, program) => {
+    const softer = page.locator("#settings [role=status]");
+    await page.keyboard.press("t");
+    await until("held", () => program.servo.taken);
+    await page.keyboard.down("ArrowDown");
+    await until("in contact", () => program.servo.contact !== undefined);
+    await page.keyboard.up("ArrowDown");
+    assert.equal(await softer.innerText(), "");
+    await page.getByRole("spinbutton", { name: "Stiffness" }).fill("900");
+    await page.keyboard.press("Enter");
+    await until("said", async () => /lift and touch again/.test(await softer.innerText()));
+    await page.focus("#view");
+    await page.keyboard.down("ArrowUp");
+    await until("lifted", () => program.servo.contact === undefined);
+    await page.keyboard.up("ArrowUp");
+    await until("no more", async () => (await softer.innerText()) === "");
+  }));
+
+test("a page whose tool another takes is told, and holds it no more", () =>
+  withPage(kSmall, async (page, program, server) => {
+    await page.keyboard.press("t");
+    await until("held", () => program.servo.taken);
+    const other = new WebSocket(`ws://127.0.0.1:${server.port}/live`);
+    await once(other, "open");
+    for (const message of [
+      { type: "hello", token: server.token, points: 0 },
+      { type: "hand", device: 0, position: [0, 0, 0.1], buttons: 0 },
+    ]) other.send(JSON.stringify(message));
+    await until("said", async () => /another page took the tool/.test(await text(page, "#notices")));
+    assert.equal(await page.getAttribute("#take", "aria-pressed"), "false");
+    assert.ok(program.servo.taken);
+    assert.equal(sent(program, "release").length, 0, "who lost it does not let go of it");
+    other.close();
+  }));
+
+test("scale and ramp stand beside one another on the narrowest phone", async () => {
+  for (const width of [320, 390]) {
+    await withPage({ ...kPhone, viewport: { width, height: 700 } }, async (page) => {
+      await page.evaluate(() => localStorage.clear());
+      await page.tap('[data-tab="settings"]');
+      await page.getByLabel("Colour by").selectOption({ label: "height" });
+      await until("the ramp", () => page.locator("#ramp").isVisible());
+      for (let zoom = 0; zoom < 12; zoom += 1) {
+        await page.mouse.move(width / 2, 250);
+        await page.mouse.wheel(0, 60);
+        await page.waitForTimeout(60);
+        const [scale, ramp] = await Promise.all([".scale", ".ramp"].map((name) => page.locator(name).boundingBox()));
+        assert.ok(scale.x + scale.width <= ramp.x, `${width}: ${scale.x + scale.width} and ${ramp.x}`);
+        assert.ok(ramp.x + ramp.width <= width, `${width}: the ramp ends at ${ramp.x + ramp.width}`);
+      }
+    });
+  }
+});
+
+test("tells how long the first paint and the first cloud take", async (t) => {
+  const server = await serve({ points: 4000 });
+  const page = await openPage(browser, server.address, kSmall, listen);
+  await until("both", async () => Object.values(await firstPaint(page)).every((time) => time > 0));
+  const { paint, cloud } = await firstPaint(page);
+  t.diagnostic(`first paint after ${paint.toFixed(0)} ms, first cloud after ${cloud.toFixed(0)} ms`);
+  assert.ok(paint <= cloud, "the page is there before its cloud");
+  await page.context().close();
+  await server.close();
+});
+
+test("a browser without WebGL 2 is told so", async () => {
+  const server = await serve({ points: 1000 });
+  const page = await openPage(browser, server.address, kSmall, () => {
+    const plain = window.HTMLCanvasElement.prototype.getContext;
+    window.HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+      return kind === "webgl2" ? null : plain.call(this, kind, ...rest);
+    };
+  });
+  await until("said", async () => /cannot draw[\s\S]*WebGL 2/.test(await page.locator("#cover").innerText()));
+  assert.deepEqual(page.troubles, []);
+  await page.context().close();
+  await server.close();
+});
