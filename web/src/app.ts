@@ -23,6 +23,7 @@ import { Kind, type BinaryMessage } from "./protocol/decode";
 import { settingFromText, type Link } from "./protocol/link";
 import { kVersion, type FromProgram, type ToProgram, type Welcome } from "./protocol/messages";
 import { Sound } from "./sound/sound";
+import type { Graphics } from "./view/graphics";
 import { World } from "./view/world";
 
 const kPlotInterval = 50; // ms
@@ -52,9 +53,9 @@ export class App {
   private saidSlow = false;
   private scene: string | undefined;
 
-  constructor(private readonly link: Link) {
+  constructor(private readonly link: Link, graphics: Graphics) {
     const send = (message: ToProgram) => this.send(message);
-    this.world = new World(byId<HTMLCanvasElement>("view"));
+    this.world = new World(byId<HTMLCanvasElement>("view"), graphics);
     this.overlay = new Overlay(this.world);
     this.settings = new SettingsPanel(
       (key, value) => send({ type: "set", key, value }),

@@ -2,9 +2,17 @@
 
 import "./styles/app.css";
 import { App } from "./app";
-import { canDraw, sayCannotDraw } from "./panel/cannot_draw";
+import { sayCannotDraw } from "./panel/cannot_draw";
 import { readLink } from "./protocol/link";
+import { graphics } from "./view/graphics";
+
+function start(): void {
+  const found = graphics();
+  if (found === undefined) sayCannotDraw();
+  else new App(readLink(location.hash), found).start();
+}
 
 window.addEventListener("hashchange", () => location.reload());
-if (canDraw()) new App(readLink(location.hash)).start();
-else sayCannotDraw();
+// What is there already is painted first: making the view takes a while where the processor draws.
+if (document.hidden) start();
+else requestAnimationFrame(() => setTimeout(start));

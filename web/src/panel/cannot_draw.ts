@@ -2,12 +2,6 @@
 
 import { byId, say } from "./dom";
 
-export function canDraw(): boolean {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  return gl !== null;
-}
-
 export function sayCannotDraw(): void {
   byId("link-state").dataset["phase"] = "refused";
   say(byId("link-words"), "nothing can be drawn");

@@ -5,19 +5,11 @@ import {
   DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from "three";
 import { colourOf } from "./colours";
+import type { Graphics } from "./graphics";
 
 const kFieldOfView = 40; // degrees
 const kSlow = 45; // ms a picture
 const kPatience = 40; // slow pictures before sharpness gives way
-
-/** Whether pictures are computed by the processor: soft edges cost too much there. */
-function drawnBySoftware(): boolean {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  const names = gl?.getExtension("WEBGL_debug_renderer_info");
-  const name = gl && names ? String(gl.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|software|basic render/i.test(name);
-}
 
 export class Stage {
   readonly scene = new Scene();
@@ -26,15 +18,17 @@ export class Stage {
   frameTime = NaN; // ms between pictures, smoothed
   width = 1;
   height = 1;
-  readonly software = drawnBySoftware();
-  private sharpness = this.software ? 1 : Math.min(devicePixelRatio, 2);
+  readonly software: boolean;
+  private sharpness: number;
   private wanted = true;
   private last = 0;
   private slow = 0;
 
   private beforeDraw: (now: number) => void = () => {};
 
-  constructor(readonly canvas: HTMLCanvasElement) {
+  constructor(readonly canvas: HTMLCanvasElement, graphics: Graphics) {
+    this.software = graphics.software;
+    this.sharpness = this.software ? 1 : Math.min(devicePixelRatio, 2);
     this.renderer = new WebGLRenderer({
       canvas, antialias: !this.software, powerPreference: "high-performance",
     });

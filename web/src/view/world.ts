@@ -9,6 +9,7 @@ import { boundsOf, samplePlaces, type Bounds } from "./bounds";
 import { Cloud, type Colouring } from "./cloud";
 import { rampTexture } from "./colours";
 import { Frustum } from "./frustum";
+import type { Graphics } from "./graphics";
 import { firstDirection, Navigation } from "./navigation";
 import { Stage } from "./stage";
 import { Surface } from "./surface";
@@ -57,8 +58,8 @@ export class World {
   private begun = 0;
   private before = 0;
 
-  constructor(canvas: HTMLCanvasElement) {
-    this.stage = new Stage(canvas);
+  constructor(canvas: HTMLCanvasElement, graphics: Graphics) {
+    this.stage = new Stage(canvas, graphics);
     this.navigation = new Navigation(this.stage.camera, canvas, () => this.stage.request());
   }
 
