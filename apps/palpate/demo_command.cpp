@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "apps/palpate/device_choice.hpp"
 #include "apps/palpate/option_checks.hpp"
 #include "apps/palpate/touch_command.hpp"
 #include "apps/palpate/touch_options.hpp"
@@ -64,12 +65,14 @@ void add_demo_options(CLI::App& command, DemoOptions& o) {
       ->check(number("from 0.1 to 86400 s", [](double x) { return x >= 0.1 && x <= 86'400; }))
       ->type_name("SECONDS");
   command.add_flag("--headless", o.headless, wrapped("opens no browser"));
+  add_device_option(command, o.devices, "OPTIONS");
   add_page_options(command, o.view);
 }
 
 void demo(const DemoOptions& options) {
   TouchOptions touched;
   touched.clouds = sources_of(options.scene);
+  touched.devices = options.devices;
   touched.duration = options.duration;
   touched.view = options.view;
   touched.view.wanted = true;

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/palpate/view_options.hpp"
 
@@ -13,15 +14,16 @@ namespace palpate::app {
 
 struct DemoOptions {
   std::string scene = "desk";
-  std::optional<double> duration;  ///< s; unset: until Ctrl-C
-  bool headless = false;           ///< opens no browser
+  std::optional<double> duration;    ///< s; unset: until Ctrl-C
+  bool headless = false;             ///< opens no browser
+  std::vector<std::string> devices;  ///< one a hand, as parse_device() takes them
   ViewOptions view;
 };
 
 void add_demo_options(CLI::App& command, DemoOptions& options);
 
-/// Shows a scene that palpate makes itself on its page, explored by a simulated hand until somebody
-/// takes the tool. @throws Error as touch() does.
+/// Shows a scene that palpate makes itself on its page, explored by simulated hands, one unless
+/// told otherwise, until somebody takes the tool. @throws Error as touch() does.
 void demo(const DemoOptions& options);
 
 }  // namespace palpate::app

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "apps/palpate/touch_surface.hpp"
@@ -24,6 +25,7 @@ constexpr double kPatchRadii = 20;      // ... or, where that is more, as many R
 constexpr double kDepth = 0.75;         // R under the surface
 constexpr double kLargestForce = 4;     // N
 constexpr double kPaperMultiple = 2.5;  // m = R / s where s is not known
+constexpr double kClearance = 2e-3;     // m of the hand, from the surface to where a device stands
 
 // All sources' points, relative to one origin. A single source's are not copied: it may be large.
 struct Union {
@@ -98,6 +100,36 @@ double choose_scale(double patch, double stiffness) {
   return std::min(scale, std::max(1.0, kStiffest / stiffness));
 }
 
+// What exploring and standing have in common.
+struct Extent {
+  double patch = 0;  // m across
+  double scale = 1;
+  double stiffness = 0;  // N/m in the world
+};
+
+Extent extent_of(const Union& all, const PlanOptions& options) {
+  const double widest = std::max(kPatch, kPatchRadii * all.radius);
+  Extent extent;
+  extent.patch = std::max(std::min(all.box.size().maxCoeff(), widest), all.radius);
+  extent.scale = choose_scale(extent.patch, options.stiffness);
+  extent.stiffness = options.stiffness > 0 ? options.stiffness : kStiffness / extent.scale;
+  return extent;
+}
+
+std::size_t nearest_to_middle(std::span<const Vector3f> points) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3f& p : points) sum += p.cast<double>();
+  const Vector3f middle = (sum / static_cast<double>(points.size())).cast<float>();
+  const auto distance = [&](const Vector3f& p) { return (p - middle).squaredNorm(); };
+  return static_cast<std::size_t>(std::ranges::min_element(points, {}, distance) - points.begin());
+}
+
+// Upward where there is none.
+Vector3d normal_at(const ExploredSurface& surface, std::size_t point) {
+  const bool known = !surface.normals.empty() && !surface.normals[point].isZero();
+  return known ? Vector3d(surface.normals[point].cast<double>()) : Vector3d::UnitZ();
+}
+
 }  // namespace
 
 double workspace_scale(double extent) {
@@ -114,11 +146,11 @@ ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
                                  const PlanOptions& options) {
   const Union all = unite(scene);
   ExplorationPlan plan;
-  const double widest = std::max(kPatch, kPatchRadii * all.radius);
-  plan.patch = std::max(std::min(all.box.size().maxCoeff(), widest), all.radius);
-  plan.workspace.scale = choose_scale(plan.patch, options.stiffness);
-  const double scale = plan.workspace.scale;
-  plan.stiffness = options.stiffness > 0 ? options.stiffness : kStiffness / scale;
+  const Extent extent = extent_of(all, options);
+  const double scale = extent.scale;
+  plan.patch = extent.patch;
+  plan.workspace.scale = scale;
+  plan.stiffness = extent.stiffness;
   plan.depth = std::min(kDepth * all.radius, kLargestForce / plan.stiffness);
 
   ExplorationOptions explore_options;
@@ -143,6 +175,20 @@ ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
     row.position = plan.workspace.position_to_device(row.position);
   }
   return plan;
+}
+
+Stand plan_stand(const Scene& scene, const FieldOptions& field, const PlanOptions& options) {
+  const Union all = unite(scene);
+  const ExploredSurface surface = all.view();
+  const Extent extent = extent_of(all, options);
+  const std::size_t point = nearest_to_middle(surface.points);
+  const double height = offset(field, all, options.tool_radius) + kClearance * extent.scale;
+  Stand stand;
+  stand.stiffness = extent.stiffness;
+  stand.workspace.scale = extent.scale;
+  stand.workspace.T_world_device.translation() =
+      surface.origin + surface.points[point].cast<double>() + height * normal_at(surface, point);
+  return stand;
 }
 
 }  // namespace palpate::app

@@ -39,6 +39,18 @@ struct PlanOptions {
 [[nodiscard]] ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
                                                const PlanOptions& options);
 
+/// Where a device stands that nobody leads, and the stiffness that goes with it.
+struct Stand {
+  Workspace workspace;
+  double stiffness = 0;  ///< of the surface, N/m in the world
+};
+
+/// The device's origin is just outside the surface, 2 mm of the hand in front of the place that is
+/// nearest to the middle (mean) of all points; its axes are the world's. Scale and stiffness are
+/// those of plan_exploration(). @throws Error when the scene has no points.
+[[nodiscard]] Stand plan_stand(const Scene& scene, const FieldOptions& field,
+                               const PlanOptions& options);
+
 /// 1 where a hand can explore `extent` metres as they are, else the fitting one of
 /// ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ...
 [[nodiscard]] double workspace_scale(double extent);

@@ -1,30 +1,54 @@
 #include "apps/palpate/hand.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/touch_usage.hpp"
+#include "palpate/base/error.hpp"
 #include "palpate/device/scripted.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
+#include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
 
 namespace {
 
+std::string socket_path(const DeviceChoice& choice) {
+  if (!choice.path.empty()) return choice.path;
+  try {
+    return default_remote_path();
+  } catch (const Error&) {
+    throw Error(
+        "--device remote: XDG_RUNTIME_DIR is not set, so there is no usual place for the socket; "
+        "give one, as in --device remote:/tmp/hand");
+  }
+}
+
+void open_socket(Hand& hand, const DeviceChoice& choice, const TouchOptions& options,
+                 const Clock& clock) {
+  RemoteDeviceOptions device;
+  device.path = socket_path(choice);
+  device.rate = options.rate.value_or(device.rate);
+  if (options.live.maximum_force) {
+    device.maximum_force = *options.live.maximum_force / Servo::kForceShare;
+  }
+  auto opened = std::make_unique<RemoteDevice>(clock, device);
+  hand.socket = opened.get();
+  hand.duration = options.duration;
+  hand.device = std::move(opened);
+  fmt::print(stderr, "{}: listens on {}\n", hand.name, hand.socket->path());
+}
+
 // The hand is where `way` says, whatever the force.
 void play_back(Hand& hand, Trajectory way) {
   hand.steps = way.size();
   hand.device = std::make_unique<ScriptedDevice>(std::move(way));
-}
-
-Hand scripted(const TouchOptions& options, Trajectory trajectory) {
-  Hand hand;
-  hand.stiffness = options.stiffness.value_or(kStiffness);
-  play_back(hand, std::move(trajectory));
-  return hand;
 }
 
 // The hand is pulled along `target` again and again, unless somebody takes the tool.
@@ -45,29 +69,20 @@ void simulate(Hand& hand, const TouchOptions& options, Trajectory target) {
   hand.device = std::make_unique<SimulatedDevice>(device, std::move(target));
 }
 
-Hand simulated(const TouchOptions& options, Trajectory trajectory) {
-  Hand hand;
+void follow(Hand& hand, const DeviceChoice& choice, const TouchOptions& options, Trajectory way) {
   hand.stiffness = options.stiffness.value_or(kStiffness);
-  const double start = trajectory.front().time;
-  for (TrajectoryRow& row : trajectory) row.time -= start;
+  if (choice.kind == DeviceKind::scripted) return play_back(hand, std::move(way));
+  const double start = way.front().time;
+  for (TrajectoryRow& row : way) row.time -= start;
   // Encoders count from where the hand begins, so that far from the origin nothing is lost.
-  hand.workspace.T_world_device.translation() = trajectory.front().position;
-  for (TrajectoryRow& row : trajectory) {
-    row.position = hand.workspace.position_to_device(row.position);
-  }
-  simulate(hand, options, std::move(trajectory));
-  return hand;
+  hand.workspace.T_world_device.translation() = way.front().position;
+  for (TrajectoryRow& row : way) row.position = hand.workspace.position_to_device(row.position);
+  simulate(hand, options, std::move(way));
 }
 
-Hand exploring(const TouchOptions& options, const Scene& scene, const FieldOptions& field) {
-  Hand hand;
-  PlanOptions plan;
-  plan.duration = options.duration.value_or(plan.duration);
-  plan.stiffness = options.stiffness.value_or(0);
-  plan.tool_radius = options.tool_radius;
-  plan.seed = options.seed.value_or(plan.seed);
-  plan.rate = options.rate.value_or(plan.rate);
-  const bool pulled = options.device != "scripted";
+void explore(Hand& hand, const DeviceChoice& choice, const TouchOptions& options,
+             const Scene& scene, const FieldOptions& field, PlanOptions plan) {
+  const bool pulled = choice.kind == DeviceKind::simulated;
   if (!pulled) plan.hand.stiffness = std::numeric_limits<double>::infinity();
   Progress progress("planning the exploration");
   plan.progress = [&](double done) { progress.update(done); };
@@ -79,23 +94,58 @@ Hand exploring(const TouchOptions& options, const Scene& scene, const FieldOptio
   } else {
     play_back(hand, hand.plan->target);
   }
-  return hand;
+}
+
+void stand(Hand& hand, const Scene& scene, const FieldOptions& field, const PlanOptions& plan) {
+  const Stand stand = plan_stand(scene, field, plan);
+  hand.workspace = stand.workspace;
+  hand.stiffness = stand.stiffness;
+}
+
+PlanOptions plan_options(const TouchOptions& options, const Trajectory& way) {
+  PlanOptions plan;
+  plan.duration = options.duration.value_or(plan.duration);
+  plan.stiffness = options.stiffness.value_or(way.empty() ? 0 : kStiffness);
+  plan.tool_radius = options.tool_radius;
+  plan.seed = options.seed.value_or(plan.seed);
+  plan.rate = options.rate.value_or(plan.rate);
+  return plan;
 }
 
 }  // namespace
 
 Trajectory read_way(const TouchOptions& options) {
-  if (options.trajectory.empty()) return {};
+  const bool led = std::ranges::any_of(choose_devices(options), &DeviceChoice::is_led);
+  if (options.trajectory.empty() || !led) return {};
   Trajectory way = read_trajectory(options.trajectory);
   check_trajectory(options, way);
   return way;
 }
 
-Hand make_hand(const TouchOptions& options, Trajectory way, const Scene& scene,
-               const FieldOptions& field) {
-  if (way.empty()) return exploring(options, scene, field);
-  if (options.device == "simulated") return simulated(options, std::move(way));
-  return scripted(options, std::move(way));
+std::vector<Hand> open_hands(const TouchOptions& options, const Clock* clock) {
+  std::vector<Hand> hands;
+  const std::vector<DeviceChoice> devices = choose_devices(options);
+  for (const DeviceChoice& choice : devices) {
+    Hand& hand = hands.emplace_back();
+    hand.name = fmt::format("hand {}", hands.size());
+    if (!choice.is_led()) open_socket(hand, choice, options, *clock);
+  }
+  return hands;
+}
+
+void place_hands(std::vector<Hand>& hands, const TouchOptions& options, const Trajectory& way,
+                 const Scene& scene, const FieldOptions& field) {
+  const std::vector<DeviceChoice> devices = choose_devices(options);
+  PlanOptions plan = plan_options(options, way);
+  for (std::size_t i = 0; i < hands.size(); ++i, ++plan.seed) {
+    if (!devices[i].is_led()) {
+      stand(hands[i], scene, field, plan);
+    } else if (way.empty()) {
+      explore(hands[i], devices[i], options, scene, field, plan);
+    } else {
+      follow(hands[i], devices[i], options, way);
+    }
+  }
 }
 
 }  // namespace palpate::app

@@ -2,11 +2,15 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "apps/palpate/device_choice.hpp"
 #include "apps/palpate/exploration_plan.hpp"
 #include "apps/palpate/touch_options.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/guided_hand.hpp"
+#include "palpate/device/remote.hpp"
 #include "palpate/device/remote_hand.hpp"
 #include "palpate/device/workspace.hpp"
 
@@ -14,22 +18,32 @@ namespace palpate::app {
 
 /// Who touches: a device, where it stands, and the surface's stiffness that goes with it.
 struct Hand {
+  std::string name;                    ///< for messages
   std::unique_ptr<RemoteHand> remote;  ///< takes the tool from its way; null: nobody can
   std::unique_ptr<GuidedHand> guide;   ///< what `remote` speaks to
   std::unique_ptr<Device> device;
+  const RemoteDevice* socket = nullptr;  ///< the device, where it is another program's
   Workspace workspace;
-  double stiffness = 0;                 ///< of the surface, N/m in the world
+  double stiffness = 0;                 ///< of the surface, N/m in the world; of all hands the same
   std::size_t steps = 0;                ///< that its way takes
-  std::optional<ExplorationPlan> plan;  ///< of the built-in exploration, if it is that
+  std::optional<double> duration = {};  ///< s, of a device that never ends by itself
+  std::optional<ExplorationPlan> plan = {};  ///< of the built-in exploration, if it is that
 };
 
-/// Reads the trajectory that `options` name; empty: none is named, so the hand is to explore.
+/// Reads the trajectory that `options` name; empty: none is named, so led hands are to explore, or
+/// no hand is led.
 /// @throws Error as reading does, UsageError when it cannot be played.
 [[nodiscard]] Trajectory read_way(const TouchOptions& options);
 
-/// The hand that goes along `way` or, where that is empty, explores what `scene` shows.
-/// @throws Error when there is nothing to explore.
-[[nodiscard]] Hand make_hand(const TouchOptions& options, Trajectory way, const Scene& scene,
-                             const FieldOptions& field);
+/// The hands that `options` want. Those of other programs have their device, and can be spoken to:
+/// they are opened before anything is read. `clock` is the run's and outlives them; null: simulated
+/// time. Says on standard error where devices listen.
+/// @throws Error when a socket cannot be had.
+[[nodiscard]] std::vector<Hand> open_hands(const TouchOptions& options, const Clock* clock);
+
+/// Puts the hands into what `scene` shows. A led one gets its device and goes along `way` or, where
+/// that is empty, explores. @throws Error when there is nothing to explore.
+void place_hands(std::vector<Hand>& hands, const TouchOptions& options, const Trajectory& way,
+                 const Scene& scene, const FieldOptions& field);
 
 }  // namespace palpate::app

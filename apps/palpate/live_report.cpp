@@ -82,6 +82,9 @@ void print_live(const LiveReport& report, std::FILE* out) {
   }
   print_guard(report, style, out);
   print_requests(report.realtime, style, out);
+  if (!report.failure.empty()) {
+    fmt::print(out, "  {} {}\n", style.error("FAILED    "), report.failure);
+  }
 }
 
 Json json_live(const LiveReport& report) {
@@ -101,7 +104,8 @@ Json json_live(const LiveReport& report) {
             {"silences", counts.silences},
             {"faults", counts.faults},
             {"fault", std::string(in_words(report.guard.fault))}}},
-          {"realtime", json_requests(report.realtime)}};
+          {"realtime", json_requests(report.realtime)},
+          {"failure", report.failure}};
 }
 
 }  // namespace palpate::app

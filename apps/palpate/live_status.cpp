@@ -21,11 +21,14 @@ std::size_t columns() {
   return known ? size.ws_col : kColumns;
 }
 
-std::string servo_words(const LiveMoment& moment) {
+std::string hand_words(const HandMoment& moment) {
+  if (!moment.silence.empty()) return moment.silence;
   std::string words =
-      fmt::format("{:.1f} s  {:.2f} N  {:.0f} Hz, {:.0f} us (p99 {:.0f}), late p99 {:.2f} ms",
-                  moment.time, moment.force, moment.rate, 1e6 * moment.computing.quantile(0.5),
-                  1e6 * moment.computing.quantile(0.99), 1e3 * moment.lateness.quantile(0.99));
+      moment.ended ? "ended"
+                   : fmt::format("{:.2f} N  {:.0f} Hz, {:.0f} us (p99 {:.0f}), late p99 {:.2f} ms",
+                                 moment.force, moment.rate, 1e6 * moment.computing.quantile(0.5),
+                                 1e6 * moment.computing.quantile(0.99),
+                                 1e3 * moment.lateness.quantile(0.99));
   const GuardState& guard = moment.servo.guard;
   if (guard.fault != GuardFault::none) words += fmt::format("  FAULT: {}", in_words(guard.fault));
   return words;
@@ -55,7 +58,13 @@ std::string stream_words(const StreamState& stream) {
 }  // namespace
 
 std::string in_words(const LiveMoment& moment) {
-  std::string words = servo_words(moment);
+  std::string words = fmt::format("{:.1f} s", moment.time);
+  if (moment.hands.size() == 1) words += "  " + hand_words(moment.hands.front());
+  if (moment.hands.size() > 1) {
+    for (const HandMoment& hand : moment.hands) {
+      words += fmt::format(" | {}: {}", hand.name, hand_words(hand));
+    }
+  }
   for (const StreamState& stream : moment.streams) words += " | " + stream_words(stream);
   return words;
 }
@@ -87,6 +96,10 @@ void LiveStatus::show(const LiveMoment& moment) {
   }
   std::fflush(stderr);
   shown_ = true;
+}
+
+void LiveStatus::tell(const std::string& words) {
+  fmt::print(stderr, "{}{}\n", terminal_ && shown_ ? "\r\033[K" : "", words);
 }
 
 }  // namespace palpate::app

@@ -10,19 +10,28 @@
 
 namespace palpate::app {
 
-/// What is told of a run while it lasts.
-struct LiveMoment {
-  double time = 0;     ///< since the run began, s
+/// What is told of one hand while a run lasts.
+struct HandMoment {
+  std::string name;
   ServoState servo;    ///< its last step
   double force = 0;    ///< the longest since the moment before, N
   double rate = 0;     ///< steps a second since then, Hz
   Durations lateness;  ///< of the steps since then
   Durations computing;
+  std::string silence;  ///< why its device is not heard; empty: it is
+  bool ended = false;
+};
+
+/// What is told of a run while it lasts.
+struct LiveMoment {
+  double time = 0;  ///< since the run began, s
+  std::vector<HandMoment> hands;
   std::vector<StreamState> streams;
 };
 
-/// One line: "12.3 s  1.42 N  1000 Hz, 24 us (p99 61), late p99 0.09 ms | table 30.0 Hz, 11 ms". A
-/// stream that does not run and a servo that holds back say why.
+/// One line: "12.3 s  1.42 N  1000 Hz, 24 us (p99 61), late p99 0.09 ms | table 30.0 Hz, 11 ms".
+/// Several hands are told by name. A stream that does not run, a device that is not heard and a
+/// servo that holds back say why.
 [[nodiscard]] std::string in_words(const LiveMoment& moment);
 
 /// Shows moments on standard error: in one line that is rewritten ten times a second on a terminal,
@@ -37,6 +46,9 @@ class LiveStatus {
   /// Is the next moment to be shown at `time`, s since the run began?
   [[nodiscard]] bool due(double time) const { return time >= next_; }
   void show(const LiveMoment& moment);
+
+  /// Something that happened, in a line that stays.
+  void tell(const std::string& words);
 
  private:
   bool terminal_;

@@ -6,14 +6,14 @@ namespace palpate::app {
 
 struct View::Parts {};
 
-View::View(Run& run, Servo& /*servo*/, const LiveFeed& /*feed*/) {
+View::View(Run& run, std::vector<Servo*> /*servos*/, const LiveFeed& /*feed*/) {
   if (!run.options.view.wanted) return;
   throw Error(
       "this palpate was built without its page; install libboost-dev and build it again, or leave "
       "--view out");
 }
 View::~View() = default;
-void View::add(const TouchStep& /*step*/) {}
+void View::add(std::size_t /*hand*/, const TouchStep& /*step*/) {}
 void View::look() {}
 
 }  // namespace palpate::app

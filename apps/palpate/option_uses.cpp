@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <string>
 
 #include "apps/palpate/depth_file.hpp"
+#include "apps/palpate/device_choice.hpp"
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/touch_usage.hpp"
@@ -127,13 +129,25 @@ std::vector<Use> uses_of_time(const TouchOptions& options, const Kinds& kinds) {
 }
 
 std::vector<Use> uses_of_hand(const TouchOptions& options) {
-  const bool exploring = options.trajectory.empty();
+  const std::vector<DeviceChoice> devices = choose_devices(options);
+  const auto any = [&](DeviceKind kind) {
+    return std::ranges::any_of(devices, [kind](const auto& each) { return each.kind == kind; });
+  };
+  const bool remote = any(DeviceKind::remote);
+  const bool led = std::ranges::any_of(devices, &DeviceChoice::is_led);
+  const bool exploring = led && options.trajectory.empty();
   return {
-      {{"--duration"}, exploring, "is of the exploration; a --trajectory has its own"},
-      {{"--seed"}, exploring, "is of the exploration; a --trajectory is played as it is"},
+      {{"--trajectory"},
+       led,
+       "leads a scripted or simulated hand; a remote one goes where its program says"},
+      {{"--duration"}, exploring || remote, "is of the exploration; a --trajectory has its own"},
+      {{"--seed"},
+       exploring,
+       "is of the exploration; a --trajectory is played as it is, and a remote hand goes where its "
+       "program says"},
       {{"--rate"},
-       exploring || options.device == "simulated",
-       "is of the exploration or of --device simulated; a --trajectory has its own"},
+       exploring || remote || any(DeviceKind::simulated),
+       "is of the exploration or of --device simulated or remote; a --trajectory has its own"},
   };
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "apps/palpate/hand.hpp"
 #include "apps/palpate/touch_statistics.hpp"
@@ -14,17 +15,17 @@ struct Run {
   const TouchOptions& options;
   Touched& touched;
   Scene& felt;  ///< what the run feels of it: fill_felt()
-  Hand& hand;
+  std::vector<Hand>& hands;
   FieldOptions field;
   ProxyOptions proxy;
 };
 
-/// Is handed every step as soon as it is done.
-using EachStep = std::function<void(const TouchStep&)>;
+/// Is handed every step of every hand, by its index, as soon as it is done.
+using EachStep = std::function<void(std::size_t hand, const TouchStep&)>;
 
 /// Cameras, preparation and servo on one simulated clock, one thread, as fast as they go. The same
-/// run gives the same steps, bit for bit. Fills in what `touched` tells of its cameras. False: it
-/// was ended by Ctrl-C. @throws Error when the device fails.
+/// run gives the same steps, bit for bit. One hand. Fills in what `touched` tells of its cameras.
+/// False: it was ended by Ctrl-C. @throws Error when the device fails.
 bool run_simulated(Run& run, const EachStep& each);
 
 }  // namespace palpate::app

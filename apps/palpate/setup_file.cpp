@@ -68,6 +68,8 @@ class SetupFile {
   void take(CLI::App& taker, const TouchOptions& options, std::string_view section,
             const toml::key& key, const toml::node& node, DescribedOptions& described) const;
   [[nodiscard]] std::string text_of(const SetupKey& key, const toml::node& node) const;
+  [[nodiscard]] std::vector<std::string> texts_of(const SetupKey& key,
+                                                  const toml::node& node) const;
   [[nodiscard]] std::string numbers(std::string_view key, const toml::node& node) const;
   [[nodiscard]] std::string resolved(const std::string& path) const;
 
@@ -140,6 +142,9 @@ std::string SetupFile::text_of(const SetupKey& key, const toml::node& node) cons
     case KeyKind::flag:
       if (!node.is_boolean()) wrong("true or false");
       return *node.value<bool>() ? "true" : "false";
+    case KeyKind::texts:
+      if (!node.is_string()) wrong("text in quotes, or a list of it");
+      break;
     case KeyKind::text:
     case KeyKind::path:
       break;
@@ -150,6 +155,16 @@ std::string SetupFile::text_of(const SetupKey& key, const toml::node& node) cons
   return key.kind == KeyKind::path ? resolved(text) : text;
 }
 
+// What the option of that key would be given, one after the other.
+std::vector<std::string> SetupFile::texts_of(const SetupKey& key, const toml::node& node) const {
+  const toml::array* list = node.as_array();
+  if (key.kind != KeyKind::texts || list == nullptr) return {text_of(key, node)};
+  if (list->empty()) fail(node.source(), fmt::format("'{}' is empty; leave it out", key.key));
+  std::vector<std::string> texts;
+  for (const toml::node& each : *list) texts.push_back(text_of({key.key, KeyKind::text}, each));
+  return texts;
+}
+
 // Gives a key's value to the option of its name, unless the command line has that; its type has to
 // be right all the same.
 void SetupFile::take(CLI::App& taker, const TouchOptions& options, std::string_view section,
@@ -157,12 +172,12 @@ void SetupFile::take(CLI::App& taker, const TouchOptions& options, std::string_v
                      DescribedOptions& described) const {
   const SetupKey* known = find(section, key.str());
   if (known == nullptr) fail(key.source(), unknown_key(section, key.str()));
-  const std::string text = text_of(*known, node);
+  const std::vector<std::string> texts = texts_of(*known, node);
   described[option_of(known->key)] = in_words(key.source(), fmt::format("'{}'", known->key));
   if (options.given.contains(option_of(known->key))) return;
   CLI::Option* option = taker.get_option(option_of(known->key));
   try {
-    option->add_result(text);
+    for (const std::string& text : texts) option->add_result(text);
     option->run_callback();
   } catch (const CLI::Error& error) {
     fail(node.source(), fmt::format("'{}' of {}: {}", known->key, in_brackets(section),

@@ -74,7 +74,7 @@ constexpr auto kMaterial = std::to_array<SetupKey>({
 });
 
 constexpr auto kHand = std::to_array<SetupKey>({
-    {"device", text},
+    {"device", texts},
     {"trajectory", path},
     {"duration", number},
     {"seed", integer},

@@ -7,7 +7,7 @@
 namespace palpate::app {
 
 /// What a key of a set-up file holds.
-enum class KeyKind { text, path, number, integer, flag, numbers, numbers_or_text };
+enum class KeyKind { text, texts, path, number, integer, flag, numbers, numbers_or_text };
 
 /// A key of a set-up file. It means what the option of its name means: both take the same values
 /// and are checked alike. Some have an option in set-up files alone (add_setup_options()).

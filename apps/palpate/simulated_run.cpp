@@ -36,7 +36,9 @@ bool run_simulated(Run& run, const EachStep& each) {
     for (SimulatedStream& stream : streams) stream.advance(time);
     return !interruption.asked();
   };
-  run_touch(*run.hand.device, run.hand.workspace, field, proxy, see, each);
+  const Hand& hand = run.hands.front();
+  run_touch(*hand.device, hand.workspace, field, proxy, see,
+            [&](const TouchStep& step) { each(0, step); });
   std::vector<StreamState> states;
   for (const SimulatedStream& stream : streams) states.push_back(stream.state());
   keep_states(run.touched, run.felt, states);

@@ -2,20 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <deque>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/palpate/hand_outputs.hpp"
 #include "apps/palpate/live_run.hpp"
-#include "apps/palpate/log.hpp"
-#include "apps/palpate/names.hpp"
 #include "apps/palpate/output.hpp"
-#include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/run.hpp"
 #include "apps/palpate/touch_report.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/touch_usage.hpp"
-#include "apps/palpate/words.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/servo/realtime.hpp"
 
@@ -23,62 +22,41 @@ namespace palpate::app {
 
 namespace {
 
-std::string subtitle(const TouchReport& report) {
-  const TouchStatistics& s = report.statistics;
-  return fmt::format(
-      "{} field, K = {:.4g} N/m, {} steps in {:.3g} s, {} contacts, energy given to the "
-      "hand {}",
-      name_in(kFields, report.field.kind), report.proxy.stiffness, grouped(s.steps()), s.duration(),
-      grouped(s.contacts()), energy(energy_at_hand(report).given));
-}
-
 // Every file is made before the work: a place that does not exist is told at once.
 struct Outputs {
-  std::optional<TouchLog> log;
+  std::deque<HandOutputs> hands;
   std::optional<OutputFile> json;
-  std::optional<Picture> picture;
 
   explicit Outputs(const TouchOptions& options) {
-    if (!options.log.empty()) log.emplace(options.log);
+    const std::size_t count = choose_devices(options).size();
+    for (std::size_t i = 0; i < count; ++i) hands.emplace_back(options, i);
     if (!options.json.empty()) json.emplace(options.json);
-    if (options.picture.empty()) return;
-    picture.emplace(options.picture);
   }
 };
 
-// How a run went.
-struct Played {
-  std::optional<LiveReport> live;  // in real time
-  bool interrupted = false;
-};
-
-bool play_simulated(Run& run, const TouchStatistics& statistics, const EachStep& keep) {
+bool play_simulated(Run& run, HandOutputs& outputs) {
   Progress progress("touching");
-  return run_simulated(run, [&](const TouchStep& step) {
-    keep(step);
-    if (statistics.steps() % 256 == 0) {
-      progress.update(static_cast<double>(statistics.steps()) /
-                      static_cast<double>(run.hand.steps));
-    }
+  const auto whole = static_cast<double>(run.hands.front().steps);
+  return run_simulated(run, [&](std::size_t, const TouchStep& step) {
+    outputs.add(step);
+    const std::size_t steps = outputs.statistics().steps();
+    if (steps % 256 == 0) progress.update(static_cast<double>(steps) / whole);
   });
 }
 
-// Runs, in the time of `clock` if there is one, and hands each step to what keeps or sums it.
-Played play(Run& run, WaitingClock* clock, TouchStatistics& statistics, Outputs& outputs) {
-  const EachStep keep = [&](const TouchStep& step) {
-    statistics.add(step);
-    if (outputs.log) outputs.log->add(step);
-    if (outputs.picture) outputs.picture->add(step);
-  };
-  Played played;
+// Runs, in the time of `clock` if there is one, and hands each step to what keeps or sums it. In
+// simulated time there are no reports of real time.
+LiveOutcome play(Run& run, WaitingClock* clock, Outputs& outputs) {
+  LiveOutcome outcome;
   if (clock == nullptr) {
-    played.interrupted = !play_simulated(run, statistics, keep);
+    outcome.interrupted = !play_simulated(run, outputs.hands.front());
   } else {
-    played.live = run_live(run, *clock, keep);
-    played.interrupted = played.live->interrupted;
+    outcome = run_live(run, *clock, [&](std::size_t hand, const TouchStep& step) {
+      outputs.hands[hand].add(step);
+    });
   }
-  if (outputs.log) outputs.log->close();
-  return played;
+  for (HandOutputs& hand : outputs.hands) hand.close_log();
+  return outcome;
 }
 
 // Cameras and preparation, whose threads are started later, stay off the servo's processor.
@@ -87,7 +65,31 @@ std::optional<RealtimeRequest> leave_to_servo(const TouchOptions& options, bool 
   return leave_processor(*options.live.processor);
 }
 
-// The picture comes last: everything else is there if it cannot be drawn.
+std::vector<HandReport> hand_reports(const Run& run, const Outputs& outputs,
+                                     const LiveOutcome& outcome) {
+  std::vector<HandReport> reports;
+  for (std::size_t i = 0; i < run.hands.size(); ++i) {
+    reports.push_back({run.hands[i], outputs.hands[i].statistics(), run.field, run.proxy.stiffness,
+                       outcome.hands.empty() ? nullptr : &outcome.hands[i], outcome.interrupted});
+  }
+  return reports;
+}
+
+bool felt_nothing(const HandReport& report) {
+  const TouchStatistics& s = report.statistics;
+  return s.steps() > 0 && s.faults() == s.steps();
+}
+
+// Everything was written by then.
+void check_hands(const std::vector<HandReport>& hands) {
+  for (const HandReport& hand : hands) {
+    if (hand.live != nullptr && !hand.live->failure.empty()) throw Error(hand.live->failure);
+  }
+  if (std::ranges::none_of(hands, felt_nothing)) return;
+  throw Error("every step was a fault: nothing was felt (everything was written)");
+}
+
+// The pictures come last: everything else is there if they cannot be drawn.
 void tell(const TouchReport& report, Outputs& outputs) {
   const TouchOptions& options = report.options;
   const bool stdout_taken = options.log == "-" || options.json == "-";
@@ -97,38 +99,36 @@ void tell(const TouchReport& report, Outputs& outputs) {
     outputs.json->write("\n");
     outputs.json->close();
   }
-  if (outputs.picture) {
-    outputs.picture->draw(report.felt, title_of(report.touched), subtitle(report));
+  for (std::size_t i = 0; i < report.hands.size(); ++i) {
+    outputs.hands[i].draw(report.felt, title_of(report.touched), report.hands[i]);
   }
-  const TouchStatistics& s = report.statistics;
-  if (s.steps() == 0 || s.faults() < s.steps()) return;
-  throw Error("every step was a fault: nothing was felt (everything was written)");
+  check_hands(report.hands);
 }
 
 }  // namespace
 
 void touch(const TouchOptions& options) {
   check_usage(options);
-  Trajectory way = read_way(options);
+  const Trajectory way = read_way(options);
   Outputs outputs(options);
-  const bool explored = way.empty() || options.texture_amplitude > 0;
   SteadyWaitingClock steady;
   WaitingClock* clock = in_real_time(options) ? &steady : nullptr;
+  std::vector<Hand> hands = open_hands(options, clock);
+  const bool explored = way.empty() || hands.size() > 1 || options.texture_amplitude > 0;
   const std::optional<RealtimeRequest> left = leave_to_servo(options, clock != nullptr);
   Touched touched = prepare_touched(options, explored, clock);
   check_texture(options, touched.scene);
   const FieldOptions field = field_options(options);
-  Hand hand = make_hand(options, std::move(way), touched.scene, field);
+  place_hands(hands, options, way, touched.scene, field);
+  const double stiffness = hands.front().stiffness;
   Scene felt;
-  fill_felt(felt, touched, soft_material(options, hand.stiffness));
-  Run run{options, touched, felt, hand, field, proxy_options(options, hand.stiffness)};
-  TouchStatistics statistics;
-  Played played = play(run, clock, statistics, outputs);
-  LiveReport* const live = played.live ? &*played.live : nullptr;
-  if (live != nullptr && left) live->realtime.requests.push_back(*left);
-  tell({touched, felt, options, statistics, field, run.proxy, hand.device->info().name,
-        hand.plan ? &*hand.plan : nullptr, live, played.interrupted},
-       outputs);
+  fill_felt(felt, touched, soft_material(options, stiffness));
+  Run run{options, touched, felt, hands, field, proxy_options(options, stiffness)};
+  LiveOutcome outcome = play(run, clock, outputs);
+  for (LiveReport& each : outcome.hands) {
+    if (left) each.realtime.requests.push_back(*left);
+  }
+  tell({touched, felt, options, field, run.proxy, hand_reports(run, outputs, outcome)}, outputs);
 }
 
 }  // namespace palpate::app

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/palpate/device_choice.hpp"
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/option_checks.hpp"
 
@@ -87,19 +88,17 @@ void add_hand_options(CLI::App& command, TouchOptions& o) {
   add("--trajectory", o.trajectory,
       "CSV with columns t,hip_x,hip_y,hip_z (s, m): one servo step a row; a log will do")
       ->type_name("FILE");
-  add("--device", o.device,
-      "scripted: the hand is where the trajectory or exploration says, whatever the force; "
-      "simulated: a hand pulls a device with mass and friction there. Default: scripted with "
-      "--trajectory, else simulated")
-      ->check(one_of({"scripted", "simulated"}))
-      ->type_name("NAME");
-  add("--duration", o.duration, "of the built-in exploration (10)")
+  add_device_option(command, o.devices, "Hand");
+  add("--duration", o.duration,
+      "of the built-in exploration (10); ends a run with a remote device or a page, too (Ctrl-C)")
       ->check(number("between 0.01 and 3600 s", [](double x) { return x >= 0.01 && x <= 3600; }))
       ->type_name("SECONDS");
-  add("--seed", o.seed, "of the exploration: another one touches other places (1)")
+  add("--seed", o.seed,
+      "of the exploration: another one touches other places (1; the next hand has the next)")
       ->check(whole_number(0, kLargestSeed))
       ->type_name("N");
-  add("--rate", o.rate, "steps a second of the exploration and of a simulated device (1000)")
+  add("--rate", o.rate,
+      "steps a second of the exploration and of simulated and remote devices (1000)")
       ->check(number("between 500 and 10000 Hz", [](double x) { return x >= 500 && x <= 1e4; }))
       ->type_name("HZ");
 }
@@ -138,6 +137,7 @@ constexpr const char* kFooter = R"(Examples:
   palpate touch camera:simulated --simulated-time --duration 5 --picture table.png
   palpate touch sequence:recording --simulated-time --trajectory hand.csv --log forces.csv
   palpate touch bunny.ply --view
+  palpate touch bunny.ply --view --device simulated --device remote
   palpate touch --setup desk.toml left=sequence:monday
   gunzip -c dragon.ply.gz | palpate touch -
 

@@ -44,8 +44,8 @@ struct TouchOptions {
   std::optional<double> soft_friction;   ///< share, 0 to 1
 
   std::string trajectory;
-  std::string device;
-  std::optional<double> duration;  ///< s
+  std::vector<std::string> devices;  ///< one a hand, as parse_device() takes them
+  std::optional<double> duration;    ///< s
   std::optional<std::uint64_t> seed;
   std::optional<double> rate;  ///< steps a second, Hz
 

@@ -4,155 +4,38 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/live_report.hpp"
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/picture_script.hpp"
 #include "apps/palpate/source_report.hpp"
-#include "apps/palpate/words.hpp"
 
 namespace palpate::app {
 
-namespace {
-
 using Json = nlohmann::ordered_json;
 
-double share(std::size_t part, std::size_t whole) {
-  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
-}
-
-void print_plan(const ExplorationPlan& plan, std::FILE* out) {
-  fmt::print(out, "  explored   up to {} across, pressing about {} deep\n", length(plan.patch),
-             length(plan.depth));
-  const double scale = plan.workspace.scale;
-  if (scale == 1) return;
-  fmt::print(out,
-             "  scale      1 m of the hand is {} m of the cloud; {:.4g} N/m there is {:.4g} N/m to "
-             "the hand\n",
-             scale, plan.stiffness, plan.workspace.felt_stiffness(plan.stiffness));
-}
-
-// The second number is the surface's alone, without what holding a force for a step adds.
-void print_energy(const HandEnergy& hand, std::FILE* out) {
-  fmt::print(out, "  energy     {} given to the hand{}, {} along the path\n", energy(hand.given),
-             hand.given < 0 ? " (negative: taken from it)" : "", energy(hand.path));
-}
-
-void print_notes(const TouchStatistics& s, const Style& style, std::FILE* out) {
-  bool any = false;
-  for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
-    if (s.notes()[i] == 0) continue;
-    fmt::print(out, "  {} {} ({:.3g} % of steps): {}\n",
-               style.warning(any ? "          " : "notes     "), grouped(s.notes()[i]),
-               100 * share(s.notes()[i], s.steps()), note_text(i).text);
-    any = true;
-  }
-  if (!any) fmt::print(out, "  notes      none\n");
-}
-
-Json json_notes(const TouchStatistics& s) {
-  Json notes = Json::array();
-  for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
-    if (s.notes()[i] == 0) continue;
-    notes.push_back(
-        {{"note", note_text(i).name}, {"steps", s.notes()[i]}, {"text", note_text(i).text}});
-  }
-  return notes;
-}
-
-Json json_device(const TouchReport& report) {
-  Json device = {{"name", report.device}};
-  if (report.plan == nullptr) return device;
-  device["scale"] = report.plan->workspace.scale;
-  device["explored_m"] = report.plan->patch;
-  device["depth_m"] = report.plan->depth;
-  device["felt_stiffness_N_per_m"] = report.plan->workspace.felt_stiffness(report.plan->stiffness);
-  return device;
-}
-
-}  // namespace
-
-HandEnergy energy_at_hand(const TouchReport& report) {
-  const double scale = report.plan == nullptr ? 1 : report.plan->workspace.scale;
-  const TouchStatistics& s = report.statistics;
-  return {s.given_energy() / scale, s.path_energy() / scale};
-}
-
-std::vector<std::string> advice(const TouchReport& report) {
-  std::vector<std::string> sentences;
-  if (report.statistics.touching() == 0) {
-    sentences.push_back(fmt::format(
-        "the hand never met the surface: {}",
-        report.plan != nullptr
-            ? "give it more time (--duration)"
-            : "is the trajectory in metres and in the cloud's frame, and --scale right?"));
-  }
-  const double scale = report.plan == nullptr ? 1 : report.plan->workspace.scale;
-  const double felt = scale * report.proxy.stiffness;
-  if (felt > kStiffest) {
-    sentences.push_back(
-        fmt::format("{:.4g} N/m to the hand is stiffer than forces held for a step can be without "
-                    "giving it energy; a --stiffness up to {:.4g} is steady",
-                    felt, kStiffest / scale));
-  }
-  return sentences;
-}
-
 void print_report(const TouchReport& report, std::FILE* out) {
-  const Style style(out);
   for (const TouchedSource& source : report.touched.sources) print_source(source, out);
-  const TouchStatistics& s = report.statistics;
-  const StepTimes times = s.times();
-  fmt::print(out, "{} {} field, {:.4g} N/m, {} device\n", style.heading("touched"),
-             name_in(kFields, report.field.kind), report.proxy.stiffness, report.device);
-  if (report.plan != nullptr) print_plan(*report.plan, out);
-  fmt::print(out, "  steps      {} in {:.4g} s of {} time\n", grouped(s.steps()), s.duration(),
-             report.live == nullptr ? "simulated" : "real");
-  if (report.interrupted) fmt::print(out, "  ended      by Ctrl-C\n");
-  if (report.live != nullptr) print_live(*report.live, out);
-  fmt::print(out, "  computing  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} us a step\n",
-             times.p50, times.p99, times.p999, times.maximum);
-  fmt::print(out, "  contacts   {}, {:.3g} % of the time\n", grouped(s.contacts()),
-             100 * share(s.touching(), s.steps()));
-  fmt::print(out, "  force      {:.3g} N at most, changing by {:.2g} N a step at most\n",
-             s.largest_force(), s.largest_jump());
-  print_energy(energy_at_hand(report), out);
-  print_notes(s, style, out);
-  for (const std::string& sentence : advice(report)) {
-    fmt::print(out, "  {} {}\n", style.warning("advice    "), sentence);
+  const bool alone = report.hands.size() == 1;
+  for (const HandReport& each : report.hands) {
+    print_hand(each, alone ? "touched" : each.hand.name, out);
   }
 }
 
+// What is of a hand stands beside what is of the run where there is one hand, else under "hands".
 Json json_report(const TouchReport& report) {
   Json sources = Json::array();
   for (const TouchedSource& source : report.touched.sources) {
     sources.push_back(json_source(source));
   }
-  const TouchStatistics& s = report.statistics;
-  const StepTimes times = s.times();
-  const HandEnergy energies = energy_at_hand(report);
-  Json json = {
-      {"palpate", std::string(version())},
-      {"sources", sources},
-      {"preset", report.options.preset},
-      {"field", name_in(kFields, report.field.kind)},
-      {"stiffness_N_per_m", report.proxy.stiffness},
-      {"device", json_device(report)},
-      {"steps", s.steps()},
-      {report.live == nullptr ? "simulated_s" : "real_s", s.duration()},
-      {"interrupted", report.interrupted},
-      {"computing_us",
-       {{"p50", times.p50}, {"p99", times.p99}, {"p99.9", times.p999}, {"max", times.maximum}}},
-      {"contacts", s.contacts()},
-      {"contact_share", share(s.touching(), s.steps())},
-      {"largest_force_N", s.largest_force()},
-      {"largest_force_step_N", s.largest_jump()},
-      {"energy_given_to_hand_J", energies.given},
-      {"energy_along_path_J", energies.path},
-      {"energy_given_in_world_J", s.given_energy()},
-      {"energy_along_path_in_world_J", s.path_energy()},
-      {"notes", json_notes(s)},
-      {"advice", advice(report)}};
-  if (report.live != nullptr) json["live"] = json_live(*report.live);
+  Json json = {{"palpate", std::string(version())},
+               {"sources", sources},
+               {"preset", report.options.preset},
+               {"field", name_in(kFields, report.field.kind)},
+               {"stiffness_N_per_m", report.proxy.stiffness}};
+  if (report.hands.size() == 1) {
+    json.update(json_hand(report.hands.front()));
+    return json;
+  }
+  for (const HandReport& each : report.hands) json["hands"].push_back(json_hand(each));
   return json;
 }
 

@@ -6,8 +6,10 @@
 
 #include "apps/palpate/chosen_source.hpp"
 #include "apps/palpate/depth_file.hpp"
+#include "apps/palpate/device_choice.hpp"
 #include "apps/palpate/distinct_files.hpp"
 #include "apps/palpate/errors.hpp"
+#include "apps/palpate/numbered_path.hpp"
 #include "apps/palpate/option_uses.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "palpate/base/error.hpp"
@@ -38,8 +40,12 @@ void check_files(const TouchOptions& options) {
   std::vector<NamedFile> read = inputs(clouds);
   read.push_back({"--trajectory", options.trajectory});
   read.push_back({"--setup", options.setup});
-  check_distinct(
-      read, {{"--log", options.log}, {"--json", options.json}, {"--picture", options.picture}});
+  std::vector<NamedFile> written = {{"--json", options.json}};
+  for (std::size_t hand = 0; hand < choose_devices(options).size(); ++hand) {
+    written.push_back({"--log", numbered_path(options.log, hand)});
+    written.push_back({"--picture", numbered_path(options.picture, hand)});
+  }
+  check_distinct(read, written);
 }
 
 void check_surface(const TouchOptions& options) {
@@ -86,7 +92,7 @@ void check_feel(const TouchOptions& options) {
 }  // namespace
 
 bool in_real_time(const TouchOptions& options) {
-  if (options.view.wanted) return true;
+  if (options.view.wanted || need_real_time(choose_devices(options))) return true;
   const std::vector<ChosenSource> sources = choose_sources(options);
   return !options.simulated_time && std::ranges::any_of(sources, [](const ChosenSource& source) {
     return lives(source.argument.path);
@@ -94,6 +100,7 @@ bool in_real_time(const TouchOptions& options) {
 }
 
 void check_usage(const TouchOptions& options) {
+  check_devices(options);
   check_files(options);
   check_surface(options);
   check_feel(options);
@@ -105,7 +112,10 @@ void check_usage(const TouchOptions& options) {
 void check_trajectory(const TouchOptions& options, const Trajectory& trajectory) {
   if (trajectory.empty()) return;
   const double duration = trajectory.back().time - trajectory.front().time;
-  if (options.device == "simulated" && duration > kLongest) {
+  const bool simulated = std::ranges::any_of(choose_devices(options), [](const auto& device) {
+    return device.kind == DeviceKind::simulated;
+  });
+  if (simulated && duration > kLongest) {
     throw UsageError(
         fmt::format("--trajectory lasts {:.6g} s; --device simulated plays {:.0f} s at most: are "
                     "its times in seconds?",

@@ -1,17 +1,17 @@
 #include "apps/palpate/view.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <mutex>
+#include <deque>
 #include <optional>
 #include <utility>
 
 #include "apps/palpate/browser.hpp"
-#include "apps/palpate/log.hpp"
+#include "apps/palpate/page_hold.hpp"
 #include "apps/palpate/preparer.hpp"
+#include "apps/palpate/recording.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/view_settings.hpp"
 #include "palpate/viewer/viewer.hpp"
@@ -35,7 +35,9 @@ ViewSettings initial_settings(const Run& run) {
 
 ViewScope scope_of(const Run& run) {
   ViewScope scope;
-  scope.stiffest = kStiffest / run.hand.workspace.scale;
+  double scale = 0;
+  for (const Hand& hand : run.hands) scale = std::max(scale, hand.workspace.scale);
+  scope.stiffest = kStiffest / scale;
   const double deepest = deepest_texture(run.touched.scene);
   scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
   for (const TouchedSource& source : run.touched.sources) {
@@ -66,23 +68,21 @@ std::vector<ViewerStream> streams_of(const Run& run, const LiveFeed& feed) {
   return streams;
 }
 
-std::string file_name() {
-  return fmt::format("palpate-{:%Y%m%d-%H%M%S}.csv", fmt::localtime(std::time(nullptr)));
-}
-
 }  // namespace
 
 struct View::Parts {
-  Parts(Run& r, Servo& s, const LiveFeed& f)
+  Parts(Run& r, std::vector<Servo*> s, const LiveFeed& f)
       : run(r),
-        servo(s),
+        servos(std::move(s)),
         feed(f),
         initial(initial_settings(r)),
         settings(initial),
         scope(scope_of(r)),
+        holds(r.hands.begin(), r.hands.end()),
+        recording(r.hands.size()),
         preparer(r, initial,
                  [this](const std::string& words) { viewer.notice(NoticeLevel::warning, words); }),
-        viewer(r.felt, {&s}, viewer_options(), controls()) {}
+        viewer(r.felt, servos, viewer_options(), controls()) {}
 
   ~Parts() { preparer.stop(); }  // what it tells, it tells the viewer
   Parts(const Parts&) = delete;
@@ -108,78 +108,52 @@ struct View::Parts {
     };
     controls.presets = preset_names();
     controls.preset = [this](const std::string& name) { apply(preset(initial, name), true); };
-    controls.record = [this](bool on) { return record(on); };
-    if (!run.hand.remote) return controls;
-    controls.hand = [this](std::size_t, const Eigen::Vector3d& place, std::uint32_t buttons) {
-      move(place, buttons);
+    controls.record = [this](bool on) { return recording.record(on); };
+    controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };
+    controls.hand = [this](std::size_t hand, const Eigen::Vector3d& place, std::uint32_t buttons) {
+      holds[hand].move(place, buttons);
     };
-    controls.release = [this](std::size_t) { release(); };
+    controls.release = [this](std::size_t hand) { holds[hand].release(); };
     return controls;
   }
 
   void apply(const ViewSettings& wanted, bool prepares) {
-    servo.set_feel(wanted.feel);
-    servo.set_field(wanted.field);
+    for (Servo* servo : servos) {
+      servo->set_feel(wanted.feel);
+      servo->set_field(wanted.field);
+    }
     settings = wanted;
     if (prepares) preparer.want(settings);
   }
 
-  void move(const Eigen::Vector3d& place, std::uint32_t buttons) {
-    const std::lock_guard lock(hand_mutex);
-    held = true;
-    run.hand.remote->move({{run.hand.workspace.position_to_device(place), buttons}, clock.now()});
-  }
-  void release() {
-    const std::lock_guard lock(hand_mutex);
-    held = false;
-    run.hand.remote->release();
-  }
-  void keep() {
-    const std::lock_guard lock(hand_mutex);
-    if (held) run.hand.remote->keep();
-  }
-
-  std::string record(bool on) {
-    const std::lock_guard lock(log_mutex);
-    if (log) log->close();
-    log.reset();
-    if (!on) return std::exchange(log_name, {});
-    log_name = file_name();
-    log.emplace(log_name);
-    return log_name;
-  }
-
   Run& run;
-  Servo& servo;
+  std::vector<Servo*> servos;
   const LiveFeed& feed;
-  SteadyClock clock;  // of poses
   ViewSettings initial;
   ViewSettings settings;  // the network thread's
   ViewScope scope;
-  std::mutex hand_mutex;
-  bool held = false;  // a page has the tool
-  std::mutex log_mutex;
-  std::string log_name;
-  std::optional<TouchLog> log;
+  std::deque<PageHold> holds;  // of each hand
+  Recording recording;
   Preparer preparer;
   Viewer viewer;  // last: it uses all of the above
 };
 
-View::View(Run& run, Servo& servo, const LiveFeed& feed)
-    : parts_(std::make_unique<Parts>(run, servo, feed)) {
+View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
+    : parts_(std::make_unique<Parts>(run, std::move(servos), feed)) {
   fmt::print(stderr, "page: {}\n", parts_->viewer.url());
   if (run.options.view.open_browser) open_in_browser(parts_->viewer.url());
 }
 
 View::~View() = default;
 
-void View::add(const TouchStep& step) {
-  const std::lock_guard lock(parts_->log_mutex);
-  if (parts_->log) parts_->log->add(step);
+void View::add(std::size_t hand, const TouchStep& step) {
+  parts_->recording.add(hand, step);
 }
 
 void View::look() {
-  if (parts_->run.hand.remote) parts_->keep();
+  for (PageHold& hold : parts_->holds) {
+    if (hold.possible()) hold.keep();
+  }
 }
 
 }  // namespace palpate::app

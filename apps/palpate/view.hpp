@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "apps/palpate/live_feed.hpp"
 #include "apps/palpate/run.hpp"
@@ -8,20 +9,21 @@
 
 namespace palpate::app {
 
-/// The page on which a run in real time is seen and set, and on which its tool is taken.
+/// The page on which a run in real time is seen and set, and on which its tools are taken.
 class View {
  public:
-  /// Serves from now on, and says on standard error where. All that it is given outlives it.
+  /// Serves from now on, and says on standard error where. All that it is given outlives it;
+  /// `servos` are those of the run's hands, in their order.
   /// @throws Error when the address or the port cannot be had.
-  View(Run& run, Servo& servo, const LiveFeed& feed);
+  View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed);
   ~View();
   View(const View&) = delete;
   View& operator=(const View&) = delete;
 
-  /// Every step, in order; one thread, that of look().
-  void add(const TouchStep& step);
+  /// Every step of each hand, in order; one thread, that of look().
+  void add(std::size_t hand, const TouchStep& step);
 
-  /// Some tens of times a second: says of a page that has the tool that it still has.
+  /// Some tens of times a second: says of pages that have a tool that they still have.
   void look();
 
  private:

@@ -9,6 +9,7 @@
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "viewer/source_reports.hpp"
+#include "viewer/tool_names.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -26,6 +27,7 @@ double host_time() {
 Painter::Painter(Scene& scene, PainterOptions options)
     : scene_(scene),
       options_(std::move(options)),
+      tools_(tool_names(options_.servos)),
       clouds_(scene, options_.origin),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -97,10 +99,9 @@ void Painter::report(Picture& picture) {
   for (const ViewerStream& stream : streams) {
     warn(picture, NoticeLevel::warning, stream.state.source, stream.state.problem);
   }
-  for (const Servo* servo : options_.servos) {
-    const GuardFault fault = servo->state().guard.fault;
-    const std::string words(in_words(fault));
-    warn(picture, NoticeLevel::fault, servo->device().info().name, words);
+  for (std::size_t i = 0; i < options_.servos.size(); ++i) {
+    const GuardFault fault = options_.servos[i]->state().guard.fault;
+    warn(picture, NoticeLevel::fault, tools_[i], std::string(in_words(fault)));
   }
 }
 

@@ -60,7 +60,8 @@ class Painter {
 
   Scene& scene_;
   PainterOptions options_;
-  std::mutex mutex_;  // of the budgets; no servo takes it
+  std::vector<std::string> tools_;  // names
+  std::mutex mutex_;                // of the budgets; no servo takes it
   std::condition_variable_any changed_;
   std::set<std::size_t> budgets_;
 

@@ -19,6 +19,7 @@
 #include "viewer/server.hpp"
 #include "viewer/state_source.hpp"
 #include "viewer/token.hpp"
+#include "viewer/tool_names.hpp"
 
 namespace palpate {
 namespace {
@@ -60,10 +61,11 @@ std::vector<DeviceLabel> labels_of(const std::vector<Servo*>& servos,
   if (servos.size() > std::numeric_limits<std::uint8_t>::max()) {
     throw Error(fmt::format("viewer: {} servos; at most 255 can be shown", servos.size()));
   }
+  const std::vector<std::string> names = tool_names(servos);
   std::vector<DeviceLabel> labels;
   for (std::size_t i = 0; i < servos.size(); ++i) {
     const bool takeable = controls.hand && (!controls.takeable || controls.takeable(i));
-    labels.push_back({servos[i]->device().info().name, takeable});
+    labels.push_back({names[i], takeable});
   }
   return labels;
 }

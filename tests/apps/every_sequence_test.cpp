@@ -30,12 +30,16 @@ struct Felt {
   std::size_t without_surface = 0;
 };
 
-Felt play(const TouchOptions& options, Touched& touched, Hand& hand, Scene& felt) {
+// The hand goes along `way` or, where that is empty, explores what `seen` shows.
+Felt play(const TouchOptions& options, const Trajectory& way, const Scene& seen, Touched& touched,
+          Scene& felt) {
   const FieldOptions field = field_options(options);
+  std::vector<Hand> hands = open_hands(options, nullptr);
+  place_hands(hands, options, way, seen, field);
   fill_felt(felt, touched, {});
-  Run run{options, touched, felt, hand, field, proxy_options(options, hand.stiffness)};
+  Run run{options, touched, felt, hands, field, proxy_options(options, hands[0].stiffness)};
   Felt result;
-  run_simulated(run, [&](const TouchStep& step) {
+  run_simulated(run, [&](std::size_t, const TouchStep& step) {
     const Contact& contact = step.contact;
     const bool quiet = contact.force.allFinite() && contact.proxy.allFinite() &&
                        !has(contact.notes, ContactNote::fault);
@@ -67,12 +71,10 @@ TEST(EverySequence, PlaysThroughAndIsTouchedWithoutAFault) {
     // The first run shows what there is to touch at the end, the second one touches it.
     Scene seen;
     Touched watched = prepare_touched(options, false);
-    Hand bystander = make_hand(options, aside(*options.duration), watched.scene, {});
-    EXPECT_EQ(play(options, watched, bystander, seen).bad, 0u);
+    EXPECT_EQ(play(options, aside(*options.duration), watched.scene, watched, seen).bad, 0u);
     Touched touched = prepare_touched(options, false);
-    Hand hand = make_hand(options, {}, seen, field_options(options));
     Scene scene;
-    const Felt felt = play(options, touched, hand, scene);
+    const Felt felt = play(options, {}, seen, touched, scene);
     EXPECT_EQ(felt.bad, 0u) << "steps with a fault, or not finite";
     // A hand that has a tenth of the time is still on its way.
     if (test::effort(10) == 10) {

@@ -45,6 +45,30 @@ TEST(ExplorationPlan, StiffnessThatWasAskedForIsKeptAndHeldStable) {
   EXPECT_LE(plan.workspace.felt_stiffness(plan.stiffness), 2000);
 }
 
+TEST(ExplorationPlan, ADeviceThatNobodyLeadsStandsJustOutsideTheMiddleOfTheSurface) {
+  for (const double factor : {1.0, 1000.0}) {
+    PointCloud plane;
+    for (int i = -40; i <= 40; ++i) {
+      for (int j = -40; j <= 40; ++j) {
+        const Eigen::Vector3f place(2e-3f * static_cast<float>(i), 2e-3f * static_cast<float>(j),
+                                    0);
+        plane.positions.push_back(static_cast<float>(factor) * place);
+      }
+    }
+    plane.viewpoint = Eigen::Vector3d(0, 0, factor);
+    Scene scene;
+    scene.add("plane", plane);
+    const PlanOptions options{.duration = 1};
+    const Stand stand = plan_stand(scene, {}, options);
+    const ExplorationPlan plan = plan_exploration(scene, {}, options);
+    EXPECT_EQ(stand.workspace.scale, plan.workspace.scale) << "as hands that explore";
+    EXPECT_EQ(stand.stiffness, plan.stiffness);
+    const Eigen::Vector3d outside(0, 0, 2e-3 * stand.workspace.scale);
+    const Eigen::Vector3d origin = stand.workspace.position_to_world(Eigen::Vector3d::Zero());
+    EXPECT_LT((origin - outside).norm(), 1e-6 * factor) << origin.transpose();
+  }
+}
+
 // The hand's wish is offset - depth under the highest place: what it means to feel follows the
 // metaball's level.
 TEST(ExplorationPlan, HandStopsHigherOverASurfaceThatLiesHigher) {

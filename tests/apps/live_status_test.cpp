@@ -21,10 +21,12 @@ LiveMoment second() {
   }
   LiveMoment moment;
   moment.time = 12.34;
-  moment.force = 1.234;
-  moment.rate = 1000;
-  moment.computing = computing.look();
-  moment.lateness = lateness.look();
+  HandMoment& hand = moment.hands.emplace_back();
+  hand.name = "hand 1";
+  hand.force = 1.234;
+  hand.rate = 1000;
+  hand.computing = computing.look();
+  hand.lateness = lateness.look();
   StreamState stream;
   stream.source = "table";
   stream.phase = StreamPhase::running;
@@ -43,11 +45,12 @@ TEST(LiveStatus, TellsPaceForceAndStreamsInOneLine) {
   EXPECT_FALSE(contains(words, "\n"));
   EXPECT_FALSE(contains(words, "dropped"));
   EXPECT_FALSE(contains(words, "FAULT"));
+  EXPECT_FALSE(contains(words, "hand 1"));
 }
 
 TEST(LiveStatus, TellsWhatIsWrong) {
   LiveMoment moment = second();
-  moment.servo.guard.fault = GuardFault::hand;
+  moment.hands[0].servo.guard.fault = GuardFault::hand;
   moment.streams[0].phase = StreamPhase::stalled;
   moment.streams[0].drops.overtaken = 2;
   moment.streams[0].drops.late = 1;
@@ -66,8 +69,27 @@ TEST(LiveStatus, TellsWhatIsWrong) {
   EXPECT_TRUE(contains(words, "side ended"));
 }
 
+TEST(LiveStatus, TellsOfEachHandByName) {
+  LiveMoment moment = second();
+  moment.hands.push_back(moment.hands[0]);
+  moment.hands[1].name = "hand 2";
+  moment.hands[1].silence = "no client is heard on 'a'";
+  moment.hands.push_back(moment.hands[0]);
+  moment.hands[2].name = "hand 3";
+  moment.hands[2].ended = true;
+  moment.hands[2].servo.guard.fault = GuardFault::device;
+  const std::string words = in_words(moment);
+  for (const char* part :
+       {"12.3 s | hand 1: 1.23 N  1000 Hz", "| hand 2: no client is heard on 'a' |",
+        "| hand 3: ended  FAULT: ", "| table 30.0 Hz"}) {
+    EXPECT_TRUE(contains(words, part)) << part << " in " << words;
+  }
+}
+
 TEST(LiveStatus, KnowsOfNothingBeforeTheFirstStep) {
-  EXPECT_TRUE(contains(in_words(LiveMoment{}), "0.0 s  0.00 N  0 Hz"));
+  LiveMoment moment;
+  moment.hands.resize(1);
+  EXPECT_TRUE(contains(in_words(moment), "0.0 s  0.00 N  0 Hz"));
 }
 
 TEST(LiveStatus, FitsIntoATerminalsLine) {

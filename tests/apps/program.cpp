@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 namespace palpate::app {
 
@@ -18,15 +21,46 @@ double coordinate(int i) {
   return 2e-3 * (i - kSide / 2);
 }
 
+int code_of(int status) {
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 }  // namespace
 
-Outcome Shell::run(const std::string& arguments, const std::string& standard_input) {
+Running::~Running() {
+  if (process_ != 0) interrupt();
+}
+
+int Running::interrupt() {
+  int status = 0;
+  kill(process_, SIGINT);
+  waitpid(std::exchange(process_, 0), &status, 0);
+  return code_of(status);
+}
+
+std::string Shell::command(const std::string& arguments, const std::string& variable) const {
+  return fmt::format("cd '{}' && exec env {} '{}' {} < stdin > stdout 2> stderr",
+                     folder_.path().string(), variable, PALPATE_PROGRAM, arguments);
+}
+
+std::unique_ptr<Running> Shell::start(const std::string& arguments) {
+  write("stdin", "");
+  write("stderr", "");
+  const std::string words = command(arguments, "");
+  const pid_t process = fork();
+  if (process == 0) {
+    execl("/bin/sh", "sh", "-c", words.c_str(), nullptr);
+    _exit(127);
+  }
+  return std::make_unique<Running>(process);
+}
+
+Outcome Shell::run(const std::string& arguments, const std::string& standard_input,
+                   const std::string& variable) {
   write("stdin", standard_input);
-  const std::string command = fmt::format("cd '{}' && '{}' {} < stdin > stdout 2> stderr",
-                                          folder_.path().string(), PALPATE_PROGRAM, arguments);
-  const int status = std::system(command.c_str());
+  const int status = std::system(command(arguments, variable).c_str());
   Outcome outcome;
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.code = code_of(status);
   outcome.out = read("stdout");
   outcome.err = read("stderr");
   return outcome;

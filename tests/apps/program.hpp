@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,17 +16,39 @@ struct Outcome {
   std::string err;
 };
 
+/// The built program while it runs.
+class Running {
+ public:
+  explicit Running(int process) : process_(process) {}
+  ~Running();
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  /// Ctrl-C; returns the exit code, once it has ended.
+  int interrupt();
+
+ private:
+  int process_;  // 0: it has ended
+};
+
 /// A folder of its own in which the built program is run as a user does, removed at the end.
 class Shell {
  public:
-  /// Runs `palpate ARGUMENTS` by the system's shell.
-  [[nodiscard]] Outcome run(const std::string& arguments, const std::string& standard_input = "");
+  /// Runs `palpate ARGUMENTS` by the system's shell, in an environment with `variable`.
+  [[nodiscard]] Outcome run(const std::string& arguments, const std::string& standard_input = "",
+                            const std::string& variable = "");
+
+  /// The same, and does not wait for it; its output goes to the files `stdout` and `stderr`.
+  [[nodiscard]] std::unique_ptr<Running> start(const std::string& arguments);
 
   [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
   void write(const std::string& name, const std::string& text) const;
   [[nodiscard]] std::string read(const std::string& name) const;
 
  private:
+  [[nodiscard]] std::string command(const std::string& arguments,
+                                    const std::string& variable) const;
+
   test::Folder folder_;
 };
 

@@ -131,6 +131,16 @@ priority = 60
 lock_memory = false
 )";
 
+TEST(SetupFile, NamesOneDeviceOrOneForEachHand) {
+  const Shell shell;
+  const std::string from = "[[source]]\nfrom = \"synthetic:torus\"\n[hand]\n";
+  using Devices = std::vector<std::string>;
+  EXPECT_EQ(parsed(shell, from + "device = \"scripted\"\n", "").devices, Devices{"scripted"});
+  const std::string two = from + "device = [\"simulated\", \"remote:/tmp/hand\"]\n";
+  EXPECT_EQ(parsed(shell, two, "").devices, (Devices{"simulated", "remote:/tmp/hand"}));
+  EXPECT_EQ(parsed(shell, two, "--device scripted").devices, Devices{"scripted"});
+}
+
 TEST(SetupFile, EveryChoiceReachesTheLibrary) {
   const Shell shell;
   const TouchOptions options = parsed(shell, kEverything, "");

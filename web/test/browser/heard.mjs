@@ -1,9 +1,9 @@
 // What a page hears of the program, for a test to measure.
 
-/** Runs in the page, before its own scripts: keeps the newest state, counts states and clouds. */
+/** Runs in the page, before its own scripts: keeps each tool's newest state, counts states and clouds. */
 export function listen() {
   const Plain = window.WebSocket;
-  window.heard = { states: 0, clouds: 0, points: 0 };
+  window.heard = { states: 0, clouds: 0, points: 0, tools: [] };
   const three = (view, at) => [0, 4, 8].map((i) => view.getFloat32(at + i, true));
   window.WebSocket = class extends Plain {
     constructor(...all) {
@@ -21,7 +21,7 @@ export function listen() {
         }
         if (kind !== 1) return;
         window.heard.states += 1;
-        window.heard.state = {
+        window.heard.tools[view.getUint8(1)] = {
           flags: view.getUint32(4, true), hip: three(view, 16), proxy: three(view, 28),
           normal: three(view, 40), force: three(view, 52),
         };
@@ -45,9 +45,9 @@ const length = (a) => Math.hypot(...a);
 
 export const heard = (page) => page.evaluate(() => window.heard);
 
-/** The newest state in numbers: force (N), depth (m) and what they make of stiffness (N/m). */
-export async function felt(page) {
-  const { state } = await heard(page);
+/** A tool's newest state in numbers: force (N), depth (m) and what they make of stiffness (N/m). */
+export async function felt(page, device = 0) {
+  const state = (await heard(page)).tools[device];
   if (state === undefined) return { touching: false, taken: false, paused: false, force: 0 };
   const force = length(state.force);
   const depth = length(minus(state.proxy, state.hip));

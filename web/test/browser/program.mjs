@@ -8,7 +8,7 @@ import { after, before, test } from "node:test";
 import { openBrowser, openPage, until } from "./browser.mjs";
 import { distance, felt, heard, listen, waysInto } from "./heard.mjs";
 import { changed } from "./pixels.mjs";
-import { kTable, startProgram } from "./real_program.mjs";
+import { kTable, kTwoHands, startProgram } from "./real_program.mjs";
 import { relayTo } from "./relay.mjs";
 
 const kStiffness = 500; // N/m, of kTable
@@ -60,22 +60,31 @@ async function hold(page, key, what, condition) {
   await page.keyboard.up(key);
 }
 
-async function lift(page) {
-  await hold(page, "ArrowUp", "lifted", async () => !(await felt(page)).touching);
-  await until("no force in the air", async () => (await felt(page)).force === 0);
+async function lift(page, device = 0) {
+  await hold(page, "ArrowUp", "lifted", async () => !(await felt(page, device)).touching);
+  await until("no force in the air", async () => (await felt(page, device)).force === 0);
 }
 
 /** Takes the tool, lifts it off and lowers it until it feels a little. */
-async function touchDown(page) {
+async function touchDown(page, device = 0) {
   await page.focus("#view");
   await page.keyboard.press("t");
-  await until("taken", async () => (await felt(page)).taken);
-  await lift(page);
-  await hold(page, "ArrowDown", "in contact", async () => (await felt(page)).touching);
-  return felt(page);
+  await until("taken", async () => (await felt(page, device)).taken);
+  await lift(page, device);
+  await hold(page, "ArrowDown", "in contact", async () => (await felt(page, device)).touching);
+  return felt(page, device);
 }
 
-const deeper = (page, than) => hold(page, "ArrowDown", "deeper", async () => (await felt(page)).force > than);
+const deeper = (page, than, device = 0) =>
+  hold(page, "ArrowDown", "deeper", async () => (await felt(page, device)).force > than);
+
+/** From one state to the other the hand went in, and the proxy stayed on the level table. */
+function staysOnTable(first, then) {
+  const ways = waysInto(first, then);
+  assert.ok(ways.hip > 0.001, `the hand went ${ways.hip} m`);
+  assert.ok(Math.abs(ways.proxy) < 0.1 * ways.hip, `the proxy went ${ways.proxy} m, the hand ${ways.hip}`);
+  assert.ok(then.normal[2] > 0.99, "the table is level");
+}
 
 test("the page comes from the program, connects and draws its cloud", () =>
   onTable(async (page) => {
@@ -107,10 +116,7 @@ test("held by keys, the hand goes into the table, the proxy stays on it and the 
     const first = await touchDown(page);
     await deeper(page, first.force + 1);
     const then = await felt(page);
-    const ways = waysInto(first, then);
-    assert.ok(ways.hip > 0.001, `the hand went ${ways.hip} m`);
-    assert.ok(Math.abs(ways.proxy) < 0.1 * ways.hip, `the proxy went ${ways.proxy} m, the hand ${ways.hip}`);
-    assert.ok(then.normal[2] > 0.99, "the table is level");
+    staysOnTable(first, then);
     await until("words", async () => /touching/.test(await text(page, "#touch")) && Number(await text(page, "#force")) > 1);
     await picture(page, "touching");
   }));
@@ -195,6 +201,36 @@ test("two pages see the same; one holds the tool, and it is free when that one i
     assert.deepEqual(second.troubles, []);
     await second.context().close();
   }));
+
+test("two pages hold two hands of one scene at once, and each sees the other's", async () => {
+  const program = await startProgram(kTwoHands);
+  const pages = [await open(program.address), await open(program.address)];
+  assert.deepEqual(await pages[1].locator("#device option").allInnerTexts(), ["simulated 1", "simulated 2"]);
+  await pages[1].selectOption("#device", { label: "simulated 2" });
+  const first = await Promise.all(pages.map(async (page, device) => {
+    // A hand that explores comes to the edges, too.
+    await until("in the middle", async () => {
+      const { hip } = await felt(page, device);
+      return hip !== undefined && Math.hypot(hip[0], hip[1]) < 0.1;
+    });
+    return touchDown(page, device);
+  }));
+  await Promise.all(pages.map((page, device) => deeper(page, first[device].force + 1, device)));
+  for (const device of [0, 1]) {
+    const own = await felt(pages[device], device);
+    staysOnTable(first[device], own);
+    const seen = await felt(pages[1 - device], device);
+    assert.ok(seen.taken && seen.touching, "the other page sees it in contact");
+    assert.ok(Math.abs(seen.force - own.force) < 0.3, `${seen.force} N there, ${own.force} N here`);
+    assert.ok(distance(seen.hip, own.hip) < 1e-3);
+  }
+  await picture(pages[0], "two-hands");
+  await pages[1].context().close();
+  await until("its hand is free", async () => !(await felt(pages[0], 1)).taken);
+  assert.ok((await felt(pages[0], 0)).taken, "and the other is still held");
+  await pages[0].context().close();
+  assert.equal(await program.stop(), 0);
+});
 
 test("a cut connection comes back by itself, and the tool is let go meanwhile", async () => {
   const relay = await relayTo(table.address);

@@ -1,0 +1,95 @@
+#include "apps/palpate/device_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "apps/palpate/errors.hpp"
+#include "apps/palpate/names.hpp"
+#include "apps/palpate/option_checks.hpp"
+#include "apps/palpate/touch_options.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr std::string_view kRemotePath = "remote:";
+
+constexpr std::array<Named<DeviceKind>, 3> kDevices = {{{"scripted", DeviceKind::scripted},
+                                                        {"simulated", DeviceKind::simulated},
+                                                        {"remote", DeviceKind::remote}}};
+
+void require(bool good, const char* what) {
+  if (!good) throw UsageError(what);
+}
+
+void check_paths(const std::vector<DeviceChoice>& devices) {
+  std::set<std::string> paths;
+  for (const DeviceChoice& device : devices) {
+    if (device.is_led() || paths.insert(device.path).second) continue;
+    throw UsageError(
+        fmt::format("two remote devices cannot share {}; give each a path of its own, as in "
+                    "--device remote:/tmp/hand",
+                    device.path.empty() ? "the usual path" : "'" + device.path + "'"));
+  }
+}
+
+}  // namespace
+
+DeviceChoice parse_device(const std::string& text) {
+  if (const std::optional<DeviceKind> kind = choice_of(kDevices, text)) return {*kind};
+  if (text.starts_with(kRemotePath) && text.size() > kRemotePath.size()) {
+    return {DeviceKind::remote, text.substr(kRemotePath.size())};
+  }
+  throw UsageError(fmt::format(
+      "'{}' is no device; give scripted, simulated, remote or remote:PATH of a socket", text));
+}
+
+void add_device_option(CLI::App& command, std::vector<std::string>& devices,
+                       std::string_view group) {
+  command
+      .add_option(
+          "--device", devices,
+          wrapped("scripted: the hand is where the trajectory or exploration says, whatever "
+                  "the force; simulated: a hand pulls a device with mass and friction "
+                  "there; remote: the hand of another program, which speaks to a socket "
+                  "(docs/remote_device.md). Once for each hand, four at most; with several "
+                  "the run is in real time. Default: scripted with --trajectory, else "
+                  "simulated"))
+      ->check(parsed_by([](const std::string& text) { (void)parse_device(text); }))
+      ->type_name("NAME[:PATH]")
+      ->allow_extra_args(false)
+      ->group(std::string(group));
+}
+
+std::vector<DeviceChoice> choose_devices(const TouchOptions& options) {
+  std::vector<DeviceChoice> devices;
+  for (const std::string& text : options.devices) devices.push_back(parse_device(text));
+  if (!devices.empty()) return devices;
+  return {{options.trajectory.empty() ? DeviceKind::simulated : DeviceKind::scripted}};
+}
+
+bool need_real_time(const std::vector<DeviceChoice>& devices) {
+  return devices.size() > 1 || !devices.front().is_led();
+}
+
+void check_devices(const TouchOptions& options) {
+  const std::vector<DeviceChoice> devices = choose_devices(options);
+  const auto led = std::ranges::count_if(devices, &DeviceChoice::is_led);
+  require(devices.size() <= kMostHands, "more than four --device; four hands can touch at once");
+  require(!options.simulated_time || !need_real_time(devices),
+          "--device remote, and several hands, are of real time; leave --simulated-time out, or "
+          "give one scripted or simulated device");
+  require(options.trajectory.empty() || led <= 1,
+          "a --trajectory leads one hand, and several devices would follow it; leave it out, so "
+          "that they explore, or give one scripted or simulated device");
+  require(devices.size() == 1 || options.log != "-",
+          "each of several hands has a log of its own; --log cannot go to standard output: name a "
+          "file");
+  check_paths(devices);
+}
+
+}  // namespace palpate::app

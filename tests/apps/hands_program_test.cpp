@@ -1,0 +1,174 @@
+// Hands of other programs, and several hands on one scene. Nothing here depends on how fast the
+// machine is: what is waited for comes, or the test fails after a minute.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "apps/program.hpp"
+#include "device/remote_client.hpp"
+#include "palpate/base/clock.hpp"
+#include "palpate/device/remote.hpp"
+
+namespace palpate::app {
+namespace {
+
+using Json = nlohmann::json;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// Every millisecond or so, until it is true.
+bool until(const std::function<bool()>& condition) {
+  for (int i = 0; i < 60'000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+// A client's hand goes to z, m, until it feels more than `force`, N.
+bool goes_and_feels(test::RemoteClient& client, double z, double force) {
+  double felt = 0;
+  return until([&] {
+    client.say(z);
+    felt = client.hear().value_or(test::RemoteClient::Heard{0, felt}).z;
+    return felt > force;
+  });
+}
+
+// The plane's points are in the middle under the device's origin, 2 mm below it.
+TEST(HandsProgram, AnotherProgramsHandFeelsTheSurface) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  const auto run = shell.start(
+      "touch plane.xyz --scale 2 --viewpoint 0,0,1 --stiffness 500 --device remote:hand --json "
+      "run.json "
+      "--log "
+      "forces.csv");
+  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 1: listens on hand"); }));
+  test::RemoteClient client(shell.path("hand"), shell.path("client"));
+  EXPECT_TRUE(until([&] {
+    client.say(5e-3);
+    return client.hear().has_value();
+  })) << "it answers";
+  EXPECT_TRUE(goes_and_feels(client, -4e-3, 0.8)) << "2 mm deep, 1 N";
+  EXPECT_EQ(run->interrupt(), 0) << shell.read("stderr");
+  const Json report = Json::parse(shell.read("run.json"));
+  EXPECT_EQ(report["device"]["name"], "remote");
+  EXPECT_EQ(report["device"]["scale"], 1);
+  EXPECT_GT(report["device"]["packets_taken"], 10);
+  EXPECT_NEAR(report["device"]["origin_m"][2], 2e-3, 2e-4);
+  EXPECT_NEAR(report["largest_force_N"], 1, 0.15);
+  EXPECT_EQ(report["live"]["guard"]["faults"], 0);
+  EXPECT_EQ(columns(shell.read("forces.csv"))["fz"].size(), report["steps"]);
+}
+
+TEST(HandsProgram, ASilentDeviceSaysWhyAndEndsWithTheDuration) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  const Outcome outcome = shell.run("touch plane.xyz --device remote:hand --duration 1.5");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "1.0 s  no client is heard on 'hand'; start one"))
+      << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "never met the surface: no client is heard")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "remote device")) << outcome.out;
+}
+
+TEST(HandsProgram, WhereASocketCannotBeIsSaidBeforeTheCloudIsRead) {
+  Shell shell;
+  shell.write("file", "");
+  const Outcome file = shell.run("touch missing.ply --device remote:file");
+  EXPECT_EQ(file.code, 1);
+  EXPECT_TRUE(contains(file.err, "no socket")) << file.err;
+  const SteadyClock clock;
+  const RemoteDevice other(clock, {.path = shell.path("taken")});
+  const Outcome taken = shell.run("touch missing.ply --device remote:taken");
+  EXPECT_EQ(taken.code, 1);
+  EXPECT_TRUE(contains(taken.err, "another program listens there")) << taken.err;
+  const Outcome nowhere = shell.run("touch missing.ply --device remote", "", "XDG_RUNTIME_DIR=");
+  EXPECT_EQ(nowhere.code, 1);
+  EXPECT_TRUE(contains(nowhere.err, "XDG_RUNTIME_DIR is not set")) << nowhere.err;
+  EXPECT_TRUE(contains(nowhere.err, "--device remote:/tmp/hand")) << nowhere.err;
+}
+
+TEST(HandsProgram, EachOfSeveralHandsHasItsLogAndItsPartOfTheReport) {
+  Shell shell;
+  const Outcome outcome = shell.run(
+      "touch synthetic:sphere --device simulated --device scripted --duration 1 --log forces.csv "
+      "--json run.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "hand 1 balanced field")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "hand 2 balanced field")) << outcome.out;
+  const Json report = Json::parse(shell.read("run.json"));
+  EXPECT_FALSE(report.contains("steps")) << "of a hand each";
+  ASSERT_EQ(report["hands"].size(), 2u);
+  EXPECT_EQ(report["hands"][0]["device"]["name"], "simulated");
+  EXPECT_EQ(report["hands"][1]["device"]["name"], "scripted");
+  const auto one = columns(shell.read("forces.csv"));
+  const auto two = columns(shell.read("forces-2.csv"));
+  EXPECT_EQ(one.at("t").size(), report["hands"][0]["steps"]);
+  EXPECT_EQ(two.at("t").size(), report["hands"][1]["steps"]);
+  EXPECT_NE(one.at("hip_x").front(), two.at("hip_x").front()) << "they explore other places";
+}
+
+TEST(HandsProgram, AHandThatIsLedTouchesBesideAnotherPrograms) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  shell.write("way.csv", press_and_slide());
+  const auto run = shell.start(
+      "touch plane.xyz --scale 2 --viewpoint 0,0,1 --trajectory way.csv --device scripted --device "
+      "remote:hand --json run.json");
+  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 2: listens on hand"); }));
+  test::RemoteClient client(shell.path("hand"), shell.path("client"));
+  EXPECT_TRUE(goes_and_feels(client, 5e-3, -1));
+  EXPECT_TRUE(goes_and_feels(client, -4e-3, 0.8));
+  EXPECT_EQ(run->interrupt(), 0) << shell.read("stderr");
+  const Json hands = Json::parse(shell.read("run.json"))["hands"];
+  EXPECT_NEAR(hands[0]["largest_force_N"], 1.5, 0.1) << "3 mm deep";
+  EXPECT_NEAR(hands[1]["largest_force_N"], 1, 0.15);
+}
+
+TEST(HandsProgram, ADemoHasAsManyHandsAsItIsAskedFor) {
+  Shell shell;
+  const Outcome outcome = shell.run(
+      "demo scan --headless --port 0 --duration 1 --device simulated --device remote:hand");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "| hand 2: no client is heard on 'hand'")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "hand 1 ")) << outcome.out;
+}
+
+TEST(HandsProgram, RefusesDevicesThatCannotBeOrHaveNoUse) {
+  Shell shell;
+  shell.write("way.csv", press_and_slide());
+  const std::string touch = "touch synthetic:torus ";
+  const std::pair<const char*, const char*> cases[] = {
+      {"--device falcon", "scripted, simulated, remote"},
+      {"--device remote:", "remote:PATH"},
+      {"--device remote --trajectory way.csv", "--trajectory leads"},
+      {"--device remote --seed 2", "--seed"},
+      {"--device remote --simulated-time", "real time"},
+      {"--device simulated --device simulated --simulated-time", "real time"},
+      {"--device simulated --device scripted --trajectory way.csv", "one hand"},
+      {"--device remote --device remote", "the usual path"},
+      {"--device remote:a --device remote:a", "'a'"},
+      {"--device simulated --device simulated --log -", "standard output"},
+      {"--device simulated --device simulated --log a.csv --json a-2.csv", "same file"},
+      {"--device scripted --device scripted --device scripted --device scripted --device scripted",
+       "four hands"},
+  };
+  for (const auto& [arguments, word] : cases) {
+    const Outcome outcome = shell.run(touch + arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, word)) << arguments << "\n" << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::app

@@ -1,0 +1,75 @@
+#include "apps/palpate/live_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "apps/palpate/touch_surface.hpp"
+
+namespace palpate::app {
+namespace {
+
+// Stands still, and ends in some way after some reads.
+class ShortDevice final : public Device {
+ public:
+  ShortDevice(int reads, DeviceStatus end) : left_(reads), end_(end) { info_.name = "short"; }
+
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] DeviceState read() noexcept override {
+    DeviceState state;
+    if (left_ == 0) state.status = end_;
+    if (left_ > 0) --left_;
+    return state;
+  }
+  void write(const Eigen::Vector3d& /*force*/) noexcept override {}
+  [[nodiscard]] std::string reason() const override { return "its cable is out"; }
+  [[nodiscard]] int left() const { return left_; }
+
+ private:
+  DeviceInfo info_;
+  int left_;
+  DeviceStatus end_;
+};
+
+Hand hand_with(const std::string& name, int reads, DeviceStatus end) {
+  Hand hand;
+  hand.name = name;
+  hand.device = std::make_unique<ShortDevice>(reads, end);
+  hand.stiffness = kStiffness;
+  return hand;
+}
+
+int left(const Hand& hand) {
+  return static_cast<const ShortDevice&>(*hand.device).left();
+}
+
+TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
+  TouchOptions options;
+  options.clouds = {"synthetic:sheet"};
+  options.live.realtime = false;
+  options.live.lock_memory = false;
+  Touched touched = prepare_touched(options, false);
+  Scene felt;
+  fill_felt(felt, touched, {});
+  std::vector<Hand> hands;
+  hands.push_back(hand_with("hand 1", 20, DeviceStatus::failed));
+  hands.push_back(hand_with("hand 2", 200, DeviceStatus::finished));
+  Run run{options, touched, felt, hands, {}, proxy_options(options, kStiffness)};
+  std::vector<std::size_t> steps(2);
+  SteadyWaitingClock clock;
+  const LiveOutcome outcome =
+      run_live(run, clock, [&](std::size_t hand, const TouchStep&) { ++steps[hand]; });
+  const std::vector<LiveReport>& reports = outcome.hands;
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_FALSE(outcome.interrupted);
+  EXPECT_EQ(reports[0].failure, "hand 1: device 'short' failed: its cable is out");
+  EXPECT_EQ(reports[0].guard.fault, GuardFault::device);
+  EXPECT_EQ(reports[1].failure, "");
+  EXPECT_EQ(reports[1].guard.fault, GuardFault::none);
+  EXPECT_EQ(left(hands[1]), 0) << "went on to its own end";
+  EXPECT_LE(steps[0], 21u);
+  EXPECT_GT(steps[1], 0u);
+}
+
+}  // namespace
+}  // namespace palpate::app
