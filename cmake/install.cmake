@@ -11,6 +11,8 @@ install(DIRECTORY include/palpate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
 if(PALPATE_BUILD_APP)
   install(TARGETS palpate_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES packaging/60-palpate.rules packaging/palpate-limits.conf
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate)
 endif()
 
 configure_package_config_file(cmake/palpateConfig.cmake.in palpateConfig.cmake

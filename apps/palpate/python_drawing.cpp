@@ -1,9 +1,6 @@
 #include "apps/palpate/python_drawing.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -11,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "apps/palpate/child_program.hpp"
 #include "apps/palpate/picture_script.hpp"
 #include "palpate/base/error.hpp"
 
@@ -56,34 +54,6 @@ std::string read_text(const std::string& path) {
   return text.str();
 }
 
-// Debian's own Python first: that is the one python3-matplotlib belongs to.
-std::string python() {
-  const char* debian = "/usr/bin/python3";
-  return access(debian, X_OK) == 0 ? debian : "python3";
-}
-
-// Runs a program, with its complaints in a file, and returns its exit code; 127: it is not there.
-int run(const std::vector<std::string>& words, const std::string& complaints) {
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, complaints.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
-  pid_t child = 0;
-  const int failed =
-      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) return 127;
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 126;
-}
-
 // The last line that says something: Python's own error.
 std::string last_line(const std::string& text) {
   std::istringstream stream(text);
@@ -97,6 +67,11 @@ std::string last_line(const std::string& text) {
 
 }  // namespace
 
+std::string drawing_python() {
+  const char* debian = "/usr/bin/python3";
+  return access(debian, X_OK) == 0 ? debian : "python3";
+}
+
 std::string float_bytes(const std::vector<float>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
 }
@@ -108,8 +83,9 @@ void draw_by_python(std::string_view script, const std::vector<DrawingData>& dat
   write_file(folder.file("drawing.py"), drawing_script());
   write_file(folder.file("draw.py"), script);
   const std::string complaints = folder.file("complaints.txt");
-  const int code =
-      run({python(), "-B", folder.file("draw.py"), folder.file(""), picture.growing()}, complaints);
+  const int code = run_program(
+      {drawing_python(), "-B", folder.file("draw.py"), folder.file(""), picture.growing()},
+      complaints);
   if (code == 0) return picture.close();
   if (code == 127 || code == 3) {
     throw Error(

@@ -14,6 +14,9 @@ struct DrawingData {
   std::string bytes;
 };
 
+/// The Python that draws: Debian's own first, since that is the one python3-matplotlib belongs to.
+[[nodiscard]] std::string drawing_python();
+
 /// The bytes of numbers in single precision, as numpy.fromfile reads them.
 [[nodiscard]] std::string float_bytes(const std::vector<float>& values);
 

@@ -38,9 +38,9 @@ int Running::interrupt() {
   return code_of(status);
 }
 
-std::string Shell::command(const std::string& arguments, const std::string& variable) const {
+std::string Shell::command(const std::string& arguments, const std::string& before) const {
   return fmt::format("cd '{}' && exec env {} '{}' {} < stdin > stdout 2> stderr",
-                     folder_.path().string(), variable, PALPATE_PROGRAM, arguments);
+                     folder_.path().string(), before, PALPATE_PROGRAM, arguments);
 }
 
 std::unique_ptr<Running> Shell::start(const std::string& arguments) {
@@ -56,9 +56,9 @@ std::unique_ptr<Running> Shell::start(const std::string& arguments) {
 }
 
 Outcome Shell::run(const std::string& arguments, const std::string& standard_input,
-                   const std::string& variable) {
+                   const std::string& before) {
   write("stdin", standard_input);
-  const int status = std::system(command(arguments, variable).c_str());
+  const int status = std::system(command(arguments, before).c_str());
   Outcome outcome;
   outcome.code = code_of(status);
   outcome.out = read("stdout");

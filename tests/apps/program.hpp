@@ -34,9 +34,10 @@ class Running {
 /// A folder of its own in which the built program is run as a user does, removed at the end.
 class Shell {
  public:
-  /// Runs `palpate ARGUMENTS` by the system's shell, in an environment with `variable`.
+  /// Runs `BEFORE palpate ARGUMENTS` by the system's shell; `before`: what env(1) takes, such as
+  /// NAME=VALUE or a program that starts it.
   [[nodiscard]] Outcome run(const std::string& arguments, const std::string& standard_input = "",
-                            const std::string& variable = "");
+                            const std::string& before = "");
 
   /// The same, and does not wait for it; its output goes to the files `stdout` and `stderr`.
   [[nodiscard]] std::unique_ptr<Running> start(const std::string& arguments);
@@ -47,7 +48,7 @@ class Shell {
 
  private:
   [[nodiscard]] std::string command(const std::string& arguments,
-                                    const std::string& variable) const;
+                                    const std::string& before) const;
 
   test::Folder folder_;
 };

@@ -1,0 +1,79 @@
+#include "apps/palpate/doctor/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/palpate/words.hpp"
+
+namespace palpate::app::doctor {
+
+namespace {
+
+const char* name_of(Severity severity) {
+  switch (severity) {
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::problem:
+      return "problem";
+    default:
+      return "good";
+  }
+}
+
+// Eight characters wide, then coloured: colours have no width.
+std::string mark(Severity severity, const Style& style) {
+  const std::string padded = fmt::format("{:<8}", name_of(severity));
+  if (severity == Severity::problem) return style.error(padded);
+  return severity == Severity::warning ? style.warning(padded) : padded;
+}
+
+void print(const Finding& finding, const Style& style, std::FILE* stream) {
+  fmt::print(stream, "  {} {}: {}\n", mark(finding.severity, style), finding.looked_at,
+             finding.words);
+  for (const std::string& line : finding.lines) fmt::print(stream, "           {}\n", line);
+  if (!finding.remedy.empty()) fmt::print(stream, "           $ {}\n", finding.remedy);
+}
+
+std::string counted(const Findings& findings, Severity severity) {
+  const auto count = std::ranges::count(findings, severity, &Finding::severity);
+  return fmt::format("{} {}{}", count, name_of(severity), count == 1 ? "" : "s");
+}
+
+std::string verdict(Severity severity) {
+  if (severity == Severity::problem) return "something that is there does not work";
+  if (severity == Severity::warning) return "palpate works, perhaps late or not with everything";
+  return "nothing is wrong";
+}
+
+}  // namespace
+
+void print(const Findings& findings, std::FILE* stream) {
+  const Style style(stream);
+  std::string area;
+  for (const Finding& finding : findings) {
+    if (finding.area != area) fmt::print(stream, "{}\n", style.heading(finding.area));
+    area = finding.area;
+    print(finding, style, stream);
+  }
+  fmt::print(stream, "{}, {}, {}: {}. What mends each stands below it.\n",
+             counted(findings, Severity::problem), counted(findings, Severity::warning),
+             counted(findings, Severity::note), verdict(worst(findings)));
+}
+
+nlohmann::ordered_json as_json(const Findings& findings) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Finding& finding : findings) {
+    list.push_back({{"area", finding.area},
+                    {"looked_at", finding.looked_at},
+                    {"severity", name_of(finding.severity)},
+                    {"words", finding.words},
+                    {"remedy", finding.remedy},
+                    {"lines", finding.lines}});
+  }
+  return list;
+}
+
+}  // namespace palpate::app::doctor

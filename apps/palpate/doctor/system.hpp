@@ -1,0 +1,70 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "palpate/sensor/open_camera.hpp"
+#include "palpate/servo/histogram.hpp"
+#include "palpate/servo/realtime.hpp"
+
+namespace palpate::app::doctor {
+
+/// What became of a loop at 1 kHz on a thread that asked for all that a servo's thread asks for.
+struct RealtimeTrial {
+  RealtimeReport report;
+  Durations lateness;
+  std::size_t left_out = 0;  ///< steps that the one before them made impossible
+};
+
+/// What became of loading a library.
+struct LibraryTrial {
+  enum class Outcome { loaded, absent, broken };
+  Outcome outcome = Outcome::absent;
+  std::string words = {};  ///< its version, if it tells; the loader's words, if it is broken
+};
+
+/// A file such as a device's, as this user sees it.
+struct Node {
+  bool there = false;
+  bool may_open = false;  ///< for reading and writing
+  bool group_may = false;
+  std::string group = {};
+};
+
+/// What the checks know of a machine: files under a root, and answers to what files do not tell.
+/// They ask nothing else, so that tests can make up any machine.
+struct System {
+  std::filesystem::path root = "/";              ///< of /dev, /etc, /proc, /sys, /usr
+  std::filesystem::path share;                   ///< where palpate's rules for udev and limits lie
+  std::map<std::string, std::string> variables;  ///< of the environment
+  std::set<std::string> groups;                  ///< of this process
+
+  std::function<RealtimeTrial(double seconds)> try_realtime;
+  std::function<std::vector<CameraDriver>()> cameras;
+  std::function<Node(const std::filesystem::path&)> node;  ///< given with the root
+  std::function<LibraryTrial(const std::string& name)> try_library;
+  std::function<bool(int port)> listens;  ///< does somebody on 127.0.0.1?
+  /// A locale's decimal point; nothing where there is no such locale.
+  std::function<std::optional<std::string>(const std::string& locale)> decimal_point;
+  std::function<bool(const std::vector<std::string>& command)> succeeds;
+};
+
+/// A file's text without the last line's end; nothing where it cannot be read.
+[[nodiscard]] std::optional<std::string> text(const System& system, const std::string& path);
+[[nodiscard]] bool is_there(const System& system, const std::string& path);
+/// What a folder holds, sorted; nothing where there is none.
+[[nodiscard]] std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
+/// Of the environment; empty where it is not set.
+[[nodiscard]] std::string variable(const System& system, const std::string& name);
+
+/// Is this a container, whose limits and devices are set where it is started?
+[[nodiscard]] bool in_container(const System& system);
+/// Ubuntu rather than Debian: a few packages are named otherwise.
+[[nodiscard]] bool is_ubuntu(const System& system);
+
+}  // namespace palpate::app::doctor

@@ -1,0 +1,148 @@
+#include "apps/palpate/doctor/surroundings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "apps/doctor/made_up.hpp"
+#include "apps/palpate/doctor/checks.hpp"
+#include "apps/palpate/doctor/report.hpp"
+
+namespace palpate::app::doctor {
+namespace {
+
+// One of everything that can be wrong.
+void break_everything(MadeUp& machine) {
+  machine.file("proc/version", "Linux version 6.1.0-18-amd64 #1 SMP PREEMPT_DYNAMIC");
+  machine.file("proc/sys/kernel/sched_rt_runtime_us", "0");
+  machine.file("proc/sys/net/core/rmem_max", "212992");
+  machine.file("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "powersave");
+  machine.file("sys/devices/system/clocksource/clocksource0/current_clocksource", "hpet");
+  machine.usb("1-1", "1451", "0402", 1, 2);
+  machine.usb("1-2", "045e", "02ae", 1, 3, "gspca_kinect");
+  machine.usb("1-3", "1d27", "0601", 1, 4);
+  machine.usb("1-4", "8086", "0b07", 1, 5, "uvcvideo", "RealSense");
+  machine.usb("1-5", "1209", "0001", 1, 6, "", "Haply");
+  machine.system.node = [](const std::filesystem::path&) { return Node{.there = true}; };
+  machine.system.variables = {{"DISPLAY", ":0"}, {"LANG", "de_DE.UTF-8"}, {"LC_TIME", "$(ls)"}};
+}
+
+// May all be pasted into a shell?
+bool shell_reads(const std::string& commands) {
+  const test::Folder folder;
+  folder.write("commands", commands);
+  return std::system(("sh -n '" + folder / "commands" + "'").c_str()) == 0;
+}
+
+void expect_remedies(const Findings& findings) {
+  std::string commands;
+  for (const auto& finding : as_json(findings)) {
+    EXPECT_EQ(finding["severity"] == "good", finding["remedy"] == "") << finding;
+    EXPECT_NE(finding["words"], "") << finding;
+    commands += finding["remedy"].get<std::string>() + "\n";
+  }
+  EXPECT_TRUE(shell_reads(commands)) << commands;
+}
+
+TEST(DoctorChecks, GiveACommandForAllThatIsNotGood) {
+  const MadeUp bare;
+  const Findings findings = check_all(bare.system, 0);
+  expect_remedies(findings);
+  EXPECT_EQ(worst(findings), Severity::warning);  // no rights, no files; no device is no problem
+  MadeUp broken;
+  break_everything(broken);
+  expect_remedies(check_all(broken.system, 0));
+  broken.file(".dockerenv", "");
+  expect_remedies(check_all(broken.system, 0));
+}
+
+TEST(DoctorChecks, FindNothingWrongWhereNothingIs) {
+  MadeUp machine;
+  machine.make_healthy();
+  EXPECT_EQ(worst(check_all(machine.system, 0)), Severity::note);  // no device, no driver
+}
+
+TEST(DoctorChecks, KeepAreasTogether) {
+  const MadeUp bare;
+  std::vector<std::string> areas;
+  for (const Finding& finding : check_all(bare.system, 0)) {
+    if (areas.empty() || areas.back() != finding.area) areas.push_back(finding.area);
+  }
+  EXPECT_EQ(areas, (std::vector<std::string>{"kernel", "real-time rights", "haptic devices",
+                                             "cameras", "surroundings"}));
+}
+
+TEST(DoctorChecks, MeasureJitterWhenTold) {
+  MadeUp machine;
+  machine.system.try_realtime = [](double seconds) {
+    RealtimeTrial trial;
+    Histogram lateness;
+    for (double t = 0; t < seconds; t += 0.25) lateness.add(1e-5);
+    trial.lateness = lateness.look();
+    return trial;
+  };
+  const Finding jitter = about("jitter at 1 kHz", check_all(machine.system, 1));
+  EXPECT_EQ(jitter.words.find("4 steps"), 0u) << jitter.words;
+  EXPECT_EQ(as_json({jitter})[0]["lines"].size(), 1u);
+}
+
+TEST(DoctorLocale, ThatDoesNotExistIsMadeOrLeft) {
+  MadeUp machine;
+  machine.system.variables = {{"LC_ALL", "de_DE.UTF-8"}};
+  const Finding finding = check_locales(machine.system);
+  EXPECT_EQ(finding.severity, Severity::warning);
+  EXPECT_EQ(finding.remedy,
+            "sudo apt install locales && sudo localedef -i de_DE -f UTF-8 de_DE.UTF-8");
+  machine.system.variables = {{"LANG", "$(reboot).x"}};
+  EXPECT_EQ(check_locales(machine.system).remedy, "export LANG=C.UTF-8");
+  machine.system.variables = {{"LANG", "sr_RS.UTF-8@latin"}};
+  EXPECT_TRUE(
+      check_locales(machine.system).remedy.ends_with("-i sr_RS@latin -f UTF-8 sr_RS.UTF-8@latin"));
+  machine.system.variables = {{"LANG", "C.UTF-8"}, {"LANGUAGE", "de"}};
+  EXPECT_EQ(check_locales(machine.system).severity, Severity::good);
+}
+
+TEST(DoctorLocale, WithADecimalCommaIsNamed) {
+  MadeUp machine;
+  machine.system.decimal_point = [](const std::string& name) {
+    return std::optional<std::string>(name == "de_DE.UTF-8" ? "," : ".");
+  };
+  machine.system.variables = {{"LANG", "de_DE.UTF-8"}};
+  EXPECT_EQ(check_decimal_point(machine.system).remedy, "export LC_NUMERIC=C.UTF-8");
+  machine.system.variables["LC_NUMERIC"] = "C.UTF-8";
+  EXPECT_EQ(check_decimal_point(machine.system).severity, Severity::good);
+  machine.system.variables["LC_ALL"] = "de_DE.UTF-8";  // before all others
+  EXPECT_EQ(check_decimal_point(machine.system).remedy, "export LC_ALL=C.UTF-8");
+}
+
+TEST(DoctorSurroundings, MissAFolderForTheRemoteDevicesSocket) {
+  MadeUp machine;
+  EXPECT_EQ(check_runtime_folder(machine.system).severity, Severity::note);
+  machine.system.variables = {{"XDG_RUNTIME_DIR", "/run/user/1000"}};
+  EXPECT_EQ(check_runtime_folder(machine.system).severity, Severity::warning);
+  machine.file("run/user/1000/bus", "");
+  EXPECT_EQ(check_runtime_folder(machine.system).severity, Severity::good);
+}
+
+TEST(DoctorSurroundings, CompareTheNetworkBufferWithACloud) {
+  MadeUp machine;
+  machine.file("proc/sys/net/core/rmem_max", "212992");
+  const Finding finding = check_network_buffer(machine.system);
+  EXPECT_EQ(finding.severity, Severity::note);
+  EXPECT_NE(finding.words.find("4.9 MB"), std::string::npos) << finding.words;
+  machine.file("proc/sys/net/core/rmem_max", "8388608");
+  EXPECT_EQ(check_network_buffer(machine.system).severity, Severity::good);
+}
+
+TEST(DoctorSurroundings, NeedABrowserOnADesktopOnly) {
+  MadeUp machine;
+  EXPECT_NE(check_browser(machine.system).remedy.find("ssh"), std::string::npos);
+  machine.system.variables = {{"WAYLAND_DISPLAY", "wayland-0"}};
+  EXPECT_NE(check_browser(machine.system).remedy.find("apt install"), std::string::npos);
+  machine.file("usr/bin/xdg-open", "");
+  machine.file("snap/bin/firefox", "");
+  EXPECT_EQ(check_browser(machine.system).severity, Severity::good);
+}
+
+}  // namespace
+}  // namespace palpate::app::doctor
