@@ -1,5 +1,6 @@
 #include "viewer/server.hpp"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 
 #include <chrono>
@@ -32,9 +33,16 @@ net::ip::address address_of(const std::string& text) {
       "viewer: '{}' is no address; give one like 127.0.0.1, ::1 or 0.0.0.0 (everywhere)", text));
 }
 
+// A program that this one starts (a browser) has no part in its sockets.
+template <class Socket>
+void keep_to_ourselves(Socket& socket) {
+  ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
+}
+
 beast::error_code listen(Tcp::acceptor& acceptor, const Tcp::endpoint& endpoint) {
   beast::error_code error;
   acceptor.open(endpoint.protocol(), error);
+  if (!error) keep_to_ourselves(acceptor);
   if (!error) acceptor.set_option(net::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
@@ -89,8 +97,8 @@ void Server::State::accept() {
   acceptor.async_accept([this](const beast::error_code& error, Tcp::socket socket) {
     if (ending) return;
     if (!error) {
+      accept();  // first: what goes wrong with one socket keeps no other out
       take(std::move(socket));
-      accept();
       return;
     }
     again.expires_after(nanoseconds(kAcceptAgain));
@@ -101,6 +109,7 @@ void Server::State::accept() {
 }
 
 void Server::State::take(Tcp::socket socket) {
+  keep_to_ourselves(socket);
   ++hub.accepted;
   if (hub.connections.size() >= hub.limits.connections) {
     ++hub.turned_away;
