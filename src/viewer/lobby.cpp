@@ -96,6 +96,7 @@ void Lobby::welcome(Client& client) {
   welcome.settings = settings();
   welcome.presets = options_.controls.presets;
   answer(client, welcome_text(welcome));
+  for (const Notice& notice : welcome.notices) answer(client, notice_text(notice));
   if (!recording_.empty()) {
     client.outbox.put({Topic::Kind::record}, text_message(record_text(true, recording_)));
   }
@@ -179,6 +180,10 @@ void Lobby::tell_all(Topic topic, Message message) {
 
 void Lobby::tell_settings() {
   tell_all({Topic::Kind::settings}, text_message(settings_text(settings())));
+}
+
+void Lobby::tell(const Notice& notice) {
+  tell_all({Topic::Kind::answer}, text_message(notice_text(notice)));
 }
 
 void Lobby::show(Client& client, Topic topic, const SharedBytes& bytes) {

@@ -50,6 +50,7 @@ class Lobby {
   /// To all who said hello.
   void tell_all(Topic topic, Message message);
   void tell_settings();
+  void tell(const Notice& notice);
   /// To one client, unless it was shown these very bytes last.
   static void show(Client& client, Topic topic, const SharedBytes& bytes);
 

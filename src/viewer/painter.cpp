@@ -1,15 +1,13 @@
 #include "viewer/painter.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <utility>
 
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "viewer/source_reports.hpp"
-#include "viewer/tool_names.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -27,7 +25,6 @@ double host_time() {
 Painter::Painter(Scene& scene, PainterOptions options)
     : scene_(scene),
       options_(std::move(options)),
-      tools_(tool_names(options_.servos)),
       clouds_(scene, options_.origin),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -48,7 +45,6 @@ void Painter::run(const std::stop_token& stop) {
       if (budgets_.empty()) {
         lock.unlock();
         surfaces_.clear();
-        told_.clear();
         lock.lock();
         changed_.wait(lock, stop, [this] { return !budgets_.empty(); });
       }
@@ -64,8 +60,8 @@ void Painter::work(const std::stop_token& stop, const std::set<std::size_t>& bud
     options_.show(paint(budgets));
   } catch (const std::exception& error) {
     Picture picture;
-    warn(picture, NoticeLevel::warning, "the viewer", error.what());
-    if (!picture.notices.empty()) options_.show(std::move(picture));
+    picture.complaint = news(error.what());
+    options_.show(std::move(picture));
   }
   const double took = host_time() - begin;
   std::unique_lock lock(mutex_);
@@ -96,21 +92,12 @@ void Painter::report(Picture& picture) {
       options_.streams ? options_.streams() : std::vector<ViewerStream>{};
   picture.sources = std::make_shared<const std::string>(
       sources_text(source_reports(scene_, streams, options_.origin, now())));  // painting took time
-  for (const ViewerStream& stream : streams) {
-    warn(picture, NoticeLevel::warning, stream.state.source, stream.state.problem);
-  }
-  for (std::size_t i = 0; i < options_.servos.size(); ++i) {
-    const GuardFault fault = options_.servos[i]->state().guard.fault;
-    warn(picture, NoticeLevel::fault, tools_[i], std::string(in_words(fault)));
-  }
 }
 
-void Painter::warn(Picture& picture, NoticeLevel level, const std::string& whose,
-                   std::string problem) {
-  std::string& told = told_[whose];
-  if (told == problem) return;
-  if (!problem.empty()) picture.notices.emplace_back(level, fmt::format("{}: {}", whose, problem));
-  told = std::move(problem);
+std::string Painter::news(std::string complaint) {
+  if (told_ == complaint) return {};
+  told_ = std::move(complaint);
+  return told_;
 }
 
 // The servos' clock is the snapshots'.

@@ -4,13 +4,11 @@
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "palpate/scene/scene.hpp"
@@ -26,7 +24,7 @@ struct Picture {
   std::vector<PaintedCloud> clouds;      ///< of every source, for every budget
   std::vector<PaintedSurface> surfaces;  ///< of every device
   SharedBytes sources;                   ///< the message `sources`; null: not now
-  std::vector<std::pair<NoticeLevel, std::string>> notices;
+  std::string complaint;                 ///< why there is no more; empty: nothing is new
 };
 
 struct PainterOptions {
@@ -55,21 +53,20 @@ class Painter {
   [[nodiscard]] Picture paint(const std::set<std::size_t>& budgets);
   void join_scene();
   void report(Picture& picture);
-  void warn(Picture& picture, NoticeLevel level, const std::string& whose, std::string problem);
+  [[nodiscard]] std::string news(std::string complaint);
   [[nodiscard]] double now() const;
 
   Scene& scene_;
   PainterOptions options_;
-  std::vector<std::string> tools_;  // names
-  std::mutex mutex_;                // of the budgets; no servo takes it
+  std::mutex mutex_;  // of the budgets; no servo takes it
   std::condition_variable_any changed_;
   std::set<std::size_t> budgets_;
 
   // The thread's.
   CloudPainter clouds_;
   std::vector<std::unique_ptr<SurfacePainter>> surfaces_;
-  std::map<std::string, std::string> told_;  // the last problem of each stream and device
-  double reported_ = -1e300;                 // s, of the host
+  std::string told_;          // the last complaint
+  double reported_ = -1e300;  // s, of the host
 
   std::jthread thread_;  // last: it uses all of the above
 };

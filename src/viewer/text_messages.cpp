@@ -112,8 +112,8 @@ std::string sources_text(std::span<const SourceReport> sources) {
   return text_of({{"type", "sources"}, {"sources", std::move(list)}});
 }
 
-std::string notice_text(NoticeLevel level, std::string_view text) {
-  return text_of({{"type", "notice"}, {"level", name_of(level)}, {"text", text}});
+std::string notice_text(const Notice& notice) {
+  return text_of({{"type", "notice"}, {"level", name_of(notice.level)}, {"text", notice.text}});
 }
 
 std::string record_text(bool on, std::string_view file) {

@@ -10,7 +10,8 @@
 
 #include "palpate/sensor/stream_state.hpp"
 #include "palpate/viewer/setting.hpp"
-#include "palpate/viewer/viewer.hpp"
+#include "palpate/viewer/viewer_options.hpp"
+#include "viewer/notice.hpp"
 
 namespace palpate::viewer {
 
@@ -34,6 +35,7 @@ struct Welcome {
   std::vector<SourceLabel> sources;
   std::vector<Setting> settings;
   std::vector<std::string> presets;
+  std::vector<Notice> notices;  ///< what is wrong already; messages of their own
 };
 
 /// How a source fares. What is not set is left out.
@@ -54,7 +56,7 @@ struct SourceReport {
 [[nodiscard]] std::string welcome_text(const Welcome& welcome);
 [[nodiscard]] std::string settings_text(std::span<const Setting> settings);
 [[nodiscard]] std::string sources_text(std::span<const SourceReport> sources);
-[[nodiscard]] std::string notice_text(NoticeLevel level, std::string_view text);
+[[nodiscard]] std::string notice_text(const Notice& notice);
 [[nodiscard]] std::string record_text(bool on, std::string_view file);
 [[nodiscard]] std::string refused_text(std::string_view text);
 [[nodiscard]] std::string lost_text(std::size_t device);

@@ -20,6 +20,7 @@
 #include "viewer/state_source.hpp"
 #include "viewer/token.hpp"
 #include "viewer/tool_names.hpp"
+#include "viewer/troubles.hpp"
 
 namespace palpate {
 namespace {
@@ -27,10 +28,11 @@ namespace {
 using namespace viewer;
 
 constexpr double kStatePeriod = 1.0 / 60;  // s
+constexpr double kTroublePeriod = 0.5;     // s
 constexpr double kEmptyRadius = 1;         // m, shown where there is nothing yet
 
-Message message_of(std::string bytes, bool text) {
-  return {std::make_shared<const std::string>(std::move(bytes)), text};
+Message binary(std::string bytes) {
+  return {std::make_shared<const std::string>(std::move(bytes)), false};
 }
 
 ViewerOptions complete(ViewerOptions options, const Scene& scene) {
@@ -73,11 +75,13 @@ std::vector<DeviceLabel> labels_of(const std::vector<Servo*>& servos,
 }  // namespace
 
 struct Viewer::Parts {
-  Parts(Scene& seen, std::vector<Servo*> servos, const ViewerOptions& given,
+  Parts(Scene& seen, const std::vector<Servo*>& moving, const ViewerOptions& given,
         const ViewerControls& controls)
       : scene(seen),
+        servos(moving),
+        names(tool_names(servos)),
         options(complete(given, seen)),
-        lobby(lobby_options(complete(controls, servos), servos)),
+        lobby(lobby_options(complete(controls, servos))),
         server(options, lobby),
         radii(servos.size(), 0.0),
         painter(seen, {servos, *options.origin, options.streams,
@@ -86,6 +90,9 @@ struct Viewer::Parts {
       states.emplace_back(*servos[i], i, *options.origin);
     }
     server.every(kStatePeriod, [this] { tick(); });
+    server.every(kTroublePeriod, [this] {
+      if (!lobby.greeted().empty()) look_for_trouble(streams());
+    });
     network = std::jthread([this] { server.run(); });
   }
   ~Parts() {
@@ -95,13 +102,16 @@ struct Viewer::Parts {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  [[nodiscard]] LobbyOptions lobby_options(const ViewerControls& controls,
-                                           const std::vector<Servo*>& servos) {
+  [[nodiscard]] LobbyOptions lobby_options(const ViewerControls& controls) {
     return {options.token,   options.limits,
             controls,        labels_of(servos, controls),
             *options.origin, [this] { return welcome(); }};
   }
-  [[nodiscard]] Welcome welcome() const;
+  [[nodiscard]] std::vector<ViewerStream> streams() const {
+    return options.streams ? options.streams() : std::vector<ViewerStream>{};
+  }
+  [[nodiscard]] Welcome welcome();
+  void look_for_trouble(const std::vector<ViewerStream>& streams);
   void tick();
   void post(Picture picture) {
     auto shared = std::make_shared<Picture>(std::move(picture));
@@ -110,33 +120,45 @@ struct Viewer::Parts {
   void show(const Picture& picture);
 
   Scene& scene;
+  std::vector<Servo*> servos;
+  std::vector<std::string> names;  // of their tools
   ViewerOptions options;
   Lobby lobby;
   Server server;
   std::vector<StateSource> states;
   std::vector<double> radii;  // R around each tool, m
+  Troubles troubles;
   Latest<ViewerCounts> counts;
   Painter painter;
   std::jthread network;
 };
 
-Welcome Viewer::Parts::welcome() const {
+Welcome Viewer::Parts::welcome() {
   const Box box = scene_box(scene);
   Welcome welcome;
   welcome.scene = options.scene;
   welcome.origin = *options.origin;
   welcome.up = options.up;
   welcome.radius = box.empty() ? kEmptyRadius : 0.5 * box.size().norm();
-  const std::vector<ViewerStream> streams =
-      options.streams ? options.streams() : std::vector<ViewerStream>{};
+  const std::vector<ViewerStream> seen = streams();
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const std::string& name = scene.source(i).name();
-    const bool camera = std::ranges::any_of(streams, [&](const ViewerStream& stream) {
+    const bool camera = std::ranges::any_of(seen, [&](const ViewerStream& stream) {
       return stream.state.source == name && stream.frustum;
     });
     welcome.sources.push_back({name, camera});
   }
+  look_for_trouble(seen);
+  welcome.notices = troubles.present();
   return welcome;
+}
+
+void Viewer::Parts::look_for_trouble(const std::vector<ViewerStream>& streams) {
+  std::vector<DeviceFault> faults;
+  for (std::size_t i = 0; i < servos.size(); ++i) {
+    faults.push_back({names[i], servos[i]->state().guard.fault});
+  }
+  for (const Notice& notice : troubles.look(streams, faults)) lobby.tell(notice);
 }
 
 void Viewer::Parts::tick() {
@@ -146,7 +168,7 @@ void Viewer::Parts::tick() {
   painter.look(std::move(budgets));
   for (std::size_t i = 0; seen && i < states.size(); ++i) {
     if (const auto state = states[i].next(Hub::now(), radii[i], lobby.taken(i))) {
-      lobby.tell_all({Topic::Kind::state, i}, message_of(encode(*state), false));
+      lobby.tell_all({Topic::Kind::state, i}, binary(encode(*state)));
     }
   }
   counts.set(server.counts());
@@ -164,14 +186,12 @@ void Viewer::Parts::show(const Picture& picture) {
     }
   }
   if (picture.sources) lobby.tell_all({Topic::Kind::sources}, {picture.sources, true});
-  for (const auto& [level, text] : picture.notices) {
-    lobby.tell_all({Topic::Kind::answer}, message_of(notice_text(level, text), true));
-  }
+  if (!picture.complaint.empty()) lobby.tell({NoticeLevel::warning, picture.complaint});
 }
 
 Viewer::Viewer(Scene& scene, std::vector<Servo*> servos, const ViewerOptions& options,
                ViewerControls controls)
-    : parts_(std::make_unique<Parts>(scene, std::move(servos), options, controls)) {}
+    : parts_(std::make_unique<Parts>(scene, servos, options, controls)) {}
 
 Viewer::~Viewer() = default;
 
@@ -191,9 +211,8 @@ ViewerCounts Viewer::counts() const {
 
 void Viewer::notice(NoticeLevel level, std::string text) {
   Parts& parts = *parts_;
-  parts.server.post([&parts, level, words = std::move(text)] {
-    parts.lobby.tell_all({Topic::Kind::answer}, message_of(notice_text(level, words), true));
-  });
+  parts.server.post(
+      [&parts, notice = Notice{level, std::move(text)}] { parts.lobby.tell(notice); });
 }
 
 void Viewer::settings_changed() {
