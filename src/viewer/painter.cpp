@@ -72,11 +72,24 @@ void Painter::work(const std::stop_token& stop, const std::set<std::size_t>& bud
 
 Picture Painter::paint(const std::set<std::size_t>& budgets) {
   Picture picture;
-  picture.clouds = clouds_.paint(budgets, now());
-  join_scene();
-  for (const auto& surface : surfaces_) picture.surfaces.push_back(surface->paint());
+  std::set<std::size_t> drawn = budgets;
+  drawn.erase(0);
+  picture.clouds = clouds_.paint(drawn, now());
+  drawn.empty() ? surfaces_.clear() : paint_surfaces(picture);
   if (host_time() - reported_ >= kReportPeriod) report(picture);
   return picture;
+}
+
+// A scene that has no place for one more field is seen all the same.
+void Painter::paint_surfaces(Picture& picture) {
+  std::string complaint;
+  try {
+    join_scene();
+  } catch (const Error& error) {
+    complaint = error.what();
+  }
+  picture.complaint = news(std::move(complaint));
+  for (const auto& surface : surfaces_) picture.surfaces.push_back(surface->paint());
 }
 
 void Painter::join_scene() {

@@ -21,7 +21,7 @@ namespace palpate::viewer {
 
 /// All that takes more than some microseconds to make.
 struct Picture {
-  std::vector<PaintedCloud> clouds;      ///< of every source, for every budget
+  std::vector<PaintedCloud> clouds;      ///< of every source, for every budget above 0
   std::vector<PaintedSurface> surfaces;  ///< of every device
   SharedBytes sources;                   ///< the message `sources`; null: not now
   std::string complaint;                 ///< why there is no more; empty: nothing is new
@@ -44,13 +44,15 @@ class Painter {
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
-  /// How many points those who look draw; empty: nobody looks. Any thread.
+  /// How many points those who look draw, 0: they draw nothing now; empty: nobody looks. Any
+  /// thread.
   void look(std::set<std::size_t> budgets);
 
  private:
   void run(const std::stop_token& stop);
   void work(const std::stop_token& stop, const std::set<std::size_t>& budgets);
   [[nodiscard]] Picture paint(const std::set<std::size_t>& budgets);
+  void paint_surfaces(Picture& picture);
   void join_scene();
   void report(Picture& picture);
   [[nodiscard]] std::string news(std::string complaint);

@@ -39,10 +39,8 @@ PaintedSurface SurfacePainter::paint() {
   const Eigen::Vector3d from = proxy + kBefore * radius * state.contact.normal;
   const Mesh mesh = local_surface(field_, {proxy, from, radius, least_support_of(options_)});
   const Eigen::Vector3f center = (proxy - origin_).cast<float>();
-  const bool nothing = mesh.triangles.empty();
-  if (!nothing || newest_) {  // an empty one takes the last one away
-    newest_ = std::make_shared<const std::string>(encode_surface(device_, center, mesh));
-  }
+  // An empty one takes away what a page had before.
+  newest_ = std::make_shared<const std::string>(encode_surface(device_, center, mesh));
   return {radius, newest_};
 }
 

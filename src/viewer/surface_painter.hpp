@@ -14,7 +14,7 @@ namespace palpate::viewer {
 /// What is around one tool.
 struct PaintedSurface {
   double radius = 0;  ///< R, m; 0: not known
-  SharedBytes bytes;  ///< the newest; null: nothing was near until now
+  SharedBytes bytes;  ///< the newest; null: the servo made no step yet
 };
 
 /// Meshes the surface around a servo's proxy, by a field of its own. One thread uses it, and not

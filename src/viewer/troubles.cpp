@@ -35,8 +35,7 @@ std::vector<Notice> Troubles::look(std::span<const ViewerStream> streams,
 // A problem that repeats itself with every frame is told once.
 bool Troubles::is_new(const StreamState& stream) {
   Problem& last = problems_[stream.source];
-  const bool repeated =
-      last.words == stream.problem && stream.problem_at - last.time <= kPeace;
+  const bool repeated = last.words == stream.problem && stream.problem_at - last.time <= kPeace;
   last = {stream.problem, stream.problem_at};
   return !stream.problem.empty() && !repeated;
 }

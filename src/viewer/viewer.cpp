@@ -177,11 +177,13 @@ void Viewer::Parts::tick() {
 void Viewer::Parts::show(const Picture& picture) {
   for (std::size_t i = 0; i < picture.surfaces.size(); ++i) radii[i] = picture.surfaces[i].radius;
   for (Client* client : lobby.greeted()) {
+    if (client->points == 0) continue;
     for (const PaintedCloud& cloud : picture.clouds) {
       if (client->points != cloud.budget) continue;
       Lobby::show(*client, {Topic::Kind::cloud, cloud.source}, cloud.bytes);
     }
     for (std::size_t i = 0; i < picture.surfaces.size(); ++i) {
+      if (picture.surfaces[i].bytes == nullptr) continue;
       Lobby::show(*client, {Topic::Kind::surface, i}, picture.surfaces[i].bytes);
     }
   }

@@ -1,0 +1,72 @@
+// What pages are told and shown that come late, draw nothing, or find no place.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+
+#include "palpate/base/error.hpp"
+#include "palpate/scene/scene_field.hpp"
+#include "viewer/viewer_rig.hpp"
+
+namespace palpate {
+namespace {
+
+using test::Frame;
+using test::ViewerRig;
+
+TEST(Pages, OneThatComesLaterHearsOfAFaultThatLasts) {
+  ViewerRig rig;
+  auto first = rig.enter();
+  rig.device.state().position.x() = std::nan("");
+  rig.servo->tick(0.1);
+  const auto notice = first->receive_json("notice");
+  EXPECT_EQ(notice["level"], "fault");
+  EXPECT_EQ(rig.enter()->receive_json("notice"), notice);
+}
+
+TEST(Pages, NobodyHearsOfAProblemThatIsOver) {
+  StreamState stream;
+  stream.source = "sheet";
+  stream.phase = StreamPhase::running;
+  stream.problem = "sheet (a camera): one bad frame";
+  ViewerOptions options;
+  options.streams = [&] { return std::vector{ViewerStream{stream}}; };
+  ViewerRig rig(options);
+  auto client = rig.enter();
+  for (int i = 0; i < 3; ++i) client->receive_json("sources");
+  rig.viewer->notice(NoticeLevel::info, "the first");
+  EXPECT_EQ(client->receive_json("notice")["text"], "the first");
+}
+
+TEST(Pages, ASceneThatHasNoPlaceForAFieldIsSeenAllTheSame) {
+  ViewerRig rig;
+  std::deque<SceneField> fields;
+  try {
+    while (true) fields.emplace_back(rig.scene);
+  } catch (const Error&) {
+    EXPECT_FALSE(fields.empty());
+  }
+  auto client = rig.enter();
+  client->receive_until([](const Frame& frame) { return frame.binary(2); });
+  auto other = rig.enter();
+  other->receive_until([](const Frame& frame) { return frame.binary(2); });
+  fields.pop_back();
+  client->receive_until([](const Frame& frame) { return frame.binary(3); });
+}
+
+TEST(Pages, OneThatDrawsNothingGetsNoCloudAndNoSurfaceUntilItDraws) {
+  ViewerRig rig;
+  auto client = rig.enter(0);
+  int reports = 0;
+  client->receive_until([&](const Frame& frame) {
+    EXPECT_FALSE(frame.binary(2) || frame.binary(3));
+    return frame.opcode == 1 && frame.payload.find("\"sources\"") != std::string::npos &&
+           ++reports == 3;
+  });
+  client->send_text(R"({"type":"points","points":100})");
+  client->receive_until([](const Frame& frame) { return frame.binary(2); });
+  client->receive_until([](const Frame& frame) { return frame.binary(3); });
+}
+
+}  // namespace
+}  // namespace palpate
