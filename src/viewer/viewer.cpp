@@ -35,12 +35,20 @@ Message binary(std::string bytes) {
   return {std::make_shared<const std::string>(std::move(bytes)), false};
 }
 
+// Of all points; where there are none yet, of where the sensors stand.
+Eigen::Vector3d middle(const Scene& scene) {
+  const Box box = scene_box(scene);
+  if (!box.empty()) return box.center();
+  Box sensors;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    sensors.extend(scene.source(i).pose().translation());
+  }
+  return sensors.empty() ? Eigen::Vector3d::Zero().eval() : sensors.center();
+}
+
 ViewerOptions complete(ViewerOptions options, const Scene& scene) {
   if (options.token.empty()) options.token = make_token();
-  if (!options.origin) {
-    const Box box = scene_box(scene);
-    options.origin = box.empty() ? Eigen::Vector3d::Zero().eval() : box.center();
-  }
+  if (!options.origin) options.origin = middle(scene);
   return options;
 }
 

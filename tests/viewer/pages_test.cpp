@@ -12,6 +12,7 @@ namespace palpate {
 namespace {
 
 using test::Frame;
+using test::RawClient;
 using test::ViewerRig;
 
 TEST(Pages, OneThatComesLaterHearsOfAFaultThatLasts) {
@@ -52,6 +53,25 @@ TEST(Pages, ASceneThatHasNoPlaceForAFieldIsSeenAllTheSame) {
   other->receive_until([](const Frame& frame) { return frame.binary(2); });
   fields.pop_back();
   client->receive_until([](const Frame& frame) { return frame.binary(3); });
+}
+
+TEST(Pages, TheOriginIsNearSensorsThatSawNothingYet) {
+  Scene scene;
+  const Eigen::Vector3d middle(500'000, 4'000'000, 100);
+  for (const double side : {-1.0, 1.0}) {
+    Source& source = scene.add(side < 0 ? "left" : "right");
+    source.set_pose(Eigen::Isometry3d(
+        Eigen::Translation3d(middle + Eigen::Vector3d(side, 0, 0))));
+  }
+  ViewerOptions options;
+  options.port = 0;
+  options.token = ViewerRig::kToken;
+  const Viewer viewer(scene, {}, options);
+  RawClient client(viewer.port());
+  client.upgrade(test::local(viewer.port()));
+  client.send_text(R"({"type":"hello","token":"secret","points":10})");
+  EXPECT_EQ(client.receive_json("welcome")["origin"],
+            nlohmann::json::array({500'000.0, 4'000'000.0, 100.0}));
 }
 
 TEST(Pages, OneThatDrawsNothingGetsNoCloudAndNoSurfaceUntilItDraws) {

@@ -48,7 +48,9 @@ struct ViewerOptions {
   std::optional<std::uint16_t> port = {};
   std::string token = {};                      ///< empty: 128 random bits of the system
   std::string scene = "palpate";               ///< the scene's name, for people
-  std::optional<Eigen::Vector3d> origin = {};  ///< m, world; unset: the middle of all points
+  /// m, world; unset: the middle of all points, or of where the sensors stand. What is shown is told
+  /// in single precision from there.
+  std::optional<Eigen::Vector3d> origin = {};
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   /// How the streams fare; called about twice a second, on a thread of the viewer.
   std::function<std::vector<ViewerStream>()> streams = {};
