@@ -33,7 +33,7 @@ struct StateMessage {
   float rate = 0;                                   ///< steps a second
   std::array<float, 2> computing{};                 ///< p50 and p99, s
   std::array<float, 2> lateness{};                  ///< p50 and p99, s
-  float interval = 0;                               ///< between samples, s
+  float interval = 0;                               ///< between samples on average, s
   std::vector<Eigen::Vector3f> forces;              ///< N, oldest first; at most 65535
 };
 

@@ -1,5 +1,6 @@
 #include "viewer/state_source.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace palpate::viewer {
@@ -31,9 +32,29 @@ std::optional<StateMessage> StateSource::next(double now, double radius, bool ta
   message.rate = static_cast<float>(rate(now, state.step));
   message.computing = quantiles(servo_.computing(), computing_);
   message.lateness = quantiles(servo_.lateness(), lateness_);
-  message.interval = static_cast<float>(state.dt);
-  message.forces = servo_.recent_forces().since(forces_seen_);
+  message.interval = static_cast<float>(interval(state));
+  message.forces = forces_until(state.step);
   return message;
+}
+
+// On average since the message before, so that samples do not overlap where steps came unevenly.
+double StateSource::interval(const ServoState& state) {
+  const std::uint64_t steps = state.step - step_;
+  const double mean = steps > 0 ? (state.time - time_) / static_cast<double>(steps) : 0;
+  const bool known = step_ > 0 && mean > 0;
+  step_ = state.step;
+  time_ = state.time;
+  return known ? mean : state.dt;
+}
+
+// What was felt after the state was read waits for the next message.
+std::vector<Eigen::Vector3f> StateSource::forces_until(std::uint64_t step) {
+  std::vector<Eigen::Vector3f> forces = servo_.recent_forces().since(forces_seen_);
+  if (forces_seen_ <= step) return forces;
+  const std::uint64_t later = std::min<std::uint64_t>(forces_seen_ - step, forces.size());
+  forces.resize(forces.size() - static_cast<std::size_t>(later));
+  forces_seen_ -= later;
+  return forces;
 }
 
 // What the guard did in any step since the message before, not in the last one alone.

@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "palpate/servo/servo.hpp"
 #include "viewer/state_message.hpp"
@@ -24,11 +25,15 @@ class StateSource {
 
  private:
   [[nodiscard]] double rate(double now, std::uint64_t step);
+  [[nodiscard]] double interval(const ServoState& state);
+  [[nodiscard]] std::vector<Eigen::Vector3f> forces_until(std::uint64_t step);
   [[nodiscard]] std::uint32_t flags(const ServoState& state, bool taken);
 
   const Servo& servo_;
   std::uint8_t device_;
   Eigen::Vector3d origin_;
+  std::uint64_t step_ = 0;  // of the message before
+  double time_ = 0;         // of it, s
   std::uint64_t forces_seen_ = 0;
   GuardCounts counts_;
   Durations computing_;

@@ -60,8 +60,7 @@ TEST(Pages, TheOriginIsNearSensorsThatSawNothingYet) {
   const Eigen::Vector3d middle(500'000, 4'000'000, 100);
   for (const double side : {-1.0, 1.0}) {
     Source& source = scene.add(side < 0 ? "left" : "right");
-    source.set_pose(Eigen::Isometry3d(
-        Eigen::Translation3d(middle + Eigen::Vector3d(side, 0, 0))));
+    source.set_pose(Eigen::Isometry3d(Eigen::Translation3d(middle + Eigen::Vector3d(side, 0, 0))));
   }
   ViewerOptions options;
   options.port = 0;
