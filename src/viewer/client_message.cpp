@@ -11,7 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLongestWord = 256;
 constexpr double kLargestId = 9007199254740992.0;  // 2^53
 constexpr double kMostDevices = 256;
 constexpr double kAllButtons = 4294967295.0;  // 2^32 - 1

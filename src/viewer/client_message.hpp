@@ -55,6 +55,7 @@ using ClientMessage =
     std::variant<Unreadable, Hello, Hand, Release, Set, Preset, Pause, Reset, Record, Points, Ping>;
 
 constexpr std::size_t kMostPoints = 10'000'000;  ///< that a page may ask for
+constexpr std::size_t kLongestWord = 256;        ///< bytes of a text
 constexpr double kFarthestHand = 1e6;            ///< m from the origin
 
 /// Never throws, whatever `text` is; takes memory in proportion to it.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kPlain = "text/plain; charset=utf-8";
 constexpr const char* kPolicy =
-    "default-src 'self'; connect-src 'self' ws:; img-src 'self' data: blob:; base-uri 'none'; "
+    "default-src 'self'; connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'none'";
 
 std::string_view view(beast::string_view text) {

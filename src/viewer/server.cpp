@@ -19,6 +19,8 @@ namespace {
 constexpr int kPortsTried = 10;
 constexpr double kCheck = 0.1;        // s between looks at waiting connections
 constexpr double kAcceptAgain = 0.2;  // s, after the system would not give a socket
+constexpr double kLastLook = 0.01;    // s between looks whether all have closed at the end
+constexpr int kLastLooks = 20;
 
 std::chrono::nanoseconds nanoseconds(double seconds) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -84,6 +86,7 @@ struct Server::State {
   void repeat(Repeated& task);
   void check();
   void end();
+  void wait_for_last_words(int looks);
 
   net::io_context io{1};
   Tcp::acceptor acceptor;
@@ -139,9 +142,19 @@ void Server::State::end() {
   ending = true;
   beast::error_code ignored;
   acceptor.close(ignored);
-  again.cancel();
   for (Repeated& one : repeated) one.timer.cancel();
-  for (Connection* connection : hub.connections) connection->abort();
+  for (Connection* connection : hub.connections) connection->end();
+  wait_for_last_words(kLastLooks);
+}
+
+void Server::State::wait_for_last_words(int looks) {
+  if (hub.connections.empty()) return;
+  if (looks == 0) {
+    for (Connection* connection : hub.connections) connection->abort();
+    return;
+  }
+  again.expires_after(nanoseconds(kLastLook));
+  again.async_wait([this, looks](const beast::error_code&) { wait_for_last_words(looks - 1); });
 }
 
 Server::Server(const ViewerOptions& options, Lobby& lobby)

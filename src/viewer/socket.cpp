@@ -135,12 +135,22 @@ void Socket::abort() {
   beast::get_lowest_layer(stream_).close();
 }
 
+void Socket::end() {
+  if (!joined_) return abort();
+  client_.outbox = {};
+  if (!client_.closing) client_.closing = Closing{close_code::kGoingAway, "the program ends"};
+  flush();
+}
+
 void Socket::leave() {
-  if (std::exchange(joined_, false)) {
-    client_.wake = nullptr;
-    hub().lobby.leave(client_);
-  }
+  forget();
   abort();
+}
+
+void Socket::forget() {
+  if (!std::exchange(joined_, false)) return;
+  client_.wake = nullptr;
+  hub().lobby.leave(client_);
 }
 
 }  // namespace palpate::viewer

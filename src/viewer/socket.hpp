@@ -13,10 +13,14 @@ namespace palpate::viewer {
 class Socket final : public Connection, public std::enable_shared_from_this<Socket> {
  public:
   Socket(Hub& hub, beast::tcp_stream stream);
+  ~Socket() override { forget(); }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
 
   /// Answers the request that asked for a socket.
   void run(Request request);
   void check(double now) override;
+  void end() override;
   void abort() override;
 
  private:
@@ -28,6 +32,7 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
   void write();
   void close();
   void leave();
+  void forget();
 
   websocket::stream<beast::tcp_stream, false> stream_;  // without compression
   Request request_;

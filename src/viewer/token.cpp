@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "palpate/base/error.hpp"
+#include "viewer/client_message.hpp"
 
 namespace palpate::viewer {
 
@@ -18,6 +19,13 @@ std::string make_token() {
   std::string token;
   for (const unsigned char byte : bits) token += fmt::format("{:02x}", byte);
   return token;
+}
+
+bool is_token(std::string_view token) noexcept {
+  constexpr std::string_view kAllowed =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~";
+  return !token.empty() && token.size() <= kLongestWord &&
+         token.find_first_not_of(kAllowed) == std::string_view::npos;
 }
 
 bool same_token(std::string_view given, std::string_view token) noexcept {

@@ -14,6 +14,7 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/base/latest.hpp"
+#include "viewer/client_message.hpp"
 #include "viewer/painter.hpp"
 #include "viewer/scene_box.hpp"
 #include "viewer/server.hpp"
@@ -48,6 +49,12 @@ Eigen::Vector3d middle(const Scene& scene) {
 
 ViewerOptions complete(ViewerOptions options, const Scene& scene) {
   if (options.token.empty()) options.token = make_token();
+  if (!is_token(options.token)) {
+    throw Error(fmt::format(
+        "viewer: a token of {} bytes that cannot end an address; give 1 to {} letters, digits and "
+        "any of -._~, or none",
+        options.token.size(), kLongestWord));
+  }
   if (!options.origin) options.origin = middle(scene);
   return options;
 }

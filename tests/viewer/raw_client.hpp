@@ -28,8 +28,10 @@ struct Frame {
 /// machine. Waits up to 60 s for bytes; a test that comes so far has failed.
 class RawClient {
  public:
+  enum class Loopback { v4, v6 };
+
   /// @throws std::runtime_error likewise in all that follows.
-  explicit RawClient(std::uint16_t port);
+  explicit RawClient(std::uint16_t port, Loopback loopback = Loopback::v4);
   ~RawClient();
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
@@ -66,6 +68,7 @@ class RawClient {
  private:
   std::string take(std::size_t size);
   bool fill();
+  [[nodiscard]] bool connect(std::uint16_t port, Loopback loopback) const;
 
   int socket_ = -1;
   std::string read_;  // and not taken yet

@@ -37,7 +37,7 @@ TEST(Viewer, ServesThePageWithHeadersThatKeepItToItself) {
   EXPECT_EQ(status(page), 200);
   EXPECT_NE(page.find("<!doctype html"), std::string::npos);
   for (const char* header : {"Content-Security-Policy: default-src 'self'",
-                             "connect-src 'self' ws:", "img-src 'self' data: blob:",
+                             "connect-src 'self'; img-src 'self' data: blob:",
                              "X-Content-Type-Options: nosniff", "Cache-Control: no-store"}) {
     EXPECT_NE(page.find(header), std::string::npos) << header;
   }

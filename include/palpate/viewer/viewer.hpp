@@ -33,10 +33,12 @@ struct ViewerCounts {
 class Viewer {
  public:
   /// Listens when it returns. Scene and servos outlive it; sources are added before.
-  /// @throws Error when the address or port cannot be had, or there are too many servos.
+  /// @throws Error when the address, the port or the token cannot be had, or there are too many
+  /// servos.
   explicit Viewer(Scene& scene, std::vector<Servo*> servos = {}, const ViewerOptions& options = {},
                   ViewerControls controls = {});
-  /// Closes every connection and waits for both threads.
+  /// Tells pages that it ends, closes every connection and waits for both threads: 0.2 s and a
+  /// picture at most.
   ~Viewer();
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;

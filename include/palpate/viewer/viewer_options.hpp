@@ -46,10 +46,11 @@ struct ViewerOptions {
   std::string address = "127.0.0.1";
   /// 0: any that is free. Unset: the first free one of kFirstPort and the nine after it.
   std::optional<std::uint16_t> port = {};
-  std::string token = {};                      ///< empty: 128 random bits of the system
-  std::string scene = "palpate";               ///< the scene's name, for people
-  /// m, world; unset: the middle of all points, or of where the sensors stand. What is shown is told
-  /// in single precision from there.
+  /// 1 to 256 letters, digits and any of -._~; empty: 128 random bits of the system.
+  std::string token = {};
+  std::string scene = "palpate";  ///< the scene's name, for people
+  /// m, world; unset: the middle of all points, or of where the sensors stand. What is shown is
+  /// told in single precision from there.
   std::optional<Eigen::Vector3d> origin = {};
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   /// How the streams fare; called about twice a second, on a thread of the viewer.
