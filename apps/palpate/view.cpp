@@ -135,13 +135,14 @@ struct View::Parts {
   std::deque<PageHold> holds;  // of each hand
   Recording recording;
   Preparer preparer;
+  std::optional<Browser> browser;
   Viewer viewer;  // last: it uses all of the above
 };
 
 View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
     : parts_(std::make_unique<Parts>(run, std::move(servos), feed)) {
   fmt::print(stderr, "page: {}\n", parts_->viewer.url());
-  if (run.options.view.open_browser) open_in_browser(parts_->viewer.url());
+  if (run.options.view.open_browser) parts_->browser.emplace(parts_->viewer.url());
 }
 
 View::~View() = default;
