@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "palpate/viewer/viewer_options.hpp"
@@ -35,6 +36,8 @@ struct Client {
   double opened;         ///< s
   bool greeted = false;  ///< said hello with the token
   std::size_t points = 0;
+  double heard = 0;            ///< when it said something last, s
+  std::set<std::size_t> lost;  ///< tools that it does not know yet to be lost
   Outbox outbox;
   RateWindow messages;
   RateWindow refusals;

@@ -40,6 +40,7 @@ void Lobby::leave(Client& client) {
 
 void Lobby::take(Client& client, std::string_view text, double now) {
   if (client.closing) return;
+  client.heard = now;
   if (client.messages.exceeded(now)) {
     refuse(client, fmt::format("more than {} messages a second", options_.limits.messages), now);
     return;
@@ -64,6 +65,13 @@ void Lobby::check(double now) {
     const bool late = !client->greeted && now - client->opened > options_.limits.hello_time;
     if (late && !client->closing)
       close(*client, close_code::kTryAgainLater, "no hello came in time");
+  }
+  for (std::size_t device = 0; device < holders_.size(); ++device) {
+    const Client* holder = holders_[device];
+    if (holder == nullptr || now - holder->heard <= options_.limits.hand_silence) continue;
+    lose(device, fmt::format("nothing was heard of this page for {} s: the tool is let go",
+                             options_.limits.hand_silence));
+    release(device);
   }
 }
 
@@ -108,15 +116,24 @@ void Lobby::act(Client& client, const Hand& hand) {
   if (hand.device >= holders_.size() || !options_.devices[hand.device].takeable) {
     throw Error(fmt::format("there is no tool {} that a page may move", hand.device));
   }
+  if (client.lost.contains(hand.device)) return;  // said before it knew
   controls.hand(hand.device, options_.origin + hand.position, hand.buttons);
-  Client* const before = std::exchange(holders_[hand.device], &client);
-  if (before != nullptr && before != &client) answer(*before, lost_text(hand.device));
+  Client* const before = holders_[hand.device];
+  if (before != nullptr && before != &client) lose(hand.device, "another page took the tool");
+  holders_[hand.device] = &client;
 }
 
-// Of another's tool: it was taken away in the meantime.
+// Of another's tool: it was taken away in the meantime, and this client knows it now.
 void Lobby::act(Client& client, const Release& wish) {
   if (wish.device >= holders_.size()) throw Error("there is no such tool");
+  client.lost.erase(wish.device);
   if (holders_[wish.device] == &client) release(wish.device);
+}
+
+void Lobby::lose(std::size_t device, std::string_view why) {
+  Client& holder = *std::exchange(holders_[device], nullptr);
+  holder.lost.insert(device);
+  answer(holder, lost_text(device, why));
 }
 
 void Lobby::release(std::size_t device) {

@@ -44,7 +44,7 @@ class Lobby {
   void take(Client& client, std::string_view text, double now);
   /// A binary message: a page sends none.
   void take_binary(Client& client, double now);
-  /// Closes those who said no hello in time.
+  /// Closes those who said no hello in time; lets go of tools whose holders have fallen silent.
   void check(double now);
 
   /// To all who said hello.
@@ -80,6 +80,7 @@ class Lobby {
   void refuse(Client& client, std::string_view text, double now);
   void close(Client& client, std::uint16_t code, std::string reason);
   void release(std::size_t device);
+  void lose(std::size_t device, std::string_view why);
   [[nodiscard]] std::vector<Setting> settings() const;
 
   LobbyOptions options_;

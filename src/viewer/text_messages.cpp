@@ -124,8 +124,8 @@ std::string refused_text(std::string_view text) {
   return text_of({{"type", "refused"}, {"text", text}});
 }
 
-std::string lost_text(std::size_t device) {
-  return text_of({{"type", "lost"}, {"device", device}});
+std::string lost_text(std::size_t device, std::string_view why) {
+  return text_of({{"type", "lost"}, {"device", device}, {"text", why}});
 }
 
 std::string pong_text(double id) {

@@ -59,7 +59,7 @@ struct SourceReport {
 [[nodiscard]] std::string notice_text(const Notice& notice);
 [[nodiscard]] std::string record_text(bool on, std::string_view file);
 [[nodiscard]] std::string refused_text(std::string_view text);
-[[nodiscard]] std::string lost_text(std::size_t device);
+[[nodiscard]] std::string lost_text(std::size_t device, std::string_view why);
 [[nodiscard]] std::string pong_text(double id);
 
 /// "running"; "still" for no stream.

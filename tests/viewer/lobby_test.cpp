@@ -1,85 +1,13 @@
-#include "viewer/lobby.hpp"
-
 #include <fmt/core.h>
-#include <gtest/gtest.h>
 
-#include <deque>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <stdexcept>
 
-#include "palpate/base/error.hpp"
+#include "viewer/room.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 using nlohmann::json;
-
-constexpr const char* kHello = R"({"type":"hello","token":"secret","points":1000})";
-
-/// A lobby with one setting and two tools, the first of which a page may take.
-struct Room {
-  Room() {
-    LobbyOptions options;
-    options.token = "secret";
-    options.limits = limits;
-    options.controls.settings = [this] { return std::vector{setting}; };
-    options.controls.set = [this](const std::string&, const SettingValue& value) {
-      if (value == SettingValue{13.0}) throw Error("not thirteen");
-      setting.value = value;
-    };
-    options.controls.presets = {"soft"};
-    options.controls.preset = [this](const std::string& name) { preset = name; };
-    options.controls.pause = [this](bool on) { paused = on; };
-    options.controls.reset = [this] { ++resets; };
-    options.controls.hand = [this](std::size_t, const Eigen::Vector3d& place, std::uint32_t) {
-      hand = place;
-    };
-    options.controls.release = [this](std::size_t device) { released.push_back(device); };
-    options.devices = {{"one", true}, {"two", false}};
-    options.origin = {100, 0, 0};
-    options.welcome = [] { return Welcome{}; };
-    lobby.emplace(std::move(options));
-  }
-
-  Client& enter(bool hello = true) {
-    Client& client = clients.emplace_back(limits, now);
-    lobby->join(client);
-    if (hello) {
-      lobby->take(client, kHello, now);
-      said(client);
-    }
-    return client;
-  }
-  /// What was said to the client since the last time.
-  static std::vector<json> said(Client& client) {
-    std::vector<json> messages;
-    while (const auto message = client.outbox.take())
-      messages.push_back(json::parse(*message->bytes));
-    return messages;
-  }
-  std::vector<json> answers(Client& client, const std::string& text) {
-    lobby->take(client, text, now);
-    return said(client);
-  }
-  void expect_refused(Client& client, const std::string& text) {
-    const auto answers_now = answers(client, text);
-    ASSERT_EQ(answers_now.size(), 1u) << text;
-    EXPECT_EQ(answers_now[0]["type"], "refused") << text;
-    EXPECT_FALSE(answers_now[0]["text"].get<std::string>().empty()) << text;
-  }
-
-  double now = 50;
-  ViewerLimits limits = {};
-  Setting setting{.key = "k", .label = "Stiffness", .least = 0, .most = 100, .value = 20.0};
-  std::string preset;
-  bool paused = false;
-  int resets = 0;
-  Eigen::Vector3d hand = Eigen::Vector3d::Zero();
-  std::vector<std::size_t> released;
-  std::deque<Client> clients;
-  std::optional<Lobby> lobby;
-};
 
 TEST(Lobby, HelloIsAnsweredByWelcome) {
   Room room;
@@ -182,35 +110,6 @@ TEST(Lobby, PresetPauseResetPointsAndPingDoWhatTheySay) {
   EXPECT_EQ(pong, std::vector({json({{"type", "pong"}, {"id", 12}})}));
 }
 
-TEST(Lobby, WhoMovesAToolHoldsItUntilItLeavesOrLetsGo) {
-  Room room;
-  Client& one = room.enter();
-  Client& other = room.enter();
-  const char* hand = R"({"type":"hand","device":0,"position":[1,2,3],"buttons":0})";
-  EXPECT_TRUE(room.answers(one, hand).empty());
-  EXPECT_EQ(room.hand, Eigen::Vector3d(101, 2, 3));
-  EXPECT_TRUE(room.lobby->taken(0));
-  room.answers(other, hand);
-  room.answers(one, R"({"type":"release","device":0})");  // it is the other's now
-  EXPECT_TRUE(room.lobby->taken(0));
-  EXPECT_TRUE(room.released.empty());
-  room.answers(other, R"({"type":"release","device":0})");
-  EXPECT_FALSE(room.lobby->taken(0));
-  room.answers(one, hand);
-  room.lobby->leave(one);
-  EXPECT_FALSE(room.lobby->taken(0));
-  EXPECT_EQ(room.released, (std::vector<std::size_t>{0, 0}));
-}
-
-TEST(Lobby, AToolThatIsNotThereOrNotForPagesIsRefused) {
-  Room room;
-  Client& client = room.enter();
-  room.expect_refused(client, R"({"type":"hand","device":1,"position":[1,2,3],"buttons":0})");
-  room.expect_refused(client, R"({"type":"hand","device":2,"position":[1,2,3],"buttons":0})");
-  room.expect_refused(client, R"({"type":"release","device":2})");
-  EXPECT_EQ(room.hand, Eigen::Vector3d::Zero());
-}
-
 TEST(Lobby, After20RefusalsIn10SecondsASocketIsClosed) {
   Room room;
   Client& patient = room.enter();
@@ -274,23 +173,6 @@ TEST(Lobby, ARecordThatIsOnIsToldToThoseWhoComeLater) {
   const auto told = Room::said(other);
   ASSERT_EQ(told.size(), 2u);
   EXPECT_EQ(told[1], on);
-}
-
-TEST(Lobby, WhoLosesTheToolToAnotherIsTold) {
-  Room room;
-  Client& first = room.enter();
-  Client& second = room.enter();
-  const std::string hand = R"({"type":"hand","device":0,"position":[0,0,0],"buttons":0})";
-  EXPECT_TRUE(room.answers(first, hand).empty());
-  EXPECT_TRUE(room.answers(second, hand).empty());
-  const auto told = Room::said(first);
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0], (json{{"type", "lost"}, {"device", 0}}));
-  EXPECT_TRUE(room.answers(second, hand).empty());
-  EXPECT_TRUE(Room::said(first).empty());
-  room.answers(first, R"({"type":"release","device":0})");
-  EXPECT_TRUE(room.lobby->taken(0));
-  EXPECT_TRUE(room.released.empty());
 }
 
 }  // namespace

@@ -129,14 +129,20 @@ export class App {
       case "record":
         return this.bar.recording(message.on, message.file);
       case "lost":
-        if (this.hand.lose(message.device)) this.notices.add("info", "another page took the tool");
-        return;
+        return this.lose(message.device, message.text);
       case "refused":
         this.settings.show(this.session.values);
         return this.notices.add("warning", message.text);
       case "pong":
         return this.bar.roundTrip(this.connection.roundTrip);
     }
+  }
+
+  /** The program waits for a `release`, held or not: what this page said of its hand may still be on the way. */
+  private lose(device: number, why: string): void {
+    if (this.hand.held && device === this.hand.device) this.hand.letGo();
+    else this.send({ type: "release", device });
+    this.notices.add("info", why);
   }
 
   private welcome(welcome: Welcome): void {

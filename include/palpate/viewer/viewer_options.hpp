@@ -21,8 +21,9 @@ struct ViewerLimits {
   std::uint32_t header = 8 * 1024;  ///< bytes of a request's header
   double header_time = 10;          ///< for a request to come, and for its answer to go
   double hello_time = 5;
-  double silence = 10;  ///< a client that takes nothing for so long is closed
-  int refusals = 20;    ///< after so many in `refusal_time` a client is closed
+  double silence = 10;      ///< a client that takes nothing for so long is closed
+  double hand_silence = 5;  ///< a client that says nothing for so long lets go of its tool
+  int refusals = 20;        ///< after so many in `refusal_time` a client is closed
   double refusal_time = 10;
 };
 

@@ -28,17 +28,12 @@ export class Hand {
   }
 
   letGo(): void {
-    if (this.lose(this.device)) this.send({ type: "release", device: this.device });
-  }
-
-  /** Another page took it. False where it was not held. */
-  lose(device: number): boolean {
-    if (!this.held || device !== this.device) return false;
+    if (!this.held) return;
     this.held = false;
     clearTimeout(this.timer);
     this.timer = 0;
+    this.send({ type: "release", device: this.device });
     this.changed();
-    return true;
   }
 
   moveTo(place: Vector3): void {

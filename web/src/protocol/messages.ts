@@ -62,7 +62,7 @@ export type FromProgram =
   | { type: "sources"; sources: SourceReport[] }
   | { type: "notice"; level: NoticeLevel; text: string }
   | { type: "record"; on: boolean; file?: string }
-  | { type: "lost"; device: number }
+  | { type: "lost"; device: number; text: string }
   | { type: "refused"; text: string }
   | { type: "pong"; id: number };
 

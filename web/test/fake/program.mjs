@@ -164,7 +164,7 @@ export class FakeProgram {
 
   move(client, place) {
     if (this.holder !== undefined && this.holder !== client) {
-      this.holder.socket.send(JSON.stringify({ type: "lost", device: 0 }));
+      this.holder.socket.send(JSON.stringify({ type: "lost", device: 0, text: "another page took the tool" }));
     }
     this.holder = client;
     Object.assign(this.servo, { taken: true, hand: place });
