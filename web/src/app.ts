@@ -20,7 +20,7 @@ import { Status } from "./panel/status";
 import { Backoff } from "./protocol/backoff";
 import { Connection } from "./protocol/connection";
 import { Kind, type BinaryMessage } from "./protocol/decode";
-import { settingFromText, type Link } from "./protocol/link";
+import { settingFromText, writeLink, type Link } from "./protocol/link";
 import { kVersion, type FromProgram, type ToProgram, type Welcome } from "./protocol/messages";
 import { Sound } from "./sound/sound";
 import type { Graphics } from "./view/graphics";
@@ -61,7 +61,7 @@ export class App {
       (key, value) => send({ type: "set", key, value }),
       (name) => send({ type: "preset", name }),
     );
-    this.look = new LookPanel(() => this.relook(), (points) => send({ type: "points", points }));
+    this.look = new LookPanel(() => this.relook(), () => this.tellPoints());
     this.hand = new Hand(send, () => this.hold.update());
     this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
     const take = () => this.hold.take();
@@ -79,17 +79,18 @@ export class App {
     });
     const spaceMouse = new SpaceMouse();
     this.input = new Input(this.world, this.hand, keys, spaceMouse, take);
-    this.hold.offer(spaceMouse, this.notices);
+    this.hold.offer(spaceMouse, keys, this.notices);
     new PointerInput(byId("view-area"), byId<HTMLCanvasElement>("view"), this.world, this.hand, take);
     this.status = new Status(() => this.connection.open());
     this.connection = new Connection(
       new URL("live", location.href.replace(/^http/, "ws").replace(/#.*/, "")).href,
       link.token,
-      () => this.look.points,
+      () => this.drawn(),
       new Backoff(Math.random),
       {
         link: (state) => {
-          if (state.phase !== "open") this.hand.letGo();
+          this.session.open = state.phase === "open";
+          if (!this.session.open) this.hand.letGo();
           this.status.show(state);
           this.hold.update();
         },
@@ -107,6 +108,15 @@ export class App {
     this.world.start((now) => this.frame(now));
     if (this.link.token === "") this.status.withoutToken();
     else this.connection.open();
+  }
+
+  /** A page that nobody sees draws nothing. */
+  private drawn(): number {
+    return document.hidden ? 0 : this.look.points;
+  }
+
+  private tellPoints(): void {
+    this.send({ type: "points", points: this.drawn() });
   }
 
   private send(message: ToProgram): void {
@@ -171,6 +181,7 @@ export class App {
       if (value === undefined) this.notices.add("warning", `the link's ${key} = ${text} is nothing that can be set here`);
       else if (value !== setting?.value) this.send({ type: "set", key, value });
     }
+    history.replaceState(null, "", writeLink(this.link.token, [])); // not again when it is loaded again
   }
 
   private takeBinary(message: BinaryMessage): void {
@@ -236,6 +247,7 @@ export class App {
     });
     document.addEventListener("visibilitychange", () => {
       if (document.hidden) this.hand.letGo();
+      this.tellPoints();
     });
     for (const tab of document.querySelectorAll<HTMLElement>(".tabs [data-tab]")) {
       tab.addEventListener("click", () => this.openTab(tab.dataset["tab"] ?? "force"));

@@ -13,7 +13,7 @@ const kButtonPace = 0.05;
 export class Input {
   depth = 0; // of the buttons: 1 away, -1 closer
   private readonly pads = new Gamepads();
-  private before = 0; // buttons of controllers
+  private readonly before = [0, 0]; // buttons of the controllers, and of the 3D mouse
   private last = 0;
 
   constructor(
@@ -40,16 +40,19 @@ export class Input {
   }
 
   private usePads(passed: number): void {
-    for (const reading of [this.pads.read(), this.spaceMouse.read()]) {
-      if (reading === undefined) continue;
-      const pressed = reading.buttons & ~this.before;
-      this.before = reading.buttons;
+    const readings = [this.pads.read(), this.spaceMouse.read()];
+    let buttons = 0;
+    readings.forEach((reading, i) => {
+      if (reading === undefined) return;
+      buttons |= reading.buttons;
+      const pressed = reading.buttons & ~this.before[i]!;
+      this.before[i] = reading.buttons;
       if ((pressed & 1) !== 0 && !this.hand.held) this.take();
       else if ((pressed & 2) !== 0) this.hand.letGo();
-      if (!this.hand.held) continue;
-      this.hand.press(reading.buttons & ~3);
+      if (!this.hand.held) return;
       this.move(reading.right * kPadPace, reading.up * kPadPace, reading.away * kPadPace, passed);
-    }
+    });
+    if (this.hand.held && readings.some((reading) => reading !== undefined)) this.hand.press(buttons & ~3);
   }
 
   /** Velocities in heights of the picture a second. */

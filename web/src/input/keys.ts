@@ -25,6 +25,7 @@ const kFast = 4;
 const kFine = 0.2;
 
 export class Keys {
+  single = true; // letters act by themselves
   private readonly down = new Set<string>();
   private pace = 1;
 
@@ -42,7 +43,7 @@ export class Keys {
     window.addEventListener("keydown", (event) => {
       if (event.key === "Escape" && !dialogIsOpen()) actions.letGo();
       if (event.ctrlKey || event.metaKey || writes(event.target) || dialogIsOpen()) return;
-      const act = event.altKey ? undefined : once[event.key.toLowerCase()];
+      const act = event.altKey || !this.single ? undefined : once[event.key.toLowerCase()];
       if (act !== undefined && !event.repeat) act();
       else if (!this.press(event)) return;
       event.preventDefault();

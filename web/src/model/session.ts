@@ -63,6 +63,7 @@ export class SourceHistory {
 
 export class Session {
   welcome: Welcome | undefined;
+  open = false; // the program hears what is said
   device = 0; // whose force is shown, and which a hand moves
   devices: DeviceHistory[] = [];
   sources: SourceHistory[] = [];

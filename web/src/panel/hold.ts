@@ -1,10 +1,13 @@
 // Who holds the tool, in words, and the buttons around it.
 
 import type { Hand } from "../input/hand";
+import type { Keys } from "../input/keys";
 import { hid, type SpaceMouse } from "../input/space_mouse";
 import type { Session } from "../model/session";
 import type { World } from "../view/world";
 import { byId, make, say } from "./dom";
+import { fieldRow } from "./field";
+import { recall, remember } from "./memory";
 import type { Notices } from "./notices";
 
 const kCoarse = matchMedia("(pointer: coarse)");
@@ -79,11 +82,16 @@ export class HoldPanel {
     say(byId("polite"), held ? "You hold the tool." : "The tool is let go.");
   }
 
-  offer(spaceMouse: SpaceMouse, notices: Notices): void {
+  offer(spaceMouse: SpaceMouse, keys: Keys, notices: Notices): void {
     const text = make("p", { class: "soft" },
       "Mouse, touch and keys move the tool; game controllers and 3D mice that the browser shows too, " +
       "once a button on them is pressed.");
-    const parts: HTMLElement[] = [text];
+    keys.single = recall("single-keys", true);
+    const single = fieldRow(
+      { key: "single-keys", label: "Single letters act", kind: "switch", value: keys.single },
+      (value) => remember("single-keys", (keys.single = value === true)),
+    );
+    const parts: HTMLElement[] = [text, single.row];
     if (hid() !== undefined) {
       const choose = async () => {
         const name = await spaceMouse.choose();
@@ -98,7 +106,7 @@ export class HoldPanel {
   }
 
   private takeable(): boolean {
-    return this.session.welcome?.devices[this.session.device]?.takeable === true;
+    return this.session.open && this.session.welcome?.devices[this.session.device]?.takeable === true;
   }
 
   private hint(): string {
@@ -107,7 +115,7 @@ export class HoldPanel {
         ? "One finger moves the tool, two turn the view"
         : "Drag to move it, wheel while dragging for depth; Alt and drag turns the view";
     }
-    if (this.session.tool?.latest === undefined) return "";
+    if (!this.session.open || this.session.tool?.latest === undefined) return "";
     if (!this.takeable()) return "A device moves this tool";
     return kCoarse.matches ? "Drag the red hand to touch" : "Drag the red hand to touch; drag elsewhere to look around";
   }

@@ -23,7 +23,7 @@ export class LookPanel {
   points: number;
   private readonly fields: FieldRow[] = [];
 
-  constructor(private readonly changed: () => void, private readonly count: (points: number) => void) {
+  constructor(private readonly changed: () => void, private readonly counted: () => void) {
     this.look = { ...kFirstLook, ...recall<Partial<Look>>("look", {}) };
     if (!kColourings.includes(this.look.colouring)) this.look.colouring = kFirstLook.colouring;
     const small = matchMedia("(max-width: 50rem), (pointer: coarse)").matches;
@@ -65,6 +65,6 @@ export class LookPanel {
   private choosePoints(points: number): void {
     this.points = points;
     remember("points", points);
-    this.count(points);
+    this.counted();
   }
 }

@@ -17,15 +17,17 @@ export interface Listener {
   garbled(text: string): void;
 }
 
+const kAbnormal = 1006;
 const kPolicyViolation = 1008;
 const kPing = 2000; // ms
-const kSilence = 8000; // ms without a word before the socket counts as dead
+const kSilence = 8000; // ms without a word, or until it opens, before the socket counts as dead
 
 export class Connection {
   roundTrip = NaN; // s, of the last ping
 
   private socket: WebSocket | undefined;
   private retry = 0;
+  private opening = 0;
   private pinging = 0;
   private pings = new Map<number, number>();
   private nextPing = 1;
@@ -44,6 +46,7 @@ export class Connection {
     clearTimeout(this.retry);
     this.drop();
     this.listener.link({ phase: "connecting" });
+    this.opening = window.setTimeout(() => this.lost(kAbnormal, ""), kSilence);
     const socket = new WebSocket(this.address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
@@ -62,6 +65,7 @@ export class Connection {
   }
 
   private hello(socket: WebSocket): void {
+    clearTimeout(this.opening);
     socket.send(
       JSON.stringify({ type: "hello", token: this.token, points: this.points() } satisfies ToProgram),
     );
@@ -71,7 +75,7 @@ export class Connection {
 
   private ping(): void {
     if (performance.now() - this.heard > kSilence) {
-      this.lost(1006, "");
+      this.lost(kAbnormal, "");
       return;
     }
     const id = this.nextPing++;
@@ -106,6 +110,7 @@ export class Connection {
   }
 
   private drop(): void {
+    clearTimeout(this.opening);
     clearInterval(this.pinging);
     const socket = this.socket;
     this.socket = undefined; // from here on nobody listens to it

@@ -25,6 +25,35 @@ test("letters act while a switch or a slider has the focus, and not while one wr
     assert.equal(sent(program, "pause").length, 2, "a letter that was written is no command");
   }));
 
+test("letters can be switched off", () =>
+  withPage(kSmall, async (page, program) => {
+    const letters = page.getByRole("switch", { name: "Single letters act" });
+    await letters.click();
+    await page.focus("#view");
+    await page.keyboard.press("t");
+    await page.keyboard.press("p");
+    await letters.click();
+    await page.focus("#view");
+    await page.keyboard.press("t");
+    await until("held", () => program.servo.taken);
+    assert.equal(sent(program, "pause").length, 0);
+    assert.equal(sent(program, "release").length, 0, "taken once");
+  }));
+
+test("a page that nobody sees draws nothing until it is seen again", () =>
+  withPage(kSmall, async (page, program) => {
+    const see = (hidden) => page.evaluate((value) => {
+      Object.defineProperty(document, "hidden", { value, configurable: true });
+      document.dispatchEvent(new Event("visibilitychange"));
+    }, hidden);
+    const [{ points }] = sent(program, "hello");
+    assert.ok(points > 0);
+    await see(true);
+    await until("no points", () => sent(program, "points").at(-1)?.points === 0);
+    await see(false);
+    await until("as before", () => sent(program, "points").at(-1)?.points === points);
+  }));
+
 test("a stiffness that is asked for in contact and not felt yet is said beside it", () =>
   withPage(kSmall, async (page, program) => {
     const softer = page.locator("#settings [role=status]");

@@ -184,6 +184,7 @@ test("a link brings its settings, says what it cannot, and a link gives them bac
   const value = (key) => server.program.settings.find((one) => one.key === key).value;
   await until("set", () => value("stiffness") === 900 && value("texture") === true);
   assert.match(await text(page, "#notices"), /weather = fine/);
+  assert.equal(await page.evaluate(() => location.href), server.address, "not again when it is loaded again");
   await page.evaluate(() => Object.defineProperty(navigator, "clipboard", { value: undefined }));
   await page.click("#share");
   const link = await page.inputValue("#share-link");
@@ -198,6 +199,9 @@ test("comes back by itself when the program is gone for a while", async () => {
   await ready(page);
   await server.close();
   await until("says so", async () => /connection is lost/.test(await page.locator("#cover").innerText()));
+  await page.focus("#view");
+  await page.keyboard.press("t");
+  assert.equal(await page.getAttribute("#take", "aria-pressed"), "false", "nobody hears that it is taken");
   const again = await serve({ points: 1000, port: server.port, token: server.token });
   await until("connected", async () => (await page.getAttribute("#link-state", "data-phase")) === "open");
   assert.ok(await page.locator("#cover").isHidden());

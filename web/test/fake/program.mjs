@@ -70,7 +70,7 @@ export class FakeProgram {
   tellClouds() {
     this.playing += 1;
     for (const client of this.clients) {
-      if (!client.welcome || client.socket.bufferedAmount > 2_000_000) continue;
+      if (!client.welcome || client.points === 0 || client.socket.bufferedAmount > 2_000_000) continue;
       if (this.still && client.sent === client.points) continue;
       client.sent = client.points;
       for (let source = 0; source < kCameras.length; source += 1) {
