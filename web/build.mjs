@@ -1,4 +1,4 @@
-// Builds dist/: index.html, app.js, app.css. --watch builds again at every change; --tests compiles the
+// Builds dist/, or the folder that PALPATE_PAGE names: index.html, app.js, app.css. --watch builds again at every change; --tests compiles the
 // tests of the pure parts to .test-build/.
 
 import { build, context } from "esbuild";
@@ -9,11 +9,12 @@ import { fileURLToPath } from "node:url";
 const kBound = 900_000; // bytes of the three files together
 const root = dirname(fileURLToPath(import.meta.url));
 const at = (...parts) => join(root, ...parts);
+const out = process.env.PALPATE_PAGE ?? at("dist");
 
 const page = {
   absWorkingDir: root,
   entryPoints: { app: "src/main.ts" },
-  outdir: "dist",
+  outdir: out,
   bundle: true,
   minify: true,
   format: "iife",
@@ -23,13 +24,13 @@ const page = {
 };
 
 async function buildPage(watch) {
-  await mkdir(at("dist"), { recursive: true });
-  await cp(at("src/index.html"), at("dist/index.html"));
+  await mkdir(out, { recursive: true });
+  await cp(at("src/index.html"), join(out, "index.html"));
   if (watch) return (await context(page)).watch();
   await build(page);
   let sum = 0;
   for (const name of ["index.html", "app.js", "app.css"]) {
-    const { size } = await stat(at("dist", name));
+    const { size } = await stat(join(out, name));
     console.log(`${name.padEnd(10)} ${(size / 1000).toFixed(1).padStart(7)} kB`);
     sum += size;
   }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# One check of the viewer's page: check.sh NAME WEB PICTURES [PROGRAM]. Exit code 77: skipped, and why.
+# One check of the viewer's page: check.sh NAME WEB PICTURES PAGE [PROGRAM]. Exit code 77: skipped, and why.
 set -euo pipefail
 name=$1
-export PALPATE_PICTURES=$3 PALPATE_PROGRAM=${4:-}
+export PALPATE_PICTURES=$3 PALPATE_PAGE=$4 PALPATE_PROGRAM=${5:-}
 cd "$2"
 
 # Two lines, as other tests that skip say it.
@@ -32,7 +32,7 @@ case "$name" in
   units) npm test --silent ;;
   browser)
     need_browser
-    [ -f dist/index.html ] || skip "web/dist is absent: the page was not built"
+    [ -f "$PALPATE_PAGE/index.html" ] || skip "$PALPATE_PAGE is absent: the page was not built"
     npm run --silent browser
     ;;
   program)

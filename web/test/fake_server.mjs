@@ -9,7 +9,7 @@ import { randomBytes } from "node:crypto";
 import { WebSocketServer } from "ws";
 import { FakeProgram } from "./fake/program.mjs";
 
-const kDist = join(dirname(fileURLToPath(import.meta.url)), "..", "dist");
+const kPage = process.env.PALPATE_PAGE ?? join(dirname(fileURLToPath(import.meta.url)), "..", "dist");
 const kTypes = { ".html": "text/html; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".css": "text/css; charset=utf-8" };
 const kPolicy = "default-src 'self'; connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -17,7 +17,7 @@ async function answer(request, response) {
   const path = request.url === "/" ? "/index.html" : (request.url ?? "");
   if (!/^\/[a-z]+\.(html|js|css)$/.test(path)) return response.writeHead(404).end();
   try {
-    const body = await readFile(join(kDist, path));
+    const body = await readFile(join(kPage, path));
     response.writeHead(200, {
       "Content-Type": kTypes[extname(path)], "Content-Security-Policy": kPolicy,
       "X-Content-Type-Options": "nosniff", "Cache-Control": "no-store",
