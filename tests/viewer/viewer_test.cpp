@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <deque>
 #include <mutex>
@@ -224,6 +225,14 @@ TEST(Viewer, PausesAndResetsItsServosByItself) {
   const Frame frame = client->receive_until(
       [](const Frame& f) { return f.binary(1) && (test::u32(f.payload, 4) & 2) != 0; });
   EXPECT_FALSE(frame.payload.empty());
+  rig.device.state().position.x() = std::nan("");
+  rig.servo->tick(0.031);
+  ASSERT_NE(rig.servo->state().guard.fault, GuardFault::none);
+  client->send_text(R"({"type":"reset"})");
+  client->send_text(R"({"type":"ping","id":2})");
+  EXPECT_EQ(client->receive_json("pong")["id"], 2);
+  rig.press(0.032);
+  EXPECT_EQ(rig.servo->state().guard.fault, GuardFault::none);
 }
 
 TEST(Viewer, AHandIsReleasedWhenItsPageGoesAway) {
@@ -247,14 +256,16 @@ TEST(Viewer, AHandIsReleasedWhenItsPageGoesAway) {
 
 TEST(Viewer, NoticesReachEveryPage) {
   ViewerRig rig;
-  auto client = rig.enter();
+  const std::array clients{rig.enter(), rig.enter()};
   rig.viewer->notice(NoticeLevel::warning, "the lens is covered");
-  const auto notice = client->receive_json("notice");
-  EXPECT_EQ(notice["level"], "warning");
-  EXPECT_EQ(notice["text"], "the lens is covered");
+  for (const auto& client : clients) {
+    const auto notice = client->receive_json("notice");
+    EXPECT_EQ(notice["level"], "warning");
+    EXPECT_EQ(notice["text"], "the lens is covered");
+  }
   rig.device.state().position.x() = std::nan("");
   rig.servo->tick(0.1);
-  EXPECT_EQ(client->receive_json("notice")["level"], "fault");
+  for (const auto& client : clients) EXPECT_EQ(client->receive_json("notice")["level"], "fault");
 }
 
 /// How many more fields find a place at the scene.

@@ -194,6 +194,14 @@ test("two pages see the same; one holds the tool, and it is free when that one i
     await second.keyboard.press("Enter");
     await until("the other is told", async () => (await first.getByRole("spinbutton", { name: "Friction" }).inputValue()) === "0.4");
     await first.getByRole("button", { name: "default" }).click();
+    await second.focus("#view");
+    await second.keyboard.press("t");
+    await until("who held it is told", async () => /another page took the tool/.test(await text(first, "#notices")));
+    assert.equal(await first.getAttribute("#take", "aria-pressed"), "false");
+    assert.ok((await felt(first)).taken, "it is the other's now");
+    await first.focus("#view");
+    await first.keyboard.press("t");
+    await until("taken back", async () => (await second.getAttribute("#take", "aria-pressed")) === "false");
     await first.reload();
     await until("free again", async () => !(await felt(second)).taken);
     const { states } = await heard(second);
@@ -246,6 +254,20 @@ test("a cut connection comes back by itself, and the tool is let go meanwhile", 
   assert.ok(await page.locator("#cover").isHidden());
   const { states } = await heard(page);
   await until("states come", async () => (await heard(page)).states > states);
+  await page.context().close();
+  await watcher.context().close();
+  await relay.close();
+});
+
+test("the tool is let go when nothing is heard of its page any more", async () => {
+  const relay = await relayTo(table.address);
+  const page = await open(relay.address);
+  const watcher = await open(table.address);
+  await touchDown(page);
+  await until("held", async () => (await felt(watcher)).taken);
+  relay.freeze();
+  await until("let go", async () => !(await felt(watcher)).taken);
+  await until("the page knows", async () => /connection is lost/.test(await text(page, "#cover")));
   await page.context().close();
   await watcher.context().close();
   await relay.close();

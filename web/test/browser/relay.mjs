@@ -1,13 +1,14 @@
-// A wire between a page and the program that can be cut and mended. The program takes only who names
+// A wire between a page and the program that can be cut, frozen (nothing comes through, and nobody is told) and mended. The program takes only who names
 // its own port, so the head of a request is given that.
 
 import { connect, createServer } from "node:net";
 
-/** Resolves to { address, cut, mend, close }. */
+/** Resolves to { address, cut, freeze, mend, close }. */
 export async function relayTo(address) {
   const to = new URL(address);
   const sockets = new Set();
   let whole = true;
+  let frozen = false;
   const server = createServer((near) => {
     const far = connect(Number(to.port), to.hostname);
     for (const [one, other] of [[near, far], [far, near]]) {
@@ -19,8 +20,8 @@ export async function relayTo(address) {
       });
     }
     if (!whole) return near.destroy();
-    near.on("data", (data) => far.write(named(data)));
-    far.on("data", (data) => near.write(data));
+    near.on("data", (data) => frozen || far.write(named(data)));
+    far.on("data", (data) => frozen || near.write(data));
   });
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
   const host = `127.0.0.1:${server.address().port}`;
@@ -33,7 +34,11 @@ export async function relayTo(address) {
   return {
     address: `http://${host}/${to.hash}`,
     cut,
-    mend: () => (whole = true),
+    freeze: () => (frozen = true),
+    mend: () => {
+      whole = true;
+      frozen = false;
+    },
     close: async () => {
       cut();
       await new Promise((resolve) => server.close(resolve));
