@@ -1,16 +1,17 @@
 // RemoteDevice over real sockets, with a clock that the tests hold.
 #include "palpate/device/remote.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 
 #include <atomic>
-#include <barrier>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -217,30 +218,34 @@ std::string complaint(const Clock& clock, const RemoteDeviceOptions& options) {
   return {};
 }
 
-TEST_F(RemoteDeviceTest, OfManyThatTakeALeftOverPlaceTogetherOneGetsIt) {
-  constexpr int kMany = 4;
-  const std::string path = options().path;
-  for (int round = 0; round < 200; ++round) {
-    leave_socket(path);
-    std::barrier all(kMany);
-    std::atomic<int> listening{0};
-    std::vector<std::jthread> programs;
-    for (int i = 0; i < kMany; ++i) {
-      programs.emplace_back([&] {
-        all.arrive_and_wait();
-        std::optional<DatagramSocket> socket;
-        try {
-          socket.emplace(path);
-          ++listening;
-        } catch (const Error&) {
-          EXPECT_FALSE(socket);
-        }
-        all.arrive_and_wait();
-      });
-    }
-    programs.clear();
-    ASSERT_EQ(listening, 1) << round;
+// Does anybody wait for a lock on this open file?
+bool somebody_waits(int handle) {
+  struct stat file {};
+  ::fstat(handle, &file);
+  const std::string inode = ":" + std::to_string(file.st_ino) + " ";
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    const bool waits = line.find("-> FLOCK") != std::string::npos;
+    if (waits && line.find(inode) != std::string::npos) return true;
   }
+  return false;
+}
+
+TEST_F(RemoteDeviceTest, LooksWhetherAPlaceIsFreeAndTakesItInItsTurn) {
+  if (!std::ifstream("/proc/locks")) GTEST_SKIP() << "/proc/locks cannot be read";
+  leave_socket(options().path);
+  const int folder = ::open(folder_.path().c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(folder, LOCK_EX), 0);  // as another program that is at it
+  std::atomic<bool> listens{false};
+  std::jthread late([&] {
+    const DatagramSocket socket(options().path);
+    listens = true;
+  });
+  while (!listens && !somebody_waits(folder)) std::this_thread::yield();
+  EXPECT_FALSE(listens);
+  ::close(folder);
+  late.join();
+  EXPECT_TRUE(listens);
 }
 
 TEST_F(RemoteDeviceTest, RefusesPathsThatAreTakenOrNoSockets) {
