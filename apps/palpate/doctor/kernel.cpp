@@ -68,6 +68,7 @@ Finding check_preemption(const System& system) {
       "{} is no real-time kernel (PREEMPT_RT): under load, drivers may delay a step by "
       "milliseconds",
       release_of(*version));
+  if (in_container(system)) finding.words += "; a container has the kernel of its host";
   finding.remedy = realtime_kernel_command(system);
   return finding;
 }

@@ -11,19 +11,22 @@ namespace {
 constexpr const char* kArea = "haptic devices";
 constexpr int kHaplyPort = 10001;
 constexpr const char* kForceDimension =
-    "sudo cp lib/release/lin-x86_64-gcc/libd[hr]d.so.* /usr/local/lib/ && sudo ldconfig";
+    "cd sdk-*/ && sudo cp lib/release/lin-x86_64-gcc/libd[hr]d.so.* /usr/local/lib/ && sudo "
+    "ldconfig";
+
+constexpr const char* kOpenHaptics = "cd openhaptics*/ && sudo ./install";
 
 struct VendorLibrary {
   std::string_view name;
   std::string_view devices;  // that need it: what reaches them
   std::string_view brought_by;
-  std::string_view install;  // in the folder that was unpacked
+  std::string_view install;  // beside the folder that was unpacked
 };
 
 constexpr std::array kLibraries = {
     VendorLibrary{"libdhd.so.3", "libdhd.so.3", "Force Dimension's SDK", kForceDimension},
     VendorLibrary{"libdrd.so.3", "", "Force Dimension's SDK", kForceDimension},
-    VendorLibrary{"libHD.so", "libHD.so", "3D Systems' OpenHaptics", "sudo ./install"},
+    VendorLibrary{"libHD.so", "libHD.so", "3D Systems' OpenHaptics", kOpenHaptics},
 };
 
 // Of "libncurses.so.5: cannot open shared object file: ...": the library that is missing.
@@ -44,8 +47,9 @@ Finding checked(const VendorLibrary& library, const LibraryTrial& trial, bool ne
       break;
     case LibraryTrial::Outcome::absent:
       finding.severity = needed ? Severity::problem : Severity::note;
-      finding.words = fmt::format("not found; {} brings it (install it from its unpacked folder)",
-                                  library.brought_by);
+      finding.words =
+          fmt::format("not found; {} brings it (unpack it, then install it from beside its folder)",
+                      library.brought_by);
       finding.remedy = library.install;
       break;
     case LibraryTrial::Outcome::broken: {
