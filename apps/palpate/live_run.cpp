@@ -97,6 +97,7 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   }
   for (LiveHand& hand : hands) hand.stop();
   for (LiveHand& hand : hands) hand.take_steps(keep);
+  view.reset();  // it looks at what the feed takes down
   feed.finish();
   return outcome_of(hands, interruption.asked());
 }

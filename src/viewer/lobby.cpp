@@ -203,6 +203,12 @@ void Lobby::tell(const Notice& notice) {
   tell_all({Topic::Kind::answer}, text_message(notice_text(notice)));
 }
 
+void Lobby::end_record() {
+  if (recording_.empty()) return;
+  const std::string file = std::exchange(recording_, {});
+  tell_all({Topic::Kind::record}, text_message(record_text(false, file)));
+}
+
 void Lobby::show(Client& client, Topic topic, const SharedBytes& bytes) {
   SharedBytes& shown = client.shown[topic];
   if (shown == bytes) return;

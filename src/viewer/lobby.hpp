@@ -51,6 +51,8 @@ class Lobby {
   void tell_all(Topic topic, Message message);
   void tell_settings();
   void tell(const Notice& notice);
+  /// What was being recorded has ended by itself.
+  void end_record();
   /// To one client, unless it was shown these very bytes last.
   static void show(Client& client, Topic topic, const SharedBytes& bytes);
 

@@ -237,4 +237,9 @@ void Viewer::settings_changed() {
   parts.server.post([&parts] { parts.lobby.tell_settings(); });
 }
 
+void Viewer::record_ended() {
+  Parts& parts = *parts_;
+  parts.server.post([&parts] { parts.lobby.end_record(); });
+}
+
 }  // namespace palpate

@@ -173,6 +173,11 @@ TEST(Lobby, ARecordThatIsOnIsToldToThoseWhoComeLater) {
   const auto told = Room::said(other);
   ASSERT_EQ(told.size(), 2u);
   EXPECT_EQ(told[1], on);
+  lobby.end_record();
+  const json off{{"type", "record"}, {"on", false}, {"file", "steps.csv"}};
+  EXPECT_EQ(Room::said(one), std::vector{off}) << "it ended by itself";
+  lobby.end_record();
+  EXPECT_TRUE(Room::said(one).empty()) << "told once";
 }
 
 }  // namespace

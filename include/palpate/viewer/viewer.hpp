@@ -52,6 +52,8 @@ class Viewer {
   void notice(NoticeLevel level, std::string text);
   /// The program itself changed a setting: tells every page. Any thread but a servo's.
   void settings_changed();
+  /// What a page began to record has ended by itself: tells every page. Any thread but a servo's.
+  void record_ended();
 
  private:
   struct Parts;
