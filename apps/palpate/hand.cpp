@@ -51,10 +51,12 @@ void play_back(Hand& hand, Trajectory way) {
   hand.device = std::make_unique<ScriptedDevice>(std::move(way));
 }
 
-// The hand is pulled along `target` again and again, unless somebody takes the tool.
+// The hand is pulled along `target` again and again, unless somebody takes the tool. Who did not
+// ask for the page has a run that ends with its way.
 void guide(Hand& hand, const TouchOptions& options, SimulatedDeviceOptions device,
            Trajectory target) {
   device.duration = options.duration;
+  if (!device.duration && !options.view.wanted) device.duration = target.back().time;
   hand.remote = std::make_unique<RemoteHand>();
   hand.guide = std::make_unique<GuidedHand>(*hand.remote, std::move(target));
   hand.device = std::make_unique<SimulatedDevice>(device, *hand.guide);
@@ -64,7 +66,7 @@ void guide(Hand& hand, const TouchOptions& options, SimulatedDeviceOptions devic
 void simulate(Hand& hand, const TouchOptions& options, Trajectory target) {
   SimulatedDeviceOptions device;
   device.rate = options.rate.value_or(device.rate);
-  if (options.view.wanted) return guide(hand, options, device, std::move(target));
+  if (has_page(options)) return guide(hand, options, device, std::move(target));
   hand.steps = static_cast<std::size_t>(target.back().time * device.rate) + 2;
   hand.device = std::make_unique<SimulatedDevice>(device, std::move(target));
 }

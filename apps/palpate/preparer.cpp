@@ -5,11 +5,11 @@
 
 namespace palpate::app {
 
-Preparer::Preparer(Run& run, const ViewSettings& initial,
-                   std::function<void(const std::string&)> complain)
+Preparer::Preparer(Run& run, const ViewSettings& initial, Failed failed)
     : run_(run),
       initial_(initial),
-      complain_(std::move(complain)),
+      held_(initial),
+      failed_(std::move(failed)),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 Preparer::~Preparer() = default;
@@ -37,8 +37,10 @@ void Preparer::work(const std::stop_token& stop) {
     }
     try {
       prepare(settings);
+      held_ = settings;
     } catch (const std::exception& error) {
-      complain_(error.what());
+      take_back();
+      failed_(error.what(), held_);
     }
   }
 }
@@ -50,6 +52,13 @@ void Preparer::prepare(const ViewSettings& settings) {
     const TouchedSource& touched = run_.touched.sources[i];
     source.change(prepared_by(settings, initial_, touched.options));
     if (touched.cloud) source.set(*touched.cloud);
+  }
+}
+
+// What could not be prepared has left its surface as it was; frames to come go on as before.
+void Preparer::take_back() {
+  for (std::size_t i = 0; i < run_.felt.size(); ++i) {
+    run_.felt.source(i).change(prepared_by(held_, initial_, run_.touched.sources[i].options));
   }
 }
 

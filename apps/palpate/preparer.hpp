@@ -13,12 +13,14 @@
 namespace palpate::app {
 
 /// Prepares the sources of a run anew, on a thread of its own, as somebody who watches wants them.
-/// Of wishes that come faster than it works the last one counts.
+/// Of wishes that come faster than it works the last one counts. What fails is taken back.
 class Preparer {
  public:
-  /// `initial`: what the run began with. `complain` is called on its thread with what preparation
-  /// throws. It and the run outlive it.
-  Preparer(Run& run, const ViewSettings& initial, std::function<void(const std::string&)> complain);
+  /// Called on the preparer's thread: why a preparation failed, and what sources are prepared by.
+  using Failed = std::function<void(const std::string& why, const ViewSettings& held)>;
+
+  /// `initial`: what the run began with. The run outlives it.
+  Preparer(Run& run, const ViewSettings& initial, Failed failed);
   ~Preparer();
   Preparer(const Preparer&) = delete;
   Preparer& operator=(const Preparer&) = delete;
@@ -32,10 +34,12 @@ class Preparer {
  private:
   void work(const std::stop_token& stop);
   void prepare(const ViewSettings& settings);
+  void take_back();
 
   Run& run_;
   ViewSettings initial_;
-  std::function<void(const std::string&)> complain_;
+  ViewSettings held_;  // the last that sources could be prepared by
+  Failed failed_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<ViewSettings> wanted_;

@@ -99,6 +99,10 @@ bool in_real_time(const TouchOptions& options) {
   });
 }
 
+bool has_page(const TouchOptions& options) {
+  return in_real_time(options) && is_viewed(options.view);
+}
+
 void check_usage(const TouchOptions& options) {
   check_devices(options);
   check_files(options);

@@ -10,6 +10,7 @@
 #include "apps/palpate/load.hpp"
 #include "apps/palpate/open_live.hpp"
 #include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/touch_usage.hpp"
 #include "apps/palpate/waiting.hpp"
 #include "apps/palpate/words.hpp"
 #include "palpate/base/error.hpp"
@@ -70,7 +71,7 @@ void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& ch
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();
   check_place(loaded.argument, *source.points());
-  if (options.view.wanted) {
+  if (has_page(options)) {  // which may want it prepared anew
     result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -38,7 +39,7 @@ ViewScope scope_of(const Run& run) {
   double scale = 0;
   for (const Hand& hand : run.hands) scale = std::max(scale, hand.workspace.scale);
   scope.stiffest = kStiffest / scale;
-  const double deepest = deepest_texture(run.touched.scene);
+  const double deepest = deepest_texture(run.felt);
   scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
   for (const TouchedSource& source : run.touched.sources) {
     scope.lives = scope.lives || source.camera;
@@ -77,11 +78,10 @@ struct View::Parts {
         feed(f),
         initial(initial_settings(r)),
         settings(initial),
-        scope(scope_of(r)),
         holds(r.hands.begin(), r.hands.end()),
-        recording(r.hands.size()),
+        recording(r.hands.size(), [this](const std::string& why) { recording_broke(why); }),
         preparer(r, initial,
-                 [this](const std::string& words) { viewer.notice(NoticeLevel::warning, words); }),
+                 [this](const std::string& why, const ViewSettings& held) { go_back(why, held); }),
         viewer(r.felt, servos, viewer_options(), controls()) {}
 
   ~Parts() { preparer.stop(); }  // what it tells, it tells the viewer
@@ -100,14 +100,16 @@ struct View::Parts {
 
   ViewerControls controls() {
     ViewerControls controls;
-    controls.settings = [this] { return list_settings(settings, scope); };
+    controls.settings = [this] { return list_settings(present(), scope_of(run)); };
     controls.set = [this](const std::string& key, const SettingValue& value) {
-      ViewSettings wanted = settings;
+      ViewSettings wanted = present();
       set(wanted, key, value);
-      apply(wanted, is_preparation(key));
+      apply(wanted);
     };
     controls.presets = preset_names();
-    controls.preset = [this](const std::string& name) { apply(preset(initial, name), true); };
+    controls.preset = [this](const std::string& name) {
+      apply(preset(initial, name, scope_of(run)));
+    };
     controls.record = [this](bool on) { return recording.record(on); };
     controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };
     controls.hand = [this](std::size_t hand, const Eigen::Vector3d& place, std::uint32_t buttons) {
@@ -117,21 +119,44 @@ struct View::Parts {
     return controls;
   }
 
-  void apply(const ViewSettings& wanted, bool prepares) {
+  [[nodiscard]] ViewSettings present() {
+    const std::lock_guard lock(settings_mutex);
+    return settings;
+  }
+
+  void apply(const ViewSettings& wanted) {
+    check(wanted.field);  // before anything changes
     for (Servo* servo : servos) {
       servo->set_feel(wanted.feel);
       servo->set_field(wanted.field);
     }
+    const std::lock_guard lock(settings_mutex);
+    const bool prepares = !prepares_alike(wanted, settings);
     settings = wanted;
     if (prepares) preparer.want(settings);
+  }
+
+  // The preparer's thread.
+  void go_back(const std::string& why, const ViewSettings& held) {
+    {
+      const std::lock_guard lock(settings_mutex);
+      settings = with_preparation(settings, held);
+    }
+    viewer.settings_changed();
+    viewer.notice(NoticeLevel::warning, why);
+  }
+
+  void recording_broke(const std::string& why) {
+    viewer.record_ended();
+    viewer.notice(NoticeLevel::warning, "the recording ended: " + why);
   }
 
   Run& run;
   std::vector<Servo*> servos;
   const LiveFeed& feed;
   ViewSettings initial;
-  ViewSettings settings;  // the network thread's
-  ViewScope scope;
+  std::mutex settings_mutex;
+  ViewSettings settings;
   std::deque<PageHold> holds;  // of each hand
   Recording recording;
   Preparer preparer;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -102,7 +103,9 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
     list.push_back(number("texture", "Texture", "mm", 0, scope.deepest_texture / kMillimetre, 0.01,
                           settings.feel.texture.amplitude / kMillimetre));
   }
-  list.push_back(number("smoothing", "Smoothing", "", 0.5, 3, 0.1, settings.smoothing));
+  if (scope.lives || scope.clouds) {
+    list.push_back(number("smoothing", "Smoothing", "", 0.5, 3, 0.1, settings.smoothing));
+  }
   if (scope.lives) {
     const char* const policy = settings.policy ? name_in(kPolicies, *settings.policy) : kAutomatic;
     list.push_back(choice("policy", "Time", policies(scope), policy));
@@ -115,8 +118,17 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
   return list;
 }
 
-bool is_preparation(const std::string& key) {
-  return key == "smoothing" || key == "policy" || key == "history" || key == "voxel";
+bool prepares_alike(const ViewSettings& one, const ViewSettings& other) {
+  return one.smoothing == other.smoothing && one.policy == other.policy &&
+         one.history == other.history && one.voxel == other.voxel;
+}
+
+ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other) {
+  settings.smoothing = other.smoothing;
+  settings.policy = other.policy;
+  settings.history = other.history;
+  settings.voxel = other.voxel;
+  return settings;
 }
 
 void set(ViewSettings& settings, const std::string& key, const SettingValue& value) {
@@ -144,11 +156,14 @@ std::vector<std::string> preset_names() {
   return names;
 }
 
-ViewSettings preset(const ViewSettings& initial, const std::string& name) {
+ViewSettings preset(const ViewSettings& initial, const std::string& name, const ViewScope& scope) {
   for (const Preset& each : kPresets) {
     if (name != each.name) continue;
     ViewSettings result = initial;
     each.apply(result);
+    Feel& feel = result.feel;
+    feel.stiffness = std::min(feel.stiffness, scope.stiffest);
+    feel.texture.amplitude = std::min(feel.texture.amplitude, scope.deepest_texture);
     return result;
   }
   throw Error(fmt::format("there is no preset '{}'", name));

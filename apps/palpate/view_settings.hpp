@@ -25,7 +25,7 @@ struct ViewSettings {
 struct ViewScope {
   double stiffest = 2000;      ///< N/m, in the world
   double deepest_texture = 0;  ///< amplitude, m
-  bool lives = false;          ///< sources follow one another in time
+  bool lives = false;          ///< frames or clouds follow one another in time
   bool depth = false;          ///< ... and are depth images
   bool clouds = false;         ///< clouds are prepared here
 };
@@ -34,8 +34,11 @@ struct ViewScope {
 [[nodiscard]] std::vector<Setting> list_settings(const ViewSettings& settings,
                                                  const ViewScope& scope);
 
-/// Is a key one of those that sources are prepared by, so that they have to be again?
-[[nodiscard]] bool is_preparation(const std::string& key);
+/// Are sources prepared alike by both?
+[[nodiscard]] bool prepares_alike(const ViewSettings& one, const ViewSettings& other);
+
+/// `settings`, but prepared as `other` has it.
+[[nodiscard]] ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other);
 
 /// @throws Error when there is no such key.
 void set(ViewSettings& settings, const std::string& key, const SettingValue& value);
@@ -43,9 +46,10 @@ void set(ViewSettings& settings, const std::string& key, const SettingValue& val
 /// The names that preset() knows.
 [[nodiscard]] std::vector<std::string> preset_names();
 
-/// What a run began with, but for what the preset of that name says. @throws Error when there is
-/// none.
-[[nodiscard]] ViewSettings preset(const ViewSettings& initial, const std::string& name);
+/// What a run began with, but for what the preset of that name says, within the bounds of `scope`.
+/// @throws Error when there is none.
+[[nodiscard]] ViewSettings preset(const ViewSettings& initial, const std::string& name,
+                                  const ViewScope& scope);
 
 /// `own`, which a source began with, but for what `settings` have other than `initial`.
 [[nodiscard]] SourceOptions prepared_by(const ViewSettings& settings, const ViewSettings& initial,

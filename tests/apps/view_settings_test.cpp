@@ -43,7 +43,7 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
 
 TEST(ViewSettings, PresentValuesAreWithinTheirBounds) {
   for (const std::string& name : preset_names()) {
-    for (const Setting& setting : list_settings(preset({}, name), kAll)) {
+    for (const Setting& setting : list_settings(preset({}, name, kAll), kAll)) {
       if (setting.kind == SettingKind::number) {
         EXPECT_GE(std::get<double>(setting.value), setting.least) << name << ' ' << setting.key;
         EXPECT_LE(std::get<double>(setting.value), setting.most) << name << ' ' << setting.key;
@@ -66,18 +66,18 @@ TEST(ViewSettings, OfCloudsThatStandStillThereIsNoTimeToSet) {
 TEST(ViewSettings, PresetsStartFromWhatTheRunBeganWith) {
   ViewSettings initial;
   initial.feel.stiffness = 200;
-  EXPECT_EQ(preset(initial, "default").feel.stiffness, 200);
-  EXPECT_LT(preset(initial, "soft").feel.stiffness, 200);
-  EXPECT_GT(preset(initial, "glass").feel.stiffness, 200);
-  const ViewSettings paper = preset(initial, "paper");
+  EXPECT_EQ(preset(initial, "default", kAll).feel.stiffness, 200);
+  EXPECT_LT(preset(initial, "soft", kAll).feel.stiffness, 200);
+  EXPECT_GT(preset(initial, "glass", kAll).feel.stiffness, 200);
+  const ViewSettings paper = preset(initial, "paper", kAll);
   EXPECT_TRUE(paper.field.raw_weights);
   EXPECT_EQ(paper.policy, Policy::average);
   EXPECT_NO_THROW(check(paper.field));
-  EXPECT_THROW((void)preset(initial, "stone"), Error);
+  EXPECT_THROW((void)preset(initial, "stone", kAll), Error);
 }
 
 TEST(ViewSettings, AnotherKindOfThePapersSurfaceIsThePapers) {
-  ViewSettings settings = preset({}, "paper");
+  ViewSettings settings = preset({}, "paper", kAll);
   set(settings, "field", std::string("pointset"));
   EXPECT_EQ(settings.field.kind, FieldKind::pointset);
   EXPECT_EQ(settings.field.gradient, GradientKind::normal);
@@ -93,11 +93,41 @@ TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
   EXPECT_DOUBLE_EQ(*options.prepare.radius_multiple, 5);
   EXPECT_DOUBLE_EQ(*options.prepare.voxel, 5e-3);
   EXPECT_EQ(*options.policy.policy, Policy::replace);
-  for (const Setting& setting : list_settings(settings, kAll)) {
-    const bool felt = setting.key == "field" || setting.key == "stiffness" ||
-                      setting.key == "friction" || setting.key == "texture";
-    EXPECT_EQ(is_preparation(setting.key), !felt) << setting.key;
+}
+
+TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
+  const std::vector<std::pair<std::string, SettingValue>> felt = {
+      {"field", std::string("metaball")},
+      {"stiffness", 320.0},
+      {"friction", 0.3},
+      {"texture", 0.5}};
+  ViewSettings settings;
+  for (const auto& [key, value] : felt) set(settings, key, value);
+  EXPECT_TRUE(prepares_alike(settings, {}));
+  EXPECT_TRUE(prepares_alike(preset({}, "glass", kAll), {}));
+  const std::vector<std::pair<std::string, SettingValue>> prepared = {
+      {"smoothing", 1.5}, {"policy", std::string("fusion")}, {"history", 2.0}, {"voxel", 4.0}};
+  for (const auto& [key, value] : prepared) {
+    ViewSettings other;
+    set(other, key, value);
+    EXPECT_FALSE(prepares_alike(other, {})) << key;
+    EXPECT_TRUE(prepares_alike(with_preparation(settings, other), other)) << key;
+    EXPECT_EQ(with_preparation(settings, other).feel.stiffness, 320) << key;
   }
+}
+
+TEST(ViewSettings, PresetsKeepToTheBounds) {
+  ViewSettings initial;
+  initial.feel.stiffness = 1500;
+  initial.feel.texture.amplitude = 5e-3;
+  const ViewSettings glass = preset(initial, "glass", kAll);
+  EXPECT_EQ(glass.feel.stiffness, kAll.stiffest);
+  EXPECT_EQ(glass.feel.texture.amplitude, kAll.deepest_texture);
+}
+
+TEST(ViewSettings, NothingIsListedThatWouldDoNothing) {
+  EXPECT_EQ(find(list_settings({}, {}), "smoothing"), nullptr) << "neither clouds nor cameras";
+  EXPECT_NE(find(list_settings({}, {.clouds = true}), "smoothing"), nullptr);
 }
 
 TEST(ViewSettings, WhatASourceHasOfItsOwnStaysUnlessThePageChangesIt) {
@@ -108,7 +138,7 @@ TEST(ViewSettings, WhatASourceHasOfItsOwnStaysUnlessThePageChangesIt) {
   own.policy.policy = Policy::replace;
   own.policy.history = 6;
   const ViewSettings initial;
-  ViewSettings settings = preset(initial, "glass");
+  ViewSettings settings = preset(initial, "glass", kAll);
   SourceOptions options = prepared_by(settings, initial, own);
   EXPECT_EQ(options.depth.normal_error, 0.01);
   EXPECT_EQ(options.prepare.radius, 0.02);
