@@ -1,12 +1,12 @@
 // The page in a headless chromium against palpate itself: PALPATE_PROGRAM=.../palpate npm run program.
-// Pictures of what was seen stay in PALPATE_PICTURES, where that is set.
 
 import assert from "node:assert/strict";
-import { mkdir, readdir, readFile } from "node:fs/promises";
+import { readdir, readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { openBrowser, openPage, until } from "./browser.mjs";
 import { distance, felt, heard, listen, waysInto } from "./heard.mjs";
+import { picture } from "./picture.mjs";
 import { changed } from "./pixels.mjs";
 import { kTable, kTwoHands, startProgram } from "./real_program.mjs";
 import { relayTo } from "./relay.mjs";
@@ -44,13 +44,6 @@ async function onTable(act, options) {
   } finally {
     await page.context().close();
   }
-}
-
-async function picture(page, name) {
-  const folder = process.env.PALPATE_PICTURES;
-  if (folder === undefined) return;
-  await mkdir(folder, { recursive: true });
-  await page.screenshot({ path: join(folder, `${name}.png`), timeout: 120_000 });
 }
 
 /** Holds a key until something is true. */
@@ -240,38 +233,37 @@ test("two pages hold two hands of one scene at once, and each sees the other's",
   assert.equal(await program.stop(), 0);
 });
 
-test("a cut connection comes back by itself, and the tool is let go meanwhile", async () => {
+/** A page that holds the tool over a relay, and one that watches. */
+async function heldOverRelay(act) {
   const relay = await relayTo(table.address);
   const page = await open(relay.address);
   const watcher = await open(table.address);
   await touchDown(page);
   await until("held", async () => (await felt(watcher)).taken);
-  relay.cut();
-  await until("says so", async () => /connection is lost[\s\S]*tool is let go[\s\S]*tries again/.test(await text(page, "#cover")));
-  await until("let go", async () => !(await felt(watcher)).taken);
-  relay.mend();
-  await until("connected", async () => (await phase(page)) === "open");
-  assert.ok(await page.locator("#cover").isHidden());
-  const { states } = await heard(page);
-  await until("states come", async () => (await heard(page)).states > states);
+  await act(relay, page, watcher);
   await page.context().close();
   await watcher.context().close();
   await relay.close();
-});
+}
 
-test("the tool is let go when nothing is heard of its page any more", async () => {
-  const relay = await relayTo(table.address);
-  const page = await open(relay.address);
-  const watcher = await open(table.address);
-  await touchDown(page);
-  await until("held", async () => (await felt(watcher)).taken);
-  relay.freeze();
-  await until("let go", async () => !(await felt(watcher)).taken);
-  await until("the page knows", async () => /connection is lost/.test(await text(page, "#cover")));
-  await page.context().close();
-  await watcher.context().close();
-  await relay.close();
-});
+test("a cut connection comes back by itself, and the tool is let go meanwhile", () =>
+  heldOverRelay(async (relay, page, watcher) => {
+    relay.cut();
+    await until("says so", async () => /connection is lost[\s\S]*tool is let go[\s\S]*tries again/.test(await text(page, "#cover")));
+    await until("let go", async () => !(await felt(watcher)).taken);
+    relay.mend();
+    await until("connected", async () => (await phase(page)) === "open");
+    assert.ok(await page.locator("#cover").isHidden());
+    const { states } = await heard(page);
+    await until("states come", async () => (await heard(page)).states > states);
+  }));
+
+test("the tool is let go when nothing is heard of its page any more", () =>
+  heldOverRelay(async (relay, page, watcher) => {
+    relay.freeze();
+    await until("let go", async () => !(await felt(watcher)).taken);
+    await until("the page knows", async () => /connection is lost/.test(await text(page, "#cover")));
+  }));
 
 test("live cameras are shown; a program that ends and one that follows are told apart", async () => {
   const desk = (port) => startProgram(["demo", "desk", "--headless", "--port", String(port)]);
