@@ -77,7 +77,10 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, Trajecto
   if (!options_.duration && !target_.empty()) options_.duration = target_.end();
   info_.name = "simulated";
   info_.maximum_force = options_.maximum_force;
+  info_.damping = options_.damping;
+  info_.mass = options_.mass;
   info_.rate = options_.rate;
+  info_.delay = options_.delay / options_.rate;
   info_.workspace_radius = options_.workspace_radius;
   info_.keeps_time = true;
   position_ = options_.position;

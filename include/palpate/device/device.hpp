@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace palpate {
@@ -25,9 +26,14 @@ struct DeviceInfo {
   std::string name;              ///< for messages
   double maximum_force = 0;      ///< N, continuous; 0: it renders no force
   double maximum_stiffness = 0;  ///< N/m at the hand that its maker allows; 0: not known
+  double damping = 0;            ///< viscous, of the device by itself, N s/m; 0: not known
+  double mass = 0;               ///< that the hand moves with it, kg; 0: not known
   double rate = 1000;            ///< steps a second that it is made for, Hz
-  double workspace_radius = 0;   ///< of the largest ball in reach, m; 0: not known
-  bool keeps_time = false;       ///< read() waits for, or defines, the next step by itself
+  /// s from the reading of a place to its force's effect, the hold of the force not counted; unset:
+  /// not known
+  std::optional<double> delay = {};
+  double workspace_radius = 0;  ///< of the largest ball in reach, m; 0: not known
+  bool keeps_time = false;      ///< read() waits for, or defines, the next step by itself
 };
 
 /// What a device knows at the beginning of a step, in the device's own frame.

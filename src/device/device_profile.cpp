@@ -1,0 +1,144 @@
+#include "palpate/device/device_profile.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "device/profiles_text.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+// A number of a profile: its key, and the least that it may be.
+struct NumberKey {
+  std::string_view key;
+  std::optional<double> DeviceProfile::*member;
+  bool positive;
+};
+
+constexpr std::array<NumberKey, 10> kNumbers = {{
+    {"maximum_force", &DeviceProfile::maximum_force, true},
+    {"peak_force", &DeviceProfile::peak_force, true},
+    {"maximum_stiffness", &DeviceProfile::maximum_stiffness, true},
+    {"damping", &DeviceProfile::damping, false},
+    {"coulomb", &DeviceProfile::coulomb, false},
+    {"mass", &DeviceProfile::mass, true},
+    {"resolution", &DeviceProfile::resolution, false},
+    {"workspace_radius", &DeviceProfile::workspace_radius, true},
+    {"rate", &DeviceProfile::rate, true},
+    {"delay", &DeviceProfile::delay, false},
+}};
+
+// Reads one table after the other; messages name the text and the line.
+class Reader {
+ public:
+  explicit Reader(const std::string& what) : what_(what) {}
+
+  [[nodiscard]] std::vector<DeviceProfile> read(std::string_view text) const {
+    std::vector<DeviceProfile> profiles;
+    for (const auto& [key, node] : parse(text)) {
+      const toml::table* table = node.as_table();
+      if (table == nullptr) {
+        fail(key.source(),
+             fmt::format("'{}' is no table; write [NAME] and its keys in lines below", key.str()));
+      }
+      profiles.push_back(profile(std::string(key.str()), *table));
+    }
+    return profiles;
+  }
+
+ private:
+  [[noreturn]] void fail(const toml::source_region& where, const std::string& wrong) const {
+    throw Error(fmt::format("{}, line {}: {}", what_, where.begin.line, wrong));
+  }
+
+  [[nodiscard]] toml::table parse(std::string_view text) const {
+    try {
+      return toml::parse(text, what_);
+    } catch (const toml::parse_error& error) {
+      fail(error.source(), std::string(error.description()));
+    }
+  }
+
+  [[nodiscard]] DeviceProfile profile(std::string name, const toml::table& table) const {
+    DeviceProfile profile;
+    profile.title = name;
+    profile.name = std::move(name);
+    for (const auto& [key, node] : table) {
+      if (key.str() == "title") {
+        profile.title = text(key, node);
+      } else if (key.str() == "source") {
+        profile.source = text(key, node);
+      } else {
+        const NumberKey& known = number_key(key);
+        profile.*known.member = number(known, node);
+      }
+    }
+    return profile;
+  }
+
+  [[nodiscard]] std::string text(const toml::key& key, const toml::node& node) const {
+    if (!node.is_string()) fail(node.source(), fmt::format("'{}' is no text in quotes", key.str()));
+    return *node.value<std::string>();
+  }
+
+  [[nodiscard]] const NumberKey& number_key(const toml::key& key) const {
+    const auto* found = std::ranges::find(kNumbers, key.str(), &NumberKey::key);
+    if (found != kNumbers.end()) return *found;
+    std::string known = "title, source";
+    for (const NumberKey& each : kNumbers) known += fmt::format(", {}", each.key);
+    fail(key.source(), fmt::format("'{}' is no key of a device; known are {}", key.str(), known));
+  }
+
+  [[nodiscard]] double number(const NumberKey& key, const toml::node& node) const {
+    const std::optional<double> value = node.value<double>();
+    const bool good =
+        node.is_number() && std::isfinite(*value) && (key.positive ? *value > 0 : *value >= 0);
+    if (good) return *value;
+    fail(node.source(), fmt::format("'{}' is no number {}", key.key,
+                                    key.positive ? "above 0" : "that is 0 or more"));
+  }
+
+  const std::string& what_;
+};
+
+}  // namespace
+
+std::vector<DeviceProfile> parse_device_profiles(std::string_view toml, const std::string& what) {
+  return Reader(what).read(toml);
+}
+
+std::vector<DeviceProfile> read_device_profiles(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file.is_open() || file.bad()) {
+    throw Error(fmt::format("{}: cannot be read; name a file of device profiles", path));
+  }
+  return parse_device_profiles(text, path);
+}
+
+const std::vector<DeviceProfile>& device_profiles() {
+  static const std::vector<DeviceProfile> profiles = [] {
+    std::vector<DeviceProfile> all = parse_device_profiles(device::profiles_text(), "profiles");
+    std::ranges::stable_partition(all, [](const auto& each) { return each.name == "unknown"; });
+    return all;
+  }();
+  return profiles;
+}
+
+DeviceProfile device_profile(std::string_view name) {
+  const std::vector<DeviceProfile>& all = device_profiles();
+  const auto found = std::ranges::find(all, name, &DeviceProfile::name);
+  if (found != all.end()) return *found;
+  std::string known;
+  for (const DeviceProfile& each : all) known += (known.empty() ? "" : ", ") + each.name;
+  throw Error(fmt::format("there is no profile of a device '{}'; known are {}", name, known));
+}
+
+}  // namespace palpate
