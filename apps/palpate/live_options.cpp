@@ -26,6 +26,10 @@ void add_live_setup_options(CLI::App& file, LiveOptions& o) {
   file.add_option("--watchdog", o.watchdog)->check(number("a time from 0.001 to 1 s", [](double x) {
     return x >= 1e-3 && x <= 1;
   }));
+  file.add_option("--damping", o.damping)->check(not_negative());
+  file.add_option("--soft-start", o.soft_start)
+      ->check(number("a time from 0 to 60 s", [](double x) { return x >= 0 && x <= 60; }));
+  file.add_flag("--passivity", o.passivity);
   file.add_option("--priority", o.priority)->check(whole_number(1, 99));
   file.add_flag("--realtime", o.realtime);
   file.add_flag("--lock-memory", o.lock_memory);
@@ -36,6 +40,9 @@ GuardOptions guard_options(const LiveOptions& options) {
   guard.maximum_force = options.maximum_force.value_or(guard.maximum_force);
   guard.slew = options.slew.value_or(guard.slew);
   guard.silence = options.watchdog.value_or(guard.silence);
+  guard.damping = options.damping.value_or(guard.damping);
+  guard.soft_start = options.soft_start.value_or(guard.soft_start);
+  guard.passivity.on = options.passivity;
   return guard;
 }
 

@@ -17,6 +17,9 @@ struct LiveOptions {
   std::optional<double> maximum_force;  ///< N; lowered to what the device can hold
   std::optional<double> slew;           ///< N/s
   std::optional<double> watchdog;       ///< s
+  std::optional<double> damping;        ///< of the guard's damper, N s/m
+  std::optional<double> soft_start;     ///< s
+  bool passivity = true;                ///< the guard takes back energy that the hand was given
   std::optional<int> processor;         ///< that the servo's thread is pinned to
   std::optional<int> priority;          ///< of the servo's thread
   bool realtime = true;                 ///< ask for real-time priority

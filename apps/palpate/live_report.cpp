@@ -24,6 +24,9 @@ std::string guard_words(const GuardCounts& counts) {
   };
   add(counts.slewed, "steps slowed that the hand did not cause");
   add(counts.clamped, "steps shortened");
+  add(counts.braked, "braked, for the hand had been given energy");
+  add(counts.starting, "within a soft start");
+  add(counts.softened, "softer than asked for, as the device bears no more");
   add(counts.silences, "silences ended by zero force");
   add(counts.faults, "faults");
   return words;
@@ -99,8 +102,14 @@ Json json_live(const LiveReport& report) {
            {{"maximum_force_N", limit(report.limits.maximum_force)},
             {"slew_N_per_s", report.limits.slew},
             {"watchdog_s", report.limits.silence},
+            {"damping_Ns_per_m", report.limits.damping},
+            {"soft_start_s", report.limits.soft_start},
+            {"passivity", report.limits.passivity.on},
             {"slewed", counts.slewed},
             {"clamped", counts.clamped},
+            {"braked", counts.braked},
+            {"starting", counts.starting},
+            {"softened", counts.softened},
             {"silences", counts.silences},
             {"faults", counts.faults},
             {"fault", std::string(in_words(report.guard.fault))}}},

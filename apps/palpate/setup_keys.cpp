@@ -85,6 +85,9 @@ constexpr auto kGuard = std::to_array<SetupKey>({
     {"maximum_force", number},
     {"slew", number},
     {"watchdog", number},
+    {"damping", number},
+    {"soft_start", number},
+    {"passivity", flag},
 });
 
 constexpr auto kServo = std::to_array<SetupKey>({

@@ -235,6 +235,7 @@ void Proxy::pull(const Eigen::Vector3d& hip, double dissipated, double dt,
   contact.stiffness = tank_.follow(wanted, stretch.norm(), dissipated, dt);
   if (contact.stiffness < kMuchSofter * wanted) contact.notes = contact.notes | ContactNote::softer;
   contact.force = contact.stiffness * stretch;
+  contact.drift = surface_.velocity;
   contact.source = surface_.source;
   last_force_ = contact.force;
 }
@@ -252,6 +253,7 @@ void Proxy::keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& c
   fade(dt);
   contact.force = last_force_;
   contact.stiffness = tank_.stiffness();
+  contact.drift = surface_.velocity;
   contact.source = surface_.source;
   if (last_force_.isZero(0)) let_go(probe, hip);
 }

@@ -25,6 +25,18 @@ void validate(const GuardOptions& options) {
           options.damping, "a number that is 0 or more");
   require(options.silence > 0, "silence (s)", options.silence,
           "a time above 0, infinity for no watchdog");
+  require(std::isfinite(options.soft_start) && options.soft_start >= 0, "soft_start (s)",
+          options.soft_start, "a time that is 0 or more");
+  require(options.stiffness_share > 0, "stiffness_share", options.stiffness_share,
+          "a number above 0, infinity for no limit");
+  const PassivityOptions& passivity = options.passivity;
+  require(std::isfinite(passivity.mass) && passivity.mass > 0, "passivity.mass (kg)",
+          passivity.mass, "a mass above 0");
+  require(std::isfinite(passivity.memory) && passivity.memory >= 0, "passivity.memory (J)",
+          passivity.memory, "an energy that is 0 or more");
+  require(passivity.delay >= 0 && passivity.delay <= Passivity::kMaximumDelay, "passivity.delay",
+          passivity.delay, "0 to 16 steps");
+  require(passivity.forget > 0, "passivity.forget (s)", passivity.forget, "a time above 0");
 }
 
 // False for what is not a number, too.
@@ -36,14 +48,20 @@ GuardFault judge(const GuardInput& input) noexcept {
   if (input.fault != GuardFault::none) return input.fault;
   if (!sane(input.hip) || !sane(input.velocity)) return GuardFault::hand;
   if (!std::isfinite(input.dt) || input.dt < 0) return GuardFault::time;
+  if (!sane(input.normal) || !sane(input.drift)) return GuardFault::force;
   const bool good_stiffness = input.stiffness >= 0 && input.stiffness <= Guard::kLargest;
   if (!sane(input.force) || !good_stiffness) return GuardFault::force;
   return GuardFault::none;
 }
 
+// What the stretched spring holds, J.
+double stored(const GuardInput& input) noexcept {
+  return input.stiffness > 0 ? input.force.squaredNorm() / (2 * input.stiffness) : 0;
+}
+
 }  // namespace
 
-Guard::Guard(const GuardOptions& options) : options_(options) {
+Guard::Guard(const GuardOptions& options) : options_(options), passivity_(options.passivity) {
   validate(options);
 }
 
@@ -57,29 +75,88 @@ Vector3d Guard::pass(const GuardInput& input) noexcept {
   state_.notes = GuardNote::none;
   if (state_.fault != GuardFault::none) return fail(state_.fault);
   if (const GuardFault found = judge(input); found != GuardFault::none) return fail(found);
-  if (!started_) {
-    before_ = input;
-    before_.force.setZero();
-    started_ = true;
-  }
+  if (!started_) begin(input);
+  const Motion motion = follow(input);
+  passivity_.account(before_.force, motion.way, stored(input), input.dt);
+  state_.energy = passivity_.energy();
   if (input.dt > options_.silence) {
+    gain_ = 0;
+    slewed_.setZero();
     note(GuardNote::silence, state_.counts.silences);
-    return remember(input, Vector3d::Zero());
+    return remember(input, motion, Vector3d::Zero());
   }
-  return remember(input, limit_length(limit_change(input, input.force)));
+  if (input.softened && !input.normal.isZero(0)) {
+    note(GuardNote::softened, state_.counts.softened);
+  }
+  const Vector3d wanted = start(input, damp(input, motion));
+  slewed_ = limit_length(limit_change(input, motion, wanted));
+  return remember(input, motion, limit_length(brake(input, motion, slewed_)));
+}
+
+void Guard::begin(const GuardInput& input) noexcept {
+  before_ = input;
+  before_.force.setZero();
+  velocity_ = input.velocity - input.drift;
+  gain_ = 0;
+  slewed_.setZero();
+  passivity_.reset();
+  started_ = true;
+}
+
+Guard::Motion Guard::follow(const GuardInput& input) noexcept {
+  const Vector3d now = input.velocity - input.drift;
+  return {input.hip - before_.hip - input.drift * input.dt,
+          velocity_ + kSmoothing * (now - velocity_)};
+}
+
+// The part along the normal is never turned round.
+Vector3d Guard::damp(const GuardInput& input, const Motion& motion) const noexcept {
+  if (!input.felt) return Vector3d::Zero();
+  if (options_.damping == 0 || input.normal.isZero(0)) return input.force;
+  const double pressed = std::max(0.0, input.force.dot(input.normal));
+  const double damped = -options_.damping * motion.velocity.dot(input.normal);
+  return input.force + std::max(damped, -pressed) * input.normal;
+}
+
+Vector3d Guard::start(const GuardInput& input, const Vector3d& force) noexcept {
+  gain_ = input.felt ? std::max(gain_, std::min(1.0, affordable_gain(input))) : 0;
+  if (gain_ == 1) return force;
+  if (input.felt && !force.isZero(0)) note(GuardNote::starting, state_.counts.starting);
+  return gain_ * force;
+}
+
+// A stretched spring holds more as the gain rises: no more than the hand has put in.
+double Guard::affordable_gain(const GuardInput& input) const noexcept {
+  if (options_.soft_start == 0) return 1;
+  const double risen = gain_ + input.dt / options_.soft_start;
+  if (input.normal.isZero(0)) return risen;
+  const double whole = stored(input);
+  const double put_in = -passivity_.energy();
+  return put_in < risen * whole ? put_in / whole : risen;
+}
+
+// In the air there is nothing to brake against; what is owed waits for the next contact.
+Vector3d Guard::brake(const GuardInput& input, const Motion& motion,
+                      const Vector3d& force) noexcept {
+  if (!input.felt || input.normal.isZero(0)) return force;
+  const Vector3d brake = passivity_.brake(force, motion.way, input.dt);
+  if (brake.isZero(0)) return force;
+  note(GuardNote::braked, state_.counts.braked);
+  return force + brake;
 }
 
 // Leaving a surface, K of this step is 0 and the change is explained by that of the last one.
-Vector3d Guard::limit_change(const GuardInput& input, const Vector3d& force) noexcept {
+Vector3d Guard::limit_change(const GuardInput& input, const Motion& motion,
+                             const Vector3d& force) noexcept {
   const double stiffness = std::max(input.stiffness, before_.stiffness);
   const double explained = stiffness * (input.hip - before_.hip).norm() +
-                           options_.damping * (input.velocity - before_.velocity).norm();
+                           options_.damping * (motion.velocity - velocity_).norm();
   const double allowed = explained + options_.slew * input.dt;
-  const Vector3d change = force - before_.force;
+  const Vector3d change = force - slewed_;
   const double size = change.norm();
   if (size <= allowed) return force;
   note(GuardNote::slewed, state_.counts.slewed);
-  return before_.force + allowed / size * change;
+  return slewed_ + allowed / size * change;
 }
 
 Vector3d Guard::limit_length(const Vector3d& force) noexcept {
@@ -89,8 +166,10 @@ Vector3d Guard::limit_length(const Vector3d& force) noexcept {
   return options_.maximum_force / length * force;
 }
 
-Vector3d Guard::remember(const GuardInput& input, const Vector3d& force) noexcept {
+Vector3d Guard::remember(const GuardInput& input, const Motion& motion,
+                         const Vector3d& force) noexcept {
   before_ = input;
+  velocity_ = motion.velocity;
   before_.force = force;
   return force;
 }
@@ -107,6 +186,13 @@ Vector3d Guard::fail(GuardFault fault) noexcept {
 void Guard::note(GuardNote bit, std::uint64_t& count) noexcept {
   state_.notes = state_.notes | bit;
   ++count;
+}
+
+GuardOptions in_world(GuardOptions at_hand, double scale) noexcept {
+  at_hand.damping /= scale;
+  at_hand.passivity.mass /= scale;
+  at_hand.passivity.memory *= scale;
+  return at_hand;
 }
 
 std::string_view in_words(GuardFault fault) noexcept {
@@ -144,6 +230,13 @@ std::string in_words(const GuardState& state) {
   }
   if (has(state.notes, GuardNote::clamped)) {
     add("the force is shortened to the device's maximum");
+  }
+  if (has(state.notes, GuardNote::braked)) {
+    add("a brake takes back the energy that the hand was given");
+  }
+  if (has(state.notes, GuardNote::starting)) add("the force comes up softly");
+  if (has(state.notes, GuardNote::softened)) {
+    add("the surface is softer than was asked for: the device could not hold that");
   }
   return words;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "palpate/servo/passive_stiffness.hpp"
+
 namespace palpate {
 namespace {
 
@@ -20,6 +22,11 @@ GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
     options.maximum_force =
         std::min(options.maximum_force, Servo::kForceShare * device.maximum_force);
   }
+  if (device.mass > 0) options.passivity.mass = device.mass;
+  if (device.delay) {
+    const double steps = std::round(*device.delay * device.rate);
+    options.passivity.delay = static_cast<int>(std::clamp(steps, 0.0, 16.0));
+  }
   if (device.rate > 0) options.silence = std::max(options.silence, kSilencePeriods / device.rate);
   return options;
 }
@@ -27,6 +34,19 @@ GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
 ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
   options.guard = guard_for(device, options.guard);
   return options;
+}
+
+// What the hand may feel, as a stiffness in the world, where motion is magnified.
+double stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options) {
+  const GuardOptions& guard = options.guard;
+  double felt = guard.stiffness_share * passive_stiffness(device, guard.damping);
+  if (device.maximum_stiffness > 0) felt = std::min(felt, device.maximum_stiffness);
+  return felt / options.workspace.scale;
+}
+
+ProxyOptions softened(ProxyOptions proxy, double limit) {
+  proxy.stiffness = std::min(proxy.stiffness, limit);
+  return proxy;
 }
 
 double first_step(const DeviceInfo& device) noexcept {
@@ -53,9 +73,11 @@ GuardFault known_fault(const ServoState& state) noexcept {
 Servo::Servo(Device& device, Scene& scene, const ServoOptions& options)
     : device_(device),
       options_(options_for(device.info(), options)),
+      stiffness_limit_(stiffness_limit_of(device.info(), options_)),
+      softened_(options.proxy.stiffness > stiffness_limit_),
       field_(scene, options_.field),
-      proxy_(options_.proxy),
-      guard_(options_.guard),
+      proxy_(softened(options_.proxy, stiffness_limit_)),
+      guard_(in_world(options_.guard, options_.workspace.scale)),
       wanted_field_(options_.field) {}
 
 const ServoState& Servo::tick(double now) noexcept {
@@ -102,7 +124,8 @@ void Servo::take_wishes(const Vector3d& hip) noexcept {
     guard_.reset();
   }
   if (const std::optional<Feel> feel = news(feel_, feel_seen_)) {
-    proxy_.change(feel->stiffness, feel->friction, feel->texture);
+    softened_ = feel->stiffness > stiffness_limit_;
+    proxy_.change(std::min(feel->stiffness, stiffness_limit_), feel->friction, feel->texture);
   }
   if (const std::optional<FieldOptions> field = news(wanted_field_, field_seen_)) {
     field_.change(*field);
@@ -111,8 +134,11 @@ void Servo::take_wishes(const Vector3d& hip) noexcept {
 
 Vector3d Servo::guarded() noexcept {
   GuardInput input;
-  const bool unfelt = state_.paused || state_.device == DeviceStatus::silent;
-  input.force = unfelt ? Vector3d::Zero().eval() : state_.contact.force;
+  input.felt = !state_.paused && state_.device != DeviceStatus::silent;
+  input.softened = softened_;
+  input.force = state_.contact.force;
+  input.normal = state_.contact.normal;
+  input.drift = state_.contact.drift;
   input.hip = state_.hip;
   input.velocity = state_.velocity;
   input.dt = state_.dt;

@@ -18,6 +18,9 @@ constexpr std::uint32_t kWatchdog = 32;
 constexpr std::uint32_t kFault = 64;
 constexpr std::uint32_t kThinned = 128;
 constexpr std::uint32_t kSofter = 256;
+constexpr std::uint32_t kBraked = 512;
+constexpr std::uint32_t kStarting = 1024;
+constexpr std::uint32_t kSoftened = 2048;
 }  // namespace state_flag
 
 /// Message 1 of docs/viewer_protocol.md. Places relative to the origin, m.

@@ -68,6 +68,9 @@ std::uint32_t StateSource::flags(const ServoState& state, bool taken) {
   set(counts.clamped > counts_.clamped, state_flag::kClamped);
   set(counts.slewed > counts_.slewed, state_flag::kSlewed);
   set(counts.silences > counts_.silences, state_flag::kWatchdog);
+  set(counts.braked > counts_.braked, state_flag::kBraked);
+  set(counts.starting > counts_.starting, state_flag::kStarting);
+  set(counts.softened > counts_.softened, state_flag::kSoftened);
   set(state.guard.fault != GuardFault::none, state_flag::kFault);
   set(has(state.field_notes, FieldNote::thinned), state_flag::kThinned);
   set(has(state.contact.notes, ContactNote::softer), state_flag::kSofter);

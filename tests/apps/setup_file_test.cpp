@@ -123,6 +123,9 @@ sharp_edges = false
 maximum_force = 2.5
 slew = 150
 watchdog = 0.02
+damping = 0.7
+soft_start = 0.1
+passivity = false
 
 [servo]
 processor = 1
@@ -169,6 +172,9 @@ TEST(SetupFile, EveryChoiceReachesTheLibrary) {
   EXPECT_EQ(guard.maximum_force, 2.5);
   EXPECT_EQ(guard.slew, 150);
   EXPECT_EQ(guard.silence, 0.02);
+  EXPECT_EQ(guard.damping, 0.7);
+  EXPECT_EQ(guard.soft_start, 0.1);
+  EXPECT_FALSE(guard.passivity.on);
   const RealtimeOptions realtime = realtime_options(options.live);
   EXPECT_EQ(realtime.processor, 1);
   EXPECT_FALSE(realtime.realtime_priority);
@@ -192,6 +198,8 @@ TEST(SetupFile, WhatIsNotSaidIsAsTheLibraryHasIt) {
   EXPECT_EQ(guard_options(options.live).slew, GuardOptions{}.slew);
   EXPECT_EQ(guard_options(options.live).maximum_force, GuardOptions{}.maximum_force);
   EXPECT_EQ(guard_options(options.live).silence, GuardOptions{}.silence);
+  EXPECT_EQ(guard_options(options.live).damping, GuardOptions{}.damping);
+  EXPECT_TRUE(guard_options(options.live).passivity.on);
   EXPECT_TRUE(realtime_options(options.live).realtime_priority);
   EXPECT_FALSE(realtime_options(options.live).processor);
 }

@@ -23,7 +23,9 @@ class ServoTick : public testing::Test {
     }
     source_ = &test::add_sheet(scene_);
     device_.info().maximum_force = 2;
-    servo_ = std::make_unique<Servo>(device_, scene_);
+    ServoOptions options;
+    options.guard.soft_start = 0.02;  // every link is at work
+    servo_ = std::make_unique<Servo>(device_, scene_, options);
   }
 
   // A watched step with the hand at `z`, `dt` after the last one.

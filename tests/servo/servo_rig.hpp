@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "palpate/device/scripted.hpp"
@@ -17,9 +18,20 @@ inline Source& add_sheet(Scene& scene) {
   return source;
 }
 
-/// A hand that starts under the sheet is pushed out of it.
-inline ServoOptions one_sided() {
+/// Of the guard's links, fault, watchdog, slew and clamp alone: without them a force passes bit for
+/// bit.
+inline ServoOptions first_links() {
   ServoOptions options;
+  options.guard.damping = 0;
+  options.guard.soft_start = 0;
+  options.guard.passivity.on = false;
+  options.guard.stiffness_share = std::numeric_limits<double>::infinity();
+  return options;
+}
+
+/// The same; a hand that starts under the sheet is pushed out of it.
+inline ServoOptions one_sided() {
+  ServoOptions options = first_links();
   options.field.two_sided = false;
   return options;
 }

@@ -51,7 +51,7 @@ std::vector<Vector3d> by_hand(Device& device, Scene& scene, const ServoOptions& 
 TEST(Servo, GivesTheForcesOfFieldAndProxyBitForBitWhereTheGuardHasNothingToDo) {
   Scene scene;
   test::add_sheet(scene);
-  ServoOptions options;
+  ServoOptions options = test::first_links();
   options.proxy.friction = {.static_coefficient = 0.3, .dynamic_coefficient = 0.3};
   options.workspace.T_world_device.translation() = Vector3d(1e-3, 0, 2e-3);
   options.workspace.scale = 1.25;
@@ -71,7 +71,7 @@ TEST(Servo, ShowsItsLastStepToThoseWhoWatch) {
   Scene scene;
   test::add_sheet(scene);
   FreeDevice device({0, 0, 5e-3});
-  Servo servo(device, scene);
+  Servo servo(device, scene, test::first_links());
   EXPECT_EQ(servo.state().step, 0u);
   servo.tick(10.0);
   device.state().position = kPressed;
@@ -98,7 +98,7 @@ TEST(Servo, AsksNoMoreOfADeviceThanItHolds) {
   test::add_sheet(scene);
   FreeDevice device({0, 0, 5e-3});
   device.info().maximum_force = 2;
-  Servo servo(device, scene);
+  Servo servo(device, scene, test::first_links());
   for (int i = 0; i < 100; ++i) {
     device.state().position.z() -= 1e-4;
     servo.tick(1e-3 * i);
@@ -129,7 +129,7 @@ TEST(Servo, LatchesWhatIsNotFiniteAndForgetsItWhenTold) {
   test::add_sheet(scene);
   for (const bool bad_time : {false, true}) {
     FreeDevice device({0, 0, 5e-3});
-    Servo servo(device, scene);
+    Servo servo(device, scene, test::first_links());
     servo.tick(0);
     device.state().position = kPressed;
     EXPECT_GT(servo.tick(1e-3).force.norm(), 1);
@@ -152,7 +152,7 @@ TEST(Servo, SaysThatADeviceFailed) {
   Scene scene;
   test::add_sheet(scene);
   FreeDevice device({0, 0, 5e-3});
-  Servo servo(device, scene);
+  Servo servo(device, scene, test::first_links());
   servo.tick(0);
   device.state().position = kPressed;
   servo.tick(1e-3);
@@ -166,7 +166,7 @@ TEST(Servo, SurvivesAGapAndComesBackSoftly) {
   Scene scene;
   test::add_sheet(scene);
   FreeDevice device({0, 0, 5e-3});
-  Servo servo(device, scene);
+  Servo servo(device, scene, test::first_links());
   servo.tick(0);
   device.state().position = kPressed;
   servo.tick(1e-3);
@@ -193,7 +193,7 @@ TEST(Servo, TakesItsFirstStepAlsoOfADeviceThatDoesNotTellItsRate) {
   test::add_sheet(scene);
   FreeDevice device;
   device.info().rate = 0;
-  Servo servo(device, scene);
+  Servo servo(device, scene, test::first_links());
   const ServoState state = servo.tick(0);
   EXPECT_EQ(state.guard.fault, GuardFault::none);
   EXPECT_GT(state.dt, 0);
@@ -204,7 +204,7 @@ TEST(Servo, FeelsNothingWhilePaused) {
   Scene scene;
   test::add_sheet(scene);
   FreeDevice device({0, 0, 5e-3});
-  Servo servo(device, scene);
+  Servo servo(device, scene, test::first_links());
   servo.tick(0);
   device.state().position = kPressed;
   const double force = servo.tick(1e-3).force.norm();
@@ -222,7 +222,7 @@ TEST(Servo, ChangesWhatIsFeltWithoutAStep) {
   Scene scene;
   test::add_sheet(scene);
   FreeDevice device({0, 0, 5e-3});
-  Servo servo(device, scene);
+  Servo servo(device, scene, test::first_links());
   servo.tick(0);
   device.state().position = kPressed;
   double before = servo.tick(1e-3).force.norm();
@@ -262,7 +262,7 @@ TEST(Servo, ChangesTheSurfaceAndTheGuardLeadsTheForceThere) {
   Scene scene;
   test::add_sheet(scene);
   FreeDevice device({0, 0, 15e-3});
-  Servo servo(device, scene);
+  Servo servo(device, scene, test::first_links());
   servo.tick(0);
   device.state().position = {0, 0, 2e-3};
   EXPECT_EQ(servo.tick(1e-3).force.norm(), 0) << "above the sheet";
@@ -284,7 +284,7 @@ TEST(Servo, ChangesTheSurfaceAndTheGuardLeadsTheForceThere) {
 TEST(Servo, RefusesWhatCannotBeFelt) {
   Scene scene;
   FreeDevice device;
-  Servo servo(device, scene);
+  Servo servo(device, scene, test::first_links());
   EXPECT_THROW(servo.set_field({.threshold = -1}), Error);
   EXPECT_THROW(servo.set_feel({.texture = {.amplitude = kNan}}), Error);
   EXPECT_THROW(servo.set_feel({.stiffness = -1}), Error);

@@ -30,7 +30,7 @@ class SilentDevice : public testing::Test {
   Scene scene_;
   Source& sheet_ = test::add_sheet(scene_);
   FreeDevice device_{kFree};
-  Servo servo_{device_, scene_};
+  Servo servo_{device_, scene_, test::first_links()};
   double now_ = 1;
 };
 
@@ -52,6 +52,23 @@ TEST_F(SilentDevice, ForceFadesAndComesBackAtTheGuardsRate) {
     force = now;
   }
   EXPECT_GT(force, 1);
+}
+
+TEST_F(SilentDevice, ForceStaysAwayUntilTheHandIsLiftedWhereTheGuardStartsSoftly) {
+  Servo servo(device_, scene_);
+  const auto go = [&](int times, const Vector3d& position, DeviceStatus status) {
+    device_.state().position = position;
+    device_.state().status = status;
+    for (int i = 0; i < times; ++i) servo.tick(now_ += 1e-3);
+    return servo.state().force.norm();
+  };
+  go(600, kFree, DeviceStatus::ok);
+  EXPECT_NEAR(go(500, kPressed, DeviceStatus::ok), 2, 0.05);
+  EXPECT_EQ(go(3000, kPressed, DeviceStatus::silent), 0);
+  EXPECT_LT(go(1000, kPressed, DeviceStatus::ok), 0.2) << "the hand has not paid for more";
+  EXPECT_TRUE(has(servo.state().guard.notes, GuardNote::starting));
+  EXPECT_EQ(go(600, {0, 0, 15e-3}, DeviceStatus::ok), 0);
+  EXPECT_NEAR(go(500, kPressed, DeviceStatus::ok), 2, 0.05);
 }
 
 TEST_F(SilentDevice, HandThatWasElsewhereMeanwhileIsNotStruck) {

@@ -29,6 +29,7 @@ struct Contact {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< on the hand, K (proxy - HIP), N, world
   Eigen::Vector3d proxy = Eigen::Vector3d::Zero();   ///< m, world
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< outward unit normal; 0 when not touching
+  Eigen::Vector3d drift = Eigen::Vector3d::Zero();   ///< velocity of the touched surface, m/s
   double stiffness = 0;                              ///< K used for the force, N/m
   bool touching = false;
   bool sliding = false;  ///< friction gave way in this step

@@ -6,15 +6,20 @@
 #include <string>
 #include <string_view>
 
+#include "palpate/servo/passivity.hpp"
+
 namespace palpate {
 
 /// What the guard did to a step's force, as bits.
 enum class GuardNote : std::uint32_t {
   none = 0,
-  slewed = 1u << 0,   ///< the force changed faster than the hand explains; it follows more slowly
-  clamped = 1u << 1,  ///< longer than the device's maximum; shortened to it
-  silence = 1u << 2,  ///< watchdog: no step for too long; zero now, and a soft return
-  fault = 1u << 3,    ///< latched: zero until reset(); GuardState::fault says why
+  slewed = 1u << 0,    ///< the force changed faster than the hand explains; it follows more slowly
+  clamped = 1u << 1,   ///< longer than the device's maximum; shortened to it
+  silence = 1u << 2,   ///< watchdog: no step for too long; zero now, and a soft return
+  fault = 1u << 3,     ///< latched: zero until reset(); GuardState::fault says why
+  braked = 1u << 4,    ///< the hand had been given energy; a brake takes it back
+  starting = 1u << 5,  ///< a force comes up softly: after a start, a pause, a silence or a fault
+  softened = 1u << 6,  ///< felt less stiff than was asked for: the device could not hold that
 };
 
 [[nodiscard]] constexpr GuardNote operator|(GuardNote a, GuardNote b) noexcept {
@@ -36,19 +41,26 @@ enum class GuardFault : std::uint8_t {
 
 struct GuardOptions {
   double maximum_force = std::numeric_limits<double>::infinity();  ///< N; > 0
-  double slew = 300;      ///< S: how fast a force may change that the hand does not explain, N/s
-  double damping = 0;     ///< B of a damper between proxy and hand, N s/m; 0: there is none
-  double silence = 5e-3;  ///< steps further apart than this trip the watchdog, s; infinite: none
+  double slew = 300;        ///< S: how fast a force may change that the hand does not explain, N/s
+  double damping = 1;       ///< B of a damper between surface and hand, in contact, N s/m; 0: none
+  double silence = 5e-3;    ///< steps further apart than this trip the watchdog, s; infinite: none
+  double soft_start = 0.5;  ///< s in which forces come up after a start; 0: at once
+  double stiffness_share = 0.8;  ///< of the passive stiffness, that is felt at most; infinite: any
+  PassivityOptions passivity = {};
 };
 
 /// What the guard is told of a step. World frame.
 struct GuardInput {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< the proxy's, on the hand, N
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the touched surface; 0: none is
+  Eigen::Vector3d drift = Eigen::Vector3d::Zero();     ///< velocity of that surface, m/s
   Eigen::Vector3d hip = Eigen::Vector3d::Zero();       ///< m
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the hand, m/s
   double dt = 0;                                       ///< since the last step, s
   double stiffness = 0;                                ///< K that made the force, N/m
-  GuardFault fault = GuardFault::none;                 ///< known already
+  bool felt = true;                     ///< false: the force goes to zero and starts softly again
+  bool softened = false;                ///< a stiffer surface was asked for
+  GuardFault fault = GuardFault::none;  ///< known already
 };
 
 /// How often each link stepped in, since construction.
@@ -58,12 +70,16 @@ struct GuardCounts {
   std::uint64_t clamped = 0;
   std::uint64_t silences = 0;
   std::uint64_t faults = 0;  ///< times that one was latched, not steps spent in it
+  std::uint64_t braked = 0;
+  std::uint64_t starting = 0;
+  std::uint64_t softened = 0;
 };
 
 struct GuardState {
   GuardNote notes = GuardNote::none;  ///< of the last step
   GuardFault fault = GuardFault::none;
   GuardCounts counts;
+  double energy = 0;  ///< of the passivity ledger, J: above zero was given to the hand
 };
 
 /// Everything between the proxy's force and the device: a chain of links, each of which lets a good
@@ -71,15 +87,24 @@ struct GuardState {
 ///
 ///  1. Fault: what is not finite gives zero at once, and zero until reset().
 ///  2. Watchdog: after a silence the hand may be anywhere. Zero; the links below lead back softly.
-///  3. Slew of unexplained changes: |F - F_before| <= K |h - h_before| + B |v - v_before| + S dt.
+///  3. Damper: -B n (n . v) in contact, v the hand's velocity against the surface, smoothed; it
+///     never makes the surface attract.
+///  4. Soft start: the force comes up from zero while nothing is touched; in contact no further
+///  than
+///     the hand has paid for, since a spring that grows stiffer while stretched gives energy.
+///  5. Slew of unexplained changes: |F - F_before| <= K |h - h_before| + B |v - v_before| + S dt.
 ///     What the hand does itself is never delayed; pops of a new cloud, edges, switching on are.
-///  4. Clamp: |F| <= maximum_force, the direction kept.
+///  6. Passivity: a brake against the hand's motion takes back what the hand was given.
+///  7. Clamp: |F| <= maximum_force, the direction kept.
 ///
-/// One thread uses it. Everything but construction is real-time: no allocation, no clock, bounded.
+/// The stiffness limit, which comes before the proxy, is the servo's (Servo::stiffness_limit). One
+/// thread uses a guard. Everything but construction is real-time: no allocation, no clock, bounded.
 class Guard {
  public:
   /// Larger numbers than this (N, m, m/s, N/m) are a fault: nothing here makes them.
   static constexpr double kLargest = 1e9;
+  /// Share of the newest velocity in the smoothed one, a step.
+  static constexpr double kSmoothing = 0.25;
 
   /// @throws Error when an option is out of its range.
   explicit Guard(const GuardOptions& options = {});
@@ -94,19 +119,41 @@ class Guard {
   [[nodiscard]] const GuardOptions& options() const noexcept { return options_; }
 
  private:
-  [[nodiscard]] Eigen::Vector3d limit_change(const GuardInput& input,
+  /// How the hand moved against the surface since the step before.
+  struct Motion {
+    Eigen::Vector3d way;       // m
+    Eigen::Vector3d velocity;  // smoothed, m/s
+  };
+
+  void begin(const GuardInput& input) noexcept;
+  [[nodiscard]] Motion follow(const GuardInput& input) noexcept;
+  [[nodiscard]] Eigen::Vector3d damp(const GuardInput& input, const Motion& motion) const noexcept;
+  [[nodiscard]] Eigen::Vector3d start(const GuardInput& input,
+                                      const Eigen::Vector3d& force) noexcept;
+  [[nodiscard]] double affordable_gain(const GuardInput& input) const noexcept;
+  [[nodiscard]] Eigen::Vector3d limit_change(const GuardInput& input, const Motion& motion,
                                              const Eigen::Vector3d& force) noexcept;
+  [[nodiscard]] Eigen::Vector3d brake(const GuardInput& input, const Motion& motion,
+                                      const Eigen::Vector3d& force) noexcept;
   [[nodiscard]] Eigen::Vector3d limit_length(const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] Eigen::Vector3d remember(const GuardInput& input,
+  [[nodiscard]] Eigen::Vector3d remember(const GuardInput& input, const Motion& motion,
                                          const Eigen::Vector3d& force) noexcept;
   [[nodiscard]] Eigen::Vector3d fail(GuardFault fault) noexcept;
   void note(GuardNote bit, std::uint64_t& count) noexcept;
 
   GuardOptions options_;
+  Passivity passivity_;
   GuardState state_;
-  GuardInput before_;  // its force is the one that was let through
+  GuardInput before_;                                   // its force is the one that was let through
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  // smoothed, of the step before
+  Eigen::Vector3d slewed_ = Eigen::Vector3d::Zero();    // let through by slew and clamp then
+  double gain_ = 0;                                     // of the soft start
   bool started_ = false;
 };
+
+/// The same guard for a hand whose motion is magnified `scale` times (Workspace::scale): in the
+/// world a damper is weaker, a mass lighter and work larger by that.
+[[nodiscard]] GuardOptions in_world(GuardOptions at_hand, double scale) noexcept;
 
 /// Why the force stays at zero and what to do; empty for none.
 [[nodiscard]] std::string_view in_words(GuardFault fault) noexcept;

@@ -21,8 +21,8 @@ namespace palpate {
 struct ServoOptions {
   FieldOptions field = {};
   ProxyOptions proxy = {};
-  /// maximum_force is lowered to Servo::kForceShare of what the device can hold, and silence raised
-  /// to 2.5 periods of slow devices.
+  /// At the hand. maximum_force is lowered to Servo::kForceShare of what the device can hold, and
+  /// silence raised to 2.5 periods of slow devices.
   GuardOptions guard = {};
   Workspace workspace = {};
   StepQueue* steps = nullptr;  ///< every step is put into it; outlives the servo
@@ -75,6 +75,10 @@ class Servo {
   [[nodiscard]] Device& device() const noexcept { return device_; }
   [[nodiscard]] const ServoOptions& options() const noexcept { return options_; }
 
+  /// The stiffest surface that this device can hold in this workspace, N/m in the world; what is
+  /// asked for beyond it is felt as this (algorithm.md section 8). Infinite where it renders none.
+  [[nodiscard]] double stiffness_limit() const noexcept { return stiffness_limit_; }
+
   /// The newest state. Any thread.
   [[nodiscard]] ServoState state() const noexcept { return shown_.get(); }
   /// How late steps began and what they took to compute, where it was measured. Any thread.
@@ -107,6 +111,8 @@ class Servo {
 
   Device& device_;
   ServoOptions options_;
+  double stiffness_limit_;
+  bool softened_;  // a stiffer surface is asked for
   SceneField field_;
   Proxy proxy_;
   Guard guard_;

@@ -13,6 +13,9 @@ const kFlagWords: Partial<Record<Name, [level: string, words: string]>> = {
   watchdog: ["fault", "watchdog: the servo was late"],
   clamped: ["warning", "force at its bound"],
   slewed: ["warning", "force change slowed"],
+  braked: ["warning", "brake: energy taken back"],
+  starting: ["info", "soft start: lift and touch again"],
+  softened: ["info", "as stiff as the device bears"],
   thinned: ["warning", "surface thinned: too many points near"],
 };
 const kLinger = 700; // ms that a flag stays readable

@@ -16,6 +16,9 @@ export const Flag = {
   fault: 64,
   thinned: 128,
   softer: 256,
+  braked: 512,
+  starting: 1024,
+  softened: 2048,
 } as const;
 
 export interface StateMessage {

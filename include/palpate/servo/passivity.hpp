@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+namespace palpate {
+
+struct PassivityOptions {
+  bool on = true;
+  double mass = 0.1;     ///< moved with the hand, kg: bounds the brake, which sampling would shake
+  double memory = 0.02;  ///< J: what was taken from the hand beyond this hides nothing later
+  double forget = 1;     ///< s in which that memory falls to 1/e
+  int delay = 1;         ///< steps from a force's being sent to its effect, 0-16
+};
+
+/// The ledger of what forces gave to the hand, and the brake that takes it back: passivity observer
+/// and controller (Hannaford and Ryu 2002, in the impedance form; algorithm.md section 8).
+///
+///   E += F . (dh - v_surface dt);   E > 0: F -= min(E / (|v|^2 dt), M / (4 dt)) v
+///
+/// F is what acted then, sent some steps before: a ledger that leaves the delay out misses just the
+/// energy that a delay makes. Work that a moving surface does on the hand is its own and is not
+/// counted. Real-time.
+class Passivity {
+ public:
+  static constexpr int kMaximumDelay = 16;
+
+  /// Options in their ranges.
+  explicit Passivity(const PassivityOptions& options) noexcept : options_(options) { reset(); }
+
+  /// `force` (N, on the hand) was sent at the step before; over the last `dt` (s) the hand went
+  /// `way` (m) against the surface. `stored` (J): what the stretched spring holds and will give
+  /// back; that is never forgotten.
+  void account(const Eigen::Vector3d& force, const Eigen::Vector3d& way, double stored,
+               double dt) noexcept;
+
+  /// What has to be added to `force` (N), which is about to be sent, if the hand goes on by `way`
+  /// in each step: what is on its way to the hand counts already. Zero while nothing was given.
+  [[nodiscard]] Eigen::Vector3d brake(const Eigen::Vector3d& force, const Eigen::Vector3d& way,
+                                      double dt) const noexcept;
+
+  /// J; above zero: given to the hand, below: taken from it of late.
+  [[nodiscard]] double energy() const noexcept { return energy_; }
+  void reset() noexcept;
+
+ private:
+  [[nodiscard]] const Eigen::Vector3d& sent(int steps_ago) const noexcept;
+
+  PassivityOptions options_;
+  std::array<Eigen::Vector3d, kMaximumDelay + 1> sent_;  // ring
+  std::size_t newest_ = 0;
+  double energy_ = 0;
+};
+
+}  // namespace palpate

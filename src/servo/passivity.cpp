@@ -1,0 +1,40 @@
+#include "palpate/servo/passivity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+
+using Eigen::Vector3d;
+
+const Vector3d& Passivity::sent(int steps_ago) const noexcept {
+  return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(steps_ago)) % sent_.size()];
+}
+
+void Passivity::account(const Vector3d& force, const Vector3d& way, double stored,
+                        double dt) noexcept {
+  if (!options_.on) return;
+  newest_ = (newest_ + 1) % sent_.size();
+  sent_[newest_] = force;
+  energy_ += sent(options_.delay).dot(way);
+  const double dissipated = -energy_ - stored;
+  if (dissipated <= 0) return;
+  energy_ = -stored - std::min(dissipated / (1 + dt / options_.forget), options_.memory);
+}
+
+void Passivity::reset() noexcept {
+  energy_ = 0;
+  sent_.fill(Vector3d::Zero());
+}
+
+Vector3d Passivity::brake(const Vector3d& force, const Vector3d& way, double dt) const noexcept {
+  const double square = way.squaredNorm();
+  if (!options_.on || !(square > 0) || !(dt > 0)) return Vector3d::Zero();
+  double energy = energy_ + force.dot(way);
+  for (int i = 0; i < options_.delay; ++i) energy += sent(i).dot(way);
+  if (!(energy > 0)) return Vector3d::Zero();
+  // With v = way / dt: E / (|v|^2 dt) v = E / |way|^2 way, M / (4 dt) v = M / (4 dt^2) way.
+  return -std::min(energy / square, options_.mass / (4 * dt * dt)) * way;
+}
+
+}  // namespace palpate

@@ -1,0 +1,155 @@
+// What the guard's links are for: walls on simulated devices against theory and against themselves
+// without a link (algorithm.md section 8).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "palpate/servo/passive_stiffness.hpp"
+#include "palpate/servo/z_width.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+GuardOptions without_links() {
+  GuardOptions guard;
+  guard.damping = 0;
+  guard.soft_start = 0;
+  guard.passivity.on = false;
+  return guard;
+}
+
+WallOptions free_wall(double damping, int delay) {
+  WallOptions wall;
+  wall.guard = without_links();
+  wall.device.damping = damping;
+  wall.device.coulomb = 0;
+  wall.device.delay = delay;
+  return wall;
+}
+
+TEST(Stability, LimitIsColgatesWithAndWithoutDelay) {
+  for (const int delay : {0, 1}) {
+    for (const double damping : {0.2, 0.5, 1.0, 2.0}) {
+      const WallOptions wall = free_wall(damping, delay);
+      const double theory = passive_stiffness(damping, 1e-3, 1e-3 * delay);
+      EXPECT_NEAR(stable_stiffness(wall), theory, 0.1 * theory) << damping << ", delay " << delay;
+      EXPECT_NEAR(rebound_stiffness(wall), theory, 0.1 * theory) << damping << ", delay " << delay;
+    }
+  }
+}
+
+TEST(Stability, DamperOfTheWallRaisesTheLimit) {
+  WallOptions wall = free_wall(0.5, 1);
+  const double bare = stable_stiffness(wall);
+  wall.guard.damping = 1;
+  EXPECT_GT(stable_stiffness(wall), 2 * bare);
+}
+
+TEST(Stability, ImpactReturnsNoEnergyWithTheDamper) {
+  WallOptions wall;
+  wall.stiffness = 500;
+  wall.speed = 0.5;
+  wall.guard = without_links();
+  const Impact bare = impact(wall);
+  EXPECT_GT(bare.rebound, 1);
+  EXPECT_GT(bare.energy, 1e-3);
+  wall.guard.damping = 1;
+  const Impact damped = impact(wall);
+  EXPECT_LT(damped.rebound, 0.9);
+  EXPECT_LE(damped.energy, 0);
+  wall.guard = without_links();
+  wall.guard.passivity.on = true;
+  EXPECT_LE(impact(wall).energy, 0.1 * bare.energy);
+}
+
+// What became of somebody's leaning on a wall with `press` (N) for three seconds.
+struct Leaning {
+  double swing = 0;   // of the device in the last half second, m, peak to peak
+  double energy = 0;  // that the wall gave, J
+};
+
+Leaning lean(const WallOptions& options, double press) {
+  SimulatedDeviceOptions made = options.device;
+  made.hand = {.stiffness = 1, .damping = 0, .maximum_force = press};
+  const Vector3d aim(0, 0, -press / made.hand.stiffness);
+  SimulatedDevice device(made, {{0, {0, 0, 1e-3}}, {1e-3, aim}, {3, aim}});
+  Guard guard(options.guard);
+  Leaning result;
+  double low = 1;
+  double high = -1;
+  double before = 1e-3;
+  std::vector<double> sent(static_cast<std::size_t>(made.delay) + 1, 0);
+  for (std::size_t i = 0; i < 3000; ++i) {
+    const DeviceState hand = device.read();
+    GuardInput input;
+    input.hip = hand.position;
+    input.velocity = hand.velocity;
+    input.dt = 1e-3;
+    if (hand.position.z() < 0) {
+      input.force.z() = -options.stiffness * hand.position.z();
+      input.normal.z() = 1;
+      input.stiffness = options.stiffness;
+    }
+    const double z = device.true_position().z();
+    result.energy += sent[i] * (z - before);  // what acted until now
+    before = z;
+    const Vector3d force = guard.pass(input);
+    sent.push_back(force.z());
+    device.write(force);
+    if (i < 2500) continue;
+    low = std::min(low, z);
+    high = std::max(high, z);
+  }
+  result.swing = high - low;
+  return result;
+}
+
+// Twice as stiff as the device with the damper could bear.
+WallOptions too_stiff(double coulomb) {
+  WallOptions wall;
+  wall.device.coulomb = coulomb;
+  wall.guard.soft_start = 0;
+  wall.stiffness = 2 * passive_stiffness(wall.device.damping + wall.guard.damping, 1e-3, 1e-3);
+  return wall;
+}
+
+TEST(Stability, BrakeEndsLimitCyclesAtTwiceThePassiveStiffness) {
+  for (const double coulomb : {0.0, 0.05}) {
+    for (const double press : {0.5, 1.0, 2.0}) {
+      WallOptions wall = too_stiff(coulomb);
+      EXPECT_LT(lean(wall, press).swing, 0.3e-3) << press << " N, friction " << coulomb;
+      wall.guard.passivity.on = false;
+      EXPECT_GT(lean(wall, press).swing, 3e-3) << press << " N, friction " << coulomb;
+    }
+  }
+}
+
+TEST(Stability, NoWallGivesAHandThatLeansOnItAMillijoule) {
+  for (const double coulomb : {0.0, 0.05}) {
+    for (const double damping : {0.0, 1.0}) {
+      for (const double share : {0.25, 0.5, 1.0, 2.0}) {
+        for (const double press : {0.5, 1.0, 2.0, 4.0}) {
+          WallOptions wall = too_stiff(coulomb);
+          wall.guard.damping = damping;
+          wall.stiffness = share * passive_stiffness(0.5 + damping, 1e-3, 1e-3);
+          EXPECT_LT(lean(wall, press).energy, 1e-3)
+              << wall.stiffness << " N/m, " << press << " N, friction " << coulomb;
+        }
+      }
+    }
+  }
+}
+
+TEST(Stability, HandThatRestsOnAWallIsGivenNothingByASoftStart) {
+  WallOptions wall = too_stiff(0.05);
+  wall.stiffness = 500;
+  wall.guard.soft_start = 0.5;
+  EXPECT_LT(lean(wall, 2).energy, 1e-4) << "from the first step on it falls into the wall";
+}
+
+}  // namespace
+}  // namespace palpate
