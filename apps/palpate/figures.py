@@ -1,4 +1,4 @@
-"""Draws the paper's figures from palpate's measurements.
+"""Draws figures from palpate's measurements: the paper's, and the Z-width.
 
 Usage: figures.py FOLDER PICTURE. FOLDER holds facts.json and table.csv.
 """
@@ -128,13 +128,52 @@ def fig7(facts, table, picture):
     figure.savefig(picture, format="png")
 
 
+def zwidth(facts, picture):
+    """Stiffness against damping, a panel for each delay; or against rate where damping is one."""
+    rows = facts["rows"]
+    dampings = sorted({row["damping_Ns_per_m"] for row in rows})
+    rates = sorted({row["rate_Hz"] for row in rows})
+    delays = sorted({row["delay_steps"] for row in rows})
+    by_damping = len(dampings) > 1
+    along, unit = ("damping_Ns_per_m", "damping of the device, N s/m") if by_damping else (
+        "rate_Hz", "rate, Hz")
+    families = rates if by_damping else dampings
+    colors = plt.cm.viridis(np.linspace(0.05, 0.8, len(families)))
+    figure, panels = plt.subplots(1, len(delays), figsize=(4.6 * len(delays) + 1.2, 5.4), dpi=150,
+                                  sharey=True, squeeze=False)
+    figure.subplots_adjust(left=0.9 / (4.6 * len(delays) + 1.2), right=0.985, top=0.8, bottom=0.125,
+                           wspace=0.06)
+    for axes, delay in zip(panels[0], delays):
+        for color, family in zip(colors, families):
+            key = "rate_Hz" if by_damping else "damping_Ns_per_m"
+            some = sorted((r for r in rows if r["delay_steps"] == delay and r[key] == family),
+                          key=lambda r: r[along])
+            x = [r[along] for r in some]
+            name = f"{family:g} Hz" if by_damping else f"{family:g} N s/m"
+            axes.plot(x, [r["stable_N_per_m"] for r in some], "o", color=color, label=name)
+            axes.plot(x, [r["passive_N_per_m"] for r in some], "x", color=color)
+            axes.plot(x, [r["colgate_N_per_m"] for r in some], "--", color=color, linewidth=1)
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlabel(unit)
+        axes.set_title(f"{delay} step{'' if delay == 1 else 's'} of delay", loc="left", color=INK)
+    panels[0][0].set_ylabel("stiffness of a wall, N/m")
+    panels[0][0].legend(loc="upper left", frameon=False)
+    head(figure, f"How stiff a wall may be: {facts['device']}",
+         f"dots: stable, crosses: passive, dashed: Colgate's condition; simulated with "
+         f"{facts['mass_kg']:g} kg, wall damper {facts['wall_damping_Ns_per_m']:g} N s/m")
+    figure.savefig(picture, format="png")
+
+
 def main(folder, picture):
     facts, table = load(folder)
     use_style()
     if facts["figure"] == "fig5":
         fig5(facts, picture)
-    else:
+    elif facts["figure"] == "fig7":
         fig7(facts, table, picture)
+    else:
+        zwidth(facts, picture)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@
 #include "apps/palpate/suggestion.hpp"
 #include "apps/palpate/touch_command.hpp"
 #include "apps/palpate/words.hpp"
+#include "apps/palpate/zwidth_command.hpp"
 
 namespace palpate::app {
 namespace {
@@ -58,6 +59,10 @@ int run(int argc, char** argv) {
   CLI::App* demo_app =
       program.add_subcommand("demo", "Show a made-up scene on a page, to be touched with a mouse");
   add_demo_options(*demo_app, demo_options);
+  ZWidthOptions zwidth_options;
+  CLI::App* zwidth_app =
+      program.add_subcommand("zwidth", "Map how stiff a surface a device can hold, beside theory");
+  add_zwidth_options(*zwidth_app, zwidth_options);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version
@@ -69,8 +74,9 @@ int run(int argc, char** argv) {
   }
   if (program.get_subcommands().empty()) {
     throw UsageError(
-        "a command is missing: touch, info, cameras, doctor, paper or demo; 'palpate --help' tells "
-        "more");
+        "a command is missing: touch, info, cameras, doctor, paper, demo or zwidth; 'palpate "
+        "--help' "
+        "tells more");
   }
   if (touch_command->parsed()) {
     apply_setup(*touch_command, touch_options);
@@ -81,6 +87,7 @@ int run(int argc, char** argv) {
   if (doctor_app->parsed()) return examine(doctor_options);
   if (paper_app->parsed()) paper(paper_command);
   if (demo_app->parsed()) demo(demo_options);
+  if (zwidth_app->parsed()) zwidth(zwidth_options);
   return kSuccess;
 }
 

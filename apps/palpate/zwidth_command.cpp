@@ -1,0 +1,105 @@
+#include "apps/palpate/zwidth_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "apps/palpate/distinct_files.hpp"
+#include "apps/palpate/errors.hpp"
+#include "apps/palpate/option_checks.hpp"
+#include "apps/palpate/output.hpp"
+#include "apps/palpate/picture_script.hpp"
+#include "apps/palpate/progress.hpp"
+#include "apps/palpate/python_drawing.hpp"
+#include "apps/palpate/waiting.hpp"
+#include "apps/palpate/zwidth_report.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  palpate zwidth
+  palpate zwidth --device-profile omega --picture omega.png
+  palpate zwidth --device-profile my-arm --profiles arms.toml --csv arm.csv
+
+A profile file is TOML, a table a device, with the keys that are known of it: title, source,
+maximum_force, peak_force (N), maximum_stiffness (N/m), damping (N s/m), coulomb (N), mass (kg),
+resolution, workspace_radius (m), rate (Hz), delay (s).
+
+Walls are simulated: a mass with friction behind encoders, a force that is held for a step and comes
+late. Nothing moves.)";
+
+// Every file is made before the work: a place that does not exist is told at once.
+struct Outputs {
+  std::optional<OutputFile> csv;
+  std::optional<OutputFile> json;
+  std::optional<OutputFile> picture;
+
+  explicit Outputs(const ZWidthOptions& options) {
+    if (options.picture == "-") {
+      throw UsageError("--picture cannot go to standard output; name a file such as a.png");
+    }
+    check_distinct(
+        {}, {{"--csv", options.csv}, {"--json", options.json}, {"--picture", options.picture}});
+    if (!options.csv.empty()) csv.emplace(options.csv);
+    if (!options.json.empty()) json.emplace(options.json);
+    if (!options.picture.empty()) picture.emplace(options.picture);
+  }
+};
+
+void write(std::optional<OutputFile>& file, const std::string& text) {
+  if (!file) return;
+  file->write(text);
+  file->close();
+}
+
+}  // namespace
+
+void add_zwidth_options(CLI::App& command, ZWidthOptions& o) {
+  command
+      .add_option("--device-profile", o.profile,
+                  wrapped("kind of device: simulated (default), unknown, touch, omega, falcon, ... "
+                          "or one of --profiles"))
+      ->type_name("NAME");
+  command.add_option("--profiles", o.profiles, "TOML file with profiles of your own")
+      ->type_name("FILE");
+  command.add_option("--rate", o.rates, "steps a second (500 to 4000, and the device's own)")
+      ->delimiter(',')
+      ->check(number("between 100 and 20000 Hz", [](double x) { return x >= 100 && x <= 2e4; }))
+      ->type_name("HZ,...");
+  command.add_option("--delay", o.delays, "steps from a place to its force (0,1,2)")
+      ->delimiter(',')
+      ->check(whole_number(0, 16))
+      ->type_name("N,...");
+  command
+      .add_option("--damping", o.dampings,
+                  wrapped("of the device by itself (what its profile says, else 0.1 to 2)"))
+      ->delimiter(',')
+      ->check(not_negative())
+      ->type_name("N S/M,...");
+  command.add_option("--wall-damping", o.wall_damping, "B of a damper in the wall (0)")
+      ->check(not_negative())
+      ->type_name("N S/M");
+  command.add_option("--csv", o.csv, "the map; - is standard output")->type_name("FILE");
+  command.add_option("--json", o.json, "the same as data; - is standard output")->type_name("FILE");
+  command.add_option("--picture", o.picture, "the map as PNG (needs python3-matplotlib)")
+      ->type_name("FILE.png");
+  command.footer(kFooter);
+}
+
+void zwidth(const ZWidthOptions& options) {
+  Outputs outputs(options);
+  const ZWidthMap map = [&] {
+    Progress progress("simulating walls");
+    return measure_zwidth(options, [&](double done) { progress.update(done); });
+  }();
+  print_zwidth(map, options.csv == "-" || options.json == "-" ? stderr : stdout);
+  write(outputs.csv, csv(map));
+  write(outputs.json, facts(map) + "\n");
+  if (!outputs.picture) return;
+  const Waiting waiting("drawing the picture");
+  draw_by_python(figures_script(), {{"facts.json", facts(map)}, {"table.csv", csv(map)}},
+                 options.picture, *outputs.picture);
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "palpate/device/device_profile.hpp"
+
+namespace palpate::app {
+
+/// What a map of walls is made for. What is empty is chosen.
+struct ZWidthOptions {
+  std::string profile = "simulated";  ///< a name that is known
+  std::string profiles;               ///< file that has it; empty: what comes with palpate
+  std::vector<double> rates;          ///< Hz
+  std::vector<int> delays;            ///< steps
+  std::vector<double> dampings;       ///< of the device, N s/m
+  double wall_damping = 0;            ///< B of the guard's damper, N s/m
+  std::string csv;
+  std::string json;
+  std::string picture;
+};
+
+/// How stiff a wall may be on one device at one pace; N/m.
+struct ZWidthRow {
+  double rate = 0;     ///< Hz
+  int delay = 0;       ///< steps
+  double damping = 0;  ///< of the device, N s/m
+  double colgate = 0;  ///< 2 (b + B) / (T + 2 T_d)
+  double stable = 0;   ///< oscillations do not grow
+  double passive = 0;  ///< no impact comes out faster than it went in
+  double braked = 0;   ///< likewise, with the guard's brake
+};
+
+struct ZWidthMap {
+  DeviceProfile profile;
+  double mass = 0;        ///< kg, as simulated
+  double resolution = 0;  ///< m
+  double coulomb = 0;     ///< N
+  double wall_damping = 0;
+  std::vector<ZWidthRow> rows;
+};
+
+/// Simulates every combination of rate, delay and damping. `progress` is told 0 to 1.
+/// @throws Error when there is no such profile or one is out of range.
+[[nodiscard]] ZWidthMap measure_zwidth(const ZWidthOptions& options,
+                                       const std::function<void(double)>& progress);
+
+}  // namespace palpate::app
