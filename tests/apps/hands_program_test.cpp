@@ -33,6 +33,15 @@ bool until(const std::function<bool()>& condition) {
   return false;
 }
 
+// A client's hand is at z, m, until it is heard: there the contact begins.
+bool arrives(test::RemoteClient& client, double z) {
+  return until([&] {
+    client.say(z);
+    const auto heard = client.hear();
+    return heard && (heard->flags & 1) != 0;
+  });
+}
+
 // A client's hand goes to z, m, until it feels more than `force`, N.
 bool goes_and_feels(test::RemoteClient& client, double z, double force) {
   double felt = 0;
@@ -54,10 +63,7 @@ TEST(HandsProgram, AnotherProgramsHandFeelsTheSurface) {
       "forces.csv");
   ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 1: listens on hand"); }));
   test::RemoteClient client(shell.path("hand"), shell.path("client"));
-  EXPECT_TRUE(until([&] {
-    client.say(5e-3);
-    return client.hear().has_value();
-  })) << "it answers";
+  EXPECT_TRUE(arrives(client, 5e-3));
   EXPECT_TRUE(goes_and_feels(client, -4e-3, 0.8)) << "2 mm deep, 1 N";
   EXPECT_EQ(run->interrupt(), 0) << shell.read("stderr");
   const Json report = Json::parse(shell.read("run.json"));
@@ -73,10 +79,9 @@ TEST(HandsProgram, AnotherProgramsHandFeelsTheSurface) {
 TEST(HandsProgram, ASilentDeviceSaysWhyAndEndsWithTheDuration) {
   Shell shell;
   shell.write("plane.xyz", plane_xyz());
-  const Outcome outcome = shell.run("touch plane.xyz --device remote:hand --duration 1.5");
+  const Outcome outcome = shell.run("touch plane.xyz --device remote:hand --duration 3");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "1.0 s  no client is heard on 'hand'; start one"))
-      << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, " s  no client is heard on 'hand'; start one")) << outcome.err;
   EXPECT_TRUE(contains(outcome.out, "never met the surface: no client is heard")) << outcome.out;
   EXPECT_TRUE(contains(outcome.out, "remote device")) << outcome.out;
 }
@@ -127,7 +132,7 @@ TEST(HandsProgram, AHandThatIsLedTouchesBesideAnotherPrograms) {
       "remote:hand --json run.json");
   ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 2: listens on hand"); }));
   test::RemoteClient client(shell.path("hand"), shell.path("client"));
-  EXPECT_TRUE(goes_and_feels(client, 5e-3, -1));
+  EXPECT_TRUE(arrives(client, 5e-3));
   EXPECT_TRUE(goes_and_feels(client, -4e-3, 0.8));
   EXPECT_EQ(run->interrupt(), 0) << shell.read("stderr");
   const Json hands = Json::parse(shell.read("run.json"))["hands"];
@@ -138,7 +143,7 @@ TEST(HandsProgram, AHandThatIsLedTouchesBesideAnotherPrograms) {
 TEST(HandsProgram, ADemoHasAsManyHandsAsItIsAskedFor) {
   Shell shell;
   const Outcome outcome = shell.run(
-      "demo scan --headless --port 0 --duration 1 --device simulated --device remote:hand");
+      "demo scan --headless --port 0 --duration 3 --device simulated --device remote:hand");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(contains(outcome.err, "| hand 2: no client is heard on 'hand'")) << outcome.err;
   EXPECT_TRUE(contains(outcome.out, "hand 1 ")) << outcome.out;
