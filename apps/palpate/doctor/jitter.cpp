@@ -34,7 +34,8 @@ std::vector<std::string> histogram(const Durations& lateness) {
   for (auto row = first; row < last; ++row) {
     const double upper = kFirstBin * std::exp2(1 + std::distance(rows.begin(), row));
     const double bar = std::ceil(kWidest * static_cast<double>(*row) / most);
-    lines.push_back(fmt::format("{:>12} {:>8} {}", "< " + duration(upper), grouped(*row),
+    lines.push_back(fmt::format("{:>12} {:>8}{}{}", "< " + duration(upper), grouped(*row),
+                                *row > 0 ? " " : "",
                                 std::string(static_cast<std::size_t>(bar), '#')));
   }
   return lines;
@@ -55,7 +56,7 @@ Finding check_jitter(const System& system, const RealtimeTrial& trial) {
   finding.lines = histogram(lateness);
   if (trial.left_out == 0 && lateness.longest < kPeriod) return finding;
   finding.severity = lateness.quantile(0.999) < kPeriod ? Severity::note : Severity::warning;
-  finding.words += fmt::format("; {} were left out", grouped(trial.left_out));
+  finding.words += fmt::format("; left out: {}", grouped(trial.left_out));
   if (is_virtual(system)) finding.words += "; this is a virtual machine, whose host may halt it";
   if (!trial.report.all_granted()) {
     finding.remedy = rights_command(system);

@@ -93,7 +93,7 @@ TEST(DoctorLocale, ThatDoesNotExistIsMadeOrLeft) {
   EXPECT_EQ(finding.severity, Severity::warning);
   EXPECT_EQ(finding.remedy,
             "sudo apt install locales && sudo localedef -i de_DE -f UTF-8 de_DE.UTF-8");
-  machine.system.variables = {{"LANG", "$(reboot).x"}};
+  machine.system.variables = {{"LANG", "$(reboot)_x.y"}};
   EXPECT_EQ(check_locales(machine.system).remedy, "export LANG=C.UTF-8");
   machine.system.variables = {{"LANG", "sr_RS.UTF-8@latin"}};
   EXPECT_TRUE(
