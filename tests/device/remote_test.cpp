@@ -222,7 +222,7 @@ std::string complaint(const Clock& clock, const RemoteDeviceOptions& options) {
 bool somebody_waits(int handle) {
   struct stat file {};
   ::fstat(handle, &file);
-  const std::string inode = ":" + std::to_string(file.st_ino) + " ";
+  const std::string inode = std::to_string(file.st_ino) + " 0 EOF";
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {
     const bool waits = line.find("-> FLOCK") != std::string::npos;
