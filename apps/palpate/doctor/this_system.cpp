@@ -12,6 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <string_view>
 #include <thread>
 
@@ -102,11 +104,15 @@ bool listens(int port) {
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  const bool begun =
+      connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
+      errno == EINPROGRESS;
   pollfd waiting{.fd = socket, .events = POLLOUT, .revents = 0};
   int error = 1;
   socklen_t size = sizeof error;
-  if (poll(&waiting, 1, kPatience) == 1) getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size);
+  if (begun && poll(&waiting, 1, kPatience) == 1) {
+    getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size);
+  }
   close(socket);
   return error == 0;
 }
