@@ -54,7 +54,7 @@ TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
   std::vector<Hand> hands;
   hands.push_back(hand_with("hand 1", 20, DeviceStatus::failed));
   hands.push_back(hand_with("hand 2", 200, DeviceStatus::finished));
-  Run run{options, touched, felt, hands, {}, proxy_options(options, kStiffness)};
+  app::Run run{options, touched, felt, hands, {}, proxy_options(options, kStiffness)};
   std::vector<std::size_t> steps(2);
   SteadyWaitingClock clock;
   const LiveOutcome outcome =
