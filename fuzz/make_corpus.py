@@ -18,8 +18,8 @@ def seed(target, name, data):
     folder.mkdir(parents=True, exist_ok=True)
     data = data.encode() if isinstance(data, str) else data
     (folder / name).write_bytes(data)
-    if target not in ("any", "client_message", "depth", "frame_list", "poses", "remote_state",
-                      "sequence", "trajectory"):
+    if target not in ("any", "client_message", "depth", "frame_list", "haply_frame", "poses",
+                      "remote_state", "sequence", "trajectory"):
         seed("any", f"{target}-{name}", data)
 
 
@@ -209,5 +209,20 @@ def client_messages():
     seed("client_message", "reset", '{"type":"reset"}')
 
 
-for make in (ply, pcd, las, depth, text, packed, sequences, remote, client_messages):
+def haply():
+    def frame(place='{"x":0.104,"y":-0.036,"z":-0.061}', velocity='{"x":0,"y":0.1,"z":-2e-3}',
+              grip='"wireless_verse_grip":[{"device_id":"61576","state":{"orientation":{"w":1},'
+                   '"buttons":{"a":true,"b":false,"c":true}}}]'):
+        return ('{"inverse3":[{"device_id":"04EA","config":{"handedness":"right"},"state":'
+                '{"cursor_position":%s,"cursor_velocity":%s,"control_mode":"idle"},'
+                '"status":{"calibrated":true,"power_supply":true}}],%s}' % (place, velocity, grip))
+    seed("haply_frame", "whole", frame())
+    seed("haply_frame", "cable", frame(grip='"verse_grip":[{"state":{"button":true,"hall":3}}]'))
+    seed("haply_frame", "null", frame(place='{"x":null,"y":0,"z":0}'))
+    seed("haply_frame", "far", frame(velocity='{"x":1e300,"y":0,"z":0}'))
+    seed("haply_frame", "none", '{"inverse3":[],"wireless_verse_grip":[]}')
+    seed("haply_frame", "cut", frame()[:100])
+
+
+for make in (ply, pcd, las, depth, text, packed, sequences, remote, client_messages, haply):
     make()

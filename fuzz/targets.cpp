@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "device/haply_message.hpp"
 #include "io/depth_image.hpp"
 #include "io/gzip.hpp"
 #include "io/input.hpp"
@@ -32,9 +33,9 @@
 namespace palpate::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 15> kNames{
-    "any", "depth", "frame_list", "gzip",         "las",      "obj",        "pcd", "pgm",
-    "ply", "png",   "poses",      "remote_state", "sequence", "trajectory", "xyz"};
+constexpr std::array<std::string_view, 16> kNames{
+    "any", "depth", "frame_list", "gzip",  "haply_frame",  "las",      "obj",        "pcd",
+    "pgm", "ply",   "png",        "poses", "remote_state", "sequence", "trajectory", "xyz"};
 
 void expect(bool promise, const char* name) {
   if (!promise) throw std::logic_error(name);
@@ -114,6 +115,17 @@ void check_remote_state(std::span<const std::byte> bytes) {
   expect(!packet.has_velocity || std::ranges::equal(again, bytes), "bytes that were lost");
 }
 
+void check_haply_frame(std::string_view text) {
+  for (const device::HaplyDevice& each : device::parse_haply_frame(text)) {
+    if (!each.reading) continue;
+    const auto& [position, velocity, buttons] = *each.reading;
+    expect(position.allFinite() && velocity.allFinite(), "a number that is none");
+    expect(position.cwiseAbs().maxCoeff() <= device::kFarthestHaply, "a place");
+    expect(velocity.cwiseAbs().maxCoeff() <= device::kFastestHaply, "a velocity");
+    expect(buttons < 8, "a button");
+  }
+}
+
 // True when `name` is one of the parts of a sequence.
 bool run_sequence_target(std::string_view name, const io::Input& input) {
   if (name == "depth") {
@@ -155,6 +167,8 @@ void run_target(std::string_view name, std::span<const std::byte> bytes) {
   try {
     if (name == "remote_state") {
       check_remote_state(bytes);
+    } else if (name == "haply_frame") {
+      check_haply_frame(input.text());
     } else if (name == "gzip") {
       (void)io::gunzip(input);
     } else if (name == "trajectory") {

@@ -29,9 +29,12 @@ LinkedDeviceOptions checked(LinkedDeviceOptions options) {
   return options;
 }
 
+// A place waits for the servo, and its force for the next exchange: up to two exchanges more than
+// the hardware's own delay, which counts as one where it is not known.
 DeviceInfo info_of(const DeviceLink& link) {
   DeviceInfo info = link.info();
   info.keeps_time = false;
+  info.delay = info.delay.value_or(1 / info.rate) + 2 / info.rate;
   return info;
 }
 

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "palpate/base/waiting_clock.hpp"
+#include "palpate/device/device.hpp"
+#include "palpate/device/linked_device.hpp"
+
+namespace palpate {
+
+/// Opens hardware by name; it gets a thread of its own (LinkedDevice).
+///  - "forcedimension[:N]": Force Dimension's devices and the Novint Falcon; N counts from 0.
+///    Options: library=PATH of libdhd.so.3.
+///  - "haply[:ID]": Haply's Inverse3; without an id the first that is there. Options:
+///    url=ws://HOST:PORT of its Inverse Service.
+/// Options follow as ",KEY=VALUE". Both take profile=NAME (device_profile()), where the kind that
+/// the device tells is not to be believed. `clock` outlives the device.
+/// @throws Error when the name is none of these, or there is no such device; says what to do.
+[[nodiscard]] std::unique_ptr<LinkedDevice> open_device(const std::string& name,
+                                                        WaitingClock& clock,
+                                                        const LinkedDeviceOptions& options = {});
+
+/// Is it the name of a driver of hardware, with whatever device and options?
+[[nodiscard]] bool names_hardware(const std::string& name);
+
+/// A device that is there, though another program may use it.
+struct HapticDevice {
+  std::string name;         ///< what open_device() takes
+  std::string description;  ///< for people
+};
+
+/// A way to haptic devices.
+struct HapticDriver {
+  std::string name;         ///< what open_device() takes, without a device
+  std::string description;  ///< which devices these are
+  bool available = true;    ///< is it in this build, and does it work?
+  std::string missing;      ///< what is missing and what brings it, if it is not available
+  std::vector<HapticDevice> devices;
+};
+
+/// Every driver of hardware, with what it finds. Opens no device. May take a second.
+[[nodiscard]] std::vector<HapticDriver> list_devices();
+
+}  // namespace palpate

@@ -1,0 +1,173 @@
+// Haply's Inverse3 through the maker's service: a WebSocket to this machine.
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "device/drivers.hpp"
+#include "device/haply_message.hpp"
+#include "device/profile_info.hpp"
+#include "device/text_socket.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::device {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr const char* kService = "ws://localhost:10001";
+constexpr const char* kProfile = "inverse3";
+constexpr const char* kInstall =
+    "Install Haply's Inverse Service and start it (sudo systemctl enable --now "
+    "haply-inverse-service)";
+constexpr const char* kLook = "Look at its cable, its power and Haply's Inverse Service";
+constexpr double kConnecting = 1;   // s
+constexpr double kFirstFrame = 1;   // s until the service tells what it has
+constexpr int kFirstFrames = 3;     // of which one has to tell a device
+constexpr double kQuiet = 0.02;     // s after which no more of them come
+constexpr double kQuick = 5e-3;     // s for an answer; later the force goes
+constexpr double kPatience = 0.1;   // s for an answer; later the service is given up
+constexpr double kFarewell = 0.05;  // s for it to take the last force
+
+std::string option(const DeviceName& name, const std::string& key, const char* otherwise) {
+  const std::string value = name.option(key);
+  return value.empty() ? otherwise : value;
+}
+
+TextSocket connect(const std::string& url) {
+  try {
+    return TextSocket(url, kConnecting);
+  } catch (const Error& error) {
+    throw Error(fmt::format("haply: {}. {}", error.what(), kInstall));
+  }
+}
+
+// The devices of a service. Its first frame may come unasked, and without any.
+std::vector<HaplyDevice> greet(TextSocket& socket) {
+  socket.send(haply_greeting(), kPatience);
+  std::vector<HaplyDevice> devices;
+  std::uint64_t seen = 0;
+  for (int i = 0; i < kFirstFrames && devices.empty(); ++i) {
+    if (!socket.wait(seen, kFirstFrame)) break;
+    seen = socket.received();
+    devices = parse_haply_frame(socket.newest());
+  }
+  if (seen == 0) throw Error("the service says nothing");
+  // What is still on its way would be taken for the answer to a command, and be old.
+  for (int i = 0; i < kFirstFrames && socket.wait(seen, kQuiet); ++i) seen = socket.received();
+  return devices;
+}
+
+std::string ids_of(const std::vector<HaplyDevice>& devices) {
+  std::string ids;
+  for (const HaplyDevice& each : devices) ids += (ids.empty() ? "" : ", ") + each.id;
+  return ids.empty() ? "none" : ids;
+}
+
+std::optional<HaplyDevice> find(std::vector<HaplyDevice> devices, const std::string& id) {
+  for (HaplyDevice& each : devices) {
+    if (id.empty() || each.id == id) return std::move(each);
+  }
+  return std::nullopt;
+}
+
+class HaplyLink final : public DeviceLink {
+ public:
+  explicit HaplyLink(const DeviceName& name)
+      : id_(name.device), socket_(connect(option(name, "url", kService))) {
+    const std::vector<HaplyDevice> devices = ask([this] { return greet(socket_); });
+    const std::optional<HaplyDevice> found = find(devices, id_);
+    if (!found) {
+      throw Error(fmt::format("haply:{}: there is no such Inverse3 (there is: {}). {}", id_,
+                              ids_of(devices), kLook));
+    }
+    id_ = found->id;
+    check(*found);
+    info_ =
+        info_of(device_profile(option(name, "profile", kProfile)), fmt::format("haply:{}", id_));
+  }
+  ~HaplyLink() override {
+    try {
+      socket_.send(haply_command(id_, Vector3d::Zero()), kFarewell);
+    } catch (const Error&) {  // it is gone already
+    }
+  }
+
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+
+  [[nodiscard]] LinkReading exchange(const Vector3d& force) override {
+    const std::optional<HaplyDevice> device = ask([&] { return find(answer_to(force), id_); });
+    if (!device) fail(fmt::format("it is not there any more. {}", kLook));
+    check(*device);
+    if (!device->reading) fail(fmt::format("it tells no place, or an impossible one. {}", kLook));
+    return *device->reading;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& words) const {
+    throw Error(fmt::format("haply:{}: {}", id_, words));
+  }
+
+  void check(const HaplyDevice& device) const {
+    if (!device.calibrated.value_or(true))
+      fail("it is not calibrated. Calibrate it in Haply's Hub");
+    if (!device.powered.value_or(true)) fail("it has no power. Plug its supply in");
+  }
+
+  // What the service answers, with words that say whose fault it is.
+  template <class Question>
+  auto ask(Question question) const -> decltype(question()) {
+    try {
+      return question();
+    } catch (const Error& error) {
+      fail(fmt::format("{}. {}", error.what(), kLook));
+    }
+  }
+
+  // A frame is the answer to a command; what came before it is old. Who does not tell in time where
+  // the hand is gets no force.
+  [[nodiscard]] std::vector<HaplyDevice> answer_to(const Vector3d& force) {
+    socket_.poll();
+    const std::uint64_t before = socket_.received();
+    socket_.send(haply_command(id_, force), kPatience);
+    if (!socket_.wait(before, kQuick)) {
+      socket_.send(haply_command(id_, Vector3d::Zero()), kPatience);
+      if (!socket_.wait(before, kPatience)) throw Error("the service does not answer any more");
+      (void)socket_.wait(before + 1, kPatience);  // of the zero, lest it be taken for a later one
+    }
+    socket_.poll();
+    return parse_haply_frame(socket_.newest());
+  }
+
+  std::string id_;
+  TextSocket socket_;
+  DeviceInfo info_;
+};
+
+}  // namespace
+
+HapticDriver haply_driver() {
+  HapticDriver driver{.name = "haply",
+                      .description = "Haply Inverse3, through Haply's Inverse Service",
+                      .missing = {},
+                      .devices = {}};
+  try {
+    TextSocket socket = connect(kService);
+    for (const HaplyDevice& each : greet(socket)) {
+      const bool ready = each.calibrated.value_or(true) && each.powered.value_or(true);
+      driver.devices.push_back(
+          {"haply:" + each.id, ready ? "Inverse3" : "Inverse3, not calibrated or without power"});
+    }
+  } catch (const Error& error) {
+    driver.available = false;
+    driver.missing = error.what();
+  }
+  return driver;
+}
+
+std::unique_ptr<DeviceLink> open_haply(const DeviceName& name) {
+  check_options(name, {"url", "profile"});
+  return std::make_unique<HaplyLink>(name);
+}
+
+}  // namespace palpate::device

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "palpate/device/device_link.hpp"
+
+// What is said between Haply's Inverse Service (3.1 and newer) and its clients: JSON, in metres,
+// metres a second and newtons.
+namespace palpate::device {
+
+/// What a frame tells of one Inverse3.
+struct HaplyDevice {
+  std::string id;                           ///< "04EA"
+  std::optional<LinkReading> reading = {};  ///< where place and velocity are told, and possible
+  std::optional<bool> calibrated = {};      ///< where it is told
+  std::optional<bool> powered = {};         ///< where it is told
+};
+
+/// Larger numbers are none of a hand's: m along an axis, and m/s.
+inline constexpr double kFarthestHaply = 10;
+inline constexpr double kFastestHaply = 100;
+
+/// The devices of a frame; the buttons of the first grip are in all readings.
+/// @throws Error when it is no frame at all.
+[[nodiscard]] std::vector<HaplyDevice> parse_haply_frame(std::string_view text);
+
+/// Asks for a frame that tells all.
+[[nodiscard]] std::string haply_greeting();
+
+/// Sets the force on a device, N; answered by a frame.
+[[nodiscard]] std::string haply_command(std::string_view id, const Eigen::Vector3d& force);
+
+}  // namespace palpate::device

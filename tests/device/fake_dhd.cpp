@@ -1,0 +1,197 @@
+// A library with the names of Force Dimension's, and a device behind it: a mass with friction that
+// moves when it is told that time passes. Functions fake_* are the tests'.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace {
+
+using Three = std::array<double, 3>;
+
+constexpr double kMass = 0.2;             // kg
+constexpr double kDamping = 2;            // N s/m
+constexpr double kWatchdogUnit = 125e-6;  // s
+constexpr int kFlagReset = 3;
+constexpr int kFlagForce = 5;
+constexpr int kFlagCause = 14;
+constexpr int kCauseWatchdog = 3;
+
+struct Device {
+  bool plugged = true;
+  bool busy = false;
+  bool calibrated = true;
+  bool has_watchdog = true;
+  bool not_a_number = false;
+  bool failing = false;
+  std::string name = "omega.3";
+
+  bool is_open = false;
+  bool forces_on = false;
+  bool expert = false;
+  int cause = 0;
+  double watchdog = 0;  // s; 0: not armed
+  double unheard = 0;   // s since the last force
+  int thresholds = 0;   // times that somebody changed the velocity threshold
+  int velocities = 0;   // times that the velocity was asked for
+  Three place{};
+  Three velocity{};
+  Three force{};
+};
+
+Device device;
+const char* words = "no error";
+
+int answer(bool good, const char* otherwise) {
+  words = good ? "no error" : otherwise;
+  return good ? 0 : -1;
+}
+int reached() {
+  return answer(device.plugged && device.is_open && !device.failing, "communication error");
+}
+void tell(const Three& from, double* x, double* y, double* z) {
+  *x = device.not_a_number ? std::numeric_limits<double>::quiet_NaN() : from[0];
+  *y = from[1];
+  *z = from[2];
+}
+
+}  // namespace
+
+extern "C" {
+
+int dhdGetDeviceCount() {
+  return device.plugged ? 1 : 0;
+}
+int dhdOpenID(char index) {
+  if (answer(device.plugged && index == 0, "no device found") < 0) return -1;
+  if (answer(!device.busy, "device in use") < 0) return -1;
+  device.is_open = true;
+  device.forces_on = false;
+  device.unheard = 0;
+  device.velocities = 0;
+  return 4;  // an id is not an index
+}
+int dhdClose(char id) {
+  if (id != 4) return answer(false, "invalid ID");
+  device.is_open = device.forces_on = false;
+  device.watchdog = 0;
+  return 0;
+}
+const char* dhdGetSystemName(char) {
+  return device.name.c_str();
+}
+int dhdGetStatus(int* flags, char) {
+  if (reached() < 0) return -1;
+  std::fill_n(flags, 17, 0);
+  flags[0] = flags[1] = flags[2] = 1;
+  flags[kFlagReset] = device.calibrated ? 0 : 1;
+  flags[kFlagForce] = device.forces_on ? 1 : 0;
+  flags[kFlagCause] = device.cause;
+  return 0;
+}
+int dhdEnableForce(unsigned char on, char) {
+  if (reached() < 0) return -1;
+  device.forces_on = on != 0;
+  device.unheard = 0;
+  return 0;
+}
+int dhdEnableExpertMode() {
+  device.expert = true;
+  return 0;
+}
+int dhdDisableExpertMode() {
+  device.expert = false;
+  return 0;
+}
+int dhdSetWatchdog(unsigned char duration, char) {
+  if (answer(device.expert, "expert mode disabled") < 0) return -1;
+  if (answer(device.has_watchdog, "feature not available") < 0) return -1;
+  device.watchdog = duration * kWatchdogUnit;
+  return 0;
+}
+int dhdSetVelocityThreshold(unsigned, char) {
+  ++device.thresholds;
+  return 0;
+}
+int dhdGetPosition(double* x, double* y, double* z, char) {
+  if (reached() < 0) return -1;
+  tell(device.place, x, y, z);
+  return 0;
+}
+int dhdGetLinearVelocity(double* x, double* y, double* z, char) {
+  if (reached() < 0) return -1;
+  if (++device.velocities < 3) return answer(false, "too few places yet");
+  tell(device.velocity, x, y, z);
+  return 1;  // a note, no error
+}
+unsigned dhdGetButtonMask(char) {
+  return 5;
+}
+int dhdSetForceAndTorqueAndGripperForce(double x, double y, double z, double, double, double,
+                                        double, char) {
+  if (reached() < 0) return -1;
+  device.force = {x, y, z};
+  device.unheard = 0;
+  return 2;  // the motors are saturated: no error
+}
+const char* dhdErrorGetLastStr() {
+  return words;
+}
+
+void fake_reset() {
+  device = Device();
+}
+void fake_plug(bool in) {
+  device.plugged = in;
+  if (!in) device.forces_on = device.is_open = false;
+}
+void fake_busy(bool on) {
+  device.busy = on;
+}
+void fake_calibrated(bool on) {
+  device.calibrated = on;
+}
+void fake_watchdog(bool there) {
+  device.has_watchdog = there;
+}
+void fake_not_a_number(bool on) {
+  device.not_a_number = on;
+}
+void fake_failing(bool on) {
+  device.failing = on;
+}
+void fake_name(const char* name) {
+  device.name = name;
+}
+void fake_place(double x, double y, double z) {
+  device.place = {x, y, z};
+  device.velocity = {};
+}
+// What the motors hold, N; the maker's axes.
+void fake_force(double* force) {
+  for (std::size_t i = 0; i < 3; ++i) force[i] = device.forces_on ? device.force[i] : 0;
+}
+bool fake_is_open() {
+  return device.is_open;
+}
+int fake_threshold_changes() {
+  return device.thresholds;
+}
+double fake_watchdog_time() {
+  return device.watchdog;
+}
+void fake_advance(double time) {
+  device.unheard += time;
+  if (device.watchdog > 0 && device.unheard > device.watchdog && device.forces_on) {
+    device.forces_on = false;
+    device.cause = kCauseWatchdog;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double push = device.forces_on ? device.force[i] : 0;
+    device.velocity[i] += time * (push - kDamping * device.velocity[i]) / kMass;
+    device.place[i] += time * device.velocity[i];
+  }
+}
+
+}  // extern "C"

@@ -1,0 +1,206 @@
+// The driver of Force Dimension's devices, against a library with the maker's names (fake_dhd.cpp).
+#include <dlfcn.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <set>
+
+#include "device/fake_hardware.hpp"
+#include "device/forcedimension_link.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/device/device_profile.hpp"
+#include "palpate/device/linked_device.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string kLibrary = PALPATE_FAKE_DHD;
+const std::string kName = "forcedimension:0,library=" + kLibrary;
+const Vector3d kForce(1, 2, 3);
+
+// The tests' side of the library.
+class Double {
+ public:
+  template <class Function>
+  [[nodiscard]] Function* find(const char* name) const {
+    auto* const found = reinterpret_cast<Function*>(::dlsym(library_, name));
+    if (found == nullptr) throw Error(std::string(name) + " is not in the double");
+    return found;
+  }
+  void flag(const char* name, bool on) const { find<void(bool)>(name)(on); }
+  [[nodiscard]] Vector3d force() const {
+    Vector3d told;
+    find<void(double*)>("fake_force")(told.data());
+    return told;
+  }
+  [[nodiscard]] bool is_open() const { return find<bool()>("fake_is_open")(); }
+  void advance(double time) const { find<void(double)>("fake_advance")(time); }
+
+ private:
+  void* library_ = ::dlopen(kLibrary.c_str(), RTLD_NOW | RTLD_LOCAL);
+};
+
+std::unique_ptr<DeviceLink> open(const std::string& name = kName) {
+  return std::make_unique<device::ForceDimensionLink>(device::parse_device_name(name));
+}
+
+std::string refusal(const std::string& name = kName) {
+  try {
+    (void)open(name);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+class ForceDimension : public testing::Test {
+ protected:
+  ForceDimension() { double_.find<void()>("fake_reset")(); }
+
+  Double double_;
+};
+
+TEST_F(ForceDimension, TellsPlacesAndForcesAsTheOperatorSits) {
+  double_.find<void(double, double, double)>("fake_place")(0.01, 0.02, 0.03);
+  const auto link = open();
+  const LinkReading reading = link->exchange(kForce);
+  EXPECT_EQ(reading.position, Vector3d(0.02, -0.01, 0.03));
+  EXPECT_EQ(double_.force(), Vector3d(-2, 1, 3));
+  EXPECT_EQ(reading.buttons, 5u);
+}
+
+TEST_F(ForceDimension, AForceMovesTheHandItsWay) {
+  const auto link = open();
+  const Vector3d push(0.3, -0.6, 0.2);
+  LinkReading reading;
+  for (int i = 0; i < 4000; ++i) {
+    reading = link->exchange(push);
+    double_.advance(0.25e-3);
+  }
+  EXPECT_NEAR(reading.position.normalized().dot(push.normalized()), 1, 1e-9);
+  EXPECT_NEAR(reading.velocity.normalized().dot(push.normalized()), 1, 1e-9);
+  EXPECT_NEAR(reading.velocity.norm(), push.norm() / 2, 2e-3) << "against 2 N s/m";
+}
+
+TEST_F(ForceDimension, IsWhatItsNameTellsOrTheProfileThatIsGiven) {
+  const DeviceInfo omega = open()->info();
+  EXPECT_THAT(omega.name, AllOf(HasSubstr("forcedimension:0"), HasSubstr("omega.3")));
+  EXPECT_EQ(omega.maximum_force, *device_profile("omega").maximum_force);
+  EXPECT_EQ(omega.maximum_stiffness, *device_profile("omega").maximum_stiffness);
+  EXPECT_EQ(open(kName + ",profile=falcon")->info().maximum_force,
+            *device_profile("falcon").maximum_force);
+  double_.find<void(const char*)>("fake_name")("prototype");
+  EXPECT_EQ(open()->info().maximum_force, *device_profile("unknown").maximum_force);
+}
+
+TEST_F(ForceDimension, ArmsTheWatchdogAndLeavesTheVelocityThresholdAlone) {
+  const auto link = open();
+  EXPECT_DOUBLE_EQ(double_.find<double()>("fake_watchdog_time")(), 5e-3);
+  EXPECT_EQ(double_.find<int()>("fake_threshold_changes")(), 0);
+  (void)link->exchange(kForce);
+  double_.advance(4.9e-3);
+  EXPECT_GT(double_.force().norm(), 3);
+  double_.advance(0.2e-3);
+  EXPECT_EQ(double_.force().norm(), 0);
+}
+
+TEST_F(ForceDimension, SaysWhereThereIsNoWatchdog) {
+  double_.flag("fake_watchdog", false);
+  EXPECT_THAT(open()->info().name, HasSubstr("without a watchdog"));
+}
+
+TEST_F(ForceDimension, EndsWithoutAForceAndCloses) {
+  auto link = open();
+  (void)link->exchange(kForce);
+  ASSERT_TRUE(double_.is_open());
+  link.reset();
+  EXPECT_EQ(double_.force().norm(), 0);
+  EXPECT_FALSE(double_.is_open());
+}
+
+TEST_F(ForceDimension, SaysWhyThereIsNone) {
+  EXPECT_THAT(refusal("forcedimension,library=/none/libdhd.so.3"),
+              AllOf(HasSubstr("/none/libdhd.so.3"), HasSubstr("forcedimension.com"),
+                    HasSubstr("palpate doctor")));
+  EXPECT_THAT(refusal("forcedimension,library=libdl.so.2"), HasSubstr("dhd"));
+  EXPECT_THAT(refusal("forcedimension:1,library=" + kLibrary), HasSubstr("1 found"));
+  EXPECT_THAT(refusal("forcedimension:x,library=" + kLibrary), HasSubstr("number"));
+  EXPECT_THAT(refusal(kName + ",profile=omego"), HasSubstr("omego"));
+  EXPECT_FALSE(double_.is_open());
+  double_.flag("fake_busy", true);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("in use"), HasSubstr("other programs")));
+  double_.flag("fake_busy", false);
+  double_.flag("fake_calibrated", false);
+  EXPECT_THAT(refusal(), HasSubstr("not calibrated"));
+  EXPECT_FALSE(double_.is_open());
+  double_.flag("fake_plug", false);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("0 found"), HasSubstr("Plug it in")));
+}
+
+// With the servo's side before it, in simulated time: what each fault does to the force.
+class ForceDimensionFaults : public ForceDimension {
+ protected:
+  ForceDimensionFaults() {
+    device_.emplace([] { return open(); }, clock_, LinkedDeviceOptions{.threaded = false});
+    run(0.05);
+    EXPECT_GT(double_.force().norm(), 3);
+  }
+
+  void run(double duration, bool turns = true) {
+    for (const double end = clock_.now() + duration; clock_.now() < end - 1e-9;) {
+      if (turns) device_->turn();
+      if (++quarter_ % 4 == 0) step();
+      double_.advance(0.25e-3);
+      clock_.wait_until(clock_.now() + 0.25e-3);
+      if (double_.force().norm() > 0) pushed_ = clock_.now();
+    }
+  }
+  void step() {
+    const DeviceState state = device_->read();
+    if (state.status == DeviceStatus::silent) reasons_.insert(device_->reason());
+    device_->write(state.status == DeviceStatus::ok ? kForce : Vector3d::Zero().eval());
+  }
+  void expect_lost(const char* fault, bool value, const char* word) {
+    reasons_.clear();
+    const double start = clock_.now();
+    double_.flag(fault, value);
+    run(0.5);
+    EXPECT_LE(pushed_ - start, 6e-3) << fault;
+    EXPECT_THAT(reasons_, testing::ElementsAre(HasSubstr(word))) << fault;
+    double_.flag(fault, !value);
+    run(1.2);
+    EXPECT_GT(double_.force().norm(), 3) << fault << " is over";
+  }
+
+  test::MovedClock clock_;
+  std::optional<LinkedDevice> device_;
+  std::set<std::string> reasons_;
+  int quarter_ = 0;
+  double pushed_ = 0;
+};
+
+TEST_F(ForceDimensionFaults, TakeTheForceAwayInTimeAndAreToldOnce) {
+  expect_lost("fake_plug", false, "cable");
+  expect_lost("fake_failing", true, "communication error");
+  expect_lost("fake_not_a_number", true, "no number");
+}
+
+TEST_F(ForceDimensionFaults, AThreadThatHangsIsTheWatchdogs) {
+  const double start = clock_.now();
+  run(0.1, false);
+  EXPECT_LE(pushed_ - start, 6e-3);
+  reasons_.clear();
+  run(0.1);
+  EXPECT_EQ(double_.force().norm(), 0) << "its forces are off";
+  EXPECT_THAT(*reasons_.rbegin(), HasSubstr("watchdog"));
+  run(1.2);
+  EXPECT_GT(double_.force().norm(), 3) << "and come back when it is opened again";
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,63 @@
+#include "palpate/device/open_device.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "device/fake_hardware.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string refusal(const std::string& name) {
+  test::MovedClock clock;
+  try {
+    (void)open_device(name, clock, {.threaded = false});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(OpenDevice, OpensByName) {
+  test::MovedClock clock;
+  const auto device = open_device(std::string("forcedimension,library=") + PALPATE_FAKE_DHD, clock,
+                                  {.threaded = false});
+  device->turn();
+  EXPECT_EQ(device->read().status, DeviceStatus::silent);
+  EXPECT_EQ(device->read().status, DeviceStatus::ok);
+  EXPECT_THAT(device->info().name, HasSubstr("omega.3"));
+  EXPECT_EQ(device->info().rate, 4000);
+  EXPECT_DOUBLE_EQ(device->info().delay.value_or(0), 3 / 4000.0) << "its own, and the thread's";
+}
+
+TEST(OpenDevice, SaysWhatThereIs) {
+  EXPECT_THAT(refusal("phantom"), AllOf(HasSubstr("phantom"), HasSubstr("forcedimension[:N]"),
+                                        HasSubstr("haply[:ID]"), HasSubstr("palpate devices")));
+  EXPECT_THAT(refusal(""), HasSubstr("no such device"));
+}
+
+TEST(OpenDevice, KnowsNamesOfHardware) {
+  EXPECT_TRUE(names_hardware("haply"));
+  EXPECT_TRUE(names_hardware("haply:04EA,url=ws://localhost:1"));
+  EXPECT_TRUE(names_hardware("forcedimension,profile=omega"));
+  EXPECT_FALSE(names_hardware("simulated"));
+  EXPECT_FALSE(names_hardware("haplyx"));
+  EXPECT_FALSE(names_hardware(""));
+}
+
+TEST(ListDevices, TellsEveryDriverAndWhyItIsNotThere) {
+  const std::vector<HapticDriver> drivers = list_devices();
+  ASSERT_EQ(drivers.size(), 2u);
+  for (const HapticDriver& driver : drivers) {
+    EXPECT_TRUE(names_hardware(driver.name));
+    EXPECT_FALSE(driver.description.empty());
+    EXPECT_EQ(driver.available, driver.missing.empty());
+  }
+}
+
+}  // namespace
+}  // namespace palpate
