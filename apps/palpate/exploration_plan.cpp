@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <span>
@@ -25,6 +26,7 @@ constexpr double kPatchRadii = 20;      // ... or, where that is more, as many R
 constexpr double kDepth = 0.75;         // R under the surface
 constexpr double kLargestForce = 4;     // N
 constexpr double kPaperMultiple = 2.5;  // m = R / s where s is not known
+constexpr float kUpward = 0.7F;         // of a normal's z: it looks up, give or take 45 degrees
 constexpr double kClearance = 2e-3;     // m of the hand, from the surface to where a device stands
 
 // All sources' points, relative to one origin. A single source's are not copied: it may be large.
@@ -116,18 +118,33 @@ Extent extent_of(const Union& all, const PlanOptions& options) {
   return extent;
 }
 
-std::size_t nearest_to_middle(std::span<const Vector3f> points) {
-  Vector3d sum = Vector3d::Zero();
-  for (const Vector3f& p : points) sum += p.cast<double>();
-  const Vector3f middle = (sum / static_cast<double>(points.size())).cast<float>();
-  const auto distance = [&](const Vector3f& p) { return (p - middle).squaredNorm(); };
-  return static_cast<std::size_t>(std::ranges::min_element(points, {}, distance) - points.begin());
+// Upward where there is none.
+Vector3f normal_at(const ExploredSurface& surface, std::size_t point) {
+  const bool known = !surface.normals.empty() && !surface.normals[point].isZero();
+  return known ? surface.normals[point] : Vector3f::UnitZ();
 }
 
-// Upward where there is none.
-Vector3d normal_at(const ExploredSurface& surface, std::size_t point) {
-  const bool known = !surface.normals.empty() && !surface.normals[point].isZero();
-  return known ? Vector3d(surface.normals[point].cast<double>()) : Vector3d::UnitZ();
+// The place over which a hand that comes down meets the surface nearest to its middle; where
+// nothing looks up, the one that is nearest to it.
+std::size_t standing_place(const ExploredSurface& surface) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3f& p : surface.points) sum += p.cast<double>();
+  const Vector3f middle = (sum / static_cast<double>(surface.points.size())).cast<float>();
+  struct Nearest {
+    std::size_t point = 0;
+    float distance = std::numeric_limits<float>::infinity();  // squared
+    void take(std::size_t i, float d) {
+      if (d < distance) *this = {i, d};
+    }
+  };
+  Nearest across;
+  Nearest any;
+  for (std::size_t i = 0; i < surface.points.size(); ++i) {
+    const Vector3f way = surface.points[i] - middle;
+    any.take(i, way.squaredNorm());
+    if (normal_at(surface, i).z() >= kUpward) across.take(i, way.head<2>().squaredNorm());
+  }
+  return std::isfinite(across.distance) ? across.point : any.point;
 }
 
 }  // namespace
@@ -181,13 +198,14 @@ Stand plan_stand(const Scene& scene, const FieldOptions& field, const PlanOption
   const Union all = unite(scene);
   const ExploredSurface surface = all.view();
   const Extent extent = extent_of(all, options);
-  const std::size_t point = nearest_to_middle(surface.points);
+  const std::size_t point = standing_place(surface);
   const double height = offset(field, all, options.tool_radius) + kClearance * extent.scale;
   Stand stand;
   stand.stiffness = extent.stiffness;
   stand.workspace.scale = extent.scale;
-  stand.workspace.T_world_device.translation() =
-      surface.origin + surface.points[point].cast<double>() + height * normal_at(surface, point);
+  stand.workspace.T_world_device.translation() = surface.origin +
+                                                 surface.points[point].cast<double>() +
+                                                 height * normal_at(surface, point).cast<double>();
   return stand;
 }
 

@@ -45,9 +45,10 @@ struct Stand {
   double stiffness = 0;  ///< of the surface, N/m in the world
 };
 
-/// The device's origin is just outside the surface, 2 mm of the hand in front of the place that is
-/// nearest to the middle (mean) of all points; its axes are the world's. Scale and stiffness are
-/// those of plan_exploration(). @throws Error when the scene has no points.
+/// The device's origin is just outside the surface, 2 mm of the hand in front of it, where it looks
+/// up (+z) and is nearest to the vertical through the middle (mean) of all points or, where it
+/// looks up nowhere, where it is nearest to that middle; its axes are the world's. Scale and
+/// stiffness are those of plan_exploration(). @throws Error when the scene has no points.
 [[nodiscard]] Stand plan_stand(const Scene& scene, const FieldOptions& field,
                                const PlanOptions& options);
 

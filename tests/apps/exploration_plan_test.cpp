@@ -69,6 +69,18 @@ TEST(ExplorationPlan, ADeviceThatNobodyLeadsStandsJustOutsideTheMiddleOfTheSurfa
   }
 }
 
+TEST(ExplorationPlan, ADeviceThatNobodyLeadsComesDownOnWhatIsRound) {
+  Scene scene;
+  const PointCloud sphere = synthetic_cloud("sphere");
+  scene.add("sphere", sphere);
+  float top = 0;
+  for (const Eigen::Vector3f& p : sphere.positions) top = std::max(top, p.z());
+  const Stand stand = plan_stand(scene, {}, {.duration = 1});
+  const Eigen::Vector3d origin = stand.workspace.position_to_world(Eigen::Vector3d::Zero());
+  EXPECT_NEAR(origin.z(), static_cast<double>(top) + 2e-3, 1e-3);
+  EXPECT_LT(origin.head<2>().norm(), 5e-3) << origin.transpose();
+}
+
 // The hand's wish is offset - depth under the highest place: what it means to feel follows the
 // metaball's level.
 TEST(ExplorationPlan, HandStopsHigherOverASurfaceThatLiesHigher) {

@@ -205,7 +205,8 @@ test("two pages see the same; one holds the tool, and it is free when that one i
 
 test("two pages hold two hands of one scene at once, and each sees the other's", async () => {
   const program = await startProgram(kTwoHands);
-  const pages = [await open(program.address), await open(program.address)];
+  const small = { ...kSmall, viewport: { width: 720, height: 480 } }; // both draw in software, all the time
+  const pages = [await open(program.address, small), await open(program.address, small)];
   assert.deepEqual(await pages[1].locator("#device option").allInnerTexts(), ["simulated 1", "simulated 2"]);
   await pages[1].selectOption("#device", { label: "simulated 2" });
   const first = await Promise.all(pages.map(async (page, device) => {
