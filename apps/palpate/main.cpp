@@ -5,6 +5,7 @@
 
 #include "apps/palpate/cameras_command.hpp"
 #include "apps/palpate/demo_command.hpp"
+#include "apps/palpate/devices_command.hpp"
 #include "apps/palpate/doctor_command.hpp"
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/info_command.hpp"
@@ -51,6 +52,10 @@ int run(int argc, char** argv) {
   CLI::App* doctor_app = program.add_subcommand(
       "doctor", "Say what keeps devices from working, or from being in time");
   add_doctor_options(*doctor_app, doctor_options);
+  DevicesOptions devices_options;
+  CLI::App* devices_command =
+      program.add_subcommand("devices", "List haptic devices, and what is missing for others");
+  add_devices_options(*devices_command, devices_options);
   PaperCommand paper_command;
   CLI::App* paper_app =
       program.add_subcommand("paper", "Repeat the experiments of Leeper, Chan and Salisbury 2012");
@@ -74,9 +79,8 @@ int run(int argc, char** argv) {
   }
   if (program.get_subcommands().empty()) {
     throw UsageError(
-        "a command is missing: touch, info, cameras, doctor, paper, demo or zwidth; 'palpate "
-        "--help' "
-        "tells more");
+        "a command is missing: touch, info, cameras, devices, doctor, paper, demo or zwidth; "
+        "'palpate --help' tells more");
   }
   if (touch_command->parsed()) {
     apply_setup(*touch_command, touch_options);
@@ -85,6 +89,7 @@ int run(int argc, char** argv) {
   if (info_command->parsed()) info(info_options);
   if (cameras_command->parsed()) cameras(cameras_options);
   if (doctor_app->parsed()) return examine(doctor_options);
+  if (devices_command->parsed()) devices(devices_options);
   if (paper_app->parsed()) paper(paper_command);
   if (demo_app->parsed()) demo(demo_options);
   if (zwidth_app->parsed()) zwidth(zwidth_options);
