@@ -11,6 +11,7 @@
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/option_checks.hpp"
 #include "apps/palpate/touch_options.hpp"
+#include "palpate/device/open_device.hpp"
 
 namespace palpate::app {
 
@@ -30,6 +31,11 @@ void check_paths(const std::vector<DeviceChoice>& devices) {
   std::set<std::string> paths;
   for (const DeviceChoice& device : devices) {
     if (device.is_led() || paths.insert(device.path).second) continue;
+    if (device.kind == DeviceKind::hardware) {
+      throw UsageError(fmt::format(
+          "two hands cannot hold {}; name another device for each ('palpate devices' lists them)",
+          device.path));
+    }
     throw UsageError(
         fmt::format("two remote devices cannot share {}; give each a path of its own, as in "
                     "--device remote:/tmp/hand",
@@ -44,8 +50,11 @@ DeviceChoice parse_device(const std::string& text) {
   if (text.starts_with(kRemotePath) && text.size() > kRemotePath.size()) {
     return {DeviceKind::remote, text.substr(kRemotePath.size())};
   }
+  if (names_hardware(text)) return {DeviceKind::hardware, text};
   throw UsageError(fmt::format(
-      "'{}' is no device; give scripted, simulated, remote or remote:PATH of a socket", text));
+      "'{}' is no device; give scripted, simulated, remote, remote:PATH of a socket, or "
+      "hardware that 'palpate devices' lists",
+      text));
 }
 
 void add_device_option(CLI::App& command, std::vector<std::string>& devices,
@@ -56,7 +65,9 @@ void add_device_option(CLI::App& command, std::vector<std::string>& devices,
           wrapped("scripted: the hand is where the trajectory or exploration says, whatever "
                   "the force; simulated: a hand pulls a device with mass and friction "
                   "there; remote: the hand of another program, which speaks to a socket "
-                  "(docs/remote_device.md). Once for each hand, four at most; with several "
+                  "(docs/remote_device.md); forcedimension[:N], haply[:ID]: hardware "
+                  "('palpate devices' lists it; docs/devices.md). Once for each hand, four at "
+                  "most; with several "
                   "the run is in real time. Default: scripted with --trajectory, else "
                   "simulated"))
       ->check(parsed_by([](const std::string& text) { (void)parse_device(text); }))
@@ -81,7 +92,8 @@ void check_devices(const TouchOptions& options) {
   const auto led = std::ranges::count_if(devices, &DeviceChoice::is_led);
   require(devices.size() <= kMostHands, "more than four --device; four hands can touch at once");
   require(!options.simulated_time || !need_real_time(devices),
-          "--device remote, and several hands, are of real time; leave --simulated-time out, or "
+          "hardware, --device remote and several hands are of real time; leave --simulated-time "
+          "out, or "
           "give one scripted or simulated device");
   require(options.trajectory.empty() || led <= 1,
           "a --trajectory leads one hand, and several devices would follow it; leave it out, so "

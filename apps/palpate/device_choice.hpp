@@ -16,21 +16,26 @@ enum class DeviceKind {
   scripted,   ///< is where its way says, whatever the force
   simulated,  ///< is pulled along its way, and feels
   remote,     ///< another program's
+  hardware,   ///< what a driver reaches
 };
 
 /// One `--device`: what is at one hand.
 struct DeviceChoice {
   DeviceKind kind = DeviceKind::simulated;
-  std::string path = {};  ///< of a remote one's socket; empty: default_remote_path()
+  /// Of a remote one's socket, empty: default_remote_path(); of hardware what open_device() takes.
+  std::string path = {};
 
   /// Does it go where a trajectory or an exploration leads it?
-  [[nodiscard]] bool is_led() const { return kind != DeviceKind::remote; }
+  [[nodiscard]] bool is_led() const {
+    return kind == DeviceKind::scripted || kind == DeviceKind::simulated;
+  }
 };
 
 /// As many hands may touch at once.
 inline constexpr std::size_t kMostHands = 4;
 
-/// "scripted", "simulated", "remote" or "remote:PATH". @throws UsageError when it is none of them.
+/// "scripted", "simulated", "remote", "remote:PATH" or the name of hardware (open_device()).
+/// @throws UsageError when it is none of them.
 [[nodiscard]] DeviceChoice parse_device(const std::string& text);
 
 /// Adds `--device`, which may be repeated.
@@ -41,7 +46,8 @@ void add_device_option(CLI::App& command, std::vector<std::string>& devices,
 /// trajectory or an exploration.
 [[nodiscard]] std::vector<DeviceChoice> choose_devices(const TouchOptions& options);
 
-/// Can they be there in real time alone? Several hands, and another program's, are.
+/// Can they be there in real time alone? Several hands, another program's and those that hold
+/// hardware are.
 [[nodiscard]] bool need_real_time(const std::vector<DeviceChoice>& devices);
 
 /// @throws UsageError when such devices cannot touch together, or not as `options` want it.

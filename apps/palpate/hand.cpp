@@ -10,6 +10,7 @@
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/palpate/touch_usage.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/device/open_device.hpp"
 #include "palpate/device/scripted.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
@@ -43,6 +44,18 @@ void open_socket(Hand& hand, const DeviceChoice& choice, const TouchOptions& opt
   hand.duration = options.duration;
   hand.device = std::move(opened);
   fmt::print(stderr, "{}: listens on {}\n", hand.name, hand.socket->path());
+}
+
+void open_hardware(Hand& hand, const DeviceChoice& choice, const TouchOptions& options,
+                   WaitingClock& clock) {
+  // The processor of the servo is the servo's alone.
+  RealtimeOptions asked = realtime_options(options.live);
+  asked.processor.reset();
+  LinkedDeviceOptions device;
+  device.begin = [asked] { (void)make_realtime(asked); };
+  hand.device = open_device(choice.path, clock, device);
+  hand.duration = options.duration;
+  fmt::print(stderr, "{}: holds {}\n", hand.name, hand.device->info().name);
 }
 
 // The hand is where `way` says, whatever the force.
@@ -124,13 +137,15 @@ Trajectory read_way(const TouchOptions& options) {
   return way;
 }
 
-std::vector<Hand> open_hands(const TouchOptions& options, const Clock* clock) {
+std::vector<Hand> open_hands(const TouchOptions& options, WaitingClock* clock) {
   std::vector<Hand> hands;
   const std::vector<DeviceChoice> devices = choose_devices(options);
   for (const DeviceChoice& choice : devices) {
     Hand& hand = hands.emplace_back();
     hand.name = fmt::format("hand {}", hands.size());
-    if (!choice.is_led()) open_socket(hand, choice, options, *clock);
+    hand.led = choice.is_led();
+    if (choice.kind == DeviceKind::remote) open_socket(hand, choice, options, *clock);
+    if (choice.kind == DeviceKind::hardware) open_hardware(hand, choice, options, *clock);
   }
   return hands;
 }
@@ -140,7 +155,7 @@ void place_hands(std::vector<Hand>& hands, const TouchOptions& options, const Tr
   const std::vector<DeviceChoice> devices = choose_devices(options);
   PlanOptions plan = plan_options(options, way);
   for (std::size_t i = 0; i < hands.size(); ++i, ++plan.seed) {
-    if (!devices[i].is_led()) {
+    if (!hands[i].led) {
       stand(hands[i], scene, field, plan);
     } else if (way.empty()) {
       explore(hands[i], devices[i], options, scene, field, plan);

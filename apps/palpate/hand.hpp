@@ -7,7 +7,7 @@
 #include "apps/palpate/device_choice.hpp"
 #include "apps/palpate/exploration_plan.hpp"
 #include "apps/palpate/touch_options.hpp"
-#include "palpate/base/clock.hpp"
+#include "palpate/base/waiting_clock.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/guided_hand.hpp"
 #include "palpate/device/remote.hpp"
@@ -23,6 +23,7 @@ struct Hand {
   std::unique_ptr<GuidedHand> guide;   ///< what `remote` speaks to
   std::unique_ptr<Device> device;
   const RemoteDevice* socket = nullptr;  ///< the device, where it is another program's
+  bool led = true;                       ///< false: it goes where a person or a program says
   Workspace workspace;
   double stiffness = 0;                 ///< of the surface, N/m in the world; of all hands the same
   std::size_t steps = 0;                ///< that its way takes
@@ -35,11 +36,11 @@ struct Hand {
 /// @throws Error as reading does, UsageError when it cannot be played.
 [[nodiscard]] Trajectory read_way(const TouchOptions& options);
 
-/// The hands that `options` want. Those of other programs have their device, and can be spoken to:
-/// they are opened before anything is read. `clock` is the run's and outlives them; null: simulated
-/// time. Says on standard error where devices listen.
-/// @throws Error when a socket cannot be had.
-[[nodiscard]] std::vector<Hand> open_hands(const TouchOptions& options, const Clock* clock);
+/// The hands that `options` want. Those of other programs and those that hold hardware have their
+/// device: it is opened before anything is read. `clock` is the run's and outlives them; null:
+/// simulated time. Says on standard error where devices listen, and what was opened.
+/// @throws Error when a socket or hardware cannot be had.
+[[nodiscard]] std::vector<Hand> open_hands(const TouchOptions& options, WaitingClock* clock);
 
 /// Puts the hands into what `scene` shows. A led one gets its device and goes along `way` or, where
 /// that is empty, explores. @throws Error when there is nothing to explore.

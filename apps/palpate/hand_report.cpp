@@ -60,12 +60,15 @@ Json json_notes(const TouchStatistics& s) {
   return notes;
 }
 
-// Where a device stands that nobody leads, and what came over its socket.
-void print_socket(const Hand& hand, std::FILE* out) {
-  const RemoteCounts counts = hand.socket->counts();
+void print_socket(const RemoteDevice& socket, std::FILE* out) {
+  const RemoteCounts counts = socket.counts();
+  fmt::print(out, "  socket     {}: {} packets taken of {}\n", socket.path(), grouped(counts.taken),
+             grouped(counts.received));
+}
+
+// Where a device stands that nobody leads.
+void print_stand(const Hand& hand, std::FILE* out) {
   const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
-  fmt::print(out, "  socket     {}: {} packets taken of {}\n", hand.socket->path(),
-             grouped(counts.taken), grouped(counts.received));
   fmt::print(out, "  stands     its origin at {:.4g}, {:.4g}, {:.4g} m, axes as the world's\n",
              origin.x(), origin.y(), origin.z());
   print_scale(hand, out);
@@ -74,18 +77,19 @@ void print_socket(const Hand& hand, std::FILE* out) {
 Json json_device(const HandReport& report) {
   const Hand& hand = report.hand;
   Json device = {{"name", hand.device->info().name}};
-  if (!hand.plan && hand.socket == nullptr) return device;
+  if (!hand.plan && hand.led) return device;
   device["scale"] = hand.workspace.scale;
   device["felt_stiffness_N_per_m"] = hand.workspace.felt_stiffness(hand.stiffness);
   if (hand.plan) {
     device["explored_m"] = hand.plan->patch;
     device["depth_m"] = hand.plan->depth;
   }
+  if (hand.led) return device;
+  const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
+  device["origin_m"] = {origin.x(), origin.y(), origin.z()};
   if (hand.socket == nullptr) return device;
   const RemoteCounts counts = hand.socket->counts();
-  const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
   device["socket"] = hand.socket->path();
-  device["origin_m"] = {origin.x(), origin.y(), origin.z()};
   device["packets_received"] = counts.received;
   device["packets_taken"] = counts.taken;
   return device;
@@ -94,10 +98,10 @@ Json json_device(const HandReport& report) {
 // Of a hand that felt nothing.
 std::string way_to_surface(const Hand& hand) {
   if (hand.plan) return "give it more time (--duration)";
-  if (hand.socket == nullptr) {
+  if (hand.led) {
     return "is the trajectory in metres and in the cloud's frame, and --scale right?";
   }
-  if (hand.socket->counts().taken == 0) return hand.device->reason();
+  if (hand.socket != nullptr && hand.socket->counts().taken == 0) return hand.device->reason();
   return "its origin is 2 mm in front of the surface; --view shows where it goes";
 }
 
@@ -133,7 +137,8 @@ void print_hand(const HandReport& report, const std::string& title, std::FILE* o
   fmt::print(out, "{} {} field, {:.4g} N/m, {} device\n", style.heading(title),
              name_in(kFields, report.field.kind), report.stiffness, hand.device->info().name);
   if (hand.plan) print_plan(hand, out);
-  if (hand.socket != nullptr) print_socket(hand, out);
+  if (hand.socket != nullptr) print_socket(*hand.socket, out);
+  if (!hand.led) print_stand(hand, out);
   fmt::print(out, "  steps      {} in {:.4g} s of {} time\n", grouped(s.steps()), s.duration(),
              report.live == nullptr ? "simulated" : "real");
   if (report.interrupted) fmt::print(out, "  ended      by Ctrl-C\n");

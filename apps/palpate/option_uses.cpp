@@ -134,13 +134,18 @@ std::vector<Use> uses_of_hand(const TouchOptions& options) {
     return std::ranges::any_of(devices, [kind](const auto& each) { return each.kind == kind; });
   };
   const bool remote = any(DeviceKind::remote);
+  const bool held = any(DeviceKind::hardware);
   const bool led = std::ranges::any_of(devices, &DeviceChoice::is_led);
   const bool exploring = led && options.trajectory.empty();
   return {
       {{"--trajectory"},
        led,
-       "leads a scripted or simulated hand; a remote one goes where its program says"},
-      {{"--duration"}, exploring || remote, "is of the exploration; a --trajectory has its own"},
+       "leads a scripted or simulated hand; a remote one goes where its program says, hardware "
+       "where "
+       "its hand does"},
+      {{"--duration"},
+       exploring || remote || held,
+       "is of the exploration; a --trajectory has its own"},
       {{"--seed"},
        exploring,
        "is of the exploration; a --trajectory is played as it is, and a remote hand goes where its "

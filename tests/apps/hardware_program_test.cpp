@@ -1,0 +1,44 @@
+// A hand that holds hardware: the maker's library is a double (tests/device/fake_dhd.cpp).
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace palpate::app {
+namespace {
+
+const std::string kDevice = std::string("--device forcedimension,library=") + PALPATE_FAKE_DHD;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(HardwareProgram, RunsWithWhatADriverReaches) {
+  Shell shell;
+  const Outcome outcome =
+      shell.run("touch synthetic:torus --duration 0.5 --json report.json " + kDevice);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "holds forcedimension:0 (omega.3)")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "stands ")) << outcome.out;
+  const std::string report = shell.read("report.json");
+  EXPECT_TRUE(contains(report, "origin_m")) << report;
+  EXPECT_TRUE(contains(report, "forcedimension:0 (omega.3)")) << report;
+}
+
+TEST(HardwareProgram, SaysWhyItIsNotThere) {
+  Shell shell;
+  const auto refused = [&](const std::string& device, int code, const std::string& word) {
+    const Outcome outcome = shell.run("touch synthetic:torus " + device);
+    EXPECT_EQ(outcome.code, code) << device;
+    EXPECT_TRUE(contains(outcome.err, word)) << outcome.err;
+  };
+  refused("--device forcedimension,library=/none/libdhd.so.3", 1, "/none/libdhd.so.3");
+  refused("--device forcedimension,libary=x", 1, "libary");
+  refused("--device phantom", 2, "palpate devices");
+  refused(kDevice + " " + kDevice, 2, "two hands cannot hold");
+  refused(kDevice + " --simulated-time", 2, "real time");
+}
+
+}  // namespace
+}  // namespace palpate::app
