@@ -8,7 +8,7 @@ import { openBrowser, openPage, until } from "./browser.mjs";
 import { distance, felt, heard, listen, waysInto } from "./heard.mjs";
 import { picture } from "./picture.mjs";
 import { changed } from "./pixels.mjs";
-import { kTable, startProgram } from "./real_program.mjs";
+import { kTable, kTwoHands, startProgram } from "./real_program.mjs";
 import { relayTo } from "./relay.mjs";
 
 const kStiffness = 500; // N/m, of kTable
@@ -29,8 +29,8 @@ after(async () => {
 const text = (page, selector) => page.locator(selector).innerText();
 const phase = (page) => page.getAttribute("#link-state", "data-phase");
 
-async function open(address, options = kSmall) {
-  const page = await openPage(browser, address, options, listen);
+async function open(address, options = kSmall, where = browser) {
+  const page = await openPage(where, address, options, listen);
   await until("the page is connected", async () => (await phase(page)) === "open");
   await until("the tool can be taken", () => page.locator("#take").isEnabled());
   return page;
@@ -202,6 +202,51 @@ test("two pages see the same; one holds the tool, and it is free when that one i
     assert.deepEqual(second.troubles, []);
     await second.context().close();
   }));
+
+test("two pages hold two hands of one scene at once, and each sees the other's", async () => {
+  const program = await startProgram(kTwoHands);
+  const small = { ...kSmall, viewport: { width: 720, height: 480 } }; // both draw in software, all the time
+  const other = await openBrowser();
+  const pages = [await open(program.address, small), await open(program.address, small, other)];
+  assert.deepEqual(await pages[1].locator("#device option").allInnerTexts(), ["simulated 1", "simulated 2"]);
+  await pages[1].selectOption("#device", { label: "simulated 2" });
+  const first = await Promise.all(pages.map(async (page, device) => {
+    // A hand that explores comes to the edges, too.
+    await until("in the middle", async () => {
+      const { hip } = await felt(page, device);
+      return hip !== undefined && Math.hypot(hip[0], hip[1]) < 0.1;
+    });
+    return touchDown(page, device);
+  }));
+  await Promise.all(pages.map((page, device) => deeper(page, first[device].force + 1, device)));
+  for (const device of [0, 1]) {
+    const own = await felt(pages[device], device);
+    staysOnTable(first[device], own);
+    const seen = await felt(pages[1 - device], device);
+    assert.ok(seen.taken && seen.touching, "the other page sees it in contact");
+    assert.ok(Math.abs(seen.force - own.force) < 0.3, `${seen.force} N there, ${own.force} N here`);
+    assert.ok(distance(seen.hip, own.hip) < 1e-3);
+  }
+  await picture(pages[0], "two-hands");
+  await other.close();
+  await until("its hand is free", async () => !(await felt(pages[0], 1)).taken);
+  assert.ok((await felt(pages[0], 0)).taken, "and the other is still held");
+  await pages[0].context().close();
+  assert.equal(await program.stop(), 0);
+});
+
+/** A page that holds the tool over a relay, and one that watches. */
+async function heldOverRelay(act) {
+  const relay = await relayTo(table.address);
+  const page = await open(relay.address);
+  const watcher = await open(table.address);
+  await touchDown(page);
+  await until("held", async () => (await felt(watcher)).taken);
+  await act(relay, page, watcher);
+  await page.context().close();
+  await watcher.context().close();
+  await relay.close();
+}
 
 test("a cut connection comes back by itself, and the tool is let go meanwhile", () =>
   heldOverRelay(async (relay, page, watcher) => {

@@ -31,6 +31,11 @@ export const kTable = ["touch", "table.xyz", "--viewpoint", "0,0,1", "--stiffnes
   "--trajectory", "hand.csv", "--device", "simulated",
   "--friction-static", "0.8", "--friction-dynamic", "0.8", "--view", "--port", "0"];
 
+/** The same table under two hands that explore it until they are taken. */
+export const kTwoHands = ["touch", "table.xyz", "--viewpoint", "0,0,1", "--stiffness", "500",
+  "--device", "simulated", "--device", "simulated",
+  "--friction-static", "0.8", "--friction-dynamic", "0.8", "--view", "--port", "0"];
+
 /** Resolves to { address, port, folder, stop } once it serves its page; `folder` is where it runs. */
 export async function startProgram(args) {
   const path = process.env.PALPATE_PROGRAM;
