@@ -34,11 +34,15 @@ ViewSettings initial_settings(const Run& run) {
   return settings;
 }
 
-ViewScope scope_of(const Run& run) {
+// No stiffer than every hand's device bears.
+ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
   ViewScope scope;
   double scale = 0;
   for (const Hand& hand : run.hands) scale = std::max(scale, hand.workspace.scale);
   scope.stiffest = kStiffest / scale;
+  for (const Servo* servo : servos) {
+    scope.stiffest = std::min(scope.stiffest, servo->stiffness_limit());
+  }
   const double deepest = deepest_texture(run.felt);
   scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
   for (const TouchedSource& source : run.touched.sources) {
@@ -100,7 +104,7 @@ struct View::Parts {
 
   ViewerControls controls() {
     ViewerControls controls;
-    controls.settings = [this] { return list_settings(present(), scope_of(run)); };
+    controls.settings = [this] { return list_settings(present(), scope_of(run, servos)); };
     controls.set = [this](const std::string& key, const SettingValue& value) {
       ViewSettings wanted = present();
       set(wanted, key, value);
@@ -108,7 +112,7 @@ struct View::Parts {
     };
     controls.presets = preset_names();
     controls.preset = [this](const std::string& name) {
-      apply(preset(initial, name, scope_of(run)));
+      apply(preset(initial, name, scope_of(run, servos)));
     };
     controls.record = [this](bool on) { return recording.record(on); };
     controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };

@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
+#include "palpate/base/waiting_clock.hpp"
 #include "palpate/geometry/trajectory.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/simulated_camera.hpp"
-#include "palpate/base/waiting_clock.hpp"
 
 namespace palpate::four_cameras {
 

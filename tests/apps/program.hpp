@@ -47,8 +47,7 @@ class Shell {
   [[nodiscard]] std::string read(const std::string& name) const;
 
  private:
-  [[nodiscard]] std::string command(const std::string& arguments,
-                                    const std::string& before) const;
+  [[nodiscard]] std::string command(const std::string& arguments, const std::string& before) const;
 
   test::Folder folder_;
 };

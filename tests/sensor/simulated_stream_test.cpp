@@ -138,10 +138,9 @@ TEST_F(SimulatedStreamTest, ObjectsToWhatAStreamObjectsTo) {
   EXPECT_EQ(state.phase, StreamPhase::ended);
   EXPECT_EQ(state.frames, live.state().frames);
   EXPECT_EQ(state.touchable, live.state().touchable);
-  for (const auto cause :
-       {&StreamDrops::overtaken, &StreamDrops::repeated, &StreamDrops::late, &StreamDrops::empty,
-        &StreamDrops::garbage, &StreamDrops::unposed, &StreamDrops::resized,
-        &StreamDrops::refused}) {
+  for (const auto cause : {&StreamDrops::overtaken, &StreamDrops::repeated, &StreamDrops::late,
+                           &StreamDrops::empty, &StreamDrops::garbage, &StreamDrops::unposed,
+                           &StreamDrops::resized, &StreamDrops::refused}) {
     EXPECT_EQ(state.drops.*cause, live.state().drops.*cause);
   }
   EXPECT_EQ(state.drops.late, 2u);

@@ -5,10 +5,10 @@
 #include <optional>
 #include <thread>
 
+#include "palpate/base/waiting_clock.hpp"
 #include "palpate/servo/deadlines.hpp"
 #include "palpate/servo/realtime.hpp"
 #include "palpate/servo/servo.hpp"
-#include "palpate/base/waiting_clock.hpp"
 
 namespace palpate {
 
