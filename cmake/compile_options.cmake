@@ -17,10 +17,10 @@ function(palpate_target target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
 endfunction()
 
-# Headers that most sources include are compiled once a target. Sources compiled in another way than
-# their target have to skip them.
+# Headers that most sources include, and those that are named, are compiled once a target. Sources
+# compiled in another way than their target have to skip them.
 function(palpate_precompile target)
   target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry>
     <algorithm> <array> <atomic> <cmath> <deque> <filesystem> <fstream> <functional> <memory>
-    <optional> <span> <sstream> <string> <thread> <vector>)
+    <optional> <span> <sstream> <string> <thread> <vector> ${ARGN})
 endfunction()

@@ -107,10 +107,10 @@ configure() {
   local preset=$1
   shift
   # A cache of objects and precompiled headers do not go together.
-  if command -v ccache >/dev/null; then
+  if [ -z "${CCACHE_DISABLE:-}" ] && command -v ccache >/dev/null; then
     set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"
   else
-    set -- -DPALPATE_PRECOMPILE_TESTS=ON "$@"
+    set -- -DPALPATE_PRECOMPILE=ON "$@"
   fi
   cmake --preset "$preset" "$@" >"build/$preset.configure.log" 2>&1 ||
     { cat "build/$preset.configure.log" >&2; fail "cmake could not configure preset $preset"; }
