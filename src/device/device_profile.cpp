@@ -126,7 +126,8 @@ std::vector<DeviceProfile> read_device_profiles(const std::string& path) {
 const std::vector<DeviceProfile>& device_profiles() {
   static const std::vector<DeviceProfile> profiles = [] {
     std::vector<DeviceProfile> all = parse_device_profiles(device::profiles_text(), "profiles");
-    std::ranges::stable_partition(all, [](const auto& each) { return each.name == "unknown"; });
+    std::stable_partition(all.begin(), all.end(),
+                          [](const DeviceProfile& each) { return each.name == "unknown"; });
     return all;
   }();
   return profiles;
