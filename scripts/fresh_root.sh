@@ -35,6 +35,10 @@ if [ ! -f "$root/etc/debian_version" ]; then
 fi
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 apt-config dump Acquire | grep -E '^Acquire::[a-z]+::Proxy ' >"$root/etc/apt/apt.conf.d/99proxy" || true
+# A network that looks into encrypted connections has an authority of its own, which npm has to know.
+if [ -f /etc/ssl/certs/ca-certificates.crt ]; then
+  cp /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/host-certificates.crt"
+fi
 
 say "clone"
 rm -rf "$root/root/palpate/.git"
@@ -50,6 +54,7 @@ inside() {
     mount -t proc proc "$0/proc"
     mount --rbind /dev "$0/dev"
     exec chroot "$0" /usr/bin/env -i HOME=/root LANG=C.UTF-8 \
+      NODE_EXTRA_CA_CERTS=/etc/ssl/host-certificates.crt \
       PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
       bash -c "cd /root/palpate && $1"' "$root" "$1"
 }
