@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/requirement.hpp"
 #include "contact/anchor.hpp"
 #include "contact/newton.hpp"
 #include "contact/probe.hpp"
@@ -22,25 +23,18 @@ constexpr double kTextureStep = 0.25;  // of the wavelength, the longest sub-ste
 constexpr int kMostIterations = 1000;
 constexpr double kMuchSofter = 0.95;  // of the stiffness that is wanted
 
-void require(bool good, const char* name, double value, const char* remedy) {
-  if (!good) throw Error(fmt::format("proxy: {} is {}; {}", name, value, remedy));
-}
-
-void require_at_least_zero(const char* name, double value) {
-  require(std::isfinite(value) && value >= 0, name, value, "give a number that is 0 or more");
-}
-
 void validate(const ProxyOptions& options) {
-  require_at_least_zero("stiffness (N/m)", options.stiffness);
+  const Requirement require{"proxy"};
+  constexpr const char* kAtLeastZero = "give a number that is 0 or more";
+  require.not_negative("stiffness (N/m)", options.stiffness, kAtLeastZero);
   const Friction& friction = options.friction;
-  require_at_least_zero("static friction", friction.static_coefficient);
-  require_at_least_zero("dynamic friction", friction.dynamic_coefficient);
-  require_at_least_zero("viscous friction (N s/m)", friction.viscous);
+  require.not_negative("static friction", friction.static_coefficient, kAtLeastZero);
+  require.not_negative("dynamic friction", friction.dynamic_coefficient, kAtLeastZero);
+  require.not_negative("viscous friction (N s/m)", friction.viscous, kAtLeastZero);
   require(friction.dynamic_coefficient <= friction.static_coefficient, "dynamic friction",
           friction.dynamic_coefficient, "give at most the static coefficient, or raise that");
-  require_at_least_zero("texture amplitude (m)", options.texture.amplitude);
-  require(std::isfinite(options.texture.wavelength) && options.texture.wavelength > 0,
-          "texture wavelength (m)", options.texture.wavelength, "give a length above 0");
+  require.not_negative("texture amplitude (m)", options.texture.amplitude, kAtLeastZero);
+  require.positive("texture wavelength (m)", options.texture.wavelength, "give a length above 0");
   require(options.max_iterations >= 1 && options.max_iterations <= kMostIterations,
           "max_iterations", options.max_iterations, "give 1 to 1000");
   require(options.tangent_tolerance >= 1e-6 && options.tangent_tolerance <= 0.1,

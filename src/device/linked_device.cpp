@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -16,16 +17,11 @@ using Eigen::Vector3d;
 
 constexpr double kStaleExchanges = 2.5;
 
-void require(bool good, const char* name, double value) {
-  if (good && std::isfinite(value)) return;
-  throw Error(fmt::format("linked device: {} = {} is out of range: give a positive time in seconds",
-                          name, value));
-}
-
 LinkedDeviceOptions checked(LinkedDeviceOptions options) {
-  require(options.stale > 0, "stale", options.stale);
-  require(options.deaf > 0, "deaf", options.deaf);
-  require(options.retry > 0, "retry", options.retry);
+  const Requirement require{"linked device"};
+  require.positive("stale (s)", options.stale, "give a time above 0");
+  require.positive("deaf (s)", options.deaf, "give a time above 0");
+  require.positive("retry (s)", options.retry, "give a time above 0");
   return options;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <system_error>
 
+#include "base/requirement.hpp"
 #include "device/datagram_socket.hpp"
 #include "device/remote_link.hpp"
 #include "palpate/base/error.hpp"
@@ -20,27 +21,15 @@ using Eigen::Vector3d;
 // One byte more than a good packet has: longer ones are then seen to be too long.
 constexpr std::size_t kBuffer = kStatePacketSize + 1;
 
-// What others may know.
-struct Shown {
-  RemoteCounts counts;
-  DeviceStatus status = DeviceStatus::silent;
-  int error = 0;  // errno of a broken socket; 0: a force that was not finite, where it failed
-};
-
-void require(bool good, const char* name, double value, const char* range) {
-  if (!good || !std::isfinite(value)) {
-    throw Error(fmt::format("remote device: {} = {} is out of range: give {}", name, value, range));
-  }
-}
-
 RemoteDeviceOptions checked(RemoteDeviceOptions o) {
-  require(o.maximum_force > 0, "maximum_force", o.maximum_force, "a positive force in newtons");
-  require(o.maximum_stiffness >= 0, "maximum_stiffness", o.maximum_stiffness, "0 or more N/m");
-  require(o.workspace_radius >= 0, "workspace_radius", o.workspace_radius, "0 or more metres");
-  require(o.rate > 0, "rate", o.rate, "a positive number of steps a second");
-  require(o.silence > 0, "silence", o.silence, "a positive time in seconds");
-  require(o.fade > 0, "fade", o.fade, "a positive time in seconds");
-  require(o.soft_start > 0, "soft_start", o.soft_start, "a positive time in seconds");
+  const Requirement require{"remote device"};
+  require.positive("maximum_force", o.maximum_force, "give a positive force in newtons");
+  require.not_negative("maximum_stiffness", o.maximum_stiffness, "give 0 or more N/m");
+  require.not_negative("workspace_radius", o.workspace_radius, "give 0 or more metres");
+  require.positive("rate", o.rate, "give a positive number of steps a second");
+  require.positive("silence", o.silence, "give a positive time in seconds");
+  require.positive("fade", o.fade, "give a positive time in seconds");
+  require.positive("soft_start", o.soft_start, "give a positive time in seconds");
   if (o.path.empty()) o.path = default_remote_path();
   return o;
 }
@@ -68,6 +57,13 @@ std::string default_remote_path() {
 }
 
 struct RemoteDevice::Inside {
+  // What others may know.
+  struct Shown {
+    RemoteCounts counts;
+    DeviceStatus status = DeviceStatus::silent;
+    int error = 0;  // errno of a broken socket; 0: a force that was not finite, where it failed
+  };
+
   Inside(const Clock& the_clock, const RemoteDeviceOptions& the_options)
       : clock(the_clock),
         options(checked(the_options)),
@@ -151,7 +147,7 @@ void RemoteDevice::write(const Vector3d& force) noexcept {
 }
 
 std::string RemoteDevice::reason() const {
-  const Shown shown = inside_->for_others.get();
+  const Inside::Shown shown = inside_->for_others.get();
   if (shown.status == DeviceStatus::ok) return {};
   if (shown.status == DeviceStatus::failed) {
     if (shown.error != 0) {

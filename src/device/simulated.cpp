@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/scripted.hpp"
 
@@ -33,38 +34,23 @@ Eigen::Matrix4d exponential(const Eigen::Matrix4d& a) {
   return sum;
 }
 
-void require(bool good, const char* name, double value, const char* range) {
-  if (!good) {
-    throw Error(
-        fmt::format("simulated device: {} = {} is out of range: give {}", name, value, range));
-  }
-}
-
-bool positive(double x) {
-  return std::isfinite(x) && x > 0;
-}
-bool not_negative(double x) {
-  return std::isfinite(x) && x >= 0;
-}
-
 void check_options(const SimulatedDeviceOptions& o, std::size_t maximum_delay) {
-  require(positive(o.mass), "mass", o.mass, "a positive number of kilograms");
-  require(not_negative(o.damping), "damping", o.damping, "0 or more N s/m");
-  require(not_negative(o.coulomb), "coulomb", o.coulomb, "0 or more newtons");
-  require(not_negative(o.resolution), "resolution", o.resolution, "0 or more metres");
+  const Requirement require{"simulated device"};
+  require.positive("mass", o.mass, "give a positive number of kilograms");
+  require.not_negative("damping", o.damping, "give 0 or more N s/m");
+  require.not_negative("coulomb", o.coulomb, "give 0 or more newtons");
+  require.not_negative("resolution", o.resolution, "give 0 or more metres");
   require(o.delay >= 0 && o.delay <= static_cast<int>(maximum_delay), "delay", o.delay,
-          "0 to 16 steps");
-  require(positive(o.rate), "rate", o.rate, "a positive number of steps a second");
-  require(positive(o.maximum_force), "maximum_force", o.maximum_force,
-          "a positive force in newtons");
-  require(not_negative(o.hand.stiffness), "hand.stiffness", o.hand.stiffness, "0 or more N/m");
-  require(not_negative(o.hand.damping), "hand.damping", o.hand.damping, "0 or more N s/m");
-  require(positive(o.hand.maximum_force), "hand.maximum_force", o.hand.maximum_force,
-          "a positive force in newtons");
+          "give 0 to 16 steps");
+  require.positive("rate", o.rate, "give a positive number of steps a second");
+  require.positive("maximum_force", o.maximum_force, "give a positive force in newtons");
+  require.not_negative("hand.stiffness", o.hand.stiffness, "give 0 or more N/m");
+  require.not_negative("hand.damping", o.hand.damping, "give 0 or more N s/m");
+  require.positive("hand.maximum_force", o.hand.maximum_force, "give a positive force in newtons");
   const double duration = o.duration.value_or(0);
-  require(not_negative(duration), "duration", duration, "0 or more seconds");
-  require(o.position.allFinite(), "position", o.position.norm(), "finite coordinates");
-  require(o.velocity.allFinite(), "velocity", o.velocity.norm(), "a finite velocity");
+  require.not_negative("duration", duration, "give 0 or more seconds");
+  require(o.position.allFinite(), "position", o.position.norm(), "give finite coordinates");
+  require(o.velocity.allFinite(), "velocity", o.velocity.norm(), "give a finite velocity");
 }
 
 }  // namespace

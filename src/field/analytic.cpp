@@ -1,25 +1,21 @@
 #include "palpate/field/analytic.hpp"
 
-#include <fmt/core.h>
-
 #include <cmath>
 #include <limits>
 
-#include "palpate/base/error.hpp"
+#include "base/requirement.hpp"
 
 namespace palpate {
 namespace {
 
-void require(bool good, const char* name, double value, const char* remedy) {
-  if (!good) throw Error(fmt::format("analytic field: {} is {} m; {}", name, value, remedy));
-}
+constexpr Requirement kRequire{"analytic field"};
 
 void require_positive(const char* name, double value) {
-  require(std::isfinite(value) && value > 0, name, value, "give a length above 0");
+  kRequire.positive(name, value, "give a length above 0, in metres");
 }
 
 void require_length(const char* name, double value) {
-  require(std::isfinite(value) && value >= 0, name, value, "give 0 or a length above it");
+  kRequire.not_negative(name, value, "give 0 or a length above it, in metres");
 }
 
 }  // namespace
@@ -102,7 +98,7 @@ Distance BoxField::distance(const Eigen::Vector3d& x) const noexcept {
 TorusField::TorusField(double ring, double tube, const AnalyticOptions& options)
     : AnalyticField(options), ring_(ring), tube_(tube) {
   require_positive("tube radius", tube);
-  require(std::isfinite(ring) && ring > tube, "ring radius", ring, "give more than the tube's");
+  kRequire(std::isfinite(ring) && ring > tube, "ring radius", ring, "give more than the tube's");
 }
 
 Distance TorusField::distance(const Eigen::Vector3d& x) const noexcept {

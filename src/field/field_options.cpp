@@ -4,29 +4,20 @@
 
 #include <cmath>
 
+#include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
-namespace {
-
-void require(bool condition, const char* option, double value, const char* range) {
-  if (condition) return;
-  throw Error(fmt::format("field option {} is {}: it must be {}", option, value, range));
-}
-
-}  // namespace
-
 void check(const FieldOptions& options) {
-  require(options.threshold > 0 && std::isfinite(options.threshold), "threshold", options.threshold,
-          "above 0");
+  const Requirement require{"field"};
+  require.positive("threshold", options.threshold, "give a number above 0");
   require(options.raw_weights || options.threshold < 1, "threshold", options.threshold,
-          "below 1 with density-normalised weights (0.4 unless there is a reason)");
+          "give less than 1 with density-normalised weights (0.4 unless there is a reason)");
   require(options.minimum_support > 0 && options.minimum_support < 1, "minimum_support",
-          options.minimum_support, "between 0 and 1");
-  require(options.tool_radius >= 0 && std::isfinite(options.tool_radius), "tool_radius",
-          options.tool_radius, "0 or more, in metres");
+          options.minimum_support, "give a number between 0 and 1");
+  require.not_negative("tool_radius", options.tool_radius, "give 0 or more, in metres");
   require(options.tool_radius == 0 || !options.raw_weights, "tool_radius", options.tool_radius,
-          "0 with raw weights (the preset `paper` has a point for a tool)");
+          "give 0 with raw weights (the preset `paper` has a point for a tool)");
 }
 
 FieldOptions paper_field(FieldKind kind) {

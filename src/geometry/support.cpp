@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/requirement.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/spacing.hpp"
@@ -12,23 +13,15 @@
 namespace palpate {
 namespace {
 
-void require(bool good, const char* name, double value, const char* remedy) {
-  if (!good) throw Error(fmt::format("support radius: {} is {}; {}", name, value, remedy));
-}
-
 void check(const SupportOptions& options) {
-  const auto finite_from_zero = [](double v) { return v >= 0 && std::isfinite(v); };
+  const Requirement require{"support radius"};
   if (options.multiple) {
-    require(*options.multiple > 0 && std::isfinite(*options.multiple), "the multiple",
-            *options.multiple, "it must be positive; 2 to 5 are usual");
+    require.positive("the multiple", *options.multiple, "it must be positive; 2 to 5 are usual");
   }
-  require(finite_from_zero(options.noise), "the noise", options.noise, "give metres, 0 or more");
-  require(finite_from_zero(options.footprint), "the footprint", options.footprint,
-          "give metres, 0 or more");
-  require(finite_from_zero(options.minimum), "the minimum", options.minimum,
-          "give metres, 0 or more");
-  require(options.normal_error > 0 && std::isfinite(options.normal_error), "the normal error",
-          options.normal_error, "give radians above 0");
+  require.not_negative("the noise", options.noise, "give metres, 0 or more");
+  require.not_negative("the footprint", options.footprint, "give metres, 0 or more");
+  require.not_negative("the minimum", options.minimum, "give metres, 0 or more");
+  require.positive("the normal error", options.normal_error, "give radians above 0");
   require(options.most_spacings > 0, "the most spacings", options.most_spacings,
           "it must be positive; 6 is usual");
   require(options.finest_shape > 0, "the finest shape", options.finest_shape,

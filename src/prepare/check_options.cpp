@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
 #include "prepare/given_signs.hpp"
 
@@ -12,11 +13,6 @@ namespace palpate {
 namespace {
 
 constexpr double kRigid = 1e-4;  // of R^T R from the identity: float's digits and then some
-
-void require(bool condition, const char* option, double value, const char* range) {
-  if (condition) return;
-  throw Error(fmt::format("preparation option {} is {}: it must be {}", option, value, range));
-}
 
 /// Either empty or one for each point.
 void require_column(const char* name, std::size_t length, std::size_t points) {
@@ -64,22 +60,20 @@ void check_pose(const Eigen::Isometry3d& pose) {
 
 void check(const PrepareOptions& options, const PointCloud& cloud) {
   check(cloud);
-  const auto positive = [](double v) { return v > 0 && std::isfinite(v); };
+  const Requirement require{"preparation"};
   if (options.voxel) {
-    require(*options.voxel == 0 || positive(*options.voxel), "voxel", *options.voxel,
-            "0 (keep every point) or a length in metres");
+    require.not_negative("voxel", *options.voxel,
+                         "give 0 (keep every point) or a length in metres");
   }
   if (options.radius) {
-    require(positive(*options.radius), "radius", *options.radius, "a length above 0, in metres");
+    require.positive("radius", *options.radius, "give a length above 0, in metres");
   }
   if (options.radius_multiple) {
-    require(positive(*options.radius_multiple), "radius_multiple", *options.radius_multiple,
-            "above 0 (2.5 unless there is a reason)");
+    require.positive("radius_multiple", *options.radius_multiple,
+                     "give a number above 0 (2.5 unless there is a reason)");
   }
-  require(options.minimum_radius >= 0 && std::isfinite(options.minimum_radius), "minimum_radius",
-          options.minimum_radius, "0 or a length in metres");
-  require(positive(options.normal_error), "normal_error", options.normal_error,
-          "an angle above 0, in radians");
+  require.not_negative("minimum_radius", options.minimum_radius, "give 0 or a length in metres");
+  require.positive("normal_error", options.normal_error, "give an angle above 0, in radians");
   if (options.orientation == Orientation::viewpoint && !options.viewpoint && !cloud.viewpoint) {
     throw Error("normals are to point to the viewpoint, but none is known; give one");
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -12,31 +13,23 @@ namespace {
 
 using Eigen::Vector3d;
 
-void require(bool good, const char* name, double value, const char* range) {
-  if (!good) throw Error(fmt::format("guard: {} is {}; give {}", name, value, range));
-}
-
 void validate(const GuardOptions& options) {
+  const Requirement require{"guard"};
   require(options.maximum_force > 0, "maximum_force (N)", options.maximum_force,
-          "a force above 0, infinity for no limit");
-  require(std::isfinite(options.slew) && options.slew > 0, "slew (N/s)", options.slew,
-          "a rate above 0");
-  require(std::isfinite(options.damping) && options.damping >= 0, "damping (N s/m)",
-          options.damping, "a number that is 0 or more");
+          "give a force above 0, infinity for no limit");
+  require.positive("slew (N/s)", options.slew, "give a rate above 0");
+  require.not_negative("damping (N s/m)", options.damping, "give a number that is 0 or more");
   require(options.silence > 0, "silence (s)", options.silence,
-          "a time above 0, infinity for no watchdog");
-  require(std::isfinite(options.soft_start) && options.soft_start >= 0, "soft_start (s)",
-          options.soft_start, "a time that is 0 or more");
+          "give a time above 0, infinity for no watchdog");
+  require.not_negative("soft_start (s)", options.soft_start, "give a time that is 0 or more");
   require(options.stiffness_share > 0, "stiffness_share", options.stiffness_share,
-          "a number above 0, infinity for no limit");
+          "give a number above 0, infinity for no limit");
   const PassivityOptions& passivity = options.passivity;
-  require(std::isfinite(passivity.mass) && passivity.mass > 0, "passivity.mass (kg)",
-          passivity.mass, "a mass above 0");
-  require(std::isfinite(passivity.memory) && passivity.memory >= 0, "passivity.memory (J)",
-          passivity.memory, "an energy that is 0 or more");
+  require.positive("passivity.mass (kg)", passivity.mass, "give a mass above 0");
+  require.not_negative("passivity.memory (J)", passivity.memory, "an energy that is 0 or more");
   require(passivity.delay >= 0 && passivity.delay <= Passivity::kMaximumDelay, "passivity.delay",
-          passivity.delay, "0 to 16 steps");
-  require(passivity.forget > 0, "passivity.forget (s)", passivity.forget, "a time above 0");
+          passivity.delay, "give 0 to 16 steps");
+  require(passivity.forget > 0, "passivity.forget (s)", passivity.forget, "give a time above 0");
 }
 
 // False for what is not a number, too.
