@@ -82,7 +82,7 @@ test("the page comes from the program, connects and draws its cloud", () =>
   onTable(async (page) => {
     await until("says how it goes", async () => /steps a second/.test(await text(page, "#link-words")));
     assert.equal(await text(page, "#scene"), "table");
-    assert.match(await text(page, "#sources"), /table[\s\S]*still/);
+    await until("sources", async () => /table[\s\S]*still/.test(await text(page, "#sources")));
     await until("a cloud", async () => (await heard(page)).clouds > 0);
     const { points } = await heard(page);
     assert.ok(points > 5000 && points <= 10_000, `${points} points for a page that draws 10 000`);

@@ -11,7 +11,7 @@ test("shows the scene and its force, and the browser has nothing to complain of"
   withPage(kSmall, async (page) => {
     assert.equal(await text(page, "#scene"), "table with a ball");
     await until("force", async () => Number(await text(page, "#force")) > 0);
-    assert.match(await text(page, "#sources"), /left[\s\S]*running/);
+    await until("sources", async () => /left[\s\S]*running/.test(await text(page, "#sources")));
     assert.equal(await page.locator("#settings .field").count(), 6);
   }));
 
