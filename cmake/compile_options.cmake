@@ -16,16 +16,3 @@ function(palpate_target target)
     ${PALPATE_WARNINGS} ${PALPATE_BASELINE} -ffp-contract=off)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
 endfunction()
-
-# Headers that most sources include, and those that are named, are compiled once a target. Sources
-# compiled in another way than their target have to skip them. More is not better: with Beast, CLI11
-# or JSON among them, g++ takes longer for each source than without.
-function(palpate_precompile target)
-  target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry>
-    <algorithm> <array> <atomic> <cmath> <deque> <filesystem> <fstream> <functional> <memory>
-    <optional> <span> <sstream> <string> <thread> <vector> ${ARGN})
-  # g++ no longer knows them for the system's then, and warns of what they do.
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    set_target_properties(${target} PROPERTIES COMPILE_WARNING_AS_ERROR OFF)
-  endif()
-endfunction()

@@ -106,13 +106,9 @@ jobs_that_fit() {
 configure() {
   local preset=$1
   shift
-  # A cache of objects and precompiled headers do not go together.
-  if [ -z "${CCACHE_DISABLE:-}" ] && command -v ccache >/dev/null; then
-    set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"
-  else
-    set -- -DPALPATE_PRECOMPILE=ON "$@"
-  fi
-  cmake --preset "$preset" "$@" >"build/$preset.configure.log" 2>&1 ||
+  if command -v ccache >/dev/null; then set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"; fi
+  # Sources compiled eight at a time take a third of the time.
+  cmake --preset "$preset" -DCMAKE_UNITY_BUILD=ON "$@" >"build/$preset.configure.log" 2>&1 ||
     { cat "build/$preset.configure.log" >&2; fail "cmake could not configure preset $preset"; }
 }
 

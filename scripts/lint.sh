@@ -48,18 +48,19 @@ sources | xargs clang-format-14 --dry-run -Werror
 note "$(sources | wc -l) files are well formed"
 
 say "clang-tidy ($mode)"
-[ -f build/release/compile_commands.json ] || configure release -DPALPATE_BUILD_TESTS=ON
+cmake --preset dev -B build/tidy >build/tidy.configure.log 2>&1 ||
+  { cat build/tidy.configure.log >&2; fail "cmake could not configure"; }
 if [ "$mode" = all ]; then picked=$(sources); else picked=$(changed_sources); fi
 # Headers are looked at through the sources that include them.
 picked=$(grep '\.cpp$' <<<"$picked" | while read -r file; do
-  if grep -q "\"file\": \"$PWD/$file\"" build/release/compile_commands.json; then echo "$file"; fi
+  if grep -q "\"file\": \"$PWD/$file\"" build/tidy/compile_commands.json; then echo "$file"; fi
 done || true)
 if [ -z "$picked" ]; then
   note "no compiled source has changed"
   exit
 fi
 started=$SECONDS
-xargs -P "$(jobs_that_fit)" -n 4 clang-tidy-14 -p build/release --quiet \
+xargs -P "$(jobs_that_fit)" -n 4 clang-tidy-14 -p build/tidy --quiet \
   --header-filter="^$PWD/(apps|bench|examples|fuzz|include|src|tests)/" <<<"$picked" \
   >build/tidy.log 2>build/tidy.err || { cat build/tidy.log; fail "clang-tidy has found something"; }
 note "$(wc -l <<<"$picked") sources are clean ($((SECONDS - started)) s)"

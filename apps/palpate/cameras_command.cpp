@@ -10,7 +10,7 @@ namespace palpate::app {
 
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kCamerasFooter = R"(Examples:
   palpate cameras
   palpate cameras --json -
   palpate touch camera:simulated:table
@@ -27,7 +27,7 @@ void add_cameras_options(CLI::App& command, CamerasOptions& options) {
   command.add_option("--json", options.json, "the same as data; - is standard output")
       ->type_name("FILE")
       ->group("Output");
-  command.footer(kFooter);
+  command.footer(kCamerasFooter);
 }
 
 void cameras(const CamerasOptions& options) {

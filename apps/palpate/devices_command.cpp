@@ -10,7 +10,7 @@ namespace palpate::app {
 
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kDevicesFooter = R"(Examples:
   palpate devices
   palpate devices --json -
   palpate touch scan.ply --view --device haply
@@ -39,7 +39,7 @@ void add_devices_options(CLI::App& command, DevicesOptions& options) {
   command.add_option("--json", options.json, "the same as data; - is standard output")
       ->type_name("FILE")
       ->group("Output");
-  command.footer(kFooter);
+  command.footer(kDevicesFooter);
 }
 
 void devices(const DevicesOptions& options) {

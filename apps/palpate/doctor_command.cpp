@@ -17,7 +17,7 @@ namespace {
 constexpr int kWarnings = 3;
 constexpr double kLongest = 3600;  // s
 
-constexpr const char* kFooter = R"(It changes nothing; what it tells to run is yours to run.
+constexpr const char* kDoctorFooter = R"(It changes nothing; what it tells to run is yours to run.
 
 Examples:
   palpate doctor
@@ -48,7 +48,7 @@ void add_doctor_options(CLI::App& command, DoctorOptions& options) {
   command.add_option("--json", options.json, "the same as data; - is standard output")
       ->type_name("FILE")
       ->group("Output");
-  command.footer(kFooter);
+  command.footer(kDoctorFooter);
 }
 
 int examine(const DoctorOptions& options) {

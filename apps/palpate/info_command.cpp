@@ -15,7 +15,7 @@ namespace palpate::app {
 
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kInfoFooter = R"(Examples:
   palpate info bunny.ply
   palpate info depth.png --intrinsics 525,525,319.5,239.5
   palpate info - < scan.pcd
@@ -50,7 +50,7 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
   command.add_option("--json", options.json, "the same as data; - is standard output")
       ->type_name("FILE")
       ->group("Output");
-  command.footer(kFooter);
+  command.footer(kInfoFooter);
 }
 
 void info(const InfoOptions& options) {

@@ -16,7 +16,7 @@ namespace palpate::app {
 
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kPaperFooter = R"(Examples:
   palpate paper fig5 --picture fig5.png
   palpate paper fig7 --picture fig7.png --csv fig7.csv
   palpate paper fig7 camera:simulated:still,noise=c
@@ -34,7 +34,7 @@ void add_common(CLI::App& command, PaperOptions& o) {
   command.add_option("--csv", o.csv, "the numbers; - is standard output")->type_name("FILE");
   command.add_option("--picture", o.picture, "the figure as PNG (needs python3-matplotlib)")
       ->type_name("FILE.png");
-  command.footer(kFooter);
+  command.footer(kPaperFooter);
 }
 
 CLI::App* add_fig5(CLI::App& command, PaperOptions& o) {
@@ -98,7 +98,7 @@ void tell(const Figure& figure, const PaperOptions& options, Outputs& outputs) {
 
 void add_paper_options(CLI::App& command, PaperCommand& paper) {
   command.require_subcommand(0, 1);
-  command.footer(kFooter);
+  command.footer(kPaperFooter);
   paper.fig5 = add_fig5(command, paper.options);
   paper.fig7 = add_fig7(command, paper.options);
 }

@@ -12,8 +12,6 @@ namespace palpate::app {
 
 namespace {
 
-using enum KeyKind;
-
 // The keys of all parts, one after the other.
 template <std::size_t... N>
 constexpr auto joined(const std::array<SetupKey, N>&... parts) {
@@ -24,77 +22,78 @@ constexpr auto joined(const std::array<SetupKey, N>&... parts) {
 }
 
 constexpr auto kReading = std::to_array<SetupKey>({
-    {"scale", number},
-    {"intrinsics", numbers},
-    {"depth_unit", number},
-    {"unorganised", flag},
-    {"viewpoint", numbers},
+    {"scale", KeyKind::number},
+    {"intrinsics", KeyKind::numbers},
+    {"depth_unit", KeyKind::number},
+    {"unorganised", KeyKind::flag},
+    {"viewpoint", KeyKind::numbers},
 });
 
-constexpr auto kDetail =
-    std::to_array<SetupKey>({{"radius", number}, {"voxel", number}, {"normal_error", number}});
+constexpr auto kDetail = std::to_array<SetupKey>(
+    {{"radius", KeyKind::number}, {"voxel", KeyKind::number}, {"normal_error", KeyKind::number}});
 
 constexpr auto kFrames = std::to_array<SetupKey>({
-    {"policy", text},
-    {"history", integer},
-    {"silence", number},
-    {"fade", number},
-    {"noise", numbers_or_text},
-    {"nearest", number},
-    {"farthest", number},
-    {"memory", integer},
-    {"predict", flag},
-    {"fit_everywhere", flag},
-    {"clip_to_reach", flag},
-    {"loop", flag},
+    {"policy", KeyKind::text},
+    {"history", KeyKind::integer},
+    {"silence", KeyKind::number},
+    {"fade", KeyKind::number},
+    {"noise", KeyKind::numbers_or_text},
+    {"nearest", KeyKind::number},
+    {"farthest", KeyKind::number},
+    {"memory", KeyKind::integer},
+    {"predict", KeyKind::flag},
+    {"fit_everywhere", KeyKind::flag},
+    {"clip_to_reach", KeyKind::flag},
+    {"loop", KeyKind::flag},
 });
 
-constexpr auto kTime = std::to_array<SetupKey>({{"simulated_time", flag}, {"latency", number}});
+constexpr auto kTime =
+    std::to_array<SetupKey>({{"simulated_time", KeyKind::flag}, {"latency", KeyKind::number}});
 
 constexpr auto kField = std::to_array<SetupKey>({
-    {"field", text},
-    {"preset", text},
-    {"kernel", text},
-    {"gradient", text},
-    {"threshold", number},
-    {"tool_radius", number},
-    {"one_sided", flag},
-    {"sharp_edges", flag},
+    {"field", KeyKind::text},
+    {"preset", KeyKind::text},
+    {"kernel", KeyKind::text},
+    {"gradient", KeyKind::text},
+    {"threshold", KeyKind::number},
+    {"tool_radius", KeyKind::number},
+    {"one_sided", KeyKind::flag},
+    {"sharp_edges", KeyKind::flag},
 });
 
 constexpr auto kMaterial = std::to_array<SetupKey>({
-    {"stiffness", number},
-    {"soft_stiffness", number},
-    {"soft_friction", number},
-    {"friction_static", number},
-    {"friction_dynamic", number},
-    {"friction_viscous", number},
-    {"texture_amplitude", number},
-    {"texture_wavelength", number},
+    {"stiffness", KeyKind::number},
+    {"soft_stiffness", KeyKind::number},
+    {"soft_friction", KeyKind::number},
+    {"friction_static", KeyKind::number},
+    {"friction_dynamic", KeyKind::number},
+    {"friction_viscous", KeyKind::number},
+    {"texture_amplitude", KeyKind::number},
+    {"texture_wavelength", KeyKind::number},
 });
 
 constexpr auto kHand = std::to_array<SetupKey>({
-    {"device", texts},
-    {"trajectory", path},
-    {"duration", number},
-    {"seed", integer},
-    {"rate", number},
+    {"device", KeyKind::texts},
+    {"trajectory", KeyKind::path},
+    {"duration", KeyKind::number},
+    {"seed", KeyKind::integer},
+    {"rate", KeyKind::number},
 });
 
 constexpr auto kGuard = std::to_array<SetupKey>({
-    {"maximum_force", number},
-    {"slew", number},
-    {"watchdog", number},
-    {"damping", number},
-    {"soft_start", number},
-    {"passivity", flag},
+    {"maximum_force", KeyKind::number},
+    {"slew", KeyKind::number},
+    {"watchdog", KeyKind::number},
+    {"damping", KeyKind::number},
+    {"soft_start", KeyKind::number},
+    {"passivity", KeyKind::flag},
 });
 
 constexpr auto kServo = std::to_array<SetupKey>({
-    {"processor", integer},
-    {"realtime", flag},
-    {"priority", integer},
-    {"lock_memory", flag},
+    {"processor", KeyKind::integer},
+    {"realtime", KeyKind::flag},
+    {"priority", KeyKind::integer},
+    {"lock_memory", KeyKind::flag},
 });
 
 constexpr auto kSource = joined(kReading, kDetail, kFrames);

@@ -128,7 +128,7 @@ void add_output_options(CLI::App& command, TouchOptions& o) {
       ->type_name("FILE.png");
 }
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kTouchFooter = R"(Examples:
   palpate touch bunny.ply --picture bunny.png
   palpate touch synthetic:torus --friction-static 0.4 --friction-dynamic 0.3
   palpate touch scan.pcd --trajectory hand.csv --log forces.csv
@@ -179,7 +179,7 @@ void add_touch_options(CLI::App& command, TouchOptions& o) {
   add_live_options(command, o.live);
   add_view_options(command, o.view);
   add_output_options(command, o);
-  command.footer(kFooter);
+  command.footer(kTouchFooter);
 }
 
 void add_setup_options(CLI::App& file, TouchOptions& o) {

@@ -17,7 +17,7 @@ namespace palpate::app {
 
 namespace {
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kZWidthFooter = R"(Examples:
   palpate zwidth
   palpate zwidth --device-profile omega --picture omega.png
   palpate zwidth --device-profile my-arm --profiles arms.toml --csv arm.csv
@@ -84,7 +84,7 @@ void add_zwidth_options(CLI::App& command, ZWidthOptions& o) {
   command.add_option("--json", o.json, "the same as data; - is standard output")->type_name("FILE");
   command.add_option("--picture", o.picture, "the map as PNG (needs python3-matplotlib)")
       ->type_name("FILE.png");
-  command.footer(kFooter);
+  command.footer(kZWidthFooter);
 }
 
 void zwidth(const ZWidthOptions& options) {

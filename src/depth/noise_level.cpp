@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kFewest = 4;       // windows that make a sample
 constexpr float kMoreThanLowest = 1.6F;  // variances up to this times the typical one are noise
-constexpr int kRounds = 4;               // of finding the typical one
+constexpr int kTypicalRounds = 4;        // of finding the typical one
 constexpr double kScattered = 0.25;      // share below 1 / kMoreThanLowest that only shape makes
 constexpr std::size_t kChosen = 48;      // windows to be correlated
 constexpr double kMostWeight = 60;
@@ -31,7 +31,7 @@ float median(std::vector<float>& values) {
 // have besides, only adds.
 float typical_variance(std::vector<float>& variances) {
   float typical = quarter(variances);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kTypicalRounds; ++round) {
     double sum = 0;
     int count = 0;
     for (const float v : variances) {

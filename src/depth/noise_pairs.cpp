@@ -16,7 +16,7 @@ constexpr double kMovingMean = 5;    // standard deviations
 constexpr double kMovingWithin = 3;  // times the variance
 constexpr double kFewestTiles = 12;  // that make a sample
 constexpr double kEnoughTiles = 40;  // to know n_c
-constexpr double kMostWeight = 60;
+constexpr double kMostTiles = 60;
 
 // Sums in lanes of their own, so that they can be vectorised without changing their order.
 struct Lanes {
@@ -191,7 +191,7 @@ void NoisePairs::conclude(double shared) {
     const double variance = 0.5 * (bin.within / bin.tiles) / (1 - in_tile);
     if (!(variance > 0)) continue;
     noise_.samples.push_back(
-        {bin.z / bin.tiles, std::sqrt(variance), std::min(bin.tiles, kMostWeight)});
+        {bin.z / bin.tiles, std::sqrt(variance), std::min(bin.tiles, kMostTiles)});
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr int kFewestCorrelated = 4;  // windows
 // Up to which n_c windows of a level are believed: those that are too small for the noise's
 // correlation find a part of it only.
-constexpr std::array<double, 3> kMostShared{1.6, 14, 1e9};
+constexpr std::array<double, 3> kBelievedShared{1.6, 14, 1e9};
 constexpr double kCorrelationCost = 10;  // of a window, in fits of it
 constexpr double kExplained = 0.05;      // share of windows that may stand for all
 
@@ -89,7 +89,7 @@ void NoiseSurvey::conclude() {
     const NoiseCorrelation correlation = level.correlation();
     if (!(correlation.variance > 0)) continue;
     noise_.shared = correlation.shared;
-    noise_.whole = correlation.whole && correlation.shared <= kMostShared[i];
+    noise_.whole = correlation.whole && correlation.shared <= kBelievedShared[i];
     noise_.samples.assign(level.samples().begin(), level.samples().end());
     const double raised = std::sqrt(std::max(1.0, correlation.variance));
     for (NoiseSample& sample : noise_.samples) sample.sigma *= raised;

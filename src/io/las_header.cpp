@@ -26,9 +26,9 @@ constexpr std::size_t kSmallest14 = 375;
 
 constexpr std::array<std::size_t, 11> kRecordSizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
-class HeaderParser {
+class LasHeaderParser {
  public:
-  explicit HeaderParser(const Input& input) : input_(input), data_(input.bytes.data()) {}
+  explicit LasHeaderParser(const Input& input) : input_(input), data_(input.bytes.data()) {}
 
   LasHeader run() {
     need(kSmallest);
@@ -130,7 +130,7 @@ std::string LasHeader::name() const {
 }
 
 LasHeader read_las_header(const Input& input) {
-  return HeaderParser(input).run();
+  return LasHeaderParser(input).run();
 }
 
 }  // namespace palpate::io

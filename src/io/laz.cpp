@@ -14,10 +14,10 @@ namespace palpate::io {
 namespace {
 
 // Offsets into laszip_point_struct of LASzip 3.
-constexpr std::size_t kIntensity = 12;
-constexpr std::size_t kFlags = 15;          // withheld: bit 7
-constexpr std::size_t kExtendedFlags = 22;  // withheld: bit 6
-constexpr std::size_t kColor = 40;
+constexpr std::size_t kIntensityAt = 12;
+constexpr std::size_t kFlagsAt = 15;          // withheld: bit 7
+constexpr std::size_t kExtendedFlagsAt = 22;  // withheld: bit 6
+constexpr std::size_t kColorAt = 40;
 
 class LazReader {
  public:
@@ -55,8 +55,8 @@ class LazReader {
 
  private:
   bool is_withheld(const std::byte* point) const {
-    return header_.extended() ? (point[kExtendedFlags] & std::byte{64}) != std::byte{0}
-                              : (point[kFlags] & header_.withheld_mask()) != std::byte{0};
+    return header_.extended() ? (point[kExtendedFlagsAt] & std::byte{64}) != std::byte{0}
+                              : (point[kFlagsAt] & header_.withheld_mask()) != std::byte{0};
   }
 
   Row row_of(const std::byte* point) const {
@@ -64,9 +64,9 @@ class LazReader {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto k = static_cast<Eigen::Index>(axis);
       row[axis] = load_as<std::int32_t>(point + 4 * axis) * header_.scale[k] + header_.offset[k];
-      row[index_of(Role::red) + axis] = load_as<std::uint16_t>(point + kColor + 2 * axis);
+      row[index_of(Role::red) + axis] = load_as<std::uint16_t>(point + kColorAt + 2 * axis);
     }
-    row[index_of(Role::intensity)] = load_as<std::uint16_t>(point + kIntensity);
+    row[index_of(Role::intensity)] = load_as<std::uint16_t>(point + kIntensityAt);
     return row;
   }
 

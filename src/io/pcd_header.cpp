@@ -36,9 +36,9 @@ std::optional<NumberType> number_type(std::string_view letter, std::size_t size)
   return {};
 }
 
-class HeaderParser {
+class PcdHeaderParser {
  public:
-  explicit HeaderParser(const Input& input) : input_(input), scanner_(input) {}
+  explicit PcdHeaderParser(const Input& input) : input_(input), scanner_(input) {}
 
   PcdHeader run() {
     while (!has_data_) {
@@ -163,7 +163,7 @@ class HeaderParser {
 }  // namespace
 
 PcdHeader read_pcd_header(const Input& input) {
-  return HeaderParser(input).run();
+  return PcdHeaderParser(input).run();
 }
 
 }  // namespace palpate::io

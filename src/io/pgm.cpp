@@ -13,9 +13,9 @@ namespace {
 
 // The three numbers of the header are separated by white space and comments up to the line's end;
 // exactly one white-space character follows the last.
-class HeaderParser {
+class PgmHeaderParser {
  public:
-  explicit HeaderParser(const Input& input)
+  explicit PgmHeaderParser(const Input& input)
       : input_(input), offset_(std::min<std::size_t>(2, input.bytes.size())) {}
 
   std::size_t number(std::string_view what) {
@@ -46,7 +46,7 @@ class HeaderParser {
 }  // namespace
 
 DepthImage read_pgm(const Input& input) {
-  HeaderParser header(input);
+  PgmHeaderParser header(input);
   DepthImage image;
   image.width = header.number("width");
   image.height = header.number("height");

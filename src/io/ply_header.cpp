@@ -24,9 +24,9 @@ constexpr std::pair<std::string_view, NumberType> kTypes[] = {
 
 constexpr std::size_t kMostColumns = 4096;  // elements and properties: no honest file has more
 
-class HeaderParser {
+class PlyHeaderParser {
  public:
-  explicit HeaderParser(const Input& input) : input_(input), scanner_(input) {}
+  explicit PlyHeaderParser(const Input& input) : input_(input), scanner_(input) {}
 
   PlyHeader run() {
     (void)next_line();  // "ply": that is how we came here
@@ -129,7 +129,7 @@ class HeaderParser {
 }  // namespace
 
 PlyHeader read_ply_header(const Input& input) {
-  return HeaderParser(input).run();
+  return PlyHeaderParser(input).run();
 }
 
 }  // namespace palpate::io

@@ -21,7 +21,7 @@ namespace {
 
 using namespace io;
 
-DepthImage read_kind(const Input& input, FileKind kind) {
+DepthImage read_image_of(const Input& input, FileKind kind) {
   if (kind == FileKind::png) return read_png(input);
   if (kind == FileKind::pgm) return read_pgm(input);
   fail(input, "not a depth image", "Give a 16-bit grey PNG or PGM");
@@ -29,10 +29,10 @@ DepthImage read_kind(const Input& input, FileKind kind) {
 
 DepthImage read_image(const Input& input) {
   const FileKind kind = kind_of(input);
-  if (kind != FileKind::gzip) return read_kind(input, kind);
+  if (kind != FileKind::gzip) return read_image_of(input, kind);
   const Bytes unpacked = gunzip(input);
   const Input inside{unpacked.span(), input.name, input.options};
-  return read_kind(inside, kind_of(inside));
+  return read_image_of(inside, kind_of(inside));
 }
 
 void check_size(const Input& input, const DepthImage& image, const CameraModel& camera) {

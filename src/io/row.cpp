@@ -7,7 +7,7 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::pair<std::string_view, Role> kNames[] = {
+constexpr std::pair<std::string_view, Role> kRoleNames[] = {
     {"x", Role::x},
     {"y", Role::y},
     {"z", Role::z},
@@ -44,9 +44,9 @@ std::optional<Role> role_of(std::string_view name) {
   std::string lower{name};
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  const auto* found = std::find_if(std::begin(kNames), std::end(kNames),
+  const auto* found = std::find_if(std::begin(kRoleNames), std::end(kRoleNames),
                                    [&](const auto& entry) { return entry.first == lower; });
-  return found == std::end(kNames) ? std::nullopt : std::optional{found->second};
+  return found == std::end(kRoleNames) ? std::nullopt : std::optional{found->second};
 }
 
 Columns complete_columns(const std::array<bool, kRoleCount>& has) {

@@ -9,9 +9,9 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kSamples = 1000;
-constexpr std::size_t kFewest = 100;  // points that tell
-constexpr std::size_t kLooked = 9;    // itself, and others of which some may share its place
+constexpr std::size_t kSpacingSamples = 1000;
+constexpr std::size_t kFewestPoints = 100;  // points that tell
+constexpr std::size_t kLooked = 9;          // itself, and others of which some may share its place
 
 // Random points have 0.52; scanners' meshes, frames and jittered grids 0.71 and above.
 constexpr double kIrregular = 0.65;
@@ -19,8 +19,8 @@ constexpr double kIrregular = 0.65;
 }  // namespace
 
 double nearest_share(const CellGrid& grid, std::span<const float> spacings) {
-  if (grid.size() < kFewest) return 1;
-  const std::size_t step = std::max<std::size_t>(1, grid.size() / kSamples);
+  if (grid.size() < kFewestPoints) return 1;
+  const std::size_t step = std::max<std::size_t>(1, grid.size() / kSpacingSamples);
   std::vector<float> shares;
   std::vector<CellGrid::Neighbor> near;
   for (std::size_t i = step / 2; i < grid.size(); i += step) {

@@ -5,14 +5,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 
+#include "base/angle.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kMostWhole = 1e6;
 
 double number(const std::string& text) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/angle.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/simulated_table.hpp"
 #include "sensor/simulated_keys.hpp"
@@ -19,7 +20,6 @@ using Eigen::Vector3d;
 // All scenes are where they were after so long: cameras that are opened one after the other see
 // one world, s.
 constexpr double kPeriod = 20;
-constexpr double kDegree = std::numbers::pi / 180;
 
 SimulatedSetup still() {
   const SimulatedTable table = make_simulated_table();

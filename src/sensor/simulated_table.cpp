@@ -1,9 +1,9 @@
 #include "palpate/sensor/simulated_table.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "base/angle.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -12,7 +12,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kTableDistance = 0.7;  // along the optical axis, m
 constexpr double kLookDown = 27 * kDegree;
 constexpr double kSphereRadius = 0.060;

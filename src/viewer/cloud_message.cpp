@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr std::uint8_t kKind = 2;
-constexpr std::size_t kHeader = 40;
+constexpr std::uint8_t kCloudKind = 2;
+constexpr std::size_t kCloudHeader = 40;
 constexpr std::uint16_t kColors = 1;
 constexpr std::uint16_t kNormals = 2;
 constexpr float kSteps = 65535;
@@ -45,8 +45,8 @@ std::string encode(const CloudMessage& message) {
   const std::size_t n = message.places.size();
   assert(message.colors.empty() || message.colors.size() == n);
   assert(message.normals.empty() || message.normals.size() == n);
-  ByteWriter bytes(kHeader + 6 * n + 3 * message.colors.size() + 2 * message.normals.size());
-  bytes.put(kKind);
+  ByteWriter bytes(kCloudHeader + 6 * n + 3 * message.colors.size() + 2 * message.normals.size());
+  bytes.put(kCloudKind);
   bytes.put(message.source);
   bytes.put(static_cast<std::uint16_t>((message.colors.empty() ? 0 : kColors) |
                                        (message.normals.empty() ? 0 : kNormals)));

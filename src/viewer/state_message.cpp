@@ -8,15 +8,15 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr std::uint8_t kKind = 1;
-constexpr std::size_t kHeader = 92;
+constexpr std::uint8_t kStateKind = 1;
+constexpr std::size_t kStateHeader = 92;
 
 }  // namespace
 
 std::string encode(const StateMessage& message) {
   assert(message.forces.size() <= std::numeric_limits<std::uint16_t>::max());
-  ByteWriter bytes(kHeader + message.forces.size() * sizeof(Eigen::Vector3f));
-  bytes.put(kKind);
+  ByteWriter bytes(kStateHeader + message.forces.size() * sizeof(Eigen::Vector3f));
+  bytes.put(kStateKind);
   bytes.put(message.device);
   bytes.put(static_cast<std::uint16_t>(message.forces.size()));
   bytes.put(message.flags);

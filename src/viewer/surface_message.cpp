@@ -10,8 +10,8 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr std::uint8_t kKind = 3;
-constexpr std::size_t kHeader = 24;
+constexpr std::uint8_t kSurfaceKind = 3;
+constexpr std::size_t kSurfaceHeader = 24;
 constexpr float kSteps = 32767;
 
 }  // namespace
@@ -20,8 +20,8 @@ std::string encode_surface(std::uint8_t device, const Eigen::Vector3f& center, c
   assert(mesh.vertices.size() <= std::numeric_limits<std::uint16_t>::max());
   float extent = 0;
   for (const Eigen::Vector3f& v : mesh.vertices) extent = std::max(extent, v.cwiseAbs().maxCoeff());
-  ByteWriter bytes(kHeader + 6 * (mesh.vertices.size() + mesh.triangles.size()));
-  bytes.put(kKind);
+  ByteWriter bytes(kSurfaceHeader + 6 * (mesh.vertices.size() + mesh.triangles.size()));
+  bytes.put(kSurfaceKind);
   bytes.put(device);
   bytes.put(static_cast<std::uint16_t>(mesh.vertices.size()));
   bytes.put(static_cast<std::uint32_t>(mesh.triangles.size()));

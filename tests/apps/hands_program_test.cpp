@@ -15,17 +15,16 @@
 #include "device/remote_client.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/device/remote.hpp"
+#include "support/contains.hpp"
 
 namespace palpate::app {
 namespace {
 
+using test::contains;
+
 using Json = nlohmann::json;
 
 constexpr double kAbove = 5e-3;  // m over where the device stands
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 // Every millisecond or so, until it is true.
 bool until(const std::function<bool()>& condition) {

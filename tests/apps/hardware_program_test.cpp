@@ -4,15 +4,14 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
+#include "support/contains.hpp"
 
 namespace palpate::app {
 namespace {
 
-const std::string kDevice = std::string("--device forcedimension,library=") + PALPATE_FAKE_DHD;
+using test::contains;
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+const std::string kDevice = std::string("--device forcedimension,library=") + PALPATE_FAKE_DHD;
 
 TEST(HardwareProgram, RunsWithWhatADriverReaches) {
   Shell shell;

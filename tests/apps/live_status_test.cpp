@@ -4,12 +4,12 @@
 
 #include <string>
 
+#include "support/contains.hpp"
+
 namespace palpate::app {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+using test::contains;
 
 // A second of 1 kHz: 20 us of computing, the last hundredth 80; late by 50 us.
 LiveMoment second() {

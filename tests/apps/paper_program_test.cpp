@@ -9,10 +9,6 @@
 namespace palpate::app {
 namespace {
 
-double number(const std::string& text) {
-  return std::strtod(text.c_str(), nullptr);
-}
-
 double deviation(const std::vector<std::string>& cells) {
   double sum = 0;
   double square = 0;

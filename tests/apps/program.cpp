@@ -93,6 +93,10 @@ std::map<std::string, std::vector<std::string>> columns(const std::string& csv) 
   return result;
 }
 
+double number(const std::string& cell) {
+  return std::strtod(cell.c_str(), nullptr);
+}
+
 std::string plane_xyz() {
   std::string text;
   for (int i = 0; i < kSide * kSide; ++i) {

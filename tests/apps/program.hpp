@@ -55,6 +55,9 @@ class Shell {
 /// A CSV file's columns by name, as text.
 [[nodiscard]] std::map<std::string, std::vector<std::string>> columns(const std::string& csv);
 
+/// A cell of them; 0: it is no number.
+[[nodiscard]] double number(const std::string& cell);
+
 /// A 6 x 6 cm plane of points at z = 0, 2 mm apart, as XYZ text; with an intensity that grows along
 /// x if wanted.
 [[nodiscard]] std::string plane_xyz();

@@ -25,10 +25,6 @@ std::string without_times(const Shell& shell, const std::string& name) {
   return text;
 }
 
-double number(const std::string& text) {
-  return std::strtod(text.c_str(), nullptr);
-}
-
 // Down onto the middle of the simulated table, which is z = 0 there, and `seconds` of pressing.
 std::string press_table(double seconds) {
   std::string text = "t,hip_x,hip_y,hip_z\n";

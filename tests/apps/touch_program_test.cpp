@@ -24,10 +24,6 @@ std::string without_times(const Shell& shell, const std::string& name) {
   return text;
 }
 
-double number(const std::string& text) {
-  return std::strtod(text.c_str(), nullptr);
-}
-
 double largest_push(const Shell& shell, const std::string& name) {
   auto log = columns(shell.read(name));
   double largest = 0;

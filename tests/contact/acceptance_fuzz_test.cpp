@@ -6,13 +6,12 @@
 #include "support/effort.hpp"
 #include "support/point_field.hpp"
 #include "support/point_shapes.hpp"
+#include "support/rates.hpp"
 
 namespace palpate::test {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kTick = 1e-3;
 
 struct FuzzScene {
   const char* name;

@@ -4,14 +4,12 @@
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/point_shapes.hpp"
+#include "support/rates.hpp"
 
 namespace palpate::test {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kTick = 1e-3;
-constexpr double kFrame = 1.0 / 30;
 
 void show(Source& source, const std::vector<TestPoint>& points, double start,
           double duration = kFrame) {

@@ -10,13 +10,12 @@
 #include "palpate/scene/scene_field.hpp"
 #include "support/effort.hpp"
 #include "support/point_shapes.hpp"
+#include "support/rates.hpp"
 
 namespace palpate::test {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kTick = 1e-3;
 
 PointCloud cloud_of(const std::vector<TestPoint>& points) {
   PointCloud cloud;

@@ -3,10 +3,9 @@
 #include <functional>
 
 #include "palpate/contact/proxy.hpp"
+#include "support/rates.hpp"
 
 namespace palpate::test {
-
-inline constexpr double kTick = 1e-3;  // s
 
 /// Moves the hand from `from` to `to` in a straight line at `speed` (m/s) and tells `visit` of
 /// every step. Returns the last one.

@@ -2,9 +2,12 @@
 
 #include <cmath>
 
+#include "palpate/contact/proxy.hpp"
 #include "palpate/field/analytic.hpp"
 
 namespace palpate::test {
+
+inline const Texture kNoTexture;
 
 /// A flat two-sided sheet z = height, solid for `thickness` behind the side that it is seen from,
 /// with a round domain: what a point-set surface of a disc looks like.

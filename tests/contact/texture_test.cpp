@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Texture kFine{.amplitude = 1e-4, .wavelength = 4e-3};
+constexpr Texture kFineTexture{.amplitude = 1e-4, .wavelength = 4e-3};
 
 TEST(Texture, IsCarvedNotRaisedAndUsesItsDepth) {
   std::mt19937 random(1);
@@ -21,14 +21,14 @@ TEST(Texture, IsCarvedNotRaisedAndUsesItsDepth) {
   double highest = -1;
   for (int i = 0; i < 20000; ++i) {
     const double height =
-        relief_at(kFine, {uniform(random), uniform(random), uniform(random)}).height;
+        relief_at(kFineTexture, {uniform(random), uniform(random), uniform(random)}).height;
     lowest = std::min(lowest, height);
     highest = std::max(highest, height);
   }
   EXPECT_LE(highest, 0);
-  EXPECT_GT(highest, -0.1 * kFine.amplitude);
-  EXPECT_GE(lowest, -2 * kFine.amplitude);
-  EXPECT_LT(lowest, -1.9 * kFine.amplitude);
+  EXPECT_GT(highest, -0.1 * kFineTexture.amplitude);
+  EXPECT_GE(lowest, -2 * kFineTexture.amplitude);
+  EXPECT_LT(lowest, -1.9 * kFineTexture.amplitude);
 }
 
 TEST(Texture, GradientAgreesWithCentralDifferences) {
@@ -36,12 +36,13 @@ TEST(Texture, GradientAgreesWithCentralDifferences) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int i = 0; i < 200; ++i) {
     const Vector3d x(uniform(random), uniform(random), uniform(random));
-    const Vector3d gradient = relief_at(kFine, x).gradient;
+    const Vector3d gradient = relief_at(kFineTexture, x).gradient;
     constexpr double kStep = 1e-7;
     for (int axis = 0; axis < 3; ++axis) {
       const Vector3d step = kStep * Vector3d::Unit(axis);
       const double difference =
-          (relief_at(kFine, x + step).height - relief_at(kFine, x - step).height) / (2 * kStep);
+          (relief_at(kFineTexture, x + step).height - relief_at(kFineTexture, x - step).height) /
+          (2 * kStep);
       EXPECT_NEAR(difference, gradient[axis], 1e-7);
     }
   }
@@ -55,7 +56,7 @@ TEST(Texture, NoAmplitudeIsNoRelief) {
 
 TEST(Texture, ModulatesTheForceAndGivesNoEnergyAroundALoop) {
   const PlaneField plane;
-  Proxy proxy{{.texture = kFine}};
+  Proxy proxy{{.texture = kFineTexture}};
   const Vector3d center(0, 0, -0.003);
   proxy.reset({0.01, 0, 0.01});
   drive(proxy, plane, {0.01, 0, 0.01}, {0.01, 0, -0.003}, 0.1);
@@ -80,7 +81,7 @@ TEST(Texture, ModulatesTheForceAndGivesNoEnergyAroundALoop) {
     EXPECT_LT(given, 1.5e-4) << lap;
     EXPECT_GT(given, -1.5e-4) << lap;
   }
-  EXPECT_GT(most - least, 0.3 * 500 * kFine.amplitude);
+  EXPECT_GT(most - least, 0.3 * 500 * kFineTexture.amplitude);
   EXPECT_LT(most, 500 * 0.003 + 0.01);
 }
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "base/angle.hpp"
 #include "base/random.hpp"
 #include "depth/small_frames.hpp"
 #include "palpate/base/error.hpp"
@@ -18,8 +18,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 DepthFilterOptions with_noise(int memory = 1) {
   DepthFilterOptions options;

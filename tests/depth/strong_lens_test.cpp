@@ -43,15 +43,15 @@ Image nearest(const Image& image) {
   return out;
 }
 
-struct Errors {
+struct ImageErrors {
   double rms = 0;     ///< m
   double ripple = 0;  ///< of the difference between pixels side by side, m
   int count = 0;
 };
 
 /// Of the pixels whose true depths are within nearest ... farthest, three on either side included.
-Errors errors_of(const Image& image, const Image& truth, float closest, float farthest) {
-  Errors errors;
+ImageErrors errors_of(const Image& image, const Image& truth, float closest, float farthest) {
+  ImageErrors errors;
   const auto known = [&](std::size_t i) { return truth[i] >= closest && truth[i] <= farthest; };
   for (std::size_t i = 3; i + 3 < image.size(); ++i) {
     bool inside = true;
@@ -72,8 +72,8 @@ TEST(StrongLens, LeavesAPlaneFlat) {
   const std::vector<Solid> table = {plane({0, 0, 0.7}, kTilted)};
   const Image truth = exact_frame(table, kStraight).depth;
   const Image seen = exact_frame(table, kBent).depth;
-  const Errors before = errors_of(nearest(seen), truth, 0.1F, 20);
-  const Errors after = errors_of(undistorted(seen), truth, 0.1F, 20);
+  const ImageErrors before = errors_of(nearest(seen), truth, 0.1F, 20);
+  const ImageErrors after = errors_of(undistorted(seen), truth, 0.1F, 20);
   EXPECT_GT(after.count, 70000);
   EXPECT_GT(before.rms, 0.5e-3);
   EXPECT_LT(after.rms, before.rms / 50);
@@ -84,8 +84,8 @@ TEST(StrongLens, LeavesASphereRound) {
   const std::vector<Solid> solids = {sphere({0.1, 0.05, 0.6}, 0.15), plane({0, 0, 1}, {0, 0, -1})};
   const Image truth = exact_frame(solids, kStraight).depth;
   const Image seen = exact_frame(solids, kBent).depth;
-  const Errors before = errors_of(nearest(seen), truth, 0.1F, 0.53F);
-  const Errors after = errors_of(undistorted(seen), truth, 0.1F, 0.53F);
+  const ImageErrors before = errors_of(nearest(seen), truth, 0.1F, 0.53F);
+  const ImageErrors after = errors_of(undistorted(seen), truth, 0.1F, 0.53F);
   EXPECT_GT(after.count, 5000);
   EXPECT_LT(after.rms, before.rms / 5);
   EXPECT_LT(after.ripple, before.ripple / 5);

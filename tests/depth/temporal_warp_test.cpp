@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <numeric>
 
+#include "base/angle.hpp"
 #include "depth/temporal_filter.hpp"
 #include "depth/temporal_frames.hpp"
 #include "support/effort.hpp"
@@ -16,9 +16,8 @@ using test::BlockErrors;
 using test::BlockScene;
 using test::errors_of;
 
-constexpr double kSd = 1e-4;
-constexpr double kSlopeSd = 4e-3;
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kWarpSd = 1e-4;
+constexpr double kWarpSlopeSd = 4e-3;
 
 Isometry3d turned(double angle, const Vector3d& axis, const Vector3d& shift = Vector3d::Zero()) {
   Isometry3d pose = Isometry3d::Identity();
@@ -31,8 +30,8 @@ class TemporalWarpTest : public ::testing::Test {
  protected:
   TemporalWarpTest() { fits_.resize(test::block_camera(120, 90)); }
 
-  void show(const BlockScene& scene, const Isometry3d& pose, double sd = kSd) {
-    test::measure(scene, pose, sd, kSlopeSd, random_, fits_);
+  void show(const BlockScene& scene, const Isometry3d& pose, double sd = kWarpSd) {
+    test::measure(scene, pose, sd, kWarpSlopeSd, random_, fits_);
     filter_.filter({}, pose, fits_);
   }
 
@@ -108,7 +107,7 @@ TEST_F(TemporalWarpTest, AMovingCameraKeepsWhatTheFilterHasGained) {
     const Isometry3d pose =
         turned(10 * kDegree * (t - 0.6), Vector3d(0.3, 1, 0.2).normalized(), {0.05 * t, 0, 0});
     show(scene, pose);
-    test::measure(scene, pose, kSd, kSlopeSd, same, raw);
+    test::measure(scene, pose, kWarpSd, kWarpSlopeSd, same, raw);
     ASSERT_EQ(errors_of(fits_, scene, pose).count, errors_of(raw, scene, pose).count);
     if (frame < 10) continue;
     filtered_plane += errors_of(fits_, scene, pose, 0, 4).rms;

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angle.hpp"
 #include "base/cpu.hpp"
 #include "depth/metric_fit.hpp"
 #include "depth/simd/plain.hpp"
@@ -15,8 +15,6 @@ namespace palpate::test {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 depth::BlockFits fit_all(const depth::Blocks& blocks, const NoiseModel& noise,
                          const simd::FitFunctions& functions = simd::best_fits()) {

@@ -17,10 +17,10 @@ using test::FakeLink;
 using test::MovedClock;
 using Fault = FakeHardware::Fault;
 
-constexpr double kStep = 1e-3;      // of the servo, s
-constexpr double kTurn = 0.5e-3;    // of the device's thread, s
-constexpr double kReaction = 6e-3;  // within which the hardware has to be without a force, s
-const Vector3d kForce(0, 0, 2);     // N
+constexpr double kServoStep = 1e-3;  // of the servo, s
+constexpr double kTurn = 0.5e-3;     // of the device's thread, s
+constexpr double kReaction = 6e-3;   // within which the hardware has to be without a force, s
+const Vector3d kForce(0, 0, 2);      // N
 
 // A servo that pushes as soon as the hand is known, and a device's thread, in simulated time.
 class LinkedDeviceTest : public testing::Test {
@@ -147,7 +147,7 @@ TEST_F(LinkedDeviceTest, PlaceThatIsNoNumberTakesTheForceAwayInTwoSteps) {
   const double start = clock_.now();
   hardware_.set(Fault::not_a_number);
   run(0.5);
-  EXPECT_LE(pushed_for(start), 2 * kStep);
+  EXPECT_LE(pushed_for(start), 2 * kServoStep);
   EXPECT_TRUE(state_.position.allFinite());
   EXPECT_EQ(state_.status, DeviceStatus::silent);
   ASSERT_EQ(reasons_.size(), 1u);
@@ -178,7 +178,7 @@ TEST_F(LinkedDeviceTest, SilenceIsToldAndEndsSoftlyForWhoeverComputesForces) {
   push();
   const double start = clock_.now();  // half a step after the hand was heard
   while (clock_.now() < start + 0.1) {
-    clock_.wait_until(clock_.now() + 0.8 * kStep);  // no turn: the device's thread waits
+    clock_.wait_until(clock_.now() + 0.8 * kServoStep);  // no turn: the device's thread waits
     step();
     ASSERT_EQ(state_.status == DeviceStatus::ok, clock_.now() - start < 4.5e-3);
   }
@@ -238,7 +238,7 @@ TEST_F(LinkedDeviceTest, ForceThatIsNotFiniteIsAFailure) {
   const double start = clock_.now();
   device_->write({0, std::nan(""), 0});
   run(0.05);
-  EXPECT_LE(pushed_for(start), 2 * kStep);
+  EXPECT_LE(pushed_for(start), 2 * kServoStep);
   EXPECT_EQ(state_.status, DeviceStatus::failed);
   EXPECT_NE(device_->reason().find("not finite"), std::string::npos);
   device_->write(kForce);

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStep = 1e-3;  // s
+constexpr double kGlideStep = 1e-3;  // s
 
 struct Told {
   double stamp = 0;  // s, on the sender's clock
@@ -23,13 +23,13 @@ std::vector<double> speeds(PoseGlide& glide, const std::vector<Told>& told, doub
   std::vector<double> found;
   std::size_t next = 0;
   double before = glide.at(0).x();
-  for (int i = 1; i * kStep <= end; ++i) {
-    const double time = i * kStep;
+  for (int i = 1; i * kGlideStep <= end; ++i) {
+    const double time = i * kGlideStep;
     for (; next < told.size() && told[next].heard <= time; ++next) {
       glide.go({0.1 * told[next].stamp, 0, 0}, told[next].stamp, time);
     }
     const double x = glide.at(time).x();
-    found.push_back((x - before) / kStep);
+    found.push_back((x - before) / kGlideStep);
     before = x;
   }
   return found;
@@ -42,11 +42,11 @@ TEST_P(PoseGlideAtRate, MakesAnEvenMotionOfEvenPlaces) {
   for (int i = 0; i < GetParam(); ++i) told.push_back({i / GetParam(), i / GetParam() + 1e-6});
   PoseGlide glide;
   glide.rest(Vector3d::Zero(), 0);
-  const std::vector<double> found = speeds(glide, told, 1 - kStep);
+  const std::vector<double> found = speeds(glide, told, 1 - kGlideStep);
   for (std::size_t i = 500; i < found.size(); ++i) ASSERT_NEAR(found[i], 0.1, 0.01) << i;
   EXPECT_NEAR(glide.interval(), 1 / GetParam(), 0.02 / GetParam());
   // Late by a quarter of an interval to one and a quarter, and a step.
-  EXPECT_NEAR(glide.at(0.999).x(), 0.0999, 0.1 * (1.25 / GetParam() + 1.5 * kStep));
+  EXPECT_NEAR(glide.at(0.999).x(), 0.0999, 0.1 * (1.25 / GetParam() + 1.5 * kGlideStep));
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates, PoseGlideAtRate, testing::Values(60.0, 125.0, 250.0));
@@ -70,7 +70,7 @@ TEST(PoseGlide, NeverGoesBeyondWhatItWasTold) {
   glide.rest(Vector3d::Zero(), 0);
   glide.go({0.01, 0, 0}, 0, 0);
   glide.go({0.02, 0, 0}, 0.01, 0.01);
-  for (int i = 10; i < 1000; ++i) ASSERT_LE(glide.at(i * kStep).x(), 0.02);
+  for (int i = 10; i < 1000; ++i) ASSERT_LE(glide.at(i * kGlideStep).x(), 0.02);
   EXPECT_EQ(glide.at(1), Vector3d(0.02, 0, 0));
 }
 
@@ -81,7 +81,7 @@ TEST(PoseGlide, APauseIsNoInterval) {
   const double interval = glide.interval();
   glide.go({0.02, 0, 0}, 10, 10);
   EXPECT_EQ(glide.interval(), interval);
-  EXPECT_LT(glide.at(10 + kStep).x(), 0.01) << "no jump after it";
+  EXPECT_LT(glide.at(10 + kGlideStep).x(), 0.01) << "no jump after it";
   EXPECT_EQ(glide.at(10 + 1.3 * interval).x(), 0.02);
 }
 

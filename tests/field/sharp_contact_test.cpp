@@ -7,13 +7,13 @@
 #include "palpate/contact/proxy.hpp"
 #include "support/effort.hpp"
 #include "support/point_field.hpp"
+#include "support/rates.hpp"
 
 namespace palpate::test {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTick = 1e-3;
 constexpr double kStiffness = 500;  // N/m
 
 Proxy proxy_at(const Vector3d& place) {

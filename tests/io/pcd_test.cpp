@@ -45,11 +45,11 @@ struct RichPoint {
   float z;
   std::uint32_t rgba;
 };
-constexpr RichPoint kRich[] = {{700, 0.5, 1, 2, 0xff0a141e}, {800, 0.75, 3, 4, 0x01020304}};
+constexpr RichPoint kRichPoints[] = {{700, 0.5, 1, 2, 0xff0a141e}, {800, 0.75, 3, 4, 0x01020304}};
 
 std::string rich_rows() {
   std::string rows;
-  for (const RichPoint& p : kRich) {
+  for (const RichPoint& p : kRichPoints) {
     rows += "abc";
     append(rows, p.intensity);
     append(rows, p.x);
@@ -66,11 +66,11 @@ std::string rich_rows() {
 std::string rich_compressed() {
   std::string columns;
   for (int i = 0; i < 2; ++i) columns += "abc";
-  for (const RichPoint& p : kRich) append(columns, p.intensity);
-  for (const RichPoint& p : kRich) append(columns, p.x);
-  for (const RichPoint& p : kRich) append(columns, p.y);
-  for (const RichPoint& p : kRich) append(columns, p.z);
-  for (const RichPoint& p : kRich) append(columns, p.rgba);
+  for (const RichPoint& p : kRichPoints) append(columns, p.intensity);
+  for (const RichPoint& p : kRichPoints) append(columns, p.x);
+  for (const RichPoint& p : kRichPoints) append(columns, p.y);
+  for (const RichPoint& p : kRichPoints) append(columns, p.z);
+  for (const RichPoint& p : kRichPoints) append(columns, p.rgba);
   for (const float n : {0.0F, 0.0F, 0.0F, 0.0F, 1.0F, 1.0F}) append(columns, n);
   for (const std::int64_t label : {1, 2, 1, 2}) append(columns, label);
   std::string packed;
@@ -84,7 +84,7 @@ std::string rich_compressed() {
   return data + packed;
 }
 
-void expect_rich(const CloudFile& file) {
+void expect_rich_pcd(const CloudFile& file) {
   ASSERT_EQ(file.cloud.size(), 2u);
   EXPECT_EQ(file.cloud.positions[1], Eigen::Vector3f(0.75F, 3, 4));
   EXPECT_EQ(file.cloud.colors[0], (std::array<std::uint8_t, 3>{10, 20, 30}));
@@ -104,8 +104,8 @@ TEST(Pcd, ReadsAsciiWithNan) {
 }
 
 TEST(Pcd, ReadsBinaryAndCompressedAlike) {
-  expect_rich(read_text(rich("binary").text() + rich_rows()));
-  expect_rich(read_text(rich("binary_compressed").text() + rich_compressed()));
+  expect_rich_pcd(read_text(rich("binary").text() + rich_rows()));
+  expect_rich_pcd(read_text(rich("binary_compressed").text() + rich_compressed()));
 }
 
 TEST(Pcd, ReadsPackedColoursInText) {

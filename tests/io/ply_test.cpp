@@ -42,7 +42,7 @@ constexpr std::string_view kRich =
     "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
     "property uint8 red\nproperty uchar green\nproperty ushort quality\n";
 
-void expect_rich(const CloudFile& file) {
+void expect_rich_ply(const CloudFile& file) {
   ASSERT_EQ(file.cloud.size(), 2u);
   EXPECT_NEAR(file.cloud.point(0).x(), 0.125, 0.05);
   EXPECT_NEAR(file.cloud.point(1).x(), 637291.5, 0.05);
@@ -70,8 +70,9 @@ TEST(Ply, ReadsAsciiAndSkipsOtherElements) {
 }
 
 TEST(Ply, ReadsBothByteOrdersWithPropertiesInAnyOrder) {
-  expect_rich(read_text(header("binary_little_endian", 2, kRich) + rich_rows(std::endian::little)));
-  expect_rich(read_text(header("binary_big_endian", 2, kRich) + rich_rows(std::endian::big)));
+  expect_rich_ply(
+      read_text(header("binary_little_endian", 2, kRich) + rich_rows(std::endian::little)));
+  expect_rich_ply(read_text(header("binary_big_endian", 2, kRich) + rich_rows(std::endian::big)));
 }
 
 TEST(Ply, ReadsWindowsAndOldMacintoshLineEnds) {

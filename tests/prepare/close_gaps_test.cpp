@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kHalf = 8;
-constexpr float kSpacing = 0.01f;
+constexpr float kGapSpacing = 0.01f;
 
 /// A square grid whose middle is elsewhere, at `odd`.
 struct Case {
@@ -26,7 +26,8 @@ Case make_case(const Vector3f& odd, float radius) {
   for (int i = -kHalf; i <= kHalf; ++i) {
     for (int j = -kHalf; j <= kHalf; ++j) {
       if (i == 0 && j == 0) continue;
-      points.emplace_back(kSpacing * static_cast<float>(i), kSpacing * static_cast<float>(j), 0.0f);
+      points.emplace_back(kGapSpacing * static_cast<float>(i), kGapSpacing * static_cast<float>(j),
+                          0.0f);
     }
   }
   Case made{CellGrid(points), {}, 0};
@@ -38,11 +39,11 @@ Case make_case(const Vector3f& odd, float radius) {
 }
 
 TEST(CloseGaps, RaisesWhatOthersLieRoundAbout) {
-  Case made = make_case(Vector3f::Zero(), 0.5f * kSpacing);
+  Case made = make_case(Vector3f::Zero(), 0.5f * kGapSpacing);
   detail::WeightSums sums = weight_sums(made.grid, made.radii, Kernel::wyvill);
   EXPECT_EQ(sums.own[made.odd], 1);
   EXPECT_GT(close_gaps(made.grid, Kernel::wyvill, made.radii, sums), 200u);
-  EXPECT_NEAR(made.radii[made.odd], 2.5f * kSpacing, 1e-6f);
+  EXPECT_NEAR(made.radii[made.odd], 2.5f * kGapSpacing, 1e-6f);
   const detail::WeightSums again = weight_sums(made.grid, made.radii, Kernel::wyvill);
   for (std::size_t i = 0; i < again.own.size(); ++i) {
     EXPECT_NEAR(sums.own[i], again.own[i], 1e-4f);
@@ -50,8 +51,8 @@ TEST(CloseGaps, RaisesWhatOthersLieRoundAbout) {
 }
 
 TEST(CloseGaps, LeavesStrayPointsAndWholeSheetsAlone) {
-  for (const float height : {0.0f, 3 * kSpacing}) {
-    Case made = make_case({0, 0, height}, 2.5f * kSpacing);
+  for (const float height : {0.0f, 3 * kGapSpacing}) {
+    Case made = make_case({0, 0, height}, 2.5f * kGapSpacing);
     const std::vector<float> before = made.radii;
     detail::WeightSums sums = weight_sums(made.grid, made.radii, Kernel::wyvill);
     EXPECT_EQ(close_gaps(made.grid, Kernel::wyvill, made.radii, sums), 0u) << height;

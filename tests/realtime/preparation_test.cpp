@@ -7,13 +7,14 @@
 #include "palpate/scene/scene_field.hpp"
 #include "realtime/watch.hpp"
 #include "support/depth_frames.hpp"
+#include "support/rates.hpp"
 
 namespace palpate::realtime {
 namespace {
 
-using Eigen::Vector3d;
+using test::kFrame;
 
-constexpr double kFrame = 1. / 30;
+using Eigen::Vector3d;
 
 SourceOptions options(Policy policy) {
   SourceOptions options;

@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, kOffences> kNames = {
     "allocations", "releases", "locks", "outputs", "throws", "clock readings", "system calls"};
 
 // Zero-initialised, so that the very first malloc of a thread may read them.
-thread_local bool watched = false;
+thread_local bool is_watched = false;
 thread_local Findings findings;
 
 }  // namespace
@@ -32,7 +32,7 @@ std::ostream& operator<<(std::ostream& out, const Findings& found) {
 
 Watch::Watch() noexcept {
   findings = {};
-  watched = true;
+  is_watched = true;
   arm_trap();
 }
 
@@ -42,7 +42,7 @@ Watch::~Watch() {
 
 Findings Watch::stop() noexcept {
   const long system_call = disarm_trap();
-  watched = false;
+  is_watched = false;
   Findings found = findings;
   if (system_call >= 0) {
     found.first_system_call = system_call;
@@ -53,7 +53,7 @@ Findings Watch::stop() noexcept {
 }
 
 void note(Offence offence) noexcept {
-  if (watched) ++findings.counts[static_cast<std::size_t>(offence)];
+  if (is_watched) ++findings.counts[static_cast<std::size_t>(offence)];
 }
 
 void keep(const void* value) noexcept {

@@ -9,14 +9,15 @@
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/effort.hpp"
+#include "support/rates.hpp"
 #include "support/snapshots.hpp"
 
 namespace palpate {
 namespace {
 
-using Eigen::Vector3d;
+using test::kFrame;
 
-constexpr double kFrame = 1. / 30;
+using Eigen::Vector3d;
 
 // A sheet at z = 0 with noise, seen from above.
 PointCloud noisy_sheet(unsigned seed, double noise, double height = 0) {

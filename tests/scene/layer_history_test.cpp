@@ -7,12 +7,13 @@
 #include <map>
 #include <random>
 
+#include "support/rates.hpp"
 #include "support/snapshots.hpp"
 
 namespace palpate {
 namespace {
 
-constexpr double kFrame = 1. / 30;
+using test::kFrame;
 
 // Clouds are told apart by their addresses; the field does not look into them here.
 std::shared_ptr<const SurfacePoints> cloud() {

@@ -9,9 +9,12 @@
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "support/depth_frames.hpp"
+#include "support/rates.hpp"
 
 namespace palpate {
 namespace {
+
+using test::kFrame;
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -19,8 +22,6 @@ using test::frame_of;
 using test::looking_down;
 using test::small_camera;
 using test::wall;
-
-constexpr double kFrame = 1. / 30;
 
 // Feeds frames of a small camera that looks down at z = 0 and keeps what comes out.
 class MorphTest : public testing::Test {

@@ -7,10 +7,13 @@
 #include "palpate/scene/scene_field.hpp"
 #include "support/depth_frames.hpp"
 #include "support/effort.hpp"
+#include "support/rates.hpp"
 #include "support/snapshots.hpp"
 
 namespace palpate {
 namespace {
+
+using test::kFrame;
 
 using Eigen::Vector3d;
 using test::frame_of;
@@ -18,8 +21,6 @@ using test::height_of;
 using test::looking_down;
 using test::small_camera;
 using test::wall;
-
-constexpr double kFrame = 1. / 30;
 
 SourceOptions depth_source(Policy policy) {
   SourceOptions options;

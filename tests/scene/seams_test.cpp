@@ -5,15 +5,16 @@
 #include <string>
 
 #include "support/depth_frames.hpp"
+#include "support/rates.hpp"
 #include "support/snapshots.hpp"
 #include "support/stream_run.hpp"
 
 namespace palpate {
 namespace {
 
-using Eigen::Vector3d;
+using test::kFrame;
 
-constexpr double kFrame = 1. / 30;
+using Eigen::Vector3d;
 
 // Cameras side by side along x, so far apart that neighbours share a third of what they see of the
 // plane z = 0, each turned a little, none of them in step.

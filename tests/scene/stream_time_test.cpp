@@ -5,10 +5,13 @@
 #include <random>
 
 #include "support/depth_frames.hpp"
+#include "support/rates.hpp"
 #include "support/stream_run.hpp"
 
 namespace palpate {
 namespace {
+
+using test::kFrame;
 
 using Eigen::Vector3d;
 using test::frame_of;
@@ -17,7 +20,6 @@ using test::small_camera;
 using test::StreamRun;
 using test::wall;
 
-constexpr double kFrame = 1. / 30;
 constexpr double kLead = 2e-3;
 constexpr double kStiffness = 500;
 

@@ -12,14 +12,16 @@
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/sensor/simulated_setup.hpp"
 #include "palpate/sensor/simulated_stream.hpp"
+#include "support/rates.hpp"
 
 namespace palpate {
 namespace {
 
+using test::kTick;
+
 constexpr int kCameras = 4;
 constexpr double kInterval = 1. / 30;  // s
 constexpr double kLatency = 0.01;      // s
-constexpr double kTick = 1e-3;         // s
 
 // Frames of a camera that were made touchable: stamps, and from when on they are felt.
 struct Lane {

@@ -9,16 +9,18 @@
 #include "palpate/sensor/stream.hpp"
 #include "sensor/fake_camera.hpp"
 #include "support/depth_frames.hpp"
+#include "support/rates.hpp"
 #include "support/stream_run.hpp"
 
 namespace palpate {
 namespace {
 
+using test::kFrame;
+
 using namespace sensor;
 using Eigen::Vector3d;
 using test::StreamRun;
 
-constexpr double kFrame = 1. / 30;
 constexpr double kLead = 2e-3;
 constexpr double kSilence = 0.3;
 constexpr double kFade = 0.4;

@@ -19,7 +19,7 @@ using test::pushed;
 
 constexpr double kDt = 1e-3;  // s
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Pressing into a floor at z = 0 along z, as a proxy would answer.
 GuardInput pressed(double z) {
@@ -78,7 +78,7 @@ TEST(Guard, ShortensToTheMaximumAndKeepsTheDirection) {
 TEST(Guard, HoldsZeroAtOnceAndUntilResetWhenSomethingIsNotFinite) {
   const std::vector<std::pair<GuardFault, GuardInput>> cases = [] {
     std::vector<std::pair<GuardFault, GuardInput>> all;
-    for (const double bad : {kNan, kInfinity, -kInfinity, 1e300}) {
+    for (const double bad : {kNaN, kInfinity, -kInfinity, 1e300}) {
       all.emplace_back(GuardFault::force, pushed({0, bad, 2}));
       all.emplace_back(GuardFault::hand, pushed({0, 0, 2}, {bad, 0, 0}));
       all.emplace_back(GuardFault::hand, pushed({0, 0, 2}));
@@ -86,7 +86,7 @@ TEST(Guard, HoldsZeroAtOnceAndUntilResetWhenSomethingIsNotFinite) {
       all.emplace_back(GuardFault::force, pushed({0, 0, 2}));
       all.back().second.stiffness = bad;
     }
-    for (const double bad : {kNan, kInfinity, -1e-9}) {
+    for (const double bad : {kNaN, kInfinity, -1e-9}) {
       all.emplace_back(GuardFault::time, pushed({0, 0, 2}));
       all.back().second.dt = bad;
     }
@@ -145,7 +145,7 @@ TEST(Guard, ComesUpSoftlyWhenItStartsInContact) {
 }
 
 TEST(Guard, RefusesOptionsOutOfRange) {
-  for (const double bad : {0.0, -1.0, kNan}) {
+  for (const double bad : {0.0, -1.0, kNaN}) {
     EXPECT_THROW(Guard({.maximum_force = bad}), Error);
     EXPECT_THROW(Guard({.slew = bad}), Error);
     EXPECT_THROW(Guard({.silence = bad}), Error);

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 using test::FreeDevice;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-const Vector3d kPressed(0.3e-3, 0.4e-3, -4e-3);  // m: 2 N at 500 N/m
+const Vector3d kPressedAt(0.3e-3, 0.4e-3, -4e-3);  // m: 2 N at 500 N/m
 
 // Steps at milliseconds, until the device is done.
 std::vector<Vector3d> by_servo(Device& device, Scene& scene, const ServoOptions& options) {
@@ -74,7 +74,7 @@ TEST(Servo, ShowsItsLastStepToThoseWhoWatch) {
   Servo servo(device, scene, test::first_links());
   EXPECT_EQ(servo.state().step, 0u);
   servo.tick(10.0);
-  device.state().position = kPressed;
+  device.state().position = kPressedAt;
   device.state().velocity = {0, 0, -1};
   device.state().buttons = 5;
   servo.tick(10.001);
@@ -82,7 +82,7 @@ TEST(Servo, ShowsItsLastStepToThoseWhoWatch) {
   EXPECT_EQ(state.step, 2u);
   EXPECT_EQ(state.time, 10.001);
   EXPECT_NEAR(state.dt, 1e-3, 1e-12);
-  EXPECT_EQ(state.hip, kPressed);
+  EXPECT_EQ(state.hip, kPressedAt);
   EXPECT_EQ(state.velocity, Vector3d(0, 0, -1));
   EXPECT_EQ(state.buttons, 5u);
   EXPECT_TRUE(state.contact.touching);
@@ -131,19 +131,19 @@ TEST(Servo, LatchesWhatIsNotFiniteAndForgetsItWhenTold) {
     FreeDevice device({0, 0, 5e-3});
     Servo servo(device, scene, test::first_links());
     servo.tick(0);
-    device.state().position = kPressed;
+    device.state().position = kPressedAt;
     EXPECT_GT(servo.tick(1e-3).force.norm(), 1);
     if (!bad_time) device.state().position.x() = kNan;
     EXPECT_EQ(servo.tick(bad_time ? kNan : 2e-3).force, Vector3d::Zero());
     EXPECT_EQ(device.force(), Vector3d::Zero());
-    device.state().position = kPressed;
+    device.state().position = kPressedAt;
     EXPECT_EQ(servo.tick(3e-3).force, Vector3d::Zero()) << "it stays";
     EXPECT_NE(servo.state().guard.fault, GuardFault::none);
     device.state().position = {0, 0, 5e-3};
     servo.reset();
     servo.tick(4e-3);
     EXPECT_EQ(servo.state().guard.fault, GuardFault::none);
-    device.state().position = kPressed;
+    device.state().position = kPressedAt;
     EXPECT_GT(servo.tick(5e-3).force.norm(), 1);
   }
 }
@@ -154,7 +154,7 @@ TEST(Servo, SaysThatADeviceFailed) {
   FreeDevice device({0, 0, 5e-3});
   Servo servo(device, scene, test::first_links());
   servo.tick(0);
-  device.state().position = kPressed;
+  device.state().position = kPressedAt;
   servo.tick(1e-3);
   device.state().status = DeviceStatus::failed;
   EXPECT_EQ(servo.tick(2e-3).force, Vector3d::Zero());
@@ -168,7 +168,7 @@ TEST(Servo, SurvivesAGapAndComesBackSoftly) {
   FreeDevice device({0, 0, 5e-3});
   Servo servo(device, scene, test::first_links());
   servo.tick(0);
-  device.state().position = kPressed;
+  device.state().position = kPressedAt;
   servo.tick(1e-3);
   EXPECT_EQ(servo.tick(0.101).force, Vector3d::Zero());
   EXPECT_TRUE(has(servo.state().guard.notes, GuardNote::silence));
@@ -206,7 +206,7 @@ TEST(Servo, FeelsNothingWhilePaused) {
   FreeDevice device({0, 0, 5e-3});
   Servo servo(device, scene, test::first_links());
   servo.tick(0);
-  device.state().position = kPressed;
+  device.state().position = kPressedAt;
   const double force = servo.tick(1e-3).force.norm();
   servo.pause(true);
   for (int i = 2; i < 10; ++i) {
@@ -224,7 +224,7 @@ TEST(Servo, ChangesWhatIsFeltWithoutAStep) {
   FreeDevice device({0, 0, 5e-3});
   Servo servo(device, scene, test::first_links());
   servo.tick(0);
-  device.state().position = kPressed;
+  device.state().position = kPressedAt;
   double before = servo.tick(1e-3).force.norm();
   servo.set_feel({.stiffness = 100});
   for (int i = 2; i < 200; ++i) {
@@ -247,15 +247,15 @@ TEST(Servo, NotesAStiffnessThatWaitsForMotion) {
     device.state().position = hand;
     return has(servo.tick(time).contact.notes, ContactNote::softer);
   };
-  EXPECT_FALSE(softer_at(kPressed, 1e-3));
+  EXPECT_FALSE(softer_at(kPressedAt, 1e-3));
   servo.set_feel({.stiffness = 1000});
-  EXPECT_TRUE(softer_at(kPressed, 2e-3));
-  EXPECT_TRUE(softer_at(kPressed, 3e-3));
+  EXPECT_TRUE(softer_at(kPressedAt, 2e-3));
+  EXPECT_TRUE(softer_at(kPressedAt, 3e-3));
   EXPECT_FALSE(softer_at({0, 0, 15e-3}, 4e-3)) << "in the air";
-  EXPECT_FALSE(softer_at(kPressed, 5e-3));
+  EXPECT_FALSE(softer_at(kPressedAt, 5e-3));
   EXPECT_EQ(servo.state().contact.stiffness, 1000);
   servo.set_feel({.stiffness = 100});
-  EXPECT_FALSE(softer_at(kPressed, 6e-3)) << "it is stiffer";
+  EXPECT_FALSE(softer_at(kPressedAt, 6e-3)) << "it is stiffer";
 }
 
 TEST(Servo, ChangesTheSurfaceAndTheGuardLeadsTheForceThere) {

@@ -11,7 +11,7 @@ namespace {
 
 using test::FreeDevice;
 
-const Eigen::Vector3d kPressed(0.3e-3, 0.4e-3, -4e-3);  // m: 2 N at 500 N/m
+const Eigen::Vector3d kPressedHip(0.3e-3, 0.4e-3, -4e-3);  // m: 2 N at 500 N/m
 
 TEST(StiffnessLimit, IsWhatTheDeviceBears) {
   Scene scene;
@@ -31,7 +31,7 @@ TEST(StiffnessLimit, IsWhatTheDeviceBears) {
   Servo servo(device, scene, options);
   EXPECT_NEAR(servo.stiffness_limit(), 150, 1e-9) << "the maker's, of magnified motion";
   servo.tick(0);
-  device.state().position = 0.5 * kPressed;
+  device.state().position = 0.5 * kPressedHip;
   EXPECT_NEAR(servo.tick(1e-3).contact.stiffness, 150, 1e-9);
   EXPECT_TRUE(has(servo.state().guard.notes, GuardNote::softened));
   servo.set_feel({.stiffness = 100});

@@ -9,17 +9,17 @@ namespace palpate::app::doctor {
 
 namespace {
 
-constexpr const char* kArea = "real-time rights";
+constexpr const char* kRights = "real-time rights";
 constexpr const char* kLimits = "etc/security/limits.d/palpate-limits.conf";
-constexpr double kPeriod = 1e6;  // us, the kernel's sched_rt_period_us
-constexpr double kEnough = 0.5;  // of it
+constexpr double kSchedulingPeriod = 1e6;  // us, the kernel's sched_rt_period_us
+constexpr double kEnough = 0.5;            // of it
 
 std::string without_remedy(const RealtimeRequest& request) {
   return request.remedy.substr(0, request.remedy.find(';'));
 }
 
 Finding granted(const System& system, const RealtimeRequest& request) {
-  Finding finding{kArea, request.what};
+  Finding finding{kRights, request.what};
   finding.words = "granted";
   if (request.granted) return finding;
   finding.severity = Severity::warning;
@@ -48,7 +48,7 @@ std::string limit(const std::string& limits, const std::string& name) {
 
 Finding check_limits(const System& system, const RealtimeReport& report) {
   const std::string limits = text(system, "proc/self/limits").value_or("");
-  Finding finding{kArea, "limits"};
+  Finding finding{kRights, "limits"};
   finding.words = fmt::format("rtprio {}, memlock {}", limit(limits, "Max realtime priority"),
                               limit(limits, "Max locked memory"));
   if (report.all_granted()) return finding;
@@ -59,7 +59,7 @@ Finding check_limits(const System& system, const RealtimeReport& report) {
 }
 
 Finding check_share(const System& system) {
-  Finding finding{kArea, "share of real-time threads"};
+  Finding finding{kRights, "share of real-time threads"};
   const auto told = text(system, "proc/sys/kernel/sched_rt_runtime_us");
   if (!told) {
     finding.words = "not limited by this kernel";
@@ -71,7 +71,7 @@ Finding check_share(const System& system) {
     finding.words = "not limited";
     return finding;
   }
-  const double share = static_cast<double>(microseconds) / kPeriod;
+  const double share = static_cast<double>(microseconds) / kSchedulingPeriod;
   finding.words = fmt::format("{:.0f} % of the time (kernel.sched_rt_runtime_us)", 100 * share);
   if (share >= kEnough) return finding;
   finding.severity = share > 0 ? Severity::warning : Severity::problem;

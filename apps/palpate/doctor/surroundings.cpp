@@ -12,7 +12,7 @@ namespace palpate::app::doctor {
 
 namespace {
 
-constexpr const char* kArea = "surroundings";
+constexpr const char* kSurroundings = "surroundings";
 // A cloud of 640 x 480 points of 16 bytes, which comes in one burst.
 constexpr long kLargeCloud = 640L * 480 * 16;
 constexpr const char* kLargestBuffer = "2147483647";  // what ROS 2's guide to DDS tells
@@ -53,7 +53,7 @@ std::pair<std::string, std::string> numbers_locale(const System& system) {
 }  // namespace
 
 Finding check_locales(const System& system) {
-  Finding finding{kArea, "locale"};
+  Finding finding{kSurroundings, "locale"};
   for (const auto& [name, value] : system.variables) {
     if (name != "LANG" && !name.starts_with("LC_")) continue;
     if (value.empty() || system.decimal_point(value)) continue;
@@ -71,7 +71,7 @@ Finding check_locales(const System& system) {
 Finding check_decimal_point(const System& system) {
   const auto [name, locale] = numbers_locale(system);
   const std::string point = system.decimal_point(locale).value_or(".");
-  Finding finding{kArea, "decimal point"};
+  Finding finding{kSurroundings, "decimal point"};
   finding.words = "numbers are written 0.5";
   if (point == ".") return finding;
   finding.severity = Severity::note;
@@ -83,7 +83,7 @@ Finding check_decimal_point(const System& system) {
 }
 
 Finding check_network_buffer(const System& system) {
-  Finding finding{kArea, "network buffer"};
+  Finding finding{kSurroundings, "network buffer"};
   const auto told = text(system, "proc/sys/net/core/rmem_max");
   if (!told) {
     finding.words = "not told here (net.core.rmem_max)";
@@ -104,7 +104,7 @@ Finding check_network_buffer(const System& system) {
 }
 
 Finding check_runtime_folder(const System& system) {
-  Finding finding{kArea, "XDG_RUNTIME_DIR"};
+  Finding finding{kSurroundings, "XDG_RUNTIME_DIR"};
   const std::string folder = variable(system, "XDG_RUNTIME_DIR");
   if (folder.empty()) {
     finding.severity = Severity::note;
@@ -127,7 +127,7 @@ Finding check_runtime_folder(const System& system) {
 }
 
 Finding check_matplotlib(const System& system) {
-  Finding finding{kArea, "pictures"};
+  Finding finding{kSurroundings, "pictures"};
   finding.words = "Python 3 with matplotlib";
   const bool there = system.succeeds(
       {drawing_python(), "-c",
@@ -140,7 +140,7 @@ Finding check_matplotlib(const System& system) {
 }
 
 Finding check_browser(const System& system) {
-  Finding finding{kArea, "browser"};
+  Finding finding{kSurroundings, "browser"};
   if (variable(system, "DISPLAY").empty() && variable(system, "WAYLAND_DISPLAY").empty()) {
     finding.severity = Severity::note;
     finding.words = "no desktop here: open the page from another machine, through ssh";
@@ -157,7 +157,7 @@ Finding check_browser(const System& system) {
 }
 
 Finding check_installation(const System& system) {
-  Finding finding{kArea, "palpate's files"};
+  Finding finding{kSurroundings, "palpate's files"};
   finding.words = system.share.string();
   const auto is_missing = [&](const char* name) {
     std::error_code ignored;

@@ -8,7 +8,7 @@ namespace palpate::app::doctor {
 
 namespace {
 
-constexpr const char* kArea = "haptic devices";
+constexpr const char* kVendors = "haptic devices";
 constexpr int kHaplyPort = 10001;
 constexpr const char* kForceDimension =
     "cd sdk-*/ && sudo cp lib/release/lin-x86_64-gcc/libd[hr]d.so.* /usr/local/lib/ && sudo "
@@ -39,7 +39,7 @@ std::string missing_library(const std::string& words) {
 }
 
 Finding checked(const VendorLibrary& library, const LibraryTrial& trial, bool needed) {
-  Finding finding{kArea, std::string(library.name)};
+  Finding finding{kVendors, std::string(library.name)};
   switch (trial.outcome) {
     case LibraryTrial::Outcome::loaded:
       finding.words = trial.words.empty() ? "loaded; its C interface tells no version"
@@ -67,7 +67,7 @@ Finding checked(const VendorLibrary& library, const LibraryTrial& trial, bool ne
 }
 
 Finding check_haply(const System& system, bool needed) {
-  Finding finding{kArea, "Haply's Inverse Service"};
+  Finding finding{kVendors, "Haply's Inverse Service"};
   if (system.listens(kHaplyPort)) {
     finding.words = fmt::format("answers on 127.0.0.1:{}", kHaplyPort);
     return finding;

@@ -15,7 +15,7 @@ constexpr int kMemory = 8;           // clouds
 constexpr double kParts = 16;        // of a point, to count running means of counts by
 constexpr double kMostLeaves = 1e9;  // farther off, voxels have no number
 constexpr double kFaded = 0.02;      // a voxel that counts less is gone
-constexpr double kSpacings = 2;      // leaf of a cloud that preparation would keep whole
+constexpr double kLeafSpacings = 2;  // leaf of a cloud that preparation would keep whole
 
 struct Sum {
   Eigen::Vector3d total = Eigen::Vector3d::Zero();
@@ -61,7 +61,7 @@ std::vector<Eigen::Vector3d> Fusion::usable(const PointCloud& cloud,
 
 void Fusion::choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor) {
   const PrepareReport report = prepare(cloud, prepare_, T_world_sensor).report;
-  leaf_ = report.voxel > 0 ? report.voxel : kSpacings * report.spacing;
+  leaf_ = report.voxel > 0 ? report.voxel : kLeafSpacings * report.spacing;
   origin_ = T_world_sensor * cloud.origin;
 }
 
