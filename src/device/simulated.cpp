@@ -170,11 +170,13 @@ void SimulatedDevice::advance() noexcept {
   const Eigen::Vector3d push =
       held + options_.hand.stiffness * goal + options_.hand.damping * goal_rate;
   const Eigen::Vector3d push_rate = options_.hand.stiffness * goal_rate;
+  const Eigen::Vector3d before = position_;
   if (options_.coulomb > 0) {
     advance_with_friction(push, push_rate);
   } else {
     flow(whole_step_, push, push_rate);
   }
+  work_ += held.dot(position_ - before);
   // A step without a write() goes on with the force before it.
   forces_[(steps_ + 1) % size] = forces_[steps_ % size];
   ++steps_;

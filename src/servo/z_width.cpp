@@ -54,9 +54,9 @@ GuardOptions bare(const WallOptions& wall) {
   return guard;
 }
 
-// Steps until `each(device)` says that it has seen enough, or the time is over.
-template <class Each>
-void run(SimulatedDevice& device, const Wall& wall, const WallOptions& options, Each each) {
+// Steps until `go_on(time, force)`, told of each force that is written, is false, or the time over.
+template <class GoOn>
+void run(SimulatedDevice& device, const Wall& wall, const WallOptions& options, GoOn go_on) {
   Guard guard(bare(options));
   const double dt = 1 / options.device.rate;
   const auto steps = static_cast<int>(kTime * options.device.rate);
@@ -64,7 +64,7 @@ void run(SimulatedDevice& device, const Wall& wall, const WallOptions& options, 
     const DeviceState hand = device.read();
     const Vector3d force = guard.pass(wall.felt(hand, dt));
     device.write(force);
-    if (!each(i * dt, force)) return;
+    if (!go_on(i * dt, force)) return;
   }
 }
 
@@ -94,21 +94,20 @@ Impact impact(const WallOptions& wall) {
   options.velocity.z() = -wall.speed;
   SimulatedDevice device(options);
   Impact result;
-  Vector3d before = options.position;
-  Vector3d force = Vector3d::Zero();
   bool inside = false;
   double speed_in = wall.speed;
-  run(device, {wall.stiffness, false}, wall, [&](double, const Vector3d& wanted) {
+  int free_steps = 0;
+  run(device, {wall.stiffness, false}, wall, [&](double, const Vector3d& force) {
     const Vector3d& place = device.true_position();
     const double speed = device.true_velocity().z();
-    result.energy += force.dot(place - before);
-    before = place;
-    force = wanted;
+    result.energy = device.work();
     if (!inside && place.z() < 0) {
       inside = true;
       speed_in = -speed;
     }
-    if (!inside || place.z() < 0 || !force.isZero(0)) return true;
+    const bool left = inside && place.z() >= 0 && force.isZero(0);
+    free_steps = left ? free_steps + 1 : 0;
+    if (free_steps <= wall.device.delay) return true;  // a force may still be on its way
     result.rebound = std::max(0.0, speed) / speed_in;
     return false;
   });

@@ -66,6 +66,9 @@ class SimulatedDevice final : public Device {
   [[nodiscard]] const Eigen::Vector3d& true_position() const noexcept { return position_; }
   [[nodiscard]] const Eigen::Vector3d& true_velocity() const noexcept { return velocity_; }
 
+  /// What the forces that acted on the hand gave to it so far, J; below zero: took from it.
+  [[nodiscard]] double work() const noexcept { return work_; }
+
  private:
   static constexpr std::size_t kMaximumDelay = 16;
 
@@ -92,6 +95,7 @@ class SimulatedDevice final : public Device {
   Eigen::Vector3d position_;
   Eigen::Vector3d velocity_;
   std::array<Eigen::Vector3d, kMaximumDelay + 1> forces_;  // ring of written forces
+  double work_ = 0;
   std::uint64_t steps_ = 0;
   DeviceState state_;
   bool started_ = false;
