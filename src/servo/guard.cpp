@@ -26,7 +26,8 @@ void validate(const GuardOptions& options) {
           "give a number above 0, infinity for no limit");
   const PassivityOptions& passivity = options.passivity;
   require.positive("passivity.mass (kg)", passivity.mass, "give a mass above 0");
-  require.not_negative("passivity.memory (J)", passivity.memory, "an energy that is 0 or more");
+  require.not_negative("passivity.memory (J)", passivity.memory,
+                       "give an energy that is 0 or more");
   require(passivity.delay >= 0 && passivity.delay <= Passivity::kMaximumDelay, "passivity.delay",
           passivity.delay, "give 0 to 16 steps");
   require(passivity.forget > 0, "passivity.forget (s)", passivity.forget, "give a time above 0");
@@ -47,9 +48,9 @@ GuardFault judge(const GuardInput& input) noexcept {
   return GuardFault::none;
 }
 
-// What the stretched spring holds, J.
-double stored(const GuardInput& input) noexcept {
-  return input.stiffness > 0 ? input.force.squaredNorm() / (2 * input.stiffness) : 0;
+// What a spring holds that is stretched to `force`, J.
+double stored(const Vector3d& force, double stiffness) noexcept {
+  return stiffness > 0 ? force.squaredNorm() / (2 * stiffness) : 0;
 }
 
 }  // namespace
@@ -70,7 +71,7 @@ Vector3d Guard::pass(const GuardInput& input) noexcept {
   if (const GuardFault found = judge(input); found != GuardFault::none) return fail(found);
   if (!started_) begin(input);
   const Motion motion = follow(input);
-  passivity_.account(before_.force, motion.way, stored(input), input.dt);
+  passivity_.account(before_.force, motion.way, held(input), input.dt);
   state_.energy = passivity_.energy();
   if (input.dt > options_.silence) {
     gain_ = 0;
@@ -92,14 +93,22 @@ void Guard::begin(const GuardInput& input) noexcept {
   velocity_ = input.velocity - input.drift;
   gain_ = 0;
   slewed_.setZero();
+  stiffness_ = 0;
   passivity_.reset();
   started_ = true;
 }
 
-Guard::Motion Guard::follow(const GuardInput& input) noexcept {
+Guard::Motion Guard::follow(const GuardInput& input) const noexcept {
   const Vector3d now = input.velocity - input.drift;
   return {input.hip - before_.hip - input.drift * input.dt,
           velocity_ + kSmoothing * (now - velocity_)};
+}
+
+// What the spring holds, or a force that fades after the surface has gone, as a spring let loose
+// slowly.
+double Guard::held(const GuardInput& input) noexcept {
+  if (input.stiffness > 0) stiffness_ = input.stiffness;
+  return std::max(stored(input.force, input.stiffness), stored(slewed_, stiffness_));
 }
 
 // The part along the normal is never turned round.
@@ -123,7 +132,7 @@ double Guard::affordable_gain(const GuardInput& input) const noexcept {
   if (options_.soft_start == 0) return 1;
   const double risen = gain_ + input.dt / options_.soft_start;
   if (input.normal.isZero(0)) return risen;
-  const double whole = stored(input);
+  const double whole = stored(input.force, input.stiffness);
   const double put_in = -passivity_.energy();
   return put_in < risen * whole ? put_in / whole : risen;
 }
@@ -138,10 +147,18 @@ Vector3d Guard::brake(const GuardInput& input, const Motion& motion,
   return force + brake;
 }
 
+// A force that fades in the air and gives more than was paid for goes with the hand, as the spring
+// that it was.
+bool Guard::fades_unpaid(const GuardInput& input) const noexcept {
+  return options_.passivity.on && input.normal.isZero(0) &&
+         stored(slewed_, stiffness_) > -passivity_.energy();
+}
+
 // Leaving a surface, K of this step is 0 and the change is explained by that of the last one.
 Vector3d Guard::limit_change(const GuardInput& input, const Motion& motion,
                              const Vector3d& force) noexcept {
-  const double stiffness = std::max(input.stiffness, before_.stiffness);
+  const double loose = fades_unpaid(input) ? stiffness_ : 0;
+  const double stiffness = std::max({input.stiffness, before_.stiffness, loose});
   const double explained = stiffness * (input.hip - before_.hip).norm() +
                            options_.damping * (motion.velocity - velocity_).norm();
   const double allowed = explained + options_.slew * input.dt;

@@ -11,6 +11,14 @@ const Vector3d& Passivity::sent(int steps_ago) const noexcept {
   return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(steps_ago)) % sent_.size()];
 }
 
+// Does no force act, and none come?
+bool Passivity::rests() const noexcept {
+  for (int i = 0; i <= options_.delay; ++i) {
+    if (!sent(i).isZero(0)) return false;
+  }
+  return true;
+}
+
 void Passivity::account(const Vector3d& force, const Vector3d& way, double stored,
                         double dt) noexcept {
   if (!options_.on) return;
@@ -19,6 +27,10 @@ void Passivity::account(const Vector3d& force, const Vector3d& way, double store
   energy_ += sent(options_.delay).dot(way);
   const double dissipated = -energy_ - stored;
   if (dissipated <= 0) return;
+  if (stored == 0 && rests()) {
+    energy_ = 0;
+    return;
+  }
   energy_ = -stored - std::min(dissipated / (1 + dt / options_.forget), options_.memory);
 }
 

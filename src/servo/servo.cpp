@@ -25,7 +25,8 @@ GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
   if (device.mass > 0) options.passivity.mass = device.mass;
   if (device.delay) {
     const double steps = std::round(*device.delay * device.rate);
-    options.passivity.delay = static_cast<int>(std::clamp(steps, 0.0, 16.0));
+    options.passivity.delay =
+        static_cast<int>(std::clamp<double>(steps, 0, Passivity::kMaximumDelay));
   }
   if (device.rate > 0) options.silence = std::max(options.silence, kSilencePeriods / device.rate);
   return options;

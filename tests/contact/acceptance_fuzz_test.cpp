@@ -6,6 +6,7 @@
 #include "support/effort.hpp"
 #include "support/point_field.hpp"
 #include "support/point_shapes.hpp"
+#include "support/random_hand.hpp"
 #include "support/rates.hpp"
 
 namespace palpate::test {
@@ -76,36 +77,6 @@ std::vector<FuzzScene> fuzz_scenes() {
           {"sheet", sheet(noisy, 0.03), 0.045, true, faces},
           {"plate", plate(noisy, 0.03, 0.008), 0.045, true, outside_plate}};
 }
-
-/// A hand that goes from one random place to the next, each way at its own speed up to 2 m/s, and
-/// jitters: some of its ways end in the solid, some go through everything.
-class RandomHand {
- public:
-  RandomHand(unsigned seed, double size) : random_(seed), size_(size), place_(0, 0, 2 * size) {}
-
-  [[nodiscard]] Vector3d next() {
-    if ((goal_ - place_).norm() < 1e-3) {
-      goal_ = size_ * vector();
-      speed_ = std::pow(10.0, -2 + 1.15 * (1 + uniform_(random_)));
-    }
-    const Vector3d way = goal_ - place_;
-    place_ += way * std::min(1.0, speed_ * kTick / way.norm());
-    return place_ + 2e-5 * vector();
-  }
-
- private:
-  Vector3d vector() {
-    const double x = uniform_(random_);
-    const double y = uniform_(random_);
-    return {x, y, uniform_(random_)};
-  }
-  std::mt19937 random_;
-  std::uniform_real_distribution<double> uniform_{-1, 1};
-  double size_;
-  double speed_ = 0.1;
-  Vector3d place_;
-  Vector3d goal_ = Vector3d::Zero();
-};
 
 struct FuzzTally {
   int touching = 0;

@@ -119,6 +119,52 @@ TEST(Guard, WorkOfAMovingSurfaceIsItsOwn) {
   EXPECT_NEAR(guard.state().energy, 0, 1e-9);
 }
 
+// Pressed 16 mm deep at a walking pace; then the surface is gone, and the hand flies out at 1 m/s.
+double given_by_fading(bool passivity) {
+  GuardOptions options = plain();
+  options.passivity = {.on = passivity, .delay = 0};
+  Guard guard(options);
+  GuardInput input = touching({0, 0, 0}, {0, 0, -0.1});
+  Vector3d force = Vector3d::Zero();
+  double given = 0;
+  const auto go = [&](double way) {
+    given += force.z() * way;
+    input.hip.z() += way;
+    force = guard.pass(input);
+  };
+  for (int i = 1; i <= 160; ++i) {
+    input.force.z() = 500e-4 * i;
+    go(-1e-4);
+  }
+  EXPECT_NEAR(given, -64e-3, 1e-3);
+  input = pushed({0, 0, 0}, input.hip);
+  input.stiffness = 0;
+  input.velocity.z() = 1;
+  for (int i = 0; i < 100; ++i) go(1e-3);
+  EXPECT_EQ(force, Vector3d::Zero());
+  return given;
+}
+
+TEST(Guard, AForceThatFadesGivesNoMoreThanWasPaidFor) {
+  EXPECT_GT(given_by_fading(false), 30e-3) << "what the slew alone does";
+  EXPECT_LT(given_by_fading(true), 5e-3);
+}
+
+TEST(Guard, NoContactPaysForTheNext) {
+  GuardOptions options = plain();
+  options.passivity = {.on = true, .delay = 0};
+  Guard guard(options);
+  for (int i = 0; i < 100; ++i) {  // dragged through 1 N: 10 mJ, of which nothing is stored
+    GuardInput input = touching({-1, 0, 0}, {0.1, 0, 0});
+    input.hip = Vector3d(1e-4 * i, 0, 0);
+    input.stiffness = 1e6;
+    static_cast<void>(guard.pass(input));
+  }
+  EXPECT_LT(guard.state().energy, -5e-3);
+  for (int i = 0; i < 10; ++i) static_cast<void>(guard.pass(pushed({0, 0, 0}, {0.01, 0, 0})));
+  EXPECT_EQ(guard.state().energy, 0);
+}
+
 TEST(Guard, SaysWhatIsSofterThanAskedFor) {
   Guard guard(plain());
   GuardInput input = touching({0, 0, 0.1}, {0, 0, 0});

@@ -79,7 +79,9 @@ struct GuardState {
   GuardNote notes = GuardNote::none;  ///< of the last step
   GuardFault fault = GuardFault::none;
   GuardCounts counts;
-  double energy = 0;  ///< of the passivity ledger, J: above zero was given to the hand
+  /// Of the passivity ledger, J: above zero was given to the hand. Work in the world, which is
+  /// Workspace::scale times that on the hand.
+  double energy = 0;
 };
 
 /// Everything between the proxy's force and the device: a chain of links, each of which lets a good
@@ -126,11 +128,13 @@ class Guard {
   };
 
   void begin(const GuardInput& input) noexcept;
-  [[nodiscard]] Motion follow(const GuardInput& input) noexcept;
+  [[nodiscard]] Motion follow(const GuardInput& input) const noexcept;
+  [[nodiscard]] double held(const GuardInput& input) noexcept;
   [[nodiscard]] Eigen::Vector3d damp(const GuardInput& input, const Motion& motion) const noexcept;
   [[nodiscard]] Eigen::Vector3d start(const GuardInput& input,
                                       const Eigen::Vector3d& force) noexcept;
   [[nodiscard]] double affordable_gain(const GuardInput& input) const noexcept;
+  [[nodiscard]] bool fades_unpaid(const GuardInput& input) const noexcept;
   [[nodiscard]] Eigen::Vector3d limit_change(const GuardInput& input, const Motion& motion,
                                              const Eigen::Vector3d& force) noexcept;
   [[nodiscard]] Eigen::Vector3d brake(const GuardInput& input, const Motion& motion,
@@ -147,6 +151,7 @@ class Guard {
   GuardInput before_;                                   // its force is the one that was let through
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  // smoothed, of the step before
   Eigen::Vector3d slewed_ = Eigen::Vector3d::Zero();    // let through by slew and clamp then
+  double stiffness_ = 0;                                // that made a force last, N/m
   double gain_ = 0;                                     // of the soft start
   bool started_ = false;
 };

@@ -31,7 +31,8 @@ class Passivity {
 
   /// `force` (N, on the hand) was sent at the step before; over the last `dt` (s) the hand went
   /// `way` (m) against the surface. `stored` (J): what the stretched spring holds and will give
-  /// back; that is never forgotten.
+  /// back; that is never forgotten. What was taken is forgotten in `forget`, and when no force acts
+  /// any more: no contact pays for the next one.
   void account(const Eigen::Vector3d& force, const Eigen::Vector3d& way, double stored,
                double dt) noexcept;
 
@@ -46,6 +47,7 @@ class Passivity {
 
  private:
   [[nodiscard]] const Eigen::Vector3d& sent(int steps_ago) const noexcept;
+  [[nodiscard]] bool rests() const noexcept;
 
   PassivityOptions options_;
   std::array<Eigen::Vector3d, kMaximumDelay + 1> sent_;  // ring

@@ -1,0 +1,221 @@
+// Every guard on, a stiffness that the device can bear: no surface gives a hand more than it put
+// in.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "apps/palpate/exploration_plan.hpp"
+#include "palpate/io/read_cloud.hpp"
+#include "palpate/io/synthetic.hpp"
+#include "safety/given_energy.hpp"
+#include "support/effort.hpp"
+#include "support/point_shapes.hpp"
+#include "support/random_hand.hpp"
+#include "support/snapshots.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kSteps = 300'000;
+
+// Given in all, J; and in one contact, where the brake may owe more for a while: it is never
+// stronger than a sampled damper can be.
+constexpr double kMost = 1e-3;
+constexpr double kMostOwed = 5e-3;
+
+void expect_paid(const GivenEnergy& given) {
+  testing::Test::RecordProperty("in_all_J", std::to_string(given.in_all));
+  testing::Test::RecordProperty("in_a_contact_J", std::to_string(given.in_a_contact));
+  EXPECT_LE(given.in_all, kMost);
+  EXPECT_LE(given.in_a_contact, kMostOwed);
+  EXPECT_GT(given.largest_force, 0.5) << "hardly anything was touched";
+}
+
+// A person who wants to go where RandomHand goes.
+class RandomGuide final : public HandGuide {
+ public:
+  explicit RandomGuide(const RandomHand& hand) : hand_(hand) {}
+  [[nodiscard]] HandWish wanted(double, const Vector3d&) noexcept override {
+    return {hand_.next(), 0};
+  }
+
+ private:
+  RandomHand hand_;
+};
+
+struct EnergyFuzzScene {
+  const char* name;
+  std::vector<TestPoint> points;
+  bool two_sided;
+};
+
+std::vector<EnergyFuzzScene> energy_fuzz_scenes() {
+  const Sampling clean;
+  const Sampling noisy{.jitter = 0.2, .noise = 0.25, .tilt = 0.1};
+  return {{"sphere", ball(clean, 0.03), false},
+          {"noisy_sphere", ball(noisy, 0.03), false},
+          {"sheet", sheet(noisy, 0.03), true},
+          {"plate", plate(noisy, 0.03, 0.008), true},
+          {"corner", wedge(noisy, std::numbers::pi / 2, 0.03), true}};
+}
+
+using EnergyFuzzCase = std::tuple<int, FieldKind>;
+class EnergyFuzz : public testing::TestWithParam<EnergyFuzzCase> {};
+
+TEST_P(EnergyFuzz, NoSurfaceGivesMoreThanWasPutIn) {
+  const auto& [index, kind] = GetParam();
+  const EnergyFuzzScene made = energy_fuzz_scenes()[static_cast<std::size_t>(index)];
+  Scene scene;
+  scene.add("points").publish(still(made.points));
+  ServoOptions options;
+  options.field.kind = kind;
+  options.field.two_sided = made.two_sided;
+  for (const double mu : {0.0, 0.4}) {
+    options.proxy.friction = {.static_coefficient = mu, .dynamic_coefficient = mu};
+    RandomGuide guide(
+        RandomHand(31 * static_cast<unsigned>(index) + static_cast<unsigned>(kind), 0.045));
+    SimulatedDevice device({}, guide);
+    const GivenEnergy given = given_energy(device, scene, options, effort(kSteps));
+    expect_paid(given);
+    EXPECT_GT(given.contacts, effort(kSteps) / 10'000) << "friction " << mu;
+  }
+}
+
+std::string energy_fuzz_name(const testing::TestParamInfo<EnergyFuzzCase>& tested) {
+  constexpr const char* kKinds[] = {"balanced", "pointset", "metaball"};
+  const auto& [index, kind] = tested.param;
+  return std::string(energy_fuzz_scenes()[static_cast<std::size_t>(index)].name) + "_" +
+         kKinds[static_cast<int>(kind)];
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EnergyFuzz,
+                         testing::Combine(testing::Range(0, 5),
+                                          testing::Values(FieldKind::metaball, FieldKind::pointset,
+                                                          FieldKind::balanced)),
+                         energy_fuzz_name);
+
+TEST(Energy, WithoutTheGuardAStiffBallGivesWhatNobodyPutIn) {
+  Scene scene;
+  scene.add("points").publish(still(ball({}, 0.03)));
+  ServoOptions options;
+  options.field.two_sided = false;
+  options.proxy.stiffness = 2000;
+  options.guard = {.slew = 1e9, .damping = 0, .soft_start = 0, .passivity = {.on = false}};
+  options.guard.stiffness_share = std::numeric_limits<double>::infinity();
+  RandomGuide guide(RandomHand(1, 0.045));
+  SimulatedDevice device({}, guide);
+  const GivenEnergy given = given_energy(device, scene, options, effort(kSteps));
+  EXPECT_GT(given.in_all, 10 * kMost);
+}
+
+// A sheet that heaves: 5 mm up and down at 1 Hz, in snapshots of 30 ms, as a camera's surface does.
+class HeavingSheet {
+ public:
+  explicit HeavingSheet(Source& source) : source_(source) {}
+
+  void show(double time) {
+    if (time < end_) return;
+    const double start = end_;
+    end_ += kInterval;
+    auto snapshot = std::make_unique<Snapshot>();
+    snapshot->start = start;
+    snapshot->end = end_;
+    snapshot->layers.push_back({moving(height(start), height(end_)), 1, 1});
+    source_.publish(std::move(snapshot));
+  }
+
+ private:
+  static constexpr double kInterval = 0.03;
+
+  static double height(double time) { return 5e-3 * std::sin(2 * std::numbers::pi * time); }
+
+  static std::shared_ptr<const SurfacePoints> moving(double from, double to) {
+    SurfacePoints points = make_points(plane(from));
+    for (const auto& p : points.grid.points()) {
+      points.end_positions.push_back(p + Eigen::Vector3f(0, 0, static_cast<float>(to - from)));
+    }
+    finish(points);
+    return share(std::move(points));
+  }
+
+  Source& source_;
+  double end_ = 0;
+};
+
+TEST(Energy, AHeavingSheetGivesNoMoreThanItDoesItself) {
+  Scene scene;
+  HeavingSheet sheet(scene.add("sheet"));
+  SimulatedDevice device({}, {{0, {0, 0, 0.01}}, {1, {0, 0, -4e-3}}, {20, {0.02, 0.01, -4e-3}}});
+  const GivenEnergy given =
+      given_energy(device, scene, {}, effort(10'000), [&](double time) { sheet.show(time); });
+  expect_paid(given);
+}
+
+// An exploration as `palpate touch` plans it, on a surface as stiff as the device bears.
+void expect_exploration_is_paid(const PointCloud& cloud) {
+  Scene scene;
+  scene.add("cloud", cloud);
+  ServoOptions options;
+  app::PlanOptions wanted;
+  wanted.duration = 0.001 * effort(10'000);
+  const app::ExplorationPlan plan = app::plan_exploration(scene, options.field, wanted);
+  options.workspace = plan.workspace;
+  options.proxy.stiffness = plan.stiffness;
+  SimulatedDevice device({}, plan.target);
+  expect_paid(given_energy(device, scene, options, effort(10'000)));
+}
+
+class SyntheticEnergy : public testing::TestWithParam<std::string> {};
+
+TEST_P(SyntheticEnergy, ExplorationGivesNoMoreThanWasPutIn) {
+  expect_exploration_is_paid(synthetic_cloud(GetParam()));
+}
+
+std::string energy_test_name(const testing::TestParamInfo<std::string>& tested) {
+  std::string name = std::filesystem::path(tested.param).stem();
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+}
+
+std::vector<std::string> clouds_to_pay_for() {
+  std::vector<std::string> names;
+  for (const SyntheticName& each : synthetic_names()) names.emplace_back(each.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SyntheticEnergy, testing::ValuesIn(clouds_to_pay_for()),
+                         energy_test_name);
+
+class RealEnergy : public testing::TestWithParam<std::string> {};
+
+TEST_P(RealEnergy, ExplorationGivesNoMoreThanWasPutIn) {
+  const char* data = std::getenv("PALPATE_DATA");
+  if (data == nullptr) GTEST_SKIP() << "PALPATE_DATA is not set";
+  const std::filesystem::path file = std::filesystem::path(data) / GetParam();
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no such file: " << file;
+  ReadOptions options;
+  options.intrinsics = Pinhole{.fx = 525, .fy = 525, .cx = 319.5, .cy = 239.5};
+  expect_exploration_is_paid(read_cloud(file, options));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, RealEnergy,
+    testing::Values("stanford_bunny/bun_zipper.ply", "stanford_dragon/dragon_vrip.ply.gz",
+                    "pcl_tabletop/osd_test0.pcd", "pcl_tabletop/room_scan1.pcd",
+                    "realsense_makerspace_mit/depth/000125.png", "redwood_open3d_mit/fragment.pcd",
+                    "multiview_shelf_apc/depth/000000.png", "pdal_small/autzen_trim.las",
+                    "lamppost/lamppost.pcd"),
+    energy_test_name);
+
+}  // namespace
+}  // namespace palpate::test
