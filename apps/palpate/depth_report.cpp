@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
 
+#include "apps/palpate/json.hpp"
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/quantile.hpp"
 #include "apps/palpate/touch_surface.hpp"
@@ -15,8 +15,6 @@
 namespace palpate::app {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // What is said of a phase at the end of a run.
 std::string_view in_words(StreamPhase phase) {

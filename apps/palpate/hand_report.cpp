@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/palpate/json.hpp"
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/words.hpp"
 
 namespace palpate::app {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);

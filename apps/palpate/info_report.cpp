@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "apps/palpate/density_map.hpp"
+#include "apps/palpate/json.hpp"
 #include "apps/palpate/words.hpp"
 
 namespace palpate::app {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kMapColumns = 72;
 

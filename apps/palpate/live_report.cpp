@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
+#include "apps/palpate/json.hpp"
 #include "apps/palpate/words.hpp"
 
 namespace palpate::app {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // "slowed 12 steps, shortened 3"; empty: it let everything pass.
 std::string guard_words(const GuardCounts& counts) {

@@ -64,7 +64,7 @@ int run(int argc, char** argv) {
   CLI::App* demo_app =
       program.add_subcommand("demo", "Show a made-up scene on a page, to be touched with a mouse");
   add_demo_options(*demo_app, demo_options);
-  ZWidthOptions zwidth_options;
+  ZWidthChoices zwidth_options;
   CLI::App* zwidth_app =
       program.add_subcommand("zwidth", "Map how stiff a surface a device can hold, beside theory");
   add_zwidth_options(*zwidth_app, zwidth_options);

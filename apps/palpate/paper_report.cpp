@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <thread>
 
+#include "apps/palpate/json.hpp"
 #include "apps/palpate/words.hpp"
 
 namespace palpate::app {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double degrees(double radians) {
   return radians * 180 / std::numbers::pi;

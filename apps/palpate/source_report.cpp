@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "apps/palpate/depth_report.hpp"
+#include "apps/palpate/json.hpp"
 #include "apps/palpate/words.hpp"
 
 namespace palpate::app {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string range(double smallest, double middle, double largest) {
   if (largest <= 1.001 * smallest) return length(middle);

@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/palpate/json.hpp"
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/picture_script.hpp"
 #include "apps/palpate/source_report.hpp"
 
 namespace palpate::app {
-
-using Json = nlohmann::ordered_json;
 
 void print_report(const TouchReport& report, std::FILE* out) {
   for (const TouchedSource& source : report.touched.sources) print_source(source, out);

@@ -21,21 +21,23 @@ constexpr const char* kZWidthFooter = R"(Examples:
   palpate zwidth
   palpate zwidth --device-profile omega --picture omega.png
   palpate zwidth --device-profile my-arm --profiles arms.toml --csv arm.csv
+  palpate zwidth --device forcedimension
 
 A profile file is TOML, a table a device, with the keys that are known of it: title, source,
 maximum_force, peak_force (N), maximum_stiffness (N/m), damping (N s/m), coulomb (N), mass (kg),
 resolution, workspace_radius (m), rate (Hz), delay (s).
 
 Walls are simulated: a mass with friction behind encoders, a force that is held for a step and comes
-late. Nothing moves.)";
+late. Nothing moves; but with --device a person presses on walls that the device renders, each stiffer
+than the one before, until one makes it shake. It says what comes and asks first.)";
 
 // Every file is made before the work: a place that does not exist is told at once.
-struct Outputs {
+struct ZWidthOutputs {
   std::optional<OutputFile> csv;
   std::optional<OutputFile> json;
   std::optional<OutputFile> picture;
 
-  explicit Outputs(const ZWidthOptions& options) {
+  explicit ZWidthOutputs(const ZWidthOptions& options) {
     if (options.picture == "-") {
       throw UsageError("--picture cannot go to standard output; name a file such as a.png");
     }
@@ -55,7 +57,9 @@ void write(std::optional<OutputFile>& file, const std::string& text) {
 
 }  // namespace
 
-void add_zwidth_options(CLI::App& command, ZWidthOptions& o) {
+void add_zwidth_options(CLI::App& command, ZWidthChoices& choices) {
+  ZWidthOptions& o = choices.map;
+  WallTrialRunOptions& trial = choices.trial;
   command
       .add_option("--device-profile", o.profile,
                   wrapped("kind of device: simulated (default), unknown, touch, omega, falcon, ... "
@@ -84,11 +88,41 @@ void add_zwidth_options(CLI::App& command, ZWidthOptions& o) {
   command.add_option("--json", o.json, "the same as data; - is standard output")->type_name("FILE");
   command.add_option("--picture", o.picture, "the map as PNG (needs python3-matplotlib)")
       ->type_name("FILE.png");
+  CLI::Option* const device =
+      command
+          .add_option("--device", trial.device,
+                      wrapped("measure on this device (palpate devices); it asks first"))
+          ->type_name("NAME")
+          ->group("On hardware");
+  for (const char* simulated :
+       {"--device-profile", "--profiles", "--rate", "--delay", "--damping", "--csv", "--picture"}) {
+    device->excludes(command.get_option(simulated));
+  }
+  const auto on_hardware = [&](CLI::Option* option) {
+    return option->needs(device)->group("On hardware");
+  };
+  on_hardware(
+      command.add_flag("--confirm", trial.confirmed, "somebody holds the device: do not ask"));
+  on_hardware(
+      command.add_option("--maximum-force", trial.trial.maximum_force, "of a wall (2; 4 at most)"))
+      ->check(number("above 0.3, up to 4 N", [](double x) { return x > 0.3 && x <= 4; }))
+      ->type_name("N");
+  on_hardware(command.add_option("--patience", trial.trial.patience,
+                                 wrapped("time without progress after which it ends (30)")))
+      ->check(positive())
+      ->type_name("SECONDS");
   command.footer(kZWidthFooter);
 }
 
-void zwidth(const ZWidthOptions& options) {
-  Outputs outputs(options);
+void zwidth(const ZWidthChoices& choices) {
+  const ZWidthOptions& options = choices.map;
+  if (!choices.trial.device.empty()) {
+    WallTrialRunOptions trial = choices.trial;
+    trial.trial.damping = options.wall_damping;
+    trial.json = options.json;
+    return run_wall_trial(trial);
+  }
+  ZWidthOutputs outputs(options);
   const ZWidthMap map = [&] {
     Progress progress("simulating walls");
     return measure_zwidth(options, [&](double done) { progress.update(done); });

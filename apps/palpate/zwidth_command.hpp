@@ -1,5 +1,6 @@
 #pragma once
 
+#include "apps/palpate/wall_trial_run.hpp"
 #include "apps/palpate/zwidth_map.hpp"
 
 namespace CLI {
@@ -8,10 +9,15 @@ class App;
 
 namespace palpate::app {
 
-void add_zwidth_options(CLI::App& command, ZWidthOptions& options);
+struct ZWidthChoices {
+  ZWidthOptions map;
+  WallTrialRunOptions trial;  ///< on hardware, where a device is named
+};
 
-/// Simulates how stiff a wall may be, and tells it as asked.
+void add_zwidth_options(CLI::App& command, ZWidthChoices& choices);
+
+/// Simulates, or measures on hardware, how stiff a wall may be, and tells it as asked.
 /// @throws Error, UsageError.
-void zwidth(const ZWidthOptions& options);
+void zwidth(const ZWidthChoices& choices);
 
 }  // namespace palpate::app

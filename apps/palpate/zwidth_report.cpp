@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/palpate/json.hpp"
 #include "apps/palpate/words.hpp"
 #include "palpate/servo/z_width.hpp"
 
 namespace palpate::app {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // What was not found below the stiffest wall that is tried.
 std::string stiffness(double newtons_per_metre) {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "apps/palpate/json.hpp"
 #include "apps/program.hpp"
 #include "device/remote_client.hpp"
 #include "palpate/base/clock.hpp"
@@ -21,8 +21,6 @@ namespace palpate::app {
 namespace {
 
 using test::contains;
-
-using Json = nlohmann::json;
 
 constexpr double kAbove = 5e-3;  // m over where the device stands
 

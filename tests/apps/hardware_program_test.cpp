@@ -1,8 +1,6 @@
 // A hand that holds hardware: the maker's library is a double (tests/device/fake_dhd.cpp).
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "apps/program.hpp"
 #include "support/contains.hpp"
 
@@ -37,6 +35,22 @@ TEST(HardwareProgram, SaysWhyItIsNotThere) {
   refused("--device phantom", 2, "palpate devices");
   refused(kDevice + " " + kDevice, 2, "two hands cannot hold");
   refused(kDevice + " --simulated-time", 2, "real time");
+}
+
+TEST(HardwareProgram, MeasuresWallsOnlyWhenSomebodyHasConfirmed) {
+  Shell shell;
+  const Outcome unasked = shell.run("zwidth " + kDevice);
+  EXPECT_EQ(unasked.code, 2) << unasked.err;
+  EXPECT_TRUE(contains(unasked.err, "This moves the device")) << unasked.err;
+  EXPECT_TRUE(contains(unasked.err, "--confirm")) << unasked.err;
+  EXPECT_FALSE(contains(unasked.err, "holds forcedimension")) << "it was opened";
+  const Outcome alone = shell.run("zwidth --confirm --patience 0.7 --json found.json " + kDevice);
+  EXPECT_EQ(alone.code, 1) << alone.err;
+  EXPECT_TRUE(contains(alone.err, "press down on the wall")) << alone.err;
+  EXPECT_TRUE(contains(alone.err, "nobody pressed")) << alone.err;
+  EXPECT_TRUE(contains(shell.read("found.json"), "stable_N_per_m")) << shell.read("found.json");
+  EXPECT_EQ(shell.run("zwidth --confirm").code, 2) << "of which device?";
+  EXPECT_EQ(shell.run("zwidth --rate 1000 " + kDevice).code, 2) << "both simulated and not";
 }
 
 }  // namespace

@@ -7,15 +7,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
+#include "apps/palpate/json.hpp"
 #include "apps/program.hpp"
 #include "support/effort.hpp"
 
 namespace palpate::app {
 namespace {
-
-using Json = nlohmann::json;
 
 // The thread sanitizer wants one processor for all threads.
 bool too_slow_for_cameras() {

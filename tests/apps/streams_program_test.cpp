@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
+#include "apps/palpate/json.hpp"
 #include "apps/program.hpp"
 
 namespace palpate::app {
 namespace {
-
-using Json = nlohmann::json;
 
 // The log without its column of computing times.
 std::string without_times(const Shell& shell, const std::string& name) {

@@ -1,14 +1,11 @@
 // Runs that are shown on a page. What the page itself does is tested in a browser (tests/page).
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "apps/palpate/json.hpp"
 #include "apps/program.hpp"
 
 namespace palpate::app {
 namespace {
-
-using Json = nlohmann::json;
 
 TEST(ViewProgram, TheDemoSaysWhereItsPageIsAndEndsWhenItIsTold) {
   Shell shell;

@@ -48,7 +48,8 @@ TEST(Stability, DamperOfTheWallRaisesTheLimit) {
   EXPECT_GT(stable_stiffness(wall), 2 * bare);
 }
 
-// 12.5 mJ come in. What the last force gives, on its way while the device leaves, no link takes back.
+// 12.5 mJ come in. What the last force gives, on its way while the device leaves, no link takes
+// back.
 TEST(Stability, ImpactReturnsNoEnergyWithTheDamper) {
   WallOptions wall;
   wall.stiffness = 500;

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "palpate/servo/wall_trial.hpp"
+
+namespace palpate::app {
+
+struct WallTrialRunOptions {
+  std::string device;      ///< what open_device() takes
+  bool confirmed = false;  ///< somebody holds the device and knows what comes
+  WallTrialOptions trial = {};
+  std::string json;  ///< file for what was found; "-": standard output; empty: none
+};
+
+/// Measures on hardware how stiff a wall may be: tells what comes, asks unless `confirmed`, and
+/// leads the hand step by step.
+/// @throws UsageError when nobody has confirmed, or Error when there is no such device, it failed,
+/// or
+///   nothing was measured.
+void run_wall_trial(const WallTrialRunOptions& options);
+
+}  // namespace palpate::app

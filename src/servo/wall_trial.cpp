@@ -1,0 +1,157 @@
+#include "palpate/servo/wall_trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/requirement.hpp"
+#include "palpate/servo/servo.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kGap = 5e-3;         // between a resting hand and the wall under it, m
+constexpr double kStillFor = 0.5;     // s
+constexpr double kStillSpeed = 0.02;  // m/s
+constexpr double kLift = 2e-3;        // off the wall, m
+constexpr double kLeastPress = 0.3;   // N
+constexpr double kShakenFor = 0.25;   // s
+constexpr double kMostForce = 4;      // N that a trial may ask for
+
+void validate(const WallTrialOptions& options) {
+  const Requirement require{"wall trial"};
+  require.positive("softest (N/m)", options.softest, "give a stiffness above 0");
+  require(options.stiffest >= options.softest && std::isfinite(options.stiffest), "stiffest (N/m)",
+          options.stiffest, "give at least the softest");
+  require(options.factor > 1 && options.factor <= 2, "factor", options.factor, "give 1 to 2");
+  require.not_negative("damping (N s/m)", options.damping, "give a number that is 0 or more");
+  require.positive("hold (s)", options.hold, "give a time above 0");
+  require.positive("patience (s)", options.patience, "give a time above 0");
+  require(options.maximum_force > kLeastPress && options.maximum_force <= kMostForce,
+          "maximum_force (N)", options.maximum_force, "give 0.3 to 4 N");
+  require.positive("fastest (m/s)", options.fastest, "give a speed above 0");
+}
+
+const WallTrialOptions& checked(const WallTrialOptions& options) {
+  validate(options);
+  return options;
+}
+
+WallTrialOptions for_device(WallTrialOptions options, const DeviceInfo& device) {
+  if (device.maximum_force <= 0) {
+    throw Error("wall trial: " + device.name + " renders no force; nothing can be measured");
+  }
+  options.maximum_force =
+      std::min(options.maximum_force, Servo::kForceShare * device.maximum_force);
+  return options;
+}
+
+// Without the links that would hide that a wall shakes.
+GuardOptions bare(const WallTrialOptions& options, const DeviceInfo& device) {
+  GuardOptions guard;
+  guard.maximum_force = options.maximum_force;
+  guard.damping = options.damping;
+  guard.passivity.on = false;
+  guard.soft_start = kStillFor / 2;
+  if (device.rate > 0) guard.silence = std::max(guard.silence, 2.5 / device.rate);
+  return guard;
+}
+
+}  // namespace
+
+WallTrial::WallTrial(const DeviceInfo& device, const WallTrialOptions& options)
+    : options_(for_device(checked(options), device)), guard_(bare(options_, device)) {
+  state_.wall = options_.softest;
+}
+
+Vector3d WallTrial::step(const DeviceState& hand, double now) noexcept {
+  const double dt = started_ ? now - time_ : 0;
+  if (!started_) since_ = now;
+  started_ = true;
+  time_ = now;
+  if (!is_over()) advance(hand, now, dt);
+  return guard_.pass(felt(hand, dt));
+}
+
+void WallTrial::advance(const DeviceState& hand, double now, double dt) noexcept {
+  const bool known = hand.position.allFinite() && hand.velocity.allFinite();
+  if (hand.status != DeviceStatus::ok || !known || !std::isfinite(dt)) {
+    return go_to(WallTrialPhase::device_lost, now);
+  }
+  if (hand.velocity.norm() > options_.fastest) return go_to(WallTrialPhase::too_fast, now);
+  if (now - since_ > options_.patience) return go_to(WallTrialPhase::gave_up, now);
+  state_.amplitude = shaking_.add(hand.position.z(), dt);
+  switch (state_.phase) {
+    case WallTrialPhase::rest:
+      still_ = hand.velocity.norm() < kStillSpeed ? still_ + dt : 0;
+      if (still_ >= kStillFor) {
+        top_ = hand.position.z() - kGap;
+        go_to(WallTrialPhase::press, now);
+      }
+      return;
+    case WallTrialPhase::press:
+      return press(top_ - hand.position.z(), dt, now);
+    case WallTrialPhase::lift:
+      if (hand.position.z() < top_ + kLift) return;
+      if (state_.wall >= options_.stiffest) return go_to(WallTrialPhase::held, now);
+      state_.wall = std::min(options_.stiffest, options_.factor * state_.wall);
+      return go_to(WallTrialPhase::press, now);
+    default:
+      return;
+  }
+}
+
+void WallTrial::press(double depth, double dt, double now) noexcept {
+  shaken_ = state_.amplitude > kShaking ? shaken_ + dt : 0;
+  if (shaken_ > kShakenFor) return go_to(WallTrialPhase::shook, now);
+  if (shaken_ > 0) return;
+  state_.pressed = state_.wall * depth < kLeastPress ? 0 : state_.pressed + dt;
+  if (state_.pressed < options_.hold) return;
+  state_.stable = state_.wall;
+  go_to(WallTrialPhase::lift, now);
+}
+
+void WallTrial::go_to(WallTrialPhase phase, double now) noexcept {
+  state_.phase = phase;
+  state_.pressed = shaken_ = 0;
+  since_ = now;
+}
+
+GuardInput WallTrial::felt(const DeviceState& hand, double dt) const noexcept {
+  GuardInput input;
+  input.hip = hand.position;
+  input.velocity = hand.velocity;
+  input.dt = dt;
+  input.felt = !is_over();
+  const double depth = top_ - hand.position.z();
+  if (!input.felt || state_.phase == WallTrialPhase::rest || !(depth > 0)) return input;
+  input.force.z() = state_.wall * depth;
+  input.normal.z() = 1;
+  input.stiffness = state_.wall;
+  return input;
+}
+
+std::string_view in_words(WallTrialPhase phase) noexcept {
+  switch (phase) {
+    case WallTrialPhase::rest:
+      return "hold the device still, somewhere in its middle";
+    case WallTrialPhase::press:
+      return "press down on the wall, and rest on it";
+    case WallTrialPhase::lift:
+      return "good; lift off";
+    case WallTrialPhase::shook:
+      return "the wall made the device shake; the force is gone";
+    case WallTrialPhase::held:
+      return "the stiffest wall that is tried stood still";
+    case WallTrialPhase::gave_up:
+      return "nobody pressed; start again when you are ready";
+    case WallTrialPhase::too_fast:
+      return "the device moved faster than a hand that presses; the force is gone";
+    case WallTrialPhase::device_lost:
+      return "the device fell silent or failed";
+  }
+  return {};
+}
+
+}  // namespace palpate
