@@ -24,9 +24,9 @@ void add_option(DeviceName& name, std::string_view text) {
 
 }  // namespace
 
-std::string DeviceName::option(const std::string& key) const {
+std::string DeviceName::option(const std::string& key, const std::string& otherwise) const {
   const auto found = options.find(key);
-  return found == options.end() ? "" : found->second;
+  return found == options.end() ? otherwise : found->second;
 }
 
 DeviceName parse_device_name(std::string_view text) {

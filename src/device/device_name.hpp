@@ -12,8 +12,8 @@ struct DeviceName {
   std::string device;  ///< empty: the first that is there
   std::map<std::string, std::string> options = {};
 
-  /// The value of `key`; empty: it is not given.
-  [[nodiscard]] std::string option(const std::string& key) const;
+  /// The value of `key`, or `otherwise` where it is not given.
+  [[nodiscard]] std::string option(const std::string& key, const std::string& otherwise = "") const;
 };
 
 /// @throws Error when an option has no value or is given twice.

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <string_view>
 
+#include "base/listed.hpp"
 #include "device/drivers.hpp"
 #include "device/profile_info.hpp"
 #include "palpate/base/error.hpp"
@@ -58,14 +59,10 @@ std::string profile_of(std::string title) {
   return "unknown";
 }
 
-std::string library_of(const DeviceName& name) {
-  const std::string given = name.option("library");
-  return given.empty() ? ForceDimensionLibrary::kName : given;
-}
-
 }  // namespace
 
-ForceDimensionLink::ForceDimensionLink(const DeviceName& name) : library_(library_of(name)) {
+ForceDimensionLink::ForceDimensionLink(const DeviceName& name)
+    : library_(name.option("library", ForceDimensionLibrary::kName)) {
   const int number = number_of(name.device);
   info_.name = fmt::format("forcedimension:{}", number);
   const int count = library_.count();
@@ -85,9 +82,8 @@ ForceDimensionLink::ForceDimensionLink(const DeviceName& name) : library_(librar
   id_ = static_cast<char>(id);
   const char* told = library_.title(id_);
   const std::string title = told == nullptr ? "" : told;
-  const std::string profile = name.option("profile");
   try {
-    info_ = info_of(device_profile(profile.empty() ? profile_of(title) : profile),
+    info_ = info_of(device_profile(name.option("profile", profile_of(title))),
                     fmt::format("{} ({})", info_.name, title.empty() ? "no name" : title));
     prepare();
   } catch (...) {
@@ -169,17 +165,13 @@ HapticDriver forcedimension_driver() {
                       .description = "Force Dimension omega, delta, sigma, lambda; Novint Falcon",
                       .missing = {},
                       .devices = {}};
-  try {
+  return listed(driver, [](HapticDriver& found) {
     const ForceDimensionLibrary library;
     for (int i = 0; i < library.count(); ++i) {
-      driver.devices.push_back(
+      found.devices.push_back(
           {fmt::format("forcedimension:{}", i), "its kind is known once it is opened"});
     }
-  } catch (const Error& error) {
-    driver.available = false;
-    driver.missing = error.what();
-  }
-  return driver;
+  });
 }
 
 std::unique_ptr<DeviceLink> open_forcedimension(const DeviceName& name) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/listed.hpp"
 #include "device/drivers.hpp"
 #include "device/haply_message.hpp"
 #include "device/profile_info.hpp"
@@ -28,11 +29,6 @@ constexpr double kQuiet = 0.02;     // s after which no more of them come
 constexpr double kQuick = 5e-3;     // s for an answer; later the force goes
 constexpr double kPatience = 0.1;   // s for an answer; later the service is given up
 constexpr double kFarewell = 0.05;  // s for it to take the last force
-
-std::string option(const DeviceName& name, const std::string& key, const char* otherwise) {
-  const std::string value = name.option(key);
-  return value.empty() ? otherwise : value;
-}
 
 TextSocket connect(const std::string& url) {
   try {
@@ -74,7 +70,7 @@ std::optional<HaplyDevice> find(std::vector<HaplyDevice> devices, const std::str
 class HaplyLink final : public DeviceLink {
  public:
   explicit HaplyLink(const DeviceName& name)
-      : id_(name.device), socket_(connect(option(name, "url", kService))) {
+      : id_(name.device), socket_(connect(name.option("url", kService))) {
     const std::vector<HaplyDevice> devices = ask([this] { return greet(socket_); });
     const std::optional<HaplyDevice> found = find(devices, id_);
     if (!found) {
@@ -83,8 +79,7 @@ class HaplyLink final : public DeviceLink {
     }
     id_ = found->id;
     check(*found);
-    info_ =
-        info_of(device_profile(option(name, "profile", kProfile)), fmt::format("haply:{}", id_));
+    info_ = info_of(device_profile(name.option("profile", kProfile)), fmt::format("haply:{}", id_));
   }
   ~HaplyLink() override {
     try {
@@ -151,18 +146,14 @@ HapticDriver haply_driver() {
                       .description = "Haply Inverse3, through Haply's Inverse Service",
                       .missing = {},
                       .devices = {}};
-  try {
+  return listed(driver, [](HapticDriver& found) {
     TextSocket socket = connect(kService);
     for (const HaplyDevice& each : greet(socket)) {
       const bool ready = each.calibrated.value_or(true) && each.powered.value_or(true);
-      driver.devices.push_back(
+      found.devices.push_back(
           {"haply:" + each.id, ready ? "Inverse3" : "Inverse3, not calibrated or without power"});
     }
-  } catch (const Error& error) {
-    driver.available = false;
-    driver.missing = error.what();
-  }
-  return driver;
+  });
 }
 
 std::unique_ptr<DeviceLink> open_haply(const DeviceName& name) {

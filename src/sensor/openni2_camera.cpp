@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/listed.hpp"
 #include "palpate/base/error.hpp"
 #include "sensor/drivers.hpp"
 #include "sensor/kinect_depth.hpp"
@@ -253,13 +254,7 @@ CameraDriver openni2_driver() {
                       .description = "PrimeSense and Asus Xtion cameras, and .oni recordings",
                       .missing = {},
                       .devices = {}};
-  try {
-    list_devices(driver);
-  } catch (const Error& error) {
-    driver.available = false;
-    driver.missing = error.what();
-  }
-  return driver;
+  return listed(driver, list_devices);
 }
 
 std::unique_ptr<DepthCamera> open_openni2(const std::string& device, const CameraOptions& options) {

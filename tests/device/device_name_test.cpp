@@ -29,6 +29,7 @@ TEST(DeviceName, IsTakenApart) {
   EXPECT_EQ(whole.option("url"), "ws://host:1");
   EXPECT_EQ(whole.option("profile"), "inverse3");
   EXPECT_EQ(whole.option("library"), "");
+  EXPECT_EQ(whole.option("library", "libdhd.so.3"), "libdhd.so.3");
   EXPECT_EQ(parse_device_name("haply,url=ws://host:1").device, "") << "the colon is the option's";
   EXPECT_EQ(parse_device_name("").driver, "");
 }
