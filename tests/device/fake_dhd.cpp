@@ -1,17 +1,17 @@
 // A library with the names of Force Dimension's, and a device behind it: a mass with friction that
 // moves when it is told that time passes. Functions fake_* are the tests'.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "device/fake_mass.hpp"
+
 namespace {
 
-using Three = std::array<double, 3>;
+using palpate::test::FakeMass;
+using Three = FakeMass::Three;
 
-constexpr double kMass = 0.2;             // kg
-constexpr double kDamping = 2;            // N s/m
 constexpr double kWatchdogUnit = 125e-6;  // s
 constexpr int kFlagReset = 3;
 constexpr int kFlagForce = 5;
@@ -35,8 +35,7 @@ struct Device {
   double unheard = 0;   // s since the last force
   int thresholds = 0;   // times that somebody changed the velocity threshold
   int velocities = 0;   // times that the velocity was asked for
-  Three place{};
-  Three velocity{};
+  FakeMass hand;
   Three force{};
 };
 
@@ -116,13 +115,13 @@ int dhdSetVelocityThreshold(unsigned, char) {
 }
 int dhdGetPosition(double* x, double* y, double* z, char) {
   if (reached() < 0) return -1;
-  tell(device.place, x, y, z);
+  tell(device.hand.place, x, y, z);
   return 0;
 }
 int dhdGetLinearVelocity(double* x, double* y, double* z, char) {
   if (reached() < 0) return -1;
   if (++device.velocities < 3) return answer(false, "too few places yet");
-  tell(device.velocity, x, y, z);
+  tell(device.hand.velocity, x, y, z);
   return 1;  // a note, no error
 }
 unsigned dhdGetButtonMask(char) {
@@ -165,8 +164,7 @@ void fake_name(const char* name) {
   device.name = name;
 }
 void fake_place(double x, double y, double z) {
-  device.place = {x, y, z};
-  device.velocity = {};
+  device.hand = {.place = {x, y, z}};
 }
 // What the motors hold, N; the maker's axes.
 void fake_force(double* force) {
@@ -187,11 +185,7 @@ void fake_advance(double time) {
     device.forces_on = false;
     device.cause = kCauseWatchdog;
   }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double push = device.forces_on ? device.force[i] : 0;
-    device.velocity[i] += time * (push - kDamping * device.velocity[i]) / kMass;
-    device.place[i] += time * device.velocity[i];
-  }
+  device.hand.advance(time, device.forces_on ? device.force : Three{});
 }
 
 }  // extern "C"

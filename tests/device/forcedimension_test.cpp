@@ -1,16 +1,15 @@
 // The driver of Force Dimension's devices, against a library with the maker's names (fake_dhd.cpp).
-#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <optional>
-#include <set>
+#include <functional>
+#include <string>
 
-#include "device/fake_hardware.hpp"
+#include "device/double_library.hpp"
+#include "device/fault_trial.hpp"
 #include "device/forcedimension_link.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/device_profile.hpp"
-#include "palpate/device/linked_device.hpp"
 
 namespace palpate {
 namespace {
@@ -22,28 +21,6 @@ using testing::HasSubstr;
 const std::string kLibrary = PALPATE_FAKE_DHD;
 const std::string kName = "forcedimension:0,library=" + kLibrary;
 const Vector3d kForce(1, 2, 3);
-
-// The tests' side of the library.
-class Double {
- public:
-  template <class Function>
-  [[nodiscard]] Function* find(const char* name) const {
-    auto* const found = reinterpret_cast<Function*>(::dlsym(library_, name));
-    if (found == nullptr) throw Error(std::string(name) + " is not in the double");
-    return found;
-  }
-  void flag(const char* name, bool on) const { find<void(bool)>(name)(on); }
-  [[nodiscard]] Vector3d force() const {
-    Vector3d told;
-    find<void(double*)>("fake_force")(told.data());
-    return told;
-  }
-  [[nodiscard]] bool is_open() const { return find<bool()>("fake_is_open")(); }
-  void advance(double time) const { find<void(double)>("fake_advance")(time); }
-
- private:
-  void* library_ = ::dlopen(kLibrary.c_str(), RTLD_NOW | RTLD_LOCAL);
-};
 
 std::unique_ptr<DeviceLink> open(const std::string& name = kName) {
   return std::make_unique<device::ForceDimensionLink>(device::parse_device_name(name));
@@ -60,13 +37,15 @@ std::string refusal(const std::string& name = kName) {
 
 class ForceDimension : public testing::Test {
  protected:
-  ForceDimension() { double_.find<void()>("fake_reset")(); }
+  ForceDimension() { double_.reset(); }
 
-  Double double_;
+  void advance(double time) const { double_.find<void(double)>("fake_advance")(time); }
+
+  test::DoubleLibrary double_{kLibrary};
 };
 
 TEST_F(ForceDimension, TellsPlacesAndForcesAsTheOperatorSits) {
-  double_.find<void(double, double, double)>("fake_place")(0.01, 0.02, 0.03);
+  double_.place(0.01, 0.02, 0.03);
   const auto link = open();
   const LinkReading reading = link->exchange(kForce);
   EXPECT_EQ(reading.position, Vector3d(0.02, -0.01, 0.03));
@@ -80,7 +59,7 @@ TEST_F(ForceDimension, AForceMovesTheHandItsWay) {
   LinkReading reading;
   for (int i = 0; i < 4000; ++i) {
     reading = link->exchange(push);
-    double_.advance(0.25e-3);
+    advance(0.25e-3);
   }
   EXPECT_NEAR(reading.position.normalized().dot(push.normalized()), 1, 1e-9);
   EXPECT_NEAR(reading.velocity.normalized().dot(push.normalized()), 1, 1e-9);
@@ -103,9 +82,9 @@ TEST_F(ForceDimension, ArmsTheWatchdogAndLeavesTheVelocityThresholdAlone) {
   EXPECT_DOUBLE_EQ(double_.find<double()>("fake_watchdog_time")(), 5e-3);
   EXPECT_EQ(double_.find<int()>("fake_threshold_changes")(), 0);
   (void)link->exchange(kForce);
-  double_.advance(4.9e-3);
+  advance(4.9e-3);
   EXPECT_GT(double_.force().norm(), 3);
-  double_.advance(0.2e-3);
+  advance(0.2e-3);
   EXPECT_EQ(double_.force().norm(), 0);
 }
 
@@ -142,46 +121,26 @@ TEST_F(ForceDimension, SaysWhyThereIsNone) {
   EXPECT_THAT(refusal(), AllOf(HasSubstr("0 found"), HasSubstr("Plug it in")));
 }
 
-// With the servo's side before it, in simulated time: what each fault does to the force.
+// What each fault does to the force, in simulated time.
 class ForceDimensionFaults : public ForceDimension {
  protected:
   ForceDimensionFaults() {
-    device_.emplace([] { return open(); }, clock_, LinkedDeviceOptions{.threaded = false});
-    run(0.05);
-    EXPECT_GT(double_.force().norm(), 3);
+    trial_.run(0.05);
+    EXPECT_TRUE(trial_.is_pushed());
   }
 
-  void run(double duration, bool turns = true) {
-    for (const double end = clock_.now() + duration; clock_.now() < end - 1e-9;) {
-      if (turns) device_->turn();
-      if (++quarter_ % 4 == 0) step();
-      double_.advance(0.25e-3);
-      clock_.wait_until(clock_.now() + 0.25e-3);
-      if (double_.force().norm() > 0) pushed_ = clock_.now();
-    }
-  }
-  void step() {
-    const DeviceState state = device_->read();
-    if (state.status == DeviceStatus::silent) reasons_.insert(device_->reason());
-    device_->write(state.status == DeviceStatus::ok ? kForce : Vector3d::Zero().eval());
-  }
   void expect_lost(const char* fault, bool value, const char* word) {
-    reasons_.clear();
-    const double start = clock_.now();
-    double_.flag(fault, value);
-    run(0.5);
-    EXPECT_LE(pushed_ - start, 6e-3) << fault;
-    EXPECT_THAT(reasons_, testing::ElementsAre(HasSubstr(word))) << fault;
-    double_.flag(fault, !value);
-    run(1.2);
-    EXPECT_GT(double_.force().norm(), 3) << fault << " is over";
+    trial_.expect_lost(
+        fault, [&](bool on) { double_.flag(fault, on == value); }, word);
   }
 
   test::MovedClock clock_;
-  std::optional<LinkedDevice> device_;
-  std::set<std::string> reasons_;
-  int quarter_ = 0;
-  double pushed_ = 0;
+  test::FaultTrial trial_{{.open = [] { return open(); },
+                           .advance = [this](double time) { advance(time); },
+                           .force = [this] { return double_.force().norm(); },
+                           .period = 0.25e-3},
+                          clock_,
+                          kForce};
 };
 
 TEST_F(ForceDimensionFaults, TakeTheForceAwayInTimeAndAreToldOnce) {
@@ -192,14 +151,14 @@ TEST_F(ForceDimensionFaults, TakeTheForceAwayInTimeAndAreToldOnce) {
 
 TEST_F(ForceDimensionFaults, AThreadThatHangsIsTheWatchdogs) {
   const double start = clock_.now();
-  run(0.1, false);
-  EXPECT_LE(pushed_ - start, 6e-3);
-  reasons_.clear();
-  run(0.1);
-  EXPECT_EQ(double_.force().norm(), 0) << "its forces are off";
-  EXPECT_THAT(*reasons_.rbegin(), HasSubstr("watchdog"));
-  run(1.2);
-  EXPECT_GT(double_.force().norm(), 3) << "and come back when it is opened again";
+  trial_.run(0.1, false);
+  EXPECT_LE(trial_.pushed() - start, 6e-3);
+  trial_.forget();
+  trial_.run(0.1);
+  EXPECT_TRUE(trial_.is_free()) << "its forces are off";
+  EXPECT_THAT(*trial_.reasons().rbegin(), HasSubstr("watchdog"));
+  trial_.run(1.2);
+  EXPECT_TRUE(trial_.is_pushed()) << "and come back when it is opened again";
 }
 
 }  // namespace
