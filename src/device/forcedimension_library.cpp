@@ -3,7 +3,7 @@
 namespace palpate::device {
 
 ForceDimensionLibrary::ForceDimensionLibrary(const std::string& file)
-    : library(file,
+    : library({file},
               "Force Dimension's SDK 3 brings it (forcedimension.com, for Linux): copy it to "
               "/usr/local/lib and run ldconfig") {
   library.find("dhdGetDeviceCount", count);

@@ -174,7 +174,7 @@ HapticDriver forcedimension_driver() {
   });
 }
 
-std::unique_ptr<DeviceLink> open_forcedimension(const DeviceName& name) {
+std::unique_ptr<DeviceLink> open_forcedimension(const DeviceName& name, const Clock& /*clock*/) {
   check_options(name, {"library", "profile"});
   return std::make_unique<ForceDimensionLink>(name);
 }

@@ -18,7 +18,7 @@ HapticDriver haply_driver() {
           .devices = {}};
 }
 
-std::unique_ptr<DeviceLink> open_haply(const DeviceName& /*name*/) {
+std::unique_ptr<DeviceLink> open_haply(const DeviceName& /*name*/, const Clock& /*clock*/) {
   throw Error(std::string("haply: ") + kMissing);
 }
 

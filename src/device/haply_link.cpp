@@ -156,7 +156,7 @@ HapticDriver haply_driver() {
   });
 }
 
-std::unique_ptr<DeviceLink> open_haply(const DeviceName& name) {
+std::unique_ptr<DeviceLink> open_haply(const DeviceName& name, const Clock& /*clock*/) {
   check_options(name, {"url", "profile"});
   return std::make_unique<HaplyLink>(name);
 }

@@ -15,12 +15,13 @@ using namespace device;
 
 struct Driver {
   std::string_view name;
-  std::unique_ptr<DeviceLink> (*open)(const DeviceName& name);
+  std::unique_ptr<DeviceLink> (*open)(const DeviceName& name, const Clock& clock);
   HapticDriver (*list)();
 };
 
-constexpr std::array<Driver, 2> kDrivers = {
+constexpr std::array<Driver, 3> kDrivers = {
     {{"forcedimension", open_forcedimension, forcedimension_driver},
+     {"openhaptics", open_openhaptics, openhaptics_driver},
      {"haply", open_haply, haply_driver}}};
 
 const Driver* driver_of(const DeviceName& name) {
@@ -36,12 +37,12 @@ std::unique_ptr<LinkedDevice> open_device(const std::string& name, WaitingClock&
   const Driver* driver = driver_of(parsed);
   if (driver == nullptr) {
     throw Error(
-        fmt::format("{}: no such device. Devices are forcedimension[:N] and haply[:ID]; 'palpate "
-                    "devices' lists those that are there",
+        fmt::format("{}: no such device. Devices are forcedimension[:N], openhaptics[:NAME] and "
+                    "haply[:ID]; 'palpate devices' lists those that are there",
                     name));
   }
-  return std::make_unique<LinkedDevice>([driver, parsed] { return driver->open(parsed); }, clock,
-                                        options);
+  return std::make_unique<LinkedDevice>(
+      [driver, parsed, &clock] { return driver->open(parsed, clock); }, clock, options);
 }
 
 bool names_hardware(const std::string& name) {

@@ -6,17 +6,34 @@
 #include "palpate/base/error.hpp"
 
 namespace palpate::device {
+namespace {
 
-VendorLibrary::VendorLibrary(const std::string& name, const std::string& brought_by)
-    : name_(name),
-      brought_by_(brought_by),
-      library_(::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) {
-  if (library_ != nullptr) return;
-  const char* why = ::dlerror();
+// As the loader says of a name that nothing has.
+bool is_absent(const std::string& name, const std::string& words) {
+  return words.starts_with(name + ": cannot open shared object file");
+}
+
+}  // namespace
+
+VendorLibrary::VendorLibrary(const std::vector<std::string>& names, const std::string& brought_by)
+    : brought_by_(brought_by) {
+  std::string why;
+  for (const std::string& name : names) {
+    library_ = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (library_ != nullptr) {
+      name_ = name;
+      return;
+    }
+    const char* told = ::dlerror();
+    const std::string words = told == nullptr ? "no reason given" : told;
+    if (!why.empty() && (!is_absent(name_, why) || is_absent(name, words))) continue;
+    name_ = name;
+    why = words;
+  }
   throw Error(
       fmt::format("the library {} cannot be loaded ({}). {}; 'palpate doctor' tells what is "
                   "missing",
-                  name_, why == nullptr ? "no reason given" : why, brought_by_));
+                  name_, why, brought_by_));
 }
 
 void* VendorLibrary::address(const char* function) const {

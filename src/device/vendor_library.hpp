@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace palpate::device {
 
@@ -8,9 +9,10 @@ namespace palpate::device {
 /// unloaded, since such libraries leave threads behind.
 class VendorLibrary {
  public:
-  /// `name`: as the system's linker knows it, or a path. `brought_by` says where to get it.
-  /// @throws Error that says why it does not load.
-  VendorLibrary(const std::string& name, const std::string& brought_by);
+  /// `names`: as the system's linker knows it, or a path; the first that loads is taken.
+  /// `brought_by` says where to get it.
+  /// @throws Error that says why none loads: what is there but broken before what is not there.
+  VendorLibrary(const std::vector<std::string>& names, const std::string& brought_by);
 
   /// @throws Error when the library has no such function.
   template <class Function>
@@ -23,7 +25,7 @@ class VendorLibrary {
 
   std::string name_;
   std::string brought_by_;
-  void* library_;
+  void* library_ = nullptr;
 };
 
 }  // namespace palpate::device

@@ -36,7 +36,8 @@ TEST(OpenDevice, OpensByName) {
 
 TEST(OpenDevice, SaysWhatThereIs) {
   EXPECT_THAT(refusal("phantom"), AllOf(HasSubstr("phantom"), HasSubstr("forcedimension[:N]"),
-                                        HasSubstr("haply[:ID]"), HasSubstr("palpate devices")));
+                                        HasSubstr("openhaptics[:NAME]"), HasSubstr("haply[:ID]"),
+                                        HasSubstr("palpate devices")));
   EXPECT_THAT(refusal(""), HasSubstr("no such device"));
 }
 
@@ -44,6 +45,7 @@ TEST(OpenDevice, KnowsNamesOfHardware) {
   EXPECT_TRUE(names_hardware("haply"));
   EXPECT_TRUE(names_hardware("haply:04EA,url=ws://localhost:1"));
   EXPECT_TRUE(names_hardware("forcedimension,profile=omega"));
+  EXPECT_TRUE(names_hardware("openhaptics:Default Device"));
   EXPECT_FALSE(names_hardware("simulated"));
   EXPECT_FALSE(names_hardware("haplyx"));
   EXPECT_FALSE(names_hardware(""));
@@ -51,7 +53,7 @@ TEST(OpenDevice, KnowsNamesOfHardware) {
 
 TEST(ListDevices, TellsEveryDriverAndWhyItIsNotThere) {
   const std::vector<HapticDriver> drivers = list_devices();
-  ASSERT_EQ(drivers.size(), 2u);
+  ASSERT_EQ(drivers.size(), 3u);
   for (const HapticDriver& driver : drivers) {
     EXPECT_TRUE(names_hardware(driver.name));
     EXPECT_FALSE(driver.description.empty());

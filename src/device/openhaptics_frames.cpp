@@ -1,0 +1,162 @@
+#include "device/openhaptics_frames.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "device/openhaptics_codes.hpp"
+
+namespace palpate::device {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kMillimetre = 1e-3;  // m
+constexpr int kMostErrors = 8;        // that a frame may leave behind
+
+// The maker's x is to the right, y up, z towards the operator.
+Vector3d from_maker(const Vector3d& v) {
+  return {v.x(), -v.z(), v.y()};
+}
+Vector3d to_maker(const Vector3d& v) {
+  return {v.x(), v.z(), -v.y()};
+}
+
+std::chrono::steady_clock::time_point in(double seconds) {
+  using std::chrono::steady_clock;
+  return steady_clock::now() +
+         std::chrono::duration_cast<steady_clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+void copy(const char* words, std::array<char, 64>& to) {
+  if (words != nullptr) std::strncpy(to.data(), words, to.size() - 1);
+}
+
+double sensible(double number) {
+  return std::isfinite(number) && number > 0 ? number : 0;
+}
+
+}  // namespace
+
+void OpenHapticsFrames::ask(const Vector3d& force) noexcept {
+  wanted_.set({force, clock_.now(), ++asked_});
+}
+
+std::optional<OpenHapticsFrames::Answer> OpenHapticsFrames::answer(double patience) noexcept {
+  const auto end = in(patience);
+  while (true) {
+    const Answer newest = answers_.get();
+    if (newest.number == asked_) return newest;
+    if (std::chrono::steady_clock::now() >= end) return std::nullopt;
+    (void)wakeup_.wait_until(end);
+  }
+}
+
+void OpenHapticsFrames::end(double patience) noexcept {
+  leaving_ = true;
+  const auto end = in(patience);
+  while (!left_ && std::chrono::steady_clock::now() < end) (void)wakeup_.wait_until(end);
+  closed_ = true;
+}
+
+unsigned OpenHapticsFrames::call(void* frames) noexcept {
+  auto* const self = static_cast<std::shared_ptr<OpenHapticsFrames>*>(frames);
+  const unsigned code = (*self)->tick();
+  if (code == hd::kDone) delete self;
+  return code;
+}
+
+unsigned OpenHapticsFrames::tick() noexcept {
+  if (leaving_) return leave();
+  library_.make_current(device_);
+  if (frames_ == 0) library_.enable(hd::kForceOutput);
+  library_.begin_frame(device_);
+  if (frames_ == 0) {
+    keep_failure();
+    learn();
+  }
+  if (calibrate_.exchange(false)) {
+    library_.update_calibration(static_cast<unsigned>(facts_.calibration_styles));
+  }
+  newest_.calibration = library_.check_calibration();
+  const LinkReading reading = read();
+  if (const std::optional<Wanted> wanted = wanted_.look()) taken_ = *wanted;
+  library_.set_numbers(hd::kCurrentForce, to_maker(permitted(reading)).eval().data());
+  library_.end_frame(device_);
+  keep_failure();
+  ++frames_;
+  tell(reading);
+  return hd::kContinue;
+}
+
+void OpenHapticsFrames::learn() noexcept {
+  copy(library_.get_name(hd::kModel), facts_.model);
+  copy(library_.get_name(hd::kSerialNumber), facts_.serial_number);
+  library_.get_numbers(hd::kContinuousForce, &facts_.continuous_force);
+  library_.get_numbers(hd::kMaximumStiffness, &facts_.maximum_stiffness);
+  library_.get_integers(hd::kCalibrationStyle, &facts_.calibration_styles);
+  std::array<double, 6> temperatures{};  // of three motors or six
+  library_.get_numbers(hd::kMotorTemperature, temperatures.data());
+  facts_.temperature = std::ranges::max(temperatures);
+  facts_.continuous_force = sensible(facts_.continuous_force);
+  facts_.maximum_stiffness = sensible(facts_.maximum_stiffness / kMillimetre);
+  forget_failures();  // older libraries do not know all of this
+}
+
+LinkReading OpenHapticsFrames::read() const noexcept {
+  Vector3d position = Vector3d::Zero();
+  Vector3d velocity = Vector3d::Zero();
+  int buttons = 0;
+  library_.get_numbers(hd::kCurrentPosition, position.data());
+  library_.get_numbers(hd::kCurrentVelocity, velocity.data());
+  library_.get_integers(hd::kCurrentButtons, &buttons);
+  return {kMillimetre * from_maker(position), kMillimetre * from_maker(velocity),
+          static_cast<std::uint32_t>(buttons)};
+}
+
+Vector3d OpenHapticsFrames::permitted(const LinkReading& reading) const noexcept {
+  const bool heard = clock_.now() - taken_.time <= kSilence;
+  const bool known = reading.position.allFinite() && reading.velocity.allFinite();
+  const bool calibrated = newest_.calibration != hd::kNeedsHand;
+  const bool good = newest_.failure == hd::kSuccess && calibrated && !leaving_;
+  return heard && known && good ? taken_.force : Vector3d::Zero();
+}
+
+void OpenHapticsFrames::keep_failure() noexcept {
+  for (int i = 0; i < kMostErrors; ++i) {
+    const unsigned code = library_.get_error().code;
+    if (code == hd::kSuccess) return;
+    if (newest_.failure == hd::kSuccess) newest_.failure = code;
+  }
+}
+
+void OpenHapticsFrames::forget_failures() noexcept {
+  const unsigned kept = newest_.failure;
+  keep_failure();
+  newest_.failure = kept;
+}
+
+void OpenHapticsFrames::tell(const LinkReading& reading) noexcept {
+  const bool asked = newest_.number != taken_.number;
+  newest_.reading = reading;
+  newest_.number = taken_.number;
+  answers_.set(newest_);
+  if (asked) wakeup_.post();
+}
+
+unsigned OpenHapticsFrames::leave() noexcept {
+  if (closed_) return hd::kDone;
+  const Vector3d zero = Vector3d::Zero();
+  library_.make_current(device_);
+  library_.begin_frame(device_);
+  library_.set_numbers(hd::kCurrentForce, zero.data());
+  library_.end_frame(device_);
+  library_.disable(hd::kForceOutput);
+  forget_failures();  // lest whoever opens the next device takes them for its own
+  left_ = true;
+  wakeup_.post();
+  return hd::kDone;
+}
+
+}  // namespace palpate::device

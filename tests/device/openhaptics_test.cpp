@@ -1,0 +1,292 @@
+// The driver of 3D Systems' devices, against a library with the maker's names (fake_hd.cpp).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "device/double_library.hpp"
+#include "device/fake_hd.hpp"
+#include "device/fault_trial.hpp"
+#include "device/openhaptics_link.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/device/device_profile.hpp"
+
+namespace palpate {
+namespace {
+
+using device::OpenHapticsLink;
+using Eigen::Vector3d;
+using test::FakeHd;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string kDouble = PALPATE_FAKE_HD;
+const std::string kTouch = "openhaptics,library=" + kDouble;
+const Vector3d kPush(0.2, 0.4, 0.6);  // N; a Touch bears 0.88
+
+// A link whose scheduler ticks once for each exchange, and whenever it is told.
+class SteppedLink final : public DeviceLink {
+ public:
+  SteppedLink(const test::DoubleLibrary& library, const Clock& clock,
+              const std::string& name = kTouch)
+      : library_(library) {
+    link_ = std::make_unique<OpenHapticsLink>(device::parse_device_name(name), clock);
+    library_.flag("fake_by_itself", false);
+  }
+  ~SteppedLink() override { library_.flag("fake_by_itself", true); }
+
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return link_->info(); }
+  [[nodiscard]] LinkReading exchange(const Vector3d& force) override {
+    link_->ask(force);
+    library_.find<void(int)>("fake_tick")(1);
+    return link_->answer();
+  }
+  OpenHapticsLink& link() { return *link_; }
+
+ private:
+  const test::DoubleLibrary& library_;
+  std::unique_ptr<OpenHapticsLink> link_;
+};
+
+class OpenHaptics : public testing::Test {
+ protected:
+  OpenHaptics() { library_.reset(); }
+
+  [[nodiscard]] std::unique_ptr<SteppedLink> open(const std::string& name = kTouch) {
+    return std::make_unique<SteppedLink>(library_, clock_, name);
+  }
+  [[nodiscard]] std::string refusal(const std::string& name = kTouch) {
+    try {
+      (void)open(name);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  void tick(int count) const { library_.find<void(int)>("fake_tick")(count); }
+  void set() const { library_.find<void(const FakeHd*)>("fake_set")(&hardware_); }
+  // Sets one thing of the hardware.
+  template <class Member, class Value>
+  void set(Member member, const Value& value) {
+    hardware_.*member = value;
+    set();
+  }
+  [[nodiscard]] bool runs() const { return library_.find<bool()>("fake_runs")(); }
+  void pass(double time) { clock_.wait_until(clock_.now() + time); }
+
+  test::DoubleLibrary library_{kDouble};
+  FakeHd hardware_;
+  test::MovedClock clock_;
+};
+
+TEST_F(OpenHaptics, TellsPlacesAndForcesAsTheOperatorSits) {
+  const auto link = open();
+  library_.place(10, 20, 30);
+  const LinkReading reading = link->exchange(kPush);
+  EXPECT_TRUE(reading.position.isApprox(Vector3d(0.01, -0.03, 0.02), 1e-12));
+  EXPECT_EQ(library_.force(), Vector3d(0.2, 0.6, -0.4));
+  EXPECT_EQ(reading.buttons, 2u);
+}
+
+TEST_F(OpenHaptics, AForceMovesTheHandItsWay) {
+  const auto link = open();
+  LinkReading reading;
+  for (int i = 0; i < 1000; ++i) reading = link->exchange(kPush);
+  EXPECT_NEAR(reading.position.normalized().dot(kPush.normalized()), 1, 1e-9);
+  EXPECT_NEAR(reading.velocity.normalized().dot(kPush.normalized()), 1, 1e-9);
+  EXPECT_NEAR(reading.velocity.norm(), kPush.norm() / 2, 2e-3) << "against 2 N s/m";
+}
+
+TEST_F(OpenHaptics, IsWhatItTellsOrTheProfileThatIsGiven) {
+  const auto tells = [this](std::array<char, 32> model, double force, double stiffness) {
+    hardware_.model = model;
+    hardware_.continuous_force = force;
+    hardware_.stiffness = stiffness;
+    set();
+  };
+  const DeviceInfo touch = open()->info();
+  EXPECT_EQ(touch.name, "openhaptics:Default Device (Touch)");
+  EXPECT_EQ(touch.maximum_force, 0.88);
+  EXPECT_DOUBLE_EQ(touch.maximum_stiffness, 400);
+  EXPECT_EQ(touch.workspace_radius, *device_profile("touch").workspace_radius);
+  EXPECT_EQ(open(kTouch + ",profile=omega")->info().maximum_force,
+            *device_profile("omega").maximum_force);
+  tells({"PHANTOM Premium 1.5"}, 1.4, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(open()->info().maximum_force, 1.4);
+  EXPECT_EQ(open()->info().maximum_stiffness,
+            *device_profile("phantom-premium-1.5").maximum_stiffness);
+  tells({"Touch X"}, 0, 0);
+  EXPECT_EQ(open()->info().maximum_stiffness, *device_profile("touch-x").maximum_stiffness);
+  tells({"prototype"}, 0, 0);
+  EXPECT_EQ(open()->info().maximum_force, *device_profile("unknown").maximum_force);
+}
+
+TEST_F(OpenHaptics, AForceLastsFiveMillisecondsWhereNobodySpeaks) {
+  const auto link = open();
+  (void)link->exchange(kPush);
+  pass(4.9e-3);
+  tick(1);
+  EXPECT_GT(library_.force().norm(), 0.7);
+  pass(0.2e-3);
+  tick(1);
+  EXPECT_EQ(library_.force().norm(), 0);
+}
+
+TEST_F(OpenHaptics, AFrameThatHangsAppliesNoOldForce) {
+  const auto link = open();
+  (void)link->exchange(kPush);
+  set(&FakeHd::hangs, true);
+  link->link().ask(kPush);
+  tick(1);  // until it hangs
+  pass(0.1);
+  set(&FakeHd::hangs, false);
+  (void)link->link().answer();
+  EXPECT_EQ(library_.force().norm(), 0);
+  (void)link->exchange(kPush);
+  EXPECT_GT(library_.force().norm(), 0.7);
+}
+
+TEST_F(OpenHaptics, EndsWithoutAForceAndStopsTheSchedulerWithTheLast) {
+  auto other = std::make_unique<OpenHapticsLink>(
+      device::parse_device_name("openhaptics:Other,library=" + kDouble), clock_);
+  auto link = open();
+  (void)link->exchange(kPush);
+  ASSERT_TRUE(library_.is_open());
+  library_.flag("fake_by_itself", true);
+  link.reset();
+  EXPECT_EQ(library_.force().norm(), 0);
+  EXPECT_FALSE(library_.is_open());
+  EXPECT_TRUE(runs());
+  (void)other->exchange(kPush);
+  other.reset();
+  EXPECT_FALSE(runs());
+}
+
+TEST_F(OpenHaptics, SaysWhyThereIsNone) {
+  EXPECT_THAT(
+      refusal("openhaptics,library=/none/libHD.so"),
+      AllOf(HasSubstr("/none/libHD.so"), HasSubstr("3D Systems"), HasSubstr("palpate doctor")));
+  EXPECT_THAT(refusal("openhaptics,library=libdl.so.2"), HasSubstr("hdInitDevice"));
+  EXPECT_THAT(refusal("openhaptics:Left,library=" + kDouble),
+              AllOf(HasSubstr("openhaptics:Left"), HasSubstr("0x0303"), HasSubstr("Touch_Setup")));
+  EXPECT_THAT(refusal(kTouch + ",profile=tuch"), HasSubstr("tuch"));
+  EXPECT_FALSE(library_.is_open());
+  set(&FakeHd::busy, true);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("ALREADY"), HasSubstr("other programs")));
+  set(&FakeHd::busy, false);
+  set(&FakeHd::temperature, 0.6);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("0.60"), HasSubstr("cool down")));
+  set(&FakeHd::temperature, 0.1);
+  set(&FakeHd::failing, 0x0300);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("HD_DEVICE_FAULT"), HasSubstr("cable")));
+  set(&FakeHd::failing, 0);
+  set(&FakeHd::plugged, false);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("HD_COMM_ERROR"), HasSubstr("Plug it in")));
+  EXPECT_FALSE(library_.is_open());
+  EXPECT_FALSE(runs());
+}
+
+TEST_F(OpenHaptics, IsCalibratedByItselfIfItCanBe) {
+  set(&FakeHd::calibration, 0x5002);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("not calibrated"), HasSubstr("inkwell")));
+  hardware_.styles = 1;  // in a place that its encoders are reset in
+  set(&FakeHd::calibration, 0x5001);
+  EXPECT_THAT(refusal(), HasSubstr("not calibrated"));
+  EXPECT_FALSE(library_.is_open());
+  set(&FakeHd::styles, 4);
+  EXPECT_EQ(refusal(), "no error");
+}
+
+// What each fault does to the force, in simulated time.
+class OpenHapticsFaults : public OpenHaptics {
+ protected:
+  OpenHapticsFaults() {
+    trial_.run(0.05);
+    EXPECT_TRUE(trial_.is_pushed());
+  }
+
+  void expect_failure(unsigned code, const char* word) {
+    trial_.expect_lost(
+        word, [&](bool on) { set(&FakeHd::failing, on ? code : 0); }, word);
+  }
+
+  test::FaultTrial trial_{{.open = [this] { return open(); },
+                           .advance = [this](double) { tick(1); },
+                           .force = [this] { return library_.force().norm(); }},
+                          clock_,
+                          kPush};
+};
+
+TEST_F(OpenHapticsFaults, TakeTheForceAwayInTimeAndAreToldOnce) {
+  trial_.expect_lost(
+      "unplugged", [&](bool on) { set(&FakeHd::plugged, !on); }, "cable");
+  expect_failure(0x0302, "HD_COMM_ERROR");
+  expect_failure(0x0300, "HD_DEVICE_FAULT");
+  expect_failure(0x0201, "too large a force");
+  expect_failure(0x0203, "too fast");
+  expect_failure(0x0304, "in time");
+  expect_failure(0x0600, "0x0600");
+  trial_.expect_lost(
+      "no number", [&](bool on) { set(&FakeHd::not_a_number, on); }, "no number");
+  trial_.expect_lost(
+      "lost calibration", [&](bool on) { set(&FakeHd::calibration, on ? 0x5002 : 0x5000); },
+      "inkwell");
+}
+
+TEST_F(OpenHapticsFaults, MotorsCoolDownBeforeItIsOpenedAgain) {
+  set(&FakeHd::failing, 0x0200);
+  set(&FakeHd::temperature, 0.9);
+  trial_.run(0.1);
+  EXPECT_THAT(trial_.reasons(), testing::Contains(HasSubstr("too warm")));
+  set(&FakeHd::failing, 0);
+  trial_.run(2.5);
+  EXPECT_TRUE(trial_.is_free()) << "they are still warm";
+  set(&FakeHd::temperature, 0.3);
+  trial_.run(1.2);
+  EXPECT_TRUE(trial_.is_pushed());
+}
+
+TEST_F(OpenHapticsFaults, AThreadThatHangsIsTheFrames) {
+  const double start = clock_.now();
+  trial_.run(0.1, false);
+  EXPECT_LE(trial_.pushed() - start, 6e-3);
+  trial_.run(0.05);
+  EXPECT_TRUE(trial_.is_pushed()) << "it goes on with the thread";
+  EXPECT_EQ(trial_.device().losses(), 0u);
+}
+
+TEST_F(OpenHapticsFaults, ASchedulerThatHangsIsGivenUpAndComesBack) {
+  set(&FakeHd::hangs, true);
+  trial_.forget();
+  trial_.run(0.1);
+  EXPECT_TRUE(trial_.is_free());
+  EXPECT_THAT(trial_.reasons(), testing::ElementsAre(HasSubstr("does not call any more")));
+  EXPECT_EQ(trial_.device().losses(), 1u);
+  trial_.run(1.2);
+  EXPECT_TRUE(trial_.is_pushed());
+}
+
+// With the thread of LinkedDevice and the scheduler's, in real time; no deadline.
+TEST_F(OpenHaptics, ThreadsExchangeWithoutARace) {
+  SteadyWaitingClock clock;
+  LinkedDevice device(
+      [&clock] {
+        return std::make_unique<OpenHapticsLink>(device::parse_device_name(kTouch), clock);
+      },
+      clock);
+  int felt = 0;
+  for (int i = 0; i < 5000 && felt < 50; ++i) {
+    const DeviceState state = device.read();
+    device.write(state.status == DeviceStatus::ok ? kPush : Vector3d::Zero().eval());
+    if (library_.force().norm() > 0.7) ++felt;
+    clock.wait_until(clock.now() + 1e-3);
+  }
+  EXPECT_EQ(felt, 50);
+  EXPECT_GT(device.read().position.norm(), 0);
+}
+
+}  // namespace
+}  // namespace palpate
