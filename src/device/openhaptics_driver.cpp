@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Where the maker's drivers keep a file NAME.config for each device.
-fs::path configurations() {
+fs::path touch_configurations() {
   if (const char* given = std::getenv("GTDD_HOME")) return fs::path(given) / "config";
   const char* home = std::getenv("HOME");
   return fs::path(home == nullptr ? "" : home) / ".3dsystems" / "config";
@@ -31,10 +31,10 @@ HapticDriver openhaptics_driver() {
   return listed(driver, [](HapticDriver& found) {
     const OpenHapticsLibrary library;
     std::error_code none;
-    for (const auto& entry : fs::directory_iterator(configurations(), none)) {
+    for (const auto& entry : fs::directory_iterator(touch_configurations(), none)) {
       if (entry.path().extension() != ".config") continue;
       found.devices.push_back({"openhaptics:" + entry.path().stem().string(),
-                               "as set up in " + configurations().string()});
+                               "as set up in " + touch_configurations().string()});
     }
     std::ranges::sort(found.devices, {}, &HapticDevice::name);
   });

@@ -16,24 +16,24 @@ constexpr double kMillimetre = 1e-3;  // m
 constexpr int kMostErrors = 8;        // that a frame may leave behind
 
 // The maker's x is to the right, y up, z towards the operator.
-Vector3d from_maker(const Vector3d& v) {
+Vector3d from_hd(const Vector3d& v) {
   return {v.x(), -v.z(), v.y()};
 }
-Vector3d to_maker(const Vector3d& v) {
+Vector3d to_hd(const Vector3d& v) {
   return {v.x(), v.z(), -v.y()};
 }
 
-std::chrono::steady_clock::time_point in(double seconds) {
+std::chrono::steady_clock::time_point deadline_in(double seconds) {
   using std::chrono::steady_clock;
   return steady_clock::now() +
          std::chrono::duration_cast<steady_clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-void copy(const char* words, std::array<char, 64>& to) {
+void copy_words(const char* words, std::array<char, 64>& to) {
   if (words != nullptr) std::strncpy(to.data(), words, to.size() - 1);
 }
 
-double sensible(double number) {
+double known_or_zero(double number) {
   return std::isfinite(number) && number > 0 ? number : 0;
 }
 
@@ -44,7 +44,7 @@ void OpenHapticsFrames::ask(const Vector3d& force) noexcept {
 }
 
 std::optional<OpenHapticsFrames::Answer> OpenHapticsFrames::answer(double patience) noexcept {
-  const auto end = in(patience);
+  const auto end = deadline_in(patience);
   while (true) {
     const Answer newest = answers_.get();
     if (newest.number == asked_) return newest;
@@ -55,7 +55,7 @@ std::optional<OpenHapticsFrames::Answer> OpenHapticsFrames::answer(double patien
 
 void OpenHapticsFrames::end(double patience) noexcept {
   leaving_ = true;
-  const auto end = in(patience);
+  const auto end = deadline_in(patience);
   while (!left_ && std::chrono::steady_clock::now() < end) (void)wakeup_.wait_until(end);
   closed_ = true;
 }
@@ -82,7 +82,7 @@ unsigned OpenHapticsFrames::tick() noexcept {
   newest_.calibration = library_.check_calibration();
   const LinkReading reading = read();
   if (const std::optional<Wanted> wanted = wanted_.look()) taken_ = *wanted;
-  library_.set_numbers(hd::kCurrentForce, to_maker(permitted(reading)).eval().data());
+  library_.set_numbers(hd::kCurrentForce, to_hd(permitted(reading)).eval().data());
   library_.end_frame(device_);
   keep_failure();
   ++frames_;
@@ -91,16 +91,16 @@ unsigned OpenHapticsFrames::tick() noexcept {
 }
 
 void OpenHapticsFrames::learn() noexcept {
-  copy(library_.get_name(hd::kModel), facts_.model);
-  copy(library_.get_name(hd::kSerialNumber), facts_.serial_number);
+  copy_words(library_.get_name(hd::kModel), facts_.model);
+  copy_words(library_.get_name(hd::kSerialNumber), facts_.serial_number);
   library_.get_numbers(hd::kContinuousForce, &facts_.continuous_force);
   library_.get_numbers(hd::kMaximumStiffness, &facts_.maximum_stiffness);
   library_.get_integers(hd::kCalibrationStyle, &facts_.calibration_styles);
   std::array<double, 6> temperatures{};  // of three motors or six
   library_.get_numbers(hd::kMotorTemperature, temperatures.data());
   facts_.temperature = std::ranges::max(temperatures);
-  facts_.continuous_force = sensible(facts_.continuous_force);
-  facts_.maximum_stiffness = sensible(facts_.maximum_stiffness / kMillimetre);
+  facts_.continuous_force = known_or_zero(facts_.continuous_force);
+  facts_.maximum_stiffness = known_or_zero(facts_.maximum_stiffness / kMillimetre);
   forget_failures();  // older libraries do not know all of this
 }
 
@@ -111,7 +111,7 @@ LinkReading OpenHapticsFrames::read() const noexcept {
   library_.get_numbers(hd::kCurrentPosition, position.data());
   library_.get_numbers(hd::kCurrentVelocity, velocity.data());
   library_.get_integers(hd::kCurrentButtons, &buttons);
-  return {kMillimetre * from_maker(position), kMillimetre * from_maker(velocity),
+  return {kMillimetre * from_hd(position), kMillimetre * from_hd(velocity),
           static_cast<std::uint32_t>(buttons)};
 }
 

@@ -25,22 +25,22 @@ constexpr const char* kNotCalibrated =
     "Touch_Diagnostic";
 
 // What a device's model tells, the most exact first.
-struct Model {
+struct TouchModel {
   std::string_view word;
   const char* profile;
 };
-constexpr std::array kModels = {
-    Model{"touch x", "touch-x"},
-    Model{"touch", "touch"},
-    Model{"omni", "phantom-omni"},
-    Model{"desktop", "phantom-desktop"},
-    Model{"premium 1.5", "phantom-premium-1.5"},
-    Model{"premium 3.0", "phantom-premium-3.0"},
+constexpr std::array kTouchModels = {
+    TouchModel{"touch x", "touch-x"},
+    TouchModel{"touch", "touch"},
+    TouchModel{"omni", "phantom-omni"},
+    TouchModel{"desktop", "phantom-desktop"},
+    TouchModel{"premium 1.5", "phantom-premium-1.5"},
+    TouchModel{"premium 3.0", "phantom-premium-3.0"},
 };
 
-std::string profile_of(std::string model) {
+std::string touch_profile_of(std::string model) {
   std::ranges::transform(model, model.begin(), [](unsigned char c) { return std::tolower(c); });
-  for (const Model& known : kModels) {
+  for (const TouchModel& known : kTouchModels) {
     if (model.find(known.word) != std::string::npos) return known.profile;
   }
   return "unknown";
@@ -58,13 +58,13 @@ DeviceInfo info_of_device(const DeviceName& name, const OpenHapticsFacts& facts,
   const std::string title = fmt::format("{} ({})", device, title_of(facts));
   const std::string given = name.option("profile");
   if (!given.empty()) return info_of(device_profile(given), title);
-  DeviceInfo info = info_of(device_profile(profile_of(facts.model.data())), title);
+  DeviceInfo info = info_of(device_profile(touch_profile_of(facts.model.data())), title);
   if (facts.continuous_force > 0) info.maximum_force = facts.continuous_force;
   if (facts.maximum_stiffness > 0) info.maximum_stiffness = facts.maximum_stiffness;
   return info;
 }
 
-std::string failure_words(unsigned code, const std::string& told) {
+std::string touch_failure(unsigned code, const std::string& told) {
   const std::string off = ", so it switched its forces off (" + told + ")";
   switch (code) {
     case hd::kWarmMotors:
@@ -147,7 +147,7 @@ OpenHapticsFrames::Answer OpenHapticsLink::checked_answer() {
         "keeps the computer busy");
   }
   if (answer->failure != hd::kSuccess) {
-    fail(failure_words(answer->failure, library_.words(answer->failure)));
+    fail(touch_failure(answer->failure, library_.words(answer->failure)));
   }
   if (answer->calibration == hd::kNeedsHand) {
     fail(kNotCalibrated);

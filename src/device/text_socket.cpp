@@ -26,7 +26,7 @@ using Tcp = net::ip::tcp;
 using Seconds = std::chrono::duration<double>;
 
 constexpr std::size_t kLongestText = 64 * 1024;
-constexpr double kFarewell = 0.05;  // s for the other side to hear that it is over
+constexpr double kSocketFarewell = 0.05;  // s for the other side to hear that it is over
 
 struct Url {
   std::string host;
@@ -143,7 +143,7 @@ TextSocket::~TextSocket() {
   if (in.sent && !in.error) {
     in.socket.async_close(websocket::close_code::normal,
                           [&closed](const beast::error_code&) { closed = true; });
-    in.run(kFarewell, [&closed] { return closed; });
+    in.run(kSocketFarewell, [&closed] { return closed; });
   }
   beast::get_lowest_layer(in.socket).close();
   in.io.restart();

@@ -9,7 +9,7 @@ namespace palpate::device {
 namespace {
 
 // As the loader says of a name that nothing has.
-bool is_absent(const std::string& name, const std::string& words) {
+bool is_absent_library(const std::string& name, const std::string& words) {
   return words.starts_with(name + ": cannot open shared object file");
 }
 
@@ -26,7 +26,8 @@ VendorLibrary::VendorLibrary(const std::vector<std::string>& names, const std::s
     }
     const char* told = ::dlerror();
     const std::string words = told == nullptr ? "no reason given" : told;
-    if (!why.empty() && (!is_absent(name_, why) || is_absent(name, words))) continue;
+    if (!why.empty() && (!is_absent_library(name_, why) || is_absent_library(name, words)))
+      continue;
     name_ = name;
     why = words;
   }
