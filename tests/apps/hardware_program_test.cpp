@@ -1,4 +1,5 @@
-// A hand that holds hardware: the maker's library is a double (tests/device/fake_dhd.cpp).
+// A hand that holds hardware: the makers' libraries are doubles (tests/device/fake_dhd.cpp,
+// fake_hd.cpp).
 #include <gtest/gtest.h>
 
 #include "apps/program.hpp"
@@ -21,6 +22,16 @@ TEST(HardwareProgram, RunsWithWhatADriverReaches) {
   const std::string report = shell.read("report.json");
   EXPECT_TRUE(contains(report, "origin_m")) << report;
   EXPECT_TRUE(contains(report, "forcedimension:0 (omega.3)")) << report;
+}
+
+TEST(HardwareProgram, RunsInTheMakersScheduler) {
+  Shell shell;
+  const Outcome outcome = shell.run(
+      "touch synthetic:torus --duration 0.5 --json report.json --device "
+      "openhaptics,library=" PALPATE_FAKE_HD);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "holds openhaptics:Default Device (Touch)")) << outcome.err;
+  EXPECT_TRUE(contains(shell.read("report.json"), "openhaptics:Default Device (Touch)"));
 }
 
 TEST(HardwareProgram, SaysWhyItIsNotThere) {

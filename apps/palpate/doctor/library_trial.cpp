@@ -3,11 +3,13 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <link.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <csignal>
+#include <filesystem>
 
 #include "palpate/base/error.hpp"
 
@@ -19,10 +21,20 @@ constexpr unsigned kPatience = 10;  // s
 constexpr char kLoaded = 'l';       // the first character of what the other process tells
 constexpr char kNotLoaded = 'n';
 
+// Of "libHD.so.3.4.0", the file that was loaded: 3.4.0.
+std::string version_in_name(void* library) {
+  link_map* map = nullptr;
+  if (::dlinfo(library, RTLD_DI_LINKMAP, static_cast<void*>(&map)) != 0) return "";
+  std::error_code none;
+  const std::string name = std::filesystem::canonical(map->l_name, none).filename().string();
+  const std::size_t end = name.find(".so.");
+  return end == std::string::npos ? "" : name.substr(end + 4);
+}
+
 std::string version_of(void* library) {
   using Version = void(int*, int*, int*, int*);
   auto* const version = reinterpret_cast<Version*>(::dlsym(library, "dhdGetSDKVersion"));
-  if (version == nullptr) return "";
+  if (version == nullptr) return version_in_name(library);
   int major = 0;
   int minor = 0;
   int release = 0;

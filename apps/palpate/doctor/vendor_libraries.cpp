@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
+#include <utility>
 
 namespace palpate::app::doctor {
 
@@ -15,18 +17,24 @@ constexpr const char* kForceDimension =
     "ldconfig";
 
 constexpr const char* kOpenHaptics = "cd openhaptics*/ && sudo ./install";
+constexpr const char* kTouch = "libHD.so";  // how Touch and Phantom are reached
 
 struct VendorLibrary {
   std::string_view name;
-  std::string_view devices;  // that need it: what reaches them
+  std::array<std::string_view, 2> also_called;  // where that is not installed
+  std::string_view devices;                     // that need it: what reaches them
   std::string_view brought_by;
   std::string_view install;  // beside the folder that was unpacked
 };
 
 constexpr std::array kLibraries = {
-    VendorLibrary{"libdhd.so.3", "libdhd.so.3", "Force Dimension's SDK", kForceDimension},
-    VendorLibrary{"libdrd.so.3", "", "Force Dimension's SDK", kForceDimension},
-    VendorLibrary{"libHD.so", "libHD.so", "3D Systems' OpenHaptics", kOpenHaptics},
+    VendorLibrary{"libdhd.so.3", {}, "libdhd.so.3", "Force Dimension's SDK", kForceDimension},
+    VendorLibrary{"libdrd.so.3", {}, "", "Force Dimension's SDK", kForceDimension},
+    VendorLibrary{"libHD.so",
+                  {"libHD.so.3.4", "libHD.so.3"},
+                  kTouch,
+                  "3D Systems' OpenHaptics",
+                  kOpenHaptics},
 };
 
 // Of "libncurses.so.5: cannot open shared object file: ...": the library that is missing.
@@ -66,6 +74,42 @@ Finding checked(const VendorLibrary& library, const LibraryTrial& trial, bool ne
   return finding;
 }
 
+// The first that loads, else the first that is there and broken.
+LibraryTrial tried(const System& system, const VendorLibrary& library) {
+  LibraryTrial best = system.try_library(std::string(library.name));
+  for (const std::string_view name : library.also_called) {
+    if (name.empty() || best.outcome == LibraryTrial::Outcome::loaded) break;
+    LibraryTrial other = system.try_library(std::string(name));
+    const bool better = other.outcome == LibraryTrial::Outcome::loaded ||
+                        best.outcome == LibraryTrial::Outcome::absent;
+    if (better) best = std::move(other);
+  }
+  return best;
+}
+
+// OpenHaptics opens what the maker's set-up has written into a file NAME.config.
+Finding check_touch_setup(const System& system) {
+  const std::string given = variable(system, "GTDD_HOME");
+  const std::filesystem::path folder =
+      std::filesystem::path(given.empty() ? variable(system, "HOME") + "/.3dsystems" : given) /
+      "config";
+  std::string names;
+  for (const auto& entry : entries(system.root / folder.relative_path())) {
+    if (entry.extension() == ".config") {
+      names += (names.empty() ? "" : ", ") + entry.stem().string();
+    }
+  }
+  Finding finding{kVendors, "Touch's set-up"};
+  finding.words = fmt::format("{} in {}", names, folder.string());
+  if (!names.empty()) return finding;
+  finding.severity = Severity::problem;
+  finding.words =
+      fmt::format("no device is set up in {}: OpenHaptics opens none that is not", folder.string());
+  finding.remedy = fmt::format("{}mkdir -p \"$GTDD_HOME/config\" && Touch_Setup",
+                               given.empty() ? "export GTDD_HOME=\"$HOME/.3dsystems\" && " : "");
+  return finding;
+}
+
 Finding check_haply(const System& system, bool needed) {
   Finding finding{kVendors, "Haply's Inverse Service"};
   if (system.listens(kHaplyPort)) {
@@ -85,8 +129,9 @@ Findings check_vendor_libraries(const System& system, const std::vector<Found>& 
   Findings findings;
   for (const VendorLibrary& library : kLibraries) {
     const bool needed = !library.devices.empty() && reaches_any(library.devices, found);
-    findings.push_back(checked(library, system.try_library(std::string(library.name)), needed));
+    findings.push_back(checked(library, tried(system, library), needed));
   }
+  if (reaches_any(kTouch, found)) findings.push_back(check_touch_setup(system));
   findings.push_back(check_haply(system, reaches_any("service", found)));
   return findings;
 }

@@ -158,7 +158,7 @@ TEST(DoctorLibraries, TellTheirVersionOrWhatTheyMiss) {
   MadeUp machine;
   using Outcome = LibraryTrial::Outcome;
   machine.system.try_library = [](const std::string& name) {
-    return name == "libHD.so"
+    return name.starts_with("libHD.so")
                ? LibraryTrial{Outcome::broken,
                               "libncurses.so.5: cannot open shared object file: No such file"}
                : LibraryTrial{Outcome::loaded, "3.17.6.0"};
@@ -168,6 +168,31 @@ TEST(DoctorLibraries, TellTheirVersionOrWhatTheyMiss) {
   const Finding broken = about("libHD.so", findings);
   EXPECT_EQ(broken.severity, Severity::warning);
   EXPECT_TRUE(broken.remedy.ends_with("apt-file search libncurses.so.5")) << broken.remedy;
+}
+
+TEST(DoctorLibraries, AreFoundByTheirOtherNames) {
+  MadeUp machine;
+  using Outcome = LibraryTrial::Outcome;
+  machine.system.try_library = [](const std::string& name) {
+    return name == "libHD.so.3" ? LibraryTrial{Outcome::loaded, "3.4.0"} : LibraryTrial{};
+  };
+  const Findings findings = check_vendor_libraries(machine.system, {});
+  EXPECT_EQ(about("libHD.so", findings).words, "loaded, version 3.4.0");
+}
+
+TEST(DoctorLibraries, NeedATouchThatIsSetUp) {
+  MadeUp machine;
+  machine.usb("1-4", "2988", "0302", 1, 12);
+  machine.system.variables = {{"HOME", "/home/ann"}};
+  const auto setup = [&machine] {
+    return about("Touch's set-up", check_vendor_libraries(machine.system, found_on(machine)));
+  };
+  EXPECT_EQ(setup().severity, Severity::problem);
+  EXPECT_EQ(setup().remedy.find("export GTDD_HOME"), 0u) << setup().remedy;
+  machine.file("home/ann/.3dsystems/config/Default Device.config", "ModelType=OMNI");
+  EXPECT_EQ(setup().words, "Default Device in /home/ann/.3dsystems/config");
+  machine.system.variables["GTDD_HOME"] = "/usr/share/3DSystems";
+  EXPECT_EQ(setup().remedy.find("mkdir"), 0u) << setup().remedy;
 }
 
 }  // namespace

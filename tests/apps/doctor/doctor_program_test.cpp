@@ -88,6 +88,14 @@ TEST(Doctor, LoadsVendorsLibrariesAndSurvivesThoseThatDoNot) {
   EXPECT_EQ(about("libHD.so", findings)["severity"], "warning");
 }
 
+TEST(Doctor, TellsTheVersionThatAFileIsNamedAfter) {
+  Shell shell;
+  std::filesystem::copy_file(PALPATE_FAKE_HD, shell.path("libHD.so.3.4.0"));
+  std::filesystem::create_symlink("libHD.so.3.4.0", shell.path("libHD.so"));
+  EXPECT_EQ(about("libHD.so", examined(shell, with_libraries(shell)))["words"],
+            "loaded, version 3.4.0");
+}
+
 TEST(Doctor, WarnsOfALocaleThatDoesNotExist) {
   Shell shell;
   const auto findings = examined(shell, std::string(kForeign) + " LC_ALL=xx_XX.UTF-8");

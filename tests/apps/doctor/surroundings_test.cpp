@@ -23,6 +23,7 @@ void break_everything(MadeUp& machine) {
   machine.usb("1-3", "1d27", "0601", 1, 4);
   machine.usb("1-4", "8086", "0b07", 1, 5, "uvcvideo", "RealSense");
   machine.usb("1-5", "1209", "0001", 1, 6, "", "Haply");
+  machine.usb("1-6", "2988", "0302", 1, 7);
   machine.system.node = [](const std::filesystem::path&) { return Node{.there = true}; };
   machine.system.variables = {{"DISPLAY", ":0"}, {"LANG", "de_DE.UTF-8"}, {"LC_TIME", "$(ls)"}};
 }
