@@ -18,6 +18,10 @@ ForceDimensionLibrary::ForceDimensionLibrary(const std::string& file)
   library.find("dhdGetPosition", position);
   library.find("dhdGetLinearVelocity", velocity);
   library.find("dhdGetButtonMask", buttons);
+  library.find("dhdHasWrist", has_wrist);
+  library.find("dhdHasGripper", has_gripper);
+  library.find("dhdGetOrientationFrame", orientation);
+  library.find("dhdGetGripperGap", gripper);
   library.find("dhdSetForceAndTorqueAndGripperForce", set_force);
   library.find("dhdErrorGetLastStr", last_error_);
 }

@@ -30,6 +30,10 @@ struct ForceDimensionLibrary {
   int (*position)(double* x, double* y, double* z, char id) = nullptr;
   int (*velocity)(double* x, double* y, double* z, char id) = nullptr;
   unsigned (*buttons)(char id) = nullptr;
+  bool (*has_wrist)(char id) = nullptr;
+  bool (*has_gripper)(char id) = nullptr;
+  int (*orientation)(double rows[3][3], char id) = nullptr;  // from the tool's axes to the base's
+  int (*gripper)(double* gap, char id) = nullptr;
   int (*set_force)(double x, double y, double z, double around_x, double around_y, double around_z,
                    double gripper, char id) = nullptr;
 

@@ -85,6 +85,8 @@ ForceDimensionLink::ForceDimensionLink(const DeviceName& name)
   try {
     info_ = info_of(device_profile(name.option("profile", profile_of(title))),
                     fmt::format("{} ({})", info_.name, title.empty() ? "no name" : title));
+    info_.tells_orientation = library_.has_wrist(id_);
+    info_.has_gripper = library_.has_gripper(id_);
     prepare();
   } catch (...) {
     library_.close(id_);
@@ -147,7 +149,25 @@ LinkReading ForceDimensionLink::exchange(const Vector3d& force) {
   Vector3d place;
   check(library_.position(&place.x(), &place.y(), &place.z(), id_), "does not tell its place");
   if (++exchanges_ % kStatusPeriod == 0) check_status();
-  return {from_maker(place), velocity(), library_.buttons(id_)};
+  return {from_maker(place), velocity(), library_.buttons(id_), orientation(), gripper()};
+}
+
+// Tool and base are turned alike: straight stays straight.
+Eigen::Quaterniond ForceDimensionLink::orientation() const {
+  if (!info_.tells_orientation) return Eigen::Quaterniond::Identity();
+  double rows[3][3] = {};
+  check(library_.orientation(rows, id_), "does not tell how its tool is held");
+  const Eigen::Matrix3d maker =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(*rows);
+  Eigen::Matrix3d ours;
+  for (int i = 0; i < 3; ++i) ours.col(i) = from_maker(maker * to_maker(Vector3d::Unit(i)));
+  return Eigen::Quaterniond(ours).normalized();
+}
+
+double ForceDimensionLink::gripper() const {
+  double gap = 0;
+  if (info_.has_gripper) check(library_.gripper(&gap, id_), "does not tell its gripper's opening");
+  return gap;
 }
 
 // Velocities are estimated over a window, which has to be filled first.

@@ -8,8 +8,8 @@
 
 namespace palpate::device {
 
-/// A device of Force Dimension, or a Novint Falcon, through the maker's library. Torques and
-/// grippers are left without a force.
+/// A device of Force Dimension, or a Novint Falcon, through the maker's library. Wrists and
+/// grippers are read, and left without a force.
 ///
 /// The device's own watchdog is armed: it takes the force away where nothing is heard for
 /// kWatchdog. Its velocity threshold stays as it is.
@@ -30,6 +30,8 @@ class ForceDimensionLink final : public DeviceLink {
   void check_status() const;
   void check(int result, const char* what) const;
   [[nodiscard]] Eigen::Vector3d velocity();
+  [[nodiscard]] Eigen::Quaterniond orientation() const;
+  [[nodiscard]] double gripper() const;
 
   ForceDimensionLibrary library_;
   DeviceInfo info_;

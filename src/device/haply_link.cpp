@@ -80,6 +80,7 @@ class HaplyLink final : public DeviceLink {
     id_ = found->id;
     check(*found);
     info_ = info_of(device_profile(name.option("profile", kProfile)), fmt::format("haply:{}", id_));
+    info_.tells_orientation = found->gripped;
   }
   ~HaplyLink() override {
     try {

@@ -38,31 +38,57 @@ std::optional<Vector3d> vector(const Json& value, double largest) {
   return Vector3d(*x, *y, *z);
 }
 
-// One with three buttons and a radio, or one with a cable.
-std::uint32_t buttons_of(const Json& frame) {
+// What the hand holds.
+struct Grip {
   std::uint32_t buttons = 0;
+  std::optional<Eigen::Quaterniond> orientation = {};
+};
+
+// None where it is not told, or is no rotation.
+std::optional<Eigen::Quaterniond> rotation(const Json& value) {
+  constexpr double kLength = 0.01;  // by which a unit quaternion's may be off
+  const std::optional<double> w = number(child(value, "w"), 2);
+  const std::optional<Vector3d> xyz = vector(value, 2);
+  if (!w || !xyz) return std::nullopt;
+  const Eigen::Quaterniond told(*w, xyz->x(), xyz->y(), xyz->z());
+  if (std::abs(told.norm() - 1) > kLength) return std::nullopt;
+  return told.normalized();
+}
+
+void add_buttons(const Json& state, std::uint32_t& buttons) {
+  const std::array pressed = {child(child(state, "buttons"), "a"),
+                              child(child(state, "buttons"), "b"),
+                              child(child(state, "buttons"), "c")};
+  for (std::size_t i = 0; i < pressed.size(); ++i) {
+    if (truth(pressed[i]).value_or(false)) buttons |= 1u << i;
+  }
+  if (truth(child(state, "button")).value_or(false)) buttons |= 1;
+}
+
+// One with three buttons and a radio, or one with a cable.
+Grip grip_of(const Json& frame) {
+  Grip grip;
   for (const char* kind : {"wireless_verse_grip", "verse_grip"}) {
     const Json& grips = child(frame, kind);
     if (!grips.is_array() || grips.empty()) continue;
     const Json& state = child(grips.front(), "state");
-    const std::array pressed = {child(child(state, "buttons"), "a"),
-                                child(child(state, "buttons"), "b"),
-                                child(child(state, "buttons"), "c")};
-    for (std::size_t i = 0; i < pressed.size(); ++i) {
-      if (truth(pressed[i]).value_or(false)) buttons |= 1u << i;
-    }
-    if (truth(child(state, "button")).value_or(false)) buttons |= 1;
+    add_buttons(state, grip.buttons);
+    if (!grip.orientation) grip.orientation = rotation(child(state, "orientation"));
   }
-  return buttons;
+  return grip;
 }
 
-HaplyDevice device_of(const Json& told, std::string id, std::uint32_t buttons) {
+HaplyDevice device_of(const Json& told, std::string id, const Grip& grip) {
   HaplyDevice device;
   device.id = std::move(id);
   const Json& state = child(told, "state");
   const std::optional<Vector3d> place = vector(child(state, "cursor_position"), kFarthestHaply);
   const std::optional<Vector3d> velocity = vector(child(state, "cursor_velocity"), kFastestHaply);
-  if (place && velocity) device.reading = LinkReading{*place, *velocity, buttons};
+  if (place && velocity) {
+    device.reading = LinkReading{*place, *velocity, grip.buttons,
+                                 grip.orientation.value_or(Eigen::Quaterniond::Identity())};
+  }
+  device.gripped = grip.orientation.has_value();
   device.calibrated = truth(child(child(told, "status"), "calibrated"));
   device.powered = truth(child(child(told, "status"), "power_supply"));
   return device;
@@ -76,10 +102,10 @@ std::vector<HaplyDevice> parse_haply_frame(std::string_view text) {
   std::vector<HaplyDevice> devices;
   const Json& told = child(frame, "inverse3");
   if (!told.is_array()) return devices;
-  const std::uint32_t buttons = buttons_of(frame);
+  const Grip grip = grip_of(frame);
   for (const Json& each : told) {
     const Json& id = child(each, "device_id");
-    if (id.is_string()) devices.push_back(device_of(each, id.get<std::string>(), buttons));
+    if (id.is_string()) devices.push_back(device_of(each, id.get<std::string>(), grip));
   }
   return devices;
 }

@@ -18,13 +18,14 @@ struct HaplyDevice {
   std::optional<LinkReading> reading = {};  ///< where place and velocity are told, and possible
   std::optional<bool> calibrated = {};      ///< where it is told
   std::optional<bool> powered = {};         ///< where it is told
+  bool gripped = false;                     ///< a grip tells how it is held
 };
 
 /// Larger numbers are none of a hand's: m along an axis, and m/s.
 inline constexpr double kFarthestHaply = 10;
 inline constexpr double kFastestHaply = 100;
 
-/// The devices of a frame; the buttons of the first grip are in all readings.
+/// The devices of a frame; buttons and orientation of the first grip are in all readings.
 /// @throws Error when it is no frame at all.
 [[nodiscard]] std::vector<HaplyDevice> parse_haply_frame(std::string_view text);
 

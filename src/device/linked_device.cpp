@@ -35,7 +35,8 @@ DeviceInfo info_of(const DeviceLink& link) {
 }
 
 void check(const LinkReading& reading, const DeviceInfo& info) {
-  if (reading.position.allFinite() && reading.velocity.allFinite()) return;
+  const bool tool = reading.orientation.coeffs().allFinite() && std::isfinite(reading.gripper);
+  if (tool && reading.position.allFinite() && reading.velocity.allFinite()) return;
   throw Error(
       fmt::format("{}: tells a place that is no number, so it got no force. It is opened again; if "
                   "that does not help, switch it off and on, and calibrate it",
@@ -147,6 +148,8 @@ DeviceState LinkedDevice::read() noexcept {
     state_.position = seen_.reading.position;
     state_.velocity = seen_.reading.velocity;
     state_.buttons = seen_.reading.buttons;
+    state_.orientation = seen_.reading.orientation;
+    state_.gripper = seen_.reading.gripper;
     placed_ = seen_.connection;
   } else {
     state_.status = DeviceStatus::silent;

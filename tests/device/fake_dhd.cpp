@@ -26,6 +26,8 @@ struct Device {
   bool not_a_number = false;
   bool failing = false;
   std::string name = "omega.3";
+  bool has_wrist = false;
+  bool has_gripper = false;
 
   bool is_open = false;
   bool forces_on = false;
@@ -36,6 +38,8 @@ struct Device {
   int thresholds = 0;   // times that somebody changed the velocity threshold
   int velocities = 0;   // times that the velocity was asked for
   FakeMass hand;
+  std::array<Three, 3> frame{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  double gap = 0;  // m
   Three force{};
 };
 
@@ -127,6 +131,22 @@ int dhdGetLinearVelocity(double* x, double* y, double* z, char) {
 unsigned dhdGetButtonMask(char) {
   return 5;
 }
+bool dhdHasWrist(char) {
+  return device.has_wrist;
+}
+bool dhdHasGripper(char) {
+  return device.has_gripper;
+}
+int dhdGetOrientationFrame(double rows[3][3], char) {
+  if (answer(device.has_wrist, "feature not available") < 0 || reached() < 0) return -1;
+  for (std::size_t i = 0; i < 3; ++i) tell(device.frame[i], rows[i], rows[i] + 1, rows[i] + 2);
+  return 1;  // a note, no error
+}
+int dhdGetGripperGap(double* gap, char) {
+  if (answer(device.has_gripper, "feature not available") < 0 || reached() < 0) return -1;
+  *gap = device.gap;
+  return 0;
+}
 int dhdSetForceAndTorqueAndGripperForce(double x, double y, double z, double, double, double,
                                         double, char) {
   if (reached() < 0) return -1;
@@ -165,6 +185,15 @@ void fake_name(const char* name) {
 }
 void fake_place(double x, double y, double z) {
   device.hand = {.place = {x, y, z}};
+}
+// Rows of the rotation from the tool's axes to the base's, the maker's both.
+void fake_frame(const double* rows) {
+  device.has_wrist = true;
+  for (std::size_t i = 0; i < 9; ++i) device.frame[i / 3][i % 3] = rows[i];
+}
+void fake_gap(double gap) {
+  device.has_gripper = true;
+  device.gap = gap;
 }
 // What the motors hold, N; the maker's axes.
 void fake_force(double* force) {

@@ -21,7 +21,19 @@ namespace palpate::test {
 /// command.
 class FakeHaplyService {
  public:
-  enum class Fault { none, closes, garbage, not_a_number, null, far, silent, late, gone, reset };
+  enum class Fault {
+    none,
+    closes,
+    garbage,
+    not_a_number,
+    null,
+    far,
+    silent,
+    late,
+    gone,
+    reset,
+    no_rotation
+  };
 
   FakeHaplyService() : thread_([this] { serve(); }) {}
   /// Whoever is connected has to leave first.
@@ -115,9 +127,10 @@ class FakeHaplyService {
     Json& place = device["state"]["cursor_position"];
     if (fault == Fault::null) place["y"] = nullptr;
     if (fault == Fault::far) place["y"] = 1e9;
+    const double w = fault == Fault::no_rotation ? 0.9 : 0.6;
     const Json grip = {{"device_id", "61576"},
                        {"state",
-                        {{"orientation", {{"w", 1}, {"x", 0}, {"y", 0}, {"z", 0}}},
+                        {{"orientation", {{"w", w}, {"x", 0}, {"y", -0.8}, {"z", 0}}},
                          {"buttons", {{"a", true}, {"b", false}, {"c", true}}}}}};
     std::string text = Json{
         {"inverse3", {{{"device_id", "0001"}}, device}},

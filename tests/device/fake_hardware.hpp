@@ -37,6 +37,7 @@ class FakeHardware {
     uncalibrated,  ///< does not know where its hand is
     error,         ///< answers with an error's code
     not_a_number,  ///< tells places that are none
+    not_a_turn,    ///< tells orientations that are none
   };
 
   explicit FakeHardware(WaitingClock& clock) : clock_(clock) {}
@@ -87,9 +88,16 @@ class FakeHardware {
     if (block > 0) clock_.wait_until(clock_.now() + block);
     require();
     const std::lock_guard lock(mutex_);
-    LinkReading reading{.position = place_, .velocity = {0, 0, -0.1}, .buttons = 1};
+    LinkReading reading{.position = place_,
+                        .velocity = {0, 0, -0.1},
+                        .buttons = 1,
+                        .orientation = {0.6, 0, 0.8, 0},
+                        .gripper = 0.02};
     if (fault_ == Fault::not_a_number) {
       reading.position.y() = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (fault_ == Fault::not_a_turn) {
+      reading.orientation.x() = std::numeric_limits<double>::quiet_NaN();
     }
     return reading;
   }
@@ -100,8 +108,11 @@ class FakeHardware {
   double apply(const Eigen::Vector3d& force) {
     const std::lock_guard lock(mutex_);
     heard_ = clock_.now();
-    if (fault_ == Fault::none || fault_ == Fault::not_a_number) force_ = force;
+    if (!refuses()) force_ = force;
     return std::exchange(block_, 0);
+  }
+  [[nodiscard]] bool refuses() const {
+    return fault_ != Fault::none && fault_ != Fault::not_a_number && fault_ != Fault::not_a_turn;
   }
   void require() const {
     const std::lock_guard lock(mutex_);
@@ -116,6 +127,7 @@ class FakeHardware {
         throw Error("fake: error 7; switch it off and on");
       case Fault::none:
       case Fault::not_a_number:
+      case Fault::not_a_turn:
         return;
     }
   }

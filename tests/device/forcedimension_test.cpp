@@ -53,6 +53,33 @@ TEST_F(ForceDimension, TellsPlacesAndForcesAsTheOperatorSits) {
   EXPECT_EQ(reading.buttons, 5u);
 }
 
+TEST_F(ForceDimension, TellsHowItsToolIsHeldWhereItHasAWrist) {
+  EXPECT_FALSE(open()->info().tells_orientation);
+  EXPECT_TRUE(open()->exchange(kForce).orientation.isApprox(Eigen::Quaterniond::Identity(), 0));
+  // The maker's x is towards the operator: its tip lifted is a turn about the maker's y, which is
+  // our x.
+  const double lifted = 0.3;
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(lifted, Vector3d::UnitY()).toRotationMatrix();
+  const Eigen::Matrix3d rows = turn.transpose();  // columns are kept one after the other
+  double_.find<void(const double*)>("fake_frame")(rows.data());
+  const auto link = open();
+  EXPECT_TRUE(link->info().tells_orientation);
+  const Eigen::Quaterniond told = link->exchange(kForce).orientation;
+  const Eigen::Quaterniond expected(Eigen::AngleAxisd(lifted, Vector3d::UnitX()));
+  EXPECT_LT(told.angularDistance(expected), 1e-12);
+  EXPECT_NEAR(told.norm(), 1, 1e-12);
+  EXPECT_NEAR((told * Vector3d::UnitY()).z(), std::sin(lifted), 1e-12) << "the tip points up";
+}
+
+TEST_F(ForceDimension, TellsTheOpeningOfAGripper) {
+  EXPECT_FALSE(open()->info().has_gripper);
+  EXPECT_EQ(open()->exchange(kForce).gripper, 0);
+  double_.find<void(double)>("fake_gap")(0.012);
+  const auto link = open();
+  EXPECT_TRUE(link->info().has_gripper);
+  EXPECT_EQ(link->exchange(kForce).gripper, 0.012);
+}
+
 TEST_F(ForceDimension, AForceMovesTheHandItsWay) {
   const auto link = open();
   const Vector3d push(0.3, -0.6, 0.2);

@@ -67,6 +67,17 @@ TEST_F(Haply, TellsTheHandAndAppliesTheForce) {
   EXPECT_EQ(link->info().maximum_force, *device_profile("inverse3").maximum_force);
 }
 
+TEST_F(Haply, TellsHowItsGripIsHeld) {
+  const auto link = open();
+  EXPECT_TRUE(link->info().tells_orientation);
+  EXPECT_FALSE(link->info().has_gripper);
+  EXPECT_TRUE(
+      link->exchange(kForce).orientation.isApprox(Eigen::Quaterniond(0.6, 0, -0.8, 0), 1e-12));
+  service_.set(Fault::no_rotation);
+  EXPECT_TRUE(link->exchange(kForce).orientation.isApprox(Eigen::Quaterniond::Identity(), 0));
+  EXPECT_FALSE(open()->info().tells_orientation);
+}
+
 TEST_F(Haply, TellsWhereTheHandIsAfterThisCommand) {
   const auto link = open();
   for (int i = 0; i < 100; ++i) {

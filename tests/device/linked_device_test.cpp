@@ -94,6 +94,8 @@ TEST_F(LinkedDeviceTest, TellsThePlaceAndAppliesTheForce) {
   EXPECT_EQ(state_.position, Vector3d(0.01, 0.02, 0.03));
   EXPECT_EQ(state_.velocity, Vector3d(0, 0, -0.1));
   EXPECT_EQ(state_.buttons, 1u);
+  EXPECT_EQ(state_.orientation.coeffs(), Eigen::Vector4d(0, 0.8, 0, 0.6));
+  EXPECT_EQ(state_.gripper, 0.02);
   device_.reset();
   EXPECT_EQ(hardware_.force().norm(), 0);
   EXPECT_EQ(hardware_.closed(), 1);
@@ -143,18 +145,21 @@ TEST_F(LinkedDeviceTest, AnswersWithAnError) {
 
 TEST_F(LinkedDeviceTest, PlaceThatIsNoNumberTakesTheForceAwayInTwoSteps) {
   open();
-  push();
-  const double start = clock_.now();
-  hardware_.set(Fault::not_a_number);
-  run(0.5);
-  EXPECT_LE(pushed_for(start), 2 * kServoStep);
-  EXPECT_TRUE(state_.position.allFinite());
-  EXPECT_EQ(state_.status, DeviceStatus::silent);
-  ASSERT_EQ(reasons_.size(), 1u);
-  EXPECT_NE(reasons_.begin()->find("no number"), std::string::npos);
-  hardware_.set(Fault::none);
-  run(1.1);
-  EXPECT_EQ(hardware_.force(), kForce);
+  for (const Fault fault : {Fault::not_a_number, Fault::not_a_turn}) {
+    push();
+    const double start = clock_.now();
+    hardware_.set(fault);
+    run(0.5);
+    EXPECT_LE(pushed_for(start), 2 * kServoStep);
+    EXPECT_TRUE(state_.position.allFinite());
+    EXPECT_TRUE(state_.orientation.coeffs().allFinite());
+    EXPECT_EQ(state_.status, DeviceStatus::silent);
+    ASSERT_EQ(reasons_.size(), 1u);
+    EXPECT_NE(reasons_.begin()->find("no number"), std::string::npos);
+    hardware_.set(Fault::none);
+    run(1.1);
+    EXPECT_EQ(hardware_.force(), kForce);
+  }
 }
 
 // While a driver's call does not return nobody can speak to the hardware: its own watchdog ends the

@@ -38,6 +38,15 @@ TEST(Workspace, VelocityIsThePositionsDerivative) {
   EXPECT_LT((moved / dt - workspace.velocity_to_world(v)).norm(), 1e-9);
 }
 
+TEST(Workspace, OrientationTurnsAsPlacesDo) {
+  const Workspace workspace = turned_and_magnified();
+  const Eigen::Quaterniond held(Eigen::AngleAxisd(0.4, Vector3d(0, 1, 1).normalized()));
+  const Vector3d tip = held * Vector3d::UnitY();
+  const Vector3d in_world = workspace.orientation_to_world(held) * Vector3d::UnitY();
+  EXPECT_LT((in_world - workspace.velocity_to_world(tip) / workspace.scale).norm(), 1e-14);
+  EXPECT_EQ(Workspace().orientation_to_world(held).coeffs(), held.coeffs());
+}
+
 TEST(Workspace, ForceKeepsItsLengthAndWorkIsDividedByScale) {
   const Workspace workspace = turned_and_magnified();
   const Vector3d force(1, -2, 0.5);

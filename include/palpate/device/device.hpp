@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -32,8 +32,10 @@ struct DeviceInfo {
   /// s from the reading of a place to its force's effect, the hold of the force not counted; unset:
   /// not known
   std::optional<double> delay = {};
-  double workspace_radius = 0;  ///< of the largest ball in reach, m; 0: not known
-  bool keeps_time = false;      ///< read() waits for, or defines, the next step by itself
+  double workspace_radius = 0;     ///< of the largest ball in reach, m; 0: not known
+  bool keeps_time = false;         ///< read() waits for, or defines, the next step by itself
+  bool tells_orientation = false;  ///< of the tool
+  bool has_gripper = false;        ///< whose opening it tells
 };
 
 /// What a device knows at the beginning of a step, in the device's own frame.
@@ -43,9 +45,14 @@ struct DeviceState {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
   std::uint32_t buttons = 0;                           ///< bit k: button k is down
+  /// From the tool's axes to the device's, of unit length; the tool held straight, as the device's
+  /// axes are, is the identity. The identity where the device does not tell it.
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  double gripper = 0;  ///< opening between its fingers, m; 0 where there is none
 };
 
-/// A haptic device: tells where the hand is, applies a force to it. Three degrees of freedom.
+/// A haptic device: tells where the hand is, applies a force to it. It may tell more (orientation,
+/// gripper), but what it applies has three degrees of freedom: no torque is rendered.
 ///
 /// One thread uses it, as a sequence of steps: read() once, then write() once. A driver may talk to
 /// its hardware in either; a device that answers only when spoken to sends in write() and receives

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 
 #include "palpate/device/device.hpp"
@@ -9,9 +9,11 @@ namespace palpate {
 
 /// What hardware told in one exchange, device frame.
 struct LinkReading {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
-  std::uint32_t buttons = 0;                           ///< bit k: button k is down
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();               ///< m
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();               ///< m/s
+  std::uint32_t buttons = 0;                                        ///< bit k: button k is down
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< as DeviceState's
+  double gripper = 0;                                               ///< opening, m
 };
 
 /// A connection to hardware that may make its caller wait: what a driver consists of. A

@@ -25,6 +25,10 @@ struct Workspace {
   [[nodiscard]] Eigen::Vector3d velocity_to_world(const Eigen::Vector3d& device) const noexcept {
     return T_world_device.linear() * Eigen::Vector3d(scale * device);
   }
+  [[nodiscard]] Eigen::Quaterniond orientation_to_world(
+      const Eigen::Quaterniond& device) const noexcept {
+    return Eigen::Quaterniond(T_world_device.linear()) * device;
+  }
   [[nodiscard]] Eigen::Vector3d force_to_device(const Eigen::Vector3d& world) const noexcept {
     return T_world_device.linear().transpose() * world;
   }
