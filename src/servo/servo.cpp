@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/requirement.hpp"
 #include "palpate/servo/passive_stiffness.hpp"
 
 namespace palpate {
@@ -12,6 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSilencePeriods = 2.5;
+constexpr int kButtons = 32;
 
 // Of a device that does not tell its rate: what the first step takes, s.
 constexpr double kFirstStep = 1e-3;
@@ -33,6 +35,10 @@ GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
 }
 
 ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
+  if (options.clutch_button) {
+    Requirement{"servo"}(*options.clutch_button >= 0 && *options.clutch_button < kButtons,
+                         "clutch_button", *options.clutch_button, "give a button from 0 to 31");
+  }
   options.guard = guard_for(device, options.guard);
   return options;
 }
@@ -97,16 +103,13 @@ const ServoState& Servo::tick() noexcept {
 }
 
 const ServoState& Servo::step(const DeviceState& device, double now) noexcept {
-  const Workspace& workspace = options_.workspace;
   const bool goes_on = started_ && std::isfinite(state_.time);
   state_.dt = goes_on ? now - state_.time : first_step(device_.info());
   state_.time = now;
-  state_.hip = workspace.position_to_world(device.position);
-  state_.velocity = workspace.velocity_to_world(device.velocity);
-  state_.device = device.status;
+  hand_ = options_.workspace.position_to_world(device.position);
   heard_ = heard_ || device.status != DeviceStatus::silent;
-  state_.buttons = device.buttons;
-  take_wishes(state_.hip);
+  take_wishes();
+  place_tool(device);
   field_.update(now, state_.hip, started_ ? proxy_.position() : state_.hip);
   started_ = true;
   state_.contact = proxy_.step(field_, state_.hip, state_.dt);
@@ -118,10 +121,29 @@ const ServoState& Servo::step(const DeviceState& device, double now) noexcept {
   return state_;
 }
 
-void Servo::take_wishes(const Vector3d& hip) noexcept {
+// The tool rests where the proxy is: nothing is stretched when the clutch is let go.
+void Servo::place_tool(const DeviceState& device) noexcept {
+  const Workspace& workspace = options_.workspace;
+  state_.clutched = is_clutched(device.buttons);
+  state_.hip = clutch_.tool(hand_, state_.clutched, proxy_.position());
+  state_.velocity = workspace.velocity_to_world(device.velocity);
+  state_.orientation = workspace.orientation_to_world(device.orientation);
+  state_.gripper = device.gripper;
+  state_.buttons = device.buttons;
+  state_.device = device.status;
+}
+
+// Before the first hand there is no place where the tool could rest.
+bool Servo::is_clutched(std::uint32_t buttons) const noexcept {
+  return started_ && heard_ && options_.clutch_button &&
+         ((buttons >> *options_.clutch_button) & 1u) != 0;
+}
+
+void Servo::take_wishes() noexcept {
   state_.paused = paused_.load();
   if (reset_.exchange(false) || !heard_) {
-    proxy_.reset(hip);
+    clutch_ = {};
+    proxy_.reset(hand_);
     guard_.reset();
   }
   if (const std::optional<Feel> feel = news(feel_, feel_seen_)) {
@@ -137,13 +159,18 @@ Vector3d Servo::guarded() noexcept {
   GuardInput input;
   input.felt = !state_.paused && state_.device != DeviceStatus::silent;
   input.softened = softened_;
-  input.force = state_.contact.force;
-  input.normal = state_.contact.normal;
-  input.drift = state_.contact.drift;
-  input.hip = state_.hip;
+  input.hip = hand_;
   input.velocity = state_.velocity;
   input.dt = state_.dt;
-  input.stiffness = state_.contact.stiffness;
+  if (state_.clutched) {
+    // As in the air. A hand that goes out while its force fades loses it as it would from a spring.
+    input.stiffness = proxy_.options().stiffness;
+  } else {
+    input.force = state_.contact.force;
+    input.normal = state_.contact.normal;
+    input.drift = state_.contact.drift;
+    input.stiffness = state_.contact.stiffness;
+  }
   input.fault = known_fault(state_);
   return guard_.pass(input);
 }

@@ -25,6 +25,7 @@ class ServoTick : public testing::Test {
     device_.info().maximum_force = 2;
     ServoOptions options;
     options.guard.soft_start = 0.02;  // every link is at work
+    options.clutch_button = 0;
     servo_ = std::make_unique<Servo>(device_, scene_, options);
   }
 
@@ -64,6 +65,18 @@ TEST_F(ServoTick, KeepsTheContractWhileSnapshotsChangeAndVanish) {
     tick(i < 20 ? 6e-3 - 5e-4 * i : -4e-3);
   }
   EXPECT_GT(servo_->state().guard.counts.slewed, 0u);
+}
+
+TEST_F(ServoTick, KeepsTheContractWhileTheClutchIsHeldAndLetGo) {
+  int clutched = 0;
+  for (int i = 0; i < 1000; ++i) {
+    device_.state().buttons = i % 90 < 40 ? 0 : 1;
+    device_.state().orientation = Eigen::AngleAxisd(0.01 * i, Vector3d::UnitX());
+    if (i % 200 == 199) servo_->reset();
+    if (i % 50 == 0) source_->publish(test::still(test::plane(1e-3 * (i % 3)), now_ + 2e-3));
+    clutched += tick(4e-3 - 10e-3 * std::sin(i * M_PI / 60)).clutched ? 1 : 0;
+  }
+  EXPECT_GT(clutched, 400);
 }
 
 TEST_F(ServoTick, KeepsTheContractOnFaultsGapsAndReset) {

@@ -54,7 +54,7 @@ struct GuardInput {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< the proxy's, on the hand, N
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the touched surface; 0: none is
   Eigen::Vector3d drift = Eigen::Vector3d::Zero();     ///< velocity of that surface, m/s
-  Eigen::Vector3d hip = Eigen::Vector3d::Zero();       ///< m
+  Eigen::Vector3d hip = Eigen::Vector3d::Zero();       ///< m; goes as the hand itself does
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the hand, m/s
   double dt = 0;                                       ///< since the last step, s
   double stiffness = 0;                                ///< K that made the force, N/m

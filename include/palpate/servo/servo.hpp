@@ -4,9 +4,11 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 
 #include "palpate/base/latest.hpp"
 #include "palpate/contact/proxy.hpp"
+#include "palpate/device/clutch.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/workspace.hpp"
 #include "palpate/scene/scene_field.hpp"
@@ -25,6 +27,8 @@ struct ServoOptions {
   /// silence raised to 2.5 periods of slow devices.
   GuardOptions guard = {};
   Workspace workspace = {};
+  /// While this button of the device is down, 0 to 31, the hand moves freely (Clutch).
+  std::optional<int> clutch_button = {};
   StepQueue* steps = nullptr;  ///< every step is put into it; outlives the servo
 };
 
@@ -42,6 +46,11 @@ struct Feel {
 /// meanwhile. Device and scene outlive it. While the device is silent the hand feels nothing: the
 /// force fades and comes back at the guard's rate, and the contact begins with the first hand
 /// heard.
+///
+/// While the clutch is held the tool rests at the proxy, and goes where a surface takes that. So
+/// nothing is stretched when it is let go: no force comes until the hand pushes, and none that it
+/// did not pay for. What the force is worth until it is gone counts in the guard's ledger, which is
+/// told of the hand's own way.
 class Servo {
  public:
   /// Of a device's continuous maximum: what it is asked to hold (algorithm.md section 8).
@@ -90,7 +99,8 @@ class Servo {
 
   /// Lets the hand feel nothing: the force goes to zero at the guard's rate, and back. Any thread.
   void pause(bool paused) noexcept { paused_.store(paused); }
-  /// Forgets faults and the contact in the next step; the proxy is put to the hand. Any thread.
+  /// Forgets faults, the contact and what the clutch moved in the next step; tool and proxy are put
+  /// to the hand. Any thread.
   void reset() noexcept { reset_.store(true); }
 
   /// Changes what is felt from the next step on. In contact, stiffness changes as EnergyTank
@@ -106,7 +116,9 @@ class Servo {
   [[nodiscard]] FieldOptions field() const noexcept { return wanted_field_.get(); }
 
  private:
-  void take_wishes(const Eigen::Vector3d& hip) noexcept;
+  void take_wishes() noexcept;
+  void place_tool(const DeviceState& device) noexcept;
+  [[nodiscard]] bool is_clutched(std::uint32_t buttons) const noexcept;
   [[nodiscard]] Eigen::Vector3d guarded() noexcept;
 
   Device& device_;
@@ -116,6 +128,8 @@ class Servo {
   SceneField field_;
   Proxy proxy_;
   Guard guard_;
+  Clutch clutch_;
+  Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();  // where it is without the clutch, m, world
   ServoState state_;  // of the stepping thread; the others see what was shown
   bool started_ = false;
   bool heard_ = false;  // the device has known where the hand is

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -24,16 +24,19 @@ struct ServoState {
   std::uint64_t step = 0;                         ///< counts from 1; 0: there was none yet
   double time = 0;                                ///< s, on the clock that snapshots are stamped on
   double dt = 0;                                  ///< since the step before, s
-  Eigen::Vector3d hip = Eigen::Vector3d::Zero();  ///< where the hand is, m
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the hand, m/s
-  Contact contact;                                     ///< its force is the proxy's own
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< what the guard let through, N
+  Eigen::Vector3d hip = Eigen::Vector3d::Zero();  ///< where the hand has the tool, m
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();               ///< of the hand, m/s
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< of the tool
+  double gripper = 0;                                               ///< its opening at the hand, m
+  Contact contact;                                  ///< its force is the proxy's own
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< what the guard let through, N
   GuardState guard;
   FieldNote field_notes = FieldNote::none;
   DeviceStatus device = DeviceStatus::ok;
   std::uint32_t buttons = 0;
   std::size_t patch_points = 0;
   bool paused = false;
+  bool clutched = false;  ///< the hand moves freely; the tool rests (ServoOptions::clutch_button)
   StepTiming timing;
 };
 
