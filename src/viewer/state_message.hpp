@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ constexpr std::uint32_t kSofter = 256;
 constexpr std::uint32_t kBraked = 512;
 constexpr std::uint32_t kStarting = 1024;
 constexpr std::uint32_t kSoftened = 2048;
+constexpr std::uint32_t kClutched = 4096;
+constexpr std::uint32_t kOriented = 8192;  ///< set by encode(): an orientation follows
 }  // namespace state_flag
 
 /// Message 1 of docs/viewer_protocol.md. Places relative to the origin, m.
@@ -38,6 +41,7 @@ struct StateMessage {
   std::array<float, 2> lateness{};                  ///< p50 and p99, s
   float interval = 0;                               ///< between samples on average, s
   std::vector<Eigen::Vector3f> forces;              ///< N, oldest first; at most 65535
+  std::optional<Eigen::Quaternionf> orientation{};  ///< of the tool, where it is known
 };
 
 [[nodiscard]] std::string encode(const StateMessage& message);

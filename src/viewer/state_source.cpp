@@ -34,6 +34,9 @@ std::optional<StateMessage> StateSource::next(double now, double radius, bool ta
   message.lateness = quantiles(servo_.lateness(), lateness_);
   message.interval = static_cast<float>(interval(state));
   message.forces = forces_until(state.step);
+  if (servo_.device().info().tells_orientation) {
+    message.orientation = state.orientation.cast<float>();
+  }
   return message;
 }
 
@@ -71,6 +74,7 @@ std::uint32_t StateSource::flags(const ServoState& state, bool taken) {
   set(counts.braked > counts_.braked, state_flag::kBraked);
   set(counts.starting > counts_.starting, state_flag::kStarting);
   set(counts.softened > counts_.softened, state_flag::kSoftened);
+  set(state.clutched, state_flag::kClutched);
   set(state.guard.fault != GuardFault::none, state_flag::kFault);
   set(has(state.field_notes, FieldNote::thinned), state_flag::kThinned);
   set(has(state.contact.notes, ContactNote::softer), state_flag::kSofter);

@@ -64,6 +64,19 @@ TEST(StateMessage, LiesByteByByteAsTheProtocolSays) {
   expect_vector(bytes, 104, {4, 5, 6});
 }
 
+TEST(StateMessage, OrientationFollowsTheForcesWhereItIsKnown) {
+  StateMessage message;
+  message.flags = state_flag::kClutched;
+  message.forces = {{1, 2, 3}};
+  EXPECT_EQ(u32(encode(message), 4), 4096u);
+  message.orientation = Eigen::Quaternionf(0.5F, -0.5F, 0.25F, 0.75F);
+  const std::string bytes = encode(message);
+  ASSERT_EQ(bytes.size(), 92u + 12 + 16);
+  EXPECT_EQ(u32(bytes, 4), 4096u + 8192);
+  expect_vector(bytes, 104, {-0.5F, 0.25F, 0.75F});
+  EXPECT_EQ(f32(bytes, 116), 0.5F);
+}
+
 TEST(CloudMessage, LiesByteByByteAsTheProtocolSays) {
   CloudMessage message;
   message.source = 2;

@@ -58,5 +58,14 @@ TEST(StateSource, ForcesAreOfStepsUntilTheStatesOwn) {
   EXPECT_EQ(steps.next().forces.size(), 1u);
 }
 
+TEST(StateSource, TellsTheOrientationOfDevicesThatKnowIt) {
+  Steps steps;
+  steps.device.state().orientation = Eigen::Quaterniond(0.6, 0, 0.8, 0);
+  steps.step(1e-3);
+  EXPECT_FALSE(steps.next().orientation);
+  steps.device.info().tells_orientation = true;
+  EXPECT_EQ(steps.next().orientation.value().coeffs(), Eigen::Vector4f(0, 0.8F, 0, 0.6F));
+}
+
 }  // namespace
 }  // namespace palpate::viewer

@@ -75,6 +75,19 @@ test("a state is read as it was written", () => {
   assert.deepEqual([...message.samples], [0, 1, 2, 3, 4, 5]);
 });
 
+function oriented(): ArrayBuffer {
+  const bytes = new Uint8Array([...new Uint8Array(state(1)), ...new Uint8Array(new Writer().f32(0, 0.6, 0, 0.8).buffer)]);
+  new DataView(bytes.buffer).setUint32(4, Flag.oriented | Flag.clutched, true);
+  return bytes.buffer;
+}
+
+test("a state tells how the tool is held, where the device does", () => {
+  assert.equal((decode(state(1)) as StateMessage).orientation, undefined);
+  const message = decode(oriented()) as StateMessage;
+  assert.equal(message.samples.length, 3);
+  assert.deepEqual(message.orientation, [0, Math.fround(0.6), 0, Math.fround(0.8)]);
+});
+
 test("a state may have no samples", () => {
   assert.equal((decode(state(0)) as StateMessage).samples.length, 0);
 });
@@ -113,7 +126,7 @@ test("a surface may be empty: nothing is near", () => {
 });
 
 test("what is cut short anywhere is refused, never read beyond its end", () => {
-  for (const whole of [state(2), cloud(3), surface(2)]) {
+  for (const whole of [state(2), oriented(), cloud(3), surface(2)]) {
     for (let bytes = 0; bytes < whole.byteLength; bytes += 1) {
       assert.throws(() => decode(whole.slice(0, bytes)), DecodeError, `${bytes} of ${whole.byteLength}`);
     }

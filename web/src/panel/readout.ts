@@ -9,6 +9,7 @@ type Name = keyof typeof Flag;
 
 const kFlagWords: Partial<Record<Name, [level: string, words: string]>> = {
   paused: ["info", "paused: no force"],
+  clutched: ["info", "clutch held: the hand moves freely"],
   fault: ["fault", "fault: no force until reset"],
   watchdog: ["fault", "watchdog: the servo was late"],
   clamped: ["warning", "force at its bound"],

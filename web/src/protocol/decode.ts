@@ -2,7 +2,7 @@
 // Typed arrays look into the message itself: nothing is copied. They read in the host's byte order,
 // which is little-endian wherever a browser runs.
 
-import type { Vector } from "./messages";
+import type { Quaternion, Vector } from "./messages";
 
 export const Kind = { state: 1, cloud: 2, surface: 3 } as const;
 
@@ -19,6 +19,8 @@ export const Flag = {
   braked: 512,
   starting: 1024,
   softened: 2048,
+  clutched: 4096,
+  oriented: 8192,
 } as const;
 
 export interface StateMessage {
@@ -36,6 +38,7 @@ export interface StateMessage {
   lateness: [number, number]; // s, p50 and p99
   interval: number; // s, between samples
   samples: Float32Array; // N, x y z of each step, oldest first
+  orientation: Quaternion | undefined; // from the tool's axes; its tip points along y
 }
 
 export interface CloudMessage {
@@ -84,11 +87,14 @@ function pair(view: DataView, offset: number): [number, number] {
 function decodeState(buffer: ArrayBuffer, view: DataView): StateMessage {
   need(buffer, 92, "state");
   const samples = view.getUint16(2, true);
-  need(buffer, 92 + 12 * samples, `state with ${samples} samples`);
+  const flags = view.getUint32(4, true);
+  const end = 92 + 12 * samples;
+  const oriented = (flags & Flag.oriented) !== 0;
+  need(buffer, end + (oriented ? 16 : 0), `state with ${samples} samples`);
   return {
     kind: Kind.state,
     device: view.getUint8(1),
-    flags: view.getUint32(4, true),
+    flags,
     time: view.getFloat64(8, true),
     hip: vector(view, 16),
     proxy: vector(view, 28),
@@ -100,6 +106,7 @@ function decodeState(buffer: ArrayBuffer, view: DataView): StateMessage {
     lateness: pair(view, 80),
     interval: view.getFloat32(88, true),
     samples: new Float32Array(buffer, 92, 3 * samples),
+    orientation: oriented ? [...vector(view, end), view.getFloat32(end + 12, true)] : undefined,
   };
 }
 

@@ -3,6 +3,7 @@
 export const kVersion = 1;
 
 export type Vector = [number, number, number];
+export type Quaternion = [number, number, number, number]; // x, y, z, w
 export type SettingValue = number | string | boolean;
 
 export interface Setting {
@@ -37,7 +38,7 @@ export interface SourceReport {
   age?: number; // s, of what is felt
   dropped?: number;
   disagreement?: number; // m
-  pose?: { position: Vector; quaternion: [number, number, number, number] };
+  pose?: { position: Vector; quaternion: Quaternion };
   frustum?: Vector; // tan of half the width, of half the height; far in m
 }
 

@@ -3,7 +3,7 @@
 
 import {
   CircleGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial,
-  MeshLambertMaterial, RingGeometry, SphereGeometry, Vector3, type Material,
+  MeshLambertMaterial, Quaternion, RingGeometry, SphereGeometry, Vector3, type Material,
 } from "three";
 import type { StateMessage } from "../protocol/decode";
 import { Flag } from "../protocol/decode";
@@ -17,6 +17,7 @@ const kProxyPixels = 9;
 const kHandPixels = 7.5;
 const kLongest = 240; // pixels of an arrow
 const kLeastForce = 0.01; // N that shows
+const kStylus = 90; // pixels from the tip to its end
 
 function ball(material: Material, order: number): Mesh {
   const mesh = new Mesh(new SphereGeometry(1, 32, 20), material);
@@ -64,10 +65,13 @@ export class Tool {
   private readonly disk = new Mesh(new CircleGeometry(1, 64), this.diskMaterial);
   private readonly rim = new Mesh(new RingGeometry(0.95, 1, 64), this.rimMaterial);
   private readonly spring = new Mesh(new CylinderGeometry(1, 1, 1, 8), this.springMaterial);
+  private readonly stylus = new Mesh(new CylinderGeometry(1, 0.4, 1, 12), this.handMaterial);
   private readonly shaft = new Mesh(new CylinderGeometry(1, 1, 1, 16), this.forceMaterial);
   private readonly head = new Mesh(new ConeGeometry(1, 1, 24), this.forceMaterial);
   private readonly force = new Vector3();
   private readonly normal = new Vector3();
+  private readonly turn = new Quaternion();
+  private readonly stem = new Vector3(); // from the tip along the stylus, 1 long; 0: not known
   private radius = 0;
   private touching = false;
 
@@ -76,7 +80,7 @@ export class Tool {
     this.rim.renderOrder = 2;
     this.spring.renderOrder = 4;
     this.group.add(
-      this.halo, this.disk, this.rim, this.spring, this.shaft, this.head,
+      this.halo, this.disk, this.rim, this.spring, this.stylus, this.shaft, this.head,
       this.hand, this.handGhost, this.proxy, this.proxyGhost, this.trail.line,
     );
     this.group.visible = false;
@@ -105,6 +109,8 @@ export class Tool {
     this.proxyPlace.set(...state.proxy);
     this.force.set(...state.force);
     this.normal.set(...state.normal);
+    this.stem.set(0, state.orientation ? -1 : 0, 0);
+    if (state.orientation) this.stem.applyQuaternion(this.turn.set(...state.orientation));
     this.radius = state.radius;
     this.touching = (state.flags & Flag.touching) !== 0;
     this.trail.take(this.proxyPlace, state.time);
@@ -128,6 +134,7 @@ export class Tool {
     this.halo.scale.setScalar(Math.max(this.radius, 1e-9));
     this.placeDisk(Math.max(0.9 * this.radius, 2.8 * proxySize), towards);
     this.placeSpring(pixel);
+    this.placeStylus(kStylus * pixel, pixel);
     this.placeArrow(proxySize, pixel, perNewton);
   }
 
@@ -151,6 +158,14 @@ export class Tool {
     this.spring.position.copy(this.hipPlace).addScaledVector(way, 0.5);
     this.spring.quaternion.setFromUnitVectors(kUp, way.divideScalar(length));
     this.spring.scale.set(pixel, length, pixel);
+  }
+
+  private placeStylus(length: number, pixel: number): void {
+    this.stylus.visible = this.stem.lengthSq() > 0.5;
+    if (!this.stylus.visible) return;
+    this.stylus.position.copy(this.hipPlace).addScaledVector(this.stem, length / 2);
+    this.stylus.quaternion.setFromUnitVectors(kUp, this.stem);
+    this.stylus.scale.set(3.5 * pixel, length, 3.5 * pixel);
   }
 
   private placeArrow(start: number, pixel: number, perNewton: number): void {
