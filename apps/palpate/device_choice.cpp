@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <utility>
 
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/names.hpp"
@@ -18,6 +19,7 @@ namespace palpate::app {
 namespace {
 
 constexpr std::string_view kRemotePath = "remote:";
+constexpr const char* kStandOptions = "scale=S, offset=X/Y/Z, frame=CAMERA and clutch=BUTTON";
 
 constexpr std::array<Named<DeviceKind>, 3> kDevices = {{{"scripted", DeviceKind::scripted},
                                                         {"simulated", DeviceKind::simulated},
@@ -43,18 +45,45 @@ void check_paths(const std::vector<DeviceChoice>& devices) {
   }
 }
 
-}  // namespace
-
-DeviceChoice parse_device(const std::string& text) {
+// The device without its stand. Drivers say themselves which other options there are.
+DeviceChoice kind_of(const std::string& text) {
+  if (names_hardware(text)) return {DeviceKind::hardware, text};
+  const std::size_t comma = text.find(',');
+  if (comma < text.find('=') && text.find('=') != std::string::npos) {
+    throw UsageError(fmt::format("'{}' is no option of {}; there are {}", text.substr(comma + 1),
+                                 text.substr(0, comma), kStandOptions));
+  }
   if (const std::optional<DeviceKind> kind = choice_of(kDevices, text)) return {*kind};
   if (text.starts_with(kRemotePath) && text.size() > kRemotePath.size()) {
     return {DeviceKind::remote, text.substr(kRemotePath.size())};
   }
-  if (names_hardware(text)) return {DeviceKind::hardware, text};
   throw UsageError(fmt::format(
       "'{}' is no device; give scripted, simulated, remote, remote:PATH of a socket, or "
       "hardware that 'palpate devices' lists",
       text));
+}
+
+// Who is led goes where its way is, in the world.
+void check_stand(const DeviceChoice& choice) {
+  if (!choice.is_led()) return;
+  for (const std::string& key : choice.stand.keys) {
+    if (key == "scale" && choice.kind == DeviceKind::simulated) continue;
+    throw UsageError(
+        fmt::format("'{}' is of hands that a person or a program leads (remote, hardware){}; leave "
+                    "it out",
+                    key, key == "scale" ? ", and of simulated ones" : ""));
+  }
+}
+
+}  // namespace
+
+DeviceChoice parse_device(const std::string& text) {
+  std::string device = text;
+  DeviceStand stand = take_stand(device);
+  DeviceChoice choice = kind_of(device);
+  choice.stand = std::move(stand);
+  check_stand(choice);
+  return choice;
 }
 
 void add_device_option(CLI::App& command, std::vector<std::string>& devices,
@@ -67,12 +96,14 @@ void add_device_option(CLI::App& command, std::vector<std::string>& devices,
                   "there; remote: the hand of another program, which speaks to a socket "
                   "(docs/remote_device.md); forcedimension[:N], openhaptics[:NAME], "
                   "haply[:ID]: hardware "
-                  "('palpate devices' lists it; docs/devices.md). Once for each hand, four at "
-                  "most; with several "
-                  "the run is in real time. Default: scripted with --trajectory, else "
+                  "('palpate devices' lists it; docs/devices.md). Behind the name: ,scale=S "
+                  "magnifies its motion; ,offset=X/Y/Z (m) moves its origin; ,frame=CAMERA turns "
+                  "its axes as that source's camera looks; ,clutch=BUTTON lets the hand move "
+                  "without the tool while it is held. Once for each hand, four at most; with "
+                  "several the run is in real time. Default: scripted with --trajectory, else "
                   "simulated"))
       ->check(parsed_by([](const std::string& text) { (void)parse_device(text); }))
-      ->type_name("NAME[:PATH]")
+      ->type_name("NAME[:PATH][,KEY=VALUE]")
       ->allow_extra_args(false)
       ->group(std::string(group));
 }
@@ -103,6 +134,10 @@ void check_devices(const TouchOptions& options) {
           "each of several hands has a log of its own; --log cannot go to standard output: name a "
           "file");
   check_paths(devices);
+  for (const DeviceChoice& device : devices) {
+    if (device.stand.frame.empty()) continue;
+    (void)camera_named(device.stand.frame, choose_sources(options));
+  }
 }
 
 }  // namespace palpate::app

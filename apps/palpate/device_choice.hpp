@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/palpate/device_stand.hpp"
+
 namespace CLI {
 class App;
 }
@@ -24,6 +26,7 @@ struct DeviceChoice {
   DeviceKind kind = DeviceKind::simulated;
   /// Of a remote one's socket, empty: default_remote_path(); of hardware what open_device() takes.
   std::string path = {};
+  DeviceStand stand = {};
 
   /// Does it go where a trajectory or an exploration leads it?
   [[nodiscard]] bool is_led() const {
@@ -34,8 +37,9 @@ struct DeviceChoice {
 /// As many hands may touch at once.
 inline constexpr std::size_t kMostHands = 4;
 
-/// "scripted", "simulated", "remote", "remote:PATH" or the name of hardware (open_device()).
-/// @throws UsageError when it is none of them.
+/// "scripted", "simulated", "remote", "remote:PATH" or the name of hardware (open_device()), with
+/// options of its stand.
+/// @throws UsageError when it is none of them, or an option is not for it.
 [[nodiscard]] DeviceChoice parse_device(const std::string& text);
 
 /// Adds `--device`, which may be repeated.

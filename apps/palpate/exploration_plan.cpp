@@ -113,7 +113,7 @@ Extent extent_of(const Union& all, const PlanOptions& options) {
   const double widest = std::max(kPatch, kPatchRadii * all.radius);
   Extent extent;
   extent.patch = std::max(std::min(all.box.size().maxCoeff(), widest), all.radius);
-  extent.scale = choose_scale(extent.patch, options.stiffness);
+  extent.scale = options.scale.value_or(choose_scale(extent.patch, options.stiffness));
   extent.stiffness = options.stiffness > 0 ? options.stiffness : kStiffness / extent.scale;
   return extent;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "palpate/device/simulated.hpp"
 #include "palpate/device/workspace.hpp"
@@ -25,9 +26,10 @@ struct ExplorationPlan {
 };
 
 struct PlanOptions {
-  double duration = 10;    ///< s
-  double stiffness = 0;    ///< N/m in the world; 0: 500 at the hand
-  double tool_radius = 0;  ///< m
+  std::optional<double> scale = {};  ///< of the workspace; unset: chosen
+  double duration = 10;              ///< s
+  double stiffness = 0;              ///< N/m in the world; 0: 500 at the hand
+  double tool_radius = 0;            ///< m
   std::uint64_t seed = 1;
   SimulatedHand hand = {};
   double rate = 1000;                         ///< steps a second

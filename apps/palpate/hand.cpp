@@ -87,6 +87,7 @@ void simulate(Hand& hand, const TouchOptions& options, Trajectory target) {
 void follow(Hand& hand, const DeviceChoice& choice, const TouchOptions& options, Trajectory way) {
   hand.stiffness = options.stiffness.value_or(kStiffness);
   if (choice.kind == DeviceKind::scripted) return play_back(hand, std::move(way));
+  hand.workspace.scale = choice.stand.scale.value_or(1);
   const double start = way.front().time;
   for (TrajectoryRow& row : way) row.time -= start;
   // Encoders count from where the hand begins, so that far from the origin nothing is lost.
@@ -111,10 +112,15 @@ void explore(Hand& hand, const DeviceChoice& choice, const TouchOptions& options
   }
 }
 
-void stand(Hand& hand, const Scene& scene, const FieldOptions& field, const PlanOptions& plan) {
+void stand(Hand& hand, const DeviceChoice& choice, const TouchOptions& options, const Scene& scene,
+           const FieldOptions& field, const PlanOptions& plan) {
   const Stand stand = plan_stand(scene, field, plan);
   hand.workspace = stand.workspace;
   hand.stiffness = stand.stiffness;
+  hand.clutch = choice.stand.clutch;
+  const std::string& frame = choice.stand.frame;
+  if (!frame.empty()) hand.camera = camera_named(frame, choose_sources(options));
+  apply(choice.stand, hand.camera, scene, hand.workspace);
 }
 
 PlanOptions plan_options(const TouchOptions& options, const Trajectory& way) {
@@ -155,8 +161,9 @@ void place_hands(std::vector<Hand>& hands, const TouchOptions& options, const Tr
   const std::vector<DeviceChoice> devices = choose_devices(options);
   PlanOptions plan = plan_options(options, way);
   for (std::size_t i = 0; i < hands.size(); ++i, ++plan.seed) {
+    plan.scale = devices[i].stand.scale;
     if (!hands[i].led) {
-      stand(hands[i], scene, field, plan);
+      stand(hands[i], devices[i], options, scene, field, plan);
     } else if (way.empty()) {
       explore(hands[i], devices[i], options, scene, field, plan);
     } else {

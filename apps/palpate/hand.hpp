@@ -25,6 +25,8 @@ struct Hand {
   const RemoteDevice* socket = nullptr;  ///< the device, where it is another program's
   bool led = true;                       ///< false: it goes where a person or a program says
   Workspace workspace;
+  std::string camera;                   ///< that its axes follow; empty: they are the world's
+  std::optional<int> clutch = {};       ///< button
   double stiffness = 0;                 ///< of the surface, N/m in the world; of all hands the same
   std::size_t steps = 0;                ///< that its way takes
   std::optional<double> duration = {};  ///< s, of a device that never ends by itself

@@ -66,9 +66,10 @@ void print_socket(const RemoteDevice& socket, std::FILE* out) {
 // Where a device stands that nobody leads.
 void print_stand(const Hand& hand, std::FILE* out) {
   const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
-  fmt::print(out, "  stands     its origin at {:.4g}, {:.4g}, {:.4g} m, axes as the world's\n",
-             origin.x(), origin.y(), origin.z());
+  fmt::print(out, "  stands     its origin at {:.4g}, {:.4g}, {:.4g} m, axes as {}\n", origin.x(),
+             origin.y(), origin.z(), hand.camera.empty() ? "the world's" : hand.camera + " looks");
   print_scale(hand, out);
+  if (hand.clutch) fmt::print(out, "  clutch     button {}\n", *hand.clutch);
 }
 
 Json json_device(const HandReport& report) {
@@ -84,6 +85,8 @@ Json json_device(const HandReport& report) {
   if (hand.led) return device;
   const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
   device["origin_m"] = {origin.x(), origin.y(), origin.z()};
+  if (!hand.camera.empty()) device["frame"] = hand.camera;
+  if (hand.clutch) device["clutch_button"] = *hand.clutch;
   if (hand.socket == nullptr) return device;
   const RemoteCounts counts = hand.socket->counts();
   device["socket"] = hand.socket->path();

@@ -27,20 +27,24 @@ ServoOptions servo_options(const Run& run, const Hand& hand, StepQueue& steps) {
   options.proxy = run.proxy;
   options.guard = guard_options(run.options.live);
   options.workspace = hand.workspace;
+  options.clutch_button = hand.clutch;
   options.steps = &steps;
   return options;
 }
 
 // With the force that was felt, which the guard may have changed.
-TouchStep step_of(const ServoState& state, double start) {
+TouchStep step_of(const ServoState& state, const DeviceInfo& device, double start) {
   TouchStep step;
   step.time = state.time - start;
   step.hip = state.hip;
+  step.shift = state.shift;
   step.contact = state.contact;
   step.contact.force = state.force;
   step.microseconds = 1e6 * state.timing.computing;
   step.patch_points = state.patch_points;
   step.notes = state.field_notes;
+  if (device.tells_orientation) step.orientation = state.orientation;
+  if (device.has_gripper) step.gripper = state.gripper;
   return step;
 }
 
@@ -62,7 +66,7 @@ void LiveHand::begin(double start) {
 void LiveHand::take_steps(const EachStep& each) {
   while (const std::optional<ServoState> state = steps_.pop()) {
     if (state->time < start_) continue;
-    const TouchStep step = step_of(*state, start_);
+    const TouchStep step = step_of(*state, hand_.device->info(), start_);
     force_ = std::max(force_, step.contact.force.norm());
     each(index_, step);
   }

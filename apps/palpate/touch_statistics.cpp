@@ -45,7 +45,7 @@ void TouchStatistics::add(const TouchStep& step) {
   const bool first = steps_ == 0;
   if (first) first_time_ = step.time;
   if (!first) {
-    const Eigen::Vector3d way = step.hip - last_.hip;
+    const Eigen::Vector3d way = (step.hip - step.shift) - (last_.hip - last_.shift);  // the hand's
     given_energy_ += last_.contact.force.dot(way);
     path_energy_ += 0.5 * (last_.contact.force + contact.force).dot(way);
     largest_jump_ = std::max(largest_jump_, (contact.force - last_.contact.force).norm());

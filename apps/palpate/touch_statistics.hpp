@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "palpate/contact/contact.hpp"
 #include "palpate/scene/scene_field.hpp"
@@ -12,12 +13,15 @@ namespace palpate::app {
 
 /// One servo step as the program saw it. World frame.
 struct TouchStep {
-  double time = 0;                                ///< s
-  Eigen::Vector3d hip = Eigen::Vector3d::Zero();  ///< m
+  double time = 0;                                  ///< s
+  Eigen::Vector3d hip = Eigen::Vector3d::Zero();    ///< m
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< from the hand to it, by a clutch, m
   Contact contact;
   double microseconds = 0;       ///< of computing: update() and step()
   std::size_t patch_points = 0;  ///< gathered around the tool
   FieldNote notes = FieldNote::none;
+  std::optional<Eigen::Quaterniond> orientation = {};  ///< of the tool, where the device tells it
+  std::optional<double> gripper = {};                  ///< its opening, m, where there is one
 };
 
 /// Computing times, us.

@@ -132,6 +132,7 @@ void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& cho
   result.as_cloud = taken_as_cloud(options, chosen);
   if (!chosen.choices.farthest) believe_no_farther(first, result.options.depth);
   Source& source = scene.add(chosen.argument.name, result.options);
+  if (first.T_world_sensor) source.set_pose(*first.T_world_sensor);
   if (explored) push_alone(source, first, result);
 }
 

@@ -42,7 +42,8 @@ struct TouchedSource {
 /// What is touched: everything that is known of it before the first step.
 struct Touched {
   std::vector<TouchedSource> sources;
-  /// As prepared before the run; of a camera its first frame, where `explored` was asked for.
+  /// As prepared before the run; of a camera its first frame, where `explored` was asked for, and
+  /// its pose then.
   Scene scene;
 };
 

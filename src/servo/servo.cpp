@@ -126,6 +126,7 @@ void Servo::place_tool(const DeviceState& device) noexcept {
   const Workspace& workspace = options_.workspace;
   state_.clutched = is_clutched(device.buttons);
   state_.hip = clutch_.tool(hand_, state_.clutched, proxy_.position());
+  state_.shift = clutch_.shift();
   state_.velocity = workspace.velocity_to_world(device.velocity);
   state_.orientation = workspace.orientation_to_world(device.orientation);
   state_.gripper = device.gripper;

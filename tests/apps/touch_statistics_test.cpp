@@ -53,6 +53,19 @@ TEST(TouchStatistics, HeldForceOfASpringGivesHalfStiffnessTimesEachStepSquared) 
   EXPECT_NEAR(statistics.path_energy(), 0, 1e-15);
 }
 
+TEST(TouchStatistics, EnergyIsOfTheHandsOwnWayWhereAClutchMovesTheTool) {
+  TouchStatistics statistics;
+  TouchStep pressed = step(0, {0, 0, -4e-3}, {0, 0, 2});
+  statistics.add(pressed);
+  pressed.hip.setZero();  // the tool goes to the surface, the hand stays
+  pressed.shift = {0, 0, 4e-3};
+  statistics.add(pressed);
+  EXPECT_EQ(statistics.given_energy(), 0);
+  pressed.shift = {0, 0, 3e-3};  // the tool rests, the hand is pushed on
+  statistics.add(pressed);
+  EXPECT_NEAR(statistics.given_energy(), 2e-3, 1e-15);
+}
+
 TEST(TouchStatistics, PressingInTakesEnergyFromTheHand) {
   TouchStatistics statistics;
   for (int i = 0; i <= 100; ++i) {

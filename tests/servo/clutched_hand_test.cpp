@@ -15,13 +15,13 @@ namespace {
 using Eigen::Vector3d;
 using test::FreeDevice;
 
-constexpr int kButton = 1;
-constexpr std::uint32_t kDown = 1u << kButton;
-constexpr double kSlew = 300;  // N/s, the guard's
-const Vector3d kAbove(0.3e-3, 0.4e-3, 5e-3);
+constexpr int kClutchButton = 1;
+constexpr std::uint32_t kClutchDown = 1u << kClutchButton;
+constexpr double kClutchSlew = 300;  // N/s, the guard's
+const Vector3d kOverSheet(0.3e-3, 0.4e-3, 5e-3);
 
 ServoOptions with_clutch(ServoOptions options = {}) {
-  options.clutch_button = kButton;
+  options.clutch_button = kClutchButton;
   return options;
 }
 
@@ -29,8 +29,8 @@ class ClutchedHand : public testing::Test {
  protected:
   // A step of a millisecond with the hand at `z`.
   const ServoState& tick(double z, bool held = false) {
-    device_.state().position = {kAbove.x(), kAbove.y(), z};
-    device_.state().buttons = held ? kDown : 1u;
+    device_.state().position = {kOverSheet.x(), kOverSheet.y(), z};
+    device_.state().buttons = held ? kClutchDown : 1u;
     return servo_.tick(now_ += 1e-3);
   }
   // From one height to another in `steps`.
@@ -41,7 +41,7 @@ class ClutchedHand : public testing::Test {
 
   Scene scene_;
   Source& sheet_ = test::add_sheet(scene_);
-  FreeDevice device_{kAbove};
+  FreeDevice device_{kOverSheet};
   Servo servo_{device_, scene_, with_clutch()};
   double now_ = 0;
 };
@@ -57,6 +57,7 @@ TEST_F(ClutchedHand, ToolRestsInTheAirAndGoesOnFromThere) {
   const ServoState& after = go(-40e-3, -35e-3, 10);
   EXPECT_FALSE(after.clutched);
   EXPECT_NEAR(after.hip.z(), 25e-3, 1e-12);
+  EXPECT_TRUE(after.shift.isApprox(Vector3d(0, 0, 60e-3), 1e-12)) << after.shift.transpose();
 }
 
 TEST_F(ClutchedHand, ForceGoesSoftlyAndComesBackOnlyWhenTheHandPushes) {
@@ -66,7 +67,7 @@ TEST_F(ClutchedHand, ForceGoesSoftlyAndComesBackOnlyWhenTheHandPushes) {
   ASSERT_NEAR(force, 2, 0.1);
   for (int i = 0; i < 10; ++i) {
     const double now = tick(-4e-3, true).force.norm();
-    ASSERT_GE(now, force - kSlew * 1.001e-3 - 1e-9) << "step " << i;
+    ASSERT_GE(now, force - kClutchSlew * 1.001e-3 - 1e-9) << "step " << i;
     ASSERT_LE(now, force);
     force = now;
   }
@@ -102,11 +103,11 @@ TEST_F(ClutchedHand, ResetPutsTheToolBackToTheHand) {
 }
 
 TEST_F(ClutchedHand, OtherButtonsAreNoClutch) {
-  device_.state().buttons = ~kDown;
+  device_.state().buttons = ~kClutchDown;
   for (int i = 0; i < 10; ++i) servo_.tick(now_ += 1e-3);
   EXPECT_FALSE(servo_.state().clutched);
   Servo without(device_, scene_);
-  device_.state().buttons = kDown;
+  device_.state().buttons = kClutchDown;
   without.tick(now_ += 1e-3);
   EXPECT_FALSE(without.tick(now_ += 1e-3).clutched);
 }
@@ -139,9 +140,9 @@ TEST(Servo, RefusesAClutchThatNoDeviceHas) {
 class TornOut final : public HandGuide {
  public:
   [[nodiscard]] HandWish wanted(double time, const Vector3d&) noexcept override {
-    if (time < 1) return {kAbove, 0};
-    if (time < 2) return {{kAbove.x(), kAbove.y(), -25e-3}, 0};
-    return {{kAbove.x(), kAbove.y(), -25e-3 + 4 * (time - 2)}, kDown};
+    if (time < 1) return {kOverSheet, 0};
+    if (time < 2) return {{kOverSheet.x(), kOverSheet.y(), -25e-3}, 0};
+    return {{kOverSheet.x(), kOverSheet.y(), -25e-3 + 4 * (time - 2)}, kClutchDown};
   }
 };
 
@@ -187,7 +188,7 @@ class Restless final : public HandGuide {
       goal_ = {std::uniform_real_distribution<double>(-0.02, 0.02)(random_), 0.3e-3,
                std::uniform_real_distribution<double>(-0.015, 0.01)(random_)};
       const bool toggled = std::bernoulli_distribution(0.4)(random_);
-      if (toggled) buttons_ ^= kDown;
+      if (toggled) buttons_ ^= kClutchDown;
     }
     wish_ += 0.02 * (goal_ - wish_);
     return {wish_, buttons_};
@@ -251,7 +252,7 @@ TEST(ClutchAtRandom, GivesAHandNoMoreThanItPutIn) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const Wandering result = wander(seed);
     EXPECT_LT(result.unpaid, 1e-5) << seed;
-    EXPECT_LT(result.largest_step, kSlew * 1e-3 + 0.05) << seed;
+    EXPECT_LT(result.largest_step, kClutchSlew * 1e-3 + 0.05) << seed;
     presses += result.presses;
     felt = std::max(felt, result.felt);
   }

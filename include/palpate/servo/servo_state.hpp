@@ -37,6 +37,7 @@ struct ServoState {
   std::size_t patch_points = 0;
   bool paused = false;
   bool clutched = false;  ///< the hand moves freely; the tool rests (ServoOptions::clutch_button)
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< from the hand to the tool, by the clutch, m
   StepTiming timing;
 };
 

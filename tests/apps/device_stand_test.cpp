@@ -1,0 +1,110 @@
+// Where a device stands in the scene, as the options behind its name say.
+#include "apps/palpate/device_stand.hpp"
+
+#include <gtest/gtest.h>
+
+#include "apps/palpate/device_choice.hpp"
+#include "apps/palpate/errors.hpp"
+#include "support/contains.hpp"
+
+namespace palpate::app {
+namespace {
+
+using Eigen::Vector3d;
+using test::contains;
+
+std::string refusal(const std::string& device) {
+  try {
+    (void)parse_device(device);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+ChosenSource source(const std::string& name, const std::string& path) {
+  return {.argument = {name, path}, .choices = {}};
+}
+
+TEST(DeviceStand, IsTakenOffTheDevicesName) {
+  const DeviceChoice haply =
+      parse_device("haply:04EA,scale=2.5,url=ws://desk:1,offset=0.1/-0.2/3e-2,clutch=1,frame=left");
+  EXPECT_EQ(haply.path, "haply:04EA,url=ws://desk:1") << "the driver's own options stay";
+  EXPECT_EQ(haply.stand.scale, 2.5);
+  EXPECT_EQ(haply.stand.offset, Vector3d(0.1, -0.2, 0.03));
+  EXPECT_EQ(haply.stand.clutch, 1);
+  EXPECT_EQ(haply.stand.frame, "left");
+  const DeviceChoice remote = parse_device("remote:/tmp/hand,scale=0.5");
+  EXPECT_EQ(remote.kind, DeviceKind::remote);
+  EXPECT_EQ(remote.path, "/tmp/hand");
+  EXPECT_EQ(remote.stand.scale, 0.5);
+  EXPECT_EQ(parse_device("remote,clutch=0").path, "");
+  EXPECT_EQ(parse_device("simulated,scale=2").stand.scale, 2);
+  EXPECT_FALSE(parse_device("haply").stand.scale);
+  EXPECT_FALSE(parse_device("haply").stand.clutch);
+}
+
+TEST(DeviceStand, RefusesWhatIsNoValueOrNotForThatDevice) {
+  EXPECT_TRUE(contains(refusal("remote,scale=0"), "above 0"));
+  EXPECT_TRUE(contains(refusal("remote,scale=nan"), "finite"));
+  EXPECT_TRUE(contains(refusal("remote,scale"), "scale"));
+  EXPECT_TRUE(contains(refusal("remote,offset=1/2"), "X/Y/Z"));
+  EXPECT_TRUE(contains(refusal("remote,clutch=32"), "0 to 31"));
+  EXPECT_TRUE(contains(refusal("remote,clutch=0.5"), "no button"));
+  EXPECT_TRUE(contains(refusal("remote,frame=a b"), "no source's name"));
+  EXPECT_TRUE(contains(refusal("remote,scale=1,scale=1"), "twice"));
+  EXPECT_TRUE(contains(refusal("remote:/tmp/hand,scal=1"), "scale=S"));
+  EXPECT_TRUE(contains(refusal("scripted,scale=2"), "simulated"));
+  EXPECT_TRUE(contains(refusal("simulated,clutch=1"), "leads"));
+  EXPECT_TRUE(contains(refusal("simulated,frame=left"), "leads"));
+}
+
+TEST(DeviceStand, FrameNamesASourceThatHasACamera) {
+  const ChosenSource left = source("left", "camera:simulated");
+  const ChosenSource right = source("right", "sequence:monday");
+  const ChosenSource ball = source("ball", "synthetic:sphere");
+  EXPECT_EQ(camera_named("left", {left, right}), "left");
+  EXPECT_EQ(camera_named("camera", {ball, right}), "right");
+  const auto refused = [](const std::string& frame, const std::vector<ChosenSource>& sources) {
+    try {
+      (void)camera_named(frame, sources);
+    } catch (const UsageError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_TRUE(contains(refused("camera", {left, right}), "left, right"));
+  EXPECT_TRUE(contains(refused("lift", {left, right}), "left, right"));
+  EXPECT_TRUE(contains(refused("camera", {ball}), "no camera"));
+  EXPECT_TRUE(contains(refused("ball", {ball, left}), "a cloud"));
+}
+
+// A camera that looks along the world's -x, with its up along z: what is right of it is the world's
+// y.
+TEST(DeviceStand, AxesFollowACamerasPictureAndTheOffsetThem) {
+  Scene scene;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << 0, 0, -1,  //
+      1, 0, 0,                //
+      0, -1, 0;
+  ASSERT_NEAR(pose.linear().determinant(), 1, 1e-12);
+  scene.add("other", SourceOptions{});
+  scene.add("front", SourceOptions{}).set_pose(pose);
+  Workspace workspace;
+  workspace.T_world_device.translation() = Vector3d(1, 2, 3);
+  workspace.scale = 2;
+  apply({.offset = {0.1, 0.2, 0.3}}, "front", scene, workspace);
+  const Vector3d origin = workspace.position_to_world({0, 0, 0});
+  EXPECT_TRUE(origin.isApprox(Vector3d(1 - 0.2, 2 + 0.1, 3 + 0.3), 1e-12)) << origin.transpose();
+  const auto way = [&](const Vector3d& v) { return workspace.velocity_to_world(v); };
+  EXPECT_TRUE(way({1, 0, 0}).isApprox(Vector3d(0, 2, 0), 1e-12)) << "to the right";
+  EXPECT_TRUE(way({0, 1, 0}).isApprox(Vector3d(-2, 0, 0), 1e-12)) << "away";
+  EXPECT_TRUE(way({0, 0, 1}).isApprox(Vector3d(0, 0, 2), 1e-12)) << "up";
+  Workspace straight;
+  apply({.offset = {0.1, 0.2, 0.3}}, "", scene, straight);
+  EXPECT_EQ(straight.T_world_device.linear(), Eigen::Matrix3d::Identity());
+  EXPECT_EQ(straight.T_world_device.translation(), Vector3d(0.1, 0.2, 0.3));
+}
+
+}  // namespace
+}  // namespace palpate::app
