@@ -112,13 +112,29 @@ configure() {
     { cat "build/$preset.configure.log" >&2; fail "cmake could not configure preset $preset"; }
 }
 
+# show_steps PRESET: of ninja's output, how far it is: on a terminal in one line, else a line each half minute.
+show_steps() {
+  local line told=$SECONDS
+  while IFS= read -r line; do
+    if [[ ! $line =~ ^\[[0-9]+/[0-9]+\] ]]; then continue; fi
+    if [ -t 1 ]; then
+      printf '\r   preset %s: %s\033[K' "$1" "${BASH_REMATCH[0]}"
+    elif [ $((SECONDS - told)) -ge 30 ]; then
+      note "preset $1: ${BASH_REMATCH[0]}"
+      told=$SECONDS
+    fi
+  done
+  if [ -t 1 ]; then printf '\r\033[K'; fi
+}
+
 # build PRESET [TARGET...]
 build() {
   local preset=$1 started=$SECONDS
   shift
   local target=()
   if [ $# -gt 0 ]; then target=(--target "$@"); fi
-  cmake --build "build/$preset" -j "$(jobs_that_fit)" "${target[@]}" >"build/$preset.build.log" 2>&1 ||
+  cmake --build "build/$preset" -j "$(jobs_that_fit)" "${target[@]}" 2>&1 |
+    tee "build/$preset.build.log" | show_steps "$preset" ||
     { tail -n 60 "build/$preset.build.log" >&2; fail "preset $preset does not build; all of it: build/$preset.build.log"; }
   if grep -q 'no work to do' "build/$preset.build.log"; then
     note "preset $preset: up to date, nothing to build"
