@@ -54,7 +54,8 @@ struct ViewerOptions {
   /// told in single precision from there.
   std::optional<Eigen::Vector3d> origin = {};
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  /// How the streams fare; called about twice a second, on a thread of the viewer.
+  /// How the streams fare; called about four times a second by two threads of the viewer, perhaps
+  /// at the same time.
   std::function<std::vector<ViewerStream>()> streams = {};
   ViewerLimits limits = {};
 
