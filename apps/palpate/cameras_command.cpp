@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/palpate/driver_list.hpp"
+#include "apps/palpate/option_checks.hpp"
 #include "apps/palpate/waiting.hpp"
 #include "palpate/sensor/open_camera.hpp"
 
@@ -24,9 +25,7 @@ std::string state_of(const CameraDriver& driver) {
 }  // namespace
 
 void add_cameras_options(CLI::App& command, CamerasOptions& options) {
-  command.add_option("--json", options.json, "the same as data; - is standard output")
-      ->type_name("FILE")
-      ->group("Output");
+  add_json_option(command, options.json)->group("Output");
   command.footer(kCamerasFooter);
 }
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/palpate/driver_list.hpp"
+#include "apps/palpate/option_checks.hpp"
 #include "apps/palpate/waiting.hpp"
 #include "palpate/device/open_device.hpp"
 
@@ -36,9 +37,7 @@ std::vector<HapticDriver> built_in() {
 }  // namespace
 
 void add_devices_options(CLI::App& command, DevicesOptions& options) {
-  command.add_option("--json", options.json, "the same as data; - is standard output")
-      ->type_name("FILE")
-      ->group("Output");
+  add_json_option(command, options.json)->group("Output");
   command.footer(kDevicesFooter);
 }
 

@@ -45,9 +45,7 @@ void add_doctor_options(CLI::App& command, DoctorOptions& options) {
           number("from 0 to 3600 s", [](double value) { return value >= 0 && value <= kLongest; }))
       ->type_name("SECONDS")
       ->capture_default_str();
-  command.add_option("--json", options.json, "the same as data; - is standard output")
-      ->type_name("FILE")
-      ->group("Output");
+  add_json_option(command, options.json)->group("Output");
   command.footer(kDoctorFooter);
 }
 

@@ -47,9 +47,7 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
       ->required()
       ->type_name("CLOUD");
   add_reading_options(command, options.reading);
-  command.add_option("--json", options.json, "the same as data; - is standard output")
-      ->type_name("FILE")
-      ->group("Output");
+  add_json_option(command, options.json)->group("Output");
   command.footer(kInfoFooter);
 }
 

@@ -54,6 +54,11 @@ CLI::Validator parsed_by(std::function<void(const std::string&)> parse) {
   return CLI::Validator(check, "");
 }
 
+CLI::Option* add_json_option(CLI::App& command, std::string& path) {
+  return command.add_option("--json", path, "the same as data; - is standard output")
+      ->type_name("FILE");
+}
+
 std::string without_option(const std::string& message) {
   const std::size_t end = message.find(": ");
   return message.starts_with("--") && end != std::string::npos ? message.substr(end + 2) : message;

@@ -18,6 +18,9 @@ namespace palpate::app {
 /// A check that takes what `parse` takes, and otherwise says what its UsageError does.
 [[nodiscard]] CLI::Validator parsed_by(std::function<void(const std::string&)> parse);
 
+/// --json of a command whose report can be had as data.
+CLI::Option* add_json_option(CLI::App& command, std::string& path);
+
 /// What an error of an option says behind the option's name.
 [[nodiscard]] std::string without_option(const std::string& message);
 

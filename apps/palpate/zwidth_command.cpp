@@ -85,7 +85,7 @@ void add_zwidth_options(CLI::App& command, ZWidthChoices& choices) {
       ->check(not_negative())
       ->type_name("N S/M");
   command.add_option("--csv", o.csv, "the map; - is standard output")->type_name("FILE");
-  command.add_option("--json", o.json, "the same as data; - is standard output")->type_name("FILE");
+  add_json_option(command, o.json);
   command.add_option("--picture", o.picture, "the map as PNG (needs python3-matplotlib)")
       ->type_name("FILE.png");
   CLI::Option* const device =
