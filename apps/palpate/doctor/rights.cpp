@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <sstream>
 
 namespace palpate::app::doctor {
@@ -60,18 +59,16 @@ Finding check_limits(const System& system, const RealtimeReport& report) {
 
 Finding check_share(const System& system) {
   Finding finding{kRights, "share of real-time threads"};
-  const auto told = text(system, "proc/sys/kernel/sched_rt_runtime_us");
-  if (!told) {
+  const auto microseconds = whole_number(system, "proc/sys/kernel/sched_rt_runtime_us");
+  if (!microseconds) {
     finding.words = "not limited by this kernel";
     return finding;
   }
-  long microseconds = 0;
-  std::from_chars(told->data(), told->data() + told->size(), microseconds);
-  if (microseconds < 0) {
+  if (*microseconds < 0) {
     finding.words = "not limited";
     return finding;
   }
-  const double share = static_cast<double>(microseconds) / kSchedulingPeriod;
+  const double share = static_cast<double>(*microseconds) / kSchedulingPeriod;
   finding.words = fmt::format("{:.0f} % of the time (kernel.sched_rt_runtime_us)", 100 * share);
   if (share >= kEnough) return finding;
   finding.severity = share > 0 ? Severity::warning : Severity::problem;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "apps/palpate/python_drawing.hpp"
 
@@ -84,15 +83,13 @@ Finding check_decimal_point(const System& system) {
 
 Finding check_network_buffer(const System& system) {
   Finding finding{kSurroundings, "network buffer"};
-  const auto told = text(system, "proc/sys/net/core/rmem_max");
-  if (!told) {
+  const auto bytes = whole_number(system, "proc/sys/net/core/rmem_max");
+  if (!bytes) {
     finding.words = "not told here (net.core.rmem_max)";
     return finding;
   }
-  long bytes = 0;
-  std::from_chars(told->data(), told->data() + told->size(), bytes);
-  finding.words = fmt::format("net.core.rmem_max is {:.1f} MB", 1e-6 * static_cast<double>(bytes));
-  if (bytes >= kLargeCloud) return finding;
+  finding.words = fmt::format("net.core.rmem_max is {:.1f} MB", 1e-6 * static_cast<double>(*bytes));
+  if (*bytes >= kLargeCloud) return finding;
   finding.severity = Severity::note;
   finding.words +=
       fmt::format("; a cloud of 640 x 480 points over DDS (ROS 2) has {:.1f} MB and may be lost",

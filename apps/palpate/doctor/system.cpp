@@ -1,6 +1,7 @@
 #include "apps/palpate/doctor/system.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <sstream>
 
@@ -16,6 +17,14 @@ std::optional<std::string> text(const System& system, const std::string& path) {
   std::string result = content.str();
   while (result.ends_with('\n')) result.pop_back();
   return result;
+}
+
+std::optional<long> whole_number(const System& system, const std::string& path) {
+  const std::optional<std::string> told = text(system, path);
+  if (!told) return std::nullopt;
+  long value = 0;
+  std::from_chars(told->data(), told->data() + told->size(), value);
+  return value;
 }
 
 bool is_there(const System& system, const std::string& path) {

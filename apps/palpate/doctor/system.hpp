@@ -56,6 +56,9 @@ struct System {
 
 /// A file's text without the last line's end; nothing where it cannot be read.
 [[nodiscard]] std::optional<std::string> text(const System& system, const std::string& path);
+/// The whole number that a file of /proc or /sys begins with, 0 where there is none; nothing where
+/// it cannot be read.
+[[nodiscard]] std::optional<long> whole_number(const System& system, const std::string& path);
 [[nodiscard]] bool is_there(const System& system, const std::string& path);
 /// What a folder holds, sorted; nothing where there is none.
 [[nodiscard]] std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
