@@ -10,6 +10,7 @@
 #include "apps/palpate/live_feed.hpp"
 #include "apps/palpate/live_hand.hpp"
 #include "apps/palpate/live_status.hpp"
+#include "apps/palpate/touch_usage.hpp"
 #include "apps/palpate/view.hpp"
 
 namespace palpate::app {
@@ -82,7 +83,7 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   const double start = start_hands(run, clock, hands);
   LiveFeed feed(run.touched, run.felt, clock, start);
   std::optional<View> view;
-  if (is_viewed(run.options.view)) view.emplace(run, servos_of(hands), feed);
+  if (has_page(run.options)) view.emplace(run, servos_of(hands), feed);
   const EachStep keep = [&](std::size_t hand, const TouchStep& step) {
     each(hand, step);
     if (view) view->add(hand, step);

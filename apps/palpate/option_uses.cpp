@@ -122,9 +122,7 @@ std::vector<Use> uses_of_time(const TouchOptions& options, const Kinds& kinds) {
        real_time && !options.simulated_time,
        "is of runs in real time; what stands still and --simulated-time have neither a guard nor a "
        "thread of the servo's own"},
-      {{"--listen", "--port"},
-       real_time && is_viewed(options.view),
-       "is of the page, and there is none; add --view"},
+      {{"--listen", "--port"}, has_page(options), "is of the page, and there is none; add --view"},
   };
 }
 
