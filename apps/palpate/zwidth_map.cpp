@@ -13,10 +13,7 @@ namespace {
 
 DeviceProfile find_profile(const ZWidthOptions& options) {
   if (options.profiles.empty()) return device_profile(options.profile);
-  const std::vector<DeviceProfile> all = read_device_profiles(options.profiles);
-  const auto found = std::ranges::find(all, options.profile, &DeviceProfile::name);
-  if (found != all.end()) return *found;
-  throw Error(options.profiles + ": has no profile '" + options.profile + "'");
+  return device_profile(options.profile, read_device_profiles(options.profiles));
 }
 
 SimulatedDeviceOptions device_of(const DeviceProfile& profile) {

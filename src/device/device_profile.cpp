@@ -133,12 +133,11 @@ const std::vector<DeviceProfile>& device_profiles() {
   return profiles;
 }
 
-DeviceProfile device_profile(std::string_view name) {
-  const std::vector<DeviceProfile>& all = device_profiles();
-  const auto found = std::ranges::find(all, name, &DeviceProfile::name);
-  if (found != all.end()) return *found;
+DeviceProfile device_profile(std::string_view name, const std::vector<DeviceProfile>& among) {
+  const auto found = std::ranges::find(among, name, &DeviceProfile::name);
+  if (found != among.end()) return *found;
   std::string known;
-  for (const DeviceProfile& each : all) known += (known.empty() ? "" : ", ") + each.name;
+  for (const DeviceProfile& each : among) known += (known.empty() ? "" : ", ") + each.name;
   throw Error(fmt::format("there is no profile of a device '{}'; known are {}", name, known));
 }
 

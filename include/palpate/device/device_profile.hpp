@@ -10,7 +10,7 @@ namespace palpate {
 /// What is known of a kind of device. Makers seldom tell all of it: what is unset is not known, and
 /// is taken on the safe side by whoever uses it.
 struct DeviceProfile {
-  std::string name;                         ///< "omega.3": by which it is asked for
+  std::string name;                         ///< "omega": by which it is asked for
   std::string title;                        ///< "Force Dimension omega.3"
   std::optional<double> maximum_force;      ///< N, that it holds for long
   std::optional<double> peak_force;         ///< N, for a moment
@@ -28,9 +28,10 @@ struct DeviceProfile {
 /// The kinds that come with palpate, "unknown" first.
 [[nodiscard]] const std::vector<DeviceProfile>& device_profiles();
 
-/// A kind that comes with palpate.
+/// The kind of that name.
 /// @throws Error that lists what there is.
-[[nodiscard]] DeviceProfile device_profile(std::string_view name);
+[[nodiscard]] DeviceProfile device_profile(
+    std::string_view name, const std::vector<DeviceProfile>& among = device_profiles());
 
 /// Reads profiles: TOML, a table a kind, keys as the members above in SI units.
 /// `what` names the text in messages.
