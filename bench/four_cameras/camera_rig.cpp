@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "palpate/base/error.hpp"
-#include "palpate/device/exploration.hpp"
 #include "palpate/sensor/simulated_setup.hpp"
 
 namespace palpate::four_cameras {
@@ -13,8 +12,6 @@ namespace {
 constexpr int kLoop = 32;        // frames
 constexpr double kRate = 30;     // Hz
 constexpr double kApart = 0.05;  // m from the middle of the four to each
-constexpr double kPatch = 0.15;  // that the hand explores, m
-constexpr double kDepth = 3e-3;  // m
 
 SimulatedCameraOptions options_of(const SimulatedSetup& setup, int k, const Clock& clock) {
   SimulatedCameraOptions options = setup.camera;
@@ -53,16 +50,6 @@ void CameraRig::show_once(Scene& scene) {
     scene.source(static_cast<std::size_t>(k)).push(frame, [] { return 0.0; });
     scene.source(static_cast<std::size_t>(k)).keep();
   }
-}
-
-Trajectory hand_over(const Scene& scene, double seconds) {
-  const auto points = scene.source(0).points();
-  ExplorationOptions options;
-  options.duration = seconds;
-  options.radius = points->radius;
-  options.depth = kDepth;
-  options.patch = kPatch;
-  return explore({points->origin, points->grid.points(), points->normals}, options);
 }
 
 }  // namespace palpate::four_cameras

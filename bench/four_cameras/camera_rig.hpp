@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "palpate/base/waiting_clock.hpp"
-#include "palpate/geometry/trajectory.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/simulated_camera.hpp"
 
@@ -30,8 +29,5 @@ class CameraRig {
  private:
   std::vector<std::unique_ptr<SimulatedCamera>> cameras_;
 };
-
-/// A hand that explores what `scene` shows for `seconds`, always in the same way.
-[[nodiscard]] Trajectory hand_over(const Scene& scene, double seconds);
 
 }  // namespace palpate::four_cameras

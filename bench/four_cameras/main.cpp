@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "four_cameras/servo_run.hpp"
+#include "servo_cost/hand_over.hpp"
 #include "servo_cost/measured.hpp"
 #include "servo_cost/rises.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 using namespace palpate;
 using namespace palpate::four_cameras;
 using servo_cost::CostOptions;
+using servo_cost::hand_over;
 using servo_cost::quantile;
 using servo_cost::Rises;
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "four_cameras/camera_rig.hpp"
+#include "palpate/geometry/trajectory.hpp"
 #include "palpate/sensor/stream_state.hpp"
 #include "servo_cost/paced_servo.hpp"
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "palpate/base/error.hpp"
+#include "servo_cost/hand_over.hpp"
 #include "servo_cost/measured.hpp"
 #include "servo_cost/rises.hpp"
 #include "viewer/viewer_run.hpp"
@@ -13,6 +14,7 @@ namespace {
 using namespace palpate;
 using namespace palpate::viewer_bench;
 using servo_cost::CostOptions;
+using servo_cost::hand_over;
 using servo_cost::Rises;
 
 constexpr std::size_t kPoints = 300'000;

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "clouds.hpp"
-#include "palpate/device/exploration.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "viewer/watching.hpp"
 
@@ -17,8 +16,6 @@ namespace palpate::viewer_bench {
 namespace {
 
 constexpr const char* kToken = "bench";
-constexpr double kPatch = 0.15;  // that the hand explores, m
-constexpr double kDepth = 3e-3;  // m
 constexpr std::chrono::milliseconds kRenewal(100);
 
 void show(Source& source, std::shared_ptr<const SurfacePoints> points, double now) {
@@ -49,16 +46,6 @@ void add_cloud(Scene& scene, std::size_t count) {
   PointCloud cloud;
   cloud.positions = bench::bumpy_sphere(count);
   scene.add("cloud").set(cloud);
-}
-
-Trajectory hand_over(const Scene& scene, double seconds) {
-  const auto points = scene.source(0).points();
-  ExplorationOptions options;
-  options.duration = seconds;
-  options.radius = points->radius;
-  options.depth = kDepth;
-  options.patch = kPatch;
-  return explore({points->origin, points->grid.points(), points->normals}, options);
 }
 
 RunResult run_servo(Scene& scene, const Trajectory& hand, Beside beside, WaitingClock& clock,

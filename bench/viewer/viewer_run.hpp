@@ -27,9 +27,6 @@ struct RunResult {
 /// A source with `count` points on a bumpy sphere of 0.1 m, every one of which is felt.
 void add_cloud(Scene& scene, std::size_t count);
 
-/// A hand that explores it for `seconds`, always in the same way.
-[[nodiscard]] Trajectory hand_over(const Scene& scene, double seconds);
-
 /// Runs a servo at 1 kHz along `hand` until that ends. `processor`: it is pinned there.
 [[nodiscard]] RunResult run_servo(Scene& scene, const Trajectory& hand, Beside beside,
                                   WaitingClock& clock, std::optional<int> processor);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "servo_cost/hand_over.hpp"
 #include "viewer/watching.hpp"
 
 namespace palpate::viewer_bench {
@@ -14,7 +15,7 @@ RunResult run(Beside beside) {
   SteadyWaitingClock clock;
   Scene scene;
   add_cloud(scene, kPoints);
-  return run_servo(scene, hand_over(scene, kSeconds), beside, clock, {});
+  return run_servo(scene, servo_cost::hand_over(scene, kSeconds), beside, clock, {});
 }
 
 TEST(ViewerRun, WithoutAViewerTheServoIsAlone) {
