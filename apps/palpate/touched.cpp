@@ -53,6 +53,20 @@ void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
       cloud.path, far, Proxy::kLargestCoordinate));
 }
 
+// Where R reaches over all of a cloud there is no surface any more.
+void check_radius(const CloudArgument& cloud, const PrepareOptions& options,
+                  const SurfacePoints& points, double spacing) {
+  constexpr double kFarBeyond = 100;  // spacings
+  if (!options.radius || points.size() == 0) return;
+  const CellGrid::Cell& root = points.grid.cells().front();
+  const auto across = static_cast<double>((root.upper - root.lower).norm());
+  if (*options.radius <= std::max(across, kFarBeyond * spacing)) return;
+  throw Error(
+      fmt::format("--radius {:.4g} is too large for {}, which is {} across: every point would "
+                  "reach over all of it; leave it out, or give some times the spacing ({})",
+                  *options.radius, cloud.path, length(across), length(spacing)));
+}
+
 void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& chosen,
                TouchedSource& result) {
   LoadedCloud loaded = load(chosen.argument, chosen.choices.reading);
@@ -71,6 +85,7 @@ void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& ch
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();
   check_place(loaded.argument, *source.points());
+  check_radius(loaded.argument, result.options.prepare, *source.points(), result.prepared.spacing);
   if (has_page(options)) {  // which may want it prepared anew
     result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
   }
@@ -88,6 +103,7 @@ void push_alone(Source& source, const DepthFrame& frame, TouchedSource& result) 
         fmt::format("{} shows no surface: there is nothing to touch", result.argument.path));
   }
   check_place(result.argument, *points);
+  check_radius(result.argument, result.options.prepare, *points, source.report().spacing);
   result.state = source.state();
 }
 
