@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "apps/palpate/progress.hpp"
+#include "apps/palpate/suggestion.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/synthetic.hpp"
 
@@ -14,9 +15,19 @@ namespace {
 
 constexpr std::string_view kSynthetic = "synthetic:";
 
+PointCloud made_by_name(const std::string& name) {
+  try {
+    return synthetic_cloud(name);
+  } catch (const Error& error) {
+    std::vector<std::string> names;
+    for (const SyntheticName& each : synthetic_names()) names.emplace_back(each.name);
+    throw Error(error.what() + did_you_mean(name, names));
+  }
+}
+
 CloudFile make_synthetic(const std::string& name, double scale) {
   CloudFile file;
-  file.cloud = synthetic_cloud(name);
+  file.cloud = made_by_name(name);
   file.format = "made by palpate";
   file.declared = file.cloud.size();
   const auto factor = static_cast<float>(scale);

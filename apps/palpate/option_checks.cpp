@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/palpate/errors.hpp"
+#include "apps/palpate/suggestion.hpp"
 
 namespace palpate::app {
 
@@ -39,7 +41,12 @@ CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
 }
 
 CLI::Validator one_of(const std::vector<std::string>& words) {
-  return CLI::IsMember(words);
+  const auto check = [words](const std::string& text) -> std::string {
+    if (std::ranges::find(words, text) != words.end()) return "";
+    return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "),
+                       did_you_mean(text, words));
+  };
+  return CLI::Validator(check, "");
 }
 
 CLI::Validator parsed_by(std::function<void(const std::string&)> parse) {

@@ -57,12 +57,17 @@ std::string meant(std::string_view word, const std::vector<std::string>& names) 
   return best;
 }
 
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& names) {
+  const std::string near = meant(word, names);
+  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
+}
+
 std::string hint(const CLI::App& program) {
   for (const std::string& word : program.remaining()) {
     const bool option = word.starts_with("--");
-    const std::string near = meant(option ? word.substr(0, word.find('=')) : word,
-                                   option ? options_of(program) : commands_of(program));
-    if (!near.empty()) return fmt::format("; did you mean {}?", near);
+    const std::string near = did_you_mean(option ? word.substr(0, word.find('=')) : word,
+                                          option ? options_of(program) : commands_of(program));
+    if (!near.empty()) return near;
   }
   for (const CLI::App* each : program.get_subcommands()) {
     if (const std::string found = hint(*each); !found.empty()) return found;

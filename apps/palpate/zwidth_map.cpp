@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/palpate/suggestion.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/servo/passive_stiffness.hpp"
 #include "palpate/servo/z_width.hpp"
@@ -12,8 +13,15 @@ namespace palpate::app {
 namespace {
 
 DeviceProfile find_profile(const ZWidthOptions& options) {
-  if (options.profiles.empty()) return device_profile(options.profile);
-  return device_profile(options.profile, read_device_profiles(options.profiles));
+  const std::vector<DeviceProfile> among =
+      options.profiles.empty() ? device_profiles() : read_device_profiles(options.profiles);
+  try {
+    return device_profile(options.profile, among);
+  } catch (const Error& error) {
+    std::vector<std::string> names;
+    for (const DeviceProfile& each : among) names.push_back(each.name);
+    throw Error(error.what() + did_you_mean(options.profile, names));
+  }
 }
 
 SimulatedDeviceOptions device_of(const DeviceProfile& profile) {

@@ -24,6 +24,11 @@ TEST(Suggestion, NothingIsSuggestedForWhatIsNotNear) {
   EXPECT_EQ(meant("radius", {}), "");
 }
 
+TEST(Suggestion, IsAskedForWhereOneIsNear) {
+  EXPECT_EQ(did_you_mean("tours", {"sheet", "torus"}), "; did you mean torus?");
+  EXPECT_EQ(did_you_mean("horse", {"sheet", "torus"}), "");
+}
+
 TEST(Suggestion, HintNamesTheOptionOrCommandThatWasMeant) {
   CLI::App program;
   double radius = 0;
