@@ -70,10 +70,8 @@ struct Outputs {
   std::optional<OutputFile> picture;
 
   explicit Outputs(const PaperOptions& options) {
-    if (options.picture == "-") {
-      throw UsageError("--picture cannot go to standard output; name a file such as a.png");
-    }
     check_distinct({}, {{"--csv", options.csv}, {"--picture", options.picture}});
+    check_picture(options.picture);
     if (!options.csv.empty()) csv.emplace(options.csv);
     if (!options.picture.empty()) picture.emplace(options.picture);
   }

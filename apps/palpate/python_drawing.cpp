@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "apps/palpate/child_program.hpp"
+#include "apps/palpate/errors.hpp"
 #include "apps/palpate/picture_script.hpp"
 #include "palpate/base/error.hpp"
 
@@ -70,6 +71,29 @@ std::string last_line(const std::string& text) {
 std::string drawing_python() {
   const char* debian = "/usr/bin/python3";
   return access(debian, X_OK) == 0 ? debian : "python3";
+}
+
+std::vector<std::string> drawing_trial() {
+  return {drawing_python(), "-c",
+          "import importlib.util, sys; sys.exit(importlib.util.find_spec('matplotlib') is None)"};
+}
+
+void check_picture(const std::string& path) {
+  if (path.empty()) return;
+  if (path == "-") {
+    throw UsageError("--picture cannot go to standard output; name a file such as a.png");
+  }
+  const std::filesystem::path file(path);
+  const std::string ending = file.extension().string();
+  if (!ending.empty() && ending != ".png" && ending != ".PNG") {
+    throw UsageError(fmt::format("--picture {}: pictures are PNG; name it {}", path,
+                                 std::filesystem::path(file).replace_extension(".png").string()));
+  }
+  if (run_program(drawing_trial(), "/dev/null") == 0) return;
+  throw Error(
+      fmt::format("{} cannot be drawn: Python 3 with matplotlib is missing; install it with "
+                  "'apt install python3-matplotlib', or leave --picture out",
+                  path));
 }
 
 std::string float_bytes(const std::vector<float>& values) {

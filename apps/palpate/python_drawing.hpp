@@ -17,6 +17,15 @@ struct DrawingData {
 /// The Python that draws: Debian's own first, since that is the one python3-matplotlib belongs to.
 [[nodiscard]] std::string drawing_python();
 
+/// A command that succeeds where there is Python with matplotlib; imports nothing, so that it takes
+/// no time.
+[[nodiscard]] std::vector<std::string> drawing_trial();
+
+/// Of --picture, before any work; empty: none is wanted.
+/// @throws UsageError when its place is standard output or has another kind's ending than .png;
+/// Error when Python or matplotlib is missing, naming the package.
+void check_picture(const std::string& path);
+
 /// The bytes of numbers in single precision, as numpy.fromfile reads them.
 [[nodiscard]] std::string float_bytes(const std::vector<float>& values);
 

@@ -11,6 +11,7 @@
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/numbered_path.hpp"
 #include "apps/palpate/option_uses.hpp"
+#include "apps/palpate/python_drawing.hpp"
 #include "apps/palpate/touch_surface.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
@@ -35,8 +36,6 @@ void check_files(const TouchOptions& options) {
   }
   require(options.log != "-" || options.json != "-",
           "--log and --json cannot both go to standard output");
-  require(options.picture != "-",
-          "--picture cannot go to standard output; name a file such as a.png");
   std::vector<NamedFile> read = inputs(clouds);
   read.push_back({"--trajectory", options.trajectory});
   read.push_back({"--setup", options.setup});
@@ -111,6 +110,7 @@ void check_usage(const TouchOptions& options) {
   const std::vector<ChosenSource> sources = choose_sources(options);
   for (const ChosenSource& source : sources) check_source(options, source);
   check_use(options, sources);
+  check_picture(options.picture);
 }
 
 void check_trajectory(const TouchOptions& options, const Trajectory& trajectory) {

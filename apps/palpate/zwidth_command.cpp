@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "apps/palpate/distinct_files.hpp"
-#include "apps/palpate/errors.hpp"
 #include "apps/palpate/option_checks.hpp"
 #include "apps/palpate/output.hpp"
 #include "apps/palpate/picture_script.hpp"
@@ -38,11 +37,9 @@ struct ZWidthOutputs {
   std::optional<OutputFile> picture;
 
   explicit ZWidthOutputs(const ZWidthOptions& options) {
-    if (options.picture == "-") {
-      throw UsageError("--picture cannot go to standard output; name a file such as a.png");
-    }
     check_distinct(
         {}, {{"--csv", options.csv}, {"--json", options.json}, {"--picture", options.picture}});
+    check_picture(options.picture);
     if (!options.csv.empty()) csv.emplace(options.csv);
     if (!options.json.empty()) json.emplace(options.json);
     if (!options.picture.empty()) picture.emplace(options.picture);

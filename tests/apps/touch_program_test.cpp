@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
@@ -264,7 +265,15 @@ TEST(Touch, PictureIsDrawnOrSaysWhatIsMissing) {
     EXPECT_EQ(outcome.code, 1);
     EXPECT_NE(outcome.err.find("python3-matplotlib"), std::string::npos) << outcome.err;
   }
-  EXPECT_EQ(columns(shell.read("log.csv"))["t"].size(), 1001u);
+}
+
+TEST(Touch, PictureThatCannotBeDrawnIsToldBeforeTheRun) {
+  Shell shell;
+  const Outcome outcome = shell.run(
+      "touch synthetic:bumps --duration 1 --picture a.png --log a.csv", "", "PYTHONHOME=/nowhere");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("python3-matplotlib"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(shell.path("a.csv")));
 }
 
 }  // namespace

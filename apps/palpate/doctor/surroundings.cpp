@@ -126,10 +126,7 @@ Finding check_runtime_folder(const System& system) {
 Finding check_matplotlib(const System& system) {
   Finding finding{kSurroundings, "pictures"};
   finding.words = "Python 3 with matplotlib";
-  const bool there = system.succeeds(
-      {drawing_python(), "-c",
-       "import importlib.util, sys; sys.exit(importlib.util.find_spec('matplotlib') is None)"});
-  if (there) return finding;
+  if (system.succeeds(drawing_trial())) return finding;
   finding.severity = Severity::note;
   finding.words = "no Python 3 with matplotlib: --picture draws nothing";
   finding.remedy = "sudo apt install python3-matplotlib";
