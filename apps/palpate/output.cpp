@@ -1,5 +1,6 @@
 #include "apps/palpate/output.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -49,24 +50,45 @@ OutputFile::OutputFile(const std::string& path)
     growing_ = fmt::format("{}.part-{}", place_, getpid());
   }
   open();
-  if (growing_ == place_) return;
+  if (growing_ == place_ || nameless_) return;
   file_.reset();
   std::remove(growing_.c_str());
 }
 
 OutputFile::~OutputFile() {
-  if (file_ && growing_ != place_) std::remove(growing_.c_str());
+  if (file_ && growing_ != place_ && !nameless_) std::remove(growing_.c_str());
 }
 
 void OutputFile::open() {
-  if (file_) return;
+  if (file_ || open_nameless()) return;
   file_.reset(std::fopen(growing_.c_str(), growing_ == place_ ? "wb" : "wbx"));
   if (!file_) fail("cannot be made");
 }
 
-const std::string& OutputFile::growing() {
+// One that is never seen, however the program ends. Not every file system has such files.
+bool OutputFile::open_nameless() {
+  if (growing_ == place_ || access("/proc/self/fd", F_OK) != 0) return false;
+  const std::string folder = fs::path(place_).parent_path().string();
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor < 0) return false;
+  file_.reset(fdopen(descriptor, "wb"));
+  nameless_ = file_ != nullptr;
+  if (!nameless_) ::close(descriptor);
+  return nameless_;
+}
+
+// linkat() does not replace what is there, rename() does.
+bool OutputFile::name() {
+  const std::string itself = fmt::format("/proc/self/fd/{}", fileno(file_.get()));
+  return linkat(AT_FDCWD, itself.c_str(), AT_FDCWD, growing_.c_str(), AT_SYMLINK_FOLLOW) == 0;
+}
+
+std::string OutputFile::growing() {
   open();
-  return growing_;
+  if (!nameless_) return growing_;
+  const int descriptor = fileno(file_.get());
+  fcntl(descriptor, F_SETFD, 0);  // the other program has it by the same number
+  return fmt::format("/dev/fd/{}", descriptor);
 }
 
 void OutputFile::write(std::string_view text) {
@@ -80,6 +102,7 @@ void OutputFile::close() {
   open();
   if (std::fflush(file_.get()) != 0) fail("cannot be written");
   if (file_.get() == stdout) return;
+  if (nameless_ && !name()) fail("cannot be written");
   const bool closed = std::fclose(file_.release()) == 0;
   if (growing_ == place_) {
     if (!closed) fail("cannot be written");

@@ -7,10 +7,11 @@
 
 namespace palpate::app {
 
-/// A file that appears when it is complete: from its first byte until close() it grows beside its
-/// place under another name, so that a run that fails leaves what was there as it was. "-" is
-/// standard output; what is no plain file (/dev/null, a pipe) is written as it is. Whatever goes
-/// wrong, a full disk included, is told as an Error that names the file.
+/// A file that appears when it is complete: until close() it grows without a name in its folder or,
+/// where the file system knows no such files, beside its place under another name. So a run that
+/// fails leaves what was there as it was. "-" is standard output; what is no plain file (/dev/null,
+/// a pipe) is written as it is. Whatever goes wrong, a full disk included, is told as an Error that
+/// names the file.
 class OutputFile {
  public:
   /// Tries whether the file can be made, and leaves nothing of that. @throws Error when it cannot.
@@ -24,20 +25,24 @@ class OutputFile {
   /// Brings everything to the disk and to its place. @throws Error likewise.
   void close();
 
-  /// Where it grows, for others to write to; what they write there comes to its place as well.
+  /// Where it grows, for a program that this one starts; what it writes there comes to its place as
+  /// well.
   /// @throws Error when it cannot be made.
-  [[nodiscard]] const std::string& growing();
+  [[nodiscard]] std::string growing();
 
  private:
   struct Closer {
     void operator()(std::FILE* file) const;
   };
   void open();  // unless it is
+  bool open_nameless();
+  bool name();
   [[noreturn]] void fail(const char* what) const;
 
   std::string path_;
   std::string place_;    // where links lead
-  std::string growing_;  // the same where it is written as it is
+  std::string growing_;  // its name meanwhile; the same where it is written as it is
+  bool nameless_ = false;
   std::unique_ptr<std::FILE, Closer> file_;
 };
 

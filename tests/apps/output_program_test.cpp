@@ -1,8 +1,10 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -58,7 +60,6 @@ TEST(Output, NothingIsThereBeforeTheFirstByteNorAfterAFailure) {
     OutputFile file(shell.path("a.csv"));
     EXPECT_EQ(count(), 0) << "a run that is ended now leaves nothing";
     file.write("1\n");
-    EXPECT_EQ(count(), 1);
     EXPECT_FALSE(fs::exists(shell.path("a.csv")));
   }
   EXPECT_EQ(count(), 0);
@@ -87,6 +88,32 @@ TEST(Output, AnInterruptedRunLeavesItsLogAndReport) {
   for (const auto& entry : fs::directory_iterator(fs::path(shell.path("")))) {
     EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
   }
+}
+
+TEST(Output, ARunThatIsEndedAtOnceLeavesNothing) {
+  Shell shell;
+  const int nameless = open(shell.path(".").c_str(), O_TMPFILE | O_WRONLY, 0600);
+  if (nameless < 0) GTEST_SKIP() << "the file system has no files without a name";
+  close(nameless);
+  const int status = std::system(
+      fmt::format("cd '{}'; '{}' touch camera:simulated --simulated-time --duration 600 "
+                  "--log log.csv > /dev/null 2> err "
+                  "& p=$!; until grep -qs touching err; do sleep 0.1; kill -0 $p || break; done; "
+                  "kill -KILL $p; wait $p",
+                  shell.path("."), PALPATE_PROGRAM)
+          .c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 128 + SIGKILL) << shell.read("err");
+  const auto entries = fs::directory_iterator(fs::path(shell.path("")));
+  EXPECT_EQ(std::distance(begin(entries), end(entries)), 1) << "what it said alone";
+}
+
+TEST(Output, WhatAnotherProgramWritesComesToItsPlace) {
+  const Shell shell;
+  OutputFile file(shell.path("a.txt"));
+  ASSERT_EQ(std::system(fmt::format("echo written > {}", file.growing()).c_str()), 0);
+  EXPECT_FALSE(fs::exists(shell.path("a.txt")));
+  file.close();
+  EXPECT_EQ(shell.read("a.txt"), "written\n");
 }
 
 TEST(Output, LinksAndDevicesAreWrittenThrough) {
