@@ -21,7 +21,7 @@ test("with a controller and a 3D mouse, a button that is held is pressed once", 
   const hand = new Hand((message) => void said.push(message), () => undefined);
   const stage = { pixelAt: () => 1e-3, height: 600, camera: new PerspectiveCamera() };
   const world = { stage, navigation: { turn: () => undefined } } as unknown as World;
-  const keys = { velocity: () => [0, 0, 0] } as unknown as Keys;
+  const keys = { take: () => [0, 0, 0] } as unknown as Keys;
   const mouse = { read: () => ({ right: 0, up: 0, away: 0, buttons: 4 }) } as unknown as SpaceMouse;
   let taken = 0;
   const input = new Input(world, hand, keys, mouse, () => {

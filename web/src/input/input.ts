@@ -9,6 +9,7 @@ import type { SpaceMouse } from "./space_mouse";
 const kKeyPace = 0.07; // of the picture's height a second
 const kPadPace = 0.35;
 const kButtonPace = 0.05;
+const kLongest = 0.5; // s between two pictures that count
 
 export class Input {
   depth = 0; // of the buttons: 1 away, -1 closer
@@ -25,18 +26,17 @@ export class Input {
   ) {}
 
   update(now: number): void {
-    const passed = Math.min(0.1, Math.max(0, (now - this.last) / 1000));
+    const passed = Math.min(kLongest, Math.max(0, (now - this.last) / 1000));
     this.last = now;
     this.usePads(passed);
-    const [right, up, away] = this.keys.velocity();
+    const [right, up, away] = this.keys.take(now);
     if (!this.hand.held) {
       if (right !== 0 || up !== 0 || away !== 0) {
-        this.world.navigation.turn(right, up, away, passed);
+        this.world.navigation.turn(right, up, away);
       }
       return;
     }
-    const depth = this.depth * kButtonPace;
-    this.move(right * kKeyPace, up * kKeyPace, away * kKeyPace + depth, passed);
+    this.move(right * kKeyPace, up * kKeyPace, away * kKeyPace + this.depth * kButtonPace * passed);
   }
 
   private usePads(passed: number): void {
@@ -50,15 +50,16 @@ export class Input {
       if ((pressed & 1) !== 0 && !this.hand.held) this.take();
       else if ((pressed & 2) !== 0) this.hand.letGo();
       if (!this.hand.held) return;
-      this.move(reading.right * kPadPace, reading.up * kPadPace, reading.away * kPadPace, passed);
+      const way = kPadPace * passed;
+      this.move(reading.right * way, reading.up * way, reading.away * way);
     });
     if (this.hand.held && readings.some((reading) => reading !== undefined)) this.hand.press(buttons & ~3);
   }
 
-  /** Velocities in heights of the picture a second. */
-  private move(right: number, up: number, away: number, passed: number): void {
+  /** In heights of the picture. */
+  private move(right: number, up: number, away: number): void {
     const { stage } = this.world;
-    const height = stage.pixelAt(this.hand.place) * stage.height * passed;
+    const height = stage.pixelAt(this.hand.place) * stage.height;
     this.hand.nudge(stage.camera, right * height, up * height, away * height);
   }
 }

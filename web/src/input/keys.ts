@@ -23,10 +23,12 @@ const kMoves: Record<string, readonly [number, number, number]> = {
 
 const kFast = 4;
 const kFine = 0.2;
+const kLongest = 0.5; // s that a key counts between two looks, however slow pictures are
 
 export class Keys {
   single = true; // letters act by themselves
-  private readonly down = new Set<string>();
+  private readonly down = new Map<string, number>(); // from when on its time is to be counted, ms
+  private held: [number, number, number] = [0, 0, 0]; // s
   private pace = 1;
 
   constructor(actions: Actions) {
@@ -48,24 +50,34 @@ export class Keys {
       else if (!this.press(event)) return;
       event.preventDefault();
     });
-    window.addEventListener("keyup", (event) => this.down.delete(event.key));
+    window.addEventListener("keyup", (event) => {
+      this.count(event.key, event.timeStamp);
+      this.down.delete(event.key);
+    });
     window.addEventListener("blur", () => this.down.clear());
   }
 
-  /** Right, up and away, -1 to 1 and times the pace. */
-  velocity(): [number, number, number] {
-    const sum: [number, number, number] = [0, 0, 0];
-    for (const key of this.down) {
-      kMoves[key]?.forEach((part, axis) => (sum[axis as 0 | 1 | 2] += part * this.pace));
-    }
-    return sum;
+  /** For how long right, up and away were held down since the last look, s and times the pace. */
+  take(now: number): [number, number, number] {
+    for (const key of this.down.keys()) this.count(key, now);
+    const held = this.held;
+    this.held = [0, 0, 0];
+    return held;
+  }
+
+  private count(key: string, now: number): void {
+    const since = this.down.get(key);
+    if (since === undefined || now < since) return;
+    this.down.set(key, now);
+    const seconds = Math.min(kLongest, (now - since) / 1000);
+    kMoves[key]?.forEach((part, axis) => (this.held[axis as 0 | 1 | 2] += part * this.pace * seconds));
   }
 
   private press(event: KeyboardEvent): boolean {
     if (kMoves[event.key] === undefined) return false;
     if (event.target instanceof Element && event.target.closest(".side") !== null) return false;
     this.pace = event.shiftKey ? kFast : event.altKey ? kFine : 1;
-    this.down.add(event.key);
+    if (!this.down.has(event.key)) this.down.set(event.key, event.timeStamp);
     return true;
   }
 }

@@ -5,6 +5,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Bounds } from "./bounds";
 
 const kTurn = 1.6; // radians a second by keys
+const kCloser = 1.2; // of the distance's logarithm a second
 const kAside = 0.55; // radians beside a camera's own direction
 const kRaise = 0.5; // of the distance, upward
 const kMargin = 0.82; // of the picture that is used
@@ -108,16 +109,16 @@ export class Navigation {
     this.changed();
   }
 
-  /** Keys: right and up in turns, closer; -1 to 1 each. */
-  turn(right: number, up: number, closer: number, seconds: number): void {
+  /** Keys: right, up and closer, for how long each was held down, s. */
+  turn(right: number, up: number, closer: number): void {
     const arm = this.camera.position.clone().sub(this.controls.target);
     const axis = this.camera.up;
     const side = new Vector3().crossVectors(axis, arm).normalize();
     const tilt = Math.acos(Math.min(1, Math.max(-1, arm.clone().normalize().dot(axis))));
-    const wanted = Math.min(Math.PI - 0.05, Math.max(0.05, tilt - up * kTurn * seconds));
+    const wanted = Math.min(Math.PI - 0.05, Math.max(0.05, tilt - up * kTurn));
     arm.applyAxisAngle(side, wanted - tilt);
-    arm.applyAxisAngle(axis, right * kTurn * seconds);
-    arm.multiplyScalar(Math.exp(-closer * 1.2 * seconds));
+    arm.applyAxisAngle(axis, right * kTurn);
+    arm.multiplyScalar(Math.exp(-closer * kCloser));
     this.camera.position.copy(this.controls.target).add(arm);
     this.changed();
   }

@@ -1,0 +1,45 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Keys, type Actions } from "../src/input/keys";
+
+const page = new EventTarget();
+Object.assign(globalThis, { window: page, document: { querySelector: () => null }, Element: class {} });
+
+function key(type: "keydown" | "keyup", name: string, timeStamp: number, more = {}): void {
+  const event = Object.assign(new Event(type), { key: name, ...more });
+  Object.defineProperty(event, "timeStamp", { value: timeStamp });
+  page.dispatchEvent(event);
+}
+
+const near = (found: number[], wanted: number[]) =>
+  found.forEach((value, i) => assert.ok(Math.abs(value - wanted[i]!) < 1e-9, `${String(found)}, not ${String(wanted)}`));
+
+test("a key counts for as long as it was held down, however seldom one looks", () => {
+  const often = new Keys({} as Actions);
+  const seldom = new Keys({} as Actions);
+  const sum = [0, 0, 0];
+  const look = (now: number) => often.take(now).forEach((part, axis) => (sum[axis]! += part));
+  key("keydown", "ArrowRight", 1000);
+  for (let now = 1000; now < 1300; now += 10) look(now);
+  key("keydown", "ArrowRight", 1150); // the keyboard repeats it
+  key("keyup", "ArrowRight", 1300);
+  look(1310);
+  near(sum, [0.3, 0, 0]);
+  near(seldom.take(1400), [0.3, 0, 0]);
+  near(seldom.take(1500), [0, 0, 0]);
+});
+
+test("a key that is let go between two pictures has moved the tool", () => {
+  const keys = new Keys({} as Actions);
+  key("keydown", "PageUp", 1010, { shiftKey: true });
+  key("keyup", "PageUp", 1060);
+  near(keys.take(1200), [0, 0, 4 * 0.05]);
+});
+
+test("a page that stood still moves the tool no farther than half a second's way", () => {
+  const keys = new Keys({} as Actions);
+  key("keydown", "ArrowDown", 0);
+  near(keys.take(60_000), [0, -0.5, 0]);
+  key("keyup", "ArrowDown", 60_100);
+  near(keys.take(60_200), [0, -0.1, 0]);
+});
