@@ -44,6 +44,8 @@ export class Overlay {
   }
 
   private showScale(): void {
+    byId("scale").hidden = !this.world.known;
+    if (!this.world.known) return;
     const { pixels, label } = scaleBar(
       this.world.stage.pixelAt(this.world.navigation.controls.target), byId("view").clientWidth);
     const end = (pixels + 1).toFixed(1);

@@ -58,6 +58,7 @@ export class Stage {
 
   /** The length of one style-sheet pixel at a place, m. */
   pixelAt(place: Vector3): number {
+    this.camera.updateMatrixWorld(); // it may have moved since the last picture
     const depth = place.clone().applyMatrix4(this.camera.matrixWorldInverse).z;
     const half = Math.tan((this.camera.fov * Math.PI) / 360);
     return (2 * half * Math.max(-depth, this.camera.near)) / this.height;

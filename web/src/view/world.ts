@@ -142,6 +142,11 @@ export class World {
     for (const each of [...this.clouds, ...this.frusta, ...this.tools, ...this.surfaces]) each.retint();
   }
 
+  /** Is there anything to see, and a place to see it from? */
+  get known(): boolean {
+    return this.begun > 0;
+  }
+
   hasColours(): boolean {
     return this.clouds.some((cloud) => cloud.hasColours);
   }

@@ -134,3 +134,24 @@ test("a browser without WebGL 2 is told so", async () => {
   await page.context().close();
   await server.close();
 });
+
+test("a scale bar is true from the first one on", async () => {
+  const server = await serve({ points: 4000 });
+  const page = await openPage(browser, server.address, kSmall, () => {
+    window.scales = new Set();
+    document.addEventListener("DOMContentLoaded", () => {
+      const look = () => {
+        const label = document.getElementById("scale-label");
+        if (label.offsetParent !== null && label.textContent !== "") window.scales.add(label.textContent);
+        requestAnimationFrame(look);
+      };
+      look();
+    });
+  });
+  await until("a bar", async () => (await page.evaluate(() => window.scales.size)) > 0);
+  await page.waitForTimeout(1000);
+  const lengths = await page.evaluate(() => [...window.scales]);
+  for (const length of lengths) assert.match(length, /^(20|50|100|200) mm$/, `of a table of 0.7 m: ${lengths}`);
+  await page.context().close();
+  await server.close();
+});
