@@ -17,6 +17,7 @@ import { Readout } from "./panel/readout";
 import { SettingsPanel } from "./panel/settings";
 import { SourcesPanel } from "./panel/sources";
 import { Status } from "./panel/status";
+import { Tags } from "./panel/tags";
 import { Backoff } from "./protocol/backoff";
 import { Connection } from "./protocol/connection";
 import { Kind, type BinaryMessage } from "./protocol/decode";
@@ -38,6 +39,7 @@ export class App {
   private readonly readout = new Readout();
   private readonly world: World;
   private readonly overlay: Overlay;
+  private readonly tags: Tags;
   private readonly plots = new Plots(this.session);
   private readonly sources = new SourcesPanel();
   private readonly settings: SettingsPanel;
@@ -57,6 +59,7 @@ export class App {
     const send = (message: ToProgram) => this.send(message);
     this.world = new World(byId<HTMLCanvasElement>("view"), graphics);
     this.overlay = new Overlay(this.world);
+    this.tags = new Tags(this.world);
     this.settings = new SettingsPanel(
       (key, value) => send({ type: "set", key, value }),
       (name) => send({ type: "preset", name }),
@@ -168,6 +171,7 @@ export class App {
     this.sources.begin(this.session.sources, () => this.relook());
     this.plots.begin();
     this.hold.begin();
+    this.tags.begin(welcome);
     this.bar.begin(welcome);
     this.relook();
     if (first) this.applyLink(welcome);
@@ -209,6 +213,7 @@ export class App {
   private frame(now: number): void {
     this.input.update(now);
     this.overlay.update();
+    this.tags.update(this.session.device);
     if (now - this.plotted < this.plotInterval) return;
     this.plotted = now;
     this.readout.update(this.session.tool, now);

@@ -10,6 +10,7 @@ import { fieldRow } from "./field";
 import { recall, remember } from "./memory";
 import type { Notices } from "./notices";
 
+const kColours = ["red", "blue", "violet", "purple"]; // --hand-0 and those after it
 const kCoarse = matchMedia("(pointer: coarse)");
 
 export class HoldPanel {
@@ -117,6 +118,7 @@ export class HoldPanel {
     }
     if (!this.session.open || this.session.tool?.latest === undefined) return "";
     if (!this.takeable()) return "A device moves this tool";
-    return kCoarse.matches ? "Drag the red hand to touch" : "Drag the red hand to touch; drag elsewhere to look around";
+    const colour = kColours[this.session.device % kColours.length];
+    return `Drag the ${colour} hand to touch` + (kCoarse.matches ? "" : "; drag elsewhere to look around");
   }
 }

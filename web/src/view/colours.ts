@@ -3,6 +3,7 @@
 import { Color, DataTexture, LinearFilter, RGBAFormat, SRGBColorSpace } from "three";
 
 export const kSourceColours = 8;
+const kHandColours = 4;
 
 function style(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -19,6 +20,10 @@ export function cssColour(name: string): string {
 
 export function sourceColour(source: number): string {
   return `--source-${source % kSourceColours}`;
+}
+
+export function handColour(device: number): string {
+  return `--hand-${device % kHandColours}`;
 }
 
 /** Red, green, blue as a screen takes them, 0 to 1: for shaders that compute in these. */

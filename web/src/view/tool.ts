@@ -7,7 +7,7 @@ import {
 } from "three";
 import type { StateMessage } from "../protocol/decode";
 import { Flag } from "../protocol/decode";
-import { colourOf } from "./colours";
+import { colourOf, handColour } from "./colours";
 import { HaloMaterial } from "./halo";
 import { Trail } from "./trail";
 
@@ -75,7 +75,7 @@ export class Tool {
   private radius = 0;
   private touching = false;
 
-  constructor() {
+  constructor(private readonly device: number) {
     this.disk.renderOrder = 2;
     this.rim.renderOrder = 2;
     this.spring.renderOrder = 4;
@@ -88,13 +88,14 @@ export class Tool {
   }
 
   retint(): void {
-    this.handMaterial.color.copy(colourOf("--hip"));
+    const hand = colourOf(handColour(this.device));
+    this.handMaterial.color.copy(hand);
     this.proxyMaterial.color.copy(colourOf("--proxy"));
     this.forceMaterial.color.copy(colourOf("--force"));
     this.forceMaterial.emissive.copy(colourOf("--force"));
     this.diskMaterial.color.copy(colourOf("--disk"));
     this.rimMaterial.color.copy(colourOf("--disk"));
-    this.springMaterial.color.copy(colourOf("--hip"));
+    this.springMaterial.color.copy(hand);
     this.haloMaterial.tint(colourOf("--proxy"));
     this.trail.retint();
   }

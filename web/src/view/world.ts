@@ -80,7 +80,7 @@ export class World {
     this.navigation.setUp(this.up);
     this.clouds = welcome.sources.map(({ camera }, i) => new Cloud(i, camera, this.ramps));
     this.frusta = welcome.sources.map((_, i) => new Frustum(i));
-    this.tools = welcome.devices.map(() => new Tool());
+    this.tools = welcome.devices.map((_, i) => new Tool(i));
     this.surfaces = welcome.devices.map(() => new Surface());
     this.places = welcome.sources.map(() => []);
     this.visible = welcome.sources.map(() => true);
