@@ -14,7 +14,16 @@ using SharedBytes = std::shared_ptr<const std::string>;
 
 /// What a message is of: a newer one of the same topic takes an older one's place.
 struct Topic {
-  enum class Kind : std::uint8_t { state, cloud, surface, settings, sources, record, answer };
+  enum class Kind : std::uint8_t {
+    state,
+    cloud,
+    surface,
+    settings,
+    devices,
+    sources,
+    record,
+    answer
+  };
   Kind kind = Kind::answer;
   std::size_t index = 0;  ///< of the device or source
 

@@ -80,6 +80,20 @@ const char* name_of(NoticeLevel level) {
   return "info";
 }
 
+const char* name_of(DeviceStatus status) {
+  switch (status) {
+    case DeviceStatus::silent:
+      return "silent";
+    case DeviceStatus::finished:
+      return "finished";
+    case DeviceStatus::failed:
+      return "failed";
+    case DeviceStatus::ok:
+      break;
+  }
+  return "ok";
+}
+
 }  // namespace
 
 std::string welcome_text(const Welcome& welcome) {
@@ -104,6 +118,15 @@ std::string settings_text(std::span<const Setting> settings) {
   json values = json::object();
   for (const Setting& setting : settings) values[setting.key] = json_of(setting.value);
   return text_of({{"type", "settings"}, {"values", std::move(values)}});
+}
+
+std::string devices_text(std::span<const DeviceReport> devices) {
+  json list = json::array();
+  for (const DeviceReport& device : devices) {
+    json& report = list.emplace_back(json{{"status", name_of(device.status)}});
+    if (!device.reason.empty()) report["reason"] = device.reason;
+  }
+  return text_of({{"type", "devices"}, {"devices", std::move(list)}});
 }
 
 std::string sources_text(std::span<const SourceReport> sources) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "palpate/device/device.hpp"
 #include "palpate/sensor/stream_state.hpp"
 #include "palpate/viewer/setting.hpp"
 #include "palpate/viewer/viewer_options.hpp"
@@ -38,6 +39,12 @@ struct Welcome {
   std::vector<Notice> notices;  ///< what is wrong already; messages of their own
 };
 
+/// How a device is doing; `reason`: why it is silent or has failed, and what to do.
+struct DeviceReport {
+  DeviceStatus status = DeviceStatus::ok;
+  std::string reason;
+};
+
 /// How a source fares. What is not set is left out.
 struct SourceReport {
   std::string name;
@@ -55,6 +62,7 @@ struct SourceReport {
 // JSON of docs/viewer_protocol.md. Texts that are no UTF-8 come out with replacement characters.
 [[nodiscard]] std::string welcome_text(const Welcome& welcome);
 [[nodiscard]] std::string settings_text(std::span<const Setting> settings);
+[[nodiscard]] std::string devices_text(std::span<const DeviceReport> devices);
 [[nodiscard]] std::string sources_text(std::span<const SourceReport> sources);
 [[nodiscard]] std::string notice_text(const Notice& notice);
 [[nodiscard]] std::string record_text(bool on, std::string_view file);

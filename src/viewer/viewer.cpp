@@ -29,7 +29,7 @@ namespace {
 using namespace viewer;
 
 constexpr double kStatePeriod = 1.0 / 60;  // s
-constexpr double kTroublePeriod = 0.5;     // s
+constexpr double kReportPeriod = 0.5;      // s
 constexpr double kEmptyRadius = 1;         // m, shown where there is nothing yet
 
 Message binary(std::string bytes) {
@@ -105,8 +105,10 @@ struct Viewer::Parts {
       states.emplace_back(*servos[i], i, *options.origin);
     }
     server.every(kStatePeriod, [this] { tick(); });
-    server.every(kTroublePeriod, [this] {
-      if (!lobby.greeted().empty()) look_for_trouble(streams());
+    server.every(kReportPeriod, [this] {
+      if (lobby.greeted().empty()) return;
+      look_for_trouble(streams());
+      tell_devices();
     });
     network = std::jthread([this] { server.run(); });
   }
@@ -127,6 +129,7 @@ struct Viewer::Parts {
   }
   [[nodiscard]] Welcome welcome();
   void look_for_trouble(const std::vector<ViewerStream>& streams);
+  void tell_devices();
   void tick();
   void post(Picture picture) {
     auto shared = std::make_shared<Picture>(std::move(picture));
@@ -174,6 +177,19 @@ void Viewer::Parts::look_for_trouble(const std::vector<ViewerStream>& streams) {
     faults.push_back({names[i], servos[i]->state().guard.fault});
   }
   for (const Notice& notice : troubles.look(streams, faults)) lobby.tell(notice);
+}
+
+void Viewer::Parts::tell_devices() {
+  std::vector<DeviceReport> reports;
+  for (const Servo* servo : servos) {
+    DeviceReport& report = reports.emplace_back();
+    report.status = servo->state().device;
+    const bool wrong =
+        report.status == DeviceStatus::silent || report.status == DeviceStatus::failed;
+    if (wrong) report.reason = servo->device().reason();
+  }
+  lobby.tell_all({Topic::Kind::devices},
+                 {std::make_shared<const std::string>(devices_text(reports)), true});
 }
 
 void Viewer::Parts::tick() {

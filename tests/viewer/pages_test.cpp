@@ -25,6 +25,18 @@ TEST(Pages, OneThatComesLaterHearsOfAFaultThatLasts) {
   EXPECT_EQ(rig.enter()->receive_json("notice"), notice);
 }
 
+TEST(Pages, AreToldWhyADeviceIsSilent) {
+  ViewerRig rig;
+  const auto client = rig.enter();
+  const auto told = [&] { return client->receive_json("devices")["devices"].at(0); };
+  EXPECT_EQ(told(), nlohmann::json({{"status", "ok"}}));
+  rig.device.state().status = DeviceStatus::silent;
+  rig.press(0.021);
+  nlohmann::json device = told();
+  while (device["status"] == "ok") device = told();
+  EXPECT_EQ(device, nlohmann::json({{"status", "silent"}, {"reason", "told to"}}));
+}
+
 TEST(Pages, NobodyHearsOfAProblemThatIsOver) {
   StreamState stream;
   stream.source = "sheet";

@@ -7,6 +7,7 @@ import { PointerInput } from "./input/pointer";
 import { SpaceMouse } from "./input/space_mouse";
 import { Session } from "./model/session";
 import { Bar } from "./panel/bar";
+import { Devices } from "./panel/devices";
 import { byId } from "./panel/dom";
 import { HoldPanel } from "./panel/hold";
 import { LookPanel } from "./panel/look";
@@ -35,6 +36,7 @@ const kCalmInterval = 250; // ms, where less motion is asked for
 export class App {
   private readonly session = new Session();
   private readonly notices = new Notices();
+  private readonly devices = new Devices(this.session, this.notices);
   private readonly sound = new Sound();
   private readonly readout = new Readout();
   private readonly world: World;
@@ -133,6 +135,8 @@ export class App {
       case "settings":
         for (const [key, value] of Object.entries(message.values)) this.session.values.set(key, value);
         return this.settings.show(this.session.values);
+      case "devices":
+        return this.devices.take(message.devices);
       case "sources":
         message.sources.forEach((report, i) => this.session.sources[i]?.take(report, performance.now()));
         this.world.takeSources(message.sources);

@@ -1,7 +1,7 @@
 // What the page knows of the program now: the newest of everything, and the past that plots need.
 
 import { Flag, type StateMessage } from "../protocol/decode";
-import type { SettingValue, SourceReport, Welcome } from "../protocol/messages";
+import type { DeviceReport, SettingValue, SourceReport, Welcome } from "../protocol/messages";
 import { Ring } from "./ring";
 
 export const kForceSpan = 5; // s
@@ -12,6 +12,7 @@ const kSteps = 1 << 15;
 export class DeviceHistory {
   latest: StateMessage | undefined;
   received = 0; // ms, performance.now()
+  report: DeviceReport = { status: "ok" };
   readonly force = new Ring(kSteps, 5); // time, x, y, z, magnitude
   readonly timing = new Ring(4096, 5); // time, step p50 and p99, lateness p50 and p99; us
 

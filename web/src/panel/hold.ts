@@ -74,6 +74,7 @@ export class HoldPanel {
     button.disabled = !this.takeable() || this.session.tool?.latest === undefined;
     const held = this.hand.held;
     say(byId("hint"), this.hint());
+    this.nameDevices();
     if (held === this.held) return;
     this.held = held;
     button.setAttribute("aria-pressed", String(held));
@@ -106,6 +107,14 @@ export class HoldPanel {
     byId("inputs").replaceChildren(...parts);
   }
 
+  private nameDevices(): void {
+    [...byId<HTMLSelectElement>("device").options].forEach((option, i) => {
+      const status = this.session.devices[i]?.report.status ?? "ok";
+      const name = this.session.welcome?.devices[i]?.name ?? "";
+      say(option, status === "ok" ? name : `${name} (${status})`);
+    });
+  }
+
   private takeable(): boolean {
     return this.session.open && this.session.welcome?.devices[this.session.device]?.takeable === true;
   }
@@ -117,7 +126,9 @@ export class HoldPanel {
         : "Drag to move it, wheel while dragging for depth; Alt and drag turns the view";
     }
     if (!this.session.open || this.session.tool?.latest === undefined) return "";
-    if (!this.takeable()) return "A device moves this tool";
+    if (!this.takeable()) {
+      return this.session.tool.report.status === "silent" ? "The device that moves this tool is silent" : "A device moves this tool";
+    }
     const colour = kColours[this.session.device % kColours.length];
     return `Drag the ${colour} hand to touch` + (kCoarse.matches ? "" : "; drag elsewhere to look around");
   }

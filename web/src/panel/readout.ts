@@ -67,6 +67,8 @@ export class Readout {
 
   private words(tool: DeviceHistory): string {
     const state = tool.latest!;
+    const { status, reason } = tool.report;
+    if (status !== "ok") return reason === undefined ? status : `${status}: ${reason}`;
     if (!tool.has("touching")) return "free";
     const deep = Math.hypot(...state.proxy.map((p, i) => p - state.hip[i as 0 | 1 | 2]));
     return `touching, ${millimetres(deep)} deep`;

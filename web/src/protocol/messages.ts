@@ -28,6 +28,11 @@ export interface SourceInfo {
   camera: boolean;
 }
 
+export interface DeviceReport {
+  status: string; // ok, silent, finished, failed
+  reason?: string; // why it is silent or has failed, and what to do
+}
+
 /** What is not known is left out. */
 export interface SourceReport {
   name: string;
@@ -60,6 +65,7 @@ export type NoticeLevel = "info" | "warning" | "fault";
 export type FromProgram =
   | Welcome
   | { type: "settings"; values: Record<string, SettingValue> }
+  | { type: "devices"; devices: DeviceReport[] }
   | { type: "sources"; sources: SourceReport[] }
   | { type: "notice"; level: NoticeLevel; text: string }
   | { type: "record"; on: boolean; file?: string }
@@ -79,7 +85,7 @@ export type ToProgram =
   | { type: "points"; points: number }
   | { type: "ping"; id: number };
 
-const kTypes = new Set(["welcome", "settings", "sources", "notice", "record", "lost", "refused", "pong"]);
+const kTypes = new Set(["welcome", "settings", "devices", "sources", "notice", "record", "lost", "refused", "pong"]);
 
 /** A text message; undefined where this page does not know its type. Throws SyntaxError. */
 export function parseMessage(text: string): FromProgram | undefined {

@@ -155,3 +155,20 @@ test("a scale bar is true from the first one on", async () => {
   await page.context().close();
   await server.close();
 });
+
+test("two hands are told apart, and why one is silent is said", async () => {
+  const why = "no client is heard on '/run/hand'; start one";
+  const server = await serve({ points: 4000, silent: why });
+  const page = await openPage(browser, server.address, kSmall);
+  const tags = page.locator("#tags span:not([hidden])");
+  await until("tags", async () => (await tags.allInnerTexts()).sort().join() === "remote,simulated");
+  await until("a notice", async () => (await text(page, "#notices")).includes(`remote: ${why}`));
+  await page.getByRole("combobox", { name: "Tool" }).selectOption({ label: "remote (silent)" });
+  await until("the reason", async () => (await text(page, "#touch")) === `silent: ${why}`);
+  assert.equal(await tags.filter({ hasText: "remote" }).getAttribute("class"), "chosen");
+  server.program.silent = undefined;
+  await until("heard", async () => (await text(page, "#notices")).includes("remote is heard"));
+  assert.deepEqual(page.troubles, []);
+  await page.context().close();
+  await server.close();
+});

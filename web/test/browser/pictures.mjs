@@ -46,16 +46,21 @@ const kPictures = [
     await page.click("#follow");
   }],
   ["desktop_source", kDesktop, "dark", (page) => page.selectOption("#look select", { label: "source" })],
+  ["silent_light", kDesktop, "light"],
+  ["silent_dark", kDesktop, "dark", (page) => page.selectOption("#device", "1")],
+  ["silent_phone", kPhone, "light", (page) => page.selectOption("#device", "1")],
   ["desktop_help", kDesktop, "light", (page) => page.click("#help")],
 ];
 
 await mkdir(folder, { recursive: true });
 const server = await serve();
 const still = await serve({ still: true });
+const silent = await serve({ silent: "no client is heard on '/run/user/1000/palpate-device'; start one" });
 const browser = await openBrowser();
 for (const [name, options, scheme, act] of kPictures) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
-  const page = await openPage(browser, (name.startsWith("still") ? still : server).address, { ...options, colorScheme: scheme });
+  const of = name.startsWith("still") ? still : name.startsWith("silent") ? silent : server;
+  const page = await openPage(browser, of.address, { ...options, colorScheme: scheme });
   await page.waitForTimeout(6500);
   await act?.(page);
   await page.waitForTimeout(1800);
@@ -66,3 +71,4 @@ for (const [name, options, scheme, act] of kPictures) {
 await browser.close();
 await server.close();
 await still.close();
+await silent.close();

@@ -8,6 +8,7 @@ import { patchAround } from "./surface.mjs";
 const kStateHz = 60;
 const kCloudHz = 10;
 const kClouds = 4; // frames that are played in turn
+const kOther = [0.1, 0.1, 0.08]; // where the second hand stands, m
 
 const settings = () => [
   { key: "stiffness", label: "Stiffness", unit: "N/m", kind: "number", least: 10, most: 2000, step: 10, value: 500 },
@@ -28,9 +29,11 @@ export class FakeProgram {
   near = false;
   holder; // the client whose hand moves the tool
 
-  constructor({ points = 30000, token, still = false }) {
+  constructor({ points = 30000, token, still = false, silent }) {
     this.token = token;
     this.still = still;
+    this.silent = silent; // why a second hand, which no page can take, is; undefined later: it is heard
+    this.hands = silent === undefined ? 1 : 2;
     const random = randomFrom(7);
     this.servo = new Servo(random);
     this.frames = kCameras.map((camera) =>
@@ -41,6 +44,7 @@ export class FakeProgram {
       setInterval(() => this.tellState(), 1000 / kStateHz),
       setInterval(() => this.tellClouds(), 1000 / kCloudHz),
       setInterval(() => this.tellSources(), 500),
+      setInterval(() => this.tellDevices(), 500),
     ];
     this.last = performance.now();
   }
@@ -64,7 +68,9 @@ export class FakeProgram {
     const now = performance.now();
     this.servo.advance(Math.min(0.1, (now - this.last) / 1000));
     this.last = now;
-    this.broadcast(encodeState(this.servo.report()));
+    const state = this.servo.report();
+    this.broadcast(encodeState(state));
+    if (this.hands > 1) this.broadcast(encodeState({ ...state, device: 1, flags: 0, hip: kOther, proxy: kOther, force: [0, 0, 0], samples: [] }));
   }
 
   tellClouds() {
@@ -91,6 +97,12 @@ export class FakeProgram {
     return bytes;
   }
 
+  tellDevices() {
+    const devices = [{ status: "ok" }];
+    if (this.hands > 1) devices.push(this.silent === undefined ? { status: "ok" } : { status: "silent", reason: this.silent });
+    this.tell({ type: "devices", devices });
+  }
+
   tellSources() {
     if (this.still) {
       const sources = kCameras.map(({ name }, i) => ({ name, phase: "still", points: this.frames[i][0].length, rate: 0, dropped: 0 }));
@@ -111,7 +123,7 @@ export class FakeProgram {
   welcome() {
     return {
       type: "welcome", version: 1, scene: "table with a ball", origin: [0, 0, 0], up: [0, 0, 1], radius: 0.35,
-      devices: [{ name: "simulated", takeable: true }], sources: kCameras.map(({ name }) => ({ name, camera: !this.still })),
+      devices: [{ name: "simulated", takeable: true }, ...(this.hands > 1 ? [{ name: "remote", takeable: false }] : [])], sources: kCameras.map(({ name }) => ({ name, camera: !this.still })),
       settings: this.settings, presets: Object.keys(kPresets),
     };
   }
