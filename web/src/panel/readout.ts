@@ -15,16 +15,18 @@ const kFlagWords: Partial<Record<Name, [level: string, words: string]>> = {
   clamped: ["warning", "force at its bound"],
   slewed: ["warning", "force change slowed"],
   braked: ["warning", "brake: energy taken back"],
-  starting: ["info", "soft start: lift and touch again"],
   softened: ["info", "as stiff as the device bears"],
   thinned: ["warning", "surface thinned: too many points near"],
 };
+const kLift = "lift the tool to feel full force again";
 const kLinger = 700; // ms that a flag stays readable
 const kStale = 1000; // ms without a state
 
 export class Readout {
   private readonly force = byId("force");
   private readonly touch = byId("touch");
+  private readonly lift = byId("lift");
+  private weakUntil = 0; // in contact the force comes back no further than motion pays for it
   private readonly parts = [0, 1, 2].map(() => make("dd"));
   private readonly flags = new Map<Name, { element: HTMLElement; until: number }>();
 
@@ -43,11 +45,13 @@ export class Readout {
   /** For every state, so that short flags are seen too. */
   note(tool: DeviceHistory, now: number): void {
     for (const [name, flag] of this.flags) if (tool.has(name)) flag.until = now + kLinger;
+    if (tool.has("touching") && (tool.has("starting") || tool.has("softer"))) this.weakUntil = now + kLinger;
   }
 
   update(tool: DeviceHistory | undefined, now: number): void {
     const state = tool?.latest;
     for (const { element, until } of this.flags.values()) element.hidden = until < now;
+    say(this.lift, now < this.weakUntil ? kLift : "");
     if (tool === undefined || state === undefined) {
       say(this.touch, "no tool yet");
       return;

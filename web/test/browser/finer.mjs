@@ -172,3 +172,14 @@ test("two hands are told apart, and why one is silent is said", async () => {
   await page.context().close();
   await server.close();
 });
+
+test("after the watchdog it is said beside the force that the tool has to be lifted", () =>
+  withPage(kSmall, async (page, program) => {
+    program.servo.exploring = () => [0.05, 0.1, -0.004];
+    await until("in contact", () => program.servo.contact !== undefined);
+    assert.equal(await text(page, "#lift"), "");
+    program.servo.starting = true;
+    await until("said", async () => (await text(page, "#lift")) === "lift the tool to feel full force again");
+    program.servo.exploring = () => [0.05, 0.1, 0.05];
+    await until("gone", async () => (await text(page, "#lift")) === "");
+  }));

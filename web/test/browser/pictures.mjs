@@ -49,8 +49,16 @@ const kPictures = [
   ["silent_light", kDesktop, "light"],
   ["silent_dark", kDesktop, "dark", (page) => page.selectOption("#device", "1")],
   ["silent_phone", kPhone, "light", (page) => page.selectOption("#device", "1")],
+  ["desktop_lift", kDesktop, "light", () => trip()],
+  ["phone_lift", kPhone, "dark", () => trip()],
   ["desktop_help", kDesktop, "light", (page) => page.click("#help")],
 ];
+
+/** The watchdog, in contact; the tool stays down. */
+function trip() {
+  server.program.servo.exploring = () => [0.05, 0.1, -0.004];
+  setTimeout(() => (server.program.servo.starting = true), 1000);
+}
 
 await mkdir(folder, { recursive: true });
 const server = await serve();

@@ -18,6 +18,7 @@ export class Servo {
   stiffness = 500;
   felt = 500; // grows to that out of contact alone
   bound = 6;
+  starting = false; // after the watchdog, until the tool is lifted
   contact;
   force = [0, 0, 0];
   samples = [];
@@ -39,7 +40,7 @@ export class Servo {
       device: 0,
       flags: (this.contact ? 1 : 0) | (this.paused ? 2 : 0) | (this.taken ? 4 : 0) |
         (this.clamped ? 8 : 0) | (this.fault ? 64 : 0) |
-        (this.contact && this.felt < 0.95 * this.stiffness ? 256 : 0),
+        (this.contact && this.felt < 0.95 * this.stiffness ? 256 : 0) | (this.contact && this.starting ? 1024 : 0),
       time: this.time,
       hip: this.hip,
       proxy: this.contact?.proxy ?? this.hip,
@@ -63,7 +64,8 @@ export class Servo {
     this.hip = this.hip.map((c, i) => c + part * (goal[i] - c));
     this.contact = stopAt(this.hip);
     if (!this.contact || this.felt > this.stiffness) this.felt = this.stiffness;
-    this.force = this.paused || this.fault || !this.contact ? [0, 0, 0] : this.spring();
+    if (!this.contact) this.starting = false;
+    this.force = this.paused || this.fault || this.starting || !this.contact ? [0, 0, 0] : this.spring();
     this.samples.push(this.force);
   }
 
