@@ -126,41 +126,34 @@ bool may_sharpen(const FieldOptions& options, const simd::Columns& columns) noex
          options.gradient == GradientKind::exact;
 }
 
-/// The normals' surface at x, signed by the normals, with its exact gradient.
-Value height_at(const ImplicitSurface& surface, const simd::Columns& columns, const double x[3],
-                const simd::Sums& sums, const Value& radius, double sign) noexcept {
-  const FieldOptions& options = surface.options;
-  if (may_sharpen(options, columns)) {
-    return sharp_balanced(
-        {surface.sums, &columns, options.kernel == Kernel::wendland, x, &sums, sign, radius});
-  }
-  const Oriented oriented = options.kind == FieldKind::balanced ? balanced(sums) : pointset(sums);
+/// The normals' surface there, signed by the normals, with its exact gradient.
+Value height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
+  if (may_sharpen(options, *place.columns)) return sharp_balanced(place);
+  const Oriented oriented =
+      options.kind == FieldKind::balanced ? balanced(*place.sums) : pointset(*place.sums);
   if (options.gradient == GradientKind::normal) return {oriented.f, oriented.base};
   double sum[3];
-  surface.sums->gradient(columns, x, oriented.b, sum);
+  place.functions->gradient(*place.columns, place.x, oriented.b, sum);
   return {oriented.f, oriented.base + vector(sum)};
 }
 
 /// The same, where several sources may tell of one surface at different heights.
-Value united_height_at(const ImplicitSurface& surface, const simd::Columns& columns,
-                       const double x[3], const simd::Sums& sums, const Value& radius,
-                       double sign) noexcept {
-  const FieldOptions& options = surface.options;
-  const Value height = height_at(surface, columns, x, sums, radius, sign);
-  if (columns.sources == 1 || options.gradient != GradientKind::exact) return height;
-  const Value shift = united_shift({surface.sums, &columns, options.kernel, x, &sums, radius});
+Value united_height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
+  const Value height = height_at(options, place);
+  if (place.columns->sources == 1 || options.gradient != GradientKind::exact) return height;
+  const Value shift = united_shift(place);
   return {height.f + shift.f, height.grad + shift.grad};
 }
 
 /// Cap, tool and blend around the normals' surface (algorithm.md 1.4, 1.5).
-Value capped(const ImplicitSurface& surface, const simd::Sums& sums, const Support& support,
-             const Value& height, double sign) noexcept {
+Value capped(const ImplicitSurface& surface, const FieldPlace& place, const Support& support,
+             const Value& height) noexcept {
   const FieldOptions& options = surface.options;
-  const Value outer{sign * height.f - options.tool_radius, sign * height.grad};
+  const Value outer{place.sign * height.f - options.tool_radius, place.sign * height.grad};
   if (!options.capped) return outer;
   const Value floor{options.minimum_support, Vector3d::Zero()};
   const Value cap = smooth_max(outer, as_length(options, support, floor), support.radius);
-  const Value trust = trust_of(sums, support);
+  const Value trust = trust_of(*place.sums, support);
   if (trust.f >= 1) return cap;
   const Value blob = as_length(options, support, level_of(surface, support));
   return {trust.f * cap.f + (1 - trust.f) * blob.f,
@@ -203,11 +196,16 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   sample.radius = support.radius.f;
   Value value;
   if (has_normals(options, sums, support.plain)) {
-    const double sign = options.two_sided && side < 0 ? -1 : 1;
-    const Value height =
-        united_height_at(surface, patch.columns(), local.data(), sums, support.radius, sign);
+    const FieldPlace place{.functions = surface.sums,
+                           .columns = &patch.columns(),
+                           .kernel = options.kernel,
+                           .x = local.data(),
+                           .sums = &sums,
+                           .sign = options.two_sided && side < 0 ? -1. : 1.,
+                           .radius = support.radius};
+    const Value height = united_height_at(options, place);
     sample.height = height.f;
-    value = capped(surface, sums, support, height, sign);
+    value = capped(surface, place, support, height);
   } else {
     value = as_length(options, support, level_of(surface, support));
     if (options.gradient == GradientKind::printed) {

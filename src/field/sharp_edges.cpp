@@ -13,7 +13,7 @@ constexpr double kFrom = 0.002;
 constexpr double kFull = 0.05;
 
 /// sum v s / sum v.
-Value share_of(const SharpPlace& place, std::uint32_t places) noexcept {
+Value share_of(const FieldPlace& place, std::uint32_t places) noexcept {
   const double uniform = place.columns->uniform_sharp;
   if (uniform >= 0) return {uniform, Vector3d::Zero()};
   simd::Share share;
@@ -32,7 +32,7 @@ simd::Linear through_normal(const Vector3d& pull, const Vector3d& n, double v) n
 
 /// RIMLS: two rounds of weighing the points by how near their normals are to the mean normal. The
 /// gradient is followed back through both.
-Oriented robust(const SharpPlace& place, std::uint32_t places) noexcept {
+Oriented robust(const FieldPlace& place, std::uint32_t places) noexcept {
   const simd::Functions& f = *place.functions;
   const simd::Columns& c = *place.columns;
   const Vector3d n0 = vector(place.sums->vn) / place.sums->v;
@@ -65,7 +65,7 @@ void add(Oriented& to, double factor, const Oriented& from) noexcept {
   to.b.delta += factor * from.b.delta;
 }
 
-Value finish(const SharpPlace& place, const Oriented& oriented) noexcept {
+Value finish(const FieldPlace& place, const Oriented& oriented) noexcept {
   double sum[3];
   place.functions->gradient(*place.columns, place.x, oriented.b, sum);
   return {oriented.f, oriented.base + vector(sum)};
@@ -73,14 +73,15 @@ Value finish(const SharpPlace& place, const Oriented& oriented) noexcept {
 
 }  // namespace
 
-Value sharp_balanced(const SharpPlace& place) noexcept {
+Value sharp_balanced(const FieldPlace& place) noexcept {
   const Oriented mean = balanced(*place.sums);
   const Oriented bulge = convexity(*place.sums);
   const double inverse = place.sign / place.radius.f;
   const double a = bulge.f * inverse;
   if (a <= kFrom) return finish(place, mean);
 
-  const std::uint32_t places = place.functions->near(*place.columns, place.wendland, place.x);
+  const std::uint32_t places =
+      place.functions->near(*place.columns, place.kernel == Kernel::wendland, place.x);
   const Value sigma = share_of(place, places);
   const SmoothStep open = smooth_step(a, kFrom, kFull - kFrom);
   const Oriented sharp = robust(place, places);

@@ -1,20 +1,8 @@
 #pragma once
 
-#include "field/oriented.hpp"
-#include "field/patch.hpp"
+#include "field/field_place.hpp"
 
 namespace palpate {
-
-/// Where a field is evaluated and what is known there already.
-struct SharpPlace {
-  const simd::Functions* functions = nullptr;
-  const simd::Columns* columns = nullptr;
-  bool wendland = false;
-  const double* x = nullptr;         ///< relative to the patch, 3 entries, m
-  const simd::Sums* sums = nullptr;  ///< of `all` there
-  double sign = 1;                   ///< -1: seen from the side that normals point away from
-  Value radius;                      ///< R(x), m
-};
 
 /// The balanced surface's function with its gradient, and with sharp edges where the surface is
 /// convex as seen from the given side (nss_fast.md section 1):
@@ -29,6 +17,6 @@ struct SharpPlace {
 ///
 /// Where u = 0, as on planes and in creases, it is MEAN and costs as much: in a crease RIMLS would
 /// open gaps between the faces.
-[[nodiscard]] Value sharp_balanced(const SharpPlace& place) noexcept;
+[[nodiscard]] Value sharp_balanced(const FieldPlace& place) noexcept;
 
 }  // namespace palpate

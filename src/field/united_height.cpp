@@ -33,7 +33,7 @@ struct Own {
 
 using Owns = std::array<Own, simd::kMaxSources>;
 
-Own own(const UnitedPlace& place, int source) noexcept {
+Own own(const FieldPlace& place, int source) noexcept {
   const simd::SourceMoments& of = place.sums->of[source];
   Own o;
   o.source = source;
@@ -59,7 +59,7 @@ Own own(const UnitedPlace& place, int source) noexcept {
 }
 
 /// Those that are there, with their shares; their number, 0 when one has no normal here.
-int list(const UnitedPlace& place, Owns& owns) noexcept {
+int list(const FieldPlace& place, Owns& owns) noexcept {
   int count = 0;
   double covers = 0;
   for (int s = 0; s < place.columns->sources; ++s) {
@@ -75,7 +75,7 @@ int list(const UnitedPlace& place, Owns& owns) noexcept {
 
 }  // namespace
 
-Value united_shift(const UnitedPlace& place) noexcept {
+Value united_shift(const FieldPlace& place) noexcept {
   Owns all;
   const int count = place.columns->sources > 1 ? list(place, all) : 0;
   if (count < 2) return {};

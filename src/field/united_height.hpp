@@ -1,19 +1,8 @@
 #pragma once
 
-#include "field/oriented.hpp"
-#include "palpate/field/kernel.hpp"
+#include "field/field_place.hpp"
 
 namespace palpate {
-
-/// Where a field is evaluated and what is known there already.
-struct UnitedPlace {
-  const simd::Functions* functions = nullptr;
-  const simd::Columns* columns = nullptr;
-  Kernel kernel = Kernel::wyvill;
-  const double* x = nullptr;         ///< relative to the patch, 3 entries, m
-  const simd::Sums* sums = nullptr;  ///< of `all` there
-  Value radius;                      ///< R(x), m
-};
 
 /// By what the height over all points moves where sources tell of one surface at different heights,
 /// m, with its gradient; 0 for a single source, and nothing where they agree.
@@ -31,6 +20,6 @@ struct UnitedPlace {
 /// as its rays graze, so that a source has faded before its surface ends at a silhouette. tau,
 /// taken from |sum lambda_s n_s|, is 1 where normals of two sources differ by less than 11 degrees
 /// and 0 from 23 on: the faces of an edge or of a thin plate do not disagree.
-[[nodiscard]] Value united_shift(const UnitedPlace& place) noexcept;
+[[nodiscard]] Value united_shift(const FieldPlace& place) noexcept;
 
 }  // namespace palpate
