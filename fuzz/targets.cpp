@@ -118,11 +118,12 @@ void check_remote_state(std::span<const std::byte> bytes) {
 void check_haply_frame(std::string_view text) {
   for (const device::HaplyDevice& each : device::parse_haply_frame(text)) {
     if (!each.reading) continue;
-    const auto& [position, velocity, buttons] = *each.reading;
-    expect(position.allFinite() && velocity.allFinite(), "a number that is none");
-    expect(position.cwiseAbs().maxCoeff() <= device::kFarthestHaply, "a place");
-    expect(velocity.cwiseAbs().maxCoeff() <= device::kFastestHaply, "a velocity");
-    expect(buttons < 8, "a button");
+    const LinkReading& told = *each.reading;
+    expect(told.position.allFinite() && told.velocity.allFinite(), "a number that is none");
+    expect(told.position.cwiseAbs().maxCoeff() <= device::kFarthestHaply, "a place");
+    expect(told.velocity.cwiseAbs().maxCoeff() <= device::kFastestHaply, "a velocity");
+    expect(std::abs(told.orientation.norm() - 1) < 1e-9, "a rotation");
+    expect(told.buttons < 8, "a button");
   }
 }
 

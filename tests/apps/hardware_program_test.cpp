@@ -34,6 +34,16 @@ TEST(HardwareProgram, RunsInTheMakersScheduler) {
   EXPECT_TRUE(contains(shell.read("report.json"), "openhaptics:Default Device (Touch)"));
 }
 
+TEST(HardwareProgram, DevicesOfTwoMakersHoldOneScene) {
+  Shell shell;
+  const Outcome outcome = shell.run("touch synthetic:torus --duration 0.5 --json report.json " +
+                                    kDevice + " --device openhaptics,library=" PALPATE_FAKE_HD);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string report = shell.read("report.json");
+  EXPECT_TRUE(contains(report, "forcedimension:0 (omega.3)")) << report;
+  EXPECT_TRUE(contains(report, "openhaptics:Default Device (Touch)")) << report;
+}
+
 TEST(HardwareProgram, SaysWhyItIsNotThere) {
   Shell shell;
   const auto refused = [&](const std::string& device, int code, const std::string& word) {
