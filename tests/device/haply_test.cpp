@@ -6,6 +6,7 @@
 
 #include "device/drivers.hpp"
 #include "device/fake_haply_service.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/device_profile.hpp"
 
@@ -19,6 +20,7 @@ using testing::HasSubstr;
 using Fault = FakeHaplyService::Fault;
 
 const Vector3d kForce(1, 2, -3);
+const SteadyClock kClock;
 
 class Haply : public testing::Test {
  protected:
@@ -26,11 +28,11 @@ class Haply : public testing::Test {
     return "haply:" + id + ",url=" + service_.url();
   }
   [[nodiscard]] std::unique_ptr<DeviceLink> open() const {
-    return device::open_haply(device::parse_device_name(name()));
+    return device::open_haply(device::parse_device_name(name()), kClock);
   }
   [[nodiscard]] static std::string refusal(const std::string& name) {
     try {
-      (void)device::open_haply(device::parse_device_name(name));
+      (void)device::open_haply(device::parse_device_name(name), kClock);
     } catch (const Error& error) {
       return error.what();
     }
