@@ -13,7 +13,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMillimetre = 1e-3;  // m
-constexpr int kMostErrors = 8;        // that a frame may leave behind
 
 // The maker's x is to the right, y up, z towards the operator.
 Vector3d from_hd(const Vector3d& v) {
@@ -101,7 +100,7 @@ void OpenHapticsFrames::learn() noexcept {
   facts_.temperature = std::ranges::max(temperatures);
   facts_.continuous_force = known_or_zero(facts_.continuous_force);
   facts_.maximum_stiffness = known_or_zero(facts_.maximum_stiffness / kMillimetre);
-  forget_failures();  // older libraries do not know all of this
+  (void)library_.take_errors();  // older libraries do not know all of this
 }
 
 LinkReading OpenHapticsFrames::read() const noexcept {
@@ -124,17 +123,8 @@ Vector3d OpenHapticsFrames::permitted(const LinkReading& reading) const noexcept
 }
 
 void OpenHapticsFrames::keep_failure() noexcept {
-  for (int i = 0; i < kMostErrors; ++i) {
-    const unsigned code = library_.get_error().code;
-    if (code == hd::kSuccess) return;
-    if (newest_.failure == hd::kSuccess) newest_.failure = code;
-  }
-}
-
-void OpenHapticsFrames::forget_failures() noexcept {
-  const unsigned kept = newest_.failure;
-  keep_failure();
-  newest_.failure = kept;
+  const unsigned code = library_.take_errors();
+  if (newest_.failure == hd::kSuccess) newest_.failure = code;
 }
 
 void OpenHapticsFrames::tell(const LinkReading& reading) noexcept {
@@ -153,7 +143,7 @@ unsigned OpenHapticsFrames::leave() noexcept {
   library_.set_numbers(hd::kCurrentForce, zero.data());
   library_.end_frame(device_);
   library_.disable(hd::kForceOutput);
-  forget_failures();  // lest whoever opens the next device takes them for its own
+  (void)library_.take_errors();  // lest whoever opens the next device takes them for its own
   left_ = true;
   wakeup_.post();
   return hd::kDone;

@@ -67,7 +67,6 @@ class OpenHapticsFrames {
   [[nodiscard]] LinkReading read() const noexcept;
   [[nodiscard]] Eigen::Vector3d permitted(const LinkReading& reading) const noexcept;
   void keep_failure() noexcept;
-  void forget_failures() noexcept;
   void tell(const LinkReading& reading) noexcept;
   unsigned leave() noexcept;
 

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "device/openhaptics_codes.hpp"
+
 namespace palpate::device {
 namespace {
+
+constexpr int kMostErrors = 16;  // that a library may keep
 
 constexpr const char* kBroughtBy =
     "OpenHaptics 3 for Linux and the Touch Device Driver bring it (3D Systems): run the installers "
@@ -36,6 +40,13 @@ OpenHapticsLibrary::OpenHapticsLibrary(const std::string& file)
   library.find("hdStartScheduler", start_scheduler);
   library.find("hdStopScheduler", stop_scheduler);
   library.find("hdScheduleAsynchronous", schedule);
+}
+
+unsigned OpenHapticsLibrary::take_errors() const noexcept {
+  const unsigned newest = get_error().code;
+  unsigned next = newest;
+  for (int i = 0; i < kMostErrors && next != hd::kSuccess; ++i) next = get_error().code;
+  return newest;
 }
 
 std::string OpenHapticsLibrary::words(unsigned code) const {

@@ -28,6 +28,9 @@ struct OpenHapticsLibrary {
   /// @throws Error that says what is missing.
   explicit OpenHapticsLibrary(const std::string& file = "");
 
+  /// The code of the newest error, or hd::kSuccess; forgets all that it keeps. Bounded work.
+  [[nodiscard]] unsigned take_errors() const noexcept;
+
   /// What it calls an error, and the code.
   [[nodiscard]] std::string words(unsigned code) const;
 

@@ -129,10 +129,9 @@ void OpenHapticsLink::prepare() {
     fail(fmt::format("its motors are warm ({:.2f} of 1). Let them cool down to {}",
                      facts.temperature, kCool));
   }
-  const int by_itself = facts.calibration_styles & (hd::kAutomatic | hd::kInkwell);
-  if (now.calibration == hd::kNeedsUpdate && by_itself != 0) frames_->calibrate();
-  for (int i = 0; i < kCalibrationFrames && now.calibration != hd::kCalibrated; ++i) {
-    if (by_itself == 0) break;
+  const bool by_itself = (facts.calibration_styles & (hd::kAutomatic | hd::kInkwell)) != 0;
+  if (by_itself && now.calibration == hd::kNeedsUpdate) frames_->calibrate();
+  for (int i = 0; i < kCalibrationFrames && by_itself && now.calibration != hd::kCalibrated; ++i) {
     ask(Vector3d::Zero());
     now = checked_answer();
   }

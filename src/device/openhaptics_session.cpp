@@ -35,7 +35,7 @@ OpenHapticsSession::OpenHapticsSession(const OpenHapticsLibrary& library,
     : library_(library), name_("openhaptics:" + configuration) {
   const std::lock_guard lock(shared_scheduler().mutex);
   device_ = library_.init_device(configuration.c_str());
-  const unsigned code = library_.get_error().code;
+  const unsigned code = library_.take_errors();
   if (device_ != hd::kNoDevice && code == hd::kSuccess) return;
   if (device_ != hd::kNoDevice) library_.disable_device(device_);
   throw Error(fmt::format("{}: cannot be opened ({}). {}", name_, library_.words(code),
@@ -62,7 +62,7 @@ void OpenHapticsSession::start() {
 }
 
 void OpenHapticsSession::check(const std::string& what) const {
-  const unsigned code = library_.get_error().code;
+  const unsigned code = library_.take_errors();
   if (code == hd::kSuccess) return;
   throw Error(fmt::format("{}: {} ({}). Start again", name_, what, library_.words(code)));
 }
