@@ -18,7 +18,7 @@ constexpr const char* kCamerasFooter = R"(Examples:
 
 Exit codes: 0 done, 1 the list could not be written, 2 the command line is wrong.)";
 
-std::string state_of(const CameraDriver& driver) {
+std::string state_of(const DriverInfo& driver) {
   return driver.name == "sequence" ? "available" : found_by(driver, "camera");
 }
 
@@ -30,7 +30,7 @@ void add_cameras_options(CLI::App& command, CamerasOptions& options) {
 }
 
 void cameras(const CamerasOptions& options) {
-  const std::vector<CameraDriver> drivers = [] {
+  const std::vector<DriverInfo> drivers = [] {
     const Waiting waiting("looking for cameras");
     return list_cameras();
   }();

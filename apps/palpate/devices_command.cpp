@@ -19,7 +19,7 @@ constexpr const char* kDevicesFooter = R"(Examples:
 Exit codes: 0 done, 1 the list could not be written, 2 the command line is wrong.)";
 
 // Those that need no hardware.
-std::vector<HapticDriver> built_in() {
+std::vector<DriverInfo> built_in() {
   return {{.name = "scripted",
            .description = "a hand that goes where it is told, whatever the force",
            .missing = {},
@@ -42,15 +42,15 @@ void add_devices_options(CLI::App& command, DevicesOptions& options) {
 }
 
 void devices(const DevicesOptions& options) {
-  std::vector<HapticDriver> drivers = built_in();
-  const std::vector<HapticDriver> hardware = [] {
+  std::vector<DriverInfo> drivers = built_in();
+  const std::vector<DriverInfo> hardware = [] {
     const Waiting waiting("looking for haptic devices");
     return list_devices();
   }();
   std::FILE* const stream = options.json == "-" ? stderr : stdout;
-  print_drivers(drivers, stream, [](const HapticDriver&) { return "available"; });
+  print_drivers(drivers, stream, [](const DriverInfo&) { return "available"; });
   print_drivers(hardware, stream,
-                [](const HapticDriver& driver) { return found_by(driver, "device"); });
+                [](const DriverInfo& driver) { return found_by(driver, "device"); });
   drivers.insert(drivers.end(), hardware.begin(), hardware.end());
   if (!options.json.empty()) write_drivers(drivers, options.json);
 }

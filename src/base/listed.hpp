@@ -1,13 +1,17 @@
 #pragma once
 
+#include <functional>
+#include <utility>
+
+#include "palpate/base/driver_info.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
 
-/// A driver (CameraDriver, HapticDriver) with what `list` adds to it. Where that throws, the driver
-/// is not available, and misses what the error says.
-template <class Driver, class List>
-[[nodiscard]] Driver listed(Driver driver, List list) {
+/// A driver with what `list` adds to it. Where that throws, the driver is not available, and misses
+/// what the error says.
+[[nodiscard]] inline DriverInfo listed(DriverInfo driver,
+                                       const std::function<void(DriverInfo&)>& list) {
   try {
     list(driver);
   } catch (const Error& error) {

@@ -11,16 +11,16 @@
 // takes one: DRIVER_link.cpp, or DRIVER_absent.cpp. A link may read the clock, which outlives it.
 namespace palpate::device {
 
-[[nodiscard]] HapticDriver forcedimension_driver();
+[[nodiscard]] DriverInfo forcedimension_driver();
 /// Device: a number, from 0; options: library=PATH, profile=NAME.
 [[nodiscard]] std::unique_ptr<DeviceLink> open_forcedimension(const DeviceName& name,
                                                               const Clock& clock);
 
-[[nodiscard]] HapticDriver haply_driver();
+[[nodiscard]] DriverInfo haply_driver();
 /// Device: its id; options: url=ws://HOST:PORT, profile=NAME.
 [[nodiscard]] std::unique_ptr<DeviceLink> open_haply(const DeviceName& name, const Clock& clock);
 
-[[nodiscard]] HapticDriver openhaptics_driver();
+[[nodiscard]] DriverInfo openhaptics_driver();
 /// Device: its name in the maker's set-up; options: library=PATH, profile=NAME.
 [[nodiscard]] std::unique_ptr<DeviceLink> open_openhaptics(const DeviceName& name,
                                                            const Clock& clock);

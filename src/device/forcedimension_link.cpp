@@ -180,12 +180,12 @@ Vector3d ForceDimensionLink::velocity() {
   return from_maker(told);
 }
 
-HapticDriver forcedimension_driver() {
-  HapticDriver driver{.name = "forcedimension",
-                      .description = "Force Dimension omega, delta, sigma, lambda; Novint Falcon",
-                      .missing = {},
-                      .devices = {}};
-  return listed(driver, [](HapticDriver& found) {
+DriverInfo forcedimension_driver() {
+  DriverInfo driver{.name = "forcedimension",
+                    .description = "Force Dimension omega, delta, sigma, lambda; Novint Falcon",
+                    .missing = {},
+                    .devices = {}};
+  return listed(driver, [](DriverInfo& found) {
     const ForceDimensionLibrary library;
     for (int i = 0; i < library.count(); ++i) {
       found.devices.push_back(

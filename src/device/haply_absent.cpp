@@ -10,7 +10,7 @@ constexpr const char* kMissing =
 
 }  // namespace
 
-HapticDriver haply_driver() {
+DriverInfo haply_driver() {
   return {.name = "haply",
           .description = "Haply Inverse3",
           .available = false,

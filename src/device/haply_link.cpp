@@ -142,12 +142,12 @@ class HaplyLink final : public DeviceLink {
 
 }  // namespace
 
-HapticDriver haply_driver() {
-  HapticDriver driver{.name = "haply",
-                      .description = "Haply Inverse3, through Haply's Inverse Service",
-                      .missing = {},
-                      .devices = {}};
-  return listed(driver, [](HapticDriver& found) {
+DriverInfo haply_driver() {
+  DriverInfo driver{.name = "haply",
+                    .description = "Haply Inverse3, through Haply's Inverse Service",
+                    .missing = {},
+                    .devices = {}};
+  return listed(driver, [](DriverInfo& found) {
     TextSocket socket = connect(kService);
     for (const HaplyDevice& each : greet(socket)) {
       const bool ready = each.calibrated.value_or(true) && each.powered.value_or(true);

@@ -16,7 +16,7 @@ using namespace device;
 struct Driver {
   std::string_view name;
   std::unique_ptr<DeviceLink> (*open)(const DeviceName& name, const Clock& clock);
-  HapticDriver (*list)();
+  DriverInfo (*list)();
 };
 
 constexpr std::array<Driver, 3> kDrivers = {
@@ -50,8 +50,8 @@ bool names_hardware(const std::string& name) {
   return std::ranges::find(kDrivers, driver, &Driver::name) != kDrivers.end();
 }
 
-std::vector<HapticDriver> list_devices() {
-  std::vector<HapticDriver> drivers;
+std::vector<DriverInfo> list_devices() {
+  std::vector<DriverInfo> drivers;
   for (const Driver& driver : kDrivers) drivers.push_back(driver.list());
   return drivers;
 }

@@ -21,14 +21,14 @@ fs::path touch_configurations() {
 
 }  // namespace
 
-HapticDriver openhaptics_driver() {
-  HapticDriver driver{.name = "openhaptics",
-                      .description =
-                          "3D Systems Touch, Touch X; SensAble Phantom Omni, Desktop, "
-                          "Premium",
-                      .missing = {},
-                      .devices = {}};
-  return listed(driver, [](HapticDriver& found) {
+DriverInfo openhaptics_driver() {
+  DriverInfo driver{.name = "openhaptics",
+                    .description =
+                        "3D Systems Touch, Touch X; SensAble Phantom Omni, Desktop, "
+                        "Premium",
+                    .missing = {},
+                    .devices = {}};
+  return listed(driver, [](DriverInfo& found) {
     const OpenHapticsLibrary library;
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(touch_configurations(), none)) {
@@ -36,7 +36,7 @@ HapticDriver openhaptics_driver() {
       found.devices.push_back({"openhaptics:" + entry.path().stem().string(),
                                "as set up in " + touch_configurations().string()});
     }
-    std::ranges::sort(found.devices, {}, &HapticDevice::name);
+    std::ranges::sort(found.devices, {}, &FoundDevice::name);
   });
 }
 

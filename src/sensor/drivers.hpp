@@ -9,12 +9,12 @@
 // its library is there, DRIVER_absent.cpp where it is not.
 namespace palpate::sensor {
 
-[[nodiscard]] CameraDriver openni2_driver();
+[[nodiscard]] DriverInfo openni2_driver();
 /// `device`: empty, a URI, or the path of an .oni file.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_openni2(const std::string& device,
                                                         const CameraOptions& options);
 
-[[nodiscard]] CameraDriver freenect_driver();
+[[nodiscard]] DriverInfo freenect_driver();
 /// `device`: empty or a number.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_freenect(const std::string& device,
                                                          const CameraOptions& options);

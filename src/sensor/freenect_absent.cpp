@@ -10,7 +10,7 @@ constexpr const char* kMissing =
 
 }  // namespace
 
-CameraDriver freenect_driver() {
+DriverInfo freenect_driver() {
   return {.name = "freenect",
           .description = "Kinect v1",
           .available = false,

@@ -159,8 +159,8 @@ class FreenectConnection final : public Connection {
 
 }  // namespace
 
-CameraDriver freenect_driver() {
-  CameraDriver driver{.name = "freenect", .description = "Kinect v1", .missing = {}, .devices = {}};
+DriverInfo freenect_driver() {
+  DriverInfo driver{.name = "freenect", .description = "Kinect v1", .missing = {}, .devices = {}};
   const Context context = make_context();
   driver.available = context != nullptr;
   if (!context) {

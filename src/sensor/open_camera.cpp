@@ -14,18 +14,18 @@ namespace {
 
 using namespace sensor;
 
-CameraDriver simulated_driver() {
-  CameraDriver driver{.name = "simulated",
-                      .description = "scenes made by formulas, seen with a sensor's noise",
-                      .missing = {},
-                      .devices = {}};
+DriverInfo simulated_driver() {
+  DriverInfo driver{.name = "simulated",
+                    .description = "scenes made by formulas, seen with a sensor's noise",
+                    .missing = {},
+                    .devices = {}};
   for (const SimulatedName& scene : simulated_names()) {
     driver.devices.push_back({"simulated:" + scene.name, scene.description});
   }
   return driver;
 }
 
-CameraDriver sequence_driver() {
+DriverInfo sequence_driver() {
   return {.name = "sequence",
           .description = "folders of depth images: sequence:DIR (docs/sequences.md)",
           .missing = {},
@@ -52,7 +52,7 @@ std::unique_ptr<DepthCamera> open_camera(const std::string& name, const CameraOp
                   name));
 }
 
-std::vector<CameraDriver> list_cameras() {
+std::vector<DriverInfo> list_cameras() {
   return {simulated_driver(), sequence_driver(), openni2_driver(), freenect_driver()};
 }
 

@@ -9,7 +9,7 @@ constexpr const char* kMissing =
 
 }  // namespace
 
-CameraDriver openni2_driver() {
+DriverInfo openni2_driver() {
   return {.name = "openni2",
           .description = "PrimeSense and Asus Xtion cameras, and .oni recordings",
           .available = false,

@@ -234,7 +234,7 @@ class OpenNi2Connection final : public Connection {
   std::string damaged_;  // what the last damaged frame was like
 };
 
-void list_devices(CameraDriver& driver) {
+void list_devices(DriverInfo& driver) {
   const OpenNi2Library library;
   OniDeviceInfo* devices = nullptr;
   int count = 0;
@@ -249,11 +249,11 @@ void list_devices(CameraDriver& driver) {
 
 }  // namespace
 
-CameraDriver openni2_driver() {
-  CameraDriver driver{.name = "openni2",
-                      .description = "PrimeSense and Asus Xtion cameras, and .oni recordings",
-                      .missing = {},
-                      .devices = {}};
+DriverInfo openni2_driver() {
+  DriverInfo driver{.name = "openni2",
+                    .description = "PrimeSense and Asus Xtion cameras, and .oni recordings",
+                    .missing = {},
+                    .devices = {}};
   return listed(driver, list_devices);
 }
 

@@ -52,9 +52,9 @@ TEST(OpenDevice, KnowsNamesOfHardware) {
 }
 
 TEST(ListDevices, TellsEveryDriverAndWhyItIsNotThere) {
-  const std::vector<HapticDriver> drivers = list_devices();
+  const std::vector<DriverInfo> drivers = list_devices();
   ASSERT_EQ(drivers.size(), 3u);
-  for (const HapticDriver& driver : drivers) {
+  for (const DriverInfo& driver : drivers) {
     EXPECT_TRUE(names_hardware(driver.name));
     EXPECT_FALSE(driver.description.empty());
     EXPECT_EQ(driver.available, driver.missing.empty());

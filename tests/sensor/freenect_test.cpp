@@ -81,7 +81,7 @@ TEST(Freenect, RefusesNumbersThatAreNone) {
 }
 
 TEST(Freenect, ListsItsCamera) {
-  for (const CameraDriver& driver : list_cameras()) {
+  for (const DriverInfo& driver : list_cameras()) {
     if (driver.name != "freenect") continue;
     EXPECT_TRUE(driver.available) << driver.missing;
     ASSERT_EQ(driver.devices.size(), 1u);

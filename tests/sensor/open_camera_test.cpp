@@ -55,9 +55,9 @@ TEST(OpenCamera, SaysWhichCamerasThereAre) {
 }
 
 TEST(OpenCamera, ListsEveryDriverAndWhatIsMissing) {
-  const std::vector<CameraDriver> drivers = list_cameras();
+  const std::vector<DriverInfo> drivers = list_cameras();
   ASSERT_EQ(drivers.size(), 4u);
-  for (const CameraDriver& driver : drivers) {
+  for (const DriverInfo& driver : drivers) {
     EXPECT_FALSE(driver.description.empty()) << driver.name;
     EXPECT_EQ(driver.available, driver.missing.empty()) << driver.name;
     if (driver.available) continue;
@@ -70,7 +70,7 @@ TEST(OpenCamera, ListsEveryDriverAndWhatIsMissing) {
     }
   }
   EXPECT_EQ(drivers[0].name, "simulated");
-  for (const CameraDevice& device : drivers[0].devices) {
+  for (const FoundDevice& device : drivers[0].devices) {
     DepthFrame frame;
     EXPECT_EQ(open_camera(device.name)->read(frame, 0), CameraStatus::frame) << device.name;
   }

@@ -205,7 +205,7 @@ TEST(OpenNi2, TurnsMirroredRecordingsRound) {
 }
 
 TEST(OpenNi2, IsListed) {
-  for (const CameraDriver& driver : list_cameras()) {
+  for (const DriverInfo& driver : list_cameras()) {
     if (driver.name != "openni2") continue;
     EXPECT_TRUE(driver.available) << driver.missing;
     return;

@@ -27,7 +27,7 @@ const DriverPackages* packages_of(const std::string& driver) {
   return found == kPackages.end() ? nullptr : found;
 }
 
-std::string remedy_for(const System& system, const CameraDriver& driver) {
+std::string remedy_for(const System& system, const DriverInfo& driver) {
   const DriverPackages* packages = packages_of(driver.name);
   if (packages == nullptr) return "palpate cameras";
   if (driver.missing.find("this build") != std::string::npos) {
@@ -41,11 +41,11 @@ std::string remedy_for(const System& system, const CameraDriver& driver) {
 }
 
 // Those that simulate or play are always there.
-bool has_hardware(const CameraDriver& driver) {
+bool has_hardware(const DriverInfo& driver) {
   return packages_of(driver.name) != nullptr;
 }
 
-Finding checked(const System& system, const CameraDriver& driver, bool plugged) {
+Finding checked(const System& system, const DriverInfo& driver, bool plugged) {
   Finding finding{"cameras", "driver " + driver.name};
   if (!driver.available) {
     finding.severity = plugged ? Severity::problem : Severity::note;
@@ -66,7 +66,7 @@ Finding checked(const System& system, const CameraDriver& driver, bool plugged) 
 
 Findings check_camera_drivers(const System& system, const std::vector<Found>& found) {
   Findings findings;
-  for (const CameraDriver& driver : system.cameras()) {
+  for (const DriverInfo& driver : system.cameras()) {
     if (!has_hardware(driver)) continue;
     findings.push_back(checked(system, driver, reaches_any(driver.name, found)));
   }

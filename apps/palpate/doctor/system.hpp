@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/base/driver_info.hpp"
 #include "palpate/servo/histogram.hpp"
 #include "palpate/servo/realtime.hpp"
 
@@ -45,7 +45,7 @@ struct System {
   std::set<std::string> groups;                  ///< of this process
 
   std::function<RealtimeTrial(double seconds)> try_realtime;
-  std::function<std::vector<CameraDriver>()> cameras;
+  std::function<std::vector<DriverInfo>()> cameras;
   std::function<Node(const std::filesystem::path&)> node;  ///< given with the root
   std::function<LibraryTrial(const std::string& name)> try_library;
   std::function<bool(int port)> listens;  ///< does somebody on 127.0.0.1?

@@ -20,6 +20,7 @@
 #include "apps/palpate/child_program.hpp"
 #include "apps/palpate/doctor/library_trial.hpp"
 #include "palpate/base/waiting_clock.hpp"
+#include "palpate/sensor/open_camera.hpp"
 #include "palpate/servo/deadlines.hpp"
 
 namespace palpate::app::doctor {

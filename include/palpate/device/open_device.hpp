@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/base/driver_info.hpp"
 #include "palpate/base/waiting_clock.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/linked_device.hpp"
@@ -27,22 +28,7 @@ namespace palpate {
 /// Is it the name of a driver of hardware, with whatever device and options?
 [[nodiscard]] bool names_hardware(const std::string& name);
 
-/// A device that is there, though another program may use it.
-struct HapticDevice {
-  std::string name;         ///< what open_device() takes
-  std::string description;  ///< for people
-};
-
-/// A way to haptic devices.
-struct HapticDriver {
-  std::string name;         ///< what open_device() takes, without a device
-  std::string description;  ///< which devices these are
-  bool available = true;    ///< is it in this build, and does it work?
-  std::string missing;      ///< what is missing and what brings it, if it is not available
-  std::vector<HapticDevice> devices;
-};
-
 /// Every driver of hardware, with what it finds. Opens no device. May take a second.
-[[nodiscard]] std::vector<HapticDriver> list_devices();
+[[nodiscard]] std::vector<DriverInfo> list_devices();
 
 }  // namespace palpate

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "palpate/base/clock.hpp"
+#include "palpate/base/driver_info.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 
 namespace palpate {
@@ -25,22 +26,7 @@ struct CameraOptions {
 [[nodiscard]] std::unique_ptr<DepthCamera> open_camera(const std::string& name,
                                                        const CameraOptions& options = {});
 
-/// A camera that could be opened now.
-struct CameraDevice {
-  std::string name;         ///< what open_camera() takes
-  std::string description;  ///< for people
-};
-
-/// A way to cameras.
-struct CameraDriver {
-  std::string name;         ///< what open_camera() takes, without a device
-  std::string description;  ///< which cameras these are
-  bool available = true;    ///< is it in this build, and does it work?
-  std::string missing;      ///< what is missing and what brings it, if it is not available
-  std::vector<CameraDevice> devices;
-};
-
 /// Every driver, with what it finds. Set-up: one thread at a time; may take a second.
-[[nodiscard]] std::vector<CameraDriver> list_cameras();
+[[nodiscard]] std::vector<DriverInfo> list_cameras();
 
 }  // namespace palpate

@@ -124,7 +124,7 @@ TEST(DoctorDrivers, AreMissedWhereACameraNeedsThem) {
 
 TEST(DoctorDrivers, AreSaidToBeBlindWhereTheyFindNothingOfWhatIsThere) {
   MadeUp machine;
-  CameraDriver driver{.name = "openni2", .description = "", .missing = "", .devices = {}};
+  DriverInfo driver{.name = "openni2", .description = "", .missing = "", .devices = {}};
   machine.system.cameras = [&driver] { return std::vector{driver}; };
   const auto xtion = [&] {
     return about("driver openni2", check_camera_drivers(machine.system, found_on(machine)));

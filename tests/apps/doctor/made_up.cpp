@@ -25,7 +25,7 @@ RealtimeReport granted() {
       {{"real-time priority 80 (SCHED_FIFO)", true, ""}, {"memory locked (mlockall)", true, ""}}};
 }
 
-CameraDriver absent_driver(const std::string& name) {
+DriverInfo absent_driver(const std::string& name) {
   return {.name = name,
           .description = "",
           .available = false,
