@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field/acute_creases.hpp"
 #include "field/oriented.hpp"
 #include "field/sharp_edges.hpp"
 #include "field/smooth_step.hpp"
@@ -145,12 +146,14 @@ Value united_height_at(const FieldOptions& options, const FieldPlace& place) noe
   return {height.f + shift.f, height.grad + shift.grad};
 }
 
-/// Cap, tool and blend around the normals' surface (algorithm.md 1.4, 1.5).
+/// Closed creases, cap, tool and blend around the normals' surface (algorithm.md 1.4, 1.5).
 Value capped(const ImplicitSurface& surface, const FieldPlace& place, const Support& support,
              const Value& height) noexcept {
   const FieldOptions& options = surface.options;
-  const Value outer{place.sign * height.f - options.tool_radius, place.sign * height.grad};
+  Value outer{place.sign * height.f - options.tool_radius, place.sign * height.grad};
   if (!options.capped) return outer;
+  const Value closure = crease_closure(place);
+  outer = {outer.f - closure.f, outer.grad - closure.grad};
   const Value floor{options.minimum_support, Vector3d::Zero()};
   const Value cap = smooth_max(outer, as_length(options, support, floor), support.radius);
   const Value trust = trust_of(*place.sums, support);

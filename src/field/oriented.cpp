@@ -48,4 +48,25 @@ Oriented convexity(const simd::Moments& sums) noexcept {
   return result;
 }
 
+Oriented normal_square(const simd::Moments& sums) noexcept {
+  const double s = 1 / sums.v;
+  const Vector3d nb = s * vector(sums.vn);
+  Oriented result;
+  result.f = nb.squaredNorm();
+  assign(result.b.alpha, 2 * s * nb);
+  result.b.delta = -2 * s * result.f;
+  return result;
+}
+
+void add(Oriented& to, double factor, const Oriented& from) noexcept {
+  to.f += factor * from.f;
+  to.base += factor * from.base;
+  for (int axis = 0; axis < 3; ++axis) {
+    to.b.alpha[axis] += factor * from.b.alpha[axis];
+    to.b.beta[axis] += factor * from.b.beta[axis];
+  }
+  to.b.gamma += factor * from.b.gamma;
+  to.b.delta += factor * from.b.delta;
+}
+
 }  // namespace palpate

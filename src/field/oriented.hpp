@@ -40,4 +40,11 @@ struct Oriented {
 /// surface is convex as the normals see it, 0 on a plane, below 0 where it is concave.
 [[nodiscard]] Oriented convexity(const simd::Moments& sums) noexcept;
 
+/// |Nb|^2: 1 where all normals agree, (1 + cos) / 2 between two equal sheets whose normals stand at
+/// that angle, 0 where they oppose each other.
+[[nodiscard]] Oriented normal_square(const simd::Moments& sums) noexcept;
+
+/// to += factor * from.
+void add(Oriented& to, double factor, const Oriented& from) noexcept;
+
 }  // namespace palpate

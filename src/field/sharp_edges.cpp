@@ -53,18 +53,6 @@ Oriented robust(const FieldPlace& place, std::uint32_t places) noexcept {
   return result;
 }
 
-/// to += factor * from.
-void add(Oriented& to, double factor, const Oriented& from) noexcept {
-  to.f += factor * from.f;
-  to.base += factor * from.base;
-  for (int axis = 0; axis < 3; ++axis) {
-    to.b.alpha[axis] += factor * from.b.alpha[axis];
-    to.b.beta[axis] += factor * from.b.beta[axis];
-  }
-  to.b.gamma += factor * from.b.gamma;
-  to.b.delta += factor * from.b.delta;
-}
-
 Value finish(const FieldPlace& place, const Oriented& oriented) noexcept {
   double sum[3];
   place.functions->gradient(*place.columns, place.x, oriented.b, sum);

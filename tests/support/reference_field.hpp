@@ -50,7 +50,7 @@ class ReferenceField final : public Field {
       Dual height = sharpened(s, radius, sign);
       if (sources_ > 1) height = height + united_shift(s.own, radius, options_.kernel);
       result.height = height.v;
-      value = blend(s, capped(height, radius, support, sign), blob);
+      value = blend(s, capped(sign * height - closure(s, radius, sign), radius, support), blob);
     }
     result.value = value.v;
     result.gradient = value.g;
@@ -193,10 +193,8 @@ class ReferenceField final : public Field {
     const DualVector mean_normal = s.n / s.trusted;
     const Dual bulge = sign * ((s.nq / s.trusted - dot(mean_normal, a)) / radius);
     constexpr double kFrom = 0.002;
-    Dual u = (1 / (0.05 - kFrom)) * (bulge - constant(kFrom));
-    if (u.v <= 0) return mean;
-    if (u.v >= 1) u = constant(1);
-    const Dual chi = u * u * (constant(3) - 2 * u);
+    const Dual chi = smooth((1 / (0.05 - kFrom)) * (bulge - constant(kFrom)));
+    if (chi.v <= 0) return mean;
     const Dual rimls = height_of(robust(s, robust(s, s)));
     return mean + s.sharp / s.trusted * chi * (rimls - mean);
   }
@@ -222,9 +220,24 @@ class ReferenceField final : public Field {
     return (0.35 / options_.minimum_support) * (radius * (constant(level) - support));
   }
 
-  [[nodiscard]] Dual capped(const Dual& height, const Dual& radius, const Dual& support,
-                            double sign) const {
-    const Dual outer = sign * height - constant(options_.tool_radius);
+  /// By what acute creases are closed (architecture.md, "The surface").
+  [[nodiscard]] Dual closure(const Sums& s, const Dual& radius, double sign) const {
+    if (!options_.capped) return {};
+    const DualVector a = s.q / s.trusted;
+    const DualVector n = s.n / s.trusted;
+    const Dual hollow = sign * ((dot(n, a) - s.nq / s.trusted) / radius);
+    return 0.3 * radius * smooth(constant(1) - 2 * dot(n, n)) * smooth(100 * hollow);
+  }
+
+  /// u^2 (3 - 2u), u within 0 and 1.
+  [[nodiscard]] static Dual smooth(const Dual& u) {
+    if (u.v <= 0) return constant(0);
+    if (u.v >= 1) return constant(1);
+    return u * u * (constant(3) - 2 * u);
+  }
+
+  [[nodiscard]] Dual capped(const Dual& height, const Dual& radius, const Dual& support) const {
+    const Dual outer = height - constant(options_.tool_radius);
     if (!options_.capped) return outer;
     const Dual cap = as_length(radius, options_.minimum_support, support);
     const Dual width = 0.1 * radius;
@@ -238,10 +251,7 @@ class ReferenceField final : public Field {
   [[nodiscard]] Dual blend(const Sums& s, const Dual& cap, const Dual& blob) const {
     if (!options_.capped) return cap;
     const Dual chi = s.trusted / s.plain;
-    Dual u = (1 / 0.3) * (chi - constant(0.25));
-    if (u.v <= 0) u = constant(0);
-    if (u.v >= 1) u = constant(1);
-    const Dual kappa = u * u * (constant(3) - 2 * u);
+    const Dual kappa = smooth((1 / 0.3) * (chi - constant(0.25)));
     return kappa * cap + (constant(1) - kappa) * blob;
   }
 

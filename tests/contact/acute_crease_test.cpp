@@ -1,0 +1,174 @@
+// A hand that presses into acute creases: the proxy stays on its side, and its force turns no
+// farther than the crease's faces ask for.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "palpate/contact/proxy.hpp"
+#include "support/effort.hpp"
+#include "support/point_field.hpp"
+#include "support/point_shapes.hpp"
+#include "support/rates.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRadius = 5e-3;
+constexpr double kStiffness = 500;  // N/m
+constexpr double kDepth = 8e-3;     // of the hand, at most, m
+
+Sampling sampled(bool noisy) {
+  const Sampling exact{.spacing = 2e-3, .radius = kRadius, .jitter = 0.2};
+  return noisy ? Sampling{.spacing = 2e-3,
+                          .radius = kRadius,
+                          .jitter = 0.2,
+                          .noise = 0.1,
+                          .tilt = 0.1}
+               : exact;
+}
+
+/// What a hand met on its way.
+struct Found {
+  double deepest = 0;  // of the proxy, behind the true surface, m
+  double turn = 0;     // of the force from one tick to the next, rad
+  double jump = 0;     // of the force, N
+  int touching = 0;    // ticks
+  int lost = 0;        // ticks
+};
+
+/// Straight ways at 0.1 m/s from `start` to places that `goal` draws; `depth` says how far behind
+/// the true surface a place is.
+template <class Goal, class Depth>
+Found press(PointField& points, const Vector3d& start, unsigned seed, int ticks, const Goal& goal,
+            const Depth& depth) {
+  std::mt19937 random(seed);
+  Proxy proxy({.stiffness = kStiffness});
+  proxy.reset(start);
+  Vector3d hip = start;
+  Vector3d next = start;
+  Vector3d before = Vector3d::Zero();
+  Found found;
+  for (int i = 0; i < ticks; ++i) {
+    if ((next - hip).norm() < 1e-9) next = goal(random);
+    const Vector3d way = next - hip;
+    hip += way * std::min(1.0, 1e-4 / way.norm());
+    const Contact contact = proxy.step(points.at(hip, proxy.position()), hip, kTick);
+    found.deepest = std::max(found.deepest, depth(contact.proxy));
+    found.jump = std::max(found.jump, (contact.force - before).norm());
+    if (std::min(contact.force.norm(), before.norm()) > 0.5) {
+      const double cosine = contact.force.normalized().dot(before.normalized());
+      found.turn = std::max(found.turn, std::acos(std::clamp(cosine, -1.0, 1.0)));
+    }
+    before = contact.force;
+    if (contact.touching) ++found.touching;
+    if (has(contact.notes, ContactNote::lost)) ++found.lost;
+  }
+  return found;
+}
+
+/// A right angle's surface lies 0.13 R behind its sheets, as it is rounded.
+void expect_held(const Found& found, double degrees, unsigned seed) {
+  EXPECT_LT(found.deepest, 0.15 * kRadius) << degrees << " degrees, seed " << seed;
+  EXPECT_EQ(found.lost, 0) << degrees << " degrees, seed " << seed;
+  EXPECT_LT(found.turn, std::numbers::pi / 2) << degrees << " degrees, seed " << seed;
+  EXPECT_LT(found.jump, 0.8 * kStiffness * kDepth) << degrees << " degrees, seed " << seed;
+}
+
+struct Case {
+  FieldKind kind;
+  bool noisy;
+  bool two_sided;
+};
+
+class AcuteCrease : public testing::TestWithParam<Case> {};
+
+double uniform(std::mt19937& random, double from, double to) {
+  return std::uniform_real_distribution<double>(from, to)(random);
+}
+
+TEST_P(AcuteCrease, AHandNeverGetsBehindASheet) {
+  const auto [kind, noisy, two_sided] = GetParam();
+  for (const double degrees : {20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    PointField points(wedge(sampled(noisy), angle, 30e-3), {.kind = kind, .two_sided = two_sided});
+    const auto behind = [&](const Vector3d& x) {
+      return -std::min(x.z(), std::sin(angle) * x.x() - std::cos(angle) * x.z());
+    };
+    // Into either sheet, or past the crease.
+    const auto goal = [&](std::mt19937& random) -> Vector3d {
+      const double out = uniform(random, 0, 1) < 0.3 ? 0 : uniform(random, 0, 25e-3);
+      const double at = uniform(random, 0, angle);
+      const double way = uniform(random, 0, 2 * std::numbers::pi);
+      const double deep = uniform(random, 0, kDepth);
+      const double y = uniform(random, -15e-3, 15e-3);
+      return {out * std::cos(at) + deep * std::cos(way), y,
+              out * std::sin(at) + deep * std::sin(way)};
+    };
+    const Vector3d start(30e-3 * std::cos(angle / 2), 0, 30e-3 * std::sin(angle / 2));
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const Found found = press(points, start, seed, effort(4000), goal, behind);
+      expect_held(found, degrees, seed);
+      EXPECT_GT(found.touching, effort(4000) / 10);
+    }
+  }
+}
+
+/// Two balls of 40 mm whose surfaces meet at `angle`, free between them; their middle is the
+/// origin. What is inside of the other is left out, as a scan would not see it, and so is what is
+/// far from the hand.
+struct Twins {
+  double rho = 40e-3;
+  double apart = 0;  // of each from the origin along x, m
+
+  explicit Twins(double angle) : apart(rho * std::cos(angle / 2)) {}
+
+  [[nodiscard]] double inside(const Vector3d& x) const {
+    const Vector3d center(x.x() < 0 ? -apart : apart, 0, 0);
+    return rho - (x - center).norm();
+  }
+  [[nodiscard]] std::vector<TestPoint> points(const Sampling& sampling) const {
+    std::vector<TestPoint> all;
+    for (const double side : {-1.0, 1.0}) {
+      for (TestPoint p : ball(sampling, rho)) {
+        p.position.x() += side * apart;
+        const bool near = p.position.z() > -5e-3 && std::abs(p.position.y()) < 35e-3;
+        if (side * p.position.x() > 0 && near) all.push_back(p);
+      }
+    }
+    return all;
+  }
+};
+
+TEST_P(AcuteCrease, AHandNeverGetsIntoAClosedObject) {
+  const auto [kind, noisy, two_sided] = GetParam();
+  for (const double degrees : {20.0, 40.0, 60.0, 90.0}) {
+    const Twins twins(degrees * std::numbers::pi / 180);
+    PointField points(twins.points(sampled(noisy)), {.kind = kind, .two_sided = two_sided});
+    const double waist = twins.rho * std::sin(degrees * std::numbers::pi / 360);
+    const double depth = std::min(kDepth, 0.5 * waist);  // far from where a neck has another side
+    const auto goal = [&](std::mt19937& random) -> Vector3d {
+      const double x = uniform(random, -depth, depth);
+      const double angle = uniform(random, -0.5, 0.5);
+      const double out = waist + uniform(random, -depth, depth);
+      return {x, out * std::sin(angle), out * std::cos(angle)};
+    };
+    const auto inside = [&](const Vector3d& x) { return twins.inside(x); };
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const Found found = press(points, {0, 0, 50e-3}, seed, effort(4000), goal, inside);
+      expect_held(found, degrees, seed);
+      EXPECT_GT(found.touching, effort(4000) / 10);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, AcuteCrease,
+    testing::Values(Case{FieldKind::balanced, false, true}, Case{FieldKind::balanced, true, true},
+                    Case{FieldKind::balanced, true, false}, Case{FieldKind::pointset, false, true},
+                    Case{FieldKind::pointset, true, true}, Case{FieldKind::pointset, true, false}));
+
+}  // namespace
+}  // namespace palpate::test
