@@ -18,11 +18,7 @@ namespace palpate::app {
 
 namespace {
 
-constexpr std::string_view kSynthetic = "synthetic:";
-constexpr std::string_view kCamera = "camera:";
-constexpr std::string_view kSequence = "sequence:";
-
-std::optional<double> number(std::string_view text) {
+std::optional<double> number_in(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
@@ -70,7 +66,7 @@ std::vector<double> parse_numbers(const std::string& text, std::size_t count,
   std::string_view rest = text;
   while (true) {
     const std::size_t end = rest.find(',');
-    const std::optional<double> value = number(rest.substr(0, end));
+    const std::optional<double> value = number_in(rest.substr(0, end));
     if (!value) {
       throw UsageError(fmt::format("{}: '{}' is not a finite number in '{}'; write {}", option,
                                    rest.substr(0, end), text, form));

@@ -10,6 +10,11 @@
 
 namespace palpate::app {
 
+// What a source begins with that is no file.
+inline constexpr std::string_view kSynthetic = "synthetic:";
+inline constexpr std::string_view kCamera = "camera:";
+inline constexpr std::string_view kSequence = "sequence:";
+
 /// A source as named on the command line: NAME=PATH, or PATH alone.
 struct CloudArgument {
   std::string name;  ///< unique among the sources of one command

@@ -56,12 +56,12 @@ Json json_drops(const StreamDrops& drops) {
 }
 
 // Of the preparation of a frame, ms.
-struct PrepareTimes {
+struct PrepareQuantiles {
   double p50 = 0;
   double longest = 0;
 };
 
-PrepareTimes prepare_times(std::vector<double> ms) {
+PrepareQuantiles prepare_times(std::vector<double> ms) {
   std::ranges::sort(ms);
   return {quantile(ms, 0.5), quantile(ms, 1)};
 }
@@ -96,7 +96,7 @@ Json json_seen(const SourceState& state) {
 void print_camera(const TouchedSource& source, const Style& style, std::FILE* out) {
   const FeedReport& feed = source.feed;
   const StreamState& state = feed.state;
-  const PrepareTimes times = prepare_times(feed.prepare_ms);
+  const PrepareQuantiles times = prepare_times(feed.prepare_ms);
   fmt::print(out, "{} {} ({} x {} pixels), {}\n", style.heading(source.argument.name),
              source.argument.path, feed.width, feed.height, in_words(state.phase));
   fmt::print(out, "  frames     {} touchable of {}, {:.1f} a second; {} dropped\n",
@@ -119,7 +119,7 @@ void print_camera(const TouchedSource& source, const Style& style, std::FILE* ou
 Json json_camera(const TouchedSource& source) {
   const FeedReport& feed = source.feed;
   const StreamState& state = feed.state;
-  const PrepareTimes times = prepare_times(feed.prepare_ms);
+  const PrepareQuantiles times = prepare_times(feed.prepare_ms);
   const Policy chosen = policy_of(source.options, source.as_cloud);
   Json policy = {{"name", name_in(kPolicies, chosen)}};
   if (keeps_history(chosen)) policy["history"] = source.options.policy.history;

@@ -25,10 +25,6 @@ constexpr std::array<Named<DeviceKind>, 3> kDevices = {{{"scripted", DeviceKind:
                                                         {"simulated", DeviceKind::simulated},
                                                         {"remote", DeviceKind::remote}}};
 
-void require(bool good, const char* what) {
-  if (!good) throw UsageError(what);
-}
-
 void check_paths(const std::vector<DeviceChoice>& devices) {
   std::set<std::string> paths;
   for (const DeviceChoice& device : devices) {

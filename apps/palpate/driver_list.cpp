@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "apps/palpate/json.hpp"
 #include "apps/palpate/output.hpp"
 #include "apps/palpate/words.hpp"
 
@@ -36,9 +36,9 @@ std::string found_by(const DriverInfo& driver, std::string_view word) {
 }
 
 void write_drivers(const std::vector<DriverInfo>& drivers, const std::string& path) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  Json list = Json::array();
   for (const DriverInfo& driver : drivers) {
-    nlohmann::ordered_json devices = nlohmann::ordered_json::array();
+    Json devices = Json::array();
     for (const FoundDevice& device : driver.devices) {
       devices.push_back({{"name", device.name}, {"description", device.description}});
     }

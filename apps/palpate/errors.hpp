@@ -17,4 +17,9 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// @throws UsageError that says `what`, unless `good`.
+inline void require(bool good, const char* what) {
+  if (!good) throw UsageError(what);
+}
+
 }  // namespace palpate::app

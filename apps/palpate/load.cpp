@@ -13,8 +13,6 @@ namespace palpate::app {
 
 namespace {
 
-constexpr std::string_view kSynthetic = "synthetic:";
-
 PointCloud made_by_name(const std::string& name) {
   try {
     return synthetic_cloud(name);

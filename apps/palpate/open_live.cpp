@@ -13,12 +13,11 @@ namespace {
 
 // s; a sensor's motor and lamp may take one or two to start.
 constexpr double kPatience = 5;
-constexpr double kWait = 0.1;  // s, for one answer
+constexpr double kAnswerWait = 0.1;  // s, for one answer
 // Answers of a camera that waits for nothing.
-constexpr int kTries = 100;
+constexpr int kAnswerTries = 100;
 
 std::unique_ptr<DepthCamera> open(const ChosenSource& source, const Clock* clock) {
-  constexpr std::string_view kCamera = "camera:";
   const std::string& path = source.argument.path;
   const std::string name = path.starts_with(kCamera) ? path.substr(kCamera.size()) : path;
   return open_camera(name, {.clock = clock, .loop = source.choices.loop});
@@ -46,9 +45,9 @@ DepthFrame first_frame(DepthCamera& camera) {
   const Waiting waiting(fmt::format("waiting for the first frame of {}", camera.info().name));
   DepthFrame frame;
   std::string problem = "no frame came";
-  const int tries = camera.info().paces ? static_cast<int>(kPatience / kWait) : kTries;
+  const int tries = camera.info().paces ? static_cast<int>(kPatience / kAnswerWait) : kAnswerTries;
   for (int i = 0; i < tries; ++i) {
-    const CameraStatus status = camera.read(frame, kWait);
+    const CameraStatus status = camera.read(frame, kAnswerWait);
     if (status == CameraStatus::frame) return frame;
     if (!camera.reason().empty()) problem = camera.reason();
     if (status == CameraStatus::ended) break;

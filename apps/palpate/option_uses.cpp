@@ -35,7 +35,7 @@ struct Kinds {
 // One that is not there, or a pipe, may be one.
 bool may_be_image(const std::string& path) {
   std::error_code ignored;
-  return !path.starts_with("synthetic:") &&
+  return !path.starts_with(kSynthetic) &&
          (!std::filesystem::is_regular_file(path, ignored) || is_depth_image(path));
 }
 
@@ -48,7 +48,7 @@ Kinds kinds_of(const TouchOptions& options, std::span<const ChosenSource> source
     const bool cloud = !depth || taken_as_cloud(options, source);
     kinds.lives |= live;
     kinds.still |= !live;
-    kinds.recorded |= live && (!path.starts_with("camera:") || path.ends_with(".oni"));
+    kinds.recorded |= live && (!path.starts_with(kCamera) || path.ends_with(".oni"));
     kinds.image |= !live && may_be_image(path);
     kinds.depth |= depth;
     kinds.filtered |= !cloud;

@@ -23,14 +23,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostClouds = 4;       // N of the paper's figure
-constexpr double kDepth = 4e-3;      // of the hand under the surface, m
-constexpr double kHigh = 20e-3;      // of the hand above it at first, m
-constexpr double kDown = 0.4;        // when the hand is down, s
-constexpr double kSettled = 1;       // when the samples begin, s
-constexpr double kPeriod = 1e-3;     // of the servo, s
-constexpr double kAround = 0.08;     // half of the box that the paper's clouds are clipped to, m
-constexpr double kFitRadius = 0.04;  // of the points that tell the surface's normal, m
+constexpr int kMostClouds = 4;        // N of the paper's figure
+constexpr double kPressDepth = 4e-3;  // of the hand under the surface, m
+constexpr double kHigh = 20e-3;       // of the hand above it at first, m
+constexpr double kDown = 0.4;         // when the hand is down, s
+constexpr double kSettled = 1;        // when the samples begin, s
+constexpr double kPeriod = 1e-3;      // of the servo, s
+constexpr double kAround = 0.08;      // half of the box that the paper's clouds are clipped to, m
+constexpr double kFitRadius = 0.04;   // of the points that tell the surface's normal, m
 
 // The test point, world frame, and the directions that variability is measured along.
 struct Place {
@@ -172,7 +172,7 @@ class Feelers {
 
 Vector3d hand_at(const Place& place, double time) {
   const double down = std::clamp((time - 0.1) / (kDown - 0.1), 0.0, 1.0);
-  return place.point + (kHigh - down * (kHigh + kDepth)) * place.normal;
+  return place.point + (kHigh - down * (kHigh + kPressDepth)) * place.normal;
 }
 
 template <class Get>

@@ -98,12 +98,10 @@ toml::table SetupFile::parse() const {
 }
 
 std::string SetupFile::resolved(const std::string& path) const {
-  constexpr std::string_view kSequence = "sequence:";
   if (path.starts_with(kSequence)) {
     return std::string(kSequence) + (folder_ / path.substr(kSequence.size())).string();
   }
-  const bool is_file =
-      path != "-" && !path.starts_with("camera:") && !path.starts_with("synthetic:");
+  const bool is_file = path != "-" && !path.starts_with(kCamera) && !path.starts_with(kSynthetic);
   return is_file ? (folder_ / path).string() : path;
 }
 

@@ -32,7 +32,7 @@ constexpr auto kReading = std::to_array<SetupKey>({
 constexpr auto kDetail = std::to_array<SetupKey>(
     {{"radius", KeyKind::number}, {"voxel", KeyKind::number}, {"normal_error", KeyKind::number}});
 
-constexpr auto kFrames = std::to_array<SetupKey>({
+constexpr auto kFrameKeys = std::to_array<SetupKey>({
     {"policy", KeyKind::text},
     {"history", KeyKind::integer},
     {"silence", KeyKind::number},
@@ -96,8 +96,8 @@ constexpr auto kServo = std::to_array<SetupKey>({
     {"lock_memory", KeyKind::flag},
 });
 
-constexpr auto kSource = joined(kReading, kDetail, kFrames);
-constexpr auto kStream = joined(kFrames, kTime);
+constexpr auto kSource = joined(kReading, kDetail, kFrameKeys);
+constexpr auto kStream = joined(kFrameKeys, kTime);
 constexpr auto kSurface = joined(kField, kDetail);
 
 struct Section {

@@ -23,11 +23,11 @@ namespace palpate::app {
 namespace {
 
 // Every file is made before the work: a place that does not exist is told at once.
-struct Outputs {
+struct TouchOutputs {
   std::deque<HandOutputs> hands;
   std::optional<OutputFile> json;
 
-  explicit Outputs(const TouchOptions& options) {
+  explicit TouchOutputs(const TouchOptions& options) {
     const std::size_t count = choose_devices(options).size();
     for (std::size_t i = 0; i < count; ++i) hands.emplace_back(options, i);
     if (!options.json.empty()) json.emplace(options.json);
@@ -46,7 +46,7 @@ bool play_simulated(Run& run, HandOutputs& outputs) {
 
 // Runs, in the time of `clock` if there is one, and hands each step to what keeps or sums it. In
 // simulated time there are no reports of real time.
-LiveOutcome play(Run& run, WaitingClock* clock, Outputs& outputs) {
+LiveOutcome play(Run& run, WaitingClock* clock, TouchOutputs& outputs) {
   LiveOutcome outcome;
   if (clock == nullptr) {
     outcome.interrupted = !play_simulated(run, outputs.hands.front());
@@ -65,7 +65,7 @@ std::optional<RealtimeRequest> leave_to_servo(const TouchOptions& options, bool 
   return leave_processor(*options.live.processor);
 }
 
-std::vector<HandReport> hand_reports(const Run& run, const Outputs& outputs,
+std::vector<HandReport> hand_reports(const Run& run, const TouchOutputs& outputs,
                                      const LiveOutcome& outcome) {
   std::vector<HandReport> reports;
   for (std::size_t i = 0; i < run.hands.size(); ++i) {
@@ -90,7 +90,7 @@ void check_hands(const std::vector<HandReport>& hands) {
 }
 
 // The pictures come last: everything else is there if they cannot be drawn.
-void tell(const TouchReport& report, Outputs& outputs) {
+void tell(const TouchReport& report, TouchOutputs& outputs) {
   const TouchOptions& options = report.options;
   const bool stdout_taken = options.log == "-" || options.json == "-";
   print_report(report, stdout_taken ? stderr : stdout);
@@ -110,7 +110,7 @@ void tell(const TouchReport& report, Outputs& outputs) {
 void touch(const TouchOptions& options) {
   check_usage(options);
   const Trajectory way = read_way(options);
-  Outputs outputs(options);
+  TouchOutputs outputs(options);
   SteadyWaitingClock steady;
   WaitingClock* clock = in_real_time(options) ? &steady : nullptr;
   std::vector<Hand> hands = open_hands(options, clock);

@@ -21,11 +21,7 @@ namespace palpate::app {
 namespace {
 
 // A day: longer ones are times in another unit, or broken.
-constexpr double kLongest = 86'400;  // s
-
-void require(bool good, const char* what) {
-  if (!good) throw UsageError(what);
-}
+constexpr double kLongestRun = 86'400;  // s
 
 void check_files(const TouchOptions& options) {
   std::vector<CloudArgument> clouds;
@@ -119,11 +115,11 @@ void check_trajectory(const TouchOptions& options, const Trajectory& trajectory)
   const bool simulated = std::ranges::any_of(choose_devices(options), [](const auto& device) {
     return device.kind == DeviceKind::simulated;
   });
-  if (simulated && duration > kLongest) {
+  if (simulated && duration > kLongestRun) {
     throw UsageError(
         fmt::format("--trajectory lasts {:.6g} s; --device simulated plays {:.0f} s at most: are "
                     "its times in seconds?",
-                    duration, kLongest));
+                    duration, kLongestRun));
   }
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const double far = trajectory[i].position.cwiseAbs().maxCoeff();

@@ -26,7 +26,7 @@ namespace palpate::app {
 
 namespace {
 
-constexpr auto kLook = std::chrono::milliseconds(100);
+constexpr auto kLookAtTrial = std::chrono::milliseconds(100);
 
 // The trial beside a device, on a thread of its own.
 class TrialThread {
@@ -98,7 +98,7 @@ WallTrialState lead(TrialThread& thread) {
     std::string words = fmt::format("{:4.0f} N/m: {}", state.wall, in_words(state.phase));
     if (words != said) fmt::print(stderr, "{}\n", words);
     said = std::move(words);
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kLookAtTrial);
   }
   thread.stop();
   return thread.state();

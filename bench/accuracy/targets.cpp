@@ -38,7 +38,7 @@ constexpr const char* kRipple = "ripple, N";
 constexpr const char* kHeight = "height, mm";
 constexpr const char* kLost = "lost, %";
 constexpr const char* kPops = "pops";
-constexpr const char* kStep = "step, N";
+constexpr const char* kStepTarget = "step, N";
 
 constexpr Limit at_most(double median, double worst = -1) {
   return {median, worst};
@@ -67,13 +67,13 @@ std::vector<Target> independent_targets() {
       {"thin push", kForce, force, at_most(0.5), at_most(0.06), "0.140"},
       {"thin push", kPops, pops, at_most(0), at_most(0), "0"},
       {"crease 10 mm", kLost, lost, at_most(0), at_most(0), ""},
-      {"crease 10 mm", kStep, step, at_most(0.5), at_most(0.5), ""},
+      {"crease 10 mm", kStepTarget, step, at_most(0.5), at_most(0.5), ""},
       {"crease 10 mm", kForce, force, kNone, kNone, ""},
       {"static press", kForce, force, kNone, kNone, ""},
-      {"off the cloud's edge", kStep, step, kNone, kNone, ""},
-      {"from behind it", kStep, step, kNone, kNone, ""},
+      {"off the cloud's edge", kStepTarget, step, kNone, kNone, ""},
+      {"from behind it", kStepTarget, step, kNone, kNone, ""},
       {"from behind it", "largest force, N", peak, kNone, kNone, ""},
-      {"around it", kStep, step, kNone, kNone, ""},
+      {"around it", kStepTarget, step, kNone, kNone, ""},
       {"around it", "energy, mJ", energy, kNone, kNone, ""},
   };
 }

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-constexpr float kReach = 0.75F;      // blocks from a piece's middle to the blocks it is offered to
+constexpr float kWarpReach = 0.75F;  // blocks from a piece's middle to the blocks it is offered to
 constexpr float kInflation = 0.1F;   // share of the mean's variance that each move adds
 constexpr float kContinuous = 0.1F;  // of another surface's distance, between neighbours
 constexpr float kGrazing = 0.02F;    // n.ray / |ray|: planes seen closer to edge-on are given up
@@ -106,10 +106,10 @@ void TemporalWarp::offer_around(const BlockGrid& grid, std::int32_t from, float 
   const bool inside =
       c > -1 && r > -1 && c < static_cast<float>(grid.columns) && r < static_cast<float>(grid.rows);
   if (!inside) return;
-  const int last_column = std::min(grid.columns - 1, static_cast<int>(std::floor(c + kReach)));
-  const int last_row = std::min(grid.rows - 1, static_cast<int>(std::floor(r + kReach)));
-  for (int b = std::max(0, static_cast<int>(std::ceil(r - kReach))); b <= last_row; ++b) {
-    for (int a = std::max(0, static_cast<int>(std::ceil(c - kReach))); a <= last_column; ++a) {
+  const int last_column = std::min(grid.columns - 1, static_cast<int>(std::floor(c + kWarpReach)));
+  const int last_row = std::min(grid.rows - 1, static_cast<int>(std::floor(r + kWarpReach)));
+  for (int b = std::max(0, static_cast<int>(std::ceil(r - kWarpReach))); b <= last_row; ++b) {
+    for (int a = std::max(0, static_cast<int>(std::ceil(c - kWarpReach))); a <= last_column; ++a) {
       offer({from, rho, c - static_cast<float>(a), r - static_cast<float>(b)}, grid.index(a, b));
     }
   }

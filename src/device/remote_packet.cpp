@@ -38,9 +38,9 @@ class Writer {
   std::size_t at_ = 0;
 };
 
-class Reader {
+class PacketReader {
  public:
-  explicit Reader(std::span<const std::byte> bytes) noexcept : bytes_(bytes) {}
+  explicit PacketReader(std::span<const std::byte> bytes) noexcept : bytes_(bytes) {}
 
   template <class T>
   T take() noexcept {
@@ -80,7 +80,7 @@ PacketFlaw judge(const StatePacket& packet) noexcept {
 
 ParsedState parse_state(std::span<const std::byte> bytes) noexcept {
   if (bytes.size() != kStatePacketSize) return {PacketFlaw::length, {}};
-  Reader reader(bytes);
+  PacketReader reader(bytes);
   if (reader.take<std::uint32_t>() != kStateMagic) return {PacketFlaw::magic, {}};
   if (reader.take<std::uint16_t>() != kRemoteVersion) return {PacketFlaw::version, {}};
   const unsigned flags = reader.take<std::uint16_t>();

@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFaint = 1e-9;  // of all weight: a source with less is not there
-constexpr double kFloor = 0.1;   // of Phi: beyond, what is seen of a surface says too little
-constexpr double kFine = 4;      // power of 1 / R_s in c_s
-constexpr double kFrom = 0.98;   // |sum lambda n| from which on heights are united
-constexpr double kFull = 0.995;
+constexpr double kFaint = 1e-9;      // of all weight: a source with less is not there
+constexpr double kFloor = 0.1;       // of Phi: beyond, what is seen of a surface says too little
+constexpr double kFine = 4;          // power of 1 / R_s in c_s
+constexpr double kUniteFrom = 0.98;  // |sum lambda n| from which on heights are united
+constexpr double kUniteFull = 0.995;
 
 /// What one source says.
 struct Own {
@@ -90,7 +90,7 @@ Value united_shift(const FieldPlace& place) noexcept {
     normal += o.share * o.normal;
   }
   const double coherence = normal.norm();
-  const SmoothStep tau = smooth_step(coherence, kFrom, kFull - kFrom);
+  const SmoothStep tau = smooth_step(coherence, kUniteFrom, kUniteFull - kUniteFrom);
   if (tau.value <= 0) return {};
   normal /= coherence;
   const double way = by_cover - by_weight;

@@ -12,7 +12,7 @@ namespace {
 constexpr int kMaxDigitBits = 12;
 constexpr int kPartitionBits = 12;
 constexpr std::size_t kPartitionFrom = std::size_t{1} << 18;  // records; fewer fit the cache whole
-constexpr std::size_t kBlock = std::size_t{1} << 16;          // records that one thread counts
+constexpr std::size_t kSortBlock = std::size_t{1} << 16;      // records that one thread counts
 
 using Counts = std::array<std::uint32_t, std::size_t{1} << kMaxDigitBits>;
 
@@ -55,12 +55,13 @@ void sort_by_digits(std::span<Record> records, std::span<Record> scratch, int sh
 
 // Where each block puts its first record of each digit: digits in order, blocks in order in them.
 std::vector<std::uint32_t> block_offsets(std::span<const Record> records, int shift) {
-  const std::size_t blocks = (records.size() + kBlock - 1) / kBlock;
+  const std::size_t blocks = (records.size() + kSortBlock - 1) / kSortBlock;
   const std::size_t digits = std::size_t{1} << kPartitionBits;
   std::vector<std::uint32_t> offsets(blocks * digits, 0);
   parallel_ranges(blocks, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
-      const auto block = records.subspan(b * kBlock, std::min(kBlock, records.size() - b * kBlock));
+      const auto block =
+          records.subspan(b * kSortBlock, std::min(kSortBlock, records.size() - b * kSortBlock));
       for (const Record record : block) ++offsets[b * digits + digit(record, shift, digits - 1)];
     }
   });
@@ -91,7 +92,8 @@ void sort_records(std::span<Record> records, std::span<Record> scratch, int bits
                                           offsets.begin() + static_cast<std::ptrdiff_t>(digits));
   parallel_ranges(offsets.size() / digits, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
-      const auto block = records.subspan(b * kBlock, std::min(kBlock, records.size() - b * kBlock));
+      const auto block =
+          records.subspan(b * kSortBlock, std::min(kSortBlock, records.size() - b * kSortBlock));
       for (const Record record : block) {
         scratch[offsets[b * digits + digit(record, shift, digits - 1)]++] = record;
       }

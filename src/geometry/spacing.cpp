@@ -18,7 +18,7 @@ using detail::Block;
 using detail::Surroundings;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kLargest = std::numeric_limits<float>::max();
+constexpr float kLargestFloat = std::numeric_limits<float>::max();
 constexpr std::size_t kNearest = 8;  // others that a spacing is measured from
 constexpr float kSmoothing = 2.5f;   // spacings that it is averaged over
 constexpr float kMinChange = 0.75f;  // of a spacing by averaging
@@ -162,7 +162,7 @@ std::vector<float> smooth(const CellGrid& grid, std::vector<float> spacings) {
         simd::Row inverse = {};
         for (std::uint32_t q = 0; q < count; ++q) {
           const float radius = radii[first + q];
-          inverse[q] = radius > 0 ? std::min(1 / (radius * radius), kLargest) : kLargest;
+          inverse[q] = radius > 0 ? std::min(1 / (radius * radius), kLargestFloat) : kLargestFloat;
         }
         simd::Row sums[2];
         simd::best_joins().wyvill_means(detail::make_join(grid, first, count, runs), inverse,

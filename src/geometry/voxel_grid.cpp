@@ -21,7 +21,7 @@ using detail::kPlaceBits;
 using detail::kPlaceMask;
 using detail::Record;
 
-constexpr std::size_t kGrain = std::size_t{1} << 16;
+constexpr std::size_t kVoxelGrain = std::size_t{1} << 16;
 constexpr double kMaxCubes = 1 << 21;  // along an axis: three such numbers fit in 63 bits
 
 // Where the cubes are and how a cube's place becomes a number.
@@ -81,7 +81,7 @@ template <class PlaceOf>
 std::vector<Record> sort_by(const PointCloud& cloud, const Lattice& lattice, int shift, int bits,
                             const PlaceOf& place_of) {
   std::vector<Record> records(cloud.size());
-  detail::parallel_ranges(records.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  detail::parallel_ranges(records.size(), kVoxelGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint64_t key = lattice.key(cloud.positions[place_of(i)]) >> shift;
       records[i] = key << (kPlaceBits + kKeyBits - bits) | i;
@@ -184,7 +184,7 @@ PointCloud voxel_downsample(const PointCloud& cloud, double leaf,
   result.normals.resize(cloud.normals.empty() ? 0 : cubes);
   result.colors.resize(cloud.colors.empty() ? 0 : cubes);
   result.intensities.resize(cloud.intensities.empty() ? 0 : cubes);
-  detail::parallel_ranges(cubes, kGrain / 16, [&](std::size_t begin, std::size_t end) {
+  detail::parallel_ranges(cubes, kVoxelGrain / 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cube = begin; cube < end; ++cube) {
       const auto inside = std::span(places).subspan(starts[cube], starts[cube + 1] - starts[cube]);
       average(cloud, inside, cube, result);

@@ -21,7 +21,7 @@ using io::TextScanner;
 
 constexpr double kWidestGap = 0.25;  // s; a person's hand moves a decimetre in it
 constexpr double kSame = 1e-3;       // s
-constexpr std::string_view kRemedy = "Correct this line, or export the poses again";
+constexpr std::string_view kPoseRemedy = "Correct this line, or export the poses again";
 
 bool is_comment(std::string_view line) {
   line = io::trim(line);
@@ -48,12 +48,12 @@ Eigen::Isometry3d read_matrix(const Input& input, TextScanner& scanner) {
     const std::size_t offset = scanner.offset();
     const auto values = numbers<4>(scanner.next_line());
     if (!values) {
-      io::fail_at_line(input, offset, "four numbers of a 4 x 4 matrix are missing", kRemedy);
+      io::fail_at_line(input, offset, "four numbers of a 4 x 4 matrix are missing", kPoseRemedy);
     }
     matrix.row(row) = Eigen::Map<const Eigen::RowVector4d>(values->data());
   }
   const auto pose = rigid(matrix.block<3, 1>(0, 3), Eigen::Matrix3d(matrix.block<3, 3>(0, 0)));
-  if (!pose) io::fail_at_line(input, begin, "this matrix is no rotation and place", kRemedy);
+  if (!pose) io::fail_at_line(input, begin, "this matrix is no rotation and place", kPoseRemedy);
   return *pose;
 }
 
@@ -66,16 +66,17 @@ PoseTrack read_track(const Input& input) {
     if (is_comment(line)) continue;
     const auto v = numbers<8>(line);
     if (!v) {
-      io::fail_at_line(input, offset, "this is not \"time x y z qx qy qz qw\"", kRemedy);
+      io::fail_at_line(input, offset, "this is not \"time x y z qx qy qz qw\"", kPoseRemedy);
     }
     const auto [t, x, y, z, qx, qy, qz, qw] = *v;
     const auto pose = rigid({x, y, z}, Eigen::Quaterniond(qw, qx, qy, qz));
     if (!pose) {
       io::fail_at_line(input, offset, "this quaternion's length is not 1, or the place is none",
-                       kRemedy);
+                       kPoseRemedy);
     }
     if (!track.empty() && t <= track.back().stamp) {
-      io::fail_at_line(input, offset, "this time is not after that of the line before", kRemedy);
+      io::fail_at_line(input, offset, "this time is not after that of the line before",
+                       kPoseRemedy);
     }
     track.push_back({t, *pose});
   }
@@ -90,7 +91,7 @@ PosesByOrder read_by_order(const Input& input) {
     std::string_view line = scanner.next_line();
     if (is_comment(line)) continue;
     const auto number = io::parse_count(take_word(line));
-    if (!number) io::fail_at_line(input, offset, "a frame's number is missing", kRemedy);
+    if (!number) io::fail_at_line(input, offset, "a frame's number is missing", kPoseRemedy);
     result.poses[*number] = read_matrix(input, scanner);
   }
   return result;

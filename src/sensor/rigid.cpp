@@ -6,10 +6,10 @@ namespace palpate::sensor {
 namespace {
 
 constexpr double kOff = 0.01;
-constexpr double kFarthest = 1e6;  // m
+constexpr double kFarthestOrigin = 1e6;  // m
 
 bool is_place(const Eigen::Vector3d& place) {
-  return place.allFinite() && place.cwiseAbs().maxCoeff() <= kFarthest;
+  return place.allFinite() && place.cwiseAbs().maxCoeff() <= kFarthestOrigin;
 }
 
 Eigen::Isometry3d joined(const Eigen::Vector3d& place, const Eigen::Quaterniond& rotation) {

@@ -12,9 +12,9 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr double kPeriod = 0.1;        // s between pictures
-constexpr double kReportPeriod = 0.5;  // s between reports of the sources
-constexpr double kRest = 3;            // times what the last picture took
+constexpr double kPeriod = 0.1;         // s between pictures
+constexpr double kSourcesPeriod = 0.5;  // s between reports of the sources
+constexpr double kRest = 3;             // times what the last picture took
 
 double host_time() {
   return SteadyClock().now();
@@ -76,7 +76,7 @@ Picture Painter::paint(const std::set<std::size_t>& budgets) {
   drawn.erase(0);
   picture.clouds = clouds_.paint(drawn, now());
   drawn.empty() ? surfaces_.clear() : paint_surfaces(picture);
-  if (host_time() - reported_ >= kReportPeriod) report(picture);
+  if (host_time() - reported_ >= kSourcesPeriod) report(picture);
   return picture;
 }
 

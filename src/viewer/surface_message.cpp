@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint8_t kSurfaceKind = 3;
 constexpr std::size_t kSurfaceHeader = 24;
-constexpr float kSteps = 32767;
+constexpr float kSurfaceSteps = 32767;
 
 }  // namespace
 
@@ -27,10 +27,10 @@ std::string encode_surface(std::uint8_t device, const Eigen::Vector3f& center, c
   bytes.put(static_cast<std::uint32_t>(mesh.triangles.size()));
   bytes.put(center);
   bytes.put(extent);
-  const float scale = extent > 0 ? kSteps / extent : 0;
+  const float scale = extent > 0 ? kSurfaceSteps / extent : 0;
   for (const Eigen::Vector3f& vertex : mesh.vertices) {
     for (int i = 0; i < 3; ++i) {
-      const float v = std::clamp(vertex[i] * scale, -kSteps, kSteps);
+      const float v = std::clamp(vertex[i] * scale, -kSurfaceSteps, kSurfaceSteps);
       bytes.put(static_cast<std::int16_t>(std::lround(v)));
     }
   }

@@ -97,6 +97,17 @@ double number(const std::string& cell) {
   return std::strtod(cell.c_str(), nullptr);
 }
 
+std::string without_times(const Shell& shell, const std::string& name) {
+  std::string text;
+  for (const auto& [column, cells] : columns(shell.read(name))) {
+    if (column == "us") continue;
+    text += column;
+    for (const std::string& cell : cells) text += "," + cell;
+    text += "\n";
+  }
+  return text;
+}
+
 std::string plane_xyz() {
   std::string text;
   for (int i = 0; i < kSide * kSide; ++i) {

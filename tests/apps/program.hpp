@@ -58,6 +58,9 @@ class Shell {
 /// A cell of them; 0: it is no number.
 [[nodiscard]] double number(const std::string& cell);
 
+/// The log `name` in `shell` but for its column of computing times, which differ from run to run.
+[[nodiscard]] std::string without_times(const Shell& shell, const std::string& name);
+
 /// A 6 x 6 cm plane of points at z = 0, 2 mm apart, as XYZ text; with an intensity that grows along
 /// x if wanted.
 [[nodiscard]] std::string plane_xyz();

@@ -11,18 +11,6 @@
 namespace palpate::app {
 namespace {
 
-// The log without its column of computing times.
-std::string without_times(const Shell& shell, const std::string& name) {
-  std::string text;
-  for (const auto& [column, cells] : columns(shell.read(name))) {
-    if (column == "us") continue;
-    text += column;
-    for (const std::string& cell : cells) text += "," + cell;
-    text += "\n";
-  }
-  return text;
-}
-
 // Down onto the middle of the simulated table, which is z = 0 there, and `seconds` of pressing.
 std::string press_table(double seconds) {
   std::string text = "t,hip_x,hip_y,hip_z\n";
@@ -65,7 +53,7 @@ TEST(Streams, TwoCamerasGiveTheSameLogBitForBit) {
   Shell shell;
   const std::string command =
       "touch camera:simulated:left camera:simulated:right,phase=0.011,jitter=0.004,seed=3 "
-      "--simulated-time --duration 0.8 --log ";
+      "--simulated-time --duration 0.5 --log ";
   ASSERT_EQ(shell.run(command + "a.csv --json a.json").code, 0);
   ASSERT_EQ(shell.run(command + "b.csv").code, 0);
   EXPECT_EQ(without_times(shell, "a.csv"), without_times(shell, "b.csv"));
@@ -73,7 +61,7 @@ TEST(Streams, TwoCamerasGiveTheSameLogBitForBit) {
   EXPECT_GT(report["largest_force_N"].get<double>(), 0.5);
   ASSERT_EQ(report["sources"].size(), 2u);
   for (const Json& source : report["sources"]) {
-    EXPECT_GE(source["frames_touchable"].get<int>(), 23);
+    EXPECT_GE(source["frames_touchable"].get<int>(), 14);
     EXPECT_NEAR(source["rate_Hz"].get<double>(), 30, 1.5);
     EXPECT_NEAR(source["latency_s"]["mean"].get<double>(), 0.01, 1e-9);
     EXPECT_EQ(source["policy"]["name"], "morph");
@@ -100,7 +88,7 @@ TEST(Streams, TrajectoryIsPlayedInTheWorldFromTheFirstFrameOn) {
 TEST(Streams, EveryPolicyFeelsTheWall) {
   Shell shell;
   write_wall(shell, 6);
-  shell.write("way.csv", into_wall(500));
+  shell.write("way.csv", into_wall(320));
   for (const char* more :
        {"--policy replace", "--policy average --history 3", "--policy crossfade", "--policy fusion",
         "--unorganised", "--preset paper --field pointset", "--noise kinect1"}) {
@@ -154,7 +142,7 @@ TEST(Streams, DepthsOutOfRangeAreNotBelieved) {
 TEST(Streams, ClippingToReachLeavesTheForceAndMostPointsOut) {
   Shell shell;
   write_wall(shell, 12);
-  shell.write("way.csv", into_wall(380));
+  shell.write("way.csv", into_wall(320));
   const std::string command =
       "touch sequence:wall --unorganised --simulated-time --trajectory way.csv --log log.csv "
       "--json r.json ";
@@ -172,7 +160,7 @@ TEST(Streams, ClippingToReachLeavesTheForceAndMostPointsOut) {
 TEST(Streams, PredictionChangesWhatMovesAndIsOffUnlessAsked) {
   Shell shell;
   const std::string command =
-      "touch camera:simulated:approach,noise=a --simulated-time --duration 1 --log ";
+      "touch camera:simulated:approach,noise=a --simulated-time --duration 0.4 --log ";
   ASSERT_EQ(shell.run(command + "a.csv").code, 0);
   shell.write("no.toml", "[stream]\npredict = false\n");
   ASSERT_EQ(shell.run(command + "b.csv --setup no.toml").code, 0);

@@ -10,12 +10,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDepth = 0.003;
+constexpr double kFrictionDepth = 0.003;
 
 Proxy pressed(const Field& field, const Friction& friction) {
   Proxy proxy{{.friction = friction}};
   proxy.reset({0, 0, 0.01});
-  drive(proxy, field, {0, 0, 0.01}, {0, 0, -kDepth}, 0.1);
+  drive(proxy, field, {0, 0, 0.01}, {0, 0, -kFrictionDepth}, 0.1);
   return proxy;
 }
 
@@ -25,7 +25,7 @@ TEST_P(Drag, TangentialForceIsMuTimesNormalForce) {
   const auto [mu, speed] = GetParam();
   const PlaneField plane;
   Proxy proxy = pressed(plane, {.static_coefficient = mu, .dynamic_coefficient = mu});
-  const Vector3d from(0, 0, -kDepth);
+  const Vector3d from(0, 0, -kFrictionDepth);
   const Vector3d along = Vector3d(3, 4, 0) / 5;
   drive(proxy, plane, from, from + 0.02 * along, speed);
   drive(proxy, plane, from + 0.02 * along, from + 0.1 * along, speed,
@@ -43,15 +43,16 @@ TEST(Friction, HoldsBelowTheStaticLimitAndGivesWayAboveIt) {
   const PlaneField plane;
   const Friction friction{.static_coefficient = 0.5, .dynamic_coefficient = 0.3};
   Proxy proxy = pressed(plane, friction);
-  const double limit = 0.5 * kDepth;
-  Contact held = drive(proxy, plane, {0, 0, -kDepth}, {0.999 * limit, 0, -kDepth}, 0.01);
-  held = rest(proxy, plane, {0.999 * limit, 0, -kDepth}, 500);
+  const double limit = 0.5 * kFrictionDepth;
+  Contact held =
+      drive(proxy, plane, {0, 0, -kFrictionDepth}, {0.999 * limit, 0, -kFrictionDepth}, 0.01);
+  held = rest(proxy, plane, {0.999 * limit, 0, -kFrictionDepth}, 500);
   EXPECT_FALSE(held.sliding);
   EXPECT_EQ(held.proxy.x(), 0);
-  const Contact slid = proxy.step(plane, {1.001 * limit, 0, -kDepth}, kTick);
+  const Contact slid = proxy.step(plane, {1.001 * limit, 0, -kFrictionDepth}, kTick);
   EXPECT_TRUE(slid.sliding);
   EXPECT_NEAR(-slid.force.x() / slid.force.z(), 0.3, 1e-3);
-  const Contact stuck = proxy.step(plane, {1.001 * limit, 0, -kDepth}, kTick);
+  const Contact stuck = proxy.step(plane, {1.001 * limit, 0, -kFrictionDepth}, kTick);
   EXPECT_FALSE(stuck.sliding);
 }
 
@@ -65,7 +66,7 @@ double slips_at(double speed) {
   int slips = 0;
   bool was_sliding = false;
   for (int i = 0; i < kSteps; ++i) {
-    const Contact c = proxy.step(plane, {x, 0, -kDepth}, kTick);
+    const Contact c = proxy.step(plane, {x, 0, -kFrictionDepth}, kTick);
     EXPECT_LE(std::abs(c.force.x() / c.force.z()), 0.6 + 1e-9);
     slips += c.sliding && !was_sliding ? 1 : 0;
     was_sliding = c.sliding;
@@ -89,8 +90,9 @@ TEST(Friction, ViscousForceIsExactlyBTimesSpeed) {
   const PlaneField plane;
   for (const double b : {0.5, 2.0, 5.0, 50.0}) {
     Proxy proxy = pressed(plane, {.viscous = b});
-    drive(proxy, plane, {0, 0, -kDepth}, {0.1, 0, -kDepth}, 0.1);
-    const Contact c = drive(proxy, plane, {0.1, 0, -kDepth}, {0.2, 0, -kDepth}, 0.1);
+    drive(proxy, plane, {0, 0, -kFrictionDepth}, {0.1, 0, -kFrictionDepth}, 0.1);
+    const Contact c =
+        drive(proxy, plane, {0.1, 0, -kFrictionDepth}, {0.2, 0, -kFrictionDepth}, 0.1);
     EXPECT_NEAR(-c.force.x(), 0.1 * b, 1e-6 * b) << b;
   }
 }
@@ -98,7 +100,7 @@ TEST(Friction, ViscousForceIsExactlyBTimesSpeed) {
 TEST(Friction, ClosedLoopTakesWhatTheoryAsksAndGivesNothing) {
   const PlaneField plane;
   Proxy proxy = pressed(plane, {.static_coefficient = 0.5, .dynamic_coefficient = 0.5});
-  const Vector3d center(-0.02, 0, -kDepth);
+  const Vector3d center(-0.02, 0, -kFrictionDepth);
   const auto at = [&](int i) {
     const double angle = 2 * M_PI * i / 2000;
     return Vector3d(center + 0.02 * Vector3d(std::cos(angle), std::sin(angle), 0));
@@ -113,14 +115,15 @@ TEST(Friction, ClosedLoopTakesWhatTheoryAsksAndGivesNothing) {
   }
   // The proxy runs on a smaller circle than the hand: 1.5 mm behind it.
   const double circle = 2 * M_PI * std::sqrt(0.02 * 0.02 - 0.0015 * 0.0015);
-  EXPECT_NEAR(given, -0.5 * 500 * kDepth * circle, 2e-3 * 0.5 * 500 * kDepth * circle);
+  EXPECT_NEAR(given, -0.5 * 500 * kFrictionDepth * circle,
+              2e-3 * 0.5 * 500 * kFrictionDepth * circle);
 }
 
 TEST(Friction, MaterialFactorScalesIt) {
   PlaneField plane;
   plane.set_surface({.friction_factor = 0.5, .source = 0});
   Proxy proxy = pressed(plane, {.static_coefficient = 0.6, .dynamic_coefficient = 0.6});
-  const Contact c = drive(proxy, plane, {0, 0, -kDepth}, {0.02, 0, -kDepth}, 0.1);
+  const Contact c = drive(proxy, plane, {0, 0, -kFrictionDepth}, {0.02, 0, -kFrictionDepth}, 0.1);
   EXPECT_NEAR(-c.force.x() / c.force.z(), 0.3, 3e-4);
 }
 

@@ -11,14 +11,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStiffness = 500;
-const ProxyOptions kFine{.stiffness = kStiffness, .max_iterations = 200, .tangent_tolerance = 1e-5};
+constexpr double kClosestStiffness = 500;
+const ProxyOptions kFine{
+    .stiffness = kClosestStiffness, .max_iterations = 200, .tangent_tolerance = 1e-5};
 
 void expect_force(const Contact& contact, const Vector3d& closest, const Vector3d& hip,
                   double tolerance) {
   EXPECT_TRUE(contact.touching);
-  EXPECT_LT((contact.force - kStiffness * (closest - hip)).norm(), tolerance);
-  EXPECT_LT((contact.proxy - closest).norm(), tolerance / kStiffness);
+  EXPECT_LT((contact.force - kClosestStiffness * (closest - hip)).norm(), tolerance);
+  EXPECT_LT((contact.proxy - closest).norm(), tolerance / kClosestStiffness);
 }
 
 TEST(ClosestPoint, PlaneGivesKTimesDepthToMachinePrecision) {
@@ -26,7 +27,7 @@ TEST(ClosestPoint, PlaneGivesKTimesDepthToMachinePrecision) {
   Proxy proxy;
   proxy.reset({0, 0, 0.02});
   drive(proxy, plane, {0, 0, 0.02}, {0, 0, -0.003}, 0.1, [](const Vector3d& hip, const Contact& c) {
-    EXPECT_NEAR(c.force.z(), std::max(0.0, -kStiffness * hip.z()), 1e-12);
+    EXPECT_NEAR(c.force.z(), std::max(0.0, -kClosestStiffness * hip.z()), 1e-12);
     EXPECT_EQ(c.force.head<2>().norm(), 0);
     EXPECT_EQ(c.touching, hip.z() <= 0) << hip.z();
   });
@@ -52,7 +53,7 @@ TEST(ClosestPoint, CreepingHandFeelsNoDeadZone) {
   // 3 um a step: a third of 1e-3 R, where a plain tolerance would hold on and jump.
   drive(proxy, plane, {0, 0, -0.003}, {0.001, 0, -0.003}, 0.003,
         [](const Vector3d&, const Contact& c) {
-          EXPECT_LT(std::abs(c.force.x()), 1.01e-4 * 0.01 * kStiffness);
+          EXPECT_LT(std::abs(c.force.x()), 1.01e-4 * 0.01 * kClosestStiffness);
         });
 }
 
@@ -193,7 +194,8 @@ TEST(ClosestPoint, SingleStepLagsOnASphereWhereConvergedDoesNot) {
     double error = 0;
     drive(proxy, sphere, {0, 0, 0.03}, {0.03, 0, 0.005}, 1.0,
           [&](const Vector3d& h, const Contact& c) {
-            error = std::max(error, (c.force - kStiffness * (0.04 * h.normalized() - h)).norm());
+            error =
+                std::max(error, (c.force - kClosestStiffness * (0.04 * h.normalized() - h)).norm());
           });
     return error;
   };

@@ -9,12 +9,12 @@ namespace {
 
 const CameraModel kPlain{80, 60, {60, 62, 39.5, 29.5}, {}};
 const Distortion kBarrel{-0.25, 0.08, 0.001, -0.002, -0.01};
-const NoiseModel kMillimetre{{1e-3, 0, 0}, 1};
+const NoiseModel kMillimetreNoise{{1e-3, 0, 0}, 1};
 
 TEST(Undistort, LeavesImagesWithoutDistortionAlone) {
   std::vector<float> image(80 * 60, 1.5F);
   depth::Undistorter undistorter;
-  EXPECT_EQ(undistorter.undistort(kPlain, image, kMillimetre, {}), image.data());
+  EXPECT_EQ(undistorter.undistort(kPlain, image, kMillimetreNoise, {}), image.data());
 }
 
 TEST(Undistort, FollowsBrownAndConrady) {
@@ -38,7 +38,7 @@ TEST(Undistort, TakesEveryPixelFromWhereTheLensPutIt) {
         static_cast<float>(1 / rho(i % 80, i / 80)));  // NOLINT(bugprone-integer-division)
   }
   depth::Undistorter undistorter;
-  const float* out = undistorter.undistort(camera, image, kMillimetre, {});
+  const float* out = undistorter.undistort(camera, image, kMillimetreNoise, {});
   for (int v = 0; v < 60; ++v) {
     for (int u = 0; u < 80; ++u) {  // a barrel shows more than the image without distortion holds
       const auto at = depth::distort(kBarrel, (u - 39.5) / 60, (v - 29.5) / 62);
@@ -52,7 +52,7 @@ TEST(Undistort, IsEmptyWhereTheCameraSawNothing) {
   camera.distortion.k1 = 0.4;  // a pincushion's corners lie outside of the image
   const std::vector<float> image(80 * 60, 2.0F);
   depth::Undistorter undistorter;
-  const float* out = undistorter.undistort(camera, image, kMillimetre, {});
+  const float* out = undistorter.undistort(camera, image, kMillimetreNoise, {});
   EXPECT_EQ(out[0], 0);
   EXPECT_EQ(out[30 * 80 + 40], 2);
 }
@@ -62,7 +62,7 @@ TEST(Undistort, IsEmptyWhereTheModelFoldsBack) {
   camera.distortion.k1 = -1.5;  // grows no more from r = 0.47 on
   const std::vector<float> image(80 * 60, 2.0F);
   depth::Undistorter undistorter;
-  const float* out = undistorter.undistort(camera, image, kMillimetre, {});
+  const float* out = undistorter.undistort(camera, image, kMillimetreNoise, {});
   EXPECT_EQ(out[0], 0);
   EXPECT_EQ(out[30 * 80 + 5], 0);
   EXPECT_EQ(out[30 * 80 + 40], 2);
@@ -73,9 +73,9 @@ TEST(Undistort, NoticesAnotherCamera) {
   camera.distortion = kBarrel;
   std::vector<float> image(80 * 60, 1.0F);
   depth::Undistorter undistorter;
-  EXPECT_EQ(undistorter.undistort(camera, image, kMillimetre, {})[0], 1);
+  EXPECT_EQ(undistorter.undistort(camera, image, kMillimetreNoise, {})[0], 1);
   camera.distortion = {0.4, 0, 0, 0, 0};
-  EXPECT_EQ(undistorter.undistort(camera, image, kMillimetre, {})[0], 0);
+  EXPECT_EQ(undistorter.undistort(camera, image, kMillimetreNoise, {})[0], 0);
 }
 
 }  // namespace

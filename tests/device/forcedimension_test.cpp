@@ -26,7 +26,7 @@ std::unique_ptr<DeviceLink> open(const std::string& name = kName) {
   return std::make_unique<device::ForceDimensionLink>(device::parse_device_name(name));
 }
 
-std::string refusal(const std::string& name = kName) {
+std::string refused_dhd(const std::string& name = kName) {
   try {
     (void)open(name);
   } catch (const Error& error) {
@@ -130,22 +130,22 @@ TEST_F(ForceDimension, EndsWithoutAForceAndCloses) {
 }
 
 TEST_F(ForceDimension, SaysWhyThereIsNone) {
-  EXPECT_THAT(refusal("forcedimension,library=/none/libdhd.so.3"),
+  EXPECT_THAT(refused_dhd("forcedimension,library=/none/libdhd.so.3"),
               AllOf(HasSubstr("/none/libdhd.so.3"), HasSubstr("forcedimension.com"),
                     HasSubstr("palpate doctor")));
-  EXPECT_THAT(refusal("forcedimension,library=libdl.so.2"), HasSubstr("dhd"));
-  EXPECT_THAT(refusal("forcedimension:1,library=" + kLibrary), HasSubstr("1 found"));
-  EXPECT_THAT(refusal("forcedimension:x,library=" + kLibrary), HasSubstr("number"));
-  EXPECT_THAT(refusal(kName + ",profile=omego"), HasSubstr("omego"));
+  EXPECT_THAT(refused_dhd("forcedimension,library=libdl.so.2"), HasSubstr("dhd"));
+  EXPECT_THAT(refused_dhd("forcedimension:1,library=" + kLibrary), HasSubstr("1 found"));
+  EXPECT_THAT(refused_dhd("forcedimension:x,library=" + kLibrary), HasSubstr("number"));
+  EXPECT_THAT(refused_dhd(kName + ",profile=omego"), HasSubstr("omego"));
   EXPECT_FALSE(double_.is_open());
   double_.flag("fake_busy", true);
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("in use"), HasSubstr("other programs")));
+  EXPECT_THAT(refused_dhd(), AllOf(HasSubstr("in use"), HasSubstr("other programs")));
   double_.flag("fake_busy", false);
   double_.flag("fake_calibrated", false);
-  EXPECT_THAT(refusal(), HasSubstr("not calibrated"));
+  EXPECT_THAT(refused_dhd(), HasSubstr("not calibrated"));
   EXPECT_FALSE(double_.is_open());
   double_.flag("fake_plug", false);
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("0 found"), HasSubstr("Plug it in")));
+  EXPECT_THAT(refused_dhd(), AllOf(HasSubstr("0 found"), HasSubstr("Plug it in")));
 }
 
 // What each fault does to the force, in simulated time.

@@ -20,7 +20,7 @@ using Fault = FakeHardware::Fault;
 constexpr double kServoStep = 1e-3;  // of the servo, s
 constexpr double kTurn = 0.5e-3;     // of the device's thread, s
 constexpr double kReaction = 6e-3;   // within which the hardware has to be without a force, s
-const Vector3d kForce(0, 0, 2);      // N
+const Vector3d kLinkForce(0, 0, 2);  // N
 
 // A servo that pushes as soon as the hand is known, and a device's thread, in simulated time.
 class LinkedDeviceTest : public testing::Test {
@@ -41,7 +41,7 @@ class LinkedDeviceTest : public testing::Test {
   }
   void step() {
     state_ = device_->read();
-    device_->write(state_.status == DeviceStatus::ok ? kForce : Vector3d::Zero().eval());
+    device_->write(state_.status == DeviceStatus::ok ? kLinkForce : Vector3d::Zero().eval());
   }
   void run(double duration) {
     for (const double end = clock_.now() + duration; clock_.now() < end - 1e-9;) advance();
@@ -50,7 +50,7 @@ class LinkedDeviceTest : public testing::Test {
   void push() {
     run(0.02);
     ASSERT_EQ(state_.status, DeviceStatus::ok);
-    ASSERT_EQ(hardware_.force(), kForce);
+    ASSERT_EQ(hardware_.force(), kLinkForce);
     reasons_.clear();
   }
   // When the last force was there, from `start` on, s.
@@ -73,7 +73,7 @@ class LinkedDeviceTest : public testing::Test {
     hardware_.set(Fault::none);
     run(1.1);
     EXPECT_EQ(state_.status, DeviceStatus::ok);
-    EXPECT_EQ(hardware_.force(), kForce);
+    EXPECT_EQ(hardware_.force(), kLinkForce);
     EXPECT_EQ(device_->reason(), "");
   }
 
@@ -108,7 +108,7 @@ TEST_F(LinkedDeviceTest, TellsTheFirstPlaceAsSilentSoThatForcesBeginWhereTheHand
   const DeviceState first = device_->read();
   EXPECT_EQ(first.status, DeviceStatus::silent);
   EXPECT_EQ(first.position.x(), 0.03);
-  device_->write(kForce);
+  device_->write(kLinkForce);
   device_->turn();
   EXPECT_EQ(hardware_.force().norm(), 0) << "nobody knew where the hand was";
   EXPECT_EQ(device_->read().status, DeviceStatus::ok);
@@ -171,7 +171,7 @@ TEST_F(LinkedDeviceTest, BlocksForAWhile) {
   EXPECT_EQ(hardware_.force().norm(), 0) << "its watchdog";
   EXPECT_EQ(device_->losses(), 0u) << "it did answer";
   run(0.02);
-  EXPECT_EQ(hardware_.force(), kForce);
+  EXPECT_EQ(hardware_.force(), kLinkForce);
 }
 
 TEST_F(LinkedDeviceTest, SilenceIsToldAndEndsSoftlyForWhoeverComputesForces) {
@@ -203,7 +203,7 @@ TEST_F(LinkedDeviceTest, StuckServoIsNotFelt) {
   EXPECT_LE(pushed_for(start), kReaction);
   servo_runs_ = true;
   run(0.01);
-  EXPECT_EQ(hardware_.force(), kForce);
+  EXPECT_EQ(hardware_.force(), kLinkForce);
 }
 
 TEST_F(LinkedDeviceTest, ForceOfBeforeALossIsNotAppliedAfterIt) {
@@ -215,7 +215,7 @@ TEST_F(LinkedDeviceTest, ForceOfBeforeALossIsNotAppliedAfterIt) {
   hardware_.set(Fault::none);
   clock_.wait_until(clock_.now() + 1);
   device_->turn();  // opened again
-  device_->write(kForce);
+  device_->write(kLinkForce);
   device_->turn();
   EXPECT_EQ(hardware_.force().norm(), 0) << "it answers a place of before";
 }
@@ -242,7 +242,7 @@ TEST_F(LinkedDeviceTest, ForceThatIsNotFiniteIsAFailure) {
   EXPECT_LE(pushed_for(start), 2 * kServoStep);
   EXPECT_EQ(state_.status, DeviceStatus::failed);
   EXPECT_NE(device_->reason().find("not finite"), std::string::npos);
-  device_->write(kForce);
+  device_->write(kLinkForce);
   run(0.05);
   EXPECT_EQ(hardware_.force().norm(), 0) << "latched";
 }
@@ -276,7 +276,7 @@ TEST(LinkedDeviceThread, FollowsFaultsAndEnds) {
       DeviceState state;
       do {
         state = device.read();
-        device.write(kForce);
+        device.write(kLinkForce);
         static_cast<void>(device.reason());
         clock.wait_until(clock.now() + 0.2e-3);
       } while (state.status != wanted);

@@ -12,7 +12,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string refusal(const std::string& name) {
+std::string refused_name(const std::string& name) {
   test::MovedClock clock;
   try {
     (void)open_device(name, clock, {.threaded = false});
@@ -35,10 +35,11 @@ TEST(OpenDevice, OpensByName) {
 }
 
 TEST(OpenDevice, SaysWhatThereIs) {
-  EXPECT_THAT(refusal("phantom"), AllOf(HasSubstr("phantom"), HasSubstr("forcedimension[:N]"),
-                                        HasSubstr("openhaptics[:NAME]"), HasSubstr("haply[:ID]"),
-                                        HasSubstr("palpate devices")));
-  EXPECT_THAT(refusal(""), HasSubstr("no such device"));
+  EXPECT_THAT(
+      refused_name("phantom"),
+      AllOf(HasSubstr("phantom"), HasSubstr("forcedimension[:N]"), HasSubstr("openhaptics[:NAME]"),
+            HasSubstr("haply[:ID]"), HasSubstr("palpate devices")));
+  EXPECT_THAT(refused_name(""), HasSubstr("no such device"));
 }
 
 TEST(OpenDevice, KnowsNamesOfHardware) {

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "device/hand_clock.hpp"
 #include "palpate/device/scripted.hpp"
 #include "palpate/device/simulated.hpp"
 
@@ -11,12 +12,7 @@ namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-class HandClock final : public Clock {
- public:
-  [[nodiscard]] double now() const noexcept override { return time; }
-  double time = 1000;  // s
-};
+using test::HandClock;
 
 Trajectory straight(double duration) {
   return {{0, Vector3d::Zero()}, {duration, Vector3d(duration, 0, 0)}};

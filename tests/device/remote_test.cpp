@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "device/datagram_socket.hpp"
+#include "device/hand_clock.hpp"
 #include "device/remote_client.hpp"
 #include "palpate/base/error.hpp"
 
@@ -23,13 +24,8 @@ namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
+using test::HandClock;
 using test::RemoteClient;
-
-class HandClock final : public Clock {
- public:
-  [[nodiscard]] double now() const noexcept override { return time; }
-  double time = 50;  // s
-};
 
 class RemoteDeviceTest : public testing::Test {
  protected:

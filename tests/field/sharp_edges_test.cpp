@@ -132,7 +132,7 @@ TEST(SharpEdges, EveryInstructionSetGivesTheSameBits) {
   }
 }
 
-void expect_same(const Sample& a, const Sample& b, const Vector3d& x) {
+void expect_same_edges(const Sample& a, const Sample& b, const Vector3d& x) {
   EXPECT_EQ(a.value, b.value) << x.transpose();
   EXPECT_EQ(a.gradient, b.gradient) << x.transpose();
   EXPECT_EQ(a.height, b.height) << x.transpose();
@@ -144,9 +144,9 @@ TEST(SharpEdges, CreasesAndPlanesAreWhatTheyWere) {
   for (double a = -6e-3; a <= 8e-3; a += 0.9e-3) {
     for (double b = -6e-3; b <= 8e-3; b += 0.7e-3) {
       const Vector3d x(a, 0.4e-3, b);
-      expect_same(crease.sharp(x), crease.mean(x), x);
-      expect_same(flat.sharp(x), flat.mean(x), x);
-      expect_same(flat.sharp(x, -1), flat.mean(x, -1), x);
+      expect_same_edges(crease.sharp(x), crease.mean(x), x);
+      expect_same_edges(flat.sharp(x), flat.mean(x), x);
+      expect_same_edges(flat.sharp(x, -1), flat.mean(x, -1), x);
     }
   }
 }
@@ -164,7 +164,7 @@ TEST(SharpEdges, WhatIsConvexDependsOnTheSide) {
       const Sample back = turned_round.sharp(x, -1);
       EXPECT_EQ(front.value, back.value);
       EXPECT_EQ(front.gradient, back.gradient);
-      expect_same(seen_from_outside.sharp(x, -1), seen_from_outside.mean(x, -1), x);
+      expect_same_edges(seen_from_outside.sharp(x, -1), seen_from_outside.mean(x, -1), x);
       if (front.value != seen_from_outside.mean(x).value) ++sharpened;
     }
   }

@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const ReadDepthOptions kOptions{
+const ReadDepthOptions kDepthOptions{
     .camera = {.width = 0, .height = 0, .pinhole = {100, 200, 1, 0.5}, .distortion = {.k1 = 0.1}}};
 
 std::string pgm(int width, int height, const std::vector<std::uint16_t>& values,
@@ -26,11 +26,11 @@ std::string pgm(int width, int height, const std::vector<std::uint16_t>& values,
   return bytes;
 }
 
-DepthFrame read(const std::string& bytes, const ReadDepthOptions& options = kOptions) {
+DepthFrame read(const std::string& bytes, const ReadDepthOptions& options = kDepthOptions) {
   return read_depth_frame_bytes(std::as_bytes(std::span(bytes)), "a", options);
 }
 
-std::string refusal_of(const std::string& bytes, const ReadDepthOptions& options = kOptions) {
+std::string refusal_of(const std::string& bytes, const ReadDepthOptions& options = kDepthOptions) {
   try {
     (void)read(bytes, options);
   } catch (const Error& error) {
@@ -60,16 +60,16 @@ TEST(ReadDepth, GivesMetresAndTheCamera) {
 }
 
 TEST(ReadDepth, HonoursUnitAndInvalidValues) {
-  ReadDepthOptions options = kOptions;
+  ReadDepthOptions options = kDepthOptions;
   options.depth_unit = 2e-4;
   options.invalid = {7, 9};
   EXPECT_THAT(read(pgm(4, 1, {7, 8, 9, 5000}), options).depth, ElementsAre(0, 1.6e-3F, 0, 1.0F));
-  EXPECT_THAT(read("P5 3 1 1000\n" + std::string("\x3\xe7\x3\xe8\x3\xe9"), kOptions).depth,
+  EXPECT_THAT(read("P5 3 1 1000\n" + std::string("\x3\xe7\x3\xe8\x3\xe9"), kDepthOptions).depth,
               ElementsAre(0.999F, 0, 0));
 }
 
 TEST(ReadDepth, LooksAtTheSize) {
-  ReadDepthOptions options = kOptions;
+  ReadDepthOptions options = kDepthOptions;
   options.camera.width = 3;
   options.camera.height = 1;
   EXPECT_EQ(read(pgm(3, 1, {1, 2, 3}), options).depth.size(), 3u);
@@ -79,10 +79,10 @@ TEST(ReadDepth, LooksAtTheSize) {
 
 TEST(ReadDepth, AsksForCameraAndUnit) {
   EXPECT_THAT(refusal_of(pgm(1, 1, {1}), {}), HasSubstr("the camera is not known"));
-  ReadDepthOptions options = kOptions;
+  ReadDepthOptions options = kDepthOptions;
   options.depth_unit = -1;
   EXPECT_THAT(refusal_of(pgm(1, 1, {1}), options), HasSubstr("depth unit"));
-  options = kOptions;
+  options = kDepthOptions;
   options.camera.pinhole.cx = std::nan("");
   EXPECT_THAT(refusal_of(pgm(1, 1, {1}), options), HasSubstr("those of no camera"));
 }
@@ -96,7 +96,7 @@ TEST(ReadDepth, RefusesWhatIsNoDepthImage) {
 TEST(ReadDepth, FindsSwappedBytes) {
   const std::string swapped = pgm(64, 64, plane(), std::endian::little);
   EXPECT_THAT(refusal_of(swapped), HasSubstr("exchanged"));
-  ReadDepthOptions options = kOptions;
+  ReadDepthOptions options = kDepthOptions;
   options.swapped = true;
   const DepthFrame right = read(pgm(64, 64, plane()));
   EXPECT_EQ(read(swapped, options).depth, right.depth);
@@ -118,7 +118,7 @@ TEST(ReadDepth, TakesCoarseAndNoisyImagesForRightOnes) {
 TEST(ReadDepth, AFrameThatCannotBeReadLeavesTheOldOne) {
   DepthFrame frame = read(pgm(2, 1, {1, 2}));
   const DepthFrame before = frame;
-  EXPECT_THROW(read_depth_frame("/absent.png", kOptions, frame), Error);
+  EXPECT_THROW(read_depth_frame("/absent.png", kDepthOptions, frame), Error);
   EXPECT_EQ(frame.depth, before.depth);
 }
 
@@ -131,7 +131,8 @@ TEST(ReadDepth, TakesEveryRealImage) {
     const bool depth = entry.path().string().find("depth") != std::string::npos;
     if (!depth || entry.path().extension() != ".png") continue;
     if (++images % 10 != 0) continue;
-    EXPECT_EQ(read_depth_frame(entry.path(), kOptions).depth.size(), 640u * 480u) << entry.path();
+    EXPECT_EQ(read_depth_frame(entry.path(), kDepthOptions).depth.size(), 640u * 480u)
+        << entry.path();
   }
   EXPECT_GT(images, 100u);
 }

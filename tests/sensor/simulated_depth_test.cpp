@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr CameraModel kCamera{160, 120, {131, 130, 79.5, 59.5}, {}};
+constexpr CameraModel kSmallCamera{160, 120, {131, 130, 79.5, 59.5}, {}};
 
 Vector3d ray_of(const CameraModel& camera, std::size_t pixel) {
   const int u = static_cast<int>(pixel) % camera.width;
@@ -47,11 +47,11 @@ TEST(DepthRenderer, AgreesWithSphereTracing) {
     const SimulatedTable table = make_simulated_table(layout);
     const std::vector<Solid> solids = solids_at(table.scene, 0);
     std::vector<float> depth;
-    DepthRenderer(kCamera).render(solids, table.T_world_camera, depth);
+    DepthRenderer(kSmallCamera).render(solids, table.T_world_camera, depth);
     ASSERT_EQ(depth.size(), 160u * 120u);
     int beyond = 0;
     for (std::size_t i = 0; i < depth.size(); ++i) {
-      const double exact = traced(solids, table.T_world_camera, ray_of(kCamera, i));
+      const double exact = traced(solids, table.T_world_camera, ray_of(kSmallCamera, i));
       if (std::abs(depth[i] - exact) > 1e-5) ++beyond;  // rays that graze
     }
     EXPECT_LE(beyond, 2);
@@ -65,7 +65,7 @@ TEST(DepthRenderer, SeesNothingBehindItBeyondItsReachOrFromWithin) {
     return ball;
   };
   std::vector<float> depth;
-  const DepthRenderer renderer(kCamera, 2.0);
+  const DepthRenderer renderer(kSmallCamera, 2.0);
   for (const double z : {-0.5, 0.0, 0.05, 3.0}) {
     const std::vector<Solid> solids = {at(z)};
     renderer.render(solids, Eigen::Isometry3d::Identity(), depth);
@@ -79,7 +79,7 @@ TEST(DepthRenderer, SeesNothingBehindItBeyondItsReachOrFromWithin) {
 
 // Points seen through a distorting lens lie on the surface when its distortion is applied again.
 TEST(DepthRenderer, BendsRaysAsTheLensDoes) {
-  CameraModel camera = kCamera;
+  CameraModel camera = kSmallCamera;
   camera.distortion = {0.1, -0.05, 0.002, -0.001, 0.01};
   const Distortion& d = camera.distortion;
   Solid ball{SolidKind::ball, Eigen::Isometry3d::Identity(), Vector3d::Constant(0.3)};
@@ -107,7 +107,7 @@ TEST(DepthRenderer, BendsRaysAsTheLensDoes) {
 
 TEST(DepthRenderer, RefusesACameraWithoutPixelsAndAWildLens) {
   EXPECT_THROW(DepthRenderer(CameraModel{}), Error);
-  CameraModel camera = kCamera;
+  CameraModel camera = kSmallCamera;
   camera.distortion.k1 = -50;
   EXPECT_THROW(DepthRenderer{camera}, Error);
 }

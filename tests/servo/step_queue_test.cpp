@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-ServoState numbered(std::uint64_t number) {
+ServoState step_of_number(std::uint64_t number) {
   ServoState state;
   state.step = number;
   state.patch_points = number;
@@ -19,11 +19,11 @@ ServoState numbered(std::uint64_t number) {
 TEST(StepQueue, GivesStepsInOrderAndCountsThoseThatFoundNoRoom) {
   StepQueue queue(3);  // four
   EXPECT_FALSE(queue.pop());
-  for (std::uint64_t i = 1; i <= 6; ++i) EXPECT_EQ(queue.push(numbered(i)), i <= 4);
+  for (std::uint64_t i = 1; i <= 6; ++i) EXPECT_EQ(queue.push(step_of_number(i)), i <= 4);
   EXPECT_EQ(queue.dropped(), 2u);
   for (std::uint64_t i = 1; i <= 4; ++i) EXPECT_EQ(queue.pop()->step, i);
   EXPECT_FALSE(queue.pop());
-  EXPECT_TRUE(queue.push(numbered(7)));
+  EXPECT_TRUE(queue.push(step_of_number(7)));
   EXPECT_EQ(queue.pop()->step, 7u);
 }
 
@@ -32,7 +32,7 @@ TEST(StepQueue, LosesAndTearsNothingBetweenTwoThreads) {
   const auto count = static_cast<std::uint64_t>(test::effort(100'000));
   std::jthread servo([&](const std::stop_token& stop) {
     for (std::uint64_t i = 1; i <= count; ++i) {
-      while (!queue.push(numbered(i)) && !stop.stop_requested()) std::this_thread::yield();
+      while (!queue.push(step_of_number(i)) && !stop.stop_requested()) std::this_thread::yield();
     }
   });
   for (std::uint64_t i = 1; i <= count; ++i) {

@@ -52,15 +52,15 @@ std::string loaded(const std::string& name) {
 
 // What libraries print is not the doctor's.
 void be_silent() {
-  const int nowhere = open("/dev/null", O_RDWR);
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
+  const int nowhere = ::open("/dev/null", O_RDWR);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
 }
 
 [[noreturn]] void load_and_tell(const std::string& name, int pipe) {
   be_silent();
-  alarm(kPatience);
+  ::alarm(kPatience);
   const std::string told = loaded(name);
-  const ssize_t written = write(pipe, told.data(), told.size());
+  const ssize_t written = ::write(pipe, told.data(), told.size());
   _exit(written < 0 ? 1 : 0);
 }
 
@@ -68,7 +68,7 @@ std::string read_all(int pipe) {
   std::string told;
   std::array<char, 512> part;
   for (;;) {
-    const ssize_t count = read(pipe, part.data(), part.size());
+    const ssize_t count = ::read(pipe, part.data(), part.size());
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return told;
     told.append(part.data(), static_cast<std::size_t>(count));
@@ -90,9 +90,9 @@ LibraryTrial try_library(const std::string& name) {
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Error("doctor: no pipe; end other programs");
   const pid_t child = fork();
   if (child == 0) load_and_tell(name, ends[1]);
-  close(ends[1]);
+  ::close(ends[1]);
   const std::string told = child > 0 ? read_all(ends[0]) : "";
-  close(ends[0]);
+  ::close(ends[0]);
   if (child < 0) throw Error("doctor: the system gives no process; end other programs");
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

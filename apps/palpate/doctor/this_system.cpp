@@ -29,8 +29,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kPeriod = 1e-3;  // s
-constexpr int kPatience = 300;    // ms, until a service has taken a connection
+constexpr double kJitterPeriod = 1e-3;  // s
+constexpr int kServicePatience = 300;   // ms, until a service has taken a connection
 
 std::map<std::string, std::string> environment() {
   std::map<std::string, std::string> variables;
@@ -68,7 +68,7 @@ void keep_time(double seconds, RealtimeTrial& trial) {
   SteadyWaitingClock clock;
   Histogram lateness;
   const double start = clock.now();
-  Deadlines deadlines(start, kPeriod);
+  Deadlines deadlines(start, kJitterPeriod);
   while (deadlines.next() < start + seconds) {
     clock.wait_until(deadlines.next());
     lateness.add(deadlines.begin(clock.now()));
@@ -111,7 +111,7 @@ bool listens(int port) {
   pollfd waiting{.fd = socket, .events = POLLOUT, .revents = 0};
   int error = 1;
   socklen_t size = sizeof error;
-  if (begun && poll(&waiting, 1, kPatience) == 1) {
+  if (begun && poll(&waiting, 1, kServicePatience) == 1) {
     getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size);
   }
   close(socket);

@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kGone = 1e-9;
+constexpr double kNoWeight = 1e-9;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void LayerHistory::age(const Moment& moment) {
     layer.weight_start += u * (layer.weight_end - layer.weight_start);
   }
   std::erase_if(layers_, [](const Layer& layer) {
-    return layer.weight_start <= kGone && layer.weight_end <= kGone;
+    return layer.weight_start <= kNoWeight && layer.weight_end <= kNoWeight;
   });
 }
 
