@@ -104,17 +104,18 @@ std::string camera_named(const std::string& frame, const std::vector<ChosenSourc
     if (has_camera(source)) cameras.push_back(source.argument.name);
     if (source.argument.name != frame) continue;
     if (has_camera(source)) return frame;
-    throw UsageError(fmt::format(
-        "frame={}: it is a cloud, which no camera looks at; leave it out for the world's axes",
-        frame));
+    throw UsageError(
+        fmt::format("--device: frame={}: it is a cloud, which no camera looks at; leave it out for "
+                    "the world's axes",
+                    frame));
   }
   if (frame == kTheCamera && cameras.size() == 1) return cameras.front();
   if (cameras.empty()) {
-    throw UsageError(
-        fmt::format("frame={}: there is no camera; leave it out for the world's axes", frame));
+    throw UsageError(fmt::format(
+        "--device: frame={}: there is no camera; leave it out for the world's axes", frame));
   }
-  throw UsageError(
-      fmt::format("frame={}: name one of the cameras: {}", frame, fmt::join(cameras, ", ")));
+  throw UsageError(fmt::format("--device: frame={}: name one of the cameras: {}", frame,
+                               fmt::join(cameras, ", ")));
 }
 
 void apply(const DeviceStand& stand, const std::string& camera, const Scene& scene,

@@ -79,6 +79,45 @@ TEST(HandsProgram, AnotherProgramsHandFeelsTheSurface) {
   EXPECT_EQ(columns(shell.read("forces.csv"))["fz"].size(), report["steps"]);
 }
 
+// It presses the tool into the plane, goes up with the clutch held, and feels the plane there.
+TEST(HandsProgram, AClutchTakesTheSurfaceToTheHand) {
+  constexpr double kHigh = 50e-3;
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  const auto run = shell.start(
+      "touch plane.xyz --scale 2 --viewpoint 0,0,1 --stiffness 500 --json run.json --device "
+      "remote:hand,clutch=2,offset=0/0/0.001");
+  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 1: listens on hand"); }));
+  test::RemoteClient client(shell.path("hand"), shell.path("client"));
+  EXPECT_TRUE(arrives(client, kAbove));
+  EXPECT_TRUE(presses_and_feels(client, -5e-3, 0.8)) << "2 mm deep, 1 N";
+  client.packet().buttons = 1u << 2;
+  const auto felt_at = [&](double z, auto good) {
+    return until([&] {
+      client.say(z);
+      const auto heard = client.hear();
+      return heard && good(heard->z);
+    });
+  };
+  EXPECT_TRUE(felt_at(-5e-3, [](double force) { return force == 0; })) << "pressed all the same";
+  EXPECT_TRUE(felt_at(kHigh, [](double force) { return force == 0; }));
+  EXPECT_TRUE(until([&] {
+    client.say(kHigh);
+    return contains(shell.read("stderr"), "clutch held: the hand moves freely");
+  }));
+  client.packet().buttons = 0;
+  int step = 0;
+  EXPECT_TRUE(until([&] {
+    client.say(kHigh - 1.5e-3 * (1 - std::cos(1e-2 * ++step)));
+    return client.hear().value_or(test::RemoteClient::Heard{0, 0}).z > 0.8;
+  }));
+  EXPECT_EQ(run->interrupt(), 0) << shell.read("stderr");
+  const Json report = Json::parse(shell.read("run.json"));
+  EXPECT_EQ(report["device"]["clutch_button"], 2);
+  EXPECT_NEAR(report["device"]["origin_m"][2], 3e-3, 2e-4);
+  EXPECT_LT(report["energy_given_to_hand_J"], 1e-5);
+}
+
 TEST(HandsProgram, ASilentDeviceSaysWhyAndEndsWithTheDuration) {
   Shell shell;
   shell.write("plane.xyz", plane_xyz());
@@ -159,6 +198,10 @@ TEST(HandsProgram, RefusesDevicesThatCannotBeOrHaveNoUse) {
   const std::pair<const char*, const char*> cases[] = {
       {"--device falcon", "scripted, simulated, remote"},
       {"--device remote:", "remote:PATH"},
+      {"--device remote,frame=camera", "there is no camera"},
+      {"--device remote,frame=torus", "a cloud"},
+      {"--device remote,clutch=x", "clutch"},
+      {"--device scripted,scale=2", "leads"},
       {"--device remote --trajectory way.csv", "--trajectory leads"},
       {"--device remote --seed 2", "--seed"},
       {"--device remote --simulated-time", "real time"},

@@ -142,6 +142,8 @@ TEST(SetupFile, NamesOneDeviceOrOneForEachHand) {
   const std::string two = from + "device = [\"simulated\", \"remote:/tmp/hand\"]\n";
   EXPECT_EQ(parsed(shell, two, "").devices, (Devices{"simulated", "remote:/tmp/hand"}));
   EXPECT_EQ(parsed(shell, two, "--device scripted").devices, Devices{"scripted"});
+  const std::string stand = "haply:04EA,frame=left,scale=2,clutch=0";
+  EXPECT_EQ(parsed(shell, from + "device = \"" + stand + "\"\n", "").devices, Devices{stand});
 }
 
 TEST(SetupFile, EveryChoiceReachesTheLibrary) {

@@ -70,13 +70,14 @@ TEST_F(Haply, TellsTheHandAndAppliesTheForce) {
 }
 
 TEST_F(Haply, TellsHowItsGripIsHeld) {
-  const auto link = open();
+  auto link = open();
   EXPECT_TRUE(link->info().tells_orientation);
   EXPECT_FALSE(link->info().has_gripper);
   EXPECT_TRUE(
       link->exchange(kForce).orientation.isApprox(Eigen::Quaterniond(0.6, 0, -0.8, 0), 1e-12));
   service_.set(Fault::no_rotation);
   EXPECT_TRUE(link->exchange(kForce).orientation.isApprox(Eigen::Quaterniond::Identity(), 0));
+  link.reset();
   EXPECT_FALSE(open()->info().tells_orientation);
 }
 
