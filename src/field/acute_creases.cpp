@@ -5,8 +5,8 @@
 namespace palpate {
 namespace {
 
-constexpr double kDepth = 0.3;    // of R: more than the mean of two sheets is free behind either
-constexpr double kSquare = 0.5;   // |Nb|^2 where two sheets meet at 90 degrees
+constexpr double kDepth = 0.2;    // of R: twice what a scan's creases need, of two sheets' mean
+constexpr double kSquare = 0.7;   // |Nb|^2 where two equal sheets meet at 114 degrees
 constexpr double kHollow = 0.01;  // h from which on a surface is concave beyond doubt
 
 }  // namespace

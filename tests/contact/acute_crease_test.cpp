@@ -20,14 +20,23 @@ constexpr double kRadius = 5e-3;
 constexpr double kStiffness = 500;  // N/m
 constexpr double kDepth = 8e-3;     // of the hand, at most, m
 
-Sampling sampled(bool noisy) {
-  const Sampling exact{.spacing = 2e-3, .radius = kRadius, .jitter = 0.2};
-  return noisy ? Sampling{.spacing = 2e-3,
-                          .radius = kRadius,
-                          .jitter = 0.2,
-                          .noise = 0.1,
-                          .tilt = 0.1}
-               : exact;
+enum class Look { exact, noisy, uneven };  // uneven: the second sheet has a smaller R
+
+Sampling sampled(Look look, bool second = false) {
+  Sampling sampling{.spacing = 2e-3, .radius = kRadius, .jitter = 0.2};
+  if (look == Look::noisy) sampling.noise = sampling.tilt = 0.1;
+  if (look == Look::uneven && second) sampling.radius *= 0.8;
+  return sampling;
+}
+
+/// A floor and a wall, free between them.
+std::vector<TestPoint> crease(Look look, double angle) {
+  std::vector<TestPoint> points = wedge(sampled(look), angle, 30e-3);
+  const Vector3d wall(std::sin(angle), 0, -std::cos(angle));
+  for (TestPoint& p : points) {
+    if (p.normal.dot(wall) > 0.9) p.radius = sampled(look, true).radius;
+  }
+  return points;
 }
 
 /// What a hand met on its way.
@@ -74,12 +83,12 @@ void expect_held(const Found& found, double degrees, unsigned seed) {
   EXPECT_LT(found.deepest, 0.15 * kRadius) << degrees << " degrees, seed " << seed;
   EXPECT_EQ(found.lost, 0) << degrees << " degrees, seed " << seed;
   EXPECT_LT(found.turn, std::numbers::pi / 2) << degrees << " degrees, seed " << seed;
-  EXPECT_LT(found.jump, 0.8 * kStiffness * kDepth) << degrees << " degrees, seed " << seed;
+  EXPECT_LT(found.jump, kStiffness * kDepth) << degrees << " degrees, seed " << seed;
 }
 
 struct Case {
   FieldKind kind;
-  bool noisy;
+  Look look;
   bool two_sided;
 };
 
@@ -90,10 +99,10 @@ double uniform(std::mt19937& random, double from, double to) {
 }
 
 TEST_P(AcuteCrease, AHandNeverGetsBehindASheet) {
-  const auto [kind, noisy, two_sided] = GetParam();
+  const auto [kind, look, two_sided] = GetParam();
   for (const double degrees : {20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0}) {
     const double angle = degrees * std::numbers::pi / 180;
-    PointField points(wedge(sampled(noisy), angle, 30e-3), {.kind = kind, .two_sided = two_sided});
+    PointField points(crease(look, angle), {.kind = kind, .two_sided = two_sided});
     const auto behind = [&](const Vector3d& x) {
       return -std::min(x.z(), std::sin(angle) * x.x() - std::cos(angle) * x.z());
     };
@@ -129,10 +138,10 @@ struct Twins {
     const Vector3d center(x.x() < 0 ? -apart : apart, 0, 0);
     return rho - (x - center).norm();
   }
-  [[nodiscard]] std::vector<TestPoint> points(const Sampling& sampling) const {
+  [[nodiscard]] std::vector<TestPoint> points(Look look) const {
     std::vector<TestPoint> all;
     for (const double side : {-1.0, 1.0}) {
-      for (TestPoint p : ball(sampling, rho)) {
+      for (TestPoint p : ball(sampled(look, side > 0), rho)) {
         p.position.x() += side * apart;
         const bool near = p.position.z() > -5e-3 && std::abs(p.position.y()) < 35e-3;
         if (side * p.position.x() > 0 && near) all.push_back(p);
@@ -143,10 +152,10 @@ struct Twins {
 };
 
 TEST_P(AcuteCrease, AHandNeverGetsIntoAClosedObject) {
-  const auto [kind, noisy, two_sided] = GetParam();
+  const auto [kind, look, two_sided] = GetParam();
   for (const double degrees : {20.0, 40.0, 60.0, 90.0}) {
     const Twins twins(degrees * std::numbers::pi / 180);
-    PointField points(twins.points(sampled(noisy)), {.kind = kind, .two_sided = two_sided});
+    PointField points(twins.points(look), {.kind = kind, .two_sided = two_sided});
     const double waist = twins.rho * std::sin(degrees * std::numbers::pi / 360);
     const double depth = std::min(kDepth, 0.5 * waist);  // far from where a neck has another side
     const auto goal = [&](std::mt19937& random) -> Vector3d {
@@ -164,11 +173,13 @@ TEST_P(AcuteCrease, AHandNeverGetsIntoAClosedObject) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Of, AcuteCrease,
-    testing::Values(Case{FieldKind::balanced, false, true}, Case{FieldKind::balanced, true, true},
-                    Case{FieldKind::balanced, true, false}, Case{FieldKind::pointset, false, true},
-                    Case{FieldKind::pointset, true, true}, Case{FieldKind::pointset, true, false}));
+INSTANTIATE_TEST_SUITE_P(Of, AcuteCrease,
+                         testing::Values(Case{FieldKind::balanced, Look::exact, true},
+                                         Case{FieldKind::balanced, Look::noisy, true},
+                                         Case{FieldKind::balanced, Look::uneven, false},
+                                         Case{FieldKind::pointset, Look::exact, true},
+                                         Case{FieldKind::pointset, Look::noisy, false},
+                                         Case{FieldKind::pointset, Look::uneven, true}));
 
 }  // namespace
 }  // namespace palpate::test

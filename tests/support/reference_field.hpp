@@ -226,7 +226,7 @@ class ReferenceField final : public Field {
     const DualVector a = s.q / s.trusted;
     const DualVector n = s.n / s.trusted;
     const Dual hollow = sign * ((dot(n, a) - s.nq / s.trusted) / radius);
-    return 0.3 * radius * smooth(constant(1) - 2 * dot(n, n)) * smooth(100 * hollow);
+    return 0.2 * radius * smooth(constant(1) - (1 / 0.7) * dot(n, n)) * smooth(100 * hollow);
   }
 
   /// u^2 (3 - 2u), u within 0 and 1.
