@@ -5,15 +5,15 @@
 namespace palpate {
 namespace {
 
-constexpr double kDepth = 0.2;    // of R: twice what a scan's creases need, of two sheets' mean
-constexpr double kSquare = 0.7;   // |Nb|^2 where two equal sheets meet at 114 degrees
+constexpr double kClosed = 0.2;   // of R; half of it closes a scan's creases, not all of two sheets
+constexpr double kFacing = 0.7;   // |Nb|^2 where two equal sheets meet at 114 degrees
 constexpr double kHollow = 0.01;  // h from which on a surface is concave beyond doubt
 
 }  // namespace
 
 Value crease_closure(const FieldPlace& place) noexcept {
   const Oriented square = normal_square(*place.sums);
-  const SmoothStep facing = smooth_step(kSquare - square.f, 0, kSquare);
+  const SmoothStep facing = smooth_step(kFacing - square.f, 0, kFacing);
   if (facing.value <= 0) return {};
   const Oriented bulge = convexity(*place.sums);
   const Value& radius = place.radius;
@@ -29,8 +29,8 @@ Value crease_closure(const FieldPlace& place) noexcept {
   double sum[3];
   place.functions->gradient(*place.columns, place.x, share.b, sum);
   const double closed = facing.value * hollow.value;
-  return {kDepth * radius.f * closed,
-          kDepth * (radius.f * (share.base + vector(sum)) + (closed - by_h * h) * radius.grad)};
+  return {kClosed * radius.f * closed,
+          kClosed * (radius.f * (share.base + vector(sum)) + (closed - by_h * h) * radius.grad)};
 }
 
 }  // namespace palpate

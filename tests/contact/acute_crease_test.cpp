@@ -16,21 +16,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadius = 5e-3;
-constexpr double kStiffness = 500;  // N/m
-constexpr double kDepth = 8e-3;     // of the hand, at most, m
+constexpr double kCreaseRadius = 5e-3;
+constexpr double kCreaseStiffness = 500;  // N/m
+constexpr double kPressDepth = 8e-3;      // of the hand, at most, m
 
-enum class Look { exact, noisy, uneven };  // uneven: the second sheet has a smaller R
+enum class CreaseLook { exact, noisy, uneven };  // uneven: the second sheet has a smaller R
 
-Sampling sampled(Look look, bool second = false) {
-  Sampling sampling{.spacing = 2e-3, .radius = kRadius, .jitter = 0.2};
-  if (look == Look::noisy) sampling.noise = sampling.tilt = 0.1;
-  if (look == Look::uneven && second) sampling.radius *= 0.8;
+Sampling sampled(CreaseLook look, bool second = false) {
+  Sampling sampling{.spacing = 2e-3, .radius = kCreaseRadius, .jitter = 0.2};
+  if (look == CreaseLook::noisy) sampling.noise = sampling.tilt = 0.1;
+  if (look == CreaseLook::uneven && second) sampling.radius *= 0.8;
   return sampling;
 }
 
 /// A floor and a wall, free between them.
-std::vector<TestPoint> crease(Look look, double angle) {
+std::vector<TestPoint> crease(CreaseLook look, double angle) {
   std::vector<TestPoint> points = wedge(sampled(look), angle, 30e-3);
   const Vector3d wall(std::sin(angle), 0, -std::cos(angle));
   for (TestPoint& p : points) {
@@ -40,7 +40,7 @@ std::vector<TestPoint> crease(Look look, double angle) {
 }
 
 /// What a hand met on its way.
-struct Found {
+struct Pressed {
   double deepest = 0;  // of the proxy, behind the true surface, m
   double turn = 0;     // of the force from one tick to the next, rad
   double jump = 0;     // of the force, N
@@ -51,15 +51,15 @@ struct Found {
 /// Straight ways at 0.1 m/s from `start` to places that `goal` draws; `depth` says how far behind
 /// the true surface a place is.
 template <class Goal, class Depth>
-Found press(PointField& points, const Vector3d& start, unsigned seed, int ticks, const Goal& goal,
-            const Depth& depth) {
+Pressed press(PointField& points, const Vector3d& start, unsigned seed, int ticks, const Goal& goal,
+              const Depth& depth) {
   std::mt19937 random(seed);
-  Proxy proxy({.stiffness = kStiffness});
+  Proxy proxy({.stiffness = kCreaseStiffness});
   proxy.reset(start);
   Vector3d hip = start;
   Vector3d next = start;
   Vector3d before = Vector3d::Zero();
-  Found found;
+  Pressed found;
   for (int i = 0; i < ticks; ++i) {
     if ((next - hip).norm() < 1e-9) next = goal(random);
     const Vector3d way = next - hip;
@@ -79,22 +79,22 @@ Found press(PointField& points, const Vector3d& start, unsigned seed, int ticks,
 }
 
 /// A right angle's surface lies 0.13 R behind its sheets, as it is rounded.
-void expect_held(const Found& found, double degrees, unsigned seed) {
-  EXPECT_LT(found.deepest, 0.15 * kRadius) << degrees << " degrees, seed " << seed;
+void expect_held(const Pressed& found, double degrees, unsigned seed) {
+  EXPECT_LT(found.deepest, 0.15 * kCreaseRadius) << degrees << " degrees, seed " << seed;
   EXPECT_EQ(found.lost, 0) << degrees << " degrees, seed " << seed;
   EXPECT_LT(found.turn, std::numbers::pi / 2) << degrees << " degrees, seed " << seed;
-  EXPECT_LT(found.jump, kStiffness * kDepth) << degrees << " degrees, seed " << seed;
+  EXPECT_LT(found.jump, kCreaseStiffness * kPressDepth) << degrees << " degrees, seed " << seed;
 }
 
-struct Case {
+struct CreaseCase {
   FieldKind kind;
-  Look look;
+  CreaseLook look;
   bool two_sided;
 };
 
-class AcuteCrease : public testing::TestWithParam<Case> {};
+class AcuteCrease : public testing::TestWithParam<CreaseCase> {};
 
-double uniform(std::mt19937& random, double from, double to) {
+double between(std::mt19937& random, double from, double to) {
   return std::uniform_real_distribution<double>(from, to)(random);
 }
 
@@ -108,17 +108,17 @@ TEST_P(AcuteCrease, AHandNeverGetsBehindASheet) {
     };
     // Into either sheet, or past the crease.
     const auto goal = [&](std::mt19937& random) -> Vector3d {
-      const double out = uniform(random, 0, 1) < 0.3 ? 0 : uniform(random, 0, 25e-3);
-      const double at = uniform(random, 0, angle);
-      const double way = uniform(random, 0, 2 * std::numbers::pi);
-      const double deep = uniform(random, 0, kDepth);
-      const double y = uniform(random, -15e-3, 15e-3);
+      const double out = between(random, 0, 1) < 0.3 ? 0 : between(random, 0, 25e-3);
+      const double at = between(random, 0, angle);
+      const double way = between(random, 0, 2 * std::numbers::pi);
+      const double deep = between(random, 0, kPressDepth);
+      const double y = between(random, -15e-3, 15e-3);
       return {out * std::cos(at) + deep * std::cos(way), y,
               out * std::sin(at) + deep * std::sin(way)};
     };
     const Vector3d start(30e-3 * std::cos(angle / 2), 0, 30e-3 * std::sin(angle / 2));
     for (unsigned seed = 1; seed <= 3; ++seed) {
-      const Found found = press(points, start, seed, effort(4000), goal, behind);
+      const Pressed found = press(points, start, seed, effort(4000), goal, behind);
       expect_held(found, degrees, seed);
       EXPECT_GT(found.touching, effort(4000) / 10);
     }
@@ -138,7 +138,7 @@ struct Twins {
     const Vector3d center(x.x() < 0 ? -apart : apart, 0, 0);
     return rho - (x - center).norm();
   }
-  [[nodiscard]] std::vector<TestPoint> points(Look look) const {
+  [[nodiscard]] std::vector<TestPoint> points(CreaseLook look) const {
     std::vector<TestPoint> all;
     for (const double side : {-1.0, 1.0}) {
       for (TestPoint p : ball(sampled(look, side > 0), rho)) {
@@ -157,16 +157,17 @@ TEST_P(AcuteCrease, AHandNeverGetsIntoAClosedObject) {
     const Twins twins(degrees * std::numbers::pi / 180);
     PointField points(twins.points(look), {.kind = kind, .two_sided = two_sided});
     const double waist = twins.rho * std::sin(degrees * std::numbers::pi / 360);
-    const double depth = std::min(kDepth, 0.5 * waist);  // far from where a neck has another side
+    const double depth =
+        std::min(kPressDepth, 0.5 * waist);  // far from where a neck has another side
     const auto goal = [&](std::mt19937& random) -> Vector3d {
-      const double x = uniform(random, -depth, depth);
-      const double angle = uniform(random, -0.5, 0.5);
-      const double out = waist + uniform(random, -depth, depth);
+      const double x = between(random, -depth, depth);
+      const double angle = between(random, -0.5, 0.5);
+      const double out = waist + between(random, -depth, depth);
       return {x, out * std::sin(angle), out * std::cos(angle)};
     };
     const auto inside = [&](const Vector3d& x) { return twins.inside(x); };
     for (unsigned seed = 1; seed <= 3; ++seed) {
-      const Found found = press(points, {0, 0, 50e-3}, seed, effort(4000), goal, inside);
+      const Pressed found = press(points, {0, 0, 50e-3}, seed, effort(4000), goal, inside);
       expect_held(found, degrees, seed);
       EXPECT_GT(found.touching, effort(4000) / 10);
     }
@@ -174,12 +175,13 @@ TEST_P(AcuteCrease, AHandNeverGetsIntoAClosedObject) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, AcuteCrease,
-                         testing::Values(Case{FieldKind::balanced, Look::exact, true},
-                                         Case{FieldKind::balanced, Look::noisy, true},
-                                         Case{FieldKind::balanced, Look::uneven, false},
-                                         Case{FieldKind::pointset, Look::exact, true},
-                                         Case{FieldKind::pointset, Look::noisy, false},
-                                         Case{FieldKind::pointset, Look::uneven, true}));
+                         testing::Values(CreaseCase{FieldKind::balanced, CreaseLook::exact, true},
+                                         CreaseCase{FieldKind::balanced, CreaseLook::noisy, true},
+                                         CreaseCase{FieldKind::balanced, CreaseLook::uneven, false},
+                                         CreaseCase{FieldKind::pointset, CreaseLook::exact, true},
+                                         CreaseCase{FieldKind::pointset, CreaseLook::noisy, false},
+                                         CreaseCase{FieldKind::pointset, CreaseLook::uneven,
+                                                    true}));
 
 }  // namespace
 }  // namespace palpate::test

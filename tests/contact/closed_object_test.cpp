@@ -32,8 +32,8 @@ double winding_number(const SurfacePoints& points, const Vector3d& x) {
 }
 
 /// The largest winding number at the proxy of a hand that explores the points.
-double deepest(Scene& scene, const SurfacePoints& points, const FieldOptions& options,
-               std::uint64_t seed) {
+double most_wound(Scene& scene, const SurfacePoints& points, const FieldOptions& options,
+                  std::uint64_t seed) {
   const ExploredSurface surface{points.origin, points.grid.points(), points.normals};
   const Trajectory path = explore(
       surface,
@@ -60,7 +60,8 @@ TEST(ClosedObject, ARabbitIsNeverEntered) {
     for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset}) {
       for (const bool two_sided : {true, false}) {
         for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(effort(6)); ++seed) {
-          const double most = deepest(scene, *points, {.kind = kind, .two_sided = two_sided}, seed);
+          const double most =
+              most_wound(scene, *points, {.kind = kind, .two_sided = two_sided}, seed);
           EXPECT_LT(most, 0.85) << "seed " << seed;
         }
       }

@@ -44,10 +44,10 @@ class Gathered {
   ImplicitSurface surface_{FieldOptions{}};
 };
 
-constexpr double kRadius = 8e-3;
+constexpr double kCreaseSupport = 8e-3;
 
 /// The place in the middle of a wedge, so far from where its sheets meet.
-Vector3d middle(double angle, double out) {
+Vector3d crease_middle(double angle, double out) {
   return {out * std::cos(angle / 2), 0.3e-3, out * std::sin(angle / 2)};
 }
 
@@ -55,13 +55,13 @@ TEST(AcuteCreases, AreClosedTheMoreTheNarrower) {
   double last = 0;
   for (const double degrees : {85.0, 75.0, 60.0, 45.0, 30.0, 15.0}) {
     const double angle = degrees * std::numbers::pi / 180;
-    const Gathered points(wedge(fine(kRadius), angle, 24e-3));
-    const double closure = points.closure(middle(angle, 0.5 * kRadius));
+    const Gathered points(wedge(fine(kCreaseSupport), angle, 24e-3));
+    const double closure = points.closure(crease_middle(angle, 0.5 * kCreaseSupport));
     EXPECT_GT(closure, last) << degrees;
-    EXPECT_LE(closure, 0.2 * kRadius) << degrees;
+    EXPECT_LE(closure, 0.2 * kCreaseSupport) << degrees;
     last = closure;
   }
-  EXPECT_GT(last, 0.15 * kRadius);
+  EXPECT_GT(last, 0.15 * kCreaseSupport);
 }
 
 TEST(AcuteCreases, NothingElseIsTouched) {
@@ -69,12 +69,12 @@ TEST(AcuteCreases, NothingElseIsTouched) {
   const struct {
     const char* name;
     std::vector<TestPoint> points;
-  } shapes[] = {{"plane", sheet(fine(kRadius), 24e-3)},
-                {"plate", plate(fine(kRadius), 24e-3, 1e-3)},
-                {"box", box(fine(kRadius), {16e-3, 16e-3, 2e-3})},
-                {"ridge", ridge(fine(kRadius), 24e-3)},
-                {"wide crease", wedge(fine(kRadius), wide, 24e-3)},
-                {"ball", ball(fine(kRadius), 12e-3)}};
+  } shapes[] = {{"plane", sheet(fine(kCreaseSupport), 24e-3)},
+                {"plate", plate(fine(kCreaseSupport), 24e-3, 1e-3)},
+                {"box", box(fine(kCreaseSupport), {16e-3, 16e-3, 2e-3})},
+                {"ridge", ridge(fine(kCreaseSupport), 24e-3)},
+                {"wide crease", wedge(fine(kCreaseSupport), wide, 24e-3)},
+                {"ball", ball(fine(kCreaseSupport), 12e-3)}};
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-12e-3, 12e-3);
   for (const auto& shape : shapes) {
@@ -88,9 +88,9 @@ TEST(AcuteCreases, NothingElseIsTouched) {
 
 TEST(AcuteCreases, FromTheirOtherSideTheyAreEdgesAndStay) {
   const double angle = std::numbers::pi / 6;
-  const Gathered points(wedge(fine(kRadius), angle, 24e-3));
-  for (double out = 0; out < 2 * kRadius; out += 0.25e-3) {
-    EXPECT_EQ(points.closure(middle(angle, out), -1), 0) << out;
+  const Gathered points(wedge(fine(kCreaseSupport), angle, 24e-3));
+  for (double out = 0; out < 2 * kCreaseSupport; out += 0.25e-3) {
+    EXPECT_EQ(points.closure(crease_middle(angle, out), -1), 0) << out;
   }
 }
 
@@ -98,12 +98,12 @@ TEST(AcuteCreases, BehindEitherSheetIsSolid) {
   for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset}) {
     for (double degrees = 15; degrees <= 90; degrees += 5) {
       const double angle = degrees * std::numbers::pi / 180;
-      const Gathered points(wedge(fine(kRadius), angle, 24e-3));
+      const Gathered points(wedge(fine(kCreaseSupport), angle, 24e-3));
       const Vector3d behind_wall(-std::sin(angle), 0, std::cos(angle));
-      for (double along = 0; along < 2 * kRadius; along += 0.5e-3) {
-        const Vector3d floor(along, 0.3e-3, -0.2 * kRadius);
+      for (double along = 0; along < 2 * kCreaseSupport; along += 0.5e-3) {
+        const Vector3d floor(along, 0.3e-3, -0.2 * kCreaseSupport);
         const Vector3d wall = Vector3d(along * std::cos(angle), 0.3e-3, along * std::sin(angle)) +
-                              0.2 * kRadius * behind_wall;
+                              0.2 * kCreaseSupport * behind_wall;
         EXPECT_LT(points.sample(floor, {.kind = kind}).value, 0) << degrees << ", " << along;
         EXPECT_LT(points.sample(wall, {.kind = kind}).value, 0) << degrees << ", " << along;
       }
@@ -112,7 +112,7 @@ TEST(AcuteCreases, BehindEitherSheetIsSolid) {
 }
 
 TEST(AcuteCreases, TheGradientIsExact) {
-  Sampling rough = fine(kRadius);
+  Sampling rough = fine(kCreaseSupport);
   rough.jitter = 0.2;
   rough.noise = 0.05;
   rough.tilt = 0.05;
