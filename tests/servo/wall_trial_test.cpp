@@ -107,9 +107,25 @@ TEST(WallTrial, EndsWhenSomethingIsWrong) {
   EXPECT_EQ(after({}, 1), WallTrialPhase::press);
   EXPECT_EQ(after({}, 60), WallTrialPhase::gave_up);
   EXPECT_EQ(after({.velocity = {0, 0.6, 0}}, 1), WallTrialPhase::too_fast);
-  EXPECT_EQ(after({.status = DeviceStatus::silent}, 1), WallTrialPhase::device_lost);
+  EXPECT_EQ(after({.status = DeviceStatus::silent}, 1), WallTrialPhase::rest) << "not heard yet";
+  EXPECT_EQ(after({.status = DeviceStatus::silent}, 60), WallTrialPhase::device_lost);
   EXPECT_EQ(after({.status = DeviceStatus::failed}, 1), WallTrialPhase::device_lost);
   EXPECT_EQ(after({.position = {0, 0, std::nan("")}}, 1), WallTrialPhase::device_lost);
+}
+
+TEST(WallTrial, EndsWhenTheDeviceFallsSilent) {
+  DeviceInfo info;
+  info.maximum_force = 8;
+  WallTrial trial(info);
+  DeviceState hand;
+  int i = 0;
+  for (; trial.state().phase == WallTrialPhase::rest; ++i) {
+    static_cast<void>(trial.step(hand, 1e-3 * i));
+  }
+  ASSERT_EQ(trial.state().phase, WallTrialPhase::press);
+  hand.status = DeviceStatus::silent;
+  EXPECT_EQ(trial.step(hand, 1e-3 * i), Vector3d::Zero());
+  EXPECT_EQ(trial.state().phase, WallTrialPhase::device_lost);
 }
 
 TEST(WallTrial, RefusesWhatCannotBeMeasured) {
