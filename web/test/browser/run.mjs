@@ -183,7 +183,7 @@ test("a link brings its settings, says what it cannot, and a link gives them bac
   await ready(page);
   const value = (key) => server.program.settings.find((one) => one.key === key).value;
   await until("set", () => value("stiffness") === 900 && value("texture") === true);
-  assert.match(await text(page, "#notices"), /weather = fine/);
+  await until("says so", async () => /weather = fine/.test(await text(page, "#notices")));
   assert.equal(await page.evaluate(() => location.href), server.address, "not again when it is loaded again");
   await page.evaluate(() => Object.defineProperty(navigator, "clipboard", { value: undefined }));
   await page.click("#share");
@@ -212,7 +212,7 @@ test("comes back by itself when the program is gone for a while", async () => {
 test("without a token, and with a wrong one, says what to do", async () => {
   const server = await serve({ points: 1000 });
   const bare = await openPage(browser, server.address.replace(/#.*/, ""), kSmall);
-  assert.match(await text(bare, "#cover"), /Open the address that palpate printed/);
+  await until("asks for the token", async () => /Open the address that palpate printed/.test(await text(bare, "#cover")));
   await bare.fill("#cover-token", server.address);
   await bare.keyboard.press("Enter");
   await ready(bare);

@@ -9,8 +9,13 @@ export const kSmall = { viewport: { width: 900, height: 600 }, reducedMotion: "r
 export const kPhone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true };
 export let browser;
 
+const kGrace = 3000; // ms
+
 before(async () => (browser = await openBrowser()));
-after(async () => browser.close());
+after(async () => {
+  await browser.close();
+  setTimeout(() => process.exit(), kGrace).unref(); // a test that failed may have left its server
+});
 
 export const text = (page, selector) => page.locator(selector).innerText();
 export const ready = (page) => until("the tool can be taken", () => page.locator("#take").isEnabled());
