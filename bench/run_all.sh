@@ -12,7 +12,7 @@ find_data
 
 say "build"
 configure release -DPALPATE_BUILD_BENCH=ON
-build release geometry_bench field_bench depth_bench accuracy_bench streams_bench four_cameras_bench viewer_bench palpate_app
+build release geometry_bench field_bench depth_bench accuracy_bench streams_bench four_cameras_bench viewer_bench device_bench palpate_app
 programs=build/release
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -62,6 +62,8 @@ say "four cameras"
 cameras=$programs/bench/four_cameras/four_cameras_bench
 "$cameras" --pairs 0 >"$scratch/shared.md"
 "$cameras" --processor $(($(nproc) - 1)) >"$scratch/apart.md" || true  # it says what was missed
+say "devices"
+"$programs/bench/devices/device_bench" --benchmark_counters_tabular=true >"$scratch/devices.txt"
 say "the viewer"
 "$programs/bench/viewer/viewer_bench" --seconds 20 --processor $(($(nproc) - 1)) >"$scratch/viewer.md" || true
 
@@ -125,6 +127,15 @@ In real time: a cloud of 300 000 points, a servo at 1 kHz on a processor of its 
 the others.
 
 $(cat "$scratch/viewer.md")
+
+## Devices
+
+\`exchange/DRIVER\`: one exchange of a force for a place with the tests' double, wall time; \`step/CLOUD\`: computing time of a
+servo's step with every guard on while a simulated hand explores for a minute.
+
+\`\`\`
+$(cat "$scratch/devices.txt")
+\`\`\`
 EOF
 } >bench/RESULTS.md
 say "bench/RESULTS.md is written"
