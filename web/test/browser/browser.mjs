@@ -28,6 +28,16 @@ export async function until(what, condition) {
   }
 }
 
+/** Does something become true within two seconds? */
+export async function soon(condition) {
+  const end = Date.now() + 2000;
+  while (Date.now() < end) {
+    if (await condition()) return true;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  return false;
+}
+
 /** A page that remembers what went wrong on it; `before` is run in it before its own scripts. */
 export async function openPage(browser, address, options, before) {
   const context = await browser.newContext(options);

@@ -5,11 +5,12 @@ import { readdir, readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { openBrowser, openPage, until } from "./browser.mjs";
-import { distance, felt, heard, listen, waysInto } from "./heard.mjs";
+import { distance, felt, heard, listen } from "./heard.mjs";
 import { picture } from "./picture.mjs";
 import { changed } from "./pixels.mjs";
 import { kTable, kTwoHands, startProgram } from "./real_program.mjs";
 import { relayTo } from "./relay.mjs";
+import { deeper, hold, lift, pressUntil, staysOnTable, touchDown } from "./touching.mjs";
 
 const kStiffness = 500; // N/m, of kTable
 const kSmall = { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" };
@@ -43,39 +44,6 @@ async function onTable(act, options) {
   } finally {
     await page.context().close();
   }
-}
-
-/** Holds a key until something is true. */
-async function hold(page, key, what, condition) {
-  await page.keyboard.down(key);
-  await until(what, condition);
-  await page.keyboard.up(key);
-}
-
-async function lift(page, device = 0) {
-  const free = ({ touching, force }) => !touching && force === 0;
-  await hold(page, "ArrowUp", "lifted, and no force in the air", async () => free(await felt(page, device)));
-}
-
-/** Takes the tool, lifts it off and lowers it until it feels a little. */
-async function touchDown(page, device = 0) {
-  await page.focus("#view");
-  await page.keyboard.press("t");
-  await until("taken", async () => (await felt(page, device)).taken);
-  await lift(page, device);
-  await hold(page, "ArrowDown", "in contact", async () => (await felt(page, device)).touching);
-  return felt(page, device);
-}
-
-const deeper = (page, than, device = 0) =>
-  hold(page, "ArrowDown", "deeper", async () => (await felt(page, device)).force > than);
-
-/** From one state to the other the hand went in, and the proxy stayed on the level table. */
-function staysOnTable(first, then) {
-  const ways = waysInto(first, then);
-  assert.ok(ways.hip > 0.001, `the hand went ${ways.hip} m`);
-  assert.ok(Math.abs(ways.proxy) < 0.1 * ways.hip, `the proxy went ${ways.proxy} m, the hand ${ways.hip}`);
-  assert.ok(then.normal[2] > 0.99, "the table is level");
 }
 
 test("the page comes from the program, connects and draws its cloud", () =>
@@ -130,17 +98,16 @@ test("a drag moves the program's hand", () =>
 test("a changed stiffness is felt at the next touch, and a pause takes the force away", () =>
   onTable(async (page) => {
     const near = (stiffness) => async () => Math.abs((await felt(page)).stiffness / stiffness - 1) < 0.1;
-    const first = await touchDown(page);
-    await deeper(page, first.force + 1);
-    await until("as stiff as it began", near(kStiffness));
+    await touchDown(page);
+    await pressUntil(page, "as stiff as it began", near(kStiffness));
     await page.getByRole("spinbutton", { name: "Stiffness" }).fill(String(1.5 * kStiffness));
     await page.keyboard.press("Enter");
     await page.focus("#view");
     await lift(page); // a hand that rests in contact is given no energy, so nothing gets stiffer there
-    await hold(page, "ArrowDown", "in contact", async () => (await felt(page)).force > 1);
-    await until("half as stiff again", near(1.5 * kStiffness));
+    await pressUntil(page, "half as stiff again", near(1.5 * kStiffness));
     await page.getByRole("button", { name: "default" }).click();
-    await until("as before", near(kStiffness));
+    await page.focus("#view");
+    await pressUntil(page, "as before", near(kStiffness));
     const { force } = await felt(page);
     await page.click("#pause");
     await until("paused", async () => (await felt(page)).paused && (await felt(page)).force === 0);

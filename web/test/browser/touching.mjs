@@ -1,0 +1,51 @@
+// What a hand on keys does with the table.
+
+import assert from "node:assert/strict";
+import { soon, until } from "./browser.mjs";
+import { felt, waysInto } from "./heard.mjs";
+
+/** Holds a key until something is true. */
+export async function hold(page, key, what, condition) {
+  await page.keyboard.down(key);
+  await until(what, condition);
+  await page.keyboard.up(key);
+}
+
+export async function lift(page, device = 0) {
+  const free = ({ touching, force }) => !touching && force === 0;
+  await hold(page, "ArrowUp", "lifted, and no force in the air", async () => free(await felt(page, device)));
+}
+
+/** Takes the tool, lifts it off and lowers it until it feels a little. */
+export async function touchDown(page, device = 0) {
+  await page.focus("#view");
+  await page.keyboard.press("t");
+  await until("taken", async () => (await felt(page, device)).taken);
+  await lift(page, device);
+  await hold(page, "ArrowDown", "in contact", async () => (await felt(page, device)).touching);
+  return felt(page, device);
+}
+
+export const deeper = (page, than, device = 0) =>
+  hold(page, "ArrowDown", "deeper", async () => (await felt(page, device)).force > than);
+
+/** From one state to the other the hand went in, and the proxy stayed on the level table. */
+export function staysOnTable(first, then) {
+  const ways = waysInto(first, then);
+  assert.ok(ways.hip > 0.001, `the hand went ${ways.hip} m`);
+  assert.ok(Math.abs(ways.proxy) < 0.1 * ways.hip, `the proxy went ${ways.proxy} m, the hand ${ways.hip}`);
+  assert.ok(then.normal[2] > 0.99, "the table is level");
+}
+
+/**
+ * Presses until something is true of what is felt. A step that came late takes the force away until the
+ * hand has been lifted, as it should: then it is lifted and pressed again.
+ */
+export async function pressUntil(page, what, condition) {
+  for (let tries = 0; tries < 6; ++tries) {
+    await hold(page, "ArrowDown", "deeper", async () => (await felt(page)).depth > 1.5e-3);
+    if (await soon(condition)) return;
+    await lift(page);
+  }
+  assert.fail(`pressed in vain: ${what}`);
+}
