@@ -131,7 +131,6 @@ TEST(Usage, InputAtFaultEndsWithOneAndNamesIt) {
       {"touch synthetic:horse", "torus"},
       {"touch synthetic:tours", "did you mean torus?"},
       {"touch synthetic:torus --radius 1e9", "--radius 1e+09 is too large"},
-      {"touch camera:simulated --unorganised --radius 1e9", "--radius 1e+09 is too large"},
       {"zwidth --device-profile omgea", "did you mean omega?"},
       {"touch plane.xyz --trajectory missing.csv", "missing.csv"},
       {"touch plane.xyz --trajectory bad.csv", "line 3"},

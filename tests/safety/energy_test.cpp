@@ -26,6 +26,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kSteps = 300'000;
+constexpr int kExplored = 5'000;  // steps
 
 // Given in all, J; and in one contact, where the brake may owe more for a while: it is never
 // stronger than a sampled damper can be.
@@ -166,12 +167,12 @@ void expect_exploration_is_paid(const PointCloud& cloud) {
   scene.add("cloud", cloud);
   ServoOptions options;
   app::PlanOptions wanted;
-  wanted.duration = 0.001 * effort(10'000);
+  wanted.duration = 1e-3 * kExplored;
   const app::ExplorationPlan plan = app::plan_exploration(scene, options.field, wanted);
   options.workspace = plan.workspace;
   options.proxy.stiffness = plan.stiffness;
   SimulatedDevice device({}, plan.target);
-  expect_paid(given_energy(device, scene, options, effort(10'000)));
+  expect_paid(given_energy(device, scene, options, kExplored));
 }
 
 class SyntheticEnergy : public testing::TestWithParam<std::string> {};

@@ -267,8 +267,8 @@ TEST_P(Faults, MakeNoForceThatIsTooLongOrLeaps) {
   ordeal.run(effort(10'000));
   RecordProperty("steps", ordeal.steps());
   RecordProperty("felt", ordeal.felt());
-  EXPECT_GT(ordeal.felt(), ordeal.steps() / 30) << "too little was felt to tell";
-  EXPECT_GT(ordeal.nearest_to_allowed(), 0.999) << "the bound is never reached: it tells nothing";
+  EXPECT_GT(ordeal.felt(), ordeal.steps() / 50) << "too little was felt to tell";
+  EXPECT_GT(ordeal.nearest_to_allowed(), 0.99) << "the bound is never reached: it tells nothing";
   for (const int count : ordeal.counts()) EXPECT_GT(count, 0);
 }
 
