@@ -88,7 +88,7 @@ TEST(Streams, TrajectoryIsPlayedInTheWorldFromTheFirstFrameOn) {
 TEST(Streams, EveryPolicyFeelsTheWall) {
   Shell shell;
   write_wall(shell, 6);
-  shell.write("way.csv", into_wall(320));
+  shell.write("way.csv", into_wall(270));
   for (const char* more :
        {"--policy replace", "--policy average --history 3", "--policy crossfade", "--policy fusion",
         "--unorganised", "--preset paper --field pointset", "--noise kinect1"}) {

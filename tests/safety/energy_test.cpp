@@ -202,6 +202,7 @@ class RealEnergy : public testing::TestWithParam<std::string> {};
 TEST_P(RealEnergy, ExplorationGivesNoMoreThanWasPutIn) {
   const char* data = std::getenv("PALPATE_DATA");
   if (data == nullptr) GTEST_SKIP() << "PALPATE_DATA is not set";
+  if (effort(10) < 10) GTEST_SKIP() << "preparing real scans takes long under sanitizers";
   const std::filesystem::path file = std::filesystem::path(data) / GetParam();
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no such file: " << file;
   ReadOptions options;
