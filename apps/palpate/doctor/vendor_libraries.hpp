@@ -6,8 +6,8 @@
 
 namespace palpate::app::doctor {
 
-/// The vendors' libraries, and Haply's service: absent, broken or in which version; where a Touch is
-/// plugged in, its set-up. Absence is a problem where a device needs it.
+/// The vendors' libraries, and Haply's service: absent, broken or in which version; where a Touch
+/// is plugged in, its set-up. Absence is a problem where a device needs it.
 [[nodiscard]] Findings check_vendor_libraries(const System& system,
                                               const std::vector<Found>& found);
 
