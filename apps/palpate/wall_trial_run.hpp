@@ -15,9 +15,8 @@ struct WallTrialRunOptions {
 
 /// Measures on hardware how stiff a wall may be: tells what comes, asks unless `confirmed`, and
 /// leads the hand step by step.
-/// @throws UsageError when nobody has confirmed, or Error when there is no such device, it failed,
-/// or
-///   nothing was measured.
+/// @throws UsageError when nobody has confirmed, Error when there is no such device, when it failed
+///   or nothing was measured.
 void run_wall_trial(const WallTrialRunOptions& options);
 
 }  // namespace palpate::app

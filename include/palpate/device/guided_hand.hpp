@@ -20,8 +20,7 @@ struct GuidedHandOptions {
 /// A hand that plays a trajectory again and again, such as that of explore(), until somebody takes
 /// the tool; then it follows him, and some time after he let go it returns to the trajectory.
 ///
-///  - Where the way begins, is interrupted or starts anew, the wish goes straight there, at
-///  `speed`;
+///  - Where the way begins, is interrupted or starts anew, the wish goes there at `speed`;
 ///    the trajectory waits for it.
 ///  - Poses are followed as PoseGlide does, and no faster than `speed`.
 ///  - Silence is letting go: the wish goes to where the device is, so that nothing pulls any more

@@ -14,9 +14,8 @@ namespace palpate {
 /// Opens hardware by name; it gets a thread of its own (LinkedDevice).
 ///  - "forcedimension[:N]": Force Dimension's devices and the Novint Falcon; N counts from 0.
 ///    Options: library=PATH of libdhd.so.3.
-///  - "openhaptics[:NAME]": 3D Systems' Touch and Touch X, SensAble's Phantoms; NAME as it was
-///  given
-///    in the maker's set-up, "Default Device" without. Options: library=PATH of libHD.so.
+///  - "openhaptics[:NAME]": 3D Systems' Touch and Touch X, SensAble's Phantoms; NAME as in the
+///    maker's set-up, "Default Device" without. Options: library=PATH of libHD.so.
 ///  - "haply[:ID]": Haply's Inverse3; without an id the first that is there. Options:
 ///    url=ws://HOST:PORT of its Inverse Service.
 /// Options follow as ",KEY=VALUE". All take profile=NAME (device_profile()), where the kind that

@@ -18,12 +18,10 @@ void orient_to_viewpoint(std::span<const Eigen::Vector3f> points, const Eigen::V
 /// - Neighbours i, j agree when n_i, mirrored by the plane halfway between them, looks like n_j:
 ///   then a round arc joins the two. Opposite sides of a thin plate so get opposite normals. Votes
 ///   of all pairs between two patches add up, and the patches that are surest merge first.
-/// - A part that closes around something (its normals cancel: |sum a n| <= 0.3 sum a, a the area
-/// per
-///   point) has its normals turned so that the volume it holds is positive.
+/// - A part that closes around something (its normals cancel: |sum a n| <= 0.3 sum a, a a point's
+///   area) has its normals turned so that the volume it holds is positive.
 /// - An open part, such as terrain, a wall or one view of a scene, has no outside. Its mean normal
-/// is
-///   turned up (+z) where it leans more than 12 degrees from the horizontal, and else away from the
+///   turns up (+z) where it leans more than 12 degrees from the horizontal, and else away from the
 ///   centre of all points.
 ///
 /// `spacings` are the points' own, as local_spacings() gives them, m: parts further apart than 1.6

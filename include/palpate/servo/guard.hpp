@@ -91,8 +91,7 @@ struct GuardState {
 ///  2. Watchdog: after a silence the hand may be anywhere. Zero; the links below lead back softly.
 ///  3. Damper: -B n (n . v) in contact, v the hand's velocity against the surface, smoothed; it
 ///     never makes the surface attract.
-///  4. Soft start: the force comes up from zero while nothing is touched; in contact no further
-///  than
+///  4. Soft start: the force comes up from zero while nothing is touched; in contact only as far as
 ///     the hand has paid for, since a spring that grows stiffer while stretched gives energy.
 ///  5. Slew of unexplained changes: |F - F_before| <= K |h - h_before| + B |v - v_before| + S dt.
 ///     What the hand does itself is never delayed; pops of a new cloud, edges, switching on are.
