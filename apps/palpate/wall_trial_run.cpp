@@ -75,7 +75,8 @@ void ask(const WallTrialRunOptions& options) {
       stderr,
       "This moves the device: you press on walls that are simulated under your hand, each "
       "{:.0f} % stiffer\nthan the one before, until one makes the device shake. No force is "
-      "longer than {:.1f} N; it goes away\nwhen the device shakes, moves faster than {} m/s, "
+      "longer than {:.1f} N; the guard's brake and its limit of stiffness are off.\nIt goes away "
+      "when the device shakes, moves faster than {} m/s, "
       "or is not heard. Take the handle, clear the table,\nkeep the other hand at the "
       "switch.\n",
       100 * (options.trial.factor - 1), options.trial.maximum_force, options.trial.fastest);
@@ -90,8 +91,7 @@ void ask(const WallTrialRunOptions& options) {
 }
 
 // What the hand is to do, whenever that changes.
-WallTrialState lead(TrialThread& thread) {
-  const Interruption interruption;
+WallTrialState lead(TrialThread& thread, const Interruption& interruption) {
   std::string said;
   while (thread.runs() && !interruption.asked()) {
     const WallTrialState state = thread.state();
@@ -101,7 +101,9 @@ WallTrialState lead(TrialThread& thread) {
     std::this_thread::sleep_for(kLookAtTrial);
   }
   thread.stop();
-  return thread.state();
+  const WallTrialState state = thread.state();
+  fmt::print(stderr, "the end: {}\n", in_words(state.phase));
+  return state;
 }
 
 std::string found(const WallTrialRunOptions& options, const DeviceInfo& info,
@@ -123,8 +125,6 @@ void tell(const WallTrialState& state, double damping, std::FILE* out) {
   if (state.phase == WallTrialPhase::shook) {
     fmt::print(out, "one of {:.0f} N/m shook by {:.2f} mm\n", state.wall, 1e3 * state.amplitude);
   }
-  fmt::print(out, "for a profile of your own: maximum_stiffness = {:.0f}\n",
-             GuardOptions{}.stiffness_share * state.stable);
 }
 
 }  // namespace
@@ -134,10 +134,13 @@ void run_wall_trial(const WallTrialRunOptions& options) {
   std::optional<OutputFile> json;
   if (!options.json.empty()) json.emplace(options.json);
   SteadyWaitingClock clock;
-  const std::unique_ptr<LinkedDevice> device = open_device(options.device, clock);
+  const Interruption interruption;
+  LinkedDeviceOptions link;
+  link.begin = [] { static_cast<void>(make_realtime({})); };
+  const std::unique_ptr<LinkedDevice> device = open_device(options.device, clock, link);
   fmt::print(stderr, "holds {}\n", device->info().name);
   TrialThread thread(*device, clock, options.trial);
-  const WallTrialState state = lead(thread);
+  const WallTrialState state = lead(thread, interruption);
   if (json) {
     json->write(found(options, device->info(), state));
     json->close();

@@ -17,6 +17,10 @@ using Eigen::Vector3d;
 
 constexpr double kStaleExchanges = 2.5;
 
+// What no hand does: m from a device's origin, m/s.
+constexpr double kFarthestHand = 5;
+constexpr double kFastestHand = 20;
+
 LinkedDeviceOptions checked(LinkedDeviceOptions options) {
   const Requirement require{"linked device"};
   require.positive("stale (s)", options.stale, "give a time above 0");
@@ -34,12 +38,17 @@ DeviceInfo info_of(const DeviceLink& link) {
   return info;
 }
 
+// False for what is not a number, too.
+bool is_a_hands(const LinkReading& reading) {
+  return reading.position.norm() <= kFarthestHand && reading.velocity.norm() <= kFastestHand;
+}
+
 void check(const LinkReading& reading, const DeviceInfo& info) {
   const bool tool = reading.orientation.coeffs().allFinite() && std::isfinite(reading.gripper);
-  if (tool && reading.position.allFinite() && reading.velocity.allFinite()) return;
+  if (tool && is_a_hands(reading)) return;
   throw Error(
-      fmt::format("{}: tells a place that is no number, so it got no force. It is opened again; if "
-                  "that does not help, switch it off and on, and calibrate it",
+      fmt::format("{}: tells a place that is no number, or no hand's, so it got no force. It is "
+                  "opened again; if that does not help, switch it off and on, and calibrate it",
                   info.name));
 }
 

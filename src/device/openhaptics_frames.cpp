@@ -66,6 +66,12 @@ unsigned OpenHapticsFrames::call(void* frames) noexcept {
   return code;
 }
 
+// One of those that the device knows; never the reset of encoders, which takes this pose for
+// another.
+int OpenHapticsFrames::style_of(int styles) noexcept {
+  return (styles & hd::kAutomatic) != 0 ? hd::kAutomatic : hd::kInkwell;
+}
+
 unsigned OpenHapticsFrames::tick() noexcept {
   if (leaving_) return leave();
   library_.make_current(device_);
@@ -76,7 +82,7 @@ unsigned OpenHapticsFrames::tick() noexcept {
     learn();
   }
   if (calibrate_.exchange(false)) {
-    library_.update_calibration(static_cast<unsigned>(facts_.calibration_styles));
+    library_.update_calibration(static_cast<unsigned>(style_of(facts_.calibration_styles)));
   }
   newest_.calibration = library_.check_calibration();
   const LinkReading reading = read();

@@ -115,8 +115,9 @@ LinkReading OpenHapticsLink::exchange(const Vector3d& force) {
 
 void OpenHapticsLink::start() {
   auto own = std::make_unique<std::shared_ptr<OpenHapticsFrames>>(frames_);
-  session_.schedule(&OpenHapticsFrames::call, own.get());
-  (void)own.release();  // the last call deletes it
+  // The last call deletes it. It is given away first: a scheduler that complains may call all the
+  // same.
+  session_.schedule(&OpenHapticsFrames::call, own.release());
   session_.start();
   (void)exchange(Vector3d::Zero());
 }

@@ -71,6 +71,7 @@ Vector3d Guard::pass(const GuardInput& input) noexcept {
   if (const GuardFault found = judge(input); found != GuardFault::none) return fail(found);
   if (!started_) begin(input);
   const Motion motion = follow(input);
+  if (input.stiffness > 0) stiffness_ = input.stiffness;
   passivity_.account(before_.force, motion.way, held(input), input.dt);
   state_.energy = passivity_.energy();
   if (input.dt > options_.silence) {
@@ -106,8 +107,7 @@ Guard::Motion Guard::follow(const GuardInput& input) const noexcept {
 
 // What the spring holds, or a force that fades after the surface has gone, as a spring let loose
 // slowly.
-double Guard::held(const GuardInput& input) noexcept {
-  if (input.stiffness > 0) stiffness_ = input.stiffness;
+double Guard::held(const GuardInput& input) const noexcept {
   return std::max(stored(input.force, input.stiffness), stored(slewed_, stiffness_));
 }
 
@@ -149,15 +149,15 @@ Vector3d Guard::brake(const GuardInput& input, const Motion& motion,
 
 // A force that fades in the air and gives more than was paid for goes with the hand, as the spring
 // that it was.
-bool Guard::fades_unpaid(const GuardInput& input) const noexcept {
+bool Guard::fades_unpaid(const GuardInput& input, const Motion& motion) const noexcept {
   return options_.passivity.on && input.normal.isZero(0) &&
-         stored(slewed_, stiffness_) > -passivity_.energy();
+         stored(slewed_, stiffness_) > -passivity_.committed(motion.way);
 }
 
 // Leaving a surface, K of this step is 0 and the change is explained by that of the last one.
 Vector3d Guard::limit_change(const GuardInput& input, const Motion& motion,
                              const Vector3d& force) noexcept {
-  const double loose = fades_unpaid(input) ? stiffness_ : 0;
+  const double loose = fades_unpaid(input, motion) ? stiffness_ : 0;
   const double stiffness = std::max({input.stiffness, before_.stiffness, loose});
   const double explained = stiffness * (input.hip - before_.hip).norm() +
                            options_.damping * (motion.velocity - velocity_).norm();

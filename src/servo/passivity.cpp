@@ -39,11 +39,16 @@ void Passivity::reset() noexcept {
   sent_.fill(Vector3d::Zero());
 }
 
+double Passivity::committed(const Vector3d& way) const noexcept {
+  double energy = energy_;
+  for (int i = 0; i < options_.delay; ++i) energy += sent(i).dot(way);
+  return energy;
+}
+
 Vector3d Passivity::brake(const Vector3d& force, const Vector3d& way, double dt) const noexcept {
   const double square = way.squaredNorm();
   if (!options_.on || !(square > 0) || !(dt > 0)) return Vector3d::Zero();
-  double energy = energy_ + force.dot(way);
-  for (int i = 0; i < options_.delay; ++i) energy += sent(i).dot(way);
+  const double energy = committed(way) + force.dot(way);
   if (!(energy > 0)) return Vector3d::Zero();
   // With v = way / dt: E / (|v|^2 dt) v = E / |way|^2 way, M / (4 dt) v = M / (4 dt^2) way.
   return -std::min(energy / square, options_.mass / (4 * dt * dt)) * way;

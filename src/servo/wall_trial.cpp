@@ -44,6 +44,10 @@ WallTrialOptions for_device(WallTrialOptions options, const DeviceInfo& device) 
   }
   options.maximum_force =
       std::min(options.maximum_force, Servo::kForceShare * device.maximum_force);
+  if (device.maximum_stiffness > 0) {
+    options.stiffest = std::min(options.stiffest, device.maximum_stiffness);
+    options.softest = std::min(options.softest, options.stiffest);
+  }
   return options;
 }
 
@@ -71,7 +75,9 @@ Vector3d WallTrial::step(const DeviceState& hand, double now) noexcept {
   started_ = true;
   time_ = now;
   if (!is_over()) advance(hand, now, dt);
-  return guard_.pass(felt(hand, dt));
+  const Vector3d force = guard_.pass(felt(hand, dt));
+  force_ = force.norm();
+  return force;
 }
 
 void WallTrial::advance(const DeviceState& hand, double now, double dt) noexcept {
@@ -84,6 +90,8 @@ void WallTrial::advance(const DeviceState& hand, double now, double dt) noexcept
   if (hand.velocity.norm() > options_.fastest) return go_to(WallTrialPhase::too_fast, now);
   if (now - since_ > options_.patience) return go_to(WallTrialPhase::gave_up, now);
   state_.amplitude = shaking_.add(hand.position.z(), dt);
+  shaken_ = !rests && state_.amplitude > kShaking ? shaken_ + dt : 0;
+  if (shaken_ > kShakenFor) return go_to(WallTrialPhase::shook, now);
   switch (state_.phase) {
     case WallTrialPhase::rest:
       still_ = hand.velocity.norm() < kStillSpeed ? still_ + dt : 0;
@@ -93,9 +101,10 @@ void WallTrial::advance(const DeviceState& hand, double now, double dt) noexcept
       }
       return;
     case WallTrialPhase::press:
-      return press(top_ - hand.position.z(), dt, now);
+      return press(dt, now);
     case WallTrialPhase::lift:
       if (hand.position.z() < top_ + kLift) return;
+      state_.stable = state_.wall;
       if (state_.wall >= options_.stiffest) return go_to(WallTrialPhase::held, now);
       state_.wall = std::min(options_.stiffest, options_.factor * state_.wall);
       return go_to(WallTrialPhase::press, now);
@@ -104,14 +113,13 @@ void WallTrial::advance(const DeviceState& hand, double now, double dt) noexcept
   }
 }
 
-void WallTrial::press(double depth, double dt, double now) noexcept {
-  shaken_ = state_.amplitude > kShaking ? shaken_ + dt : 0;
-  if (shaken_ > kShakenFor) return go_to(WallTrialPhase::shook, now);
-  if (shaken_ > 0) return;
-  state_.pressed = state_.wall * depth < kLeastPress ? 0 : state_.pressed + dt;
-  if (state_.pressed < options_.hold) return;
-  state_.stable = state_.wall;
-  go_to(WallTrialPhase::lift, now);
+// Only what the hand has felt whole counts: a force at its bound holds still whatever the wall.
+void WallTrial::press(double dt, double now) noexcept {
+  constexpr GuardNote kNotWhole =
+      GuardNote::clamped | GuardNote::silence | GuardNote::starting | GuardNote::fault;
+  const bool felt = force_ >= kLeastPress && !has(guard_.state().notes, kNotWhole);
+  state_.pressed = felt && shaken_ == 0 ? state_.pressed + dt : 0;
+  if (state_.pressed >= options_.hold) go_to(WallTrialPhase::lift, now);
 }
 
 void WallTrial::go_to(WallTrialPhase phase, double now) noexcept {
@@ -139,7 +147,7 @@ std::string_view in_words(WallTrialPhase phase) noexcept {
     case WallTrialPhase::rest:
       return "hold the device still, somewhere in its middle";
     case WallTrialPhase::press:
-      return "press down on the wall, and rest on it";
+      return "press down on the wall, gently, and rest on it";
     case WallTrialPhase::lift:
       return "good; lift off";
     case WallTrialPhase::shook:
@@ -147,7 +155,7 @@ std::string_view in_words(WallTrialPhase phase) noexcept {
     case WallTrialPhase::held:
       return "the stiffest wall that is tried stood still";
     case WallTrialPhase::gave_up:
-      return "nobody pressed; start again when you are ready";
+      return "nobody did so; start again when you are ready";
     case WallTrialPhase::too_fast:
       return "the device moved faster than a hand that presses; the force is gone";
     case WallTrialPhase::device_lost:

@@ -61,6 +61,7 @@ Trajectory aside(double seconds) {
 }
 
 TEST(EverySequence, PlaysThroughAndIsTouchedWithoutAFault) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   if (sequences().empty()) GTEST_SKIP() << "PALPATE_DATA names no folder with sequences";
   for (const fs::path& folder : sequences()) {
     SCOPED_TRACE(folder.string());

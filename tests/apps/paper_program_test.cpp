@@ -36,6 +36,7 @@ TEST(Paper, Fig5HasThePapersSizesAndTimesBesideOurs) {
 }
 
 TEST(Paper, Fig7ShowsWhatThePaperSaw) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   const Outcome outcome = shell.run("paper fig7 --duration 1 --csv press.csv");
   ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -11,6 +11,7 @@
 #include "apps/palpate/touch_surface.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
+#include "support/effort.hpp"
 
 namespace palpate::app {
 namespace {
@@ -55,6 +56,7 @@ std::string documented(int n) {
 }
 
 TEST(SetupFile, TheDocumentedOneRunsAsItIs) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   shell.write("desk.toml", documented(0));
   const Outcome outcome =

@@ -7,6 +7,7 @@
 
 #include "apps/palpate/json.hpp"
 #include "apps/program.hpp"
+#include "support/effort.hpp"
 
 namespace palpate::app {
 namespace {
@@ -50,6 +51,7 @@ std::string into_wall(int steps) {
 }
 
 TEST(Streams, TwoCamerasGiveTheSameLogBitForBit) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   const std::string command =
       "touch camera:simulated:left camera:simulated:right,phase=0.011,jitter=0.004,seed=3 "
@@ -86,6 +88,7 @@ TEST(Streams, TrajectoryIsPlayedInTheWorldFromTheFirstFrameOn) {
 }
 
 TEST(Streams, EveryPolicyFeelsTheWall) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   write_wall(shell, 6);
   shell.write("way.csv", into_wall(270));
@@ -140,6 +143,7 @@ TEST(Streams, DepthsOutOfRangeAreNotBelieved) {
 }
 
 TEST(Streams, ClippingToReachLeavesTheForceAndMostPointsOut) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   write_wall(shell, 12);
   shell.write("way.csv", into_wall(320));
@@ -158,6 +162,7 @@ TEST(Streams, ClippingToReachLeavesTheForceAndMostPointsOut) {
 }
 
 TEST(Streams, PredictionChangesWhatMovesAndIsOffUnlessAsked) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   const std::string command =
       "touch camera:simulated:approach,noise=a --simulated-time --duration 0.4 --log ";

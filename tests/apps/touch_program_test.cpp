@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
+#include "support/effort.hpp"
 
 namespace palpate::app {
 namespace {
@@ -221,6 +222,7 @@ TEST(Touch, SimulatedHandOfATrajectoryWithOneRowTakesOneStep) {
 }
 
 TEST(Touch, PresetPaperAndEveryFieldRun) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   for (const char* more : {"--preset paper", "--preset paper --field pointset", "--field metaball",
                            "--field pointset", "--kernel wendland", "--tool-radius 0.003",

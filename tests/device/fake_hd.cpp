@@ -220,9 +220,11 @@ unsigned hdCheckCalibration() {
   const Lock lock(library.mutex);
   return is_first() ? library.faults.calibration : 0x5000;
 }
-void hdUpdateCalibration(unsigned) {
+// Takes one style: automatic, or inkwell.
+void hdUpdateCalibration(unsigned style) {
   const Lock lock(library.mutex);
-  if (library.faults.calibration == 0x5001) library.faults.calibration = 0x5000;
+  const bool one = style == 2 || style == 4;
+  if (one && library.faults.calibration == 0x5001) library.faults.calibration = 0x5000;
 }
 void hdStartScheduler() {
   const Lock lock(library.mutex);

@@ -123,9 +123,49 @@ TEST(WallTrial, EndsWhenTheDeviceFallsSilent) {
     static_cast<void>(trial.step(hand, 1e-3 * i));
   }
   ASSERT_EQ(trial.state().phase, WallTrialPhase::press);
+  double force = 0;
+  for (; force < 1; ++i) {
+    hand.position.z() -= 1e-5;
+    force = trial.step(hand, 1e-3 * i).z();
+    ASSERT_LT(i, 5000);
+  }
   hand.status = DeviceStatus::silent;
-  EXPECT_EQ(trial.step(hand, 1e-3 * i), Vector3d::Zero());
+  for (int k = 0; k < 5; ++k) force = trial.step(hand, 1e-3 * ++i).z();
+  EXPECT_EQ(force, 0) << "300 N/s";
   EXPECT_EQ(trial.state().phase, WallTrialPhase::device_lost);
+}
+
+TEST(WallTrial, AForceAtItsBoundProvesNothing) {
+  DeviceInfo info;
+  info.maximum_force = 0.88;  // a Touch's: 0.7 N
+  WallTrial trial(info);
+  DeviceState hand;
+  int i = 0;
+  for (; trial.state().phase == WallTrialPhase::rest; ++i) {
+    static_cast<void>(trial.step(hand, 1e-3 * i));
+  }
+  for (; hand.position.z() > -15e-3; ++i) {
+    hand.position.z() -= 1e-5;
+    static_cast<void>(trial.step(hand, 1e-3 * i));
+  }
+  for (int k = 0; k < 3000; ++k) static_cast<void>(trial.step(hand, 1e-3 * ++i));
+  EXPECT_EQ(trial.state().phase, WallTrialPhase::press);
+  EXPECT_EQ(trial.state().pressed, 0);
+}
+
+TEST(WallTrial, WallsGoNoFurtherThanTheMakerAllows) {
+  SimulatedDeviceOptions made = gripped();
+  DeviceInfo info = SimulatedDevice(made).info();
+  info.maximum_stiffness = 150;
+  WallTrial trial(info);
+  ObedientHand hand(trial);
+  SimulatedDevice device(made, hand);
+  for (int i = 0; i < 60'000 && !trial.is_over(); ++i) {
+    const DeviceState state = device.read();
+    device.write(trial.step(state, state.time));
+  }
+  EXPECT_EQ(trial.state().phase, WallTrialPhase::held);
+  EXPECT_EQ(trial.state().stable, 150);
 }
 
 TEST(WallTrial, RefusesWhatCannotBeMeasured) {

@@ -13,4 +13,11 @@ inline int effort(int count) {
   return std::max(1, static_cast<int>(count * std::clamp(factor, 0.0, 100.0)));
 }
 
+/// Is this a build in which everything takes ten times its time? Then what runs long, of what
+/// others test as well, is skipped; this says so.
+inline bool is_slow_build() {
+  return effort(10) < 10;
+}
+inline constexpr const char* kSlowBuild = "takes long under sanitizers; of what others test, too";
+
 }  // namespace palpate::test

@@ -128,12 +128,12 @@ class Guard {
 
   void begin(const GuardInput& input) noexcept;
   [[nodiscard]] Motion follow(const GuardInput& input) const noexcept;
-  [[nodiscard]] double held(const GuardInput& input) noexcept;
+  [[nodiscard]] double held(const GuardInput& input) const noexcept;
   [[nodiscard]] Eigen::Vector3d damp(const GuardInput& input, const Motion& motion) const noexcept;
   [[nodiscard]] Eigen::Vector3d start(const GuardInput& input,
                                       const Eigen::Vector3d& force) noexcept;
   [[nodiscard]] double affordable_gain(const GuardInput& input) const noexcept;
-  [[nodiscard]] bool fades_unpaid(const GuardInput& input) const noexcept;
+  [[nodiscard]] bool fades_unpaid(const GuardInput& input, const Motion& motion) const noexcept;
   [[nodiscard]] Eigen::Vector3d limit_change(const GuardInput& input, const Motion& motion,
                                              const Eigen::Vector3d& force) noexcept;
   [[nodiscard]] Eigen::Vector3d brake(const GuardInput& input, const Motion& motion,

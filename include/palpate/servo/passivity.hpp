@@ -41,6 +41,9 @@ class Passivity {
   [[nodiscard]] Eigen::Vector3d brake(const Eigen::Vector3d& force, const Eigen::Vector3d& way,
                                       double dt) const noexcept;
 
+  /// The ledger, J, when what is on its way has acted, if the hand goes on by `way` (m) a step.
+  [[nodiscard]] double committed(const Eigen::Vector3d& way) const noexcept;
+
   /// J; above zero: given to the hand, below: taken from it of late.
   [[nodiscard]] double energy() const noexcept { return energy_; }
   void reset() noexcept;

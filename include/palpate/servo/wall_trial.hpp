@@ -11,7 +11,7 @@ namespace palpate {
 
 struct WallTrialOptions {
   double softest = 100;      ///< stiffness of the first wall, N/m; > 0
-  double stiffest = 5000;    ///< the last one that is tried, N/m
+  double stiffest = 5000;    ///< the last one that is tried, N/m; no more than the maker allows
   double factor = 1.15;      ///< from a wall to the next; > 1
   double damping = 0;        ///< B of the walls, N s/m
   double hold = 1;           ///< s that a wall is pressed without shaking
@@ -27,7 +27,7 @@ enum class WallTrialPhase {
   lift,         ///< lift it off the wall, which then becomes stiffer
   shook,        ///< over: a wall made the device shake
   held,         ///< over: the stiffest wall stood still
-  gave_up,      ///< over: nobody pressed
+  gave_up,      ///< over: nobody did what was asked
   too_fast,     ///< over: the device moved faster than any hand that presses
   device_lost,  ///< over: the device fell silent or failed
 };
@@ -61,7 +61,7 @@ class WallTrial {
 
  private:
   void advance(const DeviceState& hand, double now, double dt) noexcept;
-  void press(double depth, double dt, double now) noexcept;
+  void press(double dt, double now) noexcept;
   void go_to(WallTrialPhase phase, double now) noexcept;
   [[nodiscard]] GuardInput felt(const DeviceState& hand, double dt) const noexcept;
 
@@ -74,6 +74,7 @@ class WallTrial {
   double time_ = 0;    // of the step before, s
   double still_ = 0;   // s for which the hand has rested
   double shaken_ = 0;  // s for which the wall has shaken
+  double force_ = 0;   // of the step before, N
   bool started_ = false;
 };
 
