@@ -28,9 +28,9 @@ export async function until(what, condition) {
   }
 }
 
-/** Does something become true within two seconds? */
-export async function soon(condition) {
-  const end = Date.now() + 2000;
+/** Does something become true within `patience` ms? */
+export async function soon(condition, patience = 2000) {
+  const end = Date.now() + patience;
   while (Date.now() < end) {
     if (await condition()) return true;
     await new Promise((resolve) => setTimeout(resolve, 50));

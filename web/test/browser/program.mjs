@@ -10,7 +10,7 @@ import { picture } from "./picture.mjs";
 import { changed } from "./pixels.mjs";
 import { kTable, kTwoHands, startProgram } from "./real_program.mjs";
 import { relayTo } from "./relay.mjs";
-import { deeper, hold, lift, pressUntil, staysOnTable, touchDown } from "./touching.mjs";
+import { hold, lift, press, pressUntil, staysOnTable, touchDown } from "./touching.mjs";
 
 const kStiffness = 500; // N/m, of kTable
 const kSmall = { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" };
@@ -73,8 +73,7 @@ test("the page comes from the program, connects and draws its cloud", () =>
 
 test("held by keys, the hand goes into the table, the proxy stays on it and the force grows", () =>
   onTable(async (page) => {
-    const first = await touchDown(page);
-    await deeper(page, first.force + 1);
+    const first = await press(page, 1);
     const then = await felt(page);
     staysOnTable(first, then);
     await until("words", async () => /touching/.test(await text(page, "#touch")) && Number(await text(page, "#force")) > 1);
@@ -185,9 +184,8 @@ test("two pages hold two hands of one scene at once, and each sees the other's",
       const { hip } = await felt(page, device);
       return hip !== undefined && Math.hypot(hip[0], hip[1]) < 0.1;
     });
-    return touchDown(page, device);
+    return press(page, 1, device);
   }));
-  await Promise.all(pages.map((page, device) => deeper(page, first[device].force + 1, device)));
   for (const device of [0, 1]) {
     const own = await felt(pages[device], device);
     staysOnTable(first[device], own);

@@ -4,6 +4,8 @@ import assert from "node:assert/strict";
 import { soon, until } from "./browser.mjs";
 import { felt, waysInto } from "./heard.mjs";
 
+const kPress = 6000; // ms
+
 /** Holds a key until something is true. */
 export async function hold(page, key, what, condition) {
   await page.keyboard.down(key);
@@ -16,18 +18,33 @@ export async function lift(page, device = 0) {
   await hold(page, "ArrowUp", "lifted, and no force in the air", async () => free(await felt(page, device)));
 }
 
-/** Takes the tool, lifts it off and lowers it until it feels a little. */
-export async function touchDown(page, device = 0) {
-  await page.focus("#view");
-  await page.keyboard.press("t");
-  await until("taken", async () => (await felt(page, device)).taken);
+async function touchAnew(page, device) {
   await lift(page, device);
   await hold(page, "ArrowDown", "in contact", async () => (await felt(page, device)).touching);
   return felt(page, device);
 }
 
-export const deeper = (page, than, device = 0) =>
-  hold(page, "ArrowDown", "deeper", async () => (await felt(page, device)).force > than);
+/** Takes the tool, lifts it off and lowers it until it feels a little. */
+export async function touchDown(page, device = 0) {
+  await page.focus("#view");
+  await page.keyboard.press("t");
+  await until("taken", async () => (await felt(page, device)).taken);
+  return touchAnew(page, device);
+}
+
+/** Takes the tool and presses until it feels `more` newtons than at first; resolves to what it felt at first. */
+export async function press(page, more, device = 0) {
+  let first = await touchDown(page, device);
+  for (let tries = 0; tries < 5; ++tries) {
+    const { force } = first;
+    await page.keyboard.down("ArrowDown");
+    const strong = await soon(async () => (await felt(page, device)).force > force + more, kPress);
+    await page.keyboard.up("ArrowDown");
+    if (strong) return first;
+    first = await touchAnew(page, device); // a step that came late has taken the force away
+  }
+  return assert.fail("pressed in vain");
+}
 
 /** From one state to the other the hand went in, and the proxy stayed on the level table. */
 export function staysOnTable(first, then) {
