@@ -46,7 +46,7 @@ void exchange_openhaptics(benchmark::State& state) {
 void exchange_haply(benchmark::State& state) {
   const SteadyClock clock;
   const test::FakeHaplyService service;
-  const device::DeviceName name{"haply", "", {{"url", service.url()}}};
+  const device::DeviceName name{"haply", "04EA", {{"url", service.url()}}};
   exchange_all(state, *device::open_haply(name, clock));
 }
 
