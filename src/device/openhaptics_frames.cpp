@@ -32,6 +32,12 @@ void copy_words(const char* words, std::array<char, 64>& to) {
   if (words != nullptr) std::strncpy(to.data(), words, to.size() - 1);
 }
 
+// One of those that the device knows; never the reset of encoders, which takes this pose for
+// another.
+unsigned calibration_style(int known) {
+  return (known & hd::kAutomatic) != 0 ? hd::kAutomatic : hd::kInkwell;
+}
+
 double known_or_zero(double number) {
   return std::isfinite(number) && number > 0 ? number : 0;
 }
@@ -66,12 +72,6 @@ unsigned OpenHapticsFrames::call(void* frames) noexcept {
   return code;
 }
 
-// One of those that the device knows; never the reset of encoders, which takes this pose for
-// another.
-int OpenHapticsFrames::style_of(int styles) noexcept {
-  return (styles & hd::kAutomatic) != 0 ? hd::kAutomatic : hd::kInkwell;
-}
-
 unsigned OpenHapticsFrames::tick() noexcept {
   if (leaving_) return leave();
   library_.make_current(device_);
@@ -82,7 +82,7 @@ unsigned OpenHapticsFrames::tick() noexcept {
     learn();
   }
   if (calibrate_.exchange(false)) {
-    library_.update_calibration(static_cast<unsigned>(style_of(facts_.calibration_styles)));
+    library_.update_calibration(calibration_style(facts_.calibration_styles));
   }
   newest_.calibration = library_.check_calibration();
   const LinkReading reading = read();

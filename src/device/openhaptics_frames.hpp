@@ -63,7 +63,6 @@ class OpenHapticsFrames {
     std::uint64_t number = 0;
   };
 
-  [[nodiscard]] static int style_of(int styles) noexcept;
   void learn() noexcept;
   [[nodiscard]] LinkReading read() const noexcept;
   [[nodiscard]] Eigen::Vector3d permitted(const LinkReading& reading) const noexcept;
