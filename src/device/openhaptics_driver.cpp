@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 
 // Where the maker's drivers keep a file NAME.config for each device.
 fs::path touch_configurations() {
-  if (const char* given = std::getenv("GTDD_HOME")) return fs::path(given) / "config";
+  const char* given = std::getenv("GTDD_HOME");
+  if (given != nullptr && *given != '\0') return fs::path(given) / "config";
   const char* home = std::getenv("HOME");
   return fs::path(home == nullptr ? "" : home) / ".3dsystems" / "config";
 }
