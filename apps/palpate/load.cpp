@@ -13,19 +13,9 @@ namespace palpate::app {
 
 namespace {
 
-PointCloud made_by_name(const std::string& name) {
-  try {
-    return synthetic_cloud(name);
-  } catch (const Error& error) {
-    std::vector<std::string> names;
-    for (const SyntheticName& each : synthetic_names()) names.emplace_back(each.name);
-    throw Error(error.what() + did_you_mean(name, names));
-  }
-}
-
 CloudFile make_synthetic(const std::string& name, double scale) {
   CloudFile file;
-  file.cloud = made_by_name(name);
+  file.cloud = suggesting(name, synthetic_names(), [&] { return synthetic_cloud(name); });
   file.format = "made by palpate";
   file.declared = file.cloud.size();
   const auto factor = static_cast<float>(scale);

@@ -15,13 +15,7 @@ namespace {
 DeviceProfile find_profile(const ZWidthOptions& options) {
   const std::vector<DeviceProfile> among =
       options.profiles.empty() ? device_profiles() : read_device_profiles(options.profiles);
-  try {
-    return device_profile(options.profile, among);
-  } catch (const Error& error) {
-    std::vector<std::string> names;
-    for (const DeviceProfile& each : among) names.push_back(each.name);
-    throw Error(error.what() + did_you_mean(options.profile, names));
-  }
+  return suggesting(options.profile, among, [&] { return device_profile(options.profile, among); });
 }
 
 SimulatedDeviceOptions device_of(const DeviceProfile& profile) {
