@@ -1,7 +1,5 @@
 #include "palpate/contact/proxy.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +9,6 @@
 #include "contact/probe.hpp"
 #include "contact/slide.hpp"
 #include "contact/sweep.hpp"
-#include "palpate/base/error.hpp"
 
 namespace palpate {
 namespace {

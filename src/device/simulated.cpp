@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/requirement.hpp"
-#include "palpate/base/error.hpp"
 #include "palpate/device/scripted.hpp"
 
 namespace palpate {

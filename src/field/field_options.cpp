@@ -1,11 +1,6 @@
 #include "palpate/field/field_options.hpp"
 
-#include <fmt/core.h>
-
-#include <cmath>
-
 #include "base/requirement.hpp"
-#include "palpate/base/error.hpp"
 
 namespace palpate {
 void check(const FieldOptions& options) {

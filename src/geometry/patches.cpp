@@ -11,7 +11,7 @@ namespace palpate::detail {
 namespace {
 
 constexpr float kSure = 0.7f;              // agreement that makes one patch of two points
-constexpr std::uint32_t kVotesBlock = 32;  // points that are divided at once
+constexpr std::uint32_t kPatchBlock = 32;  // points that are divided at once
 constexpr float kParallel = 0.9f;          // cosine between the normals of one sheet
 constexpr float kThin = 0.5f;              // spacings that a sheet's points may be off its plane
 
@@ -41,8 +41,8 @@ void make_patch(const PatchInput& input, const Block& sheet, const Block& block,
 // numbered from `count` on; returns the number after the last.
 std::uint32_t divide(const PatchInput& input, const Block& block, std::uint32_t count,
                      Patches& patches) {
-  std::array<float, kVotesBlock> best{};  // agreement with the tree; signed; 0: not connected
-  std::array<bool, kVotesBlock> done{};
+  std::array<float, kPatchBlock> best{};  // agreement with the tree; signed; 0: not connected
+  std::array<bool, kPatchBlock> done{};
   for (std::uint32_t step = 0; step < block.size(); ++step) {
     std::uint32_t next = block.size();
     for (std::uint32_t k = 0; k < block.size(); ++k) {
@@ -107,7 +107,7 @@ Patches make_patches(const PatchInput& input) {
   Patches patches;
   patches.patch.resize(input.grid.size());
   patches.sign.resize(input.grid.size());
-  const std::vector<Block> blocks = make_blocks(input.grid, kVotesBlock);
+  const std::vector<Block> blocks = make_blocks(input.grid, kPatchBlock);
   const std::vector<std::size_t> groups = groups_of(blocks);
   std::vector<std::uint32_t> first(groups.size(), 0);
   const auto group = [&](std::size_t g) {

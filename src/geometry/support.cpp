@@ -1,13 +1,10 @@
 #include "palpate/geometry/support.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/requirement.hpp"
 #include "geometry/parallel.hpp"
-#include "palpate/base/error.hpp"
 #include "palpate/geometry/spacing.hpp"
 
 namespace palpate {
