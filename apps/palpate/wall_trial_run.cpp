@@ -75,10 +75,9 @@ void ask(const WallTrialRunOptions& options) {
       stderr,
       "This moves the device: you press on walls that are simulated under your hand, each "
       "{:.0f} % stiffer\nthan the one before, until one makes the device shake. No force is "
-      "longer than {:.1f} N; the guard's brake and its limit of stiffness are off.\nIt goes away "
-      "when the device shakes, moves faster than {} m/s, "
-      "or is not heard. Take the handle, clear the table,\nkeep the other hand at the "
-      "switch.\n",
+      "longer than {:.1f} N; the guard's\nbrake and its limit of stiffness are off. The force goes "
+      "away when the device shakes, moves faster\nthan {} m/s, or is not heard. Take the handle, "
+      "clear the table, keep the other hand at the switch.\n",
       100 * (options.trial.factor - 1), options.trial.maximum_force, options.trial.fastest);
   if (options.confirmed) return;
   if (isatty(STDIN_FILENO) == 0) {

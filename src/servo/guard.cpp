@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/requirement.hpp"
-#include "palpate/base/error.hpp"
 
 namespace palpate {
 namespace {

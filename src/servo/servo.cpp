@@ -18,22 +18,6 @@ constexpr int kButtons = 32;
 // Of a device that does not tell its rate: what the first step takes, s.
 constexpr double kFirstStep = 1e-3;
 
-// A device that renders no force is given what would be felt.
-GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
-  if (device.maximum_force > 0) {
-    options.maximum_force =
-        std::min(options.maximum_force, Servo::kForceShare * device.maximum_force);
-  }
-  if (device.mass > 0) options.passivity.mass = device.mass;
-  if (device.delay) {
-    const double steps = std::round(*device.delay * device.rate);
-    options.passivity.delay =
-        static_cast<int>(std::clamp<double>(steps, 0, Passivity::kMaximumDelay));
-  }
-  if (device.rate > 0) options.silence = std::max(options.silence, kSilencePeriods / device.rate);
-  return options;
-}
-
 ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
   if (options.clutch_button) {
     Requirement{"servo"}(*options.clutch_button >= 0 && *options.clutch_button < kButtons,
@@ -76,6 +60,22 @@ GuardFault known_fault(const ServoState& state) noexcept {
 }
 
 }  // namespace
+
+// A device that renders no force is given what would be felt.
+GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
+  if (device.maximum_force > 0) {
+    options.maximum_force =
+        std::min(options.maximum_force, Servo::kForceShare * device.maximum_force);
+  }
+  if (device.mass > 0) options.passivity.mass = device.mass;
+  if (device.delay) {
+    const double steps = std::round(*device.delay * device.rate);
+    options.passivity.delay =
+        static_cast<int>(std::clamp<double>(steps, 0, Passivity::kMaximumDelay));
+  }
+  if (device.rate > 0) options.silence = std::max(options.silence, kSilencePeriods / device.rate);
+  return options;
+}
 
 Servo::Servo(Device& device, Scene& scene, const ServoOptions& options)
     : device_(device),

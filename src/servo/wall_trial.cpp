@@ -33,17 +33,11 @@ void validate(const WallTrialOptions& options) {
   require.positive("fastest (m/s)", options.fastest, "give a speed above 0");
 }
 
-const WallTrialOptions& checked(const WallTrialOptions& options) {
-  validate(options);
-  return options;
-}
-
 WallTrialOptions for_device(WallTrialOptions options, const DeviceInfo& device) {
+  validate(options);
   if (device.maximum_force <= 0) {
     throw Error("wall trial: " + device.name + " renders no force; nothing can be measured");
   }
-  options.maximum_force =
-      std::min(options.maximum_force, Servo::kForceShare * device.maximum_force);
   if (device.maximum_stiffness > 0) {
     options.stiffest = std::min(options.stiffest, device.maximum_stiffness);
     options.softest = std::min(options.softest, options.stiffest);
@@ -58,14 +52,13 @@ GuardOptions bare(const WallTrialOptions& options, const DeviceInfo& device) {
   guard.damping = options.damping;
   guard.passivity.on = false;
   guard.soft_start = kStillFor / 2;
-  if (device.rate > 0) guard.silence = std::max(guard.silence, 2.5 / device.rate);
-  return guard;
+  return guard_for(device, guard);
 }
 
 }  // namespace
 
 WallTrial::WallTrial(const DeviceInfo& device, const WallTrialOptions& options)
-    : options_(for_device(checked(options), device)), guard_(bare(options_, device)) {
+    : options_(for_device(options, device)), guard_(bare(options_, device)) {
   state_.wall = options_.softest;
 }
 

@@ -100,7 +100,6 @@ Impact impact(const WallOptions& wall) {
   run(device, {wall.stiffness, false}, wall, [&](double, const Vector3d& force) {
     const Vector3d& place = device.true_position();
     const double speed = device.true_velocity().z();
-    result.energy = device.work();
     if (!inside && place.z() < 0) {
       inside = true;
       speed_in = -speed;
@@ -111,6 +110,7 @@ Impact impact(const WallOptions& wall) {
     result.rebound = std::max(0.0, speed) / speed_in;
     return false;
   });
+  result.energy = device.work();
   return result;
 }
 

@@ -95,6 +95,8 @@ struct GuardState {
 ///     the hand has paid for, since a spring that grows stiffer while stretched gives energy.
 ///  5. Slew of unexplained changes: |F - F_before| <= K |h - h_before| + B |v - v_before| + S dt.
 ///     What the hand does itself is never delayed; pops of a new cloud, edges, switching on are.
+///     What fades in the air goes with the hand, K |h - h_before|, once it gives more than was
+///     paid.
 ///  6. Passivity: a brake against the hand's motion takes back what the hand was given.
 ///  7. Clamp: |F| <= maximum_force, the direction kept.
 ///

@@ -23,9 +23,7 @@ namespace palpate {
 struct ServoOptions {
   FieldOptions field = {};
   ProxyOptions proxy = {};
-  /// At the hand. maximum_force is lowered to Servo::kForceShare of what the device can hold, and
-  /// silence raised to 2.5 periods of slow devices.
-  GuardOptions guard = {};
+  GuardOptions guard = {};  ///< at the hand; fitted to the device by guard_for()
   Workspace workspace = {};
   /// While this button of the device is down, 0 to 31, the hand moves freely (Clutch).
   std::optional<int> clutch_button = {};
@@ -146,5 +144,9 @@ class Servo {
   std::atomic<bool> paused_{false};
   std::atomic<bool> reset_{false};
 };
+
+/// `options` at the hand of a device: maximum_force is lowered to Servo::kForceShare of what it can
+/// hold, silence raised to 2.5 periods of slow ones, mass and delay are what it tells.
+[[nodiscard]] GuardOptions guard_for(const DeviceInfo& device, GuardOptions options);
 
 }  // namespace palpate
