@@ -50,8 +50,13 @@ Vector3d Passivity::brake(const Vector3d& force, const Vector3d& way, double dt)
   if (!options_.on || !(square > 0) || !(dt > 0)) return Vector3d::Zero();
   const double energy = committed(way) + force.dot(way);
   if (!(energy > 0)) return Vector3d::Zero();
-  // With v = way / dt: E / (|v|^2 dt) v = E / |way|^2 way, M / (4 dt) v = M / (4 dt^2) way.
-  return -std::min(energy / square, options_.mass / (4 * dt * dt)) * way;
+  // With v = way / dt: E / (|v|^2 dt) v = E / |way|^2 way, B v = B / dt way.
+  return -std::min(energy / square, strongest(dt) / dt) * way;
+}
+
+// As a damper, N s/m.
+double Passivity::strongest(double dt) const noexcept {
+  return options_.mass / (2 * std::max(2, options_.delay + 1) * dt);
 }
 
 }  // namespace palpate

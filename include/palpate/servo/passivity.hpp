@@ -8,7 +8,7 @@ namespace palpate {
 
 struct PassivityOptions {
   bool on = true;
-  double mass = 0.1;     ///< moved with the hand, kg: bounds the brake, which sampling would shake
+  double mass = 0.1;     ///< moved with the hand, kg: bounds the brake
   double memory = 0.02;  ///< J: what was taken from the hand beyond this hides nothing later
   double forget = 1;     ///< s in which that memory falls to 1/e
   int delay = 1;         ///< steps from a force's being sent to its effect, 0-16
@@ -17,11 +17,13 @@ struct PassivityOptions {
 /// The ledger of what forces gave to the hand, and the brake that takes it back: passivity observer
 /// and controller (Hannaford and Ryu 2002, in the impedance form; algorithm.md section 8).
 ///
-///   E += F . (dh - v_surface dt);   E > 0: F -= min(E / (|v|^2 dt), M / (4 dt)) v
+///   E += F . (dh - v_surface dt);   E > 0: F -= min(E / (|v|^2 dt), M / (2 n dt)) v
 ///
 /// F is what acted then, sent some steps before: a ledger that leaves the delay out misses just the
 /// energy that a delay makes. Work that a moving surface does on the hand is its own and is not
-/// counted. Real-time.
+/// counted. n = max(2, delay + 1) steps: a damper that is sampled and delayed shakes what it is to
+/// brake when it is stronger than about M / (n dt); half of that bears a mass that was guessed too
+/// large by half. Real-time.
 class Passivity {
  public:
   static constexpr int kMaximumDelay = 16;
@@ -51,6 +53,7 @@ class Passivity {
  private:
   [[nodiscard]] const Eigen::Vector3d& sent(int steps_ago) const noexcept;
   [[nodiscard]] bool rests() const noexcept;
+  [[nodiscard]] double strongest(double dt) const noexcept;
 
   PassivityOptions options_;
   std::array<Eigen::Vector3d, kMaximumDelay + 1> sent_;  // ring
