@@ -52,6 +52,16 @@ double stored(const Vector3d& force, double stiffness) noexcept {
   return stiffness > 0 ? force.squaredNorm() / (2 * stiffness) : 0;
 }
 
+// From the hand to the proxy, m.
+Vector3d stretch(const GuardInput& input) noexcept {
+  if (!(input.stiffness > 0)) return Vector3d::Zero();
+  return input.force / input.stiffness;
+}
+
+Vector3d tangential(const Vector3d& v, const Vector3d& normal) noexcept {
+  return v - v.dot(normal) * normal;
+}
+
 }  // namespace
 
 Guard::Guard(const GuardOptions& options) : options_(options), passivity_(options.passivity) {
@@ -70,6 +80,7 @@ Vector3d Guard::pass(const GuardInput& input) noexcept {
   if (const GuardFault found = judge(input); found != GuardFault::none) return fail(found);
   if (!started_) begin(input);
   const Motion motion = follow(input);
+  sliding_ = sliding(input, motion);
   if (input.stiffness > 0) stiffness_ = input.stiffness;
   passivity_.account(before_.force, motion.way, held(input), input.dt);
   state_.energy = passivity_.energy();
@@ -94,6 +105,8 @@ void Guard::begin(const GuardInput& input) noexcept {
   gain_ = 0;
   slewed_.setZero();
   stiffness_ = 0;
+  stretch_ = stretch(input);
+  sliding_ = 1;
   passivity_.reset();
   started_ = true;
 }
@@ -110,13 +123,26 @@ double Guard::held(const GuardInput& input) const noexcept {
   return std::max(stored(input.force, input.stiffness), stored(slewed_, stiffness_));
 }
 
+// The share of the hand's way along the surface in which the proxy goes along, smoothed; 1 at the
+// first touch.
+double Guard::sliding(const GuardInput& input, const Motion& motion) const noexcept {
+  if (before_.normal.isZero(0) || before_.stiffness == 0 || input.stiffness == 0) return 1;
+  const Vector3d along = tangential(motion.way, input.normal);
+  const double square = along.squaredNorm();
+  if (!(square > 0)) return sliding_;
+  const Vector3d proxy_way = motion.way + stretch(input) - stretch_;
+  const double share = std::clamp(proxy_way.dot(along) / square, 0.0, 1.0);
+  return sliding_ + kSmoothing * (share - sliding_);
+}
+
 // The part along the normal is never turned round.
 Vector3d Guard::damp(const GuardInput& input, const Motion& motion) const noexcept {
   if (!input.felt) return Vector3d::Zero();
   if (options_.damping == 0 || input.normal.isZero(0)) return input.force;
   const double pressed = std::max(0.0, input.force.dot(input.normal));
   const double damped = -options_.damping * motion.velocity.dot(input.normal);
-  return input.force + std::max(damped, -pressed) * input.normal;
+  const Vector3d held = (1 - sliding_) * tangential(motion.velocity, input.normal);
+  return input.force + std::max(damped, -pressed) * input.normal - options_.damping * held;
 }
 
 Vector3d Guard::start(const GuardInput& input, const Vector3d& force) noexcept {
@@ -178,6 +204,7 @@ Vector3d Guard::limit_length(const Vector3d& force) noexcept {
 Vector3d Guard::remember(const GuardInput& input, const Motion& motion,
                          const Vector3d& force) noexcept {
   before_ = input;
+  stretch_ = stretch(input);
   velocity_ = motion.velocity;
   before_.force = force;
   return force;

@@ -40,6 +40,30 @@ TEST(Guard, DampsAlongTheNormalOfWhatIsTouched) {
   EXPECT_EQ(force, Vector3d::Zero()) << "drags in the air";
 }
 
+// What a damper of 1 N s/m adds to a spring's force on a hand at 0.2 m/s along a surface that it
+// presses 4 mm deep, when the proxy goes along in a share of its way.
+double drag(double share) {
+  GuardOptions options = plain();
+  options.damping = 1;
+  Guard guard(options);
+  GuardInput input = touching({0, 0, 2}, {0.2, 0, 0});
+  double drag = 0;
+  for (int i = 0; i < 100; ++i) {
+    input.hip.x() = 2e-4 * i;
+    input.force.x() = input.stiffness * (share * input.hip.x() - input.hip.x());
+    drag = guard.pass(input).x() - input.force.x();
+  }
+  return drag;
+}
+
+TEST(Guard, DampsAlongTheSurfaceWhatTheProxyDoesNotFollow) {
+  EXPECT_NEAR(drag(1), 0, 1e-9) << "it slides";
+  EXPECT_NEAR(drag(1.2), 0, 1e-9) << "ahead, on the inside of a bend";
+  EXPECT_NEAR(drag(0.5), -0.1, 1e-9);
+  EXPECT_NEAR(drag(0), -0.2, 1e-9) << "it sticks";
+  EXPECT_NEAR(drag(-1), -0.2, 1e-9) << "no more than all";
+}
+
 TEST(Guard, AllowsWhatTheDamperMakesOfAChangeOfVelocity) {
   GuardOptions options = plain();
   options.damping = 1;

@@ -142,6 +142,33 @@ TEST(Stability, NoWallGivesAHandThatLeansOnItAMillijoule) {
   }
 }
 
+// How far a device swings in the end that was let go 5 mm beside a proxy that sticks to a surface,
+// with the delay of a driver's thread, on a spring as stiff as is felt.
+double swing_beside_a_stuck_proxy(double damping) {
+  SimulatedDevice device(
+      {.coulomb = 0, .delay = 3, .hand = {.stiffness = 0, .damping = 0}, .position = {5e-3, 0, 0}});
+  Guard guard({.damping = damping, .soft_start = 0, .passivity = {.on = false}});
+  GuardInput input;
+  input.normal.z() = 1;
+  input.dt = 1e-3;
+  input.stiffness = 0.8 * passive_stiffness(0.5 + 1, 1e-3, 3e-3);
+  double swing = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const DeviceState hand = device.read();
+    input.hip = hand.position;
+    input.velocity = hand.velocity;
+    input.force = -input.stiffness * hand.position;
+    device.write(guard.pass(input));
+    if (i >= 1800) swing = std::max(swing, device.true_position().norm());
+  }
+  return swing;
+}
+
+TEST(Stability, DamperActsAlongASurfaceWhereTheProxySticks) {
+  EXPECT_GT(swing_beside_a_stuck_proxy(0), 5e-3);
+  EXPECT_LT(swing_beside_a_stuck_proxy(1), 1e-3);
+}
+
 TEST(Stability, HandThatRestsOnAWallIsGivenNothingByASoftStart) {
   WallOptions wall = too_stiff(0.05);
   wall.stiffness = 500;

@@ -89,7 +89,9 @@ struct GuardState {
 ///
 ///  1. Fault: what is not finite gives zero at once, and zero until reset().
 ///  2. Watchdog: after a silence the hand may be anywhere. Zero; the links below lead back softly.
-///  3. Damper: -B n (n . v) in contact, v the hand's velocity against the surface, smoothed; it
+///  3. Damper: in contact, beside the spring: -B (n (n . v) + (1 - s) v_t), v the hand's velocity
+///     against the surface, smoothed, v_t the part of it along the surface, and s the share of that
+///     in which the proxy goes along: none is dragged that slides, all is damped that is held. It
 ///     never makes the surface attract.
 ///  4. Soft start: the force comes up from zero while nothing is touched; in contact only as far as
 ///     the hand has paid for, since a spring that grows stiffer while stretched gives energy.
@@ -130,6 +132,7 @@ class Guard {
 
   void begin(const GuardInput& input) noexcept;
   [[nodiscard]] Motion follow(const GuardInput& input) const noexcept;
+  [[nodiscard]] double sliding(const GuardInput& input, const Motion& motion) const noexcept;
   [[nodiscard]] double held(const GuardInput& input) const noexcept;
   [[nodiscard]] Eigen::Vector3d damp(const GuardInput& input, const Motion& motion) const noexcept;
   [[nodiscard]] Eigen::Vector3d start(const GuardInput& input,
@@ -153,6 +156,8 @@ class Guard {
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  // smoothed, of the step before
   Eigen::Vector3d slewed_ = Eigen::Vector3d::Zero();    // let through by slew and clamp then
   double stiffness_ = 0;                                // that made a force last, N/m
+  Eigen::Vector3d stretch_ = Eigen::Vector3d::Zero();   // from hand to proxy in the step before, m
+  double sliding_ = 1;                                  // share of its way that the proxy follows
   double gain_ = 0;                                     // of the soft start
   bool started_ = false;
 };
