@@ -21,6 +21,10 @@ constexpr double kStaleExchanges = 2.5;
 constexpr double kFarthestHand = 5;
 constexpr double kFastestHand = 20;
 
+// From one place to the next: m/s, and what the steps of coarse encoders add, m.
+constexpr double kFastestWay = 10;
+constexpr double kCoarsestStep = 0.5e-3;
+
 LinkedDeviceOptions checked(LinkedDeviceOptions options) {
   const Requirement require{"linked device"};
   require.positive("stale (s)", options.stale, "give a time above 0");
@@ -97,13 +101,32 @@ void LinkedDevice::turn() noexcept {
 
 void LinkedDevice::exchange() noexcept {
   try {
-    const LinkReading reading = link_->exchange(applicable(clock_.now()));
+    const double asked = clock_.now();
+    const LinkReading reading = link_->exchange(applicable(asked));
     check(reading, info_);
-    newest_ = {reading, clock_.now(), connection_};
+    const Heard heard{reading, asked, clock_.now(), connection_};
+    check_way_to(heard);
+    newest_ = heard;
     heard_.set(newest_);
   } catch (const std::exception& error) {
     lose(error.what());
   }
+}
+
+// A place may be taken at any moment of its exchange. The longer one of the times between two
+// beginnings and two ends is at least half of what lies between two places: however late either
+// came, no hand is refused that is slower than half of kFastestWay.
+void LinkedDevice::check_way_to(const Heard& heard) const {
+  if (newest_.connection != heard.connection) return;
+  const double time =
+      std::max({heard.asked - newest_.asked, heard.time - newest_.time, 1 / info_.rate});
+  const double way = (heard.reading.position - newest_.reading.position).norm();
+  if (way <= kFastestWay * time + kCoarsestStep) return;
+  throw Error(
+      fmt::format("{}: its place leapt by {:.1f} mm in {:.2f} ms, as no hand goes, so it got no "
+                  "force. It is opened again; if that does not help, switch it off and on, and "
+                  "calibrate it",
+                  info_.name, 1e3 * way, 1e3 * time));
 }
 
 Vector3d LinkedDevice::applicable(double now) const noexcept {

@@ -174,6 +174,8 @@ TEST_F(ForceDimensionFaults, TakeTheForceAwayInTimeAndAreToldOnce) {
   expect_lost("fake_plug", false, "cable");
   expect_lost("fake_failing", true, "communication error");
   expect_lost("fake_not_a_number", true, "no number");
+  trial_.expect_lost(
+      "leap", [&](bool) { double_.place(0, 0.5, 0); }, "leapt by");
 }
 
 TEST_F(ForceDimensionFaults, AThreadThatHangsIsTheWatchdogs) {

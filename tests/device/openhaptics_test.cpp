@@ -232,6 +232,8 @@ TEST_F(OpenHapticsFaults, TakeTheForceAwayInTimeAndAreToldOnce) {
   trial_.expect_lost(
       "no number", [&](bool on) { set(&FakeHd::not_a_number, on); }, "no number");
   trial_.expect_lost(
+      "leap", [&](bool) { library_.place(0, 0, 500); }, "leapt by");
+  trial_.expect_lost(
       "lost calibration", [&](bool on) { set(&FakeHd::calibration, on ? 0x5002 : 0x5000); },
       "inkwell");
 }

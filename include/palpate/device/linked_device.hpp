@@ -32,11 +32,12 @@ struct LinkedDeviceOptions {
 /// the newest place, write() leaves a force for the next exchange; neither waits, allocates or
 /// locks.
 ///
-/// Hardware that is unplugged, fails, tells what is not finite or does not answer is no failure of
-/// the device: the status is `silent`, no force is applied, and what was lost is opened again as
-/// soon as it is back. The first place after a silence is told as `silent`, too, so that whoever
-/// computes forces knows where the hand is before there is one; and a force is applied only to the
-/// connection whose place it answers. `failed` and latched is a force that is not finite.
+/// Hardware that is unplugged, fails, does not answer, or tells what is not finite or no hand's (a
+/// place too far away, a speed too high, a leap from the place before) is no failure of the device:
+/// the status is `silent`, no force is applied, and what was lost is opened again as soon as it is
+/// back. The first place after a silence is told as `silent`, too, so that whoever computes forces
+/// knows where the hand is before there is one; and a force is applied only to the connection whose
+/// place it answers. `failed` and latched is a force that is not finite.
 class LinkedDevice final : public Device {
  public:
   /// Opens a link, or throws Error that says why there is none.
@@ -70,7 +71,8 @@ class LinkedDevice final : public Device {
 
   struct Heard {
     LinkReading reading;
-    double time = 0;  // s, when it came
+    double asked = 0;  // s, when its exchange began
+    double time = 0;   // s, when it came
     Connection connection = kNone;
   };
   struct Wanted {
@@ -81,6 +83,7 @@ class LinkedDevice final : public Device {
 
   void run(const std::stop_token& stop) noexcept;
   void exchange() noexcept;
+  void check_way_to(const Heard& heard) const;
   void open_again() noexcept;
   void lose(const char* why) noexcept;
   [[nodiscard]] Eigen::Vector3d applicable(double now) const noexcept;
