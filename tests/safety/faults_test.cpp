@@ -11,6 +11,7 @@
 #include <random>
 
 #include "palpate/scene/scene.hpp"
+#include "servo/allowed_step.hpp"
 #include "servo/servo_rig.hpp"
 #include "support/effort.hpp"
 #include "support/random_hand.hpp"
@@ -23,6 +24,7 @@ using Eigen::Vector3d;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRatedForce = 8;  // of the device, N
+constexpr int kClutch = 2;         // its button
 
 enum class Fault {
   place_is_no_number,
@@ -39,8 +41,12 @@ enum class Fault {
   pause,
   another_stiffness,
   another_field,
+  clutch,
 };
-constexpr int kFaults = 14;
+constexpr int kFaults = 15;
+constexpr unsigned kLongestClutch = 25;  // steps
+constexpr int kLongestWay = 400;         // to a contact, steps
+constexpr double kWorthFading = 0.5;     // N
 
 // Of faults of the device and of time no force is left, from the same step on.
 bool is_fatal(Fault fault) {
@@ -58,50 +64,6 @@ bool is_fatal(Fault fault) {
   }
 }
 
-// The largest step of force that is the hand's own doing or the guard's, computed anew from what
-// the servo shows (docs/safety.md).
-class AllowedStep {
- public:
-  explicit AllowedStep(const GuardOptions& options) : options_(options) {}
-
-  [[nodiscard]] double operator()(const ServoState& state) {
-    const Vector3d relative = state.velocity - state.contact.drift;
-    if (!begun_) {
-      hip_ = state.hip;
-      velocity_ = relative;
-      stiffness_ = brake_ = 0;
-      begun_ = true;
-    }
-    if (state.contact.stiffness > 0) loose_ = state.contact.stiffness;
-    const Vector3d velocity = velocity_ + Guard::kSmoothing * (relative - velocity_);
-    const Vector3d way = state.hip - hip_ - state.contact.drift * state.dt;
-    const bool braked = has(state.guard.notes, GuardNote::braked);
-    const double brake =
-        braked ? options_.passivity.mass / (4 * state.dt * state.dt) * way.norm() : 0;
-    const double loose = state.contact.normal.isZero(0) ? loose_ : 0;  // a spring that fades
-    const double stiffness = std::max({state.contact.stiffness, stiffness_, loose});
-    const double allowed = stiffness * (state.hip - hip_).norm() +
-                           options_.damping * (velocity - velocity_).norm() +
-                           options_.slew * state.dt + brake + brake_;
-    hip_ = state.hip;
-    velocity_ = velocity;
-    stiffness_ = state.contact.stiffness;
-    brake_ = brake;
-    return allowed;
-  }
-
-  void forget() { begun_ = false; }
-
- private:
-  GuardOptions options_;
-  bool begun_ = false;
-  Vector3d hip_ = Vector3d::Zero();
-  Vector3d velocity_ = Vector3d::Zero();
-  double stiffness_ = 0;
-  double loose_ = 0;
-  double brake_ = 0;
-};
-
 // A hand at a sheet, and somebody who breaks things.
 class Ordeal {
  public:
@@ -109,12 +71,15 @@ class Ordeal {
     show(0);
   }
 
-  // Steps until `faults` were made, each within a dozen steps.
+  // Steps until `faults` were made, each within a dozen steps; for a clutch, which is held longer,
+  // it waits until there is a force that can fade.
   void run(int faults) {
     for (int i = 0; i < faults; ++i) {
       fault_ = static_cast<Fault>(random_() % kFaults);
       for (unsigned rest = random_() % 6; rest > 0; --rest) step(false);
-      for (unsigned wrong = 1 + random_() % 3; wrong > 0; --wrong) step(true);
+      if (fault_ == Fault::clutch) touch();
+      const unsigned longest = fault_ == Fault::clutch ? kLongestClutch : 3;
+      for (unsigned wrong = 1 + random_() % longest; wrong > 0; --wrong) step(true);
       mend();
       for (unsigned rest = random_() % 6; rest > 0; --rest) step(false);
       ++counts_[static_cast<std::size_t>(fault_)];
@@ -123,6 +88,7 @@ class Ordeal {
 
   [[nodiscard]] int steps() const { return steps_; }
   [[nodiscard]] int felt() const { return felt_; }
+  [[nodiscard]] int felt_clutched() const { return felt_clutched_; }
   [[nodiscard]] const std::array<int, kFaults>& counts() const { return counts_; }
   [[nodiscard]] double nearest_to_allowed() const { return nearest_; }
 
@@ -140,7 +106,12 @@ class Ordeal {
   static ServoOptions quick() {
     ServoOptions options;
     options.guard.soft_start = 3e-3;
+    options.clutch_button = kClutch;
     return options;
+  }
+
+  void touch() {
+    for (int i = 0; i < kLongestWay && force_.norm() < kWorthFading; ++i) step(false);
   }
 
   double uniform() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
@@ -197,10 +168,14 @@ class Ordeal {
         servo_.pause(true);
         break;
       case Fault::another_stiffness:
-        servo_.set_feel({.stiffness = 500 * std::abs(uniform())});
+        stiffness_ = 500 * std::abs(uniform());
+        servo_.set_feel({.stiffness = stiffness_});
         break;
       case Fault::another_field:
         servo_.set_field({.kind = static_cast<FieldKind>(random_() % 3)});
+        break;
+      case Fault::clutch:
+        state.buttons = 1u << kClutch;
         break;
     }
     return now_;
@@ -231,11 +206,27 @@ class Ordeal {
       judge_step(state);
     }
     if (!state.force.isZero(0)) ++felt_;
+    if (!state.force.isZero(0) && state.clutched) ++felt_clutched_;
     force_ = state.force;
   }
 
+  // What a guard ought to be told: the hand goes its own way while the clutch is held, and touches
+  // nothing.
+  [[nodiscard]] GuardInput told(const ServoState& state) {
+    GuardInput input;
+    input.hip = device_.state().position;
+    input.velocity = device_.state().velocity;
+    input.dt = state.dt;
+    input.stiffness = std::min(stiffness_, servo_.stiffness_limit());
+    if (state.clutched) return input;
+    input.normal = state.contact.normal;
+    input.drift = state.contact.drift;
+    input.stiffness = state.contact.stiffness;
+    return input;
+  }
+
   void judge_step(const ServoState& state) {
-    const double allowed = allowed_(state);
+    const double allowed = allowed_(told(state), state.guard.notes);
     const double change = (state.force - force_).norm();
     if (has(state.guard.notes, GuardNote::silence)) return;
     ASSERT_LE(change, allowed + 1e-9)
@@ -253,10 +244,12 @@ class Ordeal {
   AllowedStep allowed_{servo_.options().guard};
   Vector3d leap_ = Vector3d::Zero();
   Vector3d force_ = Vector3d::Zero();
+  double stiffness_ = servo_.options().proxy.stiffness;  // as it is asked for, N/m
   double now_ = 0;
   double nearest_ = 0;
   int steps_ = 0;
   int felt_ = 0;
+  int felt_clutched_ = 0;
   std::array<int, kFaults> counts_{};
 };
 
@@ -268,6 +261,8 @@ TEST_P(Faults, MakeNoForceThatIsTooLongOrLeaps) {
   RecordProperty("steps", ordeal.steps());
   RecordProperty("felt", ordeal.felt());
   EXPECT_GT(ordeal.felt(), ordeal.steps() / 50) << "too little was felt to tell";
+  RecordProperty("felt_clutched", ordeal.felt_clutched());
+  EXPECT_GT(ordeal.felt_clutched(), 0) << "no force had to fade";
   EXPECT_GT(ordeal.nearest_to_allowed(), 0.99) << "the bound is never reached: it tells nothing";
   for (const int count : ordeal.counts()) EXPECT_GT(count, 0);
 }

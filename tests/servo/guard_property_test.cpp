@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "palpate/servo/guard.hpp"
+#include "servo/allowed_step.hpp"
 
 namespace palpate {
 namespace {
@@ -72,8 +72,6 @@ RC_GTEST_PROP(GuardProperty, NeverLetsPassWhatIsNotFiniteOrTooLong, ()) {
   }
 }
 
-// The bound is computed here anew, from what went in and came out. The brake acts against the way
-// that the hand goes, and so is the hand's doing; it may come and go.
 RC_GTEST_PROP(GuardProperty, NeverStepsFurtherThanHandAndSlewAllow, ()) {
   GuardOptions options;
   options.maximum_force = *rc::gen::element(0.5, 3.0, 16.0);
@@ -81,36 +79,17 @@ RC_GTEST_PROP(GuardProperty, NeverStepsFurtherThanHandAndSlewAllow, ()) {
   options.passivity.on = *rc::gen::arbitrary<bool>();
   options.soft_start = *rc::gen::element(0.0, 0.01);
   Guard guard(options);
-  GuardInput before;
-  Vector3d force_before = Vector3d::Zero();
-  Vector3d velocity = Vector3d::Zero();  // smoothed
-  double brake_before = 0;
-  double let_loose = 0;  // N/m, of the spring that may fade
-  bool first = true;
+  test::AllowedStep allowed_step(options);
+  Vector3d before = Vector3d::Zero();
   for (const GuardInput& each : inputs(false)) {
-    const Vector3d relative = each.velocity - each.drift;
-    if (first) before = each;
-    if (first) velocity = relative;
-    first = false;
     const Vector3d force = guard.pass(each);
-    const Vector3d velocity_before = velocity;
-    velocity += Guard::kSmoothing * (relative - velocity);
-    const Vector3d way = each.hip - before.hip - each.drift * each.dt;
-    if (each.stiffness > 0) let_loose = each.stiffness;
-    const bool braked = has(guard.state().notes, GuardNote::braked);
-    const double brake = braked ? options.passivity.mass / (4 * each.dt * each.dt) * way.norm() : 0;
+    const double allowed = allowed_step(each, guard.state().notes);
     if (each.dt > options.silence) {
       RC_ASSERT(force.isZero(0));
     } else {
-      const double stiffness = std::max({each.stiffness, before.stiffness, let_loose});
-      const double allowed = stiffness * (each.hip - before.hip).norm() +
-                             options.damping * (velocity - velocity_before).norm() +
-                             options.slew * each.dt + brake + brake_before;
-      RC_ASSERT((force - force_before).norm() <= allowed + 1e-12);
+      RC_ASSERT((force - before).norm() <= allowed + 1e-12);
     }
-    before = each;
-    force_before = force;
-    brake_before = brake;
+    before = force;
   }
 }
 
