@@ -5,6 +5,7 @@
 
 #include "palpate/contact/proxy.hpp"
 #include "support/effort.hpp"
+#include "support/kind_name.hpp"
 #include "support/point_field.hpp"
 #include "support/point_shapes.hpp"
 
@@ -116,8 +117,7 @@ TEST_P(AcceptanceEnergy, ClosedLoopsGiveNothing) {
 
 std::string energy_name(const testing::TestParamInfo<EnergyCase>& tested) {
   const auto& [index, kind] = tested.param;
-  return std::string(energy_scenes()[static_cast<std::size_t>(index)].name) +
-         (kind == FieldKind::metaball ? "_metaball" : "_balanced");
+  return std::string(energy_scenes()[static_cast<std::size_t>(index)].name) + "_" + kind_name(kind);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, AcceptanceEnergy,

@@ -4,6 +4,7 @@
 
 #include "palpate/contact/proxy.hpp"
 #include "support/effort.hpp"
+#include "support/kind_name.hpp"
 #include "support/point_field.hpp"
 #include "support/point_shapes.hpp"
 #include "support/random_hand.hpp"
@@ -139,10 +140,8 @@ TEST_P(AcceptanceFuzz, NeverNaNNeverInsideNeverOnTheWrongSide) {
 }
 
 std::string fuzz_name(const testing::TestParamInfo<FuzzCase>& tested) {
-  constexpr const char* kKinds[] = {"balanced", "pointset", "metaball"};
   const auto& [index, kind] = tested.param;
-  return std::string(fuzz_scenes()[static_cast<std::size_t>(index)].name) + "_" +
-         kKinds[static_cast<int>(kind)];
+  return std::string(fuzz_scenes()[static_cast<std::size_t>(index)].name) + "_" + kind_name(kind);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, AcceptanceFuzz,

@@ -9,6 +9,7 @@
 #include "palpate/io/read_cloud.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/effort.hpp"
+#include "support/kind_name.hpp"
 #include "support/point_shapes.hpp"
 #include "support/rates.hpp"
 
@@ -128,7 +129,7 @@ TEST_F(Bunny, IsExploredWithoutEnteringIt) {
     Touch touch(cloud_, {}, {.kind = kind}, {}, {0.2, 0.1, 0});
     const int ticks = effort(30000);
     const Walk result = walk(touch, center, 0.16, ticks, 0.3);
-    record(result, ticks, kind == FieldKind::balanced ? "balanced" : "metaball");
+    record(result, ticks, kind_name(kind));
     EXPECT_EQ(result.not_finite, 0);
     EXPECT_EQ(result.inside, 0);
     EXPECT_GT(result.touching, ticks / 20);  // a short walk has its approach in it

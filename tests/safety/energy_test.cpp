@@ -16,6 +16,7 @@
 #include "palpate/io/synthetic.hpp"
 #include "safety/given_energy.hpp"
 #include "support/effort.hpp"
+#include "support/kind_name.hpp"
 #include "support/point_shapes.hpp"
 #include "support/random_hand.hpp"
 #include "support/snapshots.hpp"
@@ -94,10 +95,9 @@ TEST_P(EnergyFuzz, NoSurfaceGivesMoreThanWasPutIn) {
 }
 
 std::string energy_fuzz_name(const testing::TestParamInfo<EnergyFuzzCase>& tested) {
-  constexpr const char* kKinds[] = {"balanced", "pointset", "metaball"};
   const auto& [index, kind] = tested.param;
   return std::string(energy_fuzz_scenes()[static_cast<std::size_t>(index)].name) + "_" +
-         kKinds[static_cast<int>(kind)];
+         kind_name(kind);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EnergyFuzz,
