@@ -29,6 +29,43 @@ class SurfaceWork {
   double work_ = 0;
 };
 
+// What a stretched spring holds. Forces act a while after they were computed, so what counts is the
+// most that it held since those were that act now.
+class HeldEnergy {
+ public:
+  explicit HeldEnergy(int delay) : held_(static_cast<std::size_t>(delay) + 2, 0.0) {}
+
+  // A step's, J at the hand; `scale`: of the workspace. Of a force that fades after its surface has
+  // gone: as the spring that made it.
+  [[nodiscard]] double of(const ServoState& state, double scale) {
+    if (state.contact.stiffness > 0) stiffness_ = scale * state.contact.stiffness;
+    const double force = std::max(state.force.norm(), state.contact.force.norm());
+    held_.pop_front();
+    held_.push_back(stiffness_ > 0 ? force * force / (2 * stiffness_) : 0);
+    return std::ranges::max(held_);
+  }
+
+ private:
+  std::deque<double> held_;
+  double stiffness_ = 0;  // N/m at the hand
+};
+
+// The most that is given from any moment of a contact to a later one, beyond what the spring held.
+class FromAnyMoment {
+ public:
+  // Nothing is touched: `given` so far, J.
+  void begin(double given) { least_ = given; }
+  void add(double given, double held) {
+    least_ = std::min(least_, given + held);
+    most_ = std::max(most_, given - least_);
+  }
+  [[nodiscard]] double most() const { return most_; }
+
+ private:
+  double least_ = 0;
+  double most_ = 0;
+};
+
 }  // namespace
 
 GivenEnergy given_energy(SimulatedDevice& device, Scene& scene, const ServoOptions& options,
@@ -37,6 +74,8 @@ GivenEnergy given_energy(SimulatedDevice& device, Scene& scene, const ServoOptio
   const int delay = static_cast<int>(std::lround(*device.info().delay * device.info().rate));
   SurfaceWork surface(delay);
   GivenEnergy given;
+  FromAnyMoment from_any;
+  HeldEnergy held(delay);
   double begun = 0;  // J, when the present contact began
   int free_steps = 0;
   for (int i = 0; i < steps && !has_ended(servo.state().device); ++i) {
@@ -48,11 +87,15 @@ GivenEnergy given_energy(SimulatedDevice& device, Scene& scene, const ServoOptio
     const double work = device.work() - surface.now();
     given.in_all = std::max(given.in_all, work);
     given.in_a_contact = std::max(given.in_a_contact, work - begun);
+    from_any.add(work, held.of(state, options.workspace.scale));
     given.largest_force = std::max(given.largest_force, state.force.norm());
     free_steps = state.force.isZero(0) ? free_steps + 1 : 0;
     if (free_steps == delay + 2) ++given.contacts;
-    if (free_steps > delay + 1) begun = work;
+    if (free_steps <= delay + 1) continue;
+    begun = work;
+    from_any.begin(work);
   }
+  given.beyond_the_spring = from_any.most();
   given.counts = servo.state().guard.counts;
   return given;
 }

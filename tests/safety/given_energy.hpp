@@ -10,7 +10,10 @@ namespace palpate::test {
 /// What a simulated hand was given by what it touched, beyond what it had put in and beyond what
 /// moving surfaces did themselves.
 struct GivenEnergy {
-  double in_a_contact = 0;   ///< most, from the first touch to any moment until it left, J
+  double in_a_contact = 0;  ///< most, from the first touch to any moment until it left, J
+  /// Most, from any moment of a contact to a later one, beyond what the spring held at the first as
+  /// far as the proxy stretched it, J.
+  double beyond_the_spring = 0;
   double in_all = 0;         ///< most, from the beginning to any moment, J
   int contacts = 0;          ///< touches that were left again
   double largest_force = 0;  ///< N
