@@ -101,7 +101,10 @@ std::string way_to_surface(const Hand& hand) {
   if (hand.led) {
     return "is the trajectory in metres and in the cloud's frame, and --scale right?";
   }
-  if (hand.socket != nullptr && hand.socket->counts().taken == 0) return hand.device->reason();
+  // A socket has reasons of single packets, too: they count where none was good.
+  const bool counts = hand.socket == nullptr || hand.socket->counts().taken == 0;
+  const std::string silence = counts ? hand.device->reason() : "";
+  if (!silence.empty()) return silence;
   return "its origin is 2 mm in front of the surface; --view shows where it goes";
 }
 

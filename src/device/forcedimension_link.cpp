@@ -121,8 +121,8 @@ void ForceDimensionLink::check_status() const {
   if (flags[Flag::kPower] == 0) fail("has no power. Switch it on, and look at its supply");
   if (flags[Flag::kReset] != 0) {
     fail(
-        "is not calibrated. Put its tip into the rest position, or run HapticInit of the maker's "
-        "SDK");
+        "is not calibrated. Put its calibration pole into the pit in its base, or run HapticInit "
+        "of the maker's SDK");
   }
   if (flags[Flag::kError] != 0) fail("tells an error. Switch it off and on");
   if (flags[Flag::kForce] != 0) return;

@@ -34,7 +34,7 @@ TextSocket connect(const std::string& url) {
   try {
     return TextSocket(url, kConnecting);
   } catch (const Error& error) {
-    throw Error(fmt::format("haply: {}. {}", error.what(), kInstall));
+    throw Error(fmt::format("{}. {}", error.what(), kInstall));
   }
 }
 
@@ -74,8 +74,7 @@ class HaplyLink final : public DeviceLink {
     const std::vector<HaplyDevice> devices = ask([this] { return greet(socket_); });
     const std::optional<HaplyDevice> found = find(devices, id_);
     if (!found) {
-      throw Error(fmt::format("haply:{}: there is no such Inverse3 (there is: {}). {}", id_,
-                              ids_of(devices), kLook));
+      fail(fmt::format("there is no such Inverse3 (there is: {}). {}", ids_of(devices), kLook));
     }
     id_ = found->id;
     check(*found);
@@ -101,7 +100,7 @@ class HaplyLink final : public DeviceLink {
 
  private:
   [[noreturn]] void fail(const std::string& words) const {
-    throw Error(fmt::format("haply:{}: {}", id_, words));
+    throw Error(fmt::format("haply{}{}: {}", id_.empty() ? "" : ":", id_, words));
   }
 
   void check(const HaplyDevice& device) const {

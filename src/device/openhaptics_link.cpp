@@ -22,7 +22,7 @@ constexpr int kCalibrationFrames = 1000;  // until it is calibrated by itself
 constexpr double kCool = 0.5;
 constexpr const char* kNotCalibrated =
     "is not calibrated. Put its stylus into the inkwell, or calibrate it with the maker's "
-    "Touch_Diagnostic";
+    "Touch_Diagnostic (in newer drivers TouchCheckup)";
 
 // What a device's model tells, the most exact first.
 struct TouchModel {

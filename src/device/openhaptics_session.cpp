@@ -23,9 +23,9 @@ SharedScheduler& shared_scheduler() {
 
 const char* touch_opening_remedy(unsigned code) {
   if (code == hd::kAlreadyOpen) return "It is in use already: end other programs that use it";
-  return "Plug it in, switch it on, let the maker's Touch_Setup write its configuration under this "
-         "name, end other programs that use it, and let your user use it (udev rules; 'palpate "
-         "doctor' tells)";
+  return "Plug it in, switch it on, let the maker's Touch_Setup (in newer drivers "
+         "Touch_HeadlessSetup) write its configuration under this name, end other programs that "
+         "use it, and let your user use it (udev rules; 'palpate doctor' tells)";
 }
 
 }  // namespace

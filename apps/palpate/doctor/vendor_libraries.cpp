@@ -103,8 +103,10 @@ Finding check_touch_setup(const System& system) {
   finding.words = fmt::format("{} in {}", names, folder.string());
   if (!names.empty()) return finding;
   finding.severity = Severity::problem;
-  finding.words =
-      fmt::format("no device is set up in {}: OpenHaptics opens none that is not", folder.string());
+  finding.words = fmt::format(
+      "no device is set up in {}: OpenHaptics opens none that is not (newer drivers "
+      "call the tool Touch_HeadlessSetup)",
+      folder.string());
   finding.remedy = fmt::format("{}mkdir -p \"$GTDD_HOME/config\" && Touch_Setup",
                                given.empty() ? "export GTDD_HOME=\"$HOME/.3dsystems\" && " : "");
   return finding;
