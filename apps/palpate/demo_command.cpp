@@ -66,6 +66,7 @@ void add_demo_options(CLI::App& command, DemoOptions& o) {
       ->type_name("SECONDS");
   command.add_flag("--headless", o.headless, wrapped("opens no browser"));
   add_device_option(command, o.devices, "OPTIONS");
+  add_live_options(command, o.live);
   add_page_options(command, o.view);
 }
 
@@ -74,6 +75,7 @@ void demo(const DemoOptions& options) {
   touched.clouds = sources_of(options.scene);
   touched.devices = options.devices;
   touched.duration = options.duration;
+  touched.live = options.live;
   touched.view = options.view;
   touched.view.wanted = true;
   touched.view.open_browser = !options.headless;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/palpate/live_options.hpp"
 #include "apps/palpate/view_options.hpp"
 
 namespace CLI {
@@ -17,6 +18,7 @@ struct DemoOptions {
   std::optional<double> duration;    ///< s; unset: until Ctrl-C
   bool headless = false;             ///< opens no browser
   std::vector<std::string> devices;  ///< one a hand, as parse_device() takes them
+  LiveOptions live;
   ViewOptions view;
 };
 

@@ -15,6 +15,13 @@ TEST(ViewProgram, TheDemoSaysWhereItsPageIsAndEndsWhenItIsTold) {
   EXPECT_NE(outcome.out.find("camera:simulated:desk"), std::string::npos) << outcome.out;
 }
 
+TEST(ViewProgram, TheDemosForceIsBounded) {
+  Shell shell;
+  const Outcome outcome = shell.run("demo scan --headless --duration 1 --port 0 --maximum-force 1");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("1 N at most"), std::string::npos) << outcome.out;
+}
+
 TEST(ViewProgram, ACloudIsExploredInRealTimeWhileItIsShown) {
   Shell shell;
   const Outcome outcome =
