@@ -98,9 +98,16 @@ void add_powerless(const std::vector<Found>& found, Findings& findings) {
                       "lsusb -d 045e:"});
 }
 
-void add_absence(const std::vector<Found>& found, DeviceKind kind, Findings& findings) {
+void add_absence(const System& system, const std::vector<Found>& found, DeviceKind kind,
+                 Findings& findings) {
   const auto of_kind = [kind](const Found& each) { return each.known.kind == kind; };
   if (std::ranges::any_of(found, of_kind)) return;
+  if (!is_there(system, "sys/bus/usb")) {
+    findings.push_back({area_of(kind), "on USB", Severity::note,
+                        "/sys does not tell what is plugged in",
+                        is_there(system, "sys/bus") ? usb_command(system) : kMountSys});
+    return;
+  }
   const bool haptic = kind == DeviceKind::haptic;
   findings.push_back({area_of(kind), "on USB", Severity::note,
                       haptic ? "none that is known; without one, a mouse on the page is a hand"
@@ -125,7 +132,7 @@ std::string usb_command(const System& system) {
 Findings check_devices(const System& system, const std::vector<Found>& found) {
   Findings findings;
   for (const DeviceKind kind : {DeviceKind::haptic, DeviceKind::camera}) {
-    add_absence(found, kind, findings);
+    add_absence(system, found, kind, findings);
     for (const Found& each : found) {
       if (each.known.kind != kind) continue;
       findings.push_back(check_access(system, each));

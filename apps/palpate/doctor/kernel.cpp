@@ -12,7 +12,6 @@ namespace palpate::app::doctor {
 namespace {
 
 constexpr const char* kArea = "kernel";
-constexpr const char* kMountSys = "sudo mount -t sysfs sysfs /sys";
 constexpr const char* kMountProc = "sudo mount -t proc proc /proc";
 constexpr const char* kClock = "sys/devices/system/clocksource/clocksource0/";
 

@@ -65,6 +65,9 @@ struct System {
 /// Of the environment; empty where it is not set.
 [[nodiscard]] std::string variable(const System& system, const std::string& name);
 
+/// What brings /sys where it is not mounted.
+inline constexpr const char* kMountSys = "sudo mount -t sysfs sysfs /sys";
+
 /// Is this a container, whose limits and devices are set where it is started?
 [[nodiscard]] bool in_container(const System& system);
 /// Ubuntu rather than Debian: a few packages are named otherwise.

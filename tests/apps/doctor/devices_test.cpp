@@ -20,9 +20,21 @@ Findings examined(const MadeUp& machine) {
 }
 
 TEST(DoctorDevices, AbsenceIsANoteAlone) {
-  const Findings findings = examined(MadeUp());
+  MadeUp machine;
+  machine.file("sys/bus/usb/drivers_probe", "");
+  const Findings findings = examined(machine);
   ASSERT_EQ(findings.size(), 2u);  // no haptic device, no camera
   EXPECT_EQ(worst(findings), Severity::note);
+  EXPECT_EQ(findings.front().remedy, "palpate demo");
+}
+
+TEST(DoctorDevices, WhatIsNotToldIsNotCalledAbsent) {
+  MadeUp machine;
+  EXPECT_EQ(about("on USB", examined(machine)).remedy, kMountSys);
+  machine.file("sys/bus/pci/drivers_probe", "");
+  const Finding found = about("on USB", examined(machine));
+  EXPECT_NE(found.words.find("does not tell"), std::string::npos) << found.words;
+  EXPECT_EQ(found.remedy, "sudo modprobe xhci_pci");
 }
 
 TEST(DoctorDevices, KnowsThemByTheirNumbersAndSomeByTheirWords) {
