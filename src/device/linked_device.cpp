@@ -56,6 +56,10 @@ void check(const LinkReading& reading, const DeviceInfo& info) {
                   info.name));
 }
 
+std::string in_its_place(const std::string& there, const std::string& instead_of) {
+  return fmt::format("{} is there now instead of {}; start again to use it", there, instead_of);
+}
+
 }  // namespace
 
 LinkedDevice::LinkedDevice(Open open, WaitingClock& clock, LinkedDeviceOptions options)
@@ -156,16 +160,13 @@ void LinkedDevice::lose(const char* why) noexcept {
 void LinkedDevice::open_again() noexcept {
   try {
     std::unique_ptr<DeviceLink> link = open_();
-    if (link->info().name != info_.name) {
-      throw Error(fmt::format("{} is there now instead of {}; start again to use it",
-                              link->info().name, info_.name));
-    }
-    link_ = std::move(link);
+    const bool same = link->info().name == info_.name;
     const std::lock_guard lock(words_mutex_);
-    words_.clear();
-  } catch (const std::exception&) {
-    retry_at_ = clock_.now() + options_.retry;
+    words_ = same ? "" : in_its_place(link->info().name, info_.name);
+    if (same) link_ = std::move(link);
+  } catch (const std::exception&) {  // not back yet
   }
+  if (!link_) retry_at_ = clock_.now() + options_.retry;
 }
 
 DeviceState LinkedDevice::read() noexcept {
