@@ -49,9 +49,13 @@ std::vector<HaplyDevice> greet(TextSocket& socket) {
     devices = parse_haply_frame(socket.newest());
   }
   if (seen == 0) throw Error("the service says nothing");
-  // What is still on its way would be taken for the answer to a command, and be old.
-  for (int i = 0; i < kFirstFrames && socket.wait(seen, kQuiet); ++i) seen = socket.received();
   return devices;
+}
+
+// What is still on its way would be taken for the answer to a command, and be old.
+void let_pass(TextSocket& socket) {
+  std::uint64_t seen = socket.received();
+  for (int i = 0; i < kFirstFrames && socket.wait(seen, kQuiet); ++i) seen = socket.received();
 }
 
 std::string ids_of(const std::vector<HaplyDevice>& devices) {
@@ -80,6 +84,7 @@ class HaplyLink final : public DeviceLink {
     check(*found);
     info_ = info_of(device_profile(name.option("profile", kProfile)), fmt::format("haply:{}", id_));
     info_.tells_orientation = found->gripped;
+    ask([this] { configure(); });
   }
   ~HaplyLink() override {
     try {
@@ -117,6 +122,11 @@ class HaplyLink final : public DeviceLink {
     } catch (const Error& error) {
       fail(fmt::format("{}. {}", error.what(), kLook));
     }
+  }
+
+  void configure() {
+    socket_.send(haply_configuration(id_), kPatience);
+    let_pass(socket_);
   }
 
   // A frame is the answer to a command; what came before it is old. Who does not tell in time where

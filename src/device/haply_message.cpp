@@ -94,6 +94,11 @@ HaplyDevice device_of(const Json& told, std::string id, const Grip& grip) {
   return device;
 }
 
+std::string to_device(std::string_view id, const char* what, const Json& told) {
+  const Json device = {{"device_id", id}, {what, told}};
+  return Json{{"inverse3", Json::array({device})}}.dump();
+}
+
 }  // namespace
 
 std::vector<HaplyDevice> parse_haply_frame(std::string_view text) {
@@ -114,11 +119,13 @@ std::string haply_greeting() {
   return R"({"session":{"force_render_full_state":{}}})";
 }
 
+std::string haply_configuration(std::string_view id) {
+  return to_device(id, "configure", {{"preset", {{"preset", "arm_front_centered"}}}});
+}
+
 std::string haply_command(std::string_view id, const Vector3d& force) {
-  const Json values = {{"x", force.x()}, {"y", force.y()}, {"z", force.z()}};
-  const Json command = {{"device_id", id},
-                        {"commands", {{"set_cursor_force", {{"values", values}}}}}};
-  return Json{{"inverse3", Json::array({command})}}.dump();
+  const Json xyz = {{"x", force.x()}, {"y", force.y()}, {"z", force.z()}};
+  return to_device(id, "commands", {{"set_cursor_force", {{"values", xyz}, {"vector", xyz}}}});
 }
 
 }  // namespace palpate::device

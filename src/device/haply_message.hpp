@@ -32,7 +32,12 @@ inline constexpr double kFastestHaply = 100;
 /// Asks for a frame that tells all.
 [[nodiscard]] std::string haply_greeting();
 
-/// Sets the force on a device, N; answered by a frame.
+/// Lets a device's places be counted from the middle of its reach, not from its base (the service's
+/// preset arm_front_centered).
+[[nodiscard]] std::string haply_configuration(std::string_view id);
+
+/// Sets the force on a device, N; answered by a frame. The force stands there twice, as the service
+/// of 3.1 calls it (values) and that of 3.5 (vector).
 [[nodiscard]] std::string haply_command(std::string_view id, const Eigen::Vector3d& force);
 
 }  // namespace palpate::device

@@ -18,7 +18,7 @@ namespace palpate::test {
 
 /// Stands for Haply's Inverse Service, on a thread of its own: speaks first, answers each message
 /// with a frame, and goes wrong when it is told to. Its device goes 1 um to the right with every
-/// command.
+/// command; its places are counted from its base until a preset asks for the middle of its reach.
 class FakeHaplyService {
  public:
   enum class Fault {
@@ -78,6 +78,7 @@ class FakeHaplyService {
 
   void talk(Socket& socket) {
     ++connections_;
+    centred_ = false;
     boost::system::error_code failed;
     say(socket, frame(fault_), failed);
     while (!failed) {
@@ -104,7 +105,11 @@ class FakeHaplyService {
     const Json message = Json::parse(text);
     if (!message.contains("inverse3")) return;  // a greeting
     const Json& device = message["inverse3"][0];
-    const Json& force = device["commands"]["set_cursor_force"]["values"];
+    if (device.contains("configure")) {
+      centred_ = device["configure"]["preset"]["preset"] == "arm_front_centered";
+      return;
+    }
+    const Json& force = device["commands"]["set_cursor_force"]["vector"];
     const std::lock_guard lock(mutex_);
     forces_.emplace_back(force["x"].get<double>(), force["y"].get<double>(),
                          force["z"].get<double>());
@@ -117,7 +122,8 @@ class FakeHaplyService {
     Json device = {
         {"device_id", fault == Fault::gone ? "0000" : "04EA"},
         {"state",
-         {{"cursor_position", {{"x", 1e-6 * commands_}, {"y", -0.036}, {"z", -0.061}}},
+         {{"cursor_position",
+           {{"x", 1e-6 * commands_}, {"y", -0.036}, {"z", centred_ ? -0.061 : 0.09}}},
           {"cursor_velocity", {{"x", 0.1}, {"y", 0.2}, {"z", -0.3}}},
           {"angular_position", {{"a0", -30.9}, {"a1", 53.8}, {"a2", -6.6}}},
           {"body_orientation", {{"w", 1}, {"x", 0}, {"y", 0}, {"z", 0}}},
@@ -146,6 +152,7 @@ class FakeHaplyService {
   std::atomic<Fault> fault_ = Fault::none;
   std::atomic<int> commands_ = 0;
   std::atomic<int> connections_ = 0;
+  bool centred_ = false;
   mutable std::mutex mutex_;
   std::vector<Eigen::Vector3d> forces_;  // as they were commanded
   std::thread thread_;                   // last: it uses all of the above

@@ -17,7 +17,6 @@ using Eigen::Vector3d;
 using test::FakeHaplyService;
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::StartsWith;
 using Fault = FakeHaplyService::Fault;
 
 const Vector3d kForce(1, 2, -3);
@@ -110,8 +109,7 @@ TEST_F(Haply, SaysWhyThereIsNone) {
   EXPECT_THAT(refusal(name()), AllOf(HasSubstr("not calibrated"), HasSubstr("Hub")));
   service_.set(Fault::closes);
   EXPECT_THAT(refusal(name()), HasSubstr("ended"));
-  EXPECT_THAT(refusal("haply,url=" + service_.url()),
-              StartsWith("haply: the connection has ended"));
+  EXPECT_THAT(refusal("haply,url=" + service_.url()), HasSubstr("the connection has ended"));
   EXPECT_EQ(service_.commands(), 0) << "no force where there is no hand";
 }
 
