@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "device/openhaptics_codes.hpp"
 
@@ -49,20 +50,32 @@ void OpenHapticsFrames::ask(const Vector3d& force) noexcept {
 }
 
 std::optional<OpenHapticsFrames::Answer> OpenHapticsFrames::answer(double patience) noexcept {
-  const auto end = deadline_in(patience);
+  std::uint64_t turn = common_.gate.turn();
+  auto end = deadline_in(patience);
   while (true) {
     const Answer newest = answers_.get();
     if (newest.number == asked_) return newest;
-    if (std::chrono::steady_clock::now() >= end) return std::nullopt;
+    if (std::chrono::steady_clock::now() >= end) {
+      const std::uint64_t seen = std::exchange(turn, common_.gate.turn());
+      if (seen == turn && !FrameGate::is_closed(turn)) return std::nullopt;
+      end = deadline_in(patience);  // frames may have stood still
+    }
     (void)wakeup_.wait_until(end);
   }
 }
 
 void OpenHapticsFrames::end(double patience) noexcept {
   leaving_ = true;
+  if (is_over_within(patience) || lane_->give_up()) return;
+  if (!is_over_within(patience)) lane_->end();
+}
+
+bool OpenHapticsFrames::is_over_within(double patience) noexcept {
   const auto end = deadline_in(patience);
-  while (!left_ && std::chrono::steady_clock::now() < end) (void)wakeup_.wait_until(end);
-  closed_ = true;
+  while (!lane_->is_over() && std::chrono::steady_clock::now() < end) {
+    (void)wakeup_.wait_until(end);
+  }
+  return lane_->is_over();
 }
 
 unsigned OpenHapticsFrames::call(void* frames) noexcept {
@@ -73,10 +86,26 @@ unsigned OpenHapticsFrames::call(void* frames) noexcept {
 }
 
 unsigned OpenHapticsFrames::tick() noexcept {
-  if (leaving_) return leave();
-  library_.make_current(device_);
-  if (frames_ == 0) library_.enable(hd::kForceOutput);
-  library_.begin_frame(device_);
+  if (lane_->stands(common_.gate.turn())) return hd::kContinue;
+  if (!lane_->enter()) return hd::kDone;
+  // Whoever closes the gate after this look waits for the next tick to stand still.
+  const std::uint64_t turn = common_.gate.turn();
+  if (leaving_) {
+    leave();
+    return hd::kDone;
+  }
+  if (FrameGate::is_closed(turn)) {
+    rest();
+    lane_->stand(turn);
+  } else {
+    frame();
+  }
+  lane_->leave();
+  return hd::kContinue;
+}
+
+void OpenHapticsFrames::frame() noexcept {
+  if (!begin()) return;
   if (frames_ == 0) {
     keep_failure();
     learn();
@@ -86,13 +115,30 @@ unsigned OpenHapticsFrames::tick() noexcept {
   }
   newest_.calibration = library_.check_calibration();
   const LinkReading reading = read();
+  keep_failure();  // before there is a force
   if (const std::optional<Wanted> wanted = wanted_.look()) taken_ = *wanted;
   library_.set_numbers(hd::kCurrentForce, to_hd(permitted(reading)).eval().data());
   library_.end_frame(device_);
   keep_failure();
   ++frames_;
   tell(reading);
-  return hd::kContinue;
+}
+
+// A frame without a force.
+void OpenHapticsFrames::rest() noexcept {
+  if (!begin()) return;
+  const Vector3d zero = Vector3d::Zero();
+  library_.set_numbers(hd::kCurrentForce, zero.data());
+  library_.end_frame(device_);
+  keep_failure();
+}
+
+// False: it hung, and was given up: the device may be closed by now.
+bool OpenHapticsFrames::begin() noexcept {
+  library_.make_current(device_);
+  if (frames_ == 0) library_.enable(hd::kForceOutput);
+  library_.begin_frame(device_);
+  return !lane_->is_over();
 }
 
 void OpenHapticsFrames::learn() noexcept {
@@ -106,7 +152,7 @@ void OpenHapticsFrames::learn() noexcept {
   facts_.temperature = std::ranges::max(temperatures);
   facts_.continuous_force = known_or_zero(facts_.continuous_force);
   facts_.maximum_stiffness = known_or_zero(facts_.maximum_stiffness / kMillimetre);
-  (void)library_.take_errors();  // older libraries do not know all of this
+  (void)common_.errors.take(library_, device_);  // older libraries do not know all of this
 }
 
 LinkReading OpenHapticsFrames::read() const noexcept {
@@ -129,7 +175,7 @@ Vector3d OpenHapticsFrames::permitted(const LinkReading& reading) const noexcept
 }
 
 void OpenHapticsFrames::keep_failure() noexcept {
-  const unsigned code = library_.take_errors();
+  const unsigned code = common_.errors.take(library_, device_);
   if (newest_.failure == hd::kSuccess) newest_.failure = code;
 }
 
@@ -141,18 +187,11 @@ void OpenHapticsFrames::tell(const LinkReading& reading) noexcept {
   if (asked) wakeup_.post();
 }
 
-unsigned OpenHapticsFrames::leave() noexcept {
-  if (closed_) return hd::kDone;
-  const Vector3d zero = Vector3d::Zero();
-  library_.make_current(device_);
-  library_.begin_frame(device_);
-  library_.set_numbers(hd::kCurrentForce, zero.data());
-  library_.end_frame(device_);
-  library_.disable(hd::kForceOutput);
-  (void)library_.take_errors();  // lest whoever opens the next device takes them for its own
-  left_ = true;
+void OpenHapticsFrames::leave() noexcept {
+  rest();
+  if (!lane_->is_over()) library_.disable(hd::kForceOutput);
+  lane_->end();
   wakeup_.post();
-  return hd::kDone;
 }
 
 }  // namespace palpate::device

@@ -7,8 +7,6 @@
 namespace palpate::device {
 namespace {
 
-constexpr int kMostErrors = 16;  // that a library may keep
-
 constexpr const char* kBroughtBy =
     "OpenHaptics 3 for Linux and the Touch Device Driver bring it (3D Systems): run the installers "
     "of both";

@@ -14,11 +14,13 @@ struct OpenHapticsLibrary {
   using Callback = unsigned(void* data);
   using Name = const char*;
 
+  static constexpr int kMostErrors = 16;  ///< that it may keep
+
   /// An error, as the library returns it by value.
   struct Failure {
     unsigned code = 0;
     int detail = 0;
-    Device device = 0;
+    Device device = 0;  // whose
   };
 
   /// The names that it may have, the most exact first.
@@ -28,7 +30,8 @@ struct OpenHapticsLibrary {
   /// @throws Error that says what is missing.
   explicit OpenHapticsLibrary(const std::string& file = "");
 
-  /// The code of the newest error, or hd::kSuccess; forgets all that it keeps. Bounded work.
+  /// The code of the newest error, whoever's it is, or hd::kSuccess; forgets all that it keeps.
+  /// Bounded work.
   [[nodiscard]] unsigned take_errors() const noexcept;
 
   /// What it calls an error, and the code.

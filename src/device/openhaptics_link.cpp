@@ -91,11 +91,13 @@ std::string touch_failure(unsigned code, const std::string& told) {
 
 OpenHapticsLink::OpenHapticsLink(const DeviceName& name, const Clock& clock)
     : library_(name.option("library")),
-      session_(library_, name.device.empty() ? kDefault : name.device),
-      frames_(std::make_shared<OpenHapticsFrames>(library_, session_.device(), clock)) {
+      session_(library_, name.device.empty() ? kDefault : name.device, clock.now()),
+      frames_(std::make_shared<OpenHapticsFrames>(library_, session_.device(), clock,
+                                                  openhaptics_common())) {
   info_.name = fmt::format("openhaptics:{}", name.device.empty() ? kDefault : name.device);
   try {
-    start();
+    session_.run(frames_);
+    (void)exchange(Vector3d::Zero());
     info_ = info_of_device(name, frames_->facts(), info_.name);
     prepare();
   } catch (...) {
@@ -111,15 +113,6 @@ OpenHapticsLink::~OpenHapticsLink() {
 LinkReading OpenHapticsLink::exchange(const Vector3d& force) {
   ask(force);
   return answer();
-}
-
-void OpenHapticsLink::start() {
-  auto own = std::make_unique<std::shared_ptr<OpenHapticsFrames>>(frames_);
-  // The last call deletes it. It is given away first: a scheduler that complains may call all the
-  // same.
-  session_.schedule(&OpenHapticsFrames::call, own.release());
-  session_.start();
-  (void)exchange(Vector3d::Zero());
 }
 
 // Its motors are to be cool, and it knows where its hand is, by itself if it can.

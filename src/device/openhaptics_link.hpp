@@ -34,7 +34,6 @@ class OpenHapticsLink final : public DeviceLink {
   [[nodiscard]] LinkReading answer() { return checked_answer().reading; }
 
  private:
-  void start();
   void prepare();
   [[nodiscard]] OpenHapticsFrames::Answer checked_answer();
   [[noreturn]] void fail(const std::string& words) const;

@@ -5,13 +5,9 @@
 #include <array>
 #include <limits>
 #include <memory>
-#include <string>
 
-#include "device/double_library.hpp"
-#include "device/fake_hd.hpp"
 #include "device/fault_trial.hpp"
-#include "device/openhaptics_link.hpp"
-#include "palpate/base/error.hpp"
+#include "device/openhaptics_rig.hpp"
 #include "palpate/device/device_profile.hpp"
 
 namespace palpate {
@@ -20,67 +16,13 @@ namespace {
 using device::OpenHapticsLink;
 using Eigen::Vector3d;
 using test::FakeHd;
+using test::kDouble;
+using test::kPush;
+using test::kTouch;
 using testing::AllOf;
 using testing::HasSubstr;
 
-const std::string kDouble = PALPATE_FAKE_HD;
-const std::string kTouch = "openhaptics,library=" + kDouble;
-const Vector3d kPush(0.2, 0.4, 0.6);  // N; a Touch bears 0.88
-
-// A link whose scheduler ticks once for each exchange, and whenever it is told.
-class SteppedLink final : public DeviceLink {
- public:
-  SteppedLink(const test::DoubleLibrary& library, const Clock& clock,
-              const std::string& name = kTouch)
-      : library_(library) {
-    link_ = std::make_unique<OpenHapticsLink>(device::parse_device_name(name), clock);
-    library_.flag("fake_by_itself", false);
-  }
-  ~SteppedLink() override { library_.flag("fake_by_itself", true); }
-
-  [[nodiscard]] const DeviceInfo& info() const noexcept override { return link_->info(); }
-  [[nodiscard]] LinkReading exchange(const Vector3d& force) override {
-    link_->ask(force);
-    library_.find<void(int)>("fake_tick")(1);
-    return link_->answer();
-  }
-  OpenHapticsLink& link() { return *link_; }
-
- private:
-  const test::DoubleLibrary& library_;
-  std::unique_ptr<OpenHapticsLink> link_;
-};
-
-class OpenHaptics : public testing::Test {
- protected:
-  OpenHaptics() { library_.reset(); }
-
-  [[nodiscard]] std::unique_ptr<SteppedLink> open(const std::string& name = kTouch) {
-    return std::make_unique<SteppedLink>(library_, clock_, name);
-  }
-  [[nodiscard]] std::string refusal(const std::string& name = kTouch) {
-    try {
-      (void)open(name);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-  void tick(int count) const { library_.find<void(int)>("fake_tick")(count); }
-  void set() const { library_.find<void(const FakeHd*)>("fake_set")(&hardware_); }
-  // Sets one thing of the hardware.
-  template <class Member, class Value>
-  void set(Member member, const Value& value) {
-    hardware_.*member = value;
-    set();
-  }
-  [[nodiscard]] bool runs() const { return library_.find<bool()>("fake_runs")(); }
-  void pass(double time) { clock_.wait_until(clock_.now() + time); }
-
-  test::DoubleLibrary library_{kDouble};
-  FakeHd hardware_;
-  test::MovedClock clock_;
-};
+class OpenHaptics : public test::OpenHapticsRig {};
 
 TEST_F(OpenHaptics, TellsPlacesAndForcesAsTheOperatorSits) {
   const auto link = open();
