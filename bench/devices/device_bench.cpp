@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "apps/palpate/exploration_plan.hpp"
+#include "device/double_library.hpp"
 #include "device/drivers.hpp"
 #include "device/fake_haply_service.hpp"
+#include "device/fake_hd.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/thread_clock.hpp"
 #include "palpate/device/simulated.hpp"
@@ -36,11 +38,22 @@ void exchange_forcedimension(benchmark::State& state) {
   exchange_all(state, *device::open_forcedimension(name, clock));
 }
 
-// Its scheduler calls at 1 kHz, and an exchange waits for that.
-void exchange_openhaptics(benchmark::State& state) {
+// An exchange waits for the scheduler's next call, `pause` (s) after the last.
+void exchange_openhaptics(benchmark::State& state, double pause) {
+  const test::DoubleLibrary library(PALPATE_FAKE_HD);
+  const test::FakeHd hardware{.pause = pause};
+  library.find<void(const test::FakeHd*)>("fake_set")(&hardware);
   const SteadyClock clock;
   const device::DeviceName name{"openhaptics", "", {{"library", PALPATE_FAKE_HD}}};
   exchange_all(state, *device::open_openhaptics(name, clock));
+}
+
+void exchange_openhaptics_at_1_khz(benchmark::State& state) {
+  exchange_openhaptics(state, 1e-3);
+}
+
+void exchange_openhaptics_at_once(benchmark::State& state) {
+  exchange_openhaptics(state, 0);
 }
 
 void exchange_haply(benchmark::State& state) {
@@ -93,7 +106,8 @@ int main(int argc, char** argv) {
     benchmark::RegisterBenchmark(name, run)->UseRealTime();
   };
   exchange("exchange/forcedimension", exchange_forcedimension);
-  exchange("exchange/openhaptics", exchange_openhaptics);
+  exchange("exchange/openhaptics_at_1_kHz", exchange_openhaptics_at_1_khz);
+  exchange("exchange/openhaptics_at_once", exchange_openhaptics_at_once);
   exchange("exchange/haply", exchange_haply);
   for (const palpate::SyntheticName& each : palpate::synthetic_names()) {
     const std::string name(each.name);

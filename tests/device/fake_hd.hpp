@@ -17,6 +17,7 @@ struct FakeHd {
   std::array<char, 32> model = {"Touch"};
   double continuous_force = 0.88;  ///< N
   double stiffness = 0.4;          ///< N/mm
+  double pause = 1e-3;             ///< s from a tick to the next
   double opening = 2e-3;           ///< s that it takes to open or to close either device
   unsigned failing_meanwhile = 0;  ///< an error of the second one while the first is opened
 };

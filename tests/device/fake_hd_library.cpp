@@ -21,7 +21,8 @@ void FakeHdLibrary::run(const std::stop_token& stop) {
     is_ticking = false;
     if (is_granted) --granted;
     changed.notify_all();
-    changed.wait_for(lock, stop, std::chrono::milliseconds(1), [this] { return !runs_by_itself; });
+    changed.wait_for(lock, stop, std::chrono::duration<double>(faults.pause),
+                     [this] { return !runs_by_itself; });
   }
 }
 
