@@ -131,7 +131,8 @@ double Guard::sliding(const GuardInput& input, const Motion& motion) const noexc
   const double square = along.squaredNorm();
   if (!(square > 0)) return sliding_;
   const Vector3d proxy_way = motion.way + stretch(input) - stretch_;
-  const double share = std::clamp(proxy_way.dot(along) / square, 0.0, 1.0);
+  // Of what is no number, as a spring of next to no stiffness makes it: 0.
+  const double share = std::min(1.0, std::max(0.0, proxy_way.dot(along) / square));
   return sliding_ + kSmoothing * (share - sliding_);
 }
 
@@ -166,7 +167,7 @@ double Guard::affordable_gain(const GuardInput& input) const noexcept {
 Vector3d Guard::brake(const GuardInput& input, const Motion& motion,
                       const Vector3d& force) noexcept {
   if (!input.felt || input.normal.isZero(0)) return force;
-  const Vector3d brake = passivity_.brake(force, motion.way, input.dt);
+  const Vector3d brake = passivity_.brake(force, motion.way, input.dt, options_.damping);
   if (brake.isZero(0)) return force;
   note(GuardNote::braked, state_.counts.braked);
   return force + brake;

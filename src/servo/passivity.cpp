@@ -45,13 +45,15 @@ double Passivity::committed(const Vector3d& way) const noexcept {
   return energy;
 }
 
-Vector3d Passivity::brake(const Vector3d& force, const Vector3d& way, double dt) const noexcept {
+Vector3d Passivity::brake(const Vector3d& force, const Vector3d& way, double dt,
+                          double damping) const noexcept {
   const double square = way.squaredNorm();
   if (!options_.on || !(square > 0) || !(dt > 0)) return Vector3d::Zero();
   const double energy = committed(way) + force.dot(way);
   if (!(energy > 0)) return Vector3d::Zero();
   // With v = way / dt: E / (|v|^2 dt) v = E / |way|^2 way, B v = B / dt way.
-  return -std::min(energy / square, strongest(dt) / dt) * way;
+  const double strongest_brake = std::max(0.0, strongest(dt) - damping);
+  return -std::min(energy / square, strongest_brake / dt) * way;
 }
 
 // As a damper, N s/m.

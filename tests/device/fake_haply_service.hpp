@@ -109,7 +109,9 @@ class FakeHaplyService {
       centred_ = device["configure"]["preset"]["preset"] == "arm_front_centered";
       return;
     }
-    const Json& force = device["commands"]["set_cursor_force"]["vector"];
+    const Json& command = device["commands"]["set_cursor_force"];
+    const Json& force = command["vector"];
+    if (command["values"] != force) return;  // as services of 3.1 call it
     const std::lock_guard lock(mutex_);
     forces_.emplace_back(force["x"].get<double>(), force["y"].get<double>(),
                          force["z"].get<double>());

@@ -94,7 +94,7 @@ TEST_P(EnergyFuzz, NoSurfaceGivesMoreThanWasPutIn) {
   ServoOptions options;
   options.field.kind = kind;
   options.field.two_sided = made.two_sided;
-  for (const auto& [mu, delay] : {std::pair{0.0, 1}, {0.4, 1}, {0.0, 3}}) {
+  for (const auto& [mu, delay] : {std::pair{0.0, 1}, {0.4, 1}, {0.0, 3}, {0.4, 3}}) {
     options.proxy.friction = {.static_coefficient = mu, .dynamic_coefficient = mu};
     RandomGuide guide(
         RandomHand(31 * static_cast<unsigned>(index) + static_cast<unsigned>(kind), 0.045));

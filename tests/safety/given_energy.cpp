@@ -29,7 +29,7 @@ class SurfaceWork {
   double work_ = 0;
 };
 
-// What a stretched spring holds. Forces act a while after they were computed, so what counts is the
+// What the force is worth, as a stretched spring's. Forces act a while after they were computed, so what counts is the
 // most that it held since those were that act now.
 class HeldEnergy {
  public:

@@ -35,7 +35,8 @@ double AllowedStep::stiffness(const GuardInput& input) const {
 
 double AllowedStep::brake(const GuardInput& input) const {
   const Vector3d way = input.hip - before_.hip - input.drift * input.dt;
-  return options_.passivity.mass / (4 * input.dt * input.dt) * way.norm();
+  const int steps = std::max(2, options_.passivity.delay + 1);
+  return options_.passivity.mass / (2 * steps * input.dt * input.dt) * way.norm();
 }
 
 }  // namespace palpate::test

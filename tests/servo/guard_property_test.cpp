@@ -41,6 +41,7 @@ GuardInput input(bool wild, const Vector3d& before) {
   made.dt = *rc::gen::weightedElement<double>({{30, 1e-3}, {3, 2e-3}, {2, 0.0}, {1, 0.2}});
   if (wild) made.dt = *rc::gen::weightedElement<double>({{60, made.dt}, {1, -1.0}});
   made.stiffness = *rc::gen::element(0.0, 100.0, 500.0, 2000.0);
+  if (wild) made.stiffness = *rc::gen::element(0.0, 500.0, 1e-310, 1e-300, 1e308);
   made.normal = *rc::gen::element(Vector3d(0, 0, 0), Vector3d(0, 0, 1), Vector3d(0.6, 0, -0.8));
   made.drift = *rc::gen::element(0.0, 0.0, 0.1) * vector(1, wild);
   made.felt = *rc::gen::weightedElement<bool>({{20, true}, {1, false}});

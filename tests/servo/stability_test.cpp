@@ -142,31 +142,56 @@ TEST(Stability, NoWallGivesAHandThatLeansOnItAMillijoule) {
   }
 }
 
-// How far a device swings in the end that was let go 5 mm beside a proxy that sticks to a surface,
-// with the delay of a driver's thread, on a spring as stiff as is felt.
-double swing_beside_a_stuck_proxy(double damping) {
-  SimulatedDevice device(
-      {.coulomb = 0, .delay = 3, .hand = {.stiffness = 0, .damping = 0}, .position = {5e-3, 0, 0}});
-  Guard guard({.damping = damping, .soft_start = 0, .passivity = {.on = false}});
+// A device that nobody holds, let go beside a proxy that sticks to a surface.
+struct Stuck {
+  double mass = 0.1;       // kg; the guard believes in 0.1
+  double damping = 0.5;    // of the device, N s/m
+  int delay = 3;           // as behind a driver's thread
+  double distance = 5e-3;  // m
+};
+
+// How far it swings in the end, on a spring as stiff as is felt.
+double swing_beside_a_stuck_proxy(const Stuck& stuck, GuardOptions options) {
+  SimulatedDevice device({.mass = stuck.mass,
+                          .damping = stuck.damping,
+                          .coulomb = 0,
+                          .resolution = 0,
+                          .delay = stuck.delay,
+                          .hand = {.stiffness = 0, .damping = 0},
+                          .position = {stuck.distance, 0, 0}});
+  options.soft_start = 0;
+  options.passivity.delay = stuck.delay;
+  Guard guard(options);
   GuardInput input;
   input.normal.z() = 1;
   input.dt = 1e-3;
-  input.stiffness = 0.8 * passive_stiffness(0.5 + 1, 1e-3, 3e-3);
+  input.stiffness = 0.8 * passive_stiffness(stuck.damping + 1, 1e-3, 1e-3 * stuck.delay);
   double swing = 0;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 3500; ++i) {
     const DeviceState hand = device.read();
     input.hip = hand.position;
     input.velocity = hand.velocity;
     input.force = -input.stiffness * hand.position;
     device.write(guard.pass(input));
-    if (i >= 1800) swing = std::max(swing, device.true_position().norm());
+    if (i >= 3300) swing = std::max(swing, device.true_position().norm());
   }
   return swing;
 }
 
 TEST(Stability, DamperActsAlongASurfaceWhereTheProxySticks) {
-  EXPECT_GT(swing_beside_a_stuck_proxy(0), 5e-3);
-  EXPECT_LT(swing_beside_a_stuck_proxy(1), 1e-3);
+  const GuardOptions bare{.damping = 0, .passivity = {.on = false}};
+  const GuardOptions damped{.damping = 1, .passivity = {.on = false}};
+  EXPECT_GT(swing_beside_a_stuck_proxy({}, bare), 5e-3);
+  EXPECT_LT(swing_beside_a_stuck_proxy({}, damped), 0.5e-3);
+}
+
+TEST(Stability, BrakeAndDamperTogetherShakeNoLightDevice) {
+  for (const int delay : {0, 1, 3, 8, 12, 16}) {
+    for (const double damping : {0.1, 0.5}) {
+      const Stuck stuck{.mass = 0.045, .damping = damping, .delay = delay, .distance = 20e-3};
+      EXPECT_LT(swing_beside_a_stuck_proxy(stuck, {}), 1e-3) << damping << ", delay " << delay;
+    }
+  }
 }
 
 TEST(Stability, HandThatRestsOnAWallIsGivenNothingByASoftStart) {

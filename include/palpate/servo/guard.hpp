@@ -91,8 +91,9 @@ struct GuardState {
 ///  2. Watchdog: after a silence the hand may be anywhere. Zero; the links below lead back softly.
 ///  3. Damper: in contact, beside the spring: -B (n (n . v) + (1 - s) v_t), v the hand's velocity
 ///     against the surface, smoothed, v_t the part of it along the surface, and s the share of that
-///     in which the proxy goes along: none is dragged that slides, all is damped that is held. It
-///     never makes the surface attract.
+///     in which the proxy goes along: what is held is damped, what slides is hardly dragged (in a
+///     bowl, where the proxy's way is shorter than the hand's, by that share). It never makes the
+///     surface attract.
 ///  4. Soft start: the force comes up from zero while nothing is touched; in contact only as far as
 ///     the hand has paid for, since a spring that grows stiffer while stretched gives energy.
 ///  5. Slew of unexplained changes: |F - F_before| <= K |h - h_before| + B |v - v_before| + S dt.

@@ -17,13 +17,13 @@ struct PassivityOptions {
 /// The ledger of what forces gave to the hand, and the brake that takes it back: passivity observer
 /// and controller (Hannaford and Ryu 2002, in the impedance form; algorithm.md section 8).
 ///
-///   E += F . (dh - v_surface dt);   E > 0: F -= min(E / (|v|^2 dt), M / (2 n dt)) v
+///   E += F . (dh - v_surface dt);   E > 0: F -= min(E / (|v|^2 dt), M / (2 n dt) - B) v
 ///
 /// F is what acted then, sent some steps before: a ledger that leaves the delay out misses just the
 /// energy that a delay makes. Work that a moving surface does on the hand is its own and is not
-/// counted. n = max(2, delay + 1) steps: a damper that is sampled and delayed shakes what it is to
-/// brake when it is stronger than about M / (n dt); half of that bears a mass that was guessed too
-/// large by half. Real-time.
+/// counted. n = max(2, delay + 1) steps: dampers that are sampled and delayed shake what they are
+/// to brake when they are stronger than about M / (n dt) together; half of that bears a mass that
+/// was guessed too large by half. B is the one that acts beside the brake. Real-time.
 class Passivity {
  public:
   static constexpr int kMaximumDelay = 16;
@@ -40,8 +40,9 @@ class Passivity {
 
   /// What has to be added to `force` (N), which is about to be sent, if the hand goes on by `way`
   /// in each step: what is on its way to the hand counts already. Zero while nothing was given.
+  /// `damping` (N s/m): B, of a damper that is part of `force`.
   [[nodiscard]] Eigen::Vector3d brake(const Eigen::Vector3d& force, const Eigen::Vector3d& way,
-                                      double dt) const noexcept;
+                                      double dt, double damping = 0) const noexcept;
 
   /// The ledger, J, when what is on its way has acted, if the hand goes on by `way` (m) a step.
   [[nodiscard]] double committed(const Eigen::Vector3d& way) const noexcept;
