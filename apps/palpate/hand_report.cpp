@@ -105,7 +105,8 @@ std::string way_to_surface(const Hand& hand) {
   const bool counts = hand.socket == nullptr || hand.socket->counts().taken == 0;
   const std::string silence = counts ? hand.device->reason() : "";
   if (!silence.empty()) return silence;
-  return "its origin is 2 mm in front of the surface; --view shows where it goes";
+  return "it starts 2 mm in front of the surface, moved by its offset if it has one; --view shows "
+         "where it goes";
 }
 
 }  // namespace

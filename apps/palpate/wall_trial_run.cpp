@@ -129,6 +129,12 @@ void tell(const WallTrialState& state, double damping, std::FILE* out) {
 }  // namespace
 
 void run_wall_trial(const WallTrialRunOptions& options) {
+  if (!names_hardware(options.device)) {
+    throw UsageError(fmt::format(
+        "{}: no device that a hand presses. Give forcedimension, openhaptics or haply; without "
+        "--device walls are simulated",
+        options.device));
+  }
   ask(options);
   std::optional<OutputFile> json;
   if (!options.json.empty()) json.emplace(options.json);

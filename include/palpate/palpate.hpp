@@ -5,5 +5,6 @@
 #include "palpate/contact/proxy.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/io/read_cloud.hpp"
+#include "palpate/io/synthetic.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"

@@ -93,8 +93,8 @@ Vector3d Guard::pass(const GuardInput& input) noexcept {
   if (input.softened && !input.normal.isZero(0)) {
     note(GuardNote::softened, state_.counts.softened);
   }
-  const Vector3d wanted = start(input, damp(input, motion));
-  slewed_ = limit_length(limit_change(input, motion, wanted));
+  const Vector3d wanted = limit_length(start(input, damp(input, motion)));
+  slewed_ = limit_change(input, motion, wanted);
   return remember(input, motion, limit_length(brake(input, motion, slewed_)));
 }
 
@@ -221,6 +221,7 @@ Vector3d Guard::fail(GuardFault fault) noexcept {
 }
 
 void Guard::note(GuardNote bit, std::uint64_t& count) noexcept {
+  if (has(state_.notes, bit)) return;
   state_.notes = state_.notes | bit;
   ++count;
 }

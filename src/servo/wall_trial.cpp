@@ -75,7 +75,9 @@ Vector3d WallTrial::step(const DeviceState& hand, double now) noexcept {
 
 void WallTrial::advance(const DeviceState& hand, double now, double dt) noexcept {
   const bool rests = state_.phase == WallTrialPhase::rest;
-  if (rests && hand.status == DeviceStatus::silent && now - since_ <= options_.patience) return;
+  if (hand.status == DeviceStatus::silent && now - since_ <= options_.patience) {
+    return rests ? void() : go_to(WallTrialPhase::rest, now);
+  }
   const bool known = hand.position.allFinite() && hand.velocity.allFinite();
   if (hand.status != DeviceStatus::ok || !known || !std::isfinite(dt)) {
     return go_to(WallTrialPhase::device_lost, now);

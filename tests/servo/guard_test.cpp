@@ -161,5 +161,16 @@ TEST(Guard, RefusesOptionsOutOfRange) {
   EXPECT_NO_THROW(Guard({.silence = kInfinity}));
 }
 
+TEST(Guard, AForceThatStaysAtItsBoundIsNotCalledSlow) {
+  GuardOptions options = plain();
+  options.maximum_force = 1;
+  Guard guard(options);
+  Vector3d force;
+  for (int i = 0; i < 50; ++i) force = guard.pass(pushed({0, 0, 5}));
+  EXPECT_EQ(force.z(), 1);
+  EXPECT_EQ(guard.state().notes, GuardNote::clamped);
+  EXPECT_EQ(guard.state().counts.clamped, 50u) << "once a step";
+}
+
 }  // namespace
 }  // namespace palpate

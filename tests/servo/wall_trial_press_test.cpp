@@ -96,15 +96,32 @@ TEST(PressedWall, EndsWhenAHandThatLiftsIsTooFast) {
   EXPECT_EQ(presser.state().stable, 0) << "nobody has lifted off it";
 }
 
-TEST(PressedWall, EndsWhenTheDeviceFallsSilentOrFails) {
+TEST(PressedWall, EndsWhenTheDeviceFails) {
   for (const bool lifts : {false, true}) {
-    for (const DeviceStatus status : {DeviceStatus::silent, DeviceStatus::failed}) {
-      Presser presser;
-      presser.press(1);
-      if (lifts) presser.hold();
-      presser.hand.status = status;
-      presser.expect_over(WallTrialPhase::device_lost);
-    }
+    Presser presser;
+    presser.press(1);
+    if (lifts) presser.hold();
+    presser.hand.status = DeviceStatus::failed;
+    presser.expect_over(WallTrialPhase::device_lost);
+  }
+}
+
+TEST(PressedWall, IsPutUnderARestingHandAgainAfterASilence) {
+  for (const bool lifts : {false, true}) {
+    Presser presser;
+    presser.press(1);
+    if (lifts) presser.hold();
+    presser.hand.status = DeviceStatus::silent;
+    presser.wait(5e-3);
+    EXPECT_EQ(presser.phase(), WallTrialPhase::rest);
+    EXPECT_EQ(presser.force(), 0);
+    presser.hand.status = DeviceStatus::ok;
+    presser.wait(0.1);
+    EXPECT_EQ(presser.force(), 0) << "it has to rest first";
+    presser.press(1);
+    presser.hold();
+    presser.go_by(13e-3);
+    EXPECT_EQ(presser.state().stable, 100) << "the wall that it was at";
   }
 }
 

@@ -101,7 +101,7 @@ struct GuardState {
 ///     What fades in the air goes with the hand, K |h - h_before|, once it gives more than was
 ///     paid.
 ///  6. Passivity: a brake against the hand's motion takes back what the hand was given.
-///  7. Clamp: |F| <= maximum_force, the direction kept.
+///  7. Clamp: |F| <= maximum_force, the direction kept; before the slew and behind the brake.
 ///
 /// The stiffness limit, which comes before the proxy, is the servo's (Servo::stiffness_limit). One
 /// thread uses a guard. Everything but construction is real-time: no allocation, no clock, bounded.
@@ -155,7 +155,7 @@ class Guard {
   GuardState state_;
   GuardInput before_;                                   // its force is the one that was let through
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  // smoothed, of the step before
-  Eigen::Vector3d slewed_ = Eigen::Vector3d::Zero();    // let through by slew and clamp then
+  Eigen::Vector3d slewed_ = Eigen::Vector3d::Zero();    // let through by clamp and slew then
   double stiffness_ = 0;                                // that made a force last, N/m
   Eigen::Vector3d stretch_ = Eigen::Vector3d::Zero();   // from hand to proxy in the step before, m
   double sliding_ = 1;                                  // share of its way that the proxy follows

@@ -22,14 +22,14 @@ struct WallTrialOptions {
 
 /// What the hand is to do, or why the trial is over.
 enum class WallTrialPhase {
-  rest,         ///< hold the device still: the wall is put under it
+  rest,         ///< hold the device still: the wall is put under it; after a silence, again
   press,        ///< press down on the wall
   lift,         ///< lift it off the wall, which then becomes stiffer
   shook,        ///< over: a wall made the device shake
   held,         ///< over: the stiffest wall stood still
   gave_up,      ///< over: nobody did what was asked
   too_fast,     ///< over: the device moved faster than any hand that presses
-  device_lost,  ///< over: the device fell silent or failed
+  device_lost,  ///< over: the device failed, or fell silent for good
 };
 
 struct WallTrialState {

@@ -7,16 +7,16 @@ import { millimetres } from "./numbers";
 
 type Name = keyof typeof Flag;
 
-const kFlagWords: Partial<Record<Name, [level: string, words: string]>> = {
-  paused: ["info", "paused: no force"],
-  clutched: ["info", "clutch held: the hand moves freely"],
-  fault: ["fault", "fault: no force until reset"],
-  watchdog: ["fault", "watchdog: the servo was late"],
-  clamped: ["warning", "force at its bound"],
-  slewed: ["warning", "force change slowed"],
-  braked: ["warning", "brake: energy taken back"],
-  softened: ["info", "as stiff as the device bears"],
-  thinned: ["warning", "surface thinned: too many points near"],
+const kFlagWords: Partial<Record<Name, [level: string, words: string, reason: string]>> = {
+  paused: ["info", "paused: no force", "Somebody paused it; the force comes back softly"],
+  clutched: ["info", "clutch held: the hand moves freely", "The tool rests until the button is let go"],
+  fault: ["fault", "fault: no force until reset", "What was computed or told was no force or place"],
+  watchdog: ["fault", "watchdog: the servo was late", "Zero force now; it comes back softly"],
+  clamped: ["warning", "force at its bound", "Shortened to what the device holds, or to --maximum-force"],
+  slewed: ["warning", "force change slowed", "It changed by more than the hand explains"],
+  braked: ["warning", "brake: energy taken back", "The hand had been given more energy than it put in"],
+  softened: ["info", "as stiff as the device bears", "A stiffer surface was asked for; it would shake"],
+  thinned: ["warning", "surface thinned: too many points near", "Some were left out, so that steps keep their time"],
 };
 const kLift = "lift the tool to feel full force again";
 const kLinger = 700; // ms that a flag stays readable
@@ -35,8 +35,8 @@ export class Readout {
     byId("parts").replaceChildren(
       ...this.parts.map((part, i) => make("div", {}, make("dt", {}, names[i]!), part)),
     );
-    for (const [name, [level, words]] of Object.entries(kFlagWords)) {
-      const element = make("li", { class: level, hidden: true }, words);
+    for (const [name, [level, words, reason]] of Object.entries(kFlagWords)) {
+      const element = make("li", { class: level, title: reason, hidden: true }, words);
       this.flags.set(name as Name, { element, until: 0 });
     }
     byId("flags").replaceChildren(...[...this.flags.values()].map(({ element }) => element));
