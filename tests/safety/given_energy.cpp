@@ -29,8 +29,8 @@ class SurfaceWork {
   double work_ = 0;
 };
 
-// What the force is worth, as a stretched spring's. Forces act a while after they were computed, so what counts is the
-// most that it held since those were that act now.
+// What the force is worth, as a stretched spring's. Forces act a while after they were computed, so
+// what counts is the most that it held since those were that act now.
 class HeldEnergy {
  public:
   explicit HeldEnergy(int delay) : held_(static_cast<std::size_t>(delay) + 2, 0.0) {}

@@ -11,8 +11,8 @@ namespace palpate::test {
 /// moving surfaces did themselves.
 struct GivenEnergy {
   double in_a_contact = 0;  ///< most, from the first touch to any moment until it left, J
-  /// Most, from any moment of a contact to a later one, beyond what the force at the first was worth
-  /// as a stretched spring's, the proxy's or the one that was sent, J.
+  /// Most, from any moment of a contact to a later one, beyond what the force at the first was
+  /// worth as a stretched spring's, the proxy's or the one that was sent, J.
   double beyond_the_spring = 0;
   double in_all = 0;         ///< most, from the beginning to any moment, J
   int contacts = 0;          ///< touches that were left again
