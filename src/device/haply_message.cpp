@@ -14,10 +14,10 @@ using Eigen::Vector3d;
 using Json = nlohmann::json;
 
 const Json& child(const Json& parent, const char* key) {
-  static const Json none;
-  if (!parent.is_object()) return none;
+  static const Json kAbsent;
+  if (!parent.is_object()) return kAbsent;
   const auto found = parent.find(key);
-  return found == parent.end() ? none : *found;
+  return found == parent.end() ? kAbsent : *found;
 }
 
 std::optional<bool> truth(const Json& value) {

@@ -14,8 +14,8 @@ constexpr const char* kBroughtBy =
 }  // namespace
 
 const std::vector<std::string>& OpenHapticsLibrary::names() {
-  static const std::vector<std::string> names = {"libHD.so.3.4", "libHD.so.3", "libHD.so"};
-  return names;
+  static const std::vector<std::string> kNames = {"libHD.so.3.4", "libHD.so.3", "libHD.so"};
+  return kNames;
 }
 
 OpenHapticsLibrary::OpenHapticsLibrary(const std::string& file)

@@ -61,6 +61,7 @@ void tell(const Three& from, double* x, double* y, double* z) {
 
 }  // namespace
 
+// NOLINTBEGIN(readability-identifier-naming)  the maker's names
 extern "C" {
 
 int dhdGetDeviceCount() {
@@ -218,3 +219,4 @@ void fake_advance(double time) {
 }
 
 }  // extern "C"
+// NOLINTEND(readability-identifier-naming)

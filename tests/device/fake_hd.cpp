@@ -26,6 +26,7 @@ FakeHdLibrary& library = palpate::test::fake_hd_library();
 
 }  // namespace
 
+// NOLINTBEGIN(readability-identifier-naming)  the maker's names
 extern "C" {
 
 unsigned hdInitDevice(const char* name) {
@@ -174,3 +175,4 @@ unsigned long hdScheduleAsynchronous(unsigned (*callback)(void*), void* data, un
 }
 
 }  // extern "C"
+// NOLINTEND(readability-identifier-naming)

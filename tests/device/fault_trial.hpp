@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <set>
 #include <string>
@@ -76,7 +77,7 @@ class FaultTrial {
   std::set<std::string> reasons_;
   double pushed_ = 0;
   int exchanges_ = 0;
-  int steps_ = static_cast<int>(1e-3 / hardware_.period + 0.5);
+  int steps_ = static_cast<int>(std::lround(1e-3 / hardware_.period));
 };
 
 }  // namespace palpate::test
