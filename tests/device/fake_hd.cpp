@@ -19,7 +19,7 @@ using Lock = FakeHdLibrary::Lock;
 using Device = FakeHdLibrary::Device;
 using Failure = FakeHdLibrary::Failure;
 
-constexpr double kMillimetre = 1e-3;
+constexpr double kMillimetre = palpate::test::FakeHdLibrary::kMillimetre;
 constexpr unsigned kNone = FakeHdLibrary::kNone;
 
 FakeHdLibrary& library = palpate::test::fake_hd_library();

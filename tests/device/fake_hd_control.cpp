@@ -55,10 +55,10 @@ void fake_error(unsigned device, unsigned code) {
 }
 // mm
 void fake_place(double x, double y, double z) {
-  constexpr double kMillimetre = 1e-3;
+  constexpr double kUnit = FakeHdLibrary::kMillimetre;
   FakeHdLibrary& fake = fake_hd_library();
   const Held lock(fake.mutex);
-  fake.devices[0].hand = {.place = {x * kMillimetre, y * kMillimetre, z * kMillimetre}};
+  fake.devices[0].hand = {.place = {x * kUnit, y * kUnit, z * kUnit}};
 }
 // What a device's motors hold, N; the maker's axes.
 void fake_force_of(unsigned device, double* force) {

@@ -19,7 +19,8 @@ struct FakeHdLibrary {
   using Lock = std::unique_lock<std::mutex>;
   using Three = FakeMass::Three;
   static constexpr unsigned kNone = 0xffffffff;
-  static constexpr double kTick = 1e-3;  // s
+  static constexpr double kTick = 1e-3;        // s
+  static constexpr double kMillimetre = 1e-3;  // m
 
   struct Device {
     std::string name;
