@@ -68,8 +68,10 @@ std::vector<double> parse_numbers(const std::string& text, std::size_t count,
     const std::size_t end = rest.find(',');
     const std::optional<double> value = number_in(rest.substr(0, end));
     if (!value) {
-      throw UsageError(fmt::format("{}: '{}' is not a finite number in '{}'; write {}", option,
-                                   rest.substr(0, end), text, form));
+      const std::string_view wrong = rest.substr(0, end);
+      const std::string where = wrong == text ? "" : fmt::format(" in '{}'", text);
+      throw UsageError(
+          fmt::format("{}: '{}' is not a finite number{}; write {}", option, wrong, where, form));
     }
     values.push_back(*value);
     if (end == std::string_view::npos) break;

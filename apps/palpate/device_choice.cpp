@@ -11,6 +11,7 @@
 #include "apps/palpate/errors.hpp"
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/option_checks.hpp"
+#include "apps/palpate/suggestion.hpp"
 #include "apps/palpate/touch_options.hpp"
 #include "palpate/device/open_device.hpp"
 
@@ -41,6 +42,12 @@ void check_paths(const std::vector<DeviceChoice>& devices) {
   }
 }
 
+std::string device_meant_by(const std::string& text) {
+  return did_you_mean(
+      text.substr(0, text.find_first_of(":,")),
+      {"scripted", "simulated", "remote", "forcedimension", "openhaptics", "haply"});
+}
+
 // The device without its stand. Drivers say themselves which other options there are.
 DeviceChoice kind_of(const std::string& text) {
   if (names_hardware(text)) return {DeviceKind::hardware, text};
@@ -53,10 +60,10 @@ DeviceChoice kind_of(const std::string& text) {
   if (text.starts_with(kRemotePath) && text.size() > kRemotePath.size()) {
     return {DeviceKind::remote, text.substr(kRemotePath.size())};
   }
-  throw UsageError(fmt::format(
-      "'{}' is no device; give scripted, simulated, remote, remote:PATH of a socket, or "
-      "hardware that 'palpate devices' lists",
-      text));
+  throw UsageError(
+      fmt::format("'{}' is no device; give scripted, simulated, remote, remote:PATH of a socket, "
+                  "or hardware: forcedimension, openhaptics or haply ('palpate devices' looks){}",
+                  text, device_meant_by(text)));
 }
 
 // Who is led goes where its way is, in the world.

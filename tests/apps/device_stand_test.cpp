@@ -57,6 +57,8 @@ TEST(DeviceStand, RefusesWhatIsNoValueOrNotForThatDevice) {
   EXPECT_TRUE(contains(refusal("scripted,scale=2"), "simulated"));
   EXPECT_TRUE(contains(refusal("simulated,clutch=1"), "leads"));
   EXPECT_TRUE(contains(refusal("simulated,frame=left"), "leads"));
+  EXPECT_TRUE(contains(refusal("remote,clutch=a"), "'a' is not a finite number; write"));
+  EXPECT_TRUE(contains(refusal("hapyl:04EA"), "did you mean haply?"));
 }
 
 TEST(DeviceStand, FrameNamesASourceThatHasACamera) {
