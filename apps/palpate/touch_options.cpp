@@ -142,9 +142,9 @@ constexpr const char* kTouchFooter = R"(Examples:
   gunzip -c dragon.ply.gz | palpate touch -
 
 The log begins with t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,fx,fy,fz,us: seconds, metres in the
-world frame, newtons on the hand (K (proxy - hip); in real time what the guard made of it), microseconds of
-computing. The same input gives the same log but for us. With streams in simulated time, t = 0 is the
-first frame's stamp.
+world frame, newtons on the hand (K (proxy - hip); in real time what the guard made of it),
+microseconds of computing. The same input gives the same log but for us. With streams in simulated
+time, t = 0 is the first frame's stamp.
 
 Exit codes: 0 done, 1 the input or the run failed, 2 the command line is wrong.)";
 

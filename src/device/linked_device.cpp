@@ -25,6 +25,10 @@ constexpr double kFastestHand = 20;
 constexpr double kFastestWay = 10;
 constexpr double kCoarsestStep = 0.5e-3;
 
+constexpr const char* kDistrust =
+    "so it got no force. It is opened again; if that does not help, switch it off and on, and "
+    "calibrate it";
+
 LinkedDeviceOptions checked(LinkedDeviceOptions options) {
   const Requirement require{"linked device"};
   require.positive("stale (s)", options.stale, "give a time above 0");
@@ -51,9 +55,7 @@ void check(const LinkReading& reading, const DeviceInfo& info) {
   const bool tool = reading.orientation.coeffs().allFinite() && std::isfinite(reading.gripper);
   if (tool && is_a_hands(reading)) return;
   throw Error(
-      fmt::format("{}: tells a place that is no number, or no hand's, so it got no force. It is "
-                  "opened again; if that does not help, switch it off and on, and calibrate it",
-                  info.name));
+      fmt::format("{}: tells a place that is no number, or no hand's, {}", info.name, kDistrust));
 }
 
 std::string in_its_place(const std::string& there, const std::string& instead_of) {
@@ -126,11 +128,8 @@ void LinkedDevice::check_way_to(const Heard& heard) const {
       std::max({heard.asked - newest_.asked, heard.time - newest_.time, 1 / info_.rate});
   const double way = (heard.reading.position - newest_.reading.position).norm();
   if (way <= kFastestWay * time + kCoarsestStep) return;
-  throw Error(
-      fmt::format("{}: its place leapt by {:.1f} mm in {:.2f} ms, as no hand goes, so it got no "
-                  "force. It is opened again; if that does not help, switch it off and on, and "
-                  "calibrate it",
-                  info_.name, 1e3 * way, 1e3 * time));
+  throw Error(fmt::format("{}: its place leapt by {:.1f} mm in {:.2f} ms, as no hand goes, {}",
+                          info_.name, 1e3 * way, 1e3 * time, kDistrust));
 }
 
 Vector3d LinkedDevice::applicable(double now) const noexcept {

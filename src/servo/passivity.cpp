@@ -52,13 +52,12 @@ Vector3d Passivity::brake(const Vector3d& force, const Vector3d& way, double dt,
   const double energy = committed(way) + force.dot(way);
   if (!(energy > 0)) return Vector3d::Zero();
   // With v = way / dt: E / (|v|^2 dt) v = E / |way|^2 way, B v = B / dt way.
-  const double strongest_brake = std::max(0.0, strongest(dt) - damping);
-  return -std::min(energy / square, strongest_brake / dt) * way;
+  return -std::min(energy / square, strongest(dt, damping) / dt) * way;
 }
 
-// As a damper, N s/m.
-double Passivity::strongest(double dt) const noexcept {
-  return options_.mass / (2 * std::max(2, options_.delay + 1) * dt);
+// The brake, as a damper beside another, N s/m.
+double Passivity::strongest(double dt, double damping) const noexcept {
+  return std::max(0.0, options_.mass / (2 * std::max(2, options_.delay + 1) * dt) - damping);
 }
 
 }  // namespace palpate

@@ -76,7 +76,8 @@ Vector3d WallTrial::step(const DeviceState& hand, double now) noexcept {
 void WallTrial::advance(const DeviceState& hand, double now, double dt) noexcept {
   const bool rests = state_.phase == WallTrialPhase::rest;
   if (hand.status == DeviceStatus::silent && now - since_ <= options_.patience) {
-    return rests ? void() : go_to(WallTrialPhase::rest, now);
+    if (!rests) go_to(WallTrialPhase::rest, now);
+    return;
   }
   const bool known = hand.position.allFinite() && hand.velocity.allFinite();
   if (hand.status != DeviceStatus::ok || !known || !std::isfinite(dt)) {

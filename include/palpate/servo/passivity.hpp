@@ -54,7 +54,7 @@ class Passivity {
  private:
   [[nodiscard]] const Eigen::Vector3d& sent(int steps_ago) const noexcept;
   [[nodiscard]] bool rests() const noexcept;
-  [[nodiscard]] double strongest(double dt) const noexcept;
+  [[nodiscard]] double strongest(double dt, double damping) const noexcept;
 
   PassivityOptions options_;
   std::array<Eigen::Vector3d, kMaximumDelay + 1> sent_;  // ring
