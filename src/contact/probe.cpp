@@ -14,10 +14,6 @@ Probe::Probe(const Field& field, const Texture& texture, Side seen_from,
   field_.begin_step();
 }
 
-Probe::~Probe() {
-  field_.end_step();
-}
-
 Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   ++evaluations_;
   Sample sample = field_.sample(x, side);

@@ -9,7 +9,7 @@ namespace palpate {
 class Probe {
  public:
   Probe(const Field& field, const Texture& texture, Side seen_from, double step_length) noexcept;
-  ~Probe();
+  ~Probe() = default;
   Probe(const Probe&) = delete;
   Probe& operator=(const Probe&) = delete;
 

@@ -86,6 +86,7 @@ Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) n
   side_ = probe.side;
   step_length_ = probe.step_length();
   revision_ = probe.traits().revision;
+  field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
   contact.proxy = position_;
   contact.touching = touching_;
   contact.evaluations = probe.evaluations();

@@ -12,12 +12,12 @@ constexpr double kHollow = 0.01;  // h from which on a surface is concave beyond
 }  // namespace
 
 Value crease_closure(const FieldPlace& place) noexcept {
-  const Oriented square = normal_square(*place.sums);
+  const Oriented square = normal_square(place.sums());
   const SmoothStep facing = smooth_step(kFacing - square.f, 0, kFacing);
   if (facing.value <= 0) return {};
-  const Oriented bulge = convexity(*place.sums);
+  const Oriented bulge = convexity(place.sums());
   const Value& radius = place.radius;
-  const double inverse = -place.sign / radius.f;
+  const double inverse = -1 / radius.f;
   const double h = inverse * bulge.f;
   const SmoothStep hollow = smooth_step(h, 0, kHollow);
   if (hollow.value <= 0) return {};
@@ -26,11 +26,10 @@ Value crease_closure(const FieldPlace& place) noexcept {
   Oriented share;
   add(share, -facing.slope * hollow.value, square);
   add(share, by_h * inverse, bulge);
-  double sum[3];
-  place.functions->gradient(*place.columns, place.x, share.b, sum);
   const double closed = facing.value * hollow.value;
   return {kClosed * radius.f * closed,
-          kClosed * (radius.f * (share.base + vector(sum)) + (closed - by_h * h) * radius.grad)};
+          kClosed * (radius.f * (share.base + place.gradient(share.b)) +
+                     (closed - by_h * h) * radius.grad)};
 }
 
 }  // namespace palpate

@@ -170,8 +170,9 @@ void UnionField::begin_step() const noexcept {
   for (const Field* part : parts_) part->begin_step();
 }
 
-void UnionField::end_step() const noexcept {
-  for (const Field* part : parts_) part->end_step();
+void UnionField::end_step(const Eigen::Vector3d& proxy,
+                          const Eigen::Vector3d& normal) const noexcept {
+  for (const Field* part : parts_) part->end_step(proxy, normal);
 }
 
 }  // namespace palpate

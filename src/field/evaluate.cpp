@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "field/acute_creases.hpp"
+#include "field/facing.hpp"
 #include "field/oriented.hpp"
 #include "field/sharp_edges.hpp"
 #include "field/smooth_step.hpp"
@@ -19,6 +21,12 @@ using Eigen::Vector3d;
 
 // Weight sums up to this are none: the rim of a support, where ratios of sums mean nothing.
 constexpr double kNoWeight = 1e-12;
+constexpr double kFaint = 1e-9;       // of all weight: normals with less say nothing
+constexpr double kFaintLabel = 1e-6;  // of all normals' weight: a label with less says nothing
+
+// A convex edge between two sheets is as soft as this, of R: a hand that leaves a box over its
+// edge is let go within a third of the support and not at once, as an exact edge would do.
+constexpr double kOverEdges = 0.35;
 
 /// W, R(x) and what is at hand of the sums.
 struct Support {
@@ -70,16 +78,16 @@ Value level_of(const ImplicitSurface& surface, const Support& support) noexcept 
   return {plane_threshold(options.kernel, eta), slope * d_eta * support.radius.grad};
 }
 
-/// Can the normals' surface be told here at all?
-bool has_normals(const FieldOptions& options, const simd::Sums& sums, double plain) noexcept {
-  if (options.kind == FieldKind::metaball || !(sums.v > 1e-9 * plain)) return false;
+/// Can the surface of these normals be told here at all?
+bool has_normals(const FieldOptions& options, const simd::LabelSums& sums, double least) noexcept {
+  if (!(sums.v > least)) return false;
   return options.kind == FieldKind::balanced ||
          vector(sums.vn).squaredNorm() > 1e-24 * sums.v * sums.v;
 }
 
-/// Smooth maximum of two lengths over a width k = R / 10 that may vary: C1 (algorithm.md 1.4).
-Value smooth_max(const Value& a, const Value& b, const Value& radius) noexcept {
-  const double k = 0.1 * radius.f;
+/// Smooth maximum of two lengths over a width k, of R, that may vary: C1 (algorithm.md 1.4).
+Value smooth_max(const Value& a, const Value& b, const Value& radius, double width) noexcept {
+  const double k = width * radius.f;
   const double d = std::abs(a.f - b.f);
   const Value& larger = a.f > b.f ? a : b;
   const Value& smaller = a.f > b.f ? b : a;
@@ -87,16 +95,31 @@ Value smooth_max(const Value& a, const Value& b, const Value& radius) noexcept {
   const double h = (k - d) / k;
   const double by_k = (k - d) * (k + d) / (4 * k * k);
   return {larger.f + 0.25 * h * h * k,
-          (1 - 0.5 * h) * larger.grad + 0.5 * h * smaller.grad + by_k * 0.1 * radius.grad};
+          (1 - 0.5 * h) * larger.grad + 0.5 * h * smaller.grad + by_k * width * radius.grad};
+}
+
+Value smooth_min(const Value& a, const Value& b, const Value& radius, double width) noexcept {
+  const Value most = smooth_max({-a.f, -a.grad}, {-b.f, -b.grad}, radius, width);
+  return {-most.f, -most.grad};
+}
+
+/// sum v over labels.
+Value trusted(const simd::Sums& sums, int labels) noexcept {
+  Value v;
+  for (int k = 0; k < labels; ++k) {
+    v.f += sums.label[k].v;
+    v.grad += vector(sums.label[k].grad_v);
+  }
+  return v;
 }
 
 /// kappa = u^2 (3 - 2u) of u = clamp((chi - 0.25) / 0.3, 0, 1), chi = sum w c / sum w.
-Value trust_of(const simd::Sums& sums, const Support& support) noexcept {
+Value trust_of(const Value& v, const Support& support) noexcept {
   constexpr double kFrom = 0.25;
   constexpr double kWidth = 0.3;
-  const double chi = sums.v / support.plain;
+  const double chi = v.f / support.plain;
   const SmoothStep kappa = smooth_step(chi, kFrom, kWidth);
-  const Vector3d grad_chi = (vector(sums.grad_v) - chi * support.plain_grad) / support.plain;
+  const Vector3d grad_chi = (v.grad - chi * support.plain_grad) / support.plain;
   return {kappa.value, kappa.slope * grad_chi};
 }
 
@@ -104,7 +127,7 @@ Value trust_of(const simd::Sums& sums, const Support& support) noexcept {
 Vector3d printed_gradient(const ImplicitSurface& surface, const simd::Columns& c,
                           const Vector3d& x) noexcept {
   Vector3d total = Vector3d::Zero();
-  for (std::uint32_t i = 0; i < c.source_begin[c.sources]; ++i) {
+  for (std::uint32_t i = 0; i < c.end(); ++i) {
     const Vector3d away = x - Vector3d(c.position[0][i], c.position[1][i], c.position[2][i]);
     const double r2 = away.squaredNorm();
     if (r2 <= 0) continue;
@@ -127,36 +150,91 @@ bool may_sharpen(const FieldOptions& options, const simd::Columns& columns) noex
          options.gradient == GradientKind::exact;
 }
 
-/// The normals' surface there, signed by the normals, with its exact gradient.
+/// The surface of one label's normals, with its exact gradient.
 Value height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
   if (may_sharpen(options, *place.columns)) return sharp_balanced(place);
   const Oriented oriented =
-      options.kind == FieldKind::balanced ? balanced(*place.sums) : pointset(*place.sums);
+      options.kind == FieldKind::balanced ? balanced(place.sums()) : pointset(place.sums());
   if (options.gradient == GradientKind::normal) return {oriented.f, oriented.base};
-  double sum[3];
-  place.functions->gradient(*place.columns, place.x, oriented.b, sum);
-  return {oriented.f, oriented.base + vector(sum)};
+  return {oriented.f, oriented.base + place.gradient(oriented.b)};
 }
 
-/// The same, where several sources may tell of one surface at different heights.
-Value united_height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
-  const Value height = height_at(options, place);
-  if (place.columns->sources == 1 || options.gradient != GradientKind::exact) return height;
-  const Value shift = united_shift(place);
-  return {height.f + shift.f, height.grad + shift.grad};
+/// The same, where several sources may tell of one surface at different heights, and with its
+/// creases closed.
+Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
+  Value height = height_at(options, place);
+  if (place.columns->sources > 1 && options.gradient == GradientKind::exact) {
+    const Value shift = united_shift(place);
+    height = {height.f + shift.f, height.grad + shift.grad};
+  }
+  if (!options.capped) return height;
+  const Value closure = crease_closure(place);
+  return {height.f - closure.f, height.grad - closure.grad};
 }
 
-/// Closed creases, cap, tool and blend around the normals' surface (algorithm.md 1.4, 1.5).
+/// How far a label's height is taken out of the way of another's as its share of the weight of
+/// both runs out: R (0.15 / share - 1)^2.
+Value leave(const Value& own, const Value& both, const Value& radius) noexcept {
+  constexpr double kShare = 0.15;
+  const double share = own.f / both.f;
+  if (share >= kShare) return {};
+  const double e = kShare / share - 1;
+  const Vector3d slope = (own.grad - share * both.grad) / both.f;
+  return {radius.f * e * e,
+          e * e * radius.grad - 2 * radius.f * e * kShare / (share * share) * slope};
+}
+
+Value sum(const Value& a, const Value& b) noexcept {
+  return {a.f + b.f, a.grad + b.grad};
+}
+Value difference(const Value& a, const Value& b) noexcept {
+  return {a.f - b.f, a.grad - b.grad};
+}
+
+/// Sheets as they meet: what is across bounds free space with what is in front, and what is behind
+/// bounds the solid with both (Facing).
+std::optional<Value> joined_height(const ImplicitSurface& surface, FieldPlace place,
+                                   double least) noexcept {
+  constexpr double kInCreases = 0.1;  // of R
+  Value height[simd::kHeights];
+  Value weight[simd::kHeights];
+  bool there[simd::kHeights] = {};
+  for (int k = 0; k < std::min(place.columns->labels, simd::kHeights); ++k) {
+    const simd::LabelSums& sums = place.all->label[k];
+    there[k] = has_normals(surface.options, sums, least);
+    if (!there[k]) continue;
+    place.label = k;
+    height[k] = whole_height_at(surface.options, place);
+    weight[k] = {sums.v, vector(sums.grad_v)};
+  }
+  const Value& radius = place.radius;
+  if (!there[kInFront] && !there[kAcross] && !there[kBehind]) return std::nullopt;
+  Value front = there[kInFront] ? height[kInFront] : height[kAcross];
+  Value front_weight = there[kInFront] ? weight[kInFront] : weight[kAcross];
+  if (there[kInFront] && there[kAcross]) {
+    front_weight = sum(weight[kInFront], weight[kAcross]);
+    front = smooth_min(sum(height[kInFront], leave(weight[kInFront], front_weight, radius)),
+                       sum(height[kAcross], leave(weight[kAcross], front_weight, radius)), radius,
+                       kInCreases);
+  }
+  if (!there[kBehind]) return front;
+  if (!there[kInFront] && !there[kAcross]) return height[kBehind];
+  const Value both = sum(front_weight, weight[kBehind]);
+  return smooth_max(difference(front, leave(front_weight, both, radius)),
+                    difference(height[kBehind], leave(weight[kBehind], both, radius)), radius,
+                    kOverEdges);
+}
+
+/// Cap, tool and blend around the normals' surface (algorithm.md 1.4, 1.5).
 Value capped(const ImplicitSurface& surface, const FieldPlace& place, const Support& support,
              const Value& height) noexcept {
+  constexpr double kAtRims = 0.1;  // of R
   const FieldOptions& options = surface.options;
-  Value outer{place.sign * height.f - options.tool_radius, place.sign * height.grad};
+  const Value outer{height.f - options.tool_radius, height.grad};
   if (!options.capped) return outer;
-  const Value closure = crease_closure(place);
-  outer = {outer.f - closure.f, outer.grad - closure.grad};
   const Value floor{options.minimum_support, Vector3d::Zero()};
-  const Value cap = smooth_max(outer, as_length(options, support, floor), support.radius);
-  const Value trust = trust_of(*place.sums, support);
+  const Value cap = smooth_max(outer, as_length(options, support, floor), support.radius, kAtRims);
+  const Value trust = trust_of(trusted(*place.all, place.columns->labels), support);
   if (trust.f >= 1) return cap;
   const Value blob = as_length(options, support, level_of(surface, support));
   return {trust.f * cap.f + (1 - trust.f) * blob.f,
@@ -182,37 +260,43 @@ double united(const double* w, int sources) noexcept {
   return std::sqrt(std::sqrt(sum));
 }
 
-Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector3d& x,
-                Side side) noexcept {
+Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector3d& x) noexcept {
   if (patch.points() == 0) return nothing_here(patch);
   const FieldOptions& options = surface.options;
+  const simd::Columns& columns = patch.columns();
   const Vector3d local = x - patch.center();
   const bool wendland = options.kernel == Kernel::wendland;
+  const bool metaball = options.kind == FieldKind::metaball;
   simd::Sums sums;
-  const auto sum = options.kind == FieldKind::metaball ? surface.sums->weights : surface.sums->all;
-  sum(patch.columns(), wendland, local.data(), sums);
-  const Support support = support_of(sums, patch.columns().sources);
+  (metaball ? surface.sums->weights : surface.sums->all)(columns, wendland, local.data(), sums);
+  const Support support = support_of(sums, columns.sources);
   if (!(support.plain > kNoWeight)) return nothing_here(patch);
 
   Sample sample;
   sample.support = support.w.f;
   sample.radius = support.radius.f;
+  double heights = 0;
+  for (int k = 0; !metaball && k < std::min(columns.labels, simd::kHeights); ++k) {
+    heights += sums.label[k].v;
+  }
+  const FieldPlace place{.functions = surface.sums,
+                         .columns = &columns,
+                         .kernel = options.kernel,
+                         .x = local.data(),
+                         .all = &sums,
+                         .radius = support.radius};
+  std::optional<Value> height;
+  if (heights > kFaint * support.plain) {
+    height = joined_height(surface, place, kFaintLabel * heights);
+  }
   Value value;
-  if (has_normals(options, sums, support.plain)) {
-    const FieldPlace place{.functions = surface.sums,
-                           .columns = &patch.columns(),
-                           .kernel = options.kernel,
-                           .x = local.data(),
-                           .sums = &sums,
-                           .sign = options.two_sided && side < 0 ? -1. : 1.,
-                           .radius = support.radius};
-    const Value height = united_height_at(options, place);
-    sample.height = height.f;
-    value = capped(surface, place, support, height);
+  if (height) {
+    sample.height = height->f;
+    value = capped(surface, place, support, *height);
   } else {
     value = as_length(options, support, level_of(surface, support));
     if (options.gradient == GradientKind::printed) {
-      value.grad = printed_gradient(surface, patch.columns(), local);
+      value.grad = printed_gradient(surface, columns, local);
     }
   }
   sample.value = value.f;

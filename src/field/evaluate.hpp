@@ -22,7 +22,7 @@ struct ImplicitSurface {
 
 /// The field at x, from the points of a patch that covers x.
 [[nodiscard]] Sample evaluate(const ImplicitSurface& surface, const Patch& patch,
-                              const Eigen::Vector3d& x, Side side) noexcept;
+                              const Eigen::Vector3d& x) noexcept;
 
 /// The (united) weight sum below which nothing is solid, where no support radius is below
 /// `smallest_radius`.

@@ -10,6 +10,9 @@ namespace {
 
 constexpr std::size_t kCacheLine = 64 / sizeof(double);
 
+// Each run is filled up to whole lanes; the selection reckons with one a source.
+constexpr std::size_t kFilling = simd::kMaxRuns * simd::kLanes;
+
 bool any(std::span<const ActiveLayer> layers, const auto& property) noexcept {
   return std::ranges::any_of(layers, property);
 }
@@ -18,12 +21,15 @@ bool any(std::span<const ActiveLayer> layers, const auto& property) noexcept {
 
 Patch::Patch(std::size_t capacity)
     : capacity_((capacity + simd::kLanes - 1) / simd::kLanes * simd::kLanes),
-      pitch_(capacity_ + 2 * kCacheLine),
+      pitch_(capacity_ + kFilling + 2 * kCacheLine),
       data_(kColumns * pitch_, 0.0),
       selection_(capacity_),
-      near_(capacity_ / simd::kLanes, 0) {
+      facing_(capacity_),
+      near_((capacity_ + kFilling) / simd::kLanes, 0) {
   layers_.reserve(kMostLayers);
-  begins_.reserve(kMostLayers);
+  signs_.reserve(capacity_);
+  labels_.reserve(capacity_);
+  slots_.reserve(capacity_);
   for (int axis = 0; axis < 3; ++axis) {
     columns_.position[axis] = column(kPosition + axis);
     columns_.normal[axis] = column(kNormal + axis);
@@ -61,7 +67,9 @@ bool Patch::advance(std::span<const ActiveLayer> layers) noexcept {
   return true;
 }
 
-bool Patch::renew(std::span<const ActiveLayer> layers, int sources, int most_visits) noexcept {
+bool Patch::renew(std::span<const ActiveLayer> layers, int sources, int most_visits,
+                  const Stance* stance) noexcept {
+  options_.stance = stance;
   std::array<std::size_t, kMostLayers> before{};
   std::transform(layers.begin(), layers.begin() + std::min(layers.size(), kMostLayers),
                  before.begin(), [this](const ActiveLayer& layer) { return followed_by(layer); });
@@ -78,12 +86,30 @@ void Patch::copy(std::span<const ActiveLayer> layers, int sources, bool whole) n
   }
   outdated_ = false;
   layers_.clear();
-  begins_.clear();
+  sources_ = sources;
   has_materials_ =
       any(layers, [](const ActiveLayer& layer) { return !layer.points->materials.empty(); });
   has_presences_ = any(layers, [](const ActiveLayer& layer) { return fades(*layer.points); });
-  lay_out(layers, sources);
-  fill(layers);
+  count_ = 0;
+  for (const Selection::Run& run : selection_.runs()) count_ += run.count;
+  signs_.assign(count_, 1);
+  labels_.assign(count_, kInFront);
+  layers_.assign(layers.begin(), layers.end());  // within what was reserved
+  if (options_.stance) turn(*options_.stance);
+  options_.stance = nullptr;
+  lay_out();
+  fill_all();
+}
+
+bool Patch::turn(const Stance& stance) noexcept {
+  if (!options_.normals || layers_.empty()) return false;
+  return facing_.face({layers_, &selection_, signs_, labels_}, stance);
+}
+
+void Patch::face(const Stance& stance) noexcept {
+  if (extra_ < 0 || outdated_ || !turn(stance)) return;
+  lay_out();
+  fill_all();
 }
 
 /// Is a layer the k-th that was gathered, on its way?
@@ -102,40 +128,59 @@ std::size_t Patch::followed_by(const ActiveLayer& now) const noexcept {
   return Selection::kNone;
 }
 
-/// Gives every layer its place in the columns.
-void Patch::lay_out(std::span<const ActiveLayer> layers, int sources) noexcept {
-  used_ = 0;
-  count_ = 0;
-  columns_.sources = sources;
-  columns_.source_begin[0] = 0;
-  columns_.uniform_sharp = 0;
-  const bool has_sharp =
-      any(layers, [](const ActiveLayer& layer) { return layer.points->sharp_edges; });
-  std::size_t next = 0;
-  for (int source = 0; source < sources; ++source) {
-    for (; next < layers.size() && layers[next].source == source; ++next) {
-      begins_.push_back(used_);
-      const std::uint32_t count = selection_.runs()[next].count;
-      if (has_sharp && count > 0) {
-        const double sharp = layers[next].points->sharp_edges ? 1 : 0;
-        std::fill_n(column(kSharp) + used_, count, sharp);
-        const bool alike = count_ == 0 || columns_.uniform_sharp == sharp;
-        columns_.uniform_sharp = alike ? sharp : -1;
-      }
-      count_ += count;
-      used_ += count;
+/// Gives every point its place in the columns.
+void Patch::lay_out() noexcept {
+  std::array<std::uint32_t, simd::kMaxRuns> next{};
+  const auto run_of = [this](std::size_t layer, std::size_t k) {
+    return static_cast<std::size_t>(labels_[k] * sources_ + layers_[layer].source);
+  };
+  const auto each = [this](const auto& visit) {
+    std::size_t k = 0;
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+      for (std::uint32_t n = selection_.runs()[layer].count; n-- > 0; ++k) visit(layer, k);
     }
-    pad();
-    columns_.source_begin[source + 1] = used_;
+  };
+  each([&](std::size_t layer, std::size_t k) { ++next[run_of(layer, k)]; });
+  columns_.sources = sources_;
+  columns_.labels = 1;
+  columns_.run_begin[0] = 0;
+  for (int run = 0; run < simd::kLabels * sources_; ++run) {
+    std::uint32_t& place = next[static_cast<std::size_t>(run)];
+    if (place > 0) columns_.labels = run / sources_ + 1;
+    const std::uint32_t begin = columns_.run_begin[run];
+    const std::uint32_t end = begin + place;
+    const std::uint32_t filled = (end + simd::kLanes - 1) / simd::kLanes * simd::kLanes;
+    pad(end, filled);
+    columns_.run_begin[run + 1] = filled;
+    place = begin;
+  }
+  slots_.resize(count_);
+  each([&](std::size_t layer, std::size_t k) { slots_[k] = next[run_of(layer, k)]++; });
+  mark_sharp();
+}
+
+/// Which points take part in sharpening edges.
+void Patch::mark_sharp() noexcept {
+  const auto sharp = [](const ActiveLayer& layer) { return layer.points->sharp_edges; };
+  columns_.uniform_sharp = 0;
+  if (!any(layers_, sharp)) return;
+  const bool all = std::ranges::all_of(layers_, [&](const ActiveLayer& layer) {
+    return sharp(layer) ||
+           selection_.runs()[static_cast<std::size_t>(&layer - layers_.data())].count == 0;
+  });
+  columns_.uniform_sharp = all ? 1 : -1;
+  std::size_t k = 0;
+  for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+    for (std::uint32_t n = selection_.runs()[layer].count; n-- > 0; ++k) {
+      column(kSharp)[slots_[k]] = sharp(layers_[layer]) ? 1 : 0;
+    }
   }
 }
 
 /// Brings all columns to what the layers are now.
 void Patch::fill(std::span<const ActiveLayer> layers) noexcept {
-  const bool first = layers_.size() != layers.size();
-  layers_.resize(layers.size());  // within what was reserved
   const bool moved = any(layers, [](const ActiveLayer& layer) { return layer.rate > 0; });
-  const bool all = first || moved != has_motion_;
+  const bool all = moved != has_motion_;
   has_motion_ = moved;
   for (std::size_t k = 0; k < layers.size(); ++k) {
     const ActiveLayer& now = layers[k];
@@ -148,11 +193,18 @@ void Patch::fill(std::span<const ActiveLayer> layers) noexcept {
   measure();
 }
 
+void Patch::fill_all() noexcept {
+  has_motion_ = any(layers_, [](const ActiveLayer& layer) { return layer.rate > 0; });
+  for (std::size_t k = 0; k < layers_.size(); ++k) fill_layer(k);
+  measure();
+}
+
 void Patch::fill_layer(std::size_t k) noexcept {
   const ActiveLayer& layer = layers_[k];
   const SurfacePoints& points = *layer.points;
-  std::uint32_t at = begins_[k];
+  const std::uint32_t* slot = slots_.data() + selection_.runs()[k].first;
   for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
+    const std::uint32_t at = *slot++;
     const Eigen::Vector3d position = position_now(layer, i, center_);
     for (int axis = 0; axis < 3; ++axis) column(kPosition + axis)[at] = position[axis];
     const double radius = options_.radius > 0 ? options_.radius : radius_now(layer, i);
@@ -162,7 +214,6 @@ void Patch::fill_layer(std::size_t k) noexcept {
     if (has_materials_)
       column(kMaterial)[at] = points.materials.empty() ? 1.0 : points.materials[i];
     if (has_presences_) column(kPresence)[at] = presence_now(layer, i);
-    ++at;
   }
   if (options_.normals) fill_normals(k);
   if (has_motion_) fill_velocities(k);
@@ -171,20 +222,21 @@ void Patch::fill_layer(std::size_t k) noexcept {
 void Patch::fill_normals(std::size_t k) noexcept {
   const ActiveLayer& layer = layers_[k];
   const bool has_normals = !layer.points->normals.empty();
-  std::uint32_t at = begins_[k];
+  std::size_t chosen = selection_.runs()[k].first;
   for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
-    const Eigen::Vector3d normal = normal_now(layer, i);
+    const std::uint32_t at = slots_[chosen];
+    const Eigen::Vector3d normal = signs_[chosen++] * normal_now(layer, i);
     for (int axis = 0; axis < 3; ++axis) column(kNormal + axis)[at] = normal[axis];
-    column(kConfidence)[at++] = has_normals ? confidence_now(layer, i) : 0.0;
+    column(kConfidence)[at] = has_normals ? confidence_now(layer, i) : 0.0;
   }
 }
 
 void Patch::fill_velocities(std::size_t k) noexcept {
-  std::uint32_t at = begins_[k];
+  const std::uint32_t* slot = slots_.data() + selection_.runs()[k].first;
   for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
+    const std::uint32_t at = *slot++;
     const Eigen::Vector3d velocity = velocity_now(layers_[k], i);
     for (int axis = 0; axis < 3; ++axis) column(kVelocity + axis)[at] = velocity[axis];
-    ++at;
   }
 }
 
@@ -193,13 +245,11 @@ void Patch::measure() noexcept {
   double sum = 0;
   double largest = 0;
   smallest_radius_ = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < begins_.size(); ++k) {
-    const double* const radii = column(kRadius) + begins_[k];
-    for (std::uint32_t i = 0; i < selection_.runs()[k].count; ++i) {
-      sum += radii[i];
-      largest = std::max(largest, radii[i]);
-      smallest_radius_ = std::min(smallest_radius_, radii[i]);
-    }
+  for (const std::uint32_t slot : slots_) {
+    const double radius = column(kRadius)[slot];
+    sum += radius;
+    largest = std::max(largest, radius);
+    smallest_radius_ = std::min(smallest_radius_, radius);
   }
   columns_.uniform_radius = smallest_radius_ == largest ? largest : 0;
   mean_radius_ = count_ > 0 ? sum / static_cast<double>(count_) : extra_;
@@ -214,10 +264,10 @@ double Patch::inverse_square(double radius) noexcept {
   return last_inverse_r2_;
 }
 
-void Patch::pad() noexcept {
-  while (used_ % simd::kLanes != 0) {  // the capacity is a multiple of kLanes
-    for (int c = 0; c < kColumns; ++c) column(c)[used_] = 0;
-    ++used_;
+/// Fills up with points that weigh nothing.
+void Patch::pad(std::uint32_t begin, std::uint32_t end) noexcept {
+  for (int c = 0; begin < end && c < kColumns; ++c) {
+    std::fill(column(c) + begin, column(c) + end, 0.0);
   }
 }
 
@@ -225,7 +275,7 @@ double Patch::nearest_radius(const Eigen::Vector3d& x) const noexcept {
   const Eigen::Vector3d local = x - center_;
   double nearest = std::numeric_limits<double>::infinity();
   double radius = 0;
-  for (std::uint32_t i = 0; i < used_; ++i) {
+  for (std::uint32_t i = 0; i < columns_.end(); ++i) {
     const Eigen::Vector3d p(column(0)[i], column(1)[i], column(2)[i]);
     const double squared = (p - local).squaredNorm();
     if (columns_.radius[i] <= 0 || squared >= nearest) continue;  // padding has no radius

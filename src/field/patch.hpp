@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "field/active_layer.hpp"
+#include "field/facing.hpp"
 #include "field/selection.hpp"
 #include "field/simd/sums.hpp"
 #include "palpate/field/field.hpp"
@@ -19,6 +20,7 @@ struct GatherOptions {
   bool raw_weights = false;  ///< leave out the density weights
   bool normals = true;       ///< copy normals and confidences; metaballs need none
   int most_visits = 1 << 30;
+  const Stance* stance = nullptr;  ///< that points are turned to; nullptr: they stay as they are
 };
 
 /// The points around a place, copied into columns relative to that place: what the sums run over.
@@ -41,9 +43,17 @@ class Patch {
   /// Layers whose points have become others at the same address need clear().
   bool advance(std::span<const ActiveLayer> layers) noexcept;
 
+  /// Turns points to the tool where it is now and sorts them by how their sheets meet.
+  void face(const Stance& stance) noexcept;
+  /// What is seen next is seen for the first time.
+  void forget_sides() noexcept { facing_.forget(); }
+  /// Takes over what another has decided.
+  void follow_sides(const Patch& other) noexcept { facing_.follow(other.facing_); }
+
   /// Gathers anew at the same place after advance() was refused, and looks for points in those
   /// layers alone that are others. False as gather() says it.
-  bool renew(std::span<const ActiveLayer> layers, int sources, int most_visits) noexcept;
+  bool renew(std::span<const ActiveLayer> layers, int sources, int most_visits,
+             const Stance* stance = nullptr) noexcept;
 
   /// The radius of the point nearest to x (the paper's section III-D), m; 0 of an empty patch.
   [[nodiscard]] double nearest_radius(const Eigen::Vector3d& x) const noexcept;
@@ -103,23 +113,29 @@ class Patch {
   [[nodiscard]] double* column(int c) noexcept { return data_.data() + c * pitch_; }
   [[nodiscard]] const double* column(int c) const noexcept { return data_.data() + c * pitch_; }
   void copy(std::span<const ActiveLayer> layers, int sources, bool whole) noexcept;
+  bool turn(const Stance& stance) noexcept;
   [[nodiscard]] bool follows(const ActiveLayer& now, std::size_t k) const noexcept;
   [[nodiscard]] std::size_t followed_by(const ActiveLayer& now) const noexcept;
-  void lay_out(std::span<const ActiveLayer> layers, int sources) noexcept;
+  void lay_out() noexcept;
   void fill(std::span<const ActiveLayer> layers) noexcept;
   void fill_layer(std::size_t k) noexcept;
+  void mark_sharp() noexcept;
+  void fill_all() noexcept;
   void fill_normals(std::size_t k) noexcept;
   void fill_velocities(std::size_t k) noexcept;
   void measure() noexcept;
   [[nodiscard]] double inverse_square(double radius) noexcept;
-  void pad() noexcept;
+  void pad(std::uint32_t begin, std::uint32_t end) noexcept;
 
   std::size_t capacity_;
   std::size_t pitch_;  // from column to column; no power of two, or they share cache sets
   std::vector<double> data_;
   Selection selection_;
-  std::vector<ActiveLayer> layers_;    // as they are in the columns
-  std::vector<std::uint32_t> begins_;  // of each layer in the columns
+  std::vector<ActiveLayer> layers_;  // as they are in the columns
+  Facing facing_;
+  std::vector<std::int8_t> signs_;    // of the chosen places, layer by layer
+  std::vector<std::uint8_t> labels_;  // likewise
+  std::vector<std::uint32_t> slots_;  // likewise: where each is in the columns
   simd::Columns columns_{};
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double extra_ = -1;
@@ -129,8 +145,8 @@ class Patch {
   bool has_materials_ = false;
   bool has_presences_ = false;
   bool has_motion_ = false;
-  std::uint32_t used_ = 0;  // with padding
-  std::size_t count_ = 0;   // without
+  int sources_ = 1;
+  std::size_t count_ = 0;  // without
   double smallest_radius_ = 0;
   double mean_radius_ = 0;
   double last_radius_ = 0;

@@ -18,8 +18,8 @@ Value share_of(const FieldPlace& place, std::uint32_t places) noexcept {
   if (uniform >= 0) return {uniform, Vector3d::Zero()};
   simd::Share share;
   place.functions->share(*place.columns, places, place.x, share);
-  const double sigma = share.sv / place.sums->v;
-  return {sigma, (vector(share.grad_sv) - sigma * vector(place.sums->grad_v)) / place.sums->v};
+  const double sigma = share.sv / place.sums().v;
+  return {sigma, (vector(share.grad_sv) - sigma * vector(place.sums().grad_v)) / place.sums().v};
 }
 
 /// b_i = pull . (n_i - n) / V: how a sum moves with the mean normal n of the points before.
@@ -35,7 +35,7 @@ simd::Linear through_normal(const Vector3d& pull, const Vector3d& n, double v) n
 Oriented robust(const FieldPlace& place, std::uint32_t places) noexcept {
   const simd::Functions& f = *place.functions;
   const simd::Columns& c = *place.columns;
-  const Vector3d n0 = vector(place.sums->vn) / place.sums->v;
+  const Vector3d n0 = vector(place.sums().vn) / place.sums().v;
   simd::Moments first;
   f.robust(c, places, place.x, n0.data(), 0, first);
   const Vector3d n1 = vector(first.vn) / first.v;
@@ -49,27 +49,27 @@ Oriented robust(const FieldPlace& place, std::uint32_t places) noexcept {
   const simd::Linear by_n1 = through_normal(vector(pull.normal), n1, first.v);
   f.pull(c, places, place.x, n0.data(), 0, by_n1, pull);
   result.base += vector(pull.place);
-  result.b = through_normal(vector(pull.normal), n0, place.sums->v);
+  result.b = through_normal(vector(pull.normal), n0, place.sums().v);
   return result;
 }
 
 Value finish(const FieldPlace& place, const Oriented& oriented) noexcept {
-  double sum[3];
-  place.functions->gradient(*place.columns, place.x, oriented.b, sum);
-  return {oriented.f, oriented.base + vector(sum)};
+  return {oriented.f, oriented.base + place.gradient(oriented.b)};
 }
 
 }  // namespace
 
 Value sharp_balanced(const FieldPlace& place) noexcept {
-  const Oriented mean = balanced(*place.sums);
-  const Oriented bulge = convexity(*place.sums);
-  const double inverse = place.sign / place.radius.f;
+  const Oriented mean = balanced(place.sums());
+  const Oriented bulge = convexity(place.sums());
+  const double inverse = 1 / place.radius.f;
   const double a = bulge.f * inverse;
   if (a <= kFrom) return finish(place, mean);
 
+  const simd::Columns& c = *place.columns;
   const std::uint32_t places =
-      place.functions->near(*place.columns, place.kernel == Kernel::wendland, place.x);
+      place.functions->near(c, c.begin_of(place.label), c.begin_of(place.label + 1),
+                            place.kernel == Kernel::wendland, place.x);
   const Value sigma = share_of(place, places);
   const SmoothStep open = smooth_step(a, kFrom, kFull - kFrom);
   const Oriented sharp = robust(place, places);

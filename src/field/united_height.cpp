@@ -34,7 +34,7 @@ struct Own {
 using Owns = std::array<Own, simd::kMaxSources>;
 
 Own own(const FieldPlace& place, int source) noexcept {
-  const simd::SourceMoments& of = place.sums->of[source];
+  const simd::SourceMoments& of = place.sums().of[source];
   Own o;
   o.source = source;
   o.v = of.v;
@@ -45,10 +45,10 @@ Own own(const FieldPlace& place, int source) noexcept {
   const double eta = std::abs(o.height) / radius;
   const double phi = plane_threshold(place.kernel, eta);
   const double squared = phi * phi + kFloor * kFloor;
-  const double w = place.sums->w[source];
-  o.radius = place.sums->wr_of[source] / w;
+  const double w = place.all->w[source];
+  o.radius = place.all->wr_of[source] / w;
   o.radius_slope =
-      (vector(place.sums->grad_wr_of[source]) - o.radius * vector(place.sums->grad_w[source])) / w;
+      (vector(place.all->grad_wr_of[source]) - o.radius * vector(place.all->grad_w[source])) / w;
   const double r2 = o.radius * o.radius;
   o.cover = of.v / (std::sqrt(squared) * r2 * r2);
   if (eta < 1) {
@@ -63,8 +63,8 @@ int list(const FieldPlace& place, Owns& owns) noexcept {
   int count = 0;
   double covers = 0;
   for (int s = 0; s < place.columns->sources; ++s) {
-    const simd::SourceMoments& of = place.sums->of[s];
-    if (!(of.v > kFaint * place.sums->v)) continue;
+    const simd::SourceMoments& of = place.sums().of[s];
+    if (!(of.v > kFaint * place.sums().v)) continue;
     if (!(vector(of.vn).norm() > kFaint * of.v)) return 0;
     owns[static_cast<std::size_t>(count)] = own(place, s);
     covers += owns[static_cast<std::size_t>(count++)].cover;
@@ -80,7 +80,7 @@ Value united_shift(const FieldPlace& place) noexcept {
   const int count = place.columns->sources > 1 ? list(place, all) : 0;
   if (count < 2) return {};
   const auto owns = std::span(all).first(static_cast<std::size_t>(count));
-  const double v = place.sums->v;
+  const double v = place.sums().v;
   double by_cover = 0;
   double by_weight = 0;
   Vector3d normal = Vector3d::Zero();
@@ -110,9 +110,8 @@ Value united_shift(const FieldPlace& place) noexcept {
            tau.slope * way * o.share / (o.v * o.slope.norm()) * (normal - aligned * o.normal));
     b.gamma = -by_height / o.v;
     b.delta = -by_height * o.height / o.v + by_v;
-    double sum[3];
-    place.functions->source_gradient(*place.columns, o.source, place.x, b, sum);
-    result.grad += by_height * o.slope + vector(sum) - by_log * kFine / o.radius * o.radius_slope;
+    const Vector3d sum = place.gradient_of_source(o.source, b);
+    result.grad += by_height * o.slope + sum - by_log * kFine / o.radius * o.radius_slope;
   }
   result.grad += by_radius * place.radius.grad;
   return result;

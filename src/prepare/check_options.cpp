@@ -7,7 +7,7 @@
 
 #include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
-#include "prepare/given_signs.hpp"
+#include "prepare/given_normals.hpp"
 
 namespace palpate {
 namespace {

@@ -14,6 +14,7 @@ namespace palpate {
 namespace {
 
 constexpr float kMultiple = 2.5f;      // R over the gap
+constexpr float kMostRise = 2.5f;      // of R
 constexpr float kFaint = 2.5f;         // sums of weights: 5.8 on a square grid
 constexpr float kOpposite = -0.5f;     // cosine between two that lie on opposite sides
 constexpr float kFirstReach = 1.5f;    // radii
@@ -105,7 +106,7 @@ std::size_t close_gaps(const CellGrid& grid, Kernel kernel, std::vector<float>& 
   std::vector<std::uint32_t> near;
   for (std::size_t k = 0; k < faint.size(); ++k) {
     float& radius = radii[faint[k]];
-    const float wanted = kMultiple * gaps[k];
+    const float wanted = std::min(kMultiple * gaps[k], kMostRise * radius);
     if (!(wanted > radius)) continue;
     add_to_sums(grid, kernel, faint[k], radius, wanted, near, sums.own);
     radius = wanted;

@@ -11,15 +11,15 @@
 namespace palpate {
 namespace {
 
-constexpr float kSlope = 0.5f;    // of R over distance
 constexpr float kMatters = 0.8f;  // of the own R: a smaller limit is worth looking for
 constexpr std::uint32_t kBlockPoints = 64;
 
 /// The limits of one block after another.
 class Limiter {
  public:
-  Limiter(const CellGrid& grid, const std::vector<float>& radii, const std::vector<float>& smallest)
-      : grid_(grid), radii_(radii), smallest_(smallest) {}
+  Limiter(const CellGrid& grid, float slope, const std::vector<float>& radii,
+          const std::vector<float>& smallest)
+      : grid_(grid), slope_(slope), radii_(radii), smallest_(smallest) {}
 
   /// limits: of all points; those of the block are written.
   void limit(const detail::Block& block, std::vector<float>& limits) {
@@ -47,7 +47,7 @@ class Limiter {
       if (smallest_[index] >= largest) continue;
       const CellGrid::Cell& cell = grid_.cells()[index];
       const float squared = detail::squared_distance(cell, block.lower, block.upper);
-      const float bound = smallest_[index] + kSlope * std::sqrt(squared);
+      const float bound = smallest_[index] + slope_ * std::sqrt(squared);
       if (bound >= largest) continue;
       for (std::uint32_t k = 0; k < cell.children; ++k) stack[open++] = cell.first_child + k;
       if (cell.children == 0) leaves_.push_back({bound, index});
@@ -64,17 +64,18 @@ class Limiter {
     for (const Leaf& leaf : leaves_) {
       if (leaf.bound >= limit) break;
       const CellGrid::Cell& cell = grid_.cells()[leaf.cell];
-      const float bound = kSlope * std::sqrt(detail::squared_distance(cell, p));
+      const float bound = slope_ * std::sqrt(detail::squared_distance(cell, p));
       if (smallest_[leaf.cell] + bound >= limit) continue;
       for (std::uint32_t j = cell.begin; j < cell.end; ++j) {
         const float distance = std::sqrt(detail::squared_distance(grid_.points()[j], p));
-        limit = std::min(limit, radii_[j] + kSlope * distance);
+        limit = std::min(limit, radii_[j] + slope_ * distance);
       }
     }
     return limit < matters ? limit : radii_[i];
   }
 
   const CellGrid& grid_;
+  float slope_;  // of R over distance
   const std::vector<float>& radii_;
   const std::vector<float>& smallest_;
   std::vector<Leaf> leaves_;
@@ -82,7 +83,7 @@ class Limiter {
 
 }  // namespace
 
-void limit_growth(const CellGrid& grid, std::vector<float>& radii) {
+void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii) {
   if (radii.empty()) return;
   const auto [low, high] = std::minmax_element(radii.begin(), radii.end());
   if (*low >= kMatters * *high) return;
@@ -90,7 +91,7 @@ void limit_growth(const CellGrid& grid, std::vector<float>& radii) {
   const std::vector<detail::Block> blocks = detail::make_blocks(grid, kBlockPoints);
   std::vector<float> limited(radii.size());
   detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
-    Limiter limiter(grid, radii, smallest);
+    Limiter limiter(grid, slope, radii, smallest);
     for (std::size_t b = begin; b < end; ++b) limiter.limit(blocks[b], limited);
   });
   radii = std::move(limited);

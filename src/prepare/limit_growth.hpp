@@ -7,8 +7,8 @@
 namespace palpate {
 
 /// Lets support radii vary slowly from place to place, as the paper's section III-D assumes: each
-/// becomes min_j (R_j + |p_i - p_j| / 2). Then a sparse point's support ends before it reaches what
-/// is sampled finely. In sorted order, m.
-void limit_growth(const CellGrid& grid, std::vector<float>& radii);
+/// becomes min_j (R_j + slope |p_i - p_j|). Then a sparse point's support ends before it reaches
+/// what is sampled finely. In sorted order, m.
+void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii);
 
 }  // namespace palpate

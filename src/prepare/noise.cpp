@@ -6,16 +6,14 @@
 
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "prepare/window_fit.hpp"
+#include "prepare/own_sheet.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t kSamples = 1000;
-// In spacings: narrow, so that fine shape is no noise. Wider only where coarse depth steps make
-// every narrow neighbourhood flat.
-constexpr double kReaches[] = {3, 6, 12};
-constexpr double kFlat = 1e-3;  // of the spacing
+constexpr std::size_t kFewest = 12;  // points of a window: twice the terms of a quadric
+constexpr double kReach = 3;         // spacings: narrow, so that fine shape is no noise
 
 // Of the residuals that noise alone gives in windows of about 28 points.
 constexpr double kQuarterToMedian = 1.1;
@@ -39,27 +37,18 @@ std::size_t step_for(const CellGrid& grid, std::size_t samples) {
 
 /// The residual over samples of the grid, as the flatter quarter has it: where shape is finer than
 /// the window it passes for noise. 0 where no sample has enough neighbours.
-double noise_within(const CellGrid& grid, double reach) {
+double narrow_noise(const CellGrid& grid, double spacing) {
   const std::size_t step = step_for(grid, kSamples);
   std::vector<float> residuals;
-  WindowFitter fitter;
+  SheetFitter fitter;
   for (std::size_t i = step / 2; i < grid.size(); i += step) {
-    const WindowFit fit = fitter.fit(grid, grid.points()[i], reach);
-    if (fit.points > 0) residuals.push_back(static_cast<float>(fit.sigma));
+    const SheetFit fit = fitter.fit(grid, grid.points()[i], kReach * spacing, spacing);
+    if (fit.points >= kFewest) residuals.push_back(static_cast<float>(fit.bend));
   }
   if (residuals.empty()) return 0;
   const auto quarter = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 4);
   std::nth_element(residuals.begin(), quarter, residuals.end());
   return kQuarterToMedian * *quarter;
-}
-
-double narrow_noise(const CellGrid& grid, double spacing) {
-  double noise = 0;
-  for (const double reach : kReaches) {
-    noise = noise_within(grid, reach * spacing);
-    if (noise > kFlat * spacing) break;
-  }
-  return noise;
 }
 
 /// What windows of several widths round one place say.
@@ -74,17 +63,17 @@ std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
   const std::size_t step = step_for(grid, kWideSamples);
   std::vector<Widths> all((grid.size() + step - 1) / step);
   detail::parallel_ranges(all.size(), 16, [&](std::size_t begin, std::size_t end) {
-    WindowFitter fitter;
+    SheetFitter fitter;
     for (std::size_t k = begin; k < end; ++k) {
       const Eigen::Vector3f& at = grid.points()[std::min(k * step + step / 2, grid.size() - 1)];
-      const WindowFit narrow = fitter.fit(grid, at, kReaches[0] * spacing);
-      const WindowFit map = fitter.fit(grid, at, kMapReach * spacing);
-      const WindowFit middle = fitter.fit(grid, at, kMiddleReach * spacing);
-      const WindowFit wide = fitter.fit(grid, at, kWideReach * spacing, kTile * spacing);
-      if (!(narrow.sigma > 0 && map.sigma > 0 && middle.sigma > 0)) continue;
-      all[k] = {static_cast<float>(wide.sigma / middle.sigma),
-                static_cast<float>(wide.sigma / narrow.sigma), static_cast<float>(wide.sigma),
-                static_cast<float>(wide.sigma / map.sigma * std::sqrt(std::max(1.0, wide.shared)))};
+      const SheetFit narrow = fitter.fit(grid, at, kReach * spacing, spacing);
+      const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, spacing);
+      const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, spacing);
+      const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, spacing, kTile * spacing);
+      if (!(narrow.bend > 0 && map.bend > 0 && middle.bend > 0)) continue;
+      all[k] = {static_cast<float>(wide.bend / middle.bend),
+                static_cast<float>(wide.bend / narrow.bend), static_cast<float>(wide.bend),
+                static_cast<float>(wide.bend / map.bend * std::sqrt(std::max(1.0, wide.shared)))};
     }
   });
   std::erase_if(all, [](const Widths& w) { return w.growth == 0; });

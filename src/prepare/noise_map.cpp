@@ -4,7 +4,7 @@
 
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "prepare/window_fit.hpp"
+#include "prepare/own_sheet.hpp"
 
 namespace palpate {
 namespace {
@@ -23,12 +23,13 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
   const std::size_t count = raw.size() / step;
   std::vector<float> found(count);
   detail::parallel_ranges(count, 64, [&](std::size_t begin, std::size_t end) {
-    WindowFitter fitter;
+    SheetFitter fitter;
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t i = k * step + step / 2;
-      const WindowFit fit =
-          fitter.fit(raw, raw.points()[i], static_cast<double>(kWindow * spacings[i]));
-      found[k] = static_cast<float>(fit.sigma * fit.footprint);
+      const SheetFit fit =
+          fitter.fit(raw, raw.points()[i], static_cast<double>(kWindow * spacings[i]),
+                     static_cast<double>(spacings[i]));
+      found[k] = static_cast<float>(fit.bend * fit.footprint);
     }
   });
   std::vector<Eigen::Vector3f> places;

@@ -14,8 +14,6 @@
 #include "geometry/speckle.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/filters.hpp"
-#include "palpate/geometry/normals.hpp"
-#include "palpate/geometry/orientation.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "palpate/geometry/support.hpp"
 #include "palpate/geometry/voxel_grid.hpp"
@@ -23,22 +21,20 @@
 #include "prepare/close_gaps.hpp"
 #include "prepare/columns.hpp"
 #include "prepare/count_weights.hpp"
-#include "prepare/given_signs.hpp"
+#include "prepare/given_normals.hpp"
 #include "prepare/irregularity.hpp"
 #include "prepare/limit_growth.hpp"
 #include "prepare/merge_slivers.hpp"
 #include "prepare/noise.hpp"
 #include "prepare/noise_map.hpp"
 #include "prepare/noisy_radii.hpp"
+#include "prepare/own_sheet.hpp"
+#include "prepare/sheets.hpp"
 
 namespace palpate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// Normals come from a little further away than the surface: the balanced field adds their noise
-// (field_choice.md section 2).
-constexpr float kNormalsReach = 1.15f;
 
 // A cloud this noisy, against its spacing, is thinned to two spacings; a cleaner one is kept whole.
 constexpr double kNoisy = 0.25;
@@ -49,8 +45,10 @@ constexpr double kSliver = 0.7;
 // The paper's multiple m, its k nearest neighbours and the level of its metaball (section V).
 constexpr double kPaperMultiple = 2.5;
 
-// Normals of which this share or less is there are as good as none.
-constexpr double kMostGiven = 0.25;
+// A point this many typical spacings from its neighbours, with no more around it than this of the
+// weight that makes a surface, is a stray.
+constexpr float kStraySpacings = 16;
+constexpr float kStrayWeight = 1.5f;
 
 // Noise is not smoothed away at the price of shape of this part of the cloud's size.
 constexpr double kFinestShape = 25;
@@ -58,6 +56,8 @@ constexpr double kFinestShape = 25;
 // R in spacings at least, where points lie irregularly: gaps between random points are wider than
 // 2.5 spacings' support bridges.
 constexpr double kIrregularMultiple = 3;
+
+constexpr float kSlope = 0.5f;  // of R over distance, as it follows from spacings and noise
 
 /// Adds the time since the last lap to `seconds`.
 class Stopwatch {
@@ -106,13 +106,11 @@ class Preparation {
     index();
     choose_voxel();
     choose_radii();
+    if (options_.estimate_normals) fit_sheets();
     weigh();
-    if (options_.estimate_normals) {
-      orient();
-    } else {
-      points_.confidences.assign(points_.size(), 0.0f);
-    }
+    points_.confidences.resize(points_.size(), 0.0f);
     if (options_.remove_speckle && !options_.paper) silence_speckle();
+    if (options_.estimate_normals) find_sheets();
     if (!cloud_->colors.empty()) points_.colors = in_grid_order(points_.grid, cloud_->colors);
     finish(points_);
     report_.points_out = points_.size() - report_.speckle;
@@ -175,7 +173,7 @@ class Preparation {
       points_.radii.assign(points_.size(), static_cast<float>(radius));
     } else {
       choose_radii_by_noise();
-      limit_growth(points_.grid, points_.radii);
+      limit_growth(points_.grid, kSlope, points_.radii);
     }
     watch_.lap(report_.seconds_spacing);
   }
@@ -207,39 +205,39 @@ class Preparation {
                                 support_radii(spacings_, support));
   }
 
-  void orient() {
-    Normals normals = estimate_normals(points_.grid, points_.radii, kNormalsReach);
-    points_.normals = std::move(normals.normals);
-    points_.confidences = std::move(normals.confidences);
-    give_sign();
+  void fit_sheets() {
+    own_sheets_ = fit_own_sheets(points_.grid, spacings_, points_.radii, report_.noise);
+    if (!cloud_->normals.empty()) {
+      given_ = in_grid_order(points_.grid, cloud_->normals);
+      take_given_normals(points_.grid, given_, own_sheets_.normals);
+    }
     watch_.lap(report_.seconds_normals);
   }
 
-  void give_sign() {
-    Orientation how = options_.orientation;
-    if (how == Orientation::automatic) {
-      const bool given = share_given(cloud_->normals) > kMostGiven;
-      how = options_.viewpoint ? Orientation::viewpoint
-            : given            ? Orientation::given
-            : viewpoint_       ? Orientation::viewpoint
-                               : Orientation::outward;
+  void find_sheets() {
+    KnownSigns known;
+    const Orientation how = options_.orientation;
+    if (how == Orientation::automatic || how == Orientation::given) known.given = given_;
+    const bool seen = how == Orientation::automatic || how == Orientation::viewpoint;
+    if (seen && viewpoint_) known.eye = (*viewpoint_ - points_.origin).cast<float>();
+    if (options_.viewpoint) known.given = {};
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (points_.density_weights[i] <= 0) own_sheets_.confidences[i] = 0;
     }
-    if (how == Orientation::viewpoint) {
-      const Eigen::Vector3d eye = *viewpoint_ - points_.origin;
-      orient_to_viewpoint(points_.grid.points(), eye.cast<float>(), points_.normals);
-    } else if (how == Orientation::given) {
-      orient_as_given(points_.grid, in_grid_order(points_.grid, cloud_->normals), spacings_,
-                      points_.radii, points_.normals);
-    } else {
-      orient_outward(points_.grid, spacings_, points_.normals);
-    }
+    points_.sheets =
+        make_sheets({points_.grid, spacings_, points_.radii, report_.noise}, known, own_sheets_);
+    points_.normals = std::move(own_sheets_.normals);
+    points_.confidences = std::move(own_sheets_.confidences);
+    watch_.lap(report_.seconds_normals);
   }
 
   void weigh() {
     points_.kernel = options_.kernel;
     sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
-    if (!options_.radius && !options_.paper) {
-      close_gaps(points_.grid, options_.kernel, points_.radii, sums_);
+    if (!options_.radius && !options_.paper &&
+        close_gaps(points_.grid, options_.kernel, points_.radii, sums_) > 0) {
+      limit_growth(points_.grid, 1, points_.radii);
+      sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
     }
     points_.density_weights = density_weights(sums_);
     if (!counts_.empty()) {
@@ -254,7 +252,11 @@ class Preparation {
 
   /// Points that noise made stay in the index and weigh nothing.
   void silence_speckle() {
-    const auto mask = detail::speckle_mask(points_.grid, points_.radii, sums_);
+    auto mask = detail::speckle_mask(points_.grid, points_.radii, sums_);
+    const float stray = kStraySpacings * static_cast<float>(report_.spacing);
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+      if (spacings_[i] > stray && sums_.own[i] < kStrayWeight) mask[i] = 1;
+    }
     const auto speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
     if (speckle < points_.size()) {  // a cloud of nothing else is a sparse one
       report_.speckle = speckle;
@@ -272,7 +274,9 @@ class Preparation {
   SurfacePoints points_;
   PrepareReport report_;
   std::vector<float> spacings_;
-  std::vector<std::uint32_t> counts_;  // points that each voxel's stands for; empty: one each
+  std::vector<std::uint32_t> counts_;   // points that each voxel's stands for; empty: one each
+  std::vector<Eigen::Vector3f> given_;  // in sorted order; empty: none
+  OwnSheets own_sheets_;
   detail::WeightSums sums_;
   double footprint_ = 0;
   Noise noise_;

@@ -17,8 +17,25 @@ void Patches::show(std::span<const ActiveLayer> layers, int sources, bool same) 
   far_is_late_ = true;
 }
 
+void Patches::stand(const Stance& stance) noexcept {
+  constexpr double kMoved = 0.15;  // R after which sheets further on come into view
+  stance_ = stance;
+  const double moved = (stance.proxy - faced_.proxy).norm();
+  const bool same = stance.touches() == faced_.touches() && moved < kMoved * near_.mean_radius();
+  if (same) return;
+  faced_ = stance;
+  far_.clear();
+  const Ball here{stance.proxy, 0};
+  const bool covered = near_.covers(here);
+  const bool free =
+      !stance.touches() && (covered ? is_free(*surface_, near_, here) : walk_is_free(here));
+  if (free) near_.forget_sides();
+  if (covered) near_.face(stance);
+}
+
 void Patches::forget() noexcept {
   near_.clear();
+  near_.forget_sides();
   far_.clear();
   radius_ = 0;
 }
@@ -38,7 +55,7 @@ void Patches::gather_near(const Vector3d& center, double extra) noexcept {
 bool Patches::near_covers(std::span<const Ball> balls) noexcept {
   const auto reached = [this](const Ball& ball) { return near_.reaches(ball); };
   if (near_.outdated() && std::ranges::all_of(balls, reached)) {
-    count(near_, near_.renew(layers_, sources_, update_visits_), update_visits_);
+    count(near_, near_.renew(layers_, sources_, update_visits_, &stance_), update_visits_);
   }
   return std::ranges::all_of(balls, [this](const Ball& ball) { return near_.covers(ball); });
 }
@@ -50,6 +67,7 @@ const Patch* Patches::at(const Ball& ball, double margin) const noexcept {
     return &far_;
   }
   far_is_late_ = false;
+  far_.follow_sides(near_);
   int alone = kGatherVisits;
   int& left = stepping_ ? gather_visits_ : alone;
   return gather(far_, ball.center, std::max(margin, ball.radius), left) ? &far_ : nullptr;
@@ -70,7 +88,8 @@ bool Patches::gather(Patch& patch, const Vector3d& center, double extra, int& le
                                   {.radius = radius_,
                                    .raw_weights = surface_->options.raw_weights,
                                    .normals = surface_->options.kind != FieldKind::metaball,
-                                   .most_visits = left});
+                                   .most_visits = left,
+                                   .stance = &stance_});
   count(patch, whole, left);
   return whole;
 }

@@ -29,6 +29,10 @@ class Patches {
   /// Where x is in no point's support, it stays what it was; `first`, m, when there was none.
   void choose_radius(const Eigen::Vector3d& x, double first) noexcept;
 
+  /// Where the proxy is: what is gathered from now on is seen from there, and what is around it is
+  /// looked at again where it has moved on.
+  void stand(const Stance& stance) noexcept;
+
   /// The patch around the proxy. Covers nothing when the visits did not suffice.
   void gather_near(const Eigen::Vector3d& center, double extra) noexcept;
   [[nodiscard]] const Patch& near() const noexcept { return near_; }
@@ -71,6 +75,9 @@ class Patches {
   std::span<const ActiveLayer> layers_;
   int sources_ = 1;
   double radius_ = 0;  // R of all points, m; 0: each has its own
+
+  Stance stance_;
+  Stance faced_;  // that the near patch was looked at from last
 
   // Samples away from the path are rare and take a patch of their own; that is a cache.
   Patch near_{SceneField::kPatchPoints};

@@ -105,6 +105,7 @@ struct SceneField::State {
   bool plain_points = true;  // no materials, no motion, no fading
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
+  Stance last;  // of the proxy, after its last step
   Patches patches{surface};
 };
 
@@ -213,6 +214,10 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   state.patches.begin_update();
   if (hip.allFinite() && proxy.allFinite()) {
     if (options_.nearest_radius) state.patches.choose_radius(proxy, state.typical_radius);
+    // Whoever has been moved since its step touches nothing.
+    const bool same = proxy == state.last.proxy;
+    const Stance stance{proxy, same ? state.last.normal : Vector3d::Zero().eval()};
+    state.patches.stand(stance);
     state.gather_path(hip, proxy);
     state.publish_reach(hip, proxy);
   }
@@ -220,11 +225,11 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;
 }
 
-Sample SceneField::sample(const Vector3d& x, Side side) const noexcept {
+Sample SceneField::sample(const Vector3d& x, Side /*side*/) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free; of no length
   const Patch* const patch = state.patch_at({x, 0});
-  if (patch) return evaluate(state.surface, *patch, x, side);
+  if (patch) return evaluate(state.surface, *patch, x);
   return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid: unknown
 }
 
@@ -249,8 +254,9 @@ void SceneField::change(const FieldOptions& checked) noexcept {
 void SceneField::begin_step() const noexcept {
   state_->patches.begin_step();
 }
-void SceneField::end_step() const noexcept {
+void SceneField::end_step(const Vector3d& proxy, const Vector3d& normal) const noexcept {
   state_->patches.end_step();
+  state_->last = {proxy, normal};
 }
 
 Surface SceneField::surface(const Vector3d& x) const noexcept {
@@ -276,7 +282,6 @@ FieldTraits SceneField::traits() const noexcept {
                                                  : state.typical_radius,
                kFinest * state.radius());
   FieldTraits traits;
-  traits.two_sided = options_.two_sided && !metaball;
   traits.resolution = metaball ? 0.002 * smallest : smallest / 16;
   traits.revision = state.revision;
   traits.reanchor_reach = std::max(0.5 * state.radius(), kReanchorSpeed * state.snapshot_duration);

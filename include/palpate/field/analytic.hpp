@@ -107,7 +107,8 @@ class UnionField final : public Field {
   /// The finest resolution, the longest reach, the sum of the revisions.
   [[nodiscard]] FieldTraits traits() const noexcept override;
   void begin_step() const noexcept override;
-  void end_step() const noexcept override;
+  void end_step(const Eigen::Vector3d& proxy,
+                const Eigen::Vector3d& normal) const noexcept override;
 
  private:
   [[nodiscard]] std::size_t nearest(const Eigen::Vector3d& x, Sample& sample) const noexcept;

@@ -10,6 +10,20 @@
 
 namespace palpate {
 
+/// Smooth pieces of surface, as preparation found them. Columns are in sorted order and all as long
+/// as the grid, or all empty: then the points are one sheet, whose normals' signs agree.
+struct PointSheets {
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  std::vector<std::uint32_t> sheet;  ///< of each point; kNone: on none, and without confidence
+  std::vector<std::uint32_t> part;   ///< of each sheet: normals of one part agree in their signs
+  std::vector<float> residual;       ///< rms distance of the sheet's points from their plane, m
+  std::vector<float> above;          ///< along +n to the next other sheet, m; infinity: none near
+  std::vector<float> below;          ///< along -n, likewise
+
+  [[nodiscard]] bool empty() const { return sheet.empty(); }
+};
+
 /// Indexed points with all that a field needs of them, immutable once made. Every column is in the
 /// grid's sorted order and either as long as the grid or, where it says so, empty.
 ///
@@ -23,7 +37,8 @@ struct SurfacePoints {
   std::vector<float> density_weights;    ///< a_i of algorithm.md section 4
   std::vector<float> radii;              ///< R_i, m
   std::vector<float> confidences;        ///< c_i, 0-1
-  std::vector<float> materials;          ///< 0-1; empty: all 1
+  PointSheets sheets;
+  std::vector<float> materials;  ///< 0-1; empty: all 1
   std::vector<float> presences;  ///< 0-1: is the sensor still sure of this point? Empty: all 1
   /// Red, green, blue, for those who draw; empty: not known.
   std::vector<std::array<std::uint8_t, 3>> colors;

@@ -62,7 +62,8 @@ class SceneField final : public Field {
   void change(const FieldOptions& checked) noexcept;
 
   void begin_step() const noexcept override;
-  void end_step() const noexcept override;
+  void end_step(const Eigen::Vector3d& proxy,
+                const Eigen::Vector3d& normal) const noexcept override;
 
   [[nodiscard]] const FieldOptions& options() const noexcept { return options_; }
 

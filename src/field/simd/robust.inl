@@ -23,9 +23,10 @@ inline Lanes decay(const Lanes& z) {
 }
 
 template <bool kWendland>
-std::uint32_t near(const Columns& c, const double x[3]) noexcept {
+std::uint32_t near(const Columns& c, std::uint32_t begin, std::uint32_t end,
+                   const double x[3]) noexcept {
   std::uint32_t places = 0;
-  for (std::uint32_t i = 0; i < c.source_begin[c.sources]; i += kLanes) {
+  for (std::uint32_t i = begin; i < end; i += kLanes) {
     const Vector q = offsets(c, i, x);
     const Lanes w = load(c.weight + i) * kernel<kWendland>(dot(q, q) * load(c.inverse_r2 + i)).w;
     const Lanes v = kScaleW<kWendland> * (w * load(c.confidence + i));
@@ -36,8 +37,9 @@ std::uint32_t near(const Columns& c, const double x[3]) noexcept {
   return places;
 }
 
-std::uint32_t near_of(const Columns& c, bool wendland, const double x[3]) noexcept {
-  return wendland ? near<true>(c, x) : near<false>(c, x);
+std::uint32_t near_of(const Columns& c, std::uint32_t begin, std::uint32_t end, bool wendland,
+                      const double x[3]) noexcept {
+  return wendland ? near<true>(c, begin, end, x) : near<false>(c, begin, end, x);
 }
 
 void share(const Columns& c, std::uint32_t places, const double x[3], Share& out) noexcept {

@@ -10,8 +10,14 @@ namespace palpate::simd {
 constexpr int kLanes = 4;  // points that are summed side by side, on every level
 constexpr int kMaxSources = 8;
 
-// A patch in columns, relative to its centre. Each source's run is padded to a multiple of kLanes
-// with points of weight 0.
+// How a point's sheet is seen from the tool (field/facing.hpp); the last one has weight and no
+// height.
+constexpr int kHeights = 3;
+constexpr int kLabels = kHeights + 1;
+constexpr int kMaxRuns = kLabels * kMaxSources;
+
+// A patch in columns, relative to its centre: label by label, and within a label source by source.
+// Each run of one label and source is padded to a multiple of kLanes with points of weight 0.
 struct Columns {
   const double* position[3];  // m
   const double* normal[3];
@@ -26,8 +32,12 @@ struct Columns {
   double* trusted;           // scratch: v_i, of the last call of `near`
   std::uint32_t* near;       // scratch: where lanes begin of which any is near, of the same call
   double* closeness[2];      // scratch for `robust`
-  std::uint32_t source_begin[kMaxSources + 1];
+  std::uint32_t run_begin[kMaxRuns + 1];  // run of a label l and source s: l * sources + s
   int sources;
+  int labels;  // from the first on; those behind have no points
+
+  std::uint32_t begin_of(int label) const { return run_begin[label * sources]; }
+  std::uint32_t end() const { return run_begin[labels * sources]; }
 };
 
 // q_i = p_i - x, w_i with its weight, v_i = c_i w_i.
@@ -45,15 +55,20 @@ struct SourceMoments {
   double vnq;
 };
 
-struct Sums : Moments {
+// The sums over the points of one label.
+struct LabelSums : Moments {
   SourceMoments of[kMaxSources];  // for each source
-  double w[kMaxSources];          // sum w_i, for each source
+  double grad_v[3];
+};
+
+struct Sums {
+  LabelSums label[kLabels];
+  double w[kMaxSources];  // sum w_i, for each source
   double grad_w[kMaxSources][3];
   double wr_of[kMaxSources];  // sum w_i R_i, for each source
   double grad_wr_of[kMaxSources][3];
   double wr;  // of all
   double grad_wr[3];
-  double grad_v[3];
 };
 
 // sum s_i v_i of the points' sharpness s_i, with its gradient.
@@ -84,18 +99,18 @@ struct Functions {
   void (*weights)(const Columns&, bool wendland, const double x[3], Sums&) noexcept;
   // All sums; leaves the slopes in their scratch column.
   void (*all)(const Columns&, bool wendland, const double x[3], Sums&) noexcept;
-  // sum grad v_i b_i, with the slopes that `all` left for the same x.
-  void (*gradient)(const Columns&, const double x[3], const Linear&, double out[3]) noexcept;
-  // The same sum over one source's points.
-  void (*source_gradient)(const Columns&, int source, const double x[3], const Linear&,
-                          double out[3]) noexcept;
+  // sum grad v_i b_i over the points [begin, end), with the slopes that `all` left for the same x.
+  void (*gradient)(const Columns&, std::uint32_t begin, std::uint32_t end, const double x[3],
+                   const Linear&, double out[3]) noexcept;
   // For each source an upper bound of sum w_i over the ball (x, h).
   void (*bound)(const Columns&, bool wendland, const double x[3], double h,
                 double out[kMaxSources]) noexcept;
 
-  // Lists where points have weight at x and what weight, for the functions below, which look at no
-  // others and are to be called with the same x and the number of places that it returns.
-  std::uint32_t (*near)(const Columns&, bool wendland, const double x[3]) noexcept;
+  // Lists where points of [begin, end) have weight at x and what weight, for the functions below,
+  // which look at no others and are to be called with the same x and the number of places that it
+  // returns.
+  std::uint32_t (*near)(const Columns&, std::uint32_t begin, std::uint32_t end, bool wendland,
+                        const double x[3]) noexcept;
   // The sharp points' share, with the slopes that `all` left.
   void (*share)(const Columns&, std::uint32_t places, const double x[3], Share&) noexcept;
   // The moments of v_i phi_i; leaves phi_i in the k-th closeness column.

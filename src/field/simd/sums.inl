@@ -93,37 +93,46 @@ struct WeightSums {
   }
 
   void finish(const Columns& c, int source, double scale_w, double scale_grad, Sums& out) const {
-    out.w[source] = scale_w * sum(w);
-    store(grad_w, scale_grad, out.grad_w[source]);
-    out.wr_of[source] = kUneven ? scale_w * sum(wr) : c.uniform_radius * out.w[source];
-    out.wr += out.wr_of[source];
-    double* const grad = out.grad_wr_of[source];
-    store(kUneven ? grad_wr : grad_w, scale_grad, grad);
+    const double of_run = scale_w * sum(w);
+    const double radius = kUneven ? scale_w * sum(wr) : c.uniform_radius * of_run;
+    out.w[source] += of_run;
+    out.wr_of[source] += radius;
+    out.wr += radius;
+    double grad[3];
+    double by_radius[3];
+    store(grad_w, scale_grad, grad);
+    store(kUneven ? grad_wr : grad_w, scale_grad, by_radius);
     for (int axis = 0; axis < 3; ++axis) {
-      if constexpr (!kUneven) grad[axis] *= c.uniform_radius;
-      out.grad_wr[axis] += grad[axis];
+      if constexpr (!kUneven) by_radius[axis] *= c.uniform_radius;
+      out.grad_w[source][axis] += grad[axis];
+      out.grad_wr_of[source][axis] += by_radius[axis];
+      out.grad_wr[axis] += by_radius[axis];
     }
   }
 };
 
-inline void clear_radius(Sums& out) {
+inline void clear(const Columns& c, Sums& out) {
   out.wr = 0;
   for (double& axis : out.grad_wr) axis = 0;
+  for (int s = 0; s < c.sources; ++s) {
+    out.w[s] = out.wr_of[s] = 0;
+    for (int axis = 0; axis < 3; ++axis) out.grad_w[s][axis] = out.grad_wr_of[s][axis] = 0;
+  }
 }
 
 template <bool kWendland, bool kUneven>
 void weights(const Columns& c, const double x[3], Sums& out) noexcept {
-  clear_radius(out);
-  for (int s = 0; s < c.sources; ++s) {
+  clear(c, out);
+  for (int run = 0; run < c.labels * c.sources; ++run) {
     WeightSums<kUneven> sums;
-    for (std::uint32_t i = c.source_begin[s]; i < c.source_begin[s + 1]; i += kLanes) {
+    for (std::uint32_t i = c.run_begin[run]; i < c.run_begin[run + 1]; i += kLanes) {
       const Vector q = offsets(c, i, x);
       const Lanes inverse_r2 = load(c.inverse_r2 + i);
       const Weight k = kernel<kWendland>(dot(q, q) * inverse_r2);
       const Lanes weight = load(c.weight + i);
       sums.add_point(c, i, q, weight * k.w, weight * k.steep * inverse_r2);
     }
-    sums.finish(c, s, kScaleW<kWendland>, kScaleSteep<kWendland>, out);
+    sums.finish(c, run % c.sources, kScaleW<kWendland>, kScaleSteep<kWendland>, out);
   }
 }
 
@@ -147,7 +156,7 @@ struct NormalSums {
     add(vn, vi, n);
   }
 
-  void finish(int source, Sums& out) const {
+  void finish(int source, LabelSums& out) const {
     SourceMoments& of = out.of[source];
     of.v = sum(v);
     of.vnq = sum(vnq);
@@ -166,19 +175,19 @@ struct NormalSums {
   }
 };
 
-inline void clear_normals(Sums& out) {
+inline void clear(LabelSums& out) {
   out.v = out.vnq = 0;
   for (int axis = 0; axis < 3; ++axis) out.grad_v[axis] = out.vq[axis] = out.vn[axis] = 0;
 }
 
 template <bool kWendland, bool kUneven>
 void all(const Columns& c, const double x[3], Sums& out) noexcept {
-  clear_radius(out);
-  clear_normals(out);
-  for (int s = 0; s < c.sources; ++s) {
+  clear(c, out);
+  for (int label = 0; label < c.labels; ++label) clear(out.label[label]);
+  for (int run = 0; run < c.labels * c.sources; ++run) {
     WeightSums<kUneven> sums;
     NormalSums normals;
-    for (std::uint32_t i = c.source_begin[s]; i < c.source_begin[s + 1]; i += kLanes) {
+    for (std::uint32_t i = c.run_begin[run]; i < c.run_begin[run + 1]; i += kLanes) {
       const Vector q = offsets(c, i, x);
       const Lanes inverse_r2 = load(c.inverse_r2 + i);
       const Weight k = kernel<kWendland>(dot(q, q) * inverse_r2);
@@ -189,13 +198,13 @@ void all(const Columns& c, const double x[3], Sums& out) noexcept {
       sums.add_point(c, i, q, w, slope);
       normals.add_point(c, i, q, w, slope);
     }
-    sums.finish(c, s, 1, 1, out);
-    normals.finish(s, out);
+    sums.finish(c, run % c.sources, 1, 1, out);
+    normals.finish(run % c.sources, out.label[run / c.sources]);
   }
 }
 
-inline void gradient_between(const Columns& c, std::uint32_t begin, std::uint32_t end,
-                             const double x[3], const Linear& b, double out[3]) {
+void gradient(const Columns& c, std::uint32_t begin, std::uint32_t end, const double x[3],
+              const Linear& b, double out[3]) noexcept {
   const Vector alpha{b.alpha[0], b.alpha[1], b.alpha[2]};
   const Vector beta{b.beta[0], b.beta[1], b.beta[2]};
   Vector total;
@@ -208,27 +217,19 @@ inline void gradient_between(const Columns& c, std::uint32_t begin, std::uint32_
   store(total, 1, out);
 }
 
-void gradient(const Columns& c, const double x[3], const Linear& b, double out[3]) noexcept {
-  gradient_between(c, 0, c.source_begin[c.sources], x, b, out);
-}
-
-void source_gradient(const Columns& c, int source, const double x[3], const Linear& b,
-                     double out[3]) noexcept {
-  gradient_between(c, c.source_begin[source], c.source_begin[source + 1], x, b, out);
-}
-
 template <bool kWendland>
 void bound(const Columns& c, const double x[3], double h, double out[kMaxSources]) noexcept {
-  for (int s = 0; s < c.sources; ++s) {
+  for (int s = 0; s < c.sources; ++s) out[s] = 0;
+  for (int run = 0; run < c.labels * c.sources; ++run) {
     Lanes w = 0;
-    for (std::uint32_t i = c.source_begin[s]; i < c.source_begin[s + 1]; i += kLanes) {
+    for (std::uint32_t i = c.run_begin[run]; i < c.run_begin[run + 1]; i += kLanes) {
       const Vector q = offsets(c, i, x);
       Lanes nearest = stdx::sqrt(dot(q, q)) - h;
       nearest = 0.5 * (nearest + stdx::abs(nearest));
       const Lanes r2 = nearest * nearest * load(c.inverse_r2 + i);
       w += load(c.weight + i) * kernel<kWendland>(r2).w;
     }
-    out[s] = kScaleW<kWendland> * sum(w);
+    out[run % c.sources] += kScaleW<kWendland> * sum(w);
   }
 }
 

@@ -1,0 +1,394 @@
+#include "field/facing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "palpate/field/kernel.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr float kHolds = 1.5f;  // R: a point that is farther has no weight at the proxy
+constexpr float kLift = 0.3f;   // R above the surface that a touching tool looks from
+constexpr float kView = 1.2f;   // R beyond the nearest point, within which things are seen
+constexpr float kUnsharp = 2;   // residuals that a height has to be above to tell a side
+constexpr double kHiddenVote = -0.5;
+constexpr float kAcrossReach = 0.9f;  // R within which decided points tell signs
+constexpr double kLeastVote = 1e-3;
+constexpr float kMeetReach = 1.3f;  // R within which sheets meet
+constexpr double kMeets = 1e-3;
+constexpr double kSameNormal = 0.7;
+constexpr double kSamePlane = 0.3;
+constexpr float kHiddenView = 2.6f;  // R
+
+constexpr std::uint32_t kTried = 24;        // points of a sheet that are compared
+constexpr std::uint32_t kReferences = 192;  // points that they are compared with
+constexpr int kPairs = 8192;                // in one call
+
+double weight(float squared, float reach) noexcept {
+  return wyvill(static_cast<double>(squared / (reach * reach))).w;
+}
+
+std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
+  return std::max<std::uint32_t>(1, (static_cast<std::uint32_t>(count) + most - 1) / most);
+}
+
+/// n_p mirrored by the plane halfway to q, times n_q; their plain product where both lie on one
+/// plane.
+float agreement(const Vector3f& n_p, const Vector3f& n_q, const Vector3f& way,
+                float tolerance) noexcept {
+  const float by_p = n_p.dot(way);
+  const float by_q = n_q.dot(way);
+  const float straight = n_p.dot(n_q);
+  const float squared = way.squaredNorm();
+  const bool one_plane = std::abs(by_p) <= tolerance && std::abs(by_q) <= tolerance;
+  return one_plane || !(squared > 0) ? straight : straight - 2 * by_p * by_q / squared;
+}
+
+}  // namespace
+
+Facing::Facing(std::size_t capacity) {
+  points_.reserve(capacity);
+  sheet_of_place_.reserve(capacity);
+  order_.reserve(capacity);
+  references_.reserve(2 * capacity);
+  remembered_.reserve(2 * capacity);
+}
+
+void Facing::forget() noexcept {
+  now_.part_count = 0;
+  now_.sheet_count = 0;
+  remembered_.clear();
+}
+
+void Facing::follow(const Facing& other) noexcept {
+  now_ = other.now_;
+  remembered_ = other.remembered_;  // within what was reserved
+  remembered_from_ = other.remembered_from_;
+}
+
+std::uint32_t Facing::part_of(const Key& key) noexcept {
+  for (std::uint32_t k = now_.part_count; k-- > 0;) {
+    if (now_.parts[k].key == key) return k;
+  }
+  Part part{.key = key};
+  for (std::uint32_t k = 0; k < before_.part_count; ++k) {
+    if (before_.parts[k].key == key) part.sign = before_.parts[k].sign;
+  }
+  now_.parts[now_.part_count] = part;
+  return now_.part_count++;
+}
+
+/// kMost: there are too many. There are no more parts than sheets.
+std::uint32_t Facing::sheet_of(const Key& key, const Key& part) noexcept {
+  for (std::uint32_t k = now_.sheet_count; k-- > 0;) {
+    if (now_.sheets[k].key == key) return k;
+  }
+  if (now_.sheet_count == kMost) return kMost;
+  Sheet sheet{.key = key, .part = part_of(part)};
+  for (std::uint32_t k = 0; k < before_.sheet_count; ++k) {
+    if (before_.sheets[k].key == key) sheet.label = before_.sheets[k].label;
+  }
+  now_.sheets[now_.sheet_count] = sheet;
+  return now_.sheet_count++;
+}
+
+void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t> places,
+                        const Stance& stance) noexcept {
+  const SurfacePoints& surface = *layer.points;
+  const PointSheets& own = surface.sheets;
+  std::uint32_t last = PointSheets::kNone;
+  std::uint32_t slot = kMost;
+  for (const std::uint32_t i : places) {
+    const double confidence = surface.normals.empty() ? 0 : confidence_now(layer, i);
+    const std::uint32_t sheet = own.empty() ? 0 : own.sheet[i];
+    if (confidence <= 0 || sheet == PointSheets::kNone) {
+      sheet_of_place_.push_back(kMost);
+      continue;
+    }
+    if (sheet != last) {
+      const Key key = own.empty() ? Key{} : Key{&surface, sheet};
+      slot = sheet_of(key, own.empty() ? Key{} : Key{&surface, own.part[sheet]});
+      last = sheet;
+    }
+    sheet_of_place_.push_back(slot);
+    if (slot == kMost) continue;
+    Point point{};
+    point.place = position_now(layer, i, stance.proxy).cast<float>();
+    point.normal = normal_now(layer, i).cast<float>();
+    point.confidence = static_cast<float>(confidence);
+    point.radius = static_cast<float>(radius_now(layer, i));
+    point.sheet = slot;
+    point.residual = own.empty() ? 0 : own.residual[i];
+    point.above = own.empty() ? std::numeric_limits<float>::infinity() : own.above[i];
+    point.below = own.empty() ? std::numeric_limits<float>::infinity() : own.below[i];
+    points_.push_back(point);
+    Sheet& s = now_.sheets[slot];
+    const float holds = kHolds * point.radius;
+    // Where all are one part, only free space lets go of its side.
+    if (own.empty() || point.place.squaredNorm() <= holds * holds) {
+      s.near = now_.parts[s.part].near = true;
+    }
+    ++s.count;
+  }
+}
+
+void Facing::list(const Points& points, const Stance& stance) noexcept {
+  std::swap(before_, now_);
+  now_.part_count = 0;
+  now_.sheet_count = 0;
+  points_.clear();
+  sheet_of_place_.clear();
+  for (std::size_t k = 0; k < points.layers.size(); ++k) {
+    const Selection::Run& run = points.selection->runs()[k];
+    list_layer(points.layers[k], points.selection->places(run), stance);
+  }
+  float radii = 0;
+  for (const Point& point : points_) radii += point.radius;
+  if (!points_.empty()) radius_ = radii / static_cast<float>(points_.size());
+}
+
+/// What has no weight at the proxy any more may be seen from another side next.
+void Facing::let_go() noexcept {
+  for (Part& part : std::span(now_.parts).first(now_.part_count)) {
+    if (!part.near) part.sign = 0;
+  }
+  for (Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
+    if (!sheet.near) sheet.label = kOpen;
+  }
+}
+
+void Facing::group() noexcept {
+  std::uint32_t begin = 0;
+  for (Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
+    sheet.begin = begin;
+    begin += sheet.count;
+    sheet.count = 0;
+  }
+  order_.resize(points_.size());
+  for (std::uint32_t i = 0; i < points_.size(); ++i) {
+    Sheet& sheet = now_.sheets[points_[i].sheet];
+    order_[sheet.begin + sheet.count++] = i;
+  }
+}
+
+bool Facing::is_hidden(const Point& point, float height) const noexcept {
+  return std::abs(height) > (height > 0 ? point.above : point.below) + point.residual;
+}
+
+/// The tool looks from where it is or, where it touches, from a little above; between two sheets
+/// from no further than halfway.
+void Facing::choose_eye(const Stance& stance) noexcept {
+  const Vector3f normal = stance.normal.cast<float>();
+  float lift = stance.touches() ? kLift * radius_ : 0;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const Point& point : points_) {
+    const Sheet& sheet = now_.sheets[point.sheet];
+    const int sign = now_.parts[sheet.part].sign;
+    const float squared = point.place.squaredNorm();
+    if (!stance.touches() || sheet.label > kAcross || sign == 0 || squared >= nearest) continue;
+    if (static_cast<float>(sign) * point.normal.dot(normal) < 0.5f) continue;
+    nearest = squared;
+    lift = std::min(kLift * radius_, 0.5f * (sign > 0 ? point.above : point.below));
+  }
+  eye_ = lift * normal;
+  float closest = std::numeric_limits<float>::infinity();
+  for (const Point& point : points_) {
+    closest = std::min(closest, (point.place - eye_).squaredNorm());
+  }
+  view_ = std::sqrt(closest) + kView * radius_;
+}
+
+void Facing::add_references(const Sheet& sheet) noexcept {
+  const int sign = now_.parts[sheet.part].sign;
+  if (sheet.label > kAcross || sign == 0) return;
+  for (std::uint32_t k = 0; k < sheet.count; ++k) {
+    const Point& p = points_[order_[sheet.begin + k]];
+    if (references_.size() == references_.capacity()) return;
+    references_.push_back(
+        {p.place, static_cast<float>(sign) * p.normal, p.confidence, p.residual, sheet.label});
+  }
+}
+
+/// All that is decided. Where a cloud gave way to another, what was decided of it stands for what
+/// lies in its place; true then.
+bool Facing::list_references(const Stance& stance) noexcept {
+  references_.clear();
+  bool vanished = false;
+  for (std::uint32_t k = 0; k < before_.sheet_count; ++k) {
+    const Sheet& old = before_.sheets[k];
+    const auto known = std::span(now_.sheets).first(now_.sheet_count);
+    vanished =
+        vanished ||
+        (old.near && std::ranges::none_of(known, [&](const Sheet& s) { return s.key == old.key; }));
+  }
+  if (vanished) {
+    const Vector3f shift = (remembered_from_ - stance.proxy).cast<float>();
+    for (Reference r : remembered_) {
+      r.place += shift;
+      references_.push_back(r);
+    }
+  }
+  for (const Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) add_references(sheet);
+  return vanished;
+}
+
+/// What decided points around a part's say of its sign.
+double Facing::across(std::uint32_t part) noexcept {
+  const std::uint32_t step = stride_for(references_.size(), kReferences);
+  double sum = 0;
+  for (const Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
+    if (sheet.part != part) continue;
+    const std::uint32_t skip = stride_for(sheet.count, kTried);
+    for (std::uint32_t k = 0; k < sheet.count && pairs_ > 0; k += skip) {
+      const Point& p = points_[order_[sheet.begin + k]];
+      const float reach = kAcrossReach * p.radius;
+      for (std::size_t r = 0; r < references_.size(); r += step, --pairs_) {
+        const Reference& q = references_[r];
+        const Vector3f way = q.place - p.place;
+        const float squared = way.squaredNorm();
+        if (squared >= reach * reach) continue;
+        const float a = agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
+        sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) *
+               weight(squared, reach);
+      }
+    }
+  }
+  return sum;
+}
+
+/// `continued`: what is decided around a part tells its sign, rather than what is seen of it.
+void Facing::decide_signs(bool continued) noexcept {
+  for (const Point& p : points_) {
+    Sheet& sheet = now_.sheets[p.sheet];
+    const Vector3f way = eye_ - p.place;
+    const float squared = way.squaredNorm();
+    const float height = p.normal.dot(way);
+    const bool hidden = is_hidden(p, height);
+    if (const double w = weight(squared, kHiddenView * radius_); w > 0) {
+      sheet.all += w;
+      if (hidden) sheet.hidden += w;
+      if (hidden) sheet.away += height < 0 ? -w : w;  // by its sign later
+    }
+    if (squared >= view_ * view_) continue;
+    const double w = static_cast<double>(p.confidence) * weight(squared, view_);
+    sheet.weight += w;
+    const float length = std::max(std::sqrt(squared), 1e-12f);
+    const double sharp = std::max(0.f, std::abs(height) - kUnsharp * p.residual) / length;
+    now_.parts[sheet.part].seen += w * sharp * (height < 0 ? -1 : 1) * (hidden ? kHiddenVote : 1.0);
+  }
+  for (std::uint32_t k = 0; k < now_.part_count; ++k) {
+    Part& part = now_.parts[k];
+    if (part.sign != 0) continue;
+    const double vote = continued ? across(k) : 0;
+    part.sign = (std::abs(vote) > kLeastVote ? vote : part.seen) < 0 ? -1 : 1;
+  }
+}
+
+/// By how the sheet lies to those whose label is known.
+std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
+  double parallel[simd::kHeights] = {};
+  double above[simd::kHeights] = {};
+  double all[simd::kHeights] = {};
+  const auto sign = static_cast<float>(now_.parts[sheet.part].sign);
+  const std::uint32_t skip = stride_for(sheet.count, kTried);
+  const std::uint32_t step = stride_for(references_.size(), kReferences);
+  double planes[simd::kHeights] = {};
+  for (std::uint32_t k = 0; k < sheet.count && pairs_ > 0; k += skip) {
+    const Point& p = points_[order_[sheet.begin + k]];
+    const float reach = kMeetReach * p.radius;
+    for (std::size_t r = 0; r < references_.size(); r += step, --pairs_) {
+      const Reference& q = references_[r];
+      const Vector3f way = p.place - q.place;
+      const float squared = way.squaredNorm();
+      if (squared >= reach * reach || !(squared > 0)) continue;
+      const double w = weight(squared, reach);
+      const float length = std::sqrt(squared);
+      parallel[q.label] += w * static_cast<double>(sign * p.normal.dot(q.normal));
+      planes[q.label] += w * static_cast<double>(q.normal.dot(way) / length);
+      above[q.label] += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
+      all[q.label] += w;
+    }
+  }
+  int same = -1;
+  for (int k = 0; k < simd::kHeights; ++k) {
+    const bool one = all[k] > kMeets && parallel[k] > kSameNormal * all[k] &&
+                     std::abs(planes[k]) < kSamePlane * all[k];
+    if (one && (same < 0 || all[k] > all[same])) same = k;
+  }
+  if (same >= 0) return static_cast<std::uint8_t>(same);
+  if (all[0] + all[1] + all[2] <= kMeets) {
+    if (sheet.hidden <= 0.5 * sheet.all) return kInFront;
+    const double away = 0.5 * (sheet.hidden - static_cast<double>(sign) * sheet.away);
+    return away > 0.5 * sheet.hidden ? kBehind : kSilent;
+  }
+  const int other = all[kInFront] > kMeets        ? kInFront
+                    : all[kBehind] > all[kAcross] ? kBehind
+                                                  : kAcross;
+  const bool concave = above[other] >= 0;
+  if (other == kBehind && concave) return kInFront;
+  if (other == kAcross && !concave) return kInFront;
+  return concave ? kAcross : kBehind;
+}
+
+/// The weightiest sheet first.
+void Facing::decide_labels() noexcept {
+  for (;;) {
+    Sheet* next = nullptr;
+    for (Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
+      if (sheet.label == kOpen && (!next || sheet.weight > next->weight)) next = &sheet;
+    }
+    if (!next) return;
+    next->label = label_of(*next);
+    add_references(*next);
+  }
+}
+
+bool Facing::write(const Points& points) const noexcept {
+  bool changed = false;
+  for (std::size_t k = 0; k < sheet_of_place_.size(); ++k) {
+    const std::uint32_t slot = sheet_of_place_[k];
+    std::int8_t sign = 1;
+    std::uint8_t label = kInFront;
+    if (slot < kMost) {
+      sign = static_cast<std::int8_t>(now_.parts[now_.sheets[slot].part].sign);
+      label = now_.sheets[slot].label;
+    }
+    changed = changed || points.signs[k] != sign || points.labels[k] != label;
+    points.signs[k] = sign;
+    points.labels[k] = label;
+  }
+  return changed;
+}
+
+/// Where all points are of one part whose side is known, there is nothing to look at.
+bool Facing::is_settled(std::span<const ActiveLayer> layers) const noexcept {
+  return now_.sheet_count == 1 && now_.sheets[0].key == Key{} && now_.sheets[0].label == kInFront &&
+         std::ranges::all_of(layers, [](const ActiveLayer& l) { return l.points->sheets.empty(); });
+}
+
+bool Facing::face(const Points& points, const Stance& stance) noexcept {
+  if (is_settled(points.layers)) {
+    sheet_of_place_.assign(points.signs.size(), 0);
+    return write(points);
+  }
+  pairs_ = kPairs;
+  list(points, stance);
+  if (points_.empty()) return write(points);
+  let_go();
+  group();
+  choose_eye(stance);
+  const bool vanished = list_references(stance);
+  decide_signs(stance.touches() || vanished);
+  decide_labels();
+  std::swap(references_, remembered_);
+  remembered_from_ = stance.proxy;
+  return write(points);
+}
+
+}  // namespace palpate

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "field/active_layer.hpp"
+#include "field/selection.hpp"
+#include "field/simd/sums.hpp"
+
+namespace palpate {
+
+/// How a sheet is seen from the tool. Its points' normals are turned to the tool's side of it.
+enum Label : std::uint8_t {
+  kInFront = 0,  ///< the free side of its plane is free, beside it
+  kBehind = 1,   ///< it meets what is in front at a convex edge: solid is what is below both
+  kAcross = 2,   ///< it meets what is in front in a crease: free is what is above both
+  kSilent = 3,   ///< another sheet hides it: it has weight and no height
+};
+static_assert(kSilent == simd::kLabels - 1);
+
+/// Where a proxy is, which is a free place or one on the surface.
+struct Stance {
+  Eigen::Vector3d proxy = Eigen::Vector3d::Zero();   ///< m, world
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the contact; zero: it touches nothing
+
+  [[nodiscard]] bool touches() const noexcept { return !normal.isZero(0); }
+};
+
+/// Decides which side of each sheet near the tool is free, and how the sheets meet as seen from
+/// there. A decision stands as long as any of the sheet's points has weight at the proxy, so that
+/// the field changes by where it is evaluated alone. Real-time but for construction; bounded in
+/// pairs of points that are compared.
+class Facing {
+ public:
+  /// `capacity`: points at most.
+  explicit Facing(std::size_t capacity);
+
+  /// The points that count, layer by layer, and what is decided of each: whether its normal is to
+  /// be turned (-1), and its label.
+  struct Points {
+    std::span<const ActiveLayer> layers;
+    const Selection* selection = nullptr;
+    std::span<std::int8_t> signs;
+    std::span<std::uint8_t> labels;
+  };
+
+  /// True when a sign or a label is another than before.
+  bool face(const Points& points, const Stance& stance) noexcept;
+
+  /// The proxy is where no point has weight: what it sees of sheets next, it sees for the first
+  /// time.
+  void forget() noexcept;
+
+  /// Takes over another's decisions.
+  void follow(const Facing& other) noexcept;
+
+ private:
+  static constexpr std::size_t kMost = 96;  // sheets near the tool; further ones are silent
+  static constexpr std::uint8_t kOpen = 0xff;
+
+  /// Whose sheet or part it is. All layers without sheets of their own are of one.
+  struct Key {
+    const void* owner = nullptr;
+    std::uint32_t number = 0;
+    bool operator==(const Key&) const = default;
+  };
+  struct Part {
+    Key key;
+    int sign = 0;       // 0: not decided
+    bool near = false;  // has one of its points weight at the proxy, or nearly?
+    double seen = 0;
+  };
+  struct Sheet {
+    Key key;
+    std::uint32_t part = 0;
+    std::uint8_t label = kOpen;
+    bool near = false;
+    std::uint32_t begin = 0;  // of its points in order_
+    std::uint32_t count = 0;
+    double weight = 0;
+    double all = 0;     // sums of weights: of its points,
+    double hidden = 0;  // of those that another sheet hides,
+    double away = 0;    // and of those of them that face away
+  };
+  struct Table {
+    std::array<Part, kMost> parts;
+    std::array<Sheet, kMost> sheets;
+    std::uint32_t part_count = 0;
+    std::uint32_t sheet_count = 0;
+  };
+  /// One point with confidence, and what is asked of it again and again.
+  struct Point {
+    Eigen::Vector3f place;  // from the proxy, m
+    Eigen::Vector3f normal;
+    float confidence;
+    float radius;
+    float residual;
+    float above;
+    float below;
+    std::uint32_t sheet;
+  };
+  /// A point that is decided and counts for those that are not.
+  struct Reference {
+    Eigen::Vector3f place;
+    Eigen::Vector3f normal;  // turned
+    float confidence;
+    float residual;
+    std::uint8_t label;
+  };
+
+  std::uint32_t part_of(const Key& key) noexcept;
+  std::uint32_t sheet_of(const Key& key, const Key& part) noexcept;
+  void list(const Points& points, const Stance& stance) noexcept;
+  void list_layer(const ActiveLayer& layer, std::span<const std::uint32_t> places,
+                  const Stance& stance) noexcept;
+  void let_go() noexcept;
+  void group() noexcept;
+  void choose_eye(const Stance& stance) noexcept;
+  [[nodiscard]] bool list_references(const Stance& stance) noexcept;
+  [[nodiscard]] bool is_settled(std::span<const ActiveLayer> layers) const noexcept;
+  void add_references(const Sheet& sheet) noexcept;
+  void decide_signs(bool continued) noexcept;
+  [[nodiscard]] double across(std::uint32_t part) noexcept;
+  void decide_labels() noexcept;
+  [[nodiscard]] std::uint8_t label_of(const Sheet& sheet) noexcept;
+  [[nodiscard]] bool is_hidden(const Point& point, float height) const noexcept;
+  [[nodiscard]] bool write(const Points& points) const noexcept;
+
+  Table now_;
+  Table before_;
+  std::vector<Point> points_;
+  std::vector<std::uint32_t> sheet_of_place_;  // of all places; kMost: of none
+  std::vector<std::uint32_t> order_;           // of points_, sheet by sheet
+  std::vector<Reference> references_;
+  std::vector<Reference> remembered_;                          // of the last call
+  Eigen::Vector3d remembered_from_ = Eigen::Vector3d::Zero();  // the proxy then
+  Eigen::Vector3f eye_ = Eigen::Vector3f::Zero();              // a free place, from the proxy, m
+  float radius_ = 0;                                           // R around the tool, m
+  float view_ = 0;  // how far from the eye what is seen counts, m
+  int pairs_ = 0;   // that may still be compared
+};
+
+}  // namespace palpate

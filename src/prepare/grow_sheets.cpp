@@ -1,0 +1,220 @@
+#include "prepare/grow_sheets.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "geometry/neighborhoods.hpp"
+#include "geometry/signed_sets.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kPlanar = 0.5f;   // confidence from which on a fit is a plane
+constexpr float kSmooth = 0.03f;  // of R that a quadric may leave: curvature passes, a crease not
+constexpr float kNoisySmooth = 1.6f;  // of the noise, likewise
+constexpr float kLonely = 2.5f;       // R without a sure point: a plane is sure enough there
+
+// An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
+// this many of its residuals.
+constexpr float kSnapReach = 1.6f;  // R
+constexpr float kSnapSlope = 0.12f;
+constexpr float kSnapResiduals = 3;
+constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
+
+// Two points continue each other's sheet.
+constexpr float kPairReach = 1.6f;  // spacings
+constexpr float kParallel = 0.96f;
+constexpr float kPairSlope = 0.17f;
+constexpr float kLeastTolerance = 0.15f;  // spacings that a residual may always be
+
+constexpr std::uint32_t kFewest = 8;  // points of a sheet
+constexpr float kTrustOfFew = 0.1f;
+
+/// What becomes of the points that their own fit does not put on a sheet.
+class Snapping {
+ public:
+  Snapping(const SheetInput& input, OwnSheets& own) : input_(input), own_(own) {
+    const auto noise = kNoisySmooth * static_cast<float>(input.noise);
+    sure_.resize(input.grid.size());
+    for (std::size_t i = 0; i < sure_.size(); ++i) {
+      const float smooth = std::max(kSmooth * input.radii[i], noise);
+      sure_[i] = own.confidences[i] >= kPlanar && own.bends[i] <= smooth ? 1 : 0;
+    }
+  }
+
+  /// 1: sure; 2: taken over by a sure one's sheet; 0: neither, and without confidence now.
+  std::vector<std::uint8_t> run() {
+    std::vector<std::uint8_t> result = sure_;
+    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (sure_[i] == 0) result[i] = place(static_cast<std::uint32_t>(i), near);
+      }
+    });
+    return result;
+  }
+
+ private:
+  std::uint8_t place(std::uint32_t i, std::vector<std::uint32_t>& near) {
+    const Vector3f& p = input_.grid.points()[i];
+    near.clear();
+    input_.grid.within(p, kSnapReach * input_.radii[i], near);
+    float best = std::numeric_limits<float>::infinity();
+    std::uint32_t host = i;
+    bool any = false;
+    for (const std::uint32_t j : near) {
+      if (sure_[j] == 0) continue;
+      any = true;
+      const Vector3f way = p - input_.grid.points()[j];
+      const float length = way.norm();
+      const float off = std::abs(own_.normals[j].dot(way));
+      if (off > std::max(kSnapResiduals * own_.residuals[j], kSnapSlope * length)) continue;
+      const float cost = off + kNearness * length;
+      if (cost >= best) continue;
+      best = cost;
+      host = j;
+    }
+    if (host != i) {
+      own_.normals[i] = own_.normals[host];
+      own_.residuals[i] = own_.residuals[host];
+      own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
+      return 2;
+    }
+    if (!any && own_.confidences[i] >= kPlanar && is_lonely(i, near)) return 1;
+    own_.confidences[i] = 0;
+    return 0;
+  }
+
+  bool is_lonely(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    near.clear();
+    input_.grid.within(input_.grid.points()[i], kLonely * input_.radii[i], near);
+    return std::ranges::none_of(near, [this](std::uint32_t j) { return sure_[j] != 0; });
+  }
+
+  const SheetInput& input_;
+  OwnSheets& own_;
+  std::vector<std::uint8_t> sure_;
+};
+
+struct Pair {
+  std::uint32_t a;
+  std::uint32_t b;
+  int sign;
+};
+
+/// Joins points that continue each other's sheets: within each block on its own, and across blocks
+/// afterwards, in a fixed order.
+class Growth {
+ public:
+  Growth(const SheetInput& input, const OwnSheets& own, const std::vector<std::uint8_t>& on_sheet)
+      : input_(input), own_(own), on_sheet_(on_sheet), sets_(input.grid.size()) {}
+
+  detail::SignedSets& run() {
+    const auto blocks = detail::make_blocks(input_.grid, detail::kBlockPoints);
+    std::vector<std::vector<Pair>> across(blocks.size());
+    detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
+      detail::Surroundings surroundings;
+      std::vector<simd::Hit> hits;
+      for (std::size_t b = begin; b < end; ++b) look(blocks[b], surroundings, hits, across[b]);
+    });
+    for (const auto& pairs : across) {
+      for (const Pair& pair : pairs) sets_.join(pair.a, pair.b, pair.sign);
+    }
+    return sets_;
+  }
+
+ private:
+  void look(const detail::Block& block, detail::Surroundings& surroundings,
+            std::vector<simd::Hit>& hits, std::vector<Pair>& across) {
+    const detail::Reach reach{.of_points = input_.spacings, .times = kPairReach, .of_cells = {}};
+    detail::for_each_part(
+        input_.grid, reach, block, surroundings,
+        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+          std::size_t candidates = 1;
+          for (const simd::Run& run : runs) candidates += run.end - run.begin;
+          if (hits.size() < candidates) hits.resize(2 * candidates);
+          simd::Row squared = {};
+          for (std::uint32_t q = 0; q < count; ++q) {
+            const float own = kPairReach * input_.spacings[first + q];
+            squared[q] = own * own;
+          }
+          const simd::Join join = detail::make_join(input_.grid, first, count, runs);
+          const std::size_t found = simd::best_joins().within(join, squared, hits.data());
+          for (std::size_t h = 0; h < found; ++h) {
+            for (std::uint32_t bits = hits[h].queries; bits != 0; bits &= bits - 1) {
+              meet(first + static_cast<std::uint32_t>(std::countr_zero(bits)), hits[h].candidate,
+                   block, across);
+            }
+          }
+        });
+  }
+
+  void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block,
+            std::vector<Pair>& across) {
+    if (i == j || on_sheet_[i] == 0 || on_sheet_[j] == 0) return;
+    const bool inside = j >= block.begin && j < block.end;
+    if (inside && j < i && sets_.find(i).first == sets_.find(j).first) return;
+    const float cosine = own_.normals[i].dot(own_.normals[j]);
+    if (!(std::abs(cosine) >= kParallel)) return;
+    const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
+    const float off =
+        std::max(std::abs(own_.normals[i].dot(way)), std::abs(own_.normals[j].dot(way)));
+    if (off > std::max(sheet_tolerance(input_, own_, i, j), kPairSlope * way.norm())) return;
+    const int sign = cosine < 0 ? -1 : 1;
+    if (inside) {
+      sets_.join(i, j, sign);
+    } else {
+      across.push_back({i, j, sign});
+    }
+  }
+
+  const SheetInput& input_;
+  const OwnSheets& own_;
+  const std::vector<std::uint8_t>& on_sheet_;
+  detail::SignedSets sets_;
+};
+
+}  // namespace
+
+float sheet_tolerance(const SheetInput& input, const OwnSheets& own, std::uint32_t i,
+                      std::uint32_t j) {
+  const float least = std::max(static_cast<float>(input.noise),
+                               kLeastTolerance * std::min(input.spacings[i], input.spacings[j]));
+  return 3 * std::min(std::max(own.residuals[i], own.residuals[j]), least);
+}
+
+Growths grow_sheets(const SheetInput& input, OwnSheets& own) {
+  Growths result;
+  result.sure = Snapping(input, own).run();
+  Growth growth(input, own, result.sure);
+  detail::SignedSets& sets = growth.run();
+  const std::size_t count = input.grid.size();
+  std::vector<std::uint32_t>& sheet = result.sheets.sheet;
+  sheet.assign(count, PointSheets::kNone);
+  std::vector<std::uint32_t> sizes;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (result.sure[i] == 0) continue;
+    const auto [root, sign] = sets.find(i);
+    if (sign < 0) own.normals[i] = -own.normals[i];
+    if (root == i) {  // before all others of its sheet
+      sheet[i] = static_cast<std::uint32_t>(sizes.size());
+      sizes.push_back(0);
+    }
+    ++sizes[sheet[i] = sheet[root]];
+    if (result.sure[i] == 2) result.sure[i] = 0;
+  }
+  result.sheets.part.resize(sizes.size());
+  std::iota(result.sheets.part.begin(), result.sheets.part.end(), 0u);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (sheet[i] != PointSheets::kNone && sizes[sheet[i]] < kFewest) {
+      own.confidences[i] *= kTrustOfFew;
+    }
+  }
+  return result;
+}
+
+}  // namespace palpate

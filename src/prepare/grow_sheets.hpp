@@ -1,0 +1,21 @@
+#pragma once
+
+#include "prepare/sheets.hpp"
+
+namespace palpate {
+
+/// Which sheet each point lies on.
+struct Growths {
+  PointSheets sheets;  ///< every sheet is a part of its own; no gaps yet
+  std::vector<std::uint8_t>
+      sure;  ///< 1: its own fit put the point there; 0: a neighbour's, or none
+};
+
+/// The first half of make_sheets(). Normals of one sheet agree afterwards.
+[[nodiscard]] Growths grow_sheets(const SheetInput& input, OwnSheets& own);
+
+/// How far the points i and j may be off each other's plane when they lie on one sheet, m.
+[[nodiscard]] float sheet_tolerance(const SheetInput& input, const OwnSheets& own, std::uint32_t i,
+                                    std::uint32_t j);
+
+}  // namespace palpate

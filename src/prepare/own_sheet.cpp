@@ -1,0 +1,259 @@
+#include "prepare/own_sheet.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "geometry/parallel.hpp"
+#include "palpate/geometry/normals.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Normals come from a little further away than the surface: the balanced field adds their noise
+// (field_choice.md section 2).
+constexpr float kNormalsReach = 1.15f;
+
+// A plane fits that leaves no more than this, of R or of the noise. Two sheets half a spacing apart
+// (0.2 R) leave 0.03 R where the other has one point in forty.
+constexpr double kFlat = 0.03;
+constexpr double kNoisyFlat = 1.2;
+
+// Two groups of heights: their means this many deviations within them apart, at least half a
+// spacing, with nothing on this share of the way between.
+constexpr double kApart = 4;
+constexpr double kApartSpacings = 0.5;
+constexpr double kEmpty = 0.45;
+constexpr std::size_t kFewestInSheet = 5;
+constexpr std::size_t kFewestToSplit = 6;
+
+constexpr double kNearest = 1.75;  // spacings: the first two rings, which rarely see a second sheet
+constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue
+
+constexpr int kTerms = 6;  // of a quadric's height
+using Terms = Eigen::Matrix<double, kTerms, 1>;
+
+constexpr int kTiles = 16;  // along a window, at most
+constexpr int kEnoughInTile = 6;
+
+struct Plane {
+  Vector3d normal = Vector3d::Zero();
+  Vector3d variances = Vector3d::Zero();  // rising, m^2
+};
+
+Plane plane_of(const std::vector<Vector3d>& points) {
+  Plane plane;
+  if (points.size() < 3) return plane;
+  const auto count = static_cast<double>(points.size());
+  Vector3d mean = Vector3d::Zero();
+  Matrix3d second = Matrix3d::Zero();
+  for (const Vector3d& p : points) {
+    mean += p;
+    second += p * p.transpose();
+  }
+  mean /= count;
+  const Matrix3d scatter = second / count - mean * mean.transpose();
+  const double size = scatter.trace();
+  if (!(size > 0)) return plane;
+  Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
+  solver.computeDirect(scatter / size);
+  plane.variances = (size * solver.eigenvalues()).cwiseMax(0.0);
+  plane.normal = solver.eigenvectors().col(0);
+  return plane;
+}
+
+double rms_residual(const Plane& plane, std::size_t points) {
+  if (points <= 3) return 0;
+  const auto count = static_cast<double>(points);
+  return std::sqrt(plane.variances[0] * count / (count - 3));
+}
+
+double ramp(double value, double from, double to) {
+  return std::clamp((value - from) / (to - from), 0., 1.);
+}
+
+double planarity_of(const Plane& plane, std::size_t points) {
+  const Vector3d& v = plane.variances;
+  if (points < kFewestInSheet || !(v[1] > 0)) return 0;
+  return ramp(v[1] / v[2], 0.03, 0.07) * (1 - ramp(v[0] / v[1], 0.4, 0.6));
+}
+
+/// Where sorted heights fall into two groups (the division of least variance within, Otsu 1979);
+/// NaN: they do not.
+double gap_between_groups(std::span<const double> heights, double spacing) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const auto count = static_cast<double>(heights.size());
+  const double total = std::accumulate(heights.begin(), heights.end(), 0.0);
+  double below = 0;
+  double best = -1;
+  std::size_t cut = 0;
+  for (std::size_t k = 1; k < heights.size(); ++k) {
+    below += heights[k - 1];
+    const auto n = static_cast<double>(k);
+    const double apart = (total - below) / (count - n) - below / n;
+    if (const double between = n * (count - n) * apart * apart; between > best) {
+      best = between;
+      cut = k;
+    }
+  }
+  const auto mean = [](std::span<const double> some) {
+    return std::accumulate(some.begin(), some.end(), 0.0) / static_cast<double>(some.size());
+  };
+  const auto squares = [](std::span<const double> some, double m) {
+    return std::accumulate(some.begin(), some.end(), 0.0,
+                           [m](double sum, double h) { return sum + (h - m) * (h - m); });
+  };
+  const auto lower = heights.first(cut);
+  const auto upper = heights.subspan(cut);
+  const double low = mean(lower);
+  const double high = mean(upper);
+  const double within = std::sqrt((squares(lower, low) + squares(upper, high)) / count);
+  const double empty = upper.front() - lower.back();
+  const bool two = high - low > kApart * within && empty > kEmpty * (high - low) &&
+                   high - low >= kApartSpacings * spacing;
+  return two ? 0.5 * (upper.front() + lower.back()) : kNone;
+}
+
+}  // namespace
+
+/// Leaves the offsets on this side of a gap along the axis. False: there is none.
+bool SheetFitter::keep_own_group(const Vector3d& axis, double spacing) {
+  if (offsets_.size() < kFewestToSplit || axis.isZero()) return false;
+  heights_.clear();
+  for (const Vector3d& offset : offsets_) heights_.push_back(axis.dot(offset));
+  std::sort(heights_.begin(), heights_.end());
+  const double gap = gap_between_groups(heights_, spacing);
+  if (std::isnan(gap)) return false;
+  some_.clear();
+  for (const Vector3d& offset : offsets_) {
+    if ((axis.dot(offset) < gap) == (0 < gap)) some_.push_back(offset);
+  }
+  if (some_.size() < kFewestInSheet) return false;
+  std::swap(some_, offsets_);
+  return true;
+}
+
+/// The normal that the nearest points have, where they are flat.
+Vector3d SheetFitter::axis_of_nearest(double spacing, const Vector3d& fallback) {
+  some_.clear();
+  const double reach = kNearest * spacing;
+  for (const Vector3d& offset : offsets_) {
+    if (offset.squaredNorm() <= reach * reach) some_.push_back(offset);
+  }
+  if (some_.size() < kFewestToSplit) return fallback;
+  const Plane plane = plane_of(some_);
+  const bool flat = plane.variances[0] < kFlatNearest * plane.variances[1];
+  return flat && !plane.normal.isZero() ? plane.normal : fallback;
+}
+
+SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
+                          double spacing, double tile) {
+  near_.clear();
+  grid.within(center, static_cast<float>(reach), near_);
+  offsets_.clear();
+  for (const auto i : near_) offsets_.push_back((grid.points()[i] - center).cast<double>());
+  Plane plane = plane_of(offsets_);
+  SheetFit fit;
+  if (plane.normal.isZero()) return fit;
+  Vector3d axis = axis_of_nearest(spacing, plane.normal);
+  for (int round = 0; round < 2 && keep_own_group(axis, spacing); ++round) {
+    plane = plane_of(offsets_);
+    axis = plane.normal;
+  }
+  fit.points = offsets_.size();
+  fit.normal = plane.normal;
+  fit.planarity = planarity_of(plane, fit.points);
+  fit.bend = fit.residual = rms_residual(plane, fit.points);
+  fit.footprint = reach * std::sqrt(std::numbers::pi / static_cast<double>(fit.points));
+  if (fit.points < kEnough) return fit;
+  const double variance = subtract_quadric(plane.normal, reach);
+  fit.bend = std::sqrt(variance);
+  if (tile > 0 && variance > 0) fit.shared = tile_variance(tile) / variance;
+  return fit;
+}
+
+/// The variance that a quadric leaves, m^2.
+double SheetFitter::subtract_quadric(const Vector3d& normal, double reach) {
+  const Vector3d u = normal.unitOrthogonal();
+  const Vector3d v = normal.cross(u);
+  const auto terms_at = [&](const Vector3d& p) {
+    const double x = p.x() / reach;
+    const double y = p.y() / reach;
+    Terms terms;
+    terms << 1, x, y, x * x, x * y, y * y;
+    return terms;
+  };
+  Eigen::Matrix<double, kTerms, kTerms> matrix = Eigen::Matrix<double, kTerms, kTerms>::Zero();
+  Terms right = Terms::Zero();
+  left_.clear();
+  for (const Vector3d& offset : offsets_) {
+    left_.emplace_back(u.dot(offset), v.dot(offset), normal.dot(offset));
+    const Terms terms = terms_at(left_.back());
+    matrix += terms * terms.transpose();
+    right += terms * left_.back().z();
+  }
+  const Terms quadric = matrix.ldlt().solve(right);
+  double squares = 0;
+  for (Vector3d& p : left_) {
+    p.z() -= terms_at(p).dot(quadric);
+    squares += p.z() * p.z();
+  }
+  return squares / static_cast<double>(left_.size() - kTerms);
+}
+
+/// Mean over the tiles of (sum of residuals)^2 / number: the variance itself where they are
+/// independent.
+double SheetFitter::tile_variance(double tile) const {
+  struct Tile {
+    double sum = 0;
+    int count = 0;
+  };
+  std::array<Tile, std::size_t{kTiles * kTiles}> tiles;
+  const auto place = [tile](double along) {
+    return std::clamp(static_cast<int>(std::floor(along / tile)) + kTiles / 2, 0, kTiles - 1);
+  };
+  for (const Vector3d& p : left_) {
+    Tile& at = tiles[static_cast<std::size_t>(place(p.x()) * kTiles + place(p.y()))];
+    at.sum += p.z();
+    ++at.count;
+  }
+  double sum = 0;
+  double used = 0;
+  for (const Tile& at : tiles) {
+    if (at.count < kEnoughInTile) continue;
+    sum += at.sum * at.sum / at.count;
+    ++used;
+  }
+  return used > 0 ? sum / used : 0;
+}
+
+OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
+                         std::span<const float> radii, double noise) {
+  Normals planes = estimate_normals(grid, radii, kNormalsReach);
+  OwnSheets sheets{
+      std::move(planes.normals), std::move(planes.confidences), std::move(planes.residuals), {}};
+  sheets.bends = sheets.residuals;
+  detail::parallel_ranges(grid.size(), 256, [&](std::size_t begin, std::size_t end) {
+    SheetFitter fitter;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double flat = std::max(kFlat * static_cast<double>(radii[i]), kNoisyFlat * noise);
+      if (static_cast<double>(sheets.residuals[i]) <= flat) continue;
+      const SheetFit fit =
+          fitter.fit(grid, grid.points()[i], static_cast<double>(kNormalsReach * radii[i]),
+                     static_cast<double>(spacings[i]));
+      sheets.normals[i] = fit.normal.cast<float>();
+      sheets.confidences[i] = static_cast<float>(fit.planarity);
+      sheets.residuals[i] = static_cast<float>(fit.residual);
+      sheets.bends[i] = static_cast<float>(fit.bend);
+    }
+  });
+  return sheets;
+}
+
+}  // namespace palpate

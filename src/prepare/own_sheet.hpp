@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "palpate/geometry/cell_grid.hpp"
+
+namespace palpate {
+
+/// The sheet that a place lies on, fitted to the points around it. Points of other sheets (the far
+/// face of a plate, a shelf behind a shelf) do not take part: where heights along the normal fall
+/// into two groups with an empty gap between them, those of the place's own group alone count.
+struct SheetFit {
+  std::size_t points = 0;  ///< that the fit is of; below kEnough for a quadric: 0 and nothing else
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, sign arbitrary; zero: undefined
+  double planarity = 0;                              ///< 0-1, as Normals::confidences
+  double residual = 0;                               ///< rms distance from the plane, m
+  double bend = 0;       ///< rms distance from the quadric, m; of too few points, the plane's
+  double footprint = 0;  ///< root of the area per point, m
+  double shared = 1;     ///< variance of the residuals' means over tiles, against what independent
+                         ///< residuals would give: about 1 for these, above for neighbours that err
+                         ///< together
+};
+
+/// Fits one place after another; keeps its memory in between.
+class SheetFitter {
+ public:
+  /// The points within `reach` of `center`, whose spacing is `spacing`. `tile`: side of the tiles;
+  /// 0: `shared` is not looked at. All in m.
+  [[nodiscard]] SheetFit fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
+                             double spacing, double tile = 0);
+
+  static constexpr std::size_t kEnough = 10;  ///< points of a quadric, which has six terms
+
+ private:
+  [[nodiscard]] bool keep_own_group(const Eigen::Vector3d& axis, double spacing);
+  [[nodiscard]] Eigen::Vector3d axis_of_nearest(double spacing, const Eigen::Vector3d& fallback);
+  [[nodiscard]] double subtract_quadric(const Eigen::Vector3d& normal, double reach);
+  [[nodiscard]] double tile_variance(double tile) const;
+
+  std::vector<std::uint32_t> near_;
+  std::vector<Eigen::Vector3d> offsets_;  // from the centre, m; of the own group
+  std::vector<Eigen::Vector3d> some_;
+  std::vector<double> heights_;
+  std::vector<Eigen::Vector3d> left_;  // place in the plane, and what the quadric leaves; of 1
+};
+
+/// What the sheet of each point is like, in sorted order.
+struct OwnSheets {
+  std::vector<Eigen::Vector3f> normals;  ///< unit, sign arbitrary; zero: undefined
+  std::vector<float> confidences;        ///< planarity, 0-1
+  std::vector<float> residuals;          ///< from the plane, m
+  std::vector<float> bends;              ///< from the quadric where the plane does not fit, m
+};
+
+/// Fitted within 1.15 of each point's `radii`; `noise`: of the points, m. On every core.
+[[nodiscard]] OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
+                                       std::span<const float> radii, double noise);
+
+}  // namespace palpate

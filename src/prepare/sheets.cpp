@@ -1,0 +1,365 @@
+#include "prepare/sheets.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "geometry/neighborhoods.hpp"
+#include "geometry/signed_sets.hpp"
+#include "prepare/grow_sheets.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+// The next other sheet along a normal.
+constexpr float kGapReach = 1.6f;  // R
+constexpr float kGapTube = 1.3f;   // spacings to the side
+constexpr float kGapSlope = 0.5f;  // of the way to the side, the least height
+constexpr float kGapCosine = 0.8f;
+constexpr float kGapTrust = 0.3f;
+constexpr float kGapResiduals = 3;
+constexpr float kGapSpacings = 0.3f;
+
+// Votes of one sheet on another.
+constexpr float kVoteReach = 1.3f;  // R
+constexpr std::size_t kVoteSheets = 4;
+constexpr int kVotesEach = 3;
+constexpr double kCoherent = 0.5;  // |sum v |v|| over sum v^2
+constexpr double kEnoughVotes = 0.3;
+
+constexpr double kAgree = 0.96;      // |sum of signs| over their number: 98 % agree
+constexpr double kMostHidden = 0.5;  // of a sheet's points
+
+constexpr double kOpen = 0.3;     // |sum a n| / sum a above which a part does not close
+constexpr double kUpright = 0.2;  // sine of the lean that makes an open part have an upper side
+
+/// What the points p and q say of each other's side, -1 ... 1: n_p, mirrored by the plane halfway
+/// between the two, times n_q; their plain product where both lie on one plane.
+float agreement(const SheetInput& input, const OwnSheets& own, std::uint32_t p, std::uint32_t q) {
+  const Vector3f way = input.grid.points()[q] - input.grid.points()[p];
+  const float by_p = own.normals[p].dot(way);
+  const float by_q = own.normals[q].dot(way);
+  const float straight = own.normals[p].dot(own.normals[q]);
+  const float squared = way.squaredNorm();
+  const float tolerance = sheet_tolerance(input, own, p, q);
+  const bool one_plane = std::abs(by_p) <= tolerance && std::abs(by_q) <= tolerance;
+  return one_plane || !(squared > 0) ? straight : straight - 2 * by_p * by_q / squared;
+}
+
+struct Vote {
+  std::uint32_t a;  // sheets, a < b
+  std::uint32_t b;
+  float value;
+};
+
+/// What the points of one block see of other sheets.
+class Outlook {
+ public:
+  Outlook(const SheetInput& input, const OwnSheets& own, Growths& grown)
+      : input_(input), own_(own), sheets_(grown.sheets), sure_(grown.sure) {}
+
+  void look(const detail::Block& block, detail::Surroundings& surroundings,
+            std::vector<Vote>& votes) {
+    const detail::Reach reach{.of_points = input_.radii, .times = kGapReach, .of_cells = {}};
+    detail::for_each_part(
+        input_.grid, reach, block, surroundings,
+        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+          if (alone(first, runs)) return;
+          for (std::uint32_t i = first; i < first + count; ++i) {
+            if (own_.confidences[i] > 0) look_from(i, runs, votes);
+          }
+        });
+  }
+
+ private:
+  /// Is there but one sheet, and does it not curl up?
+  [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
+    constexpr float kCurled = 0.3f;
+    const std::uint32_t sheet = sheets_.sheet[first];
+    const Vector3f& n = own_.normals[first];
+    for (const simd::Run& run : runs) {
+      for (std::uint32_t j = run.begin; j < run.end; ++j) {
+        if (sheets_.sheet[j] != sheet || !(n.dot(own_.normals[j]) > kCurled)) return false;
+      }
+    }
+    return true;
+  }
+
+  void look_from(std::uint32_t i, std::span<const simd::Run> runs, std::vector<Vote>& votes) {
+    const Vector3f& p = input_.grid.points()[i];
+    const float radius = input_.radii[i];
+    const float near = kGapReach * radius;
+    const float voting = kVoteReach * radius;
+    others_.clear();
+    for (const simd::Run& run : runs) {
+      for (std::uint32_t j = run.begin; j < run.end; ++j) {
+        const Vector3f way = input_.grid.points()[j] - p;
+        const float squared = way.squaredNorm();
+        if (squared > near * near || j == i) continue;
+        measure_gap(i, j, way, squared);
+        const bool votes_on = sure_[i] != 0 && sure_[j] != 0 &&
+                              sheets_.sheet[j] != sheets_.sheet[i] && squared <= voting * voting;
+        if (votes_on) others_.push_back({squared, j});
+      }
+    }
+    vote(i, votes);
+  }
+
+  void measure_gap(std::uint32_t i, std::uint32_t j, const Vector3f& way, float squared) {
+    if (own_.confidences[j] < kGapTrust) return;
+    if (std::abs(own_.normals[i].dot(own_.normals[j])) < kGapCosine) return;
+    const float height = own_.normals[i].dot(way);
+    const float off = std::abs(height);
+    const float tube = kGapTube * input_.spacings[i];
+    const float aside = std::max(0.f, squared - height * height);
+    const float least =
+        std::max(kGapResiduals * own_.residuals[i], kGapSpacings * input_.spacings[i]);
+    if (off <= least || aside > tube * tube || off < kGapSlope * std::sqrt(aside)) return;
+    float& gap = height > 0 ? sheets_.above[i] : sheets_.below[i];
+    gap = std::min(gap, off);
+  }
+
+  /// The nearest points of the nearest other sheets.
+  void vote(std::uint32_t i, std::vector<Vote>& votes) {
+    std::sort(others_.begin(), others_.end());
+    std::array<std::pair<std::uint32_t, int>, kVoteSheets> heard{};
+    std::size_t count = 0;
+    for (const auto& [squared, j] : others_) {
+      const std::uint32_t sheet = sheets_.sheet[j];
+      std::size_t k = 0;
+      while (k < count && heard[k].first != sheet) ++k;
+      if (k == kVoteSheets) continue;
+      if (k == count) heard[count++] = {sheet, 0};
+      if (heard[k].second++ == kVotesEach)
+        --heard[k].second;
+      else {
+        const auto [a, b] = std::minmax(sheets_.sheet[i], sheet);
+        votes.push_back({a, b, agreement(input_, own_, i, j)});
+      }
+    }
+  }
+
+  const SheetInput& input_;
+  const OwnSheets& own_;
+  PointSheets& sheets_;
+  const std::vector<std::uint8_t>& sure_;
+  std::vector<std::pair<float, std::uint32_t>> others_;
+};
+
+/// Measures the gaps; returns what sheets say of each other.
+std::vector<Vote> look_around(const SheetInput& input, const OwnSheets& own, Growths& grown) {
+  grown.sheets.above.assign(input.grid.size(), kFar);
+  grown.sheets.below.assign(input.grid.size(), kFar);
+  const auto blocks = detail::make_blocks(input.grid, detail::kBlockPoints);
+  std::vector<std::vector<Vote>> votes(blocks.size());
+  detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
+    detail::Surroundings surroundings;
+    Outlook outlook(input, own, grown);
+    for (std::size_t b = begin; b < end; ++b) outlook.look(blocks[b], surroundings, votes[b]);
+  });
+  std::vector<Vote> all;
+  for (const auto& some : votes) all.insert(all.end(), some.begin(), some.end());
+  std::stable_sort(all.begin(), all.end(), [](const Vote& x, const Vote& y) {
+    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+  });
+  return all;
+}
+
+/// For each sheet the sign that nearly all of its points are known to have, relative to their
+/// normals; 0: not known.
+class SignsOfSheets {
+ public:
+  explicit SignsOfSheets(std::size_t sheets) : sums_(sheets) {}
+
+  void add(std::uint32_t sheet, double vote) {
+    sums_[sheet].signs += vote;
+    sums_[sheet].all += std::abs(vote);
+  }
+  void add_hidden(std::uint32_t sheet) { ++sums_[sheet].hidden; }
+  void count(std::uint32_t sheet) { ++sums_[sheet].points; }
+
+  [[nodiscard]] int of(std::uint32_t sheet) const {
+    const Sums& s = sums_[sheet];
+    if (!(s.all > 0) || std::abs(s.signs) < kAgree * s.all) return 0;
+    if (s.hidden > kMostHidden * s.points) return 0;
+    return s.signs < 0 ? -1 : 1;
+  }
+
+ private:
+  struct Sums {
+    double signs = 0;
+    double all = 0;
+    double hidden = 0;
+    double points = 0;
+  };
+  std::vector<Sums> sums_;
+};
+
+std::vector<int> known_signs(const SheetInput& input, const KnownSigns& known, const OwnSheets& own,
+                             const PointSheets& sheets) {
+  SignsOfSheets given(sheets.part.size());
+  SignsOfSheets seen(sheets.part.size());
+  for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
+    const std::uint32_t sheet = sheets.sheet[i];
+    if (sheet == PointSheets::kNone) continue;
+    given.count(sheet);
+    seen.count(sheet);
+    if (!known.given.empty() && known.given[i].allFinite()) {
+      const float cosine = known.given[i].dot(own.normals[i]);
+      if (cosine != 0) given.add(sheet, cosine < 0 ? -1 : 1);
+    }
+    if (known.eye) {
+      const Vector3f way = *known.eye - input.grid.points()[i];
+      const float cosine = own.normals[i].dot(way.normalized());
+      const bool hidden = (cosine > 0 ? sheets.above[i] : sheets.below[i]) < kFar;
+      hidden ? seen.add_hidden(sheet) : seen.add(sheet, static_cast<double>(cosine));
+    }
+  }
+  std::vector<int> signs(sheets.part.size());
+  for (std::uint32_t k = 0; k < signs.size(); ++k) {
+    signs[k] = given.of(k) != 0 ? given.of(k) : seen.of(k);
+  }
+  return signs;
+}
+
+struct Link {
+  std::uint32_t a;
+  std::uint32_t b;
+  double value;  // its sign: relative
+};
+
+/// Which sheets belong together, the surest first.
+std::vector<Link> links_of(const std::vector<Vote>& votes, const std::vector<int>& known) {
+  std::vector<Link> links;
+  for (std::size_t k = 0; k < votes.size();) {
+    Link link{votes[k].a, votes[k].b, 0};
+    double squares = 0;
+    for (; k < votes.size() && votes[k].a == link.a && votes[k].b == link.b; ++k) {
+      const auto v = static_cast<double>(votes[k].value);
+      link.value += v * std::abs(v);
+      squares += v * v;
+    }
+    const int both = known[link.a] * known[link.b];
+    if (both != 0) {
+      link.value = both * kFar;
+    } else if (std::abs(link.value) < kCoherent * squares || squares <= kEnoughVotes) {
+      continue;
+    }
+    links.push_back(link);
+  }
+  std::stable_sort(links.begin(), links.end(), [](const Link& x, const Link& y) {
+    return std::abs(x.value) > std::abs(y.value);
+  });
+  return links;
+}
+
+/// Sums over the points of one part.
+struct PartSums {
+  double area = 0;                     // m^2
+  double flux = 0;                     // sum a n.p, m^3
+  Vector3d vector = Vector3d::Zero();  // sum a n, m^2
+  Vector3d moment = Vector3d::Zero();  // sum a p, m^3
+};
+
+/// Must the part's normals be turned round? One that closes around something gets them outward.
+/// One that does not, such as terrain, a wall or one view of a scene, has no outside: its mean
+/// normal is to point up (+z) or, if it lies, away from the centre of all points.
+bool is_inside_out(const PartSums& part, const Vector3d& center_of_all) {
+  if (!(part.area > 0)) return false;
+  const Vector3d center = part.moment / part.area;
+  if (part.vector.norm() <= kOpen * part.area) return part.flux - center.dot(part.vector) < 0;
+  if (std::abs(part.vector.z()) > kUpright * part.vector.norm()) return part.vector.z() < 0;
+  return part.vector.dot(center - center_of_all) < 0;
+}
+
+/// The sign that each part's normals are to be multiplied by where nothing is known of it.
+std::vector<int> outward_signs(const SheetInput& input, const OwnSheets& own,
+                               const PointSheets& sheets, std::size_t parts) {
+  std::vector<PartSums> sums(parts);
+  PartSums all;
+  for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
+    if (sheets.sheet[i] == PointSheets::kNone) continue;
+    const Vector3d p = input.grid.points()[i].cast<double>();
+    const Vector3d n = own.normals[i].cast<double>();
+    const double area =
+        static_cast<double>(input.spacings[i]) * static_cast<double>(input.spacings[i]);
+    PartSums& part = sums[sheets.part[sheets.sheet[i]]];
+    part.area += area;
+    part.flux += area * n.dot(p);
+    part.vector += area * n;
+    part.moment += area * p;
+    all.area += area;
+    all.moment += area * p;
+  }
+  const Vector3d center = all.area > 0 ? Vector3d(all.moment / all.area) : all.moment;
+  std::vector<int> signs;
+  for (const PartSums& part : sums) signs.push_back(is_inside_out(part, center) ? -1 : 1);
+  return signs;
+}
+
+/// Turns the normals of whole sheets.
+void turn(const std::vector<int>& sign_of_sheet, OwnSheets& own, PointSheets& sheets) {
+  for (std::size_t i = 0; i < sheets.sheet.size(); ++i) {
+    if (sheets.sheet[i] == PointSheets::kNone || sign_of_sheet[sheets.sheet[i]] > 0) continue;
+    own.normals[i] = -own.normals[i];
+    std::swap(sheets.above[i], sheets.below[i]);
+  }
+}
+
+/// Makes parts of linked sheets. A link that contradicts what is known of both of its sides is
+/// passed over.
+void join_parts(const SheetInput& input, const std::vector<Link>& links, std::vector<int> known,
+                OwnSheets& own, PointSheets& sheets) {
+  const std::size_t count = sheets.part.size();
+  detail::SignedSets sets(count);
+  for (const Link& link : links) {
+    const auto [root_a, sign_a] = sets.find(link.a);
+    const auto [root_b, sign_b] = sets.find(link.b);
+    if (root_a == root_b) continue;
+    const int sign = (link.value < 0 ? -1 : 1) * sign_a * sign_b;
+    const int both = known[root_a] * known[root_b];
+    if (both != 0 && both != sign) continue;
+    const std::uint32_t root = std::min(root_a, root_b);
+    const std::uint32_t other = std::max(root_a, root_b);
+    if (known[root] == 0) known[root] = sign * known[other];
+    sets.join(root_a, root_b, sign);
+  }
+  std::vector<int> signs(count);
+  std::vector<int> known_parts;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const auto [root, sign] = sets.find(k);
+    if (root == k) {
+      sheets.part[k] = static_cast<std::uint32_t>(known_parts.size());
+      known_parts.push_back(known[k]);
+    }
+    sheets.part[k] = sheets.part[root];
+    signs[k] = sign * (known[root] != 0 ? known[root] : 1);
+  }
+  turn(signs, own, sheets);
+  const std::vector<int> outward = outward_signs(input, own, sheets, known_parts.size());
+  for (std::uint32_t k = 0; k < count; ++k) {
+    signs[k] = known_parts[sheets.part[k]] != 0 ? 1 : outward[sheets.part[k]];
+  }
+  turn(signs, own, sheets);
+}
+
+}  // namespace
+
+PointSheets make_sheets(const SheetInput& input, const KnownSigns& known, OwnSheets& own) {
+  Growths grown = grow_sheets(input, own);
+  const std::vector<Vote> votes = look_around(input, own, grown);
+  PointSheets sheets = std::move(grown.sheets);
+  const std::vector<int> signs = known_signs(input, known, own, sheets);
+  join_parts(input, links_of(votes, signs), signs, own, sheets);
+  sheets.residual = own.residuals;
+  return sheets;
+}
+
+}  // namespace palpate

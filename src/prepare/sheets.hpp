@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "palpate/field/surface_points.hpp"
+#include "palpate/geometry/cell_grid.hpp"
+#include "prepare/own_sheet.hpp"
+
+namespace palpate {
+
+/// Sorted points and what is known of them before sheets.
+struct SheetInput {
+  const CellGrid& grid;
+  std::span<const float> spacings;  // m
+  std::span<const float> radii;     // m
+  double noise = 0;                 // m
+};
+
+/// What is known of signs from outside.
+struct KnownSigns {
+  std::span<const Eigen::Vector3f> given;  ///< normals in sorted order, some of them maybe zero or
+                                           ///< not finite; empty: none
+  std::optional<Eigen::Vector3f> eye;      ///< of the sensor, in the grid's frame, m
+};
+
+/// Puts each point on a sheet: sure points that continue each other's planes make one; an unsure
+/// point joins the sheet whose plane it lies on and takes over its fit. One that lies on none has
+/// no confidence left. Turns `own.normals` so that they agree within a part, outward where nothing
+/// else is known.
+///
+/// Two sheets that lie side by side are one part where nearby pairs of their points agree on what
+/// is outside: n_p, mirrored by the plane halfway between p and q, looks like n_q, as if an arc
+/// joined the two. Where the signs of nearly all points of a sheet are known, these count instead.
+[[nodiscard]] PointSheets make_sheets(const SheetInput& input, const KnownSigns& known,
+                                      OwnSheets& own);
+
+}  // namespace palpate
