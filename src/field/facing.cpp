@@ -13,22 +13,25 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr float kHolds = 1.5f;  // R: a point that is farther has no weight at the proxy
-constexpr float kLift = 0.3f;   // R above the surface that a touching tool looks from
-constexpr float kView = 1.2f;   // R beyond the nearest point, within which things are seen
-constexpr float kUnsharp = 2;   // residuals that a height has to be above to tell a side
+// R: a point that is farther has no weight at the proxy. How sheets meet is settled as late as can
+// be, when most is known.
+constexpr float kHolds = 1.5f;
+constexpr float kMeets = 1.1f;
+constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks from
+constexpr float kView = 1.2f;  // R beyond the nearest point, within which things are seen
+constexpr float kUnsharp = 2;  // residuals that a height has to be above to tell a side
 constexpr double kHiddenVote = -0.5;
 constexpr float kAcrossReach = 0.9f;  // R within which decided points tell signs
 constexpr double kLeastVote = 1e-3;
 constexpr float kMeetReach = 1.3f;  // R within which sheets meet
-constexpr double kMeets = 1e-3;
+constexpr double kLeastMeeting = 1e-3;
 constexpr double kSameNormal = 0.7;
 constexpr double kSamePlane = 0.3;
 constexpr float kHiddenView = 2.6f;  // R
 
 constexpr std::uint32_t kTried = 24;        // points of a sheet that are compared
-constexpr std::uint32_t kReferences = 192;  // points that they are compared with
-constexpr int kPairs = 8192;                // in one call
+constexpr std::uint32_t kReferences = 400;  // points that they are compared with
+constexpr int kPairs = 16384;               // in one call
 
 double weight(float squared, float reach) noexcept {
   return wyvill(static_cast<double>(squared / (reach * reach))).w;
@@ -129,11 +132,10 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
     point.below = own.empty() ? std::numeric_limits<float>::infinity() : own.below[i];
     points_.push_back(point);
     Sheet& s = now_.sheets[slot];
-    const float holds = kHolds * point.radius;
+    const float distance = point.place.norm();
     // Where all are one part, only free space lets go of its side.
-    if (own.empty() || point.place.squaredNorm() <= holds * holds) {
-      s.near = now_.parts[s.part].near = true;
-    }
+    if (own.empty() || distance <= kHolds * point.radius) now_.parts[s.part].near = true;
+    if (own.empty() || distance <= kMeets * point.radius) s.near = true;
     ++s.count;
   }
 }
@@ -317,17 +319,17 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   }
   int same = -1;
   for (int k = 0; k < simd::kHeights; ++k) {
-    const bool one = all[k] > kMeets && parallel[k] > kSameNormal * all[k] &&
+    const bool one = all[k] > kLeastMeeting && parallel[k] > kSameNormal * all[k] &&
                      std::abs(planes[k]) < kSamePlane * all[k];
     if (one && (same < 0 || all[k] > all[same])) same = k;
   }
   if (same >= 0) return static_cast<std::uint8_t>(same);
-  if (all[0] + all[1] + all[2] <= kMeets) {
+  if (all[0] + all[1] + all[2] <= kLeastMeeting) {
     if (sheet.hidden <= 0.5 * sheet.all) return kInFront;
     const double away = 0.5 * (sheet.hidden - static_cast<double>(sign) * sheet.away);
     return away > 0.5 * sheet.hidden ? kBehind : kSilent;
   }
-  const int other = all[kInFront] > kMeets        ? kInFront
+  const int other = all[kInFront] > kLeastMeeting ? kInFront
                     : all[kBehind] > all[kAcross] ? kBehind
                                                   : kAcross;
   const bool concave = above[other] >= 0;

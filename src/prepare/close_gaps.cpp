@@ -13,8 +13,11 @@
 namespace palpate {
 namespace {
 
+// A sheet goes on over the gap: a plane, or a quadric that leaves this, of R.
+constexpr double kPlanar = 0.5;
+constexpr double kSmooth = 0.03;
+
 constexpr float kMultiple = 2.5f;      // R over the gap
-constexpr float kMostRise = 2.5f;      // of R
 constexpr float kFaint = 2.5f;         // sums of weights: 5.8 on a square grid
 constexpr float kOpposite = -0.5f;     // cosine between two that lie on opposite sides
 constexpr float kFirstReach = 1.5f;    // radii
@@ -71,48 +74,37 @@ float gap_at(const CellGrid& grid, std::uint32_t i, float radius,
   return 0;
 }
 
-/// What a point's larger support adds to the sums round it.
-void add_to_sums(const CellGrid& grid, Kernel kernel, std::uint32_t i, float from, float to,
-                 std::vector<std::uint32_t>& near, std::vector<float>& sums) {
-  const Eigen::Vector3f& p = grid.points()[i];
-  near.clear();
-  grid.within(p, to, near);
-  for (const std::uint32_t j : near) {
-    const double squared = static_cast<double>(detail::squared_distance(grid.points()[j], p));
-    const auto weight = [&](double radius) {
-      return evaluate(kernel, squared / (radius * radius)).w;
-    };
-    sums[j] +=
-        static_cast<float>(weight(static_cast<double>(to)) - weight(static_cast<double>(from)));
-  }
-}
-
 }  // namespace
 
-std::size_t close_gaps(const CellGrid& grid, Kernel kernel, std::vector<float>& radii,
-                       detail::WeightSums& sums) {
+std::size_t close_gaps(const GapInput& input, std::vector<float>& radii, OwnSheets& own) {
   std::vector<std::uint32_t> faint;
-  for (std::uint32_t i = 0; i < sums.own.size(); ++i) {
-    if (sums.own[i] < kFaint) faint.push_back(i);
+  for (std::uint32_t i = 0; i < radii.size(); ++i) {
+    if (input.sums[i] < kFaint) faint.push_back(i);
   }
-  std::vector<float> gaps(faint.size());
+  std::vector<std::uint8_t> raised(faint.size());
+  const std::vector<float> before = radii;
   detail::parallel_ranges(faint.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
+    SheetFitter fitter;
     for (std::size_t k = begin; k < end; ++k) {
-      gaps[k] = gap_at(grid, faint[k], radii[faint[k]], near);
+      const std::uint32_t i = faint[k];
+      const float wanted = kMultiple * gap_at(input.grid, i, before[i], near);
+      if (!(wanted > before[i])) continue;
+      const SheetFit fit =
+          fitter.fit(input.grid, input.grid.points()[i], static_cast<double>(wanted),
+                     static_cast<double>(input.spacings[i]));
+      const bool goes_on = fit.points >= SheetFitter::kEnough && fit.planarity >= kPlanar &&
+                           fit.bend <= kSmooth * static_cast<double>(wanted);
+      if (!goes_on) continue;
+      radii[i] = wanted;
+      own.normals[i] = fit.normal.cast<float>();
+      own.confidences[i] = static_cast<float>(fit.planarity);
+      own.residuals[i] = static_cast<float>(fit.residual);
+      own.bends[i] = static_cast<float>(fit.bend);
+      raised[k] = 1;
     }
   });
-  std::size_t raised = 0;
-  std::vector<std::uint32_t> near;
-  for (std::size_t k = 0; k < faint.size(); ++k) {
-    float& radius = radii[faint[k]];
-    const float wanted = std::min(kMultiple * gaps[k], kMostRise * radius);
-    if (!(wanted > radius)) continue;
-    add_to_sums(grid, kernel, faint[k], radius, wanted, near, sums.own);
-    radius = wanted;
-    ++raised;
-  }
-  return raised;
+  return static_cast<std::size_t>(std::ranges::count(raised, 1));
 }
 
 }  // namespace palpate

@@ -25,6 +25,10 @@ constexpr float kSnapSlope = 0.12f;
 constexpr float kSnapResiduals = 3;
 constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
 
+// A point lies on a second plane where that is another one and it is off it by so many spacings.
+constexpr float kOtherPlane = 0.9f;
+constexpr float kOnBoth = 0.2f;
+
 // Two points continue each other's sheet.
 constexpr float kPairReach = 1.6f;  // spacings
 constexpr float kParallel = 0.96f;
@@ -49,6 +53,7 @@ class Snapping {
   /// 1: sure; 2: taken over by a sure one's sheet; 0: neither, and without confidence now.
   std::vector<std::uint8_t> run() {
     std::vector<std::uint8_t> result = sure_;
+    second_hosts_.assign(sure_.size(), kNobody);
     detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint32_t> near;
       for (std::size_t i = begin; i < end; ++i) {
@@ -58,7 +63,17 @@ class Snapping {
     return result;
   }
 
+  [[nodiscard]] std::vector<Twin> twins() const {
+    std::vector<Twin> twins;
+    for (std::uint32_t i = 0; i < second_hosts_.size(); ++i) {
+      if (second_hosts_[i] != kNobody) twins.push_back({i, second_hosts_[i]});
+    }
+    return twins;
+  }
+
  private:
+  static constexpr std::uint32_t kNobody = ~std::uint32_t{0};
+
   std::uint8_t place(std::uint32_t i, std::vector<std::uint32_t>& near) {
     const Vector3f& p = input_.grid.points()[i];
     near.clear();
@@ -79,6 +94,7 @@ class Snapping {
       host = j;
     }
     if (host != i) {
+      second_hosts_[i] = second_host(i, host, near);
       own_.normals[i] = own_.normals[host];
       own_.residuals[i] = own_.residuals[host];
       own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
@@ -87,6 +103,25 @@ class Snapping {
     if (!any && own_.confidences[i] >= kPlanar && is_lonely(i, near)) return 1;
     own_.confidences[i] = 0;
     return 0;
+  }
+
+  /// The nearest sure point of another plane that the point lies on as well.
+  [[nodiscard]] std::uint32_t second_host(std::uint32_t i, std::uint32_t first,
+                                          const std::vector<std::uint32_t>& near) const {
+    float best = std::numeric_limits<float>::infinity();
+    std::uint32_t host = kNobody;
+    for (const std::uint32_t j : near) {
+      if (sure_[j] == 0) continue;
+      if (std::abs(own_.normals[first].dot(own_.normals[j])) > kOtherPlane) continue;
+      const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
+      const float off = std::abs(own_.normals[j].dot(way));
+      const float on = std::max(kSnapResiduals * own_.residuals[j], kOnBoth * input_.spacings[i]);
+      const float squared = way.squaredNorm();
+      if (off > on || squared >= best) continue;
+      best = squared;
+      host = j;
+    }
+    return host;
   }
 
   bool is_lonely(std::uint32_t i, std::vector<std::uint32_t>& near) const {
@@ -98,6 +133,7 @@ class Snapping {
   const SheetInput& input_;
   OwnSheets& own_;
   std::vector<std::uint8_t> sure_;
+  std::vector<std::uint32_t> second_hosts_;
 };
 
 struct Pair {
@@ -189,7 +225,9 @@ float sheet_tolerance(const SheetInput& input, const OwnSheets& own, std::uint32
 
 Growths grow_sheets(const SheetInput& input, OwnSheets& own) {
   Growths result;
-  result.sure = Snapping(input, own).run();
+  Snapping snapping(input, own);
+  result.sure = snapping.run();
+  result.twins = snapping.twins();
   Growth growth(input, own, result.sure);
   detail::SignedSets& sets = growth.run();
   const std::size_t count = input.grid.size();

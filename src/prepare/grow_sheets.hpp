@@ -8,7 +8,8 @@ namespace palpate {
 struct Growths {
   PointSheets sheets;  ///< every sheet is a part of its own; no gaps yet
   std::vector<std::uint8_t>
-      sure;  ///< 1: its own fit put the point there; 0: a neighbour's, or none
+      sure;                 ///< 1: its own fit put the point there; 0: a neighbour's, or none
+  std::vector<Twin> twins;  ///< in rising order
 };
 
 /// The first half of make_sheets(). Normals of one sheet agree afterwards.

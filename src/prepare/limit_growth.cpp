@@ -13,13 +13,16 @@ namespace {
 
 constexpr float kMatters = 0.8f;  // of the own R: a smaller limit is worth looking for
 constexpr std::uint32_t kBlockPoints = 64;
+constexpr float kPlane = 0.5f;  // confidence
+constexpr float kResiduals = 3;
+constexpr float kOff = 0.12f;  // of the way
 
 /// The limits of one block after another.
 class Limiter {
  public:
   Limiter(const CellGrid& grid, float slope, const std::vector<float>& radii,
-          const std::vector<float>& smallest)
-      : grid_(grid), slope_(slope), radii_(radii), smallest_(smallest) {}
+          const std::vector<float>& smallest, const OwnSheets* own)
+      : grid_(grid), slope_(slope), radii_(radii), smallest_(smallest), own_(own) {}
 
   /// limits: of all points; those of the block are written.
   void limit(const detail::Block& block, std::vector<float>& limits) {
@@ -68,22 +71,32 @@ class Limiter {
       if (smallest_[leaf.cell] + bound >= limit) continue;
       for (std::uint32_t j = cell.begin; j < cell.end; ++j) {
         const float distance = std::sqrt(detail::squared_distance(grid_.points()[j], p));
-        limit = std::min(limit, radii_[j] + slope_ * distance);
+        const float limited = radii_[j] + slope_ * distance;
+        if (limited < limit && !on_plane(i, j, distance)) limit = limited;
       }
     }
     return limit < matters ? limit : radii_[i];
+  }
+
+  /// Does j lie on the plane of i, as far as one can tell?
+  [[nodiscard]] bool on_plane(std::uint32_t i, std::uint32_t j, float distance) const {
+    if (!own_ || own_->confidences[i] < kPlane) return false;
+    const float off = std::abs(own_->normals[i].dot(grid_.points()[j] - grid_.points()[i]));
+    return off <= std::max(kResiduals * own_->residuals[i], kOff * distance);
   }
 
   const CellGrid& grid_;
   float slope_;  // of R over distance
   const std::vector<float>& radii_;
   const std::vector<float>& smallest_;
+  const OwnSheets* own_;
   std::vector<Leaf> leaves_;
 };
 
 }  // namespace
 
-void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii) {
+void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii,
+                  const OwnSheets* own) {
   if (radii.empty()) return;
   const auto [low, high] = std::minmax_element(radii.begin(), radii.end());
   if (*low >= kMatters * *high) return;
@@ -91,7 +104,7 @@ void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii) 
   const std::vector<detail::Block> blocks = detail::make_blocks(grid, kBlockPoints);
   std::vector<float> limited(radii.size());
   detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
-    Limiter limiter(grid, slope, radii, smallest);
+    Limiter limiter(grid, slope, radii, smallest, own);
     for (std::size_t b = begin; b < end; ++b) limiter.limit(blocks[b], limited);
   });
   radii = std::move(limited);

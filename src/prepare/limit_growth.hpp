@@ -3,12 +3,16 @@
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
+#include "prepare/own_sheet.hpp"
 
 namespace palpate {
 
 /// Lets support radii vary slowly from place to place, as the paper's section III-D assumes: each
 /// becomes min_j (R_j + slope |p_i - p_j|). Then a sparse point's support ends before it reaches
 /// what is sampled finely. In sorted order, m.
-void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii);
+/// `own`: points on the plane of a point do not limit it, since it tells nothing else of them;
+/// nullptr: all do.
+void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii,
+                  const OwnSheets* own = nullptr);
 
 }  // namespace palpate

@@ -27,6 +27,7 @@ constexpr double kWideReach = 20;
 constexpr double kTile = 4;
 constexpr double kFlattest = 0.25;    // share of the windows that are believed
 constexpr double kShapeGrowth = 1.5;  // from the middle to the wide window: no longer noise alone
+constexpr double kFlat = 0.02;        // spacings: less noise is none that neighbours could share
 constexpr double kNoteworthy = 1.2;
 constexpr double kMostExcess = 4;  // R at most doubles
 constexpr double kMostRise = 5;    // more than neighbours that err together explain
@@ -91,6 +92,7 @@ double median_of(const std::vector<Widths>& all, const Value& value) {
 
 Noise measure_noise(const CellGrid& grid, double spacing) {
   Noise noise{narrow_noise(grid, spacing), 1};
+  if (noise.sigma < kFlat * spacing) return noise;
   std::vector<Widths> all = compare_widths(grid, spacing);
   std::stable_sort(all.begin(), all.end(),
                    [](const Widths& a, const Widths& b) { return a.growth < b.growth; });

@@ -30,6 +30,7 @@
 #include "prepare/noisy_radii.hpp"
 #include "prepare/own_sheet.hpp"
 #include "prepare/sheets.hpp"
+#include "prepare/twins.hpp"
 
 namespace palpate {
 namespace {
@@ -106,14 +107,13 @@ class Preparation {
     index();
     choose_voxel();
     choose_radii();
-    if (options_.estimate_normals) fit_sheets();
     weigh();
     points_.confidences.resize(points_.size(), 0.0f);
     if (options_.remove_speckle && !options_.paper) silence_speckle();
-    if (options_.estimate_normals) find_sheets();
     if (!cloud_->colors.empty()) points_.colors = in_grid_order(points_.grid, cloud_->colors);
+    if (options_.estimate_normals) find_sheets();
     finish(points_);
-    report_.points_out = points_.size() - report_.speckle;
+    report_.points_out = points_.size() - report_.speckle - twins_;
     report_.radius = points_.radius;
     report_.radius_smallest = points_.smallest_radius;
     report_.radius_largest = *std::max_element(points_.radii.begin(), points_.radii.end());
@@ -173,9 +173,10 @@ class Preparation {
       points_.radii.assign(points_.size(), static_cast<float>(radius));
     } else {
       choose_radii_by_noise();
-      limit_growth(points_.grid, kSlope, points_.radii);
     }
+    if (!options_.radius && !options_.paper) limit_growth(points_.grid, kSlope, points_.radii);
     watch_.lap(report_.seconds_spacing);
+    if (options_.estimate_normals) fit_sheets();
   }
 
   /// The diagonal of the cloud's box, m; never 0.
@@ -224,19 +225,22 @@ class Preparation {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (points_.density_weights[i] <= 0) own_sheets_.confidences[i] = 0;
     }
-    points_.sheets =
-        make_sheets({points_.grid, spacings_, points_.radii, report_.noise}, known, own_sheets_);
+    std::vector<Twin> twins;
+    points_.sheets = make_sheets({points_.grid, spacings_, points_.radii, report_.noise}, known,
+                                 own_sheets_, twins);
     points_.normals = std::move(own_sheets_.normals);
     points_.confidences = std::move(own_sheets_.confidences);
+    add_twins(twins, points_);
+    twins_ = twins.size();
     watch_.lap(report_.seconds_normals);
   }
 
   void weigh() {
     points_.kernel = options_.kernel;
     sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
-    if (!options_.radius && !options_.paper &&
-        close_gaps(points_.grid, options_.kernel, points_.radii, sums_) > 0) {
-      limit_growth(points_.grid, 1, points_.radii);
+    if (!options_.radius && !options_.paper && options_.estimate_normals &&
+        close_gaps({points_.grid, spacings_, sums_.own}, points_.radii, own_sheets_) > 0) {
+      limit_growth(points_.grid, 1, points_.radii, &own_sheets_);
       sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
     }
     points_.density_weights = density_weights(sums_);
@@ -280,6 +284,7 @@ class Preparation {
   detail::WeightSums sums_;
   double footprint_ = 0;
   Noise noise_;
+  std::size_t twins_ = 0;
   std::optional<NoiseMap> noise_map_;
   Stopwatch watch_;
 };

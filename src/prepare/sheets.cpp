@@ -352,8 +352,10 @@ void join_parts(const SheetInput& input, const std::vector<Link>& links, std::ve
 
 }  // namespace
 
-PointSheets make_sheets(const SheetInput& input, const KnownSigns& known, OwnSheets& own) {
+PointSheets make_sheets(const SheetInput& input, const KnownSigns& known, OwnSheets& own,
+                        std::vector<Twin>& twins) {
   Growths grown = grow_sheets(input, own);
+  twins = std::move(grown.twins);
   const std::vector<Vote> votes = look_around(input, own, grown);
   PointSheets sheets = std::move(grown.sheets);
   const std::vector<int> signs = known_signs(input, known, own, sheets);

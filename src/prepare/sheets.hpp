@@ -27,6 +27,12 @@ struct KnownSigns {
   std::optional<Eigen::Vector3f> eye;      ///< of the sensor, in the grid's frame, m
 };
 
+/// A point that lies on a second sheet, too, where two meet in a crease or at an edge.
+struct Twin {
+  std::uint32_t point = 0;
+  std::uint32_t host = 0;  ///< a point that is surely on that sheet
+};
+
 /// Puts each point on a sheet: sure points that continue each other's planes make one; an unsure
 /// point joins the sheet whose plane it lies on and takes over its fit. One that lies on none has
 /// no confidence left. Turns `own.normals` so that they agree within a part, outward where nothing
@@ -35,7 +41,8 @@ struct KnownSigns {
 /// Two sheets that lie side by side are one part where nearby pairs of their points agree on what
 /// is outside: n_p, mirrored by the plane halfway between p and q, looks like n_q, as if an arc
 /// joined the two. Where the signs of nearly all points of a sheet are known, these count instead.
+/// `twins`: gets the points that lie on two sheets, in rising order.
 [[nodiscard]] PointSheets make_sheets(const SheetInput& input, const KnownSigns& known,
-                                      OwnSheets& own);
+                                      OwnSheets& own, std::vector<Twin>& twins);
 
 }  // namespace palpate

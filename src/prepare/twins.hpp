@@ -1,0 +1,14 @@
+#pragma once
+
+#include <span>
+
+#include "palpate/field/surface_points.hpp"
+#include "prepare/sheets.hpp"
+
+namespace palpate {
+
+/// Puts points that lie on two sheets on both, with half their weight each: a sheet that lacks the
+/// points of its crease would give way there. Indexes the points again.
+void add_twins(std::span<const Twin> twins, SurfacePoints& points);
+
+}  // namespace palpate
