@@ -12,12 +12,14 @@ namespace {
 using accuracy::kTick;
 using Eigen::Vector3d;
 
+constexpr double kTruthStep = 0.5;  // s: its creases are sharper than those of points
+
 class TruthField final : public AnalyticField {
  public:
   explicit TruthField(const HostileScene& scene)
       : AnalyticField({.T_world_shape = scene.T_world_draft,
-                       .step_length = kRadius * scene.spacing,
-                       .resolution = 0.002 * kRadius * scene.spacing}),
+                       .step_length = kTruthStep * scene.spacing,
+                       .resolution = 0.005 * scene.spacing}),
         scene_(&scene) {}
 
  private:

@@ -29,7 +29,7 @@ void draw_wedge(Draft& draft, double degrees, bool signs) {
                       half_space(Vector3d::Zero(), lower.cross(Y)));
   for (int i = 0; i < 12; ++i) {
     const Vector3d at = draft.within({-10, -15, -3}, {-6, 15, 3});
-    draft.hand.start({40, at.y(), at.z()}).to({5, at.y(), at.z()}, kReach);
+    draft.hand.start({40, at.y(), at.z()}).to({5, at.y(), at.z()}, kPush);
     draft.hand.to(at, kPush).to({5, at.y(), at.z()}, kPush).to({40, at.y(), at.z()}, kReach);
   }
 }
@@ -47,7 +47,8 @@ struct Roof {
 
 void slide_over(Draft& draft, const Roof& roof, int side, double y) {
   draft.hand.start(roof.at(side, y, 10, -10)).to(roof.at(side, y, 10, 1), kPush);
-  draft.hand.to(roof.at(side, y, -7, 1), kSlide);
+  draft.hand.to(roof.at(side, y, 1.5 + 1 / std::tan(roof.half), 1), kSlide);
+  draft.hand.to(roof.at(side, y, -7, 1), kSlide, Wanted::either);
 }
 
 void draw_ridge(Draft& draft, double degrees, bool signs) {

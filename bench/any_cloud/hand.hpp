@@ -8,6 +8,7 @@ namespace palpate::any_cloud {
 /// What is asked of a tick.
 enum class Wanted {
   judged,   ///< contact where the ideal proxy has it, none in free air
+  either,   ///< with contact or without, but without steps: where an edge lets go
   ignored,  ///< nothing but finite numbers
   free,     ///< no contact, whatever the truth says
 };

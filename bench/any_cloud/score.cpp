@@ -65,7 +65,9 @@ class Comparison {
     const double felt = trace_.force[i].norm();
     if (tick.starts) lost_run_ = 0;
     if (tick.wanted == Wanted::free && felt > kFelt) ++in_free_air_;
-    if (tick.wanted != Wanted::judged || !scene_.truth) return;
+    if (tick.wanted == Wanted::ignored || !scene_.truth) return;
+    if (felt > 0) add_height(std::abs(true_distance(scene_, trace_.proxy[i])));
+    if (tick.wanted != Wanted::judged) return;
     const double wanted = ideal_.force[i].norm();
     const double away = true_distance(scene_, tick.hand);
     if (away > scene_.clear && wanted == 0 && felt > kFelt) ++in_free_air_;
@@ -73,7 +75,6 @@ class Comparison {
     if (wanted > 0) ++touching_;
     if (wanted >= kNewtonsPerSpacing * scene_.deep) add_required(felt / wanted);
     if (std::min(felt, wanted) > kFeltSurely && trace_.force[i].dot(ideal_.force[i]) < 0) ++wrong_;
-    if (felt > 0) add_height(std::abs(true_distance(scene_, trace_.proxy[i])));
     check_ideal(i, away);
   }
 
@@ -109,7 +110,20 @@ class Comparison {
     const double wanted = ideal_.force[i].norm();
     const double height = true_distance(scene_, ideal_.proxy[i]);
     const bool missing = away < -scene_.deep && wanted < kFelt;
-    if (missing || height < -kIdealError || (wanted > 0 && height > kIdealError)) ++ideal_off_;
+    const bool apart = height < -kIdealError || (wanted > 0 && height > kIdealError);
+    const bool stuck = wanted > kFelt && away > scene_.clear && way_is_free(i);
+    if (missing || apart || stuck) ++ideal_off_;
+  }
+
+  // From the ideal proxy straight to the hand.
+  [[nodiscard]] bool way_is_free(std::size_t i) const {
+    constexpr int kPlaces = 50;
+    const Vector3d from = ideal_.proxy[i];
+    for (int k = 1; k < kPlaces; ++k) {
+      const double share = static_cast<double>(k) / kPlaces;
+      if (true_distance(scene_, from + share * (scene_.ticks[i].hand - from)) < 0) return false;
+    }
+    return true;
   }
 
   const HostileScene& scene_;

@@ -10,6 +10,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+// A proxy cannot leave a crease below 90 degrees that is perfectly sharp: either side's normal there
+// points into the other side.
+constexpr double kFillet = 0.1;
+constexpr double kOnEdge = 1e-9;  // nearer to an edge, the way to it is rounding
+
 // How far x is from a place, less a radius.
 Distance around(const Vector3d& from_place, double radius) {
   const double norm = from_place.norm();
@@ -72,7 +77,7 @@ Shape extruded(std::vector<Vector2d> polygon) {
       if (crosses && here.x() < a.x() + way.x() * (here.y() - a.y()) / way.y()) inside = !inside;
     }
     const double sign = inside ? -1 : 1;
-    if (nearest > 0) outward = sign * from_edge / nearest;
+    if (nearest > kOnEdge) outward = sign * from_edge / nearest;
     return Distance{sign * nearest, Vector3d(outward.x(), 0, outward.y())};
   };
 }
@@ -81,7 +86,9 @@ Shape unite(Shape a, Shape b) {
   return [a = std::move(a), b = std::move(b)](const Vector3d& x) {
     const Distance da = a(x);
     const Distance db = b(x);
-    return da.value < db.value ? da : db;
+    const double share = std::clamp(0.5 + 0.5 * (da.value - db.value) / kFillet, 0.0, 1.0);
+    return Distance{da.value + share * (db.value - da.value) - kFillet * share * (1 - share),
+                    da.gradient + share * (db.gradient - da.gradient)};
   };
 }
 

@@ -23,7 +23,8 @@ using Shape = std::function<Distance(const Eigen::Vector3d&)>;
 /// A polygon in the plane of x and z, endless along y.
 [[nodiscard]] Shape extruded(std::vector<Eigen::Vector2d> polygon);
 
-/// Exact outside of both; inside no farther from the surface than told.
+/// Exact but for creases, which are filled by up to 0.025 (a quadratic smooth minimum); inside both
+/// no deeper than it is.
 [[nodiscard]] Shape unite(Shape a, Shape b);
 
 }  // namespace palpate::any_cloud

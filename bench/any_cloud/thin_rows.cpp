@@ -56,7 +56,8 @@ void draw_rim(Draft& draft, double thick) {
   for (int i = 0; i < 3; ++i) {
     const double y = draft.between(-20, 20);
     draft.hand.start({10, y, 10}).to({10, y, -kDeep}, kPush).to({29.5, y, -kDeep}, kSlide);
-    draft.hand.to({34, y, -kDeep}, kSlide).to({34, y, below}, kSlide).to({10, y, below}, kReach);
+    draft.hand.to({34, y, -kDeep}, kSlide, Wanted::either).to({34, y, below}, kSlide);
+    draft.hand.to({10, y, below}, kReach);
     draft.hand.to({10, y, kDeep - thick}, kPush).to({-10, y, kDeep - thick}, kSlide);
     draft.hand.to({-10, y, below}, kPush);
   }
