@@ -9,7 +9,7 @@ using Eigen::Vector3d;
 
 constexpr double kMetre = 1e-3;                          // a spacing
 constexpr double kAway = 200;                            // spacings, at most along an axis
-constexpr double kUpright = 0.3;                 // share of the scenes
+constexpr double kUpright = 0.3;                         // share of the scenes
 constexpr std::array kUnits{1.0, 1.0, 1e3, 1 / 0.3048};  // of a metre; the second has an origin
 
 std::uint64_t hash(const std::string& text) {

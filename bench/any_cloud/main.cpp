@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "any_cloud/file_row.hpp"
 #include "any_cloud/rows.hpp"
 #include "any_cloud/table.hpp"
 #include "palpate/base/error.hpp"
@@ -21,6 +22,8 @@ struct Arguments {
   int seeds = 3;
   std::string field = "balanced";
   std::string csv_file;
+  std::vector<std::string> files;
+  int ways = 10000;
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -30,6 +33,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--seeds", arguments.seeds, "Scenes a row")->check(CLI::Range(1, 10000));
   app.add_option("--field", arguments.field, "What the points are made into")
       ->check(CLI::IsMember({"balanced", "pointset", "metaball"}));
+  app.add_option("--file", arguments.files, "Only this cloud, without a truth; may be repeated");
+  app.add_option("--ways", arguments.ways, "Straight ways through free air of a file's cloud")
+      ->check(CLI::Range(0, 1000000));
   app.add_option("--csv", arguments.csv_file, "Write every score to this file");
 }
 
@@ -41,7 +47,10 @@ palpate::FieldOptions field_options(const std::string& name) {
 }
 
 std::vector<Row> wanted_rows(const Arguments& arguments) {
-  std::vector<Row> rows = all_rows();
+  std::vector<Row> rows;
+  for (const std::string& file : arguments.files) rows.push_back(file_row(file, arguments.ways));
+  if (!rows.empty()) return rows;
+  rows = all_rows();
   std::erase_if(rows, [&](const Row& row) {
     const auto& families = arguments.families;
     const bool other = !families.empty() &&

@@ -8,6 +8,8 @@ std::vector<Row> all_rows() {
   add_thin_rows(rows);
   add_folded_rows(rows);
   add_round_rows(rows);
+  add_closed_rows(rows);
+  add_seen_rows(rows);
   add_scattered_rows(rows);
   return rows;
 }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
 #include <vector>
 
 #include "any_cloud/hostile_scene.hpp"
@@ -13,6 +11,8 @@ void add_flat_rows(std::vector<Row>& rows);       ///< noise, density, hole, dup
 void add_thin_rows(std::vector<Row>& rows);       ///< plate, rim, gap
 void add_folded_rows(std::vector<Row>& rows);     ///< wedge, ridge, box, corners, tee
 void add_round_rows(std::vector<Row>& rows);      ///< flip, small, rod, wire, post
+void add_closed_rows(std::vector<Row>& rows);     ///< closed, loop
+void add_seen_rows(std::vector<Row>& rows);       ///< partial
 void add_scattered_rows(std::vector<Row>& rows);  ///< volume, stray
 
 /// All of them, family by family.

@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFelt = 0.05;       // N
 constexpr double kFeltSurely = 0.1;  // N
+constexpr double kAgainst = -0.5;    // cosine
 constexpr double kLostShare = 0.2;
 constexpr int kThroughTicks = 3;
 constexpr double kIdealError = 0.05;  // s
@@ -74,7 +75,8 @@ class Comparison {
     if (wanted > 0) squares_ += (trace_.force[i] - ideal_.force[i]).squaredNorm();
     if (wanted > 0) ++touching_;
     if (wanted >= kNewtonsPerSpacing * scene_.deep) add_required(felt / wanted);
-    if (std::min(felt, wanted) > kFeltSurely && trace_.force[i].dot(ideal_.force[i]) < 0) ++wrong_;
+    const double along = trace_.force[i].dot(ideal_.force[i]);
+    if (std::min(felt, wanted) > kFeltSurely && along < kAgainst * felt * wanted) ++wrong_;
     check_ideal(i, away);
   }
 
@@ -117,7 +119,7 @@ class Comparison {
 
   // From the ideal proxy straight to the hand.
   [[nodiscard]] bool way_is_free(std::size_t i) const {
-    constexpr int kPlaces = 50;
+    constexpr int kPlaces = 400;  // thin panels lie between
     const Vector3d from = ideal_.proxy[i];
     for (int k = 1; k < kPlaces; ++k) {
       const double share = static_cast<double>(k) / kPlaces;

@@ -16,7 +16,7 @@ struct Score {
   double lost = 0;         ///< share of required ticks with less than 20 % of the ideal force, %
   double through = 0;      ///< times that three required ticks in a row were lost
   double in_free_air = 0;  ///< ticks with more than 0.05 N where contact is forbidden
-  double wrong_side = 0;   ///< ticks with a force that is against the ideal's, both above 0.1 N
+  double wrong_side = 0;   ///< ticks with a force turned over 120 degrees, both above 0.1 N
   double height = 0;       ///< |distance of the proxy from the true surface| in contact, mean, s
   double highest = 0;      ///< the largest, s
   double energy = 0;       ///< given to the hand by a stroke, the most, mJ at 1 mm a spacing

@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// A proxy cannot leave a crease below 90 degrees that is perfectly sharp: either side's normal there
-// points into the other side.
+// A proxy cannot leave a crease below 90 degrees that is perfectly sharp: either side's normal
+// there points into the other side.
 constexpr double kFillet = 0.1;
 constexpr double kOnEdge = 1e-9;  // nearer to an edge, the way to it is rounding
 
@@ -29,6 +29,10 @@ Shape half_space(const Vector3d& point, const Vector3d& outward) {
   };
 }
 
+Shape of(const Solid& solid) {
+  return [solid](const Vector3d& x) { return distance_and_normal(solid, x); };
+}
+
 Shape ball(double radius) {
   return [radius](const Vector3d& x) { return around(x, radius); };
 }
@@ -36,7 +40,7 @@ Shape ball(double radius) {
 Shape box(const Vector3d& center, const Vector3d& size) {
   Solid solid{SolidKind::block, Eigen::Isometry3d::Identity(), size / 2};
   solid.T_world_solid.translation() = center;
-  return [solid](const Vector3d& x) { return distance_and_normal(solid, x); };
+  return of(solid);
 }
 
 Shape rod(const Vector3d& a, const Vector3d& b, double radius) {

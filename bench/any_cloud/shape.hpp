@@ -14,6 +14,8 @@ using Shape = std::function<Distance(const Eigen::Vector3d&)>;
 
 /// All that lies behind the plane through `point`.
 [[nodiscard]] Shape half_space(const Eigen::Vector3d& point, const Eigen::Vector3d& outward);
+[[nodiscard]] Shape of(const Solid& solid);
+/// Around the origin.
 [[nodiscard]] Shape ball(double radius);
 [[nodiscard]] Shape box(const Eigen::Vector3d& center, const Eigen::Vector3d& size);
 /// All within `radius` of the straight line from a to b.

@@ -68,12 +68,12 @@ std::string legend() {
   return "Medians and worst over the seeds, or worst alone. Lengths in spacings (s). dF: force "
          "error, RMS, N.\nratio: force to the ideal's. step, ideal: largest step of force beyond "
          "K v dt, N. lost: % of required\ncontact. thru: pushes that went through. free: ticks "
-         "with force in free air. side: ticks with force\nagainst the ideal's. h: mean distance "
+         "with force in free air. side: ticks with force\nthe other way. h: mean distance "
          "of the proxy from the surface. mJ: given to the hand. us: a step.\n";
 }
 
 std::string header() {
-  std::string text = fmt::format("{:<28}", "row");
+  std::string text = fmt::format("{:<30}", "row");
   for (const Metric& metric : kMetrics) {
     if (metric.width == 0) continue;
     const int width = metric.median ? 2 * metric.width + 1 : metric.width;
@@ -83,7 +83,7 @@ std::string header() {
 }
 
 std::string table_line(const std::vector<Result>& seeds) {
-  std::string text = fmt::format("{:<28}", seeds.front().row);
+  std::string text = fmt::format("{:<30}", seeds.front().row);
   for (const Metric& metric : kMetrics) {
     if (metric.width == 0) continue;
     const Spread values = spread(seeds, metric);

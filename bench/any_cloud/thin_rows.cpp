@@ -55,7 +55,7 @@ void draw_rim(Draft& draft, double thick) {
   const double below = -thick - 5;
   for (int i = 0; i < 3; ++i) {
     const double y = draft.between(-20, 20);
-    draft.hand.start({10, y, 10}).to({10, y, -kDeep}, kPush).to({29.5, y, -kDeep}, kSlide);
+    draft.hand.start({10, y, 10}).to({10, y, -kDeep}, kPush).to({29, y, -kDeep}, kSlide);
     draft.hand.to({34, y, -kDeep}, kSlide, Wanted::either).to({34, y, below}, kSlide);
     draft.hand.to({10, y, below}, kReach);
     draft.hand.to({10, y, kDeep - thick}, kPush).to({-10, y, kDeep - thick}, kSlide);

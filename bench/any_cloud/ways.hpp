@@ -4,6 +4,9 @@
 
 namespace palpate::any_cloud {
 
+/// Two sheets that meet at x = z = 0 and open towards x; free is what lies between.
+void make_fold(Draft& draft, double degrees);
+
 /// Spacings a second.
 inline constexpr double kSlide = 80;
 inline constexpr double kPush = 100;
