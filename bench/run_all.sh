@@ -12,7 +12,7 @@ find_data
 
 say "build"
 configure release -DPALPATE_BUILD_BENCH=ON
-build release geometry_bench field_bench depth_bench accuracy_bench streams_bench four_cameras_bench viewer_bench device_bench palpate_app
+build release geometry_bench field_bench depth_bench accuracy_bench streams_bench any_cloud_bench four_cameras_bench viewer_bench device_bench palpate_app
 programs=build/release
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -58,6 +58,8 @@ for noise in a b; do
 done
 say "streams"
 "$programs/bench/streams/streams_bench" >"$scratch/streams.md"
+say "any cloud"
+"$programs/bench/any_cloud/any_cloud_bench" >"$scratch/any_cloud.txt"
 say "four cameras"
 cameras=$programs/bench/four_cameras/four_cameras_bench
 "$cameras" --pairs 0 >"$scratch/shared.md"
@@ -110,6 +112,12 @@ $(cat "$scratch/b.md")
 raw K (p - h).
 
 $(cat "$scratch/streams.md")
+
+## Any cloud
+
+\`\`\`
+$(cat "$scratch/any_cloud.txt")
+\`\`\`
 
 ## Four cameras beside the servo
 

@@ -1,0 +1,102 @@
+// Clouds of every kind that surfaces are hard to tell of: what is felt beside the exact truth.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fstream>
+
+#include "any_cloud/file_row.hpp"
+#include "any_cloud/rows.hpp"
+#include "any_cloud/table.hpp"
+#include "palpate/base/error.hpp"
+
+namespace {
+
+using namespace palpate::any_cloud;
+
+struct Arguments {
+  std::vector<std::string> families;
+  std::string row;
+  std::uint64_t first_seed = 1;
+  int seeds = 3;
+  std::string field = "balanced";
+  std::string csv_file;
+  std::vector<std::string> files;
+  int ways = 10000;
+};
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("--family", arguments.families, "Only this family; may be repeated");
+  app.add_option("--row", arguments.row, "Only rows whose names hold this");
+  app.add_option("--first-seed", arguments.first_seed, "Seed of the first scene of a row");
+  app.add_option("--seeds", arguments.seeds, "Scenes a row")->check(CLI::Range(1, 10000));
+  app.add_option("--field", arguments.field, "What the points are made into")
+      ->check(CLI::IsMember({"balanced", "pointset", "metaball"}));
+  app.add_option("--file", arguments.files, "Only this cloud, without a truth; may be repeated");
+  app.add_option("--ways", arguments.ways, "Straight ways through free air of a file's cloud")
+      ->check(CLI::Range(0, 1000000));
+  app.add_option("--csv", arguments.csv_file, "Write every score to this file");
+}
+
+palpate::FieldOptions field_options(const std::string& name) {
+  palpate::FieldOptions options;
+  if (name == "pointset") options.kind = palpate::FieldKind::pointset;
+  if (name == "metaball") options.kind = palpate::FieldKind::metaball;
+  return options;
+}
+
+std::vector<Row> wanted_rows(const Arguments& arguments) {
+  std::vector<Row> rows;
+  for (const std::string& file : arguments.files) rows.push_back(file_row(file, arguments.ways));
+  if (!rows.empty()) return rows;
+  rows = all_rows();
+  std::erase_if(rows, [&](const Row& row) {
+    const auto& families = arguments.families;
+    const bool other = !families.empty() &&
+                       std::find(families.begin(), families.end(), row.family) == families.end();
+    return other || row.name.find(arguments.row) == std::string::npos;
+  });
+  return rows;
+}
+
+int run(const Arguments& arguments) {
+  const std::vector<Row> rows = wanted_rows(arguments);
+  if (rows.empty())
+    throw palpate::Error("no row matches --family and --row; leave them out to see all");
+  std::vector<Result> all;
+  fmt::print("Field {}, {} seeds from {}.\n{}\n{}", arguments.field, arguments.seeds,
+             arguments.first_seed, legend(), header());
+  for (const Row& row : rows) {
+    std::vector<Result> results;
+    for (int i = 0; i < arguments.seeds; ++i) {
+      results.push_back(run_row(row, arguments.first_seed + static_cast<std::uint64_t>(i),
+                                field_options(arguments.field)));
+    }
+    fmt::print("{}", table_line(results));
+    std::fflush(stdout);
+    all.insert(all.end(), results.begin(), results.end());
+  }
+  if (arguments.csv_file.empty()) return 0;
+  std::ofstream out(arguments.csv_file);
+  out << csv(all);
+  if (!out.flush()) {
+    throw palpate::Error("cannot write " + arguments.csv_file + "; is its folder there?");
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("What is felt of clouds that surfaces are hard to tell of, beside the truth");
+  Arguments arguments;
+  add_options(app, arguments);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return run(arguments);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "any_cloud_bench: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,17 @@
+#include "any_cloud/rows.hpp"
+
+namespace palpate::any_cloud {
+
+std::vector<Row> all_rows() {
+  std::vector<Row> rows;
+  add_flat_rows(rows);
+  add_thin_rows(rows);
+  add_folded_rows(rows);
+  add_round_rows(rows);
+  add_closed_rows(rows);
+  add_seen_rows(rows);
+  add_scattered_rows(rows);
+  return rows;
+}
+
+}  // namespace palpate::any_cloud
