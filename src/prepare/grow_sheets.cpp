@@ -16,11 +16,11 @@ using Eigen::Vector3f;
 constexpr float kPlanar = 0.5f;   // confidence from which on a fit is a plane
 constexpr float kSmooth = 0.03f;  // of R that a quadric may leave: curvature passes, a crease not
 constexpr float kNoisySmooth = 1.6f;  // of the noise, likewise
-constexpr float kLonely = 2.5f;       // R without a sure point: a plane is sure enough there
 
 // An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
 // this many of its residuals.
-constexpr float kSnapReach = 1.6f;  // R
+constexpr float kSnapReach = 1.6f;     // R; where nothing is sure there:
+constexpr float kFarSnapReach = 2.5f;  // where nothing is sure here either, a plane is sure enough
 constexpr float kSnapSlope = 0.12f;
 constexpr float kSnapResiduals = 3;
 constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
@@ -75,16 +75,34 @@ class Snapping {
   static constexpr std::uint32_t kNobody = ~std::uint32_t{0};
 
   std::uint8_t place(std::uint32_t i, std::vector<std::uint32_t>& near) {
-    const Vector3f& p = input_.grid.points()[i];
-    near.clear();
-    input_.grid.within(p, kSnapReach * input_.radii[i], near);
-    float best = std::numeric_limits<float>::infinity();
-    std::uint32_t host = i;
     bool any = false;
+    for (const float reach : {kSnapReach, kFarSnapReach}) {
+      near.clear();
+      input_.grid.within(input_.grid.points()[i], reach * input_.radii[i], near);
+      std::erase_if(near, [this](std::uint32_t j) { return sure_[j] == 0; });
+      any = !near.empty();
+      if (any) break;
+    }
+    const std::uint32_t host = best_host(i, near);
+    if (host != kNobody) {
+      second_hosts_[i] = second_host(i, host, near);
+      own_.normals[i] = own_.normals[host];
+      own_.residuals[i] = own_.residuals[host];
+      own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
+      return 2;
+    }
+    if (!any && own_.confidences[i] >= kPlanar) return 1;
+    own_.confidences[i] = 0;
+    return 0;
+  }
+
+  /// Of sure points the one whose plane the point lies on best.
+  [[nodiscard]] std::uint32_t best_host(std::uint32_t i,
+                                        const std::vector<std::uint32_t>& near) const {
+    float best = std::numeric_limits<float>::infinity();
+    std::uint32_t host = kNobody;
     for (const std::uint32_t j : near) {
-      if (sure_[j] == 0) continue;
-      any = true;
-      const Vector3f way = p - input_.grid.points()[j];
+      const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
       const float length = way.norm();
       const float off = std::abs(own_.normals[j].dot(way));
       if (off > std::max(kSnapResiduals * own_.residuals[j], kSnapSlope * length)) continue;
@@ -93,16 +111,7 @@ class Snapping {
       best = cost;
       host = j;
     }
-    if (host != i) {
-      second_hosts_[i] = second_host(i, host, near);
-      own_.normals[i] = own_.normals[host];
-      own_.residuals[i] = own_.residuals[host];
-      own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
-      return 2;
-    }
-    if (!any && own_.confidences[i] >= kPlanar && is_lonely(i, near)) return 1;
-    own_.confidences[i] = 0;
-    return 0;
+    return host;
   }
 
   /// The nearest sure point of another plane that the point lies on as well.
@@ -111,7 +120,6 @@ class Snapping {
     float best = std::numeric_limits<float>::infinity();
     std::uint32_t host = kNobody;
     for (const std::uint32_t j : near) {
-      if (sure_[j] == 0) continue;
       if (std::abs(own_.normals[first].dot(own_.normals[j])) > kOtherPlane) continue;
       const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
       const float off = std::abs(own_.normals[j].dot(way));
@@ -122,12 +130,6 @@ class Snapping {
       host = j;
     }
     return host;
-  }
-
-  bool is_lonely(std::uint32_t i, std::vector<std::uint32_t>& near) const {
-    near.clear();
-    input_.grid.within(input_.grid.points()[i], kLonely * input_.radii[i], near);
-    return std::ranges::none_of(near, [this](std::uint32_t j) { return sure_[j] != 0; });
   }
 
   const SheetInput& input_;
