@@ -13,6 +13,8 @@ namespace {
 
 using Eigen::Vector3f;
 
+constexpr std::uint32_t kNobody = ~std::uint32_t{0};
+
 constexpr float kPlanar = 0.5f;   // confidence from which on a fit is a plane
 constexpr float kSmooth = 0.03f;  // of R that a quadric may leave: curvature passes, a crease not
 constexpr float kNoisySmooth = 1.6f;  // of the noise, likewise
@@ -30,9 +32,10 @@ constexpr float kOtherPlane = 0.9f;
 constexpr float kOnBoth = 0.2f;
 
 // Two points continue each other's sheet.
-constexpr float kPairReach = 1.6f;  // spacings
-constexpr float kParallel = 0.96f;
-constexpr float kPairSlope = 0.17f;
+constexpr float kPairReach = 1.6f;   // spacings
+constexpr float kTurn = 0.28f;       // rad (16 degrees) that normals of one sheet may turn, or more
+constexpr float kTurnMargin = 1.5f;  // where both fits are bowed so much
+constexpr float kChord = 0.6f;       // of the turn: how far off the chord may be; an arc's is half
 constexpr float kLeastTolerance = 0.15f;  // spacings that a residual may always be
 
 constexpr std::uint32_t kFewest = 8;  // points of a sheet
@@ -50,19 +53,25 @@ class Snapping {
     }
   }
 
-  /// 1: sure; 2: taken over by a sure one's sheet; 0: neither, and without confidence now.
-  std::vector<std::uint8_t> run() {
-    std::vector<std::uint8_t> result = sure_;
+  void run() {
+    hosts_.assign(sure_.size(), kNobody);
     second_hosts_.assign(sure_.size(), kNobody);
+    std::vector<std::uint8_t> lonely(sure_.size());
     detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint32_t> near;
       for (std::size_t i = begin; i < end; ++i) {
-        if (sure_[i] == 0) result[i] = place(static_cast<std::uint32_t>(i), near);
+        if (sure_[i] == 0) lonely[i] = place(static_cast<std::uint32_t>(i), near) ? 0 : 1;
       }
     });
-    return result;
+    for (std::uint32_t i = 0; i < lonely.size(); ++i) {
+      sure_[i] |= lonely[i];
+      if (sure_[i] != 0) hosts_[i] = i;
+    }
   }
 
+  [[nodiscard]] const std::vector<std::uint8_t>& sure() const { return sure_; }
+  /// The sure point whose fit each has: itself, or one that it was snapped to, or kNobody.
+  [[nodiscard]] const std::vector<std::uint32_t>& hosts() const { return hosts_; }
   [[nodiscard]] std::vector<Twin> twins() const {
     std::vector<Twin> twins;
     for (std::uint32_t i = 0; i < second_hosts_.size(); ++i) {
@@ -72,28 +81,25 @@ class Snapping {
   }
 
  private:
-  static constexpr std::uint32_t kNobody = ~std::uint32_t{0};
-
-  std::uint8_t place(std::uint32_t i, std::vector<std::uint32_t>& near) {
-    bool any = false;
+  /// False: nothing is sure around, so the point's own plane has to do.
+  bool place(std::uint32_t i, std::vector<std::uint32_t>& near) {
     for (const float reach : {kSnapReach, kFarSnapReach}) {
       near.clear();
       input_.grid.within(input_.grid.points()[i], reach * input_.radii[i], near);
       std::erase_if(near, [this](std::uint32_t j) { return sure_[j] == 0; });
-      any = !near.empty();
-      if (any) break;
+      if (!near.empty()) break;
     }
-    const std::uint32_t host = best_host(i, near);
-    if (host != kNobody) {
-      second_hosts_[i] = second_host(i, host, near);
-      own_.normals[i] = own_.normals[host];
-      own_.residuals[i] = own_.residuals[host];
-      own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
-      return 2;
+    if (near.empty() && own_.confidences[i] >= kPlanar) return false;
+    const std::uint32_t host = hosts_[i] = best_host(i, near);
+    if (host == kNobody) {
+      own_.confidences[i] = 0;
+      return true;
     }
-    if (!any && own_.confidences[i] >= kPlanar) return 1;
-    own_.confidences[i] = 0;
-    return 0;
+    second_hosts_[i] = second_host(i, host, near);
+    own_.normals[i] = own_.normals[host];
+    own_.residuals[i] = own_.residuals[host];
+    own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
+    return true;
   }
 
   /// Of sure points the one whose plane the point lies on best.
@@ -135,6 +141,7 @@ class Snapping {
   const SheetInput& input_;
   OwnSheets& own_;
   std::vector<std::uint8_t> sure_;
+  std::vector<std::uint32_t> hosts_;
   std::vector<std::uint32_t> second_hosts_;
 };
 
@@ -148,8 +155,9 @@ struct Pair {
 /// afterwards, in a fixed order.
 class Growth {
  public:
-  Growth(const SheetInput& input, const OwnSheets& own, const std::vector<std::uint8_t>& on_sheet)
-      : input_(input), own_(own), on_sheet_(on_sheet), sets_(input.grid.size()) {}
+  /// `hosts`: of each point the one whose fit it has; kNobody: it is on no sheet.
+  Growth(const SheetInput& input, const OwnSheets& own, const std::vector<std::uint32_t>& hosts)
+      : input_(input), own_(own), hosts_(hosts), sets_(input.grid.size()) {}
 
   detail::SignedSets& run() {
     const auto blocks = detail::make_blocks(input_.grid, detail::kBlockPoints);
@@ -191,17 +199,26 @@ class Growth {
         });
   }
 
+  /// Do i and j, which are near each other, lie on one sheet? Of points that were snapped, their
+  /// hosts tell: at a sharp rim, where the two sides meet, these are as far apart as the sides are.
   void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block,
             std::vector<Pair>& across) {
-    if (i == j || on_sheet_[i] == 0 || on_sheet_[j] == 0) return;
+    if (i == j || hosts_[i] == kNobody || hosts_[j] == kNobody) return;
     const bool inside = j >= block.begin && j < block.end;
     if (inside && j < i && sets_.find(i).first == sets_.find(j).first) return;
+    const std::uint32_t a = hosts_[i];
+    const std::uint32_t b = hosts_[j];
+    const Vector3f way = input_.grid.points()[b] - input_.grid.points()[a];
+    const float length = way.norm();
+    const float near = (input_.grid.points()[j] - input_.grid.points()[i]).norm();
+    const float bowed = std::min(bow(a), bow(b));
+    const float turn = std::max(kTurn, kTurnMargin * bowed * length);
     const float cosine = own_.normals[i].dot(own_.normals[j]);
-    if (!(std::abs(cosine) >= kParallel)) return;
-    const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
+    if (std::abs(cosine) < 1 - 0.5f * turn * turn) return;
     const float off =
-        std::max(std::abs(own_.normals[i].dot(way)), std::abs(own_.normals[j].dot(way)));
-    if (off > std::max(sheet_tolerance(input_, own_, i, j), kPairSlope * way.norm())) return;
+        std::max(std::abs(own_.normals[a].dot(way)), std::abs(own_.normals[b].dot(way)));
+    const float arc = kChord * std::max(kTurn * near, kTurnMargin * bowed * length * length);
+    if (off > std::max(sheet_tolerance(input_, own_, a, b), arc)) return;
     const int sign = cosine < 0 ? -1 : 1;
     if (inside) {
       sets_.join(i, j, sign);
@@ -210,9 +227,17 @@ class Growth {
     }
   }
 
+  /// The curvature that a sure point's fit tells, 1/m: a sphere's cap of radius a and curvature k
+  /// is off its plane by k a^2 / sqrt(48) RMS.
+  [[nodiscard]] float bow(std::uint32_t i) const {
+    const float reach = 1.15f * input_.radii[i];
+    const float square = own_.residuals[i] * own_.residuals[i] - own_.bends[i] * own_.bends[i];
+    return std::sqrt(48 * std::max(square, 0.f)) / (reach * reach);
+  }
+
   const SheetInput& input_;
   const OwnSheets& own_;
-  const std::vector<std::uint8_t>& on_sheet_;
+  const std::vector<std::uint32_t>& hosts_;
   detail::SignedSets sets_;
 };
 
@@ -228,16 +253,17 @@ float sheet_tolerance(const SheetInput& input, const OwnSheets& own, std::uint32
 Growths grow_sheets(const SheetInput& input, OwnSheets& own) {
   Growths result;
   Snapping snapping(input, own);
-  result.sure = snapping.run();
+  snapping.run();
+  result.sure = snapping.sure();
   result.twins = snapping.twins();
-  Growth growth(input, own, result.sure);
+  Growth growth(input, own, snapping.hosts());
   detail::SignedSets& sets = growth.run();
   const std::size_t count = input.grid.size();
   std::vector<std::uint32_t>& sheet = result.sheets.sheet;
   sheet.assign(count, PointSheets::kNone);
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (result.sure[i] == 0) continue;
+    if (snapping.hosts()[i] == kNobody) continue;
     const auto [root, sign] = sets.find(i);
     if (sign < 0) own.normals[i] = -own.normals[i];
     if (root == i) {  // before all others of its sheet
@@ -245,7 +271,6 @@ Growths grow_sheets(const SheetInput& input, OwnSheets& own) {
       sizes.push_back(0);
     }
     ++sizes[sheet[i] = sheet[root]];
-    if (result.sure[i] == 2) result.sure[i] = 0;
   }
   result.sheets.part.resize(sizes.size());
   std::iota(result.sheets.part.begin(), result.sheets.part.end(), 0u);
