@@ -41,6 +41,14 @@ constexpr float kLeastTolerance = 0.15f;  // spacings that a residual may always
 constexpr std::uint32_t kFewest = 8;  // points of a sheet
 constexpr float kTrustOfFew = 0.1f;
 
+/// The curvature that a sure point's fit tells, 1/m: a sphere's cap of radius a and curvature k is
+/// off its plane by k a^2 / sqrt(48) RMS.
+float bow(const SheetInput& input, const OwnSheets& own, std::uint32_t i) {
+  const float reach = 1.15f * input.radii[i];
+  const float square = own.residuals[i] * own.residuals[i] - own.bends[i] * own.bends[i];
+  return std::sqrt(48 * std::max(square, 0.f)) / (reach * reach);
+}
+
 /// What becomes of the points that their own fit does not put on a sheet.
 class Snapping {
  public:
@@ -96,8 +104,12 @@ class Snapping {
       return true;
     }
     second_hosts_[i] = second_host(i, host, near);
-    own_.normals[i] = own_.normals[host];
-    own_.residuals[i] = own_.residuals[host];
+    const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
+    const float turn = kTurnMargin * bow(input_, own_, host) * way;
+    if (std::abs(own_.normals[i].dot(own_.normals[host])) < 1 - 0.5f * turn * turn) {
+      own_.normals[i] = own_.normals[host];
+      own_.residuals[i] = own_.residuals[host];
+    }
     own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
     return true;
   }
@@ -111,7 +123,9 @@ class Snapping {
       const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
       const float length = way.norm();
       const float off = std::abs(own_.normals[j].dot(way));
-      if (off > std::max(kSnapResiduals * own_.residuals[j], kSnapSlope * length)) continue;
+      const float arc = kChord * kTurnMargin * bow(input_, own_, j) * length;
+      const float slope = std::max(kSnapSlope, arc);
+      if (off > std::max(kSnapResiduals * own_.residuals[j], slope * length)) continue;
       const float cost = off + kNearness * length;
       if (cost >= best) continue;
       best = cost;
@@ -211,7 +225,7 @@ class Growth {
     const Vector3f way = input_.grid.points()[b] - input_.grid.points()[a];
     const float length = way.norm();
     const float near = (input_.grid.points()[j] - input_.grid.points()[i]).norm();
-    const float bowed = std::min(bow(a), bow(b));
+    const float bowed = std::min(bow(input_, own_, a), bow(input_, own_, b));
     const float turn = std::max(kTurn, kTurnMargin * bowed * length);
     const float cosine = own_.normals[i].dot(own_.normals[j]);
     if (std::abs(cosine) < 1 - 0.5f * turn * turn) return;
@@ -225,14 +239,6 @@ class Growth {
     } else {
       across.push_back({i, j, sign});
     }
-  }
-
-  /// The curvature that a sure point's fit tells, 1/m: a sphere's cap of radius a and curvature k
-  /// is off its plane by k a^2 / sqrt(48) RMS.
-  [[nodiscard]] float bow(std::uint32_t i) const {
-    const float reach = 1.15f * input_.radii[i];
-    const float square = own_.residuals[i] * own_.residuals[i] - own_.bends[i] * own_.bends[i];
-    return std::sqrt(48 * std::max(square, 0.f)) / (reach * reach);
   }
 
   const SheetInput& input_;
