@@ -13,10 +13,6 @@
 namespace palpate {
 namespace {
 
-// A sheet goes on over the gap: a plane, or a quadric that leaves this, of R.
-constexpr double kPlanar = 0.5;
-constexpr double kSmooth = 0.03;
-
 constexpr float kMultiple = 2.5f;      // R over the gap
 constexpr float kFaint = 2.5f;         // sums of weights: 5.8 on a square grid
 constexpr float kOpposite = -0.5f;     // cosine between two that lie on opposite sides
@@ -93,9 +89,7 @@ std::size_t close_gaps(const GapInput& input, std::vector<float>& radii, OwnShee
       const SheetFit fit =
           fitter.fit(input.grid, input.grid.points()[i], static_cast<double>(wanted),
                      static_cast<double>(input.spacings[i]));
-      const bool goes_on = fit.points >= SheetFitter::kEnough && fit.planarity >= kPlanar &&
-                           fit.bend <= kSmooth * static_cast<double>(wanted);
-      if (!goes_on) continue;
+      if (!fit.is_sheet(static_cast<double>(wanted), 0)) continue;
       radii[i] = wanted;
       own.normals[i] = fit.normal.cast<float>();
       own.confidences[i] = static_cast<float>(fit.planarity);

@@ -43,6 +43,7 @@ constexpr int kTiles = 16;  // along a window, at most
 constexpr int kEnoughInTile = 6;
 
 struct Plane {
+  Vector3d mean = Vector3d::Zero();
   Vector3d normal = Vector3d::Zero();
   Vector3d variances = Vector3d::Zero();  // rising, m^2
 };
@@ -51,14 +52,13 @@ Plane plane_of(const std::vector<Vector3d>& points) {
   Plane plane;
   if (points.size() < 3) return plane;
   const auto count = static_cast<double>(points.size());
-  Vector3d mean = Vector3d::Zero();
   Matrix3d second = Matrix3d::Zero();
   for (const Vector3d& p : points) {
-    mean += p;
+    plane.mean += p;
     second += p * p.transpose();
   }
-  mean /= count;
-  const Matrix3d scatter = second / count - mean * mean.transpose();
+  plane.mean /= count;
+  const Matrix3d scatter = second / count - plane.mean * plane.mean.transpose();
   const double size = scatter.trace();
   if (!(size > 0)) return plane;
   Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
@@ -120,7 +120,19 @@ double gap_between_groups(std::span<const double> heights, double spacing) {
   return two ? 0.5 * (upper.front() + lower.back()) : kNone;
 }
 
+// What a sheet's fit may leave, of R or of the noise, and how far off it a point of it may be, of
+// R.
+constexpr double kSmooth = 0.03;
+constexpr double kNoisySmooth = 1.6;
+constexpr double kOnSheet = 0.12;
+constexpr double kPlanar = 0.5;
+
 }  // namespace
+
+bool SheetFit::is_sheet(double radius, double noise) const {
+  return points >= SheetFitter::kEnough && planarity >= kPlanar &&
+         bend <= std::max(kSmooth * radius, kNoisySmooth * noise) && off <= kOnSheet * radius;
+}
 
 /// Leaves the offsets on this side of a gap along the axis. False: there is none.
 bool SheetFitter::keep_own_group(const Vector3d& axis, double spacing) {
@@ -170,16 +182,26 @@ SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, d
   fit.normal = plane.normal;
   fit.planarity = planarity_of(plane, fit.points);
   fit.bend = fit.residual = rms_residual(plane, fit.points);
+  fit.off = std::abs(plane.normal.dot(plane.mean));
   fit.footprint = reach * std::sqrt(std::numbers::pi / static_cast<double>(fit.points));
   if (fit.points < kEnough) return fit;
-  const double variance = subtract_quadric(plane.normal, reach);
-  fit.bend = std::sqrt(variance);
-  if (tile > 0 && variance > 0) fit.shared = tile_variance(tile) / variance;
+  subtract_quadric(reach, fit);
+  if (tile > 0 && fit.bend > 0) fit.shared = tile_variance(tile) / (fit.bend * fit.bend);
   return fit;
 }
 
-/// The variance that a quadric leaves, m^2.
-double SheetFitter::subtract_quadric(const Vector3d& normal, double reach) {
+std::size_t SheetFitter::places(double spacing) {
+  cells_.clear();
+  for (const Vector3d& offset : offsets_) {
+    const Eigen::Vector3i cell = (2 / spacing * offset).array().round().cast<int>();
+    cells_.push_back({cell.x(), cell.y(), cell.z()});
+  }
+  std::sort(cells_.begin(), cells_.end());
+  return static_cast<std::size_t>(std::unique(cells_.begin(), cells_.end()) - cells_.begin());
+}
+
+void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
+  const Vector3d& normal = fit.normal;
   const Vector3d u = normal.unitOrthogonal();
   const Vector3d v = normal.cross(u);
   const auto terms_at = [&](const Vector3d& p) {
@@ -204,7 +226,8 @@ double SheetFitter::subtract_quadric(const Vector3d& normal, double reach) {
     p.z() -= terms_at(p).dot(quadric);
     squares += p.z() * p.z();
   }
-  return squares / static_cast<double>(left_.size() - kTerms);
+  fit.bend = std::sqrt(squares / static_cast<double>(left_.size() - kTerms));
+  fit.off = std::abs(quadric[0]);
 }
 
 /// Mean over the tiles of (sum of residuals)^2 / number: the variance itself where they are

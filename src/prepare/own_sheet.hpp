@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,11 +19,16 @@ struct SheetFit {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, sign arbitrary; zero: undefined
   double planarity = 0;                              ///< 0-1, as Normals::confidences
   double residual = 0;                               ///< rms distance from the plane, m
+  double off = 0;        ///< of the place itself from the quadric; of too few points, the plane, m
   double bend = 0;       ///< rms distance from the quadric, m; of too few points, the plane's
   double footprint = 0;  ///< root of the area per point, m
   double shared = 1;     ///< variance of the residuals' means over tiles, against what independent
                          ///< residuals would give: about 1 for these, above for neighbours that err
                          ///< together
+
+  /// Is there a smooth sheet, and is the place on it? Of a fit within `radius`; `noise`: of the
+  /// points, m. Curvature passes, a crease does not.
+  [[nodiscard]] bool is_sheet(double radius, double noise) const;
 };
 
 /// Fits one place after another; keeps its memory in between.
@@ -33,18 +39,22 @@ class SheetFitter {
   [[nodiscard]] SheetFit fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
                              double spacing, double tile = 0);
 
+  /// In how many cells of half a spacing the points of the last fit lie: clusters count once.
+  [[nodiscard]] std::size_t places(double spacing);
+
   static constexpr std::size_t kEnough = 10;  ///< points of a quadric, which has six terms
 
  private:
   [[nodiscard]] bool keep_own_group(const Eigen::Vector3d& axis, double spacing);
   [[nodiscard]] Eigen::Vector3d axis_of_nearest(double spacing, const Eigen::Vector3d& fallback);
-  [[nodiscard]] double subtract_quadric(const Eigen::Vector3d& normal, double reach);
+  void subtract_quadric(double reach, SheetFit& fit);
   [[nodiscard]] double tile_variance(double tile) const;
 
   std::vector<std::uint32_t> near_;
   std::vector<Eigen::Vector3d> offsets_;  // from the centre, m; of the own group
   std::vector<Eigen::Vector3d> some_;
   std::vector<double> heights_;
+  std::vector<std::array<int, 3>> cells_;
   std::vector<Eigen::Vector3d> left_;  // place in the plane, and what the quadric leaves; of 1
 };
 

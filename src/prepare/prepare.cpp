@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "field/density_sums.hpp"
+#include "geometry/parallel.hpp"
 #include "geometry/speckle.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/filters.hpp"
@@ -46,10 +47,10 @@ constexpr double kSliver = 0.7;
 // The paper's multiple m, its k nearest neighbours and the level of its metaball (section V).
 constexpr double kPaperMultiple = 2.5;
 
-// A point this many typical spacings from its neighbours, with no more around it than this of the
-// weight that makes a surface, is a stray.
-constexpr float kStraySpacings = 16;
-constexpr float kStrayWeight = 1.5f;
+// A point this many typical spacings from its neighbours has to be on a sheet with them.
+constexpr float kStraySpacings = 4;
+constexpr std::size_t kManyInWindow = 120;  // points of a window of three spacings; 28 on a sheet
+constexpr double kOffDenser = 0.3;          // typical spacings
 
 // Noise is not smoothed away at the price of shape of this part of the cloud's size.
 constexpr double kFinestShape = 25;
@@ -212,7 +213,36 @@ class Preparation {
       given_ = in_grid_order(points_.grid, cloud_->normals);
       take_given_normals(points_.grid, given_, own_sheets_.normals);
     }
+    if (options_.remove_speckle && !options_.radius && !options_.paper) find_strays();
     watch_.lap(report_.seconds_normals);
+  }
+
+  /// A point much farther from others than most are, and on no sheet with them, is a stray. Its
+  /// support is not to reach what is sampled finely.
+  void find_strays() {
+    const auto spacing = static_cast<float>(report_.spacing);
+    strays_.resize(points_.size());
+    detail::parallel_ranges(points_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      SheetFitter fitter;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (spacings_[i] <= kStraySpacings * spacing) continue;
+        const auto own = static_cast<double>(spacings_[i]);
+        const double radius = kIrregularMultiple * own;
+        const SheetFit fit = fitter.fit(points_.grid, points_.grid.points()[i], radius, own);
+        // Where others lie far denser it has to be on what they tell, as they do.
+        const bool among_denser = fit.points > kManyInWindow;
+        const double most = kOffDenser * report_.spacing + 3 * report_.noise;
+        if (fit.is_sheet(radius, report_.noise) && fitter.places(own) >= SheetFitter::kEnough &&
+            (!among_denser || fit.off <= most)) {
+          continue;
+        }
+        strays_[i] = 1;
+        own_sheets_.confidences[i] = 0;
+      }
+    });
+    for (std::size_t i = 0; i < strays_.size(); ++i) {
+      if (strays_[i] != 0) points_.radii[i] = kStraySpacings * spacing;
+    }
   }
 
   void find_sheets() {
@@ -257,10 +287,7 @@ class Preparation {
   /// Points that noise made stay in the index and weigh nothing.
   void silence_speckle() {
     auto mask = detail::speckle_mask(points_.grid, points_.radii, sums_);
-    const float stray = kStraySpacings * static_cast<float>(report_.spacing);
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-      if (spacings_[i] > stray && sums_.own[i] < kStrayWeight) mask[i] = 1;
-    }
+    for (std::size_t i = 0; i < strays_.size(); ++i) mask[i] |= strays_[i];
     const auto speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
     if (speckle < points_.size()) {  // a cloud of nothing else is a sparse one
       report_.speckle = speckle;
@@ -281,6 +308,7 @@ class Preparation {
   std::vector<std::uint32_t> counts_;   // points that each voxel's stands for; empty: one each
   std::vector<Eigen::Vector3f> given_;  // in sorted order; empty: none
   OwnSheets own_sheets_;
+  std::vector<std::uint8_t> strays_;  // 1: one; empty: not looked for
   detail::WeightSums sums_;
   double footprint_ = 0;
   Noise noise_;
