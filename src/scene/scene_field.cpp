@@ -50,8 +50,8 @@ static_assert(Scene::kMaxSources <= simd::kMaxSources);
 static_assert(Scene::kMaxSources * Snapshot::kMaxLayers <= kMostLayers);
 
 struct SceneField::State {
-  State(Scene& scene, const FieldOptions& options, const std::string& name)
-      : surface(options), fields(scene.fields_) {
+  State(Scene& scene, const FieldOptions& options, const std::string& name, double scale)
+      : surface(options), fields(scene.fields_), reach(scale) {
     for (std::size_t i = 0; i < scene.size(); ++i) {
       Source& source = scene.source(i);
       views.emplace_back(source.handoff_, name);
@@ -194,8 +194,9 @@ void SceneField::State::publish_reach(const Vector3d& hip, const Vector3d& proxy
   for (std::size_t i = 0; i < views.size(); ++i) boards[i]->write(views[i].reader(), ball);
 }
 
-SceneField::SceneField(Scene& scene, const FieldOptions& options, const std::string& name)
-    : options_(options), state_(std::make_unique<State>(scene, options, name)) {}
+SceneField::SceneField(Scene& scene, const FieldOptions& options, const std::string& name,
+                       double scale)
+    : options_(options), state_(std::make_unique<State>(scene, options, name, scale)) {}
 
 SceneField::~SceneField() = default;
 

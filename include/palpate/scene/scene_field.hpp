@@ -39,10 +39,11 @@ class SceneField final : public Field {
   /// Cells and points of the index that update() looks at, and likewise a proxy's step.
   static constexpr int kStepVisits = 40960;
 
-  /// `name`: for reports of fields that stand still.
+  /// `name`: for reports of fields that stand still. `scale`: metres that the tool goes for one of
+  /// the hand (Workspace::scale), which tells how fast it can be.
   /// @throws Error when an option is out of range or the scene has too many readers.
   explicit SceneField(Scene& scene, const FieldOptions& options = {},
-                      const std::string& name = "a field");
+                      const std::string& name = "a field", double scale = 1);
   ~SceneField() override;
   SceneField(const SceneField&) = delete;
   SceneField& operator=(const SceneField&) = delete;
