@@ -155,8 +155,8 @@ FieldNote SceneField::State::standing_notes() const noexcept {
   const Patch& near = patches.near();
   if (near.thinned()) found = found | FieldNote::thinned;
   if (other_kernel && !surface.options.raw_weights) found = found | FieldNote::other_kernel;
-  const double largest_tool = (1 + 1e-6) * kToolShare * near.smallest_radius();
-  if (near.points() > 0 && surface.options.tool_radius > largest_tool) {
+  const double tool = (1 + 1e-6) * std::min(kToolShare, surface.largest_tool);
+  if (near.points() > 0 && surface.options.tool_radius > tool * near.smallest_radius()) {
     found = found | FieldNote::tool_too_large;
   }
   return found;

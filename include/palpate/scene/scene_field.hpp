@@ -18,8 +18,9 @@ enum class FieldNote : std::uint32_t {
   no_surface = 1u << 1,       ///< no source has a surface now
   time_not_finite = 1u << 2,  ///< update() kept the time of the last one
   other_kernel = 1u << 3,     ///< points were prepared for another kernel than FieldOptions::kernel
-  tool_too_large = 1u << 4,   ///< tool_radius is above 0.3 R here, so it counts for less. Remedy:
-                              ///< PrepareOptions::minimum_radius = tool_radius / 0.3
+  tool_too_large = 1u << 4,   ///< tool_radius is above 0.3 R here, or would bring a metaball's
+                              ///< surface further than 0.85 R from its points, so it counts for
+                              ///< less. Remedy: PrepareOptions::minimum_radius = tool_radius / 0.3
   work_spent = 1u << 5,       ///< a step had looked at kStepVisits; what it did not know was solid
 };
 
