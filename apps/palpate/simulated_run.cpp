@@ -28,7 +28,8 @@ std::vector<SimulatedStream> make_streams(Run& run) {
 }  // namespace
 
 bool run_simulated(Run& run, const EachStep& each) {
-  SceneField field(run.felt, run.field);
+  const Hand& hand = run.hands.front();
+  SceneField field(run.felt, run.field, "a field", hand.workspace.scale);
   Proxy proxy(run.proxy);
   std::vector<SimulatedStream> streams = make_streams(run);
   const Interruption interruption;
@@ -36,7 +37,6 @@ bool run_simulated(Run& run, const EachStep& each) {
     for (SimulatedStream& stream : streams) stream.advance(time);
     return !interruption.asked();
   };
-  const Hand& hand = run.hands.front();
   run_touch(*hand.device, hand.workspace, field, proxy, see,
             [&](const TouchStep& step) { each(0, step); });
   std::vector<StreamState> states;

@@ -143,16 +143,14 @@ Vector3d LinkedDevice::applicable(double now) const noexcept {
 }
 
 void LinkedDevice::lose(const char* why) noexcept {
-  {
-    const std::lock_guard lock(words_mutex_);
-    words_ = why;
-  }
-  losses_.fetch_add(1);
   newest_.connection = kNone;
   heard_.set(newest_);
-  link_.reset();  // zero force
+  link_.reset();  // zero force, before anything that takes a lock or memory
+  losses_.fetch_add(1);
   ++connection_;
   retry_at_ = clock_.now() + options_.retry;
+  const std::lock_guard lock(words_mutex_);
+  words_ = why;
 }
 
 // The words stay those of the loss: that it is not back yet is no news.

@@ -28,6 +28,10 @@ constexpr double kFaintLabel = 1e-6;  // of all normals' weight: a label with le
 // edge is let go within a third of the support and not at once, as an exact edge would do.
 constexpr double kOverEdges = 0.35;
 
+// The highest above a plane that a metaball's surface may lie, in support radii: further out
+// weights are too flat for it to be found.
+constexpr double kHighest = 0.85;
+
 /// W, R(x) and what is at hand of the sums.
 struct Support {
   Value w;
@@ -72,9 +76,10 @@ Value as_length(const FieldOptions& options, const Support& support, const Value
 Value level_of(const ImplicitSurface& surface, const Support& support) noexcept {
   const FieldOptions& options = surface.options;
   if (options.tool_radius <= 0) return {options.threshold, Vector3d::Zero()};
-  const double eta = surface.offset + options.tool_radius / support.radius.f;
+  const double tool = options.tool_radius / support.radius.f;
+  const double eta = surface.offset + std::min(tool, surface.largest_tool);
   const double slope = plane_threshold_slope(options.kernel, eta);
-  const double d_eta = -options.tool_radius / (support.radius.f * support.radius.f);
+  const double d_eta = tool < surface.largest_tool ? -tool / support.radius.f : 0;
   return {plane_threshold(options.kernel, eta), slope * d_eta * support.radius.grad};
 }
 
@@ -251,6 +256,7 @@ ImplicitSurface::ImplicitSurface(const FieldOptions& given) : sums(&simd::best()
 void ImplicitSurface::change(const FieldOptions& checked) noexcept {
   options = checked;
   offset = options.raw_weights ? 0 : plane_offset(options.kernel, options.threshold);
+  largest_tool = std::max(0.0, kHighest - offset);
 }
 
 double united(const double* w, int sources) noexcept {
@@ -309,8 +315,8 @@ double free_level(const ImplicitSurface& surface, double smallest_radius) noexce
   if (options.kind != FieldKind::metaball && !options.capped) return kNoWeight;
   double level = options.threshold;
   if (options.tool_radius > 0) {
-    const double eta = surface.offset + options.tool_radius / smallest_radius;
-    level = plane_threshold(options.kernel, eta);
+    const double tool = std::min(options.tool_radius / smallest_radius, surface.largest_tool);
+    level = plane_threshold(options.kernel, surface.offset + tool);
   }
   return options.kind == FieldKind::metaball ? level : std::min(level, options.minimum_support);
 }

@@ -16,7 +16,8 @@ struct ImplicitSurface {
   void change(const FieldOptions& checked) noexcept;
 
   FieldOptions options;
-  double offset = 0;  ///< of the metaball level, in support radii, without a tool
+  double offset = 0;        ///< of the metaball level, in support radii, without a tool
+  double largest_tool = 0;  ///< that the metaball's surface is pushed out by, in support radii
   const simd::Functions* sums;
 };
 

@@ -13,6 +13,8 @@ void Patches::show(std::span<const ActiveLayer> layers, int sources, bool same) 
   layers_ = layers;
   sources_ = sources;
   if (!same) far_.clear();
+  // Nobody has renewed it: its layers may be gone, and others come to their addresses.
+  if (near_.outdated()) near_.clear();
   near_.advance(layers_);
   far_is_late_ = true;
 }

@@ -50,8 +50,8 @@ static_assert(Scene::kMaxSources <= simd::kMaxSources);
 static_assert(Scene::kMaxSources * Snapshot::kMaxLayers <= kMostLayers);
 
 struct SceneField::State {
-  State(Scene& scene, const FieldOptions& options, const std::string& name)
-      : surface(options), fields(scene.fields_) {
+  State(Scene& scene, const FieldOptions& options, const std::string& name, double scale)
+      : surface(options), fields(scene.fields_), reach(scale) {
     for (std::size_t i = 0; i < scene.size(); ++i) {
       Source& source = scene.source(i);
       views.emplace_back(source.handoff_, name);
@@ -156,8 +156,8 @@ FieldNote SceneField::State::standing_notes() const noexcept {
   const Patch& near = patches.near();
   if (near.thinned()) found = found | FieldNote::thinned;
   if (other_kernel && !surface.options.raw_weights) found = found | FieldNote::other_kernel;
-  const double largest_tool = (1 + 1e-6) * kToolShare * near.smallest_radius();
-  if (near.points() > 0 && surface.options.tool_radius > largest_tool) {
+  const double tool = (1 + 1e-6) * std::min(kToolShare, surface.largest_tool);
+  if (near.points() > 0 && surface.options.tool_radius > tool * near.smallest_radius()) {
     found = found | FieldNote::tool_too_large;
   }
   return found;
@@ -195,8 +195,9 @@ void SceneField::State::publish_reach(const Vector3d& hip, const Vector3d& proxy
   for (std::size_t i = 0; i < views.size(); ++i) boards[i]->write(views[i].reader(), ball);
 }
 
-SceneField::SceneField(Scene& scene, const FieldOptions& options, const std::string& name)
-    : options_(options), state_(std::make_unique<State>(scene, options, name)) {}
+SceneField::SceneField(Scene& scene, const FieldOptions& options, const std::string& name,
+                       double scale)
+    : options_(options), state_(std::make_unique<State>(scene, options, name, scale)) {}
 
 SceneField::~SceneField() = default;
 

@@ -25,14 +25,14 @@ Reach ToolReach::update(double now, const Eigen::Vector3d& hip, const Eigen::Vec
                         double frame, double margin) noexcept {
   const double dt = now - last_time_;
   if (started_ && dt > 0 && dt < kLongStep) {
-    const double speed = std::min((hip - last_hip_).norm() / dt, kFastest);
+    const double speed = std::min((hip - last_hip_).norm() / dt, scale_ * kFastest);
     speed_ = std::max(speed, speed_ * (1 - dt / kForget));
   }
   started_ = true;
   last_time_ = now;
   last_hip_ = hip;
   const double horizon = kFrames * frame + kLatency;
-  const double way = std::max(kStartSpeed, kSpeedUp * speed_) * horizon;
+  const double way = std::max(scale_ * kStartSpeed, kSpeedUp * speed_) * horizon;
   return {0.5 * (hip + proxy), 0.5 * (hip - proxy).norm() + way + margin};
 }
 

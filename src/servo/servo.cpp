@@ -82,7 +82,7 @@ Servo::Servo(Device& device, Scene& scene, const ServoOptions& options)
       options_(options_for(device.info(), options)),
       stiffness_limit_(stiffness_limit_of(device.info(), options_)),
       softened_(options.proxy.stiffness > stiffness_limit_),
-      field_(scene, options_.field),
+      field_(scene, options_.field, "a field", options_.workspace.scale),
       proxy_(softened(options_.proxy, stiffness_limit_)),
       guard_(in_world(options_.guard, options_.workspace.scale)),
       wanted_field_(options_.field) {}

@@ -81,6 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{{.kind = FieldKind::metaball}, 1, 0, "metaball"},
         Case{{.kind = FieldKind::metaball, .kernel = Kernel::wendland}, 2, 0, "metaball_wendland"},
         Case{{.kind = FieldKind::metaball, .tool_radius = 2e-3}, 2, 0, "metaball_tool"},
+        Case{{.kind = FieldKind::metaball, .tool_radius = 3.5e-3}, 2, 0, "metaball_large_tool"},
         Case{{.kind = FieldKind::metaball, .threshold = 0.5, .raw_weights = true}, 1, 0, "raw"}),
     [](const auto& test) { return test.param.name; });
 

@@ -76,6 +76,17 @@ TEST(ToolReach, IsSmallAroundAHandThatRests) {
   EXPECT_GT(ball.radius, 0.05);
 }
 
+TEST(ToolReach, IsAsMuchLargerAsTheHandsMotionIsMagnified) {
+  ToolReach plain;
+  ToolReach magnified(10);
+  for (int k = 0; k < 50; ++k) {
+    const Vector3d hand(0.2e-3 * k * k, 0, 0);  // above a hand's fastest from the 13th step on
+    const double way = plain.update(1e-3 * k, hand, hand, 1. / 30, 0).radius;
+    EXPECT_NEAR(magnified.update(1e-3 * k, 10 * hand, 10 * hand, 1. / 30, 0).radius, 10 * way,
+                1e-12);
+  }
+}
+
 TEST(ToolReach, HoldsHandAndProxy) {
   ToolReach reach;
   const Vector3d hip(0, 0, -0.3);

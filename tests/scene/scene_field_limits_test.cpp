@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/snapshots.hpp"
 
@@ -162,6 +164,37 @@ TEST(SceneField, SaysWhenKernelOrToolDoNotFitThePoints) {
   SceneField fitting(scene, {.tool_radius = 3e-3});
   fitting.update(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_EQ(fitting.notes(), FieldNote::none);
+}
+
+// Of metaballs, a ball as large as a support would be in contact where nothing pushes it out.
+TEST(SceneField, AToolOfAnySizeIsPushedOutAndCountsForWhatTheSupportCarries) {
+  constexpr double kRadius = 10e-3;  // R
+  for (const Kernel kernel : {Kernel::wyvill, Kernel::wendland}) {
+    Scene scene;
+    auto snapshot = std::make_unique<Snapshot>();
+    snapshot->layers.push_back({share(make_points(plane(0), kernel)), 1, 1});
+    scene.add("plane").publish(std::move(snapshot));
+    for (const double threshold : {0.4, 0.1}) {
+      const double offset = plane_offset(kernel, threshold);
+      for (const double tool : {0.0, 0.1, 0.2, 0.3, 0.5, 0.52, 0.7, 1.0, 3.0}) {
+        SceneField field(scene, {.kind = FieldKind::metaball,
+                                 .kernel = kernel,
+                                 .threshold = threshold,
+                                 .tool_radius = tool * kRadius});
+        const double surface = std::min(offset + tool, 0.85) * kRadius;
+        Proxy proxy;
+        for (double z = 15e-3; z > 2e-3; z -= 0.1e-3) {
+          const Vector3d hip(0.3e-3, 0.4e-3, z);
+          field.update(0, hip, z == 15e-3 ? hip : proxy.position());
+          const Vector3d force = proxy.step(field, hip, 1e-3).force;
+          const Vector3d expected(0, 0, proxy.options().stiffness * std::max(0.0, surface - z));
+          EXPECT_LT((force - expected).norm(), 0.1) << threshold << ' ' << tool << " R, " << z;
+        }
+        EXPECT_EQ(has(field.notes(), FieldNote::tool_too_large),
+                  tool > std::min(0.3, 0.85 - offset));
+      }
+    }
+  }
 }
 
 TEST(SceneField, PointsOfNoWeightAreNotThere) {

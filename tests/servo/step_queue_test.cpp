@@ -16,6 +16,9 @@ ServoState step_of_number(std::uint64_t number) {
   return state;
 }
 
+// What neither thread writes, the servo's counters, the recorder's: a cache line each.
+static_assert(alignof(StepQueue) == 64 && sizeof(StepQueue) == 3 * alignof(StepQueue));
+
 TEST(StepQueue, GivesStepsInOrderAndCountsThoseThatFoundNoRoom) {
   StepQueue queue(3);  // four
   EXPECT_FALSE(queue.pop());

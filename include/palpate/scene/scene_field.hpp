@@ -18,8 +18,9 @@ enum class FieldNote : std::uint32_t {
   no_surface = 1u << 1,       ///< no source has a surface now
   time_not_finite = 1u << 2,  ///< update() kept the time of the last one
   other_kernel = 1u << 3,     ///< points were prepared for another kernel than FieldOptions::kernel
-  tool_too_large = 1u << 4,   ///< tool_radius is above 0.3 R here, so it counts for less. Remedy:
-                              ///< PrepareOptions::minimum_radius = tool_radius / 0.3
+  tool_too_large = 1u << 4,   ///< tool_radius is above 0.3 R here, or would bring a metaball's
+                              ///< surface further than 0.85 R from its points, so it counts for
+                              ///< less. Remedy: PrepareOptions::minimum_radius = tool_radius / 0.3
   work_spent = 1u << 5,       ///< a step had looked at kStepVisits; what it did not know was solid
 };
 
@@ -39,10 +40,11 @@ class SceneField final : public Field {
   /// Cells and points of the index that update() looks at, and likewise a proxy's step.
   static constexpr int kStepVisits = 40960;
 
-  /// `name`: for reports of fields that stand still.
+  /// `name`: for reports of fields that stand still. `scale`: metres that the tool goes for one of
+  /// the hand (Workspace::scale), which tells how fast it can be.
   /// @throws Error when an option is out of range or the scene has too many readers.
   explicit SceneField(Scene& scene, const FieldOptions& options = {},
-                      const std::string& name = "a field");
+                      const std::string& name = "a field", double scale = 1);
   ~SceneField() override;
   SceneField(const SceneField&) = delete;
   SceneField& operator=(const SceneField&) = delete;

@@ -31,11 +31,14 @@ class StepQueue {
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(); }
 
  private:
+  static constexpr std::size_t kCacheLine = 64;
+
+  // Threads that write into one cache line wait for each other.
   std::size_t size_;
   std::unique_ptr<ServoState[]> steps_;
-  std::atomic<std::uint64_t> pushed_{0};
-  std::atomic<std::uint64_t> popped_{0};
+  alignas(kCacheLine) std::atomic<std::uint64_t> pushed_{0};  // the servo writes it, and the next
   std::atomic<std::uint64_t> dropped_{0};
+  alignas(kCacheLine) std::atomic<std::uint64_t> popped_{0};  // the recorder writes it
 };
 
 }  // namespace palpate
