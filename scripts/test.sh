@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Every test in a release build and under ASan + UBSan, and every fuzz target for 5 s over its seeds.
+# Every test in a release build and under ASan + UBSan, every fuzz target for 5 s over its seeds, and
+# the program without any optional library.
 #
 # With clang one sanitized build holds both (preset fuzz); --no-fuzz does without clang (preset asan)
 # and without the fuzz targets. Real data is looked for in $PALPATE_DATA, else in
@@ -11,7 +12,7 @@ for argument in "$@"; do
   case "$argument" in
     --no-fuzz) fuzz=no ;;
     *)
-      sed -n '2,6s/^# \{0,1\}//p' "$0"
+      sed -n '2,7s/^# \{0,1\}//p' "$0"
       exit
       ;;
   esac
@@ -36,6 +37,28 @@ configure release -DPALPATE_BUILD_TESTS=ON
 build release
 configure "$sanitized"
 build "$sanitized"
+configure bare
+build bare palpate_app
+
+# bare WORDS ARGUMENT...: the program without optional libraries does this, and says these words.
+bare() {
+  local words=$1
+  shift
+  if build/bare/apps/palpate/palpate "$@" >build/bare.log 2>&1 && grep -q "$words" build/bare.log; then
+    note "palpate $*: runs"
+  else
+    cat build/bare.log >&2
+    note "palpate $*: BROKEN, or says no \"$words\""
+    status=1
+  fi
+}
+say "the program without optional libraries"
+bare 'palpate [0-9]' --version
+bare 'this build has no OpenNI2' cameras
+bare 'this build has no libfreenect' cameras
+bare 'this build cannot speak to Haply' devices
+bare 'contacts  *1' touch synthetic:sphere --duration 1
+bare 'frames  *30' touch camera:simulated --simulated-time --duration 1
 
 if [ "$fuzz" = yes ]; then
   say "fuzz targets, 5 s each"

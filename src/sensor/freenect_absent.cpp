@@ -2,25 +2,20 @@
 #include "sensor/drivers.hpp"
 
 namespace palpate::sensor {
-namespace {
-
-constexpr const char* kMissing =
-    "this build has no libfreenect. Install libfreenect-dev (Debian, Ubuntu) and build palpate "
-    "again.";
-
-}  // namespace
 
 DriverInfo freenect_driver() {
   return {.name = "freenect",
           .description = "Kinect v1",
           .available = false,
-          .missing = kMissing,
+          .missing =
+              "this build has no libfreenect. Install libfreenect-dev (Debian, Ubuntu) and build "
+              "palpate again.",
           .devices = {}};
 }
 
-std::unique_ptr<DepthCamera> open_freenect(const std::string& device,
+std::unique_ptr<DepthCamera> open_freenect(const std::string& /*device*/,
                                            const CameraOptions& /*options*/) {
-  throw Error("freenect:" + device + ": " + kMissing);
+  throw Error("freenect: " + freenect_driver().missing);
 }
 
 }  // namespace palpate::sensor

@@ -2,24 +2,20 @@
 #include "sensor/drivers.hpp"
 
 namespace palpate::sensor {
-namespace {
-
-constexpr const char* kMissing =
-    "this build has no OpenNI2. Install libopenni2-dev (Debian, Ubuntu) and build palpate again.";
-
-}  // namespace
 
 DriverInfo openni2_driver() {
   return {.name = "openni2",
           .description = "PrimeSense and Asus Xtion cameras, and .oni recordings",
           .available = false,
-          .missing = kMissing,
+          .missing =
+              "this build has no OpenNI2. Install libopenni2-dev (Debian, Ubuntu) and build "
+              "palpate again.",
           .devices = {}};
 }
 
-std::unique_ptr<DepthCamera> open_openni2(const std::string& device,
+std::unique_ptr<DepthCamera> open_openni2(const std::string& /*device*/,
                                           const CameraOptions& /*options*/) {
-  throw Error("openni2:" + device + ": " + kMissing);
+  throw Error("openni2: " + openni2_driver().missing);
 }
 
 }  // namespace palpate::sensor
