@@ -18,6 +18,7 @@ constexpr std::uint32_t kNobody = ~std::uint32_t{0};
 constexpr float kPlanar = 0.5f;   // confidence from which on a fit is a plane
 constexpr float kSmooth = 0.03f;  // of R that a quadric may leave: curvature passes, a crease not
 constexpr float kNoisySmooth = 1.6f;  // of the noise, likewise
+constexpr float kNoisier = 2.5f;      // than typical that noise may be in places
 
 // An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
 // this many of its residuals.
@@ -52,13 +53,23 @@ float bow(const SheetInput& input, const OwnSheets& own, std::uint32_t i) {
 /// What becomes of the points that their own fit does not put on a sheet.
 class Snapping {
  public:
-  Snapping(const SheetInput& input, OwnSheets& own) : input_(input), own_(own) {
-    const auto noise = kNoisySmooth * static_cast<float>(input.noise);
-    sure_.resize(input.grid.size());
-    for (std::size_t i = 0; i < sure_.size(); ++i) {
-      const float smooth = std::max(kSmooth * input.radii[i], noise);
-      sure_[i] = own.confidences[i] >= kPlanar && own.bends[i] <= smooth ? 1 : 0;
-    }
+  Snapping(const SheetInput& input, OwnSheets& own)
+      : input_(input), own_(own), sure_(input.grid.size()) {
+    const auto noise = static_cast<float>(input.noise);
+    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (own.confidences[i] < kPlanar) continue;
+        const float smooth = kSmooth * input.radii[i];
+        float local = noise;
+        if (own.bends[i] > std::max(smooth, kNoisySmooth * noise) &&
+            own.bends[i] <= kNoisySmooth * kNoisier * noise) {
+          local = std::clamp(noise_around(static_cast<std::uint32_t>(i), near), noise,
+                             kNoisier * noise);
+        }
+        sure_[i] = own.bends[i] <= std::max(smooth, kNoisySmooth * local) ? 1 : 0;
+      }
+    });
   }
 
   void run() {
@@ -89,6 +100,17 @@ class Snapping {
   }
 
  private:
+  /// Noise is not the same everywhere: what the flattest quarter of the fits around leaves, m.
+  float noise_around(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    near.clear();
+    input_.grid.within(input_.grid.points()[i], kFarSnapReach * input_.radii[i], near);
+    const auto quarter = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 4);
+    std::nth_element(near.begin(), quarter, near.end(), [this](std::uint32_t a, std::uint32_t b) {
+      return own_.bends[a] < own_.bends[b];
+    });
+    return own_.bends[*quarter];
+  }
+
   /// False: nothing is sure around, so the point's own plane has to do.
   bool place(std::uint32_t i, std::vector<std::uint32_t>& near) {
     for (const float reach : {kSnapReach, kFarSnapReach}) {
