@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What takes longer than scripts/test.sh: Debug and TSan builds with every test, a minute of fuzzing a
-# target and, for root, the trial of both README commands in a fresh Debian root.
+# target and, where one can be made, the trial of both README commands in a fresh Debian root.
 #
 # --no-fresh-root leaves the last out. --soak does another thing instead: ten minutes of touching two
 # cameras in real time while other load rises and falls; no memory may leak and no step be a fault.
@@ -45,12 +45,10 @@ fuzz_all 60 || status=1
 say "format and tidy, every file"
 scripts/lint.sh --all || status=1
 
-if [ "$fresh" = yes ] && [ "$(id -u)" -eq 0 ]; then
-  say "fresh root"
-  need_packages fresh
-  scripts/fresh_root.sh "${PALPATE_FRESH_ROOT:-/var/tmp/palpate-fresh-root}" || status=1
+if [ "$fresh" = yes ]; then
+  scripts/fresh_root.sh --test || [ $? -eq 77 ] || status=1  # 77: no such root can be made here
 else
-  note "fresh root: left out (it needs root, and no --no-fresh-root)"
+  note "fresh root: left out"
 fi
 
 say "summary (after $((SECONDS - started)) s)"
