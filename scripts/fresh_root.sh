@@ -6,7 +6,7 @@
 #   --test   runs the demo a second time and scripts/test.sh, too
 #   MIRROR   default: the one that this machine's apt uses
 # What is committed is what is tried. Each run begins with a root that holds nothing but apt, of which
-# ~/.cache/palpate keeps a copy for a month. A root in which something failed stays to be looked at;
+# ~/.cache/palpate keeps a copy for a month. The root stays for a look until the next run removes it;
 # nothing stays mounted. Where none can be made, the reason is told and the status is 77.
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
@@ -108,4 +108,3 @@ if [ "$with_test" = yes ]; then
   timed "scripts/demo.sh --headless --duration 5"
   timed scripts/test.sh
 fi
-rm -rf --one-file-system "$root"
