@@ -73,6 +73,7 @@ void Facing::follow(const Facing& other) noexcept {
   now_ = other.now_;
   remembered_ = other.remembered_;  // within what was reserved
   remembered_from_ = other.remembered_from_;
+  follows_ = true;
 }
 
 std::uint32_t Facing::part_of(const Key& key) noexcept {
@@ -382,7 +383,7 @@ bool Facing::face(const Points& points, const Stance& stance) noexcept {
   pairs_ = kPairs;
   list(points, stance);
   if (points_.empty()) return write(points);
-  let_go();
+  if (!std::exchange(follows_, false)) let_go();
   group();
   choose_eye(stance);
   const bool vanished = list_references(stance);

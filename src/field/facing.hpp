@@ -55,7 +55,7 @@ class Facing {
   /// time.
   void forget() noexcept;
 
-  /// Takes over another's decisions.
+  /// Takes over another's decisions, which stand in the next call wherever its points are.
   void follow(const Facing& other) noexcept;
 
  private:
@@ -141,7 +141,8 @@ class Facing {
   Eigen::Vector3f eye_ = Eigen::Vector3f::Zero();              // a free place, from the proxy, m
   float radius_ = 0;                                           // R around the tool, m
   float view_ = 0;  // how far from the eye what is seen counts, m
-  int pairs_ = 0;   // that may still be compared
+  bool follows_ = false;
+  int pairs_ = 0;  // that may still be compared
 };
 
 }  // namespace palpate

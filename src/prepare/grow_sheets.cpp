@@ -18,18 +18,19 @@ constexpr std::uint32_t kNobody = ~std::uint32_t{0};
 constexpr float kPlanar = 0.5f;   // confidence from which on a fit is a plane
 constexpr float kSmooth = 0.03f;  // of R that a quadric may leave: curvature passes, a crease not
 constexpr float kNoisySmooth = 1.6f;  // of the noise, likewise
+constexpr float kNoiseReach = 2.5f;   // R within which noise is looked for
 constexpr float kNoisier = 2.5f;      // than typical that noise may be in places
 
 // An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
 // this many of its residuals.
-constexpr float kSnapReach = 1.6f;     // R; where nothing is sure there:
-constexpr float kFarSnapReach = 2.5f;  // where nothing is sure here either, a plane is sure enough
+constexpr float kSnapReach = 1.6f;  // R; where nothing is sure there:
+constexpr float kFarSnapReach = 4;  // R
 constexpr float kSnapSlope = 0.12f;
 constexpr float kSnapResiduals = 3;
 constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
 
 // A point lies on a second plane where that is another one and it is off it by so many spacings.
-constexpr float kOtherPlane = 0.9f;
+constexpr float kOtherPlane = 0.97f;
 constexpr float kOnBoth = 0.2f;
 
 // Two points continue each other's sheet.
@@ -75,16 +76,26 @@ class Snapping {
   void run() {
     hosts_.assign(sure_.size(), kNobody);
     second_hosts_.assign(sure_.size(), kNobody);
-    std::vector<std::uint8_t> lonely(sure_.size());
-    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
-      std::vector<std::uint32_t> near;
-      for (std::size_t i = begin; i < end; ++i) {
-        if (sure_[i] == 0) lonely[i] = place(static_cast<std::uint32_t>(i), near) ? 0 : 1;
+    for (std::uint32_t i = 0; i < sure_.size(); ++i) {
+      if (sure_[i] != 0) hosts_[i] = i;
+    }
+    each_with_memory([this](std::uint32_t i, std::vector<std::uint32_t>& near) {
+      if (sure_[i] == 0) {
+        take_host(i, near);
+      } else if (own_.others[i] != 0) {
+        list_sure(i, kFarSnapReach, near);
+        second_hosts_[i] = second_host(i, i, near);
       }
     });
-    for (std::uint32_t i = 0; i < lonely.size(); ++i) {
-      sure_[i] |= lonely[i];
-      if (sure_[i] != 0) hosts_[i] = i;
+    std::vector<std::uint8_t> alone(sure_.size());
+    each_with_memory([&](std::uint32_t i, std::vector<std::uint32_t>& near) {
+      if (hosts_[i] == kNobody) alone[i] = is_among_homeless(i, near) ? 1 : 0;
+    });
+    for (std::uint32_t i = 0; i < alone.size(); ++i) {
+      if (hosts_[i] != kNobody) continue;
+      sure_[i] = alone[i];
+      if (alone[i] != 0) hosts_[i] = i;
+      if (alone[i] == 0) own_.confidences[i] = 0;
     }
   }
 
@@ -103,7 +114,7 @@ class Snapping {
   /// Noise is not the same everywhere: what the flattest quarter of the fits around leaves, m.
   float noise_around(std::uint32_t i, std::vector<std::uint32_t>& near) const {
     near.clear();
-    input_.grid.within(input_.grid.points()[i], kFarSnapReach * input_.radii[i], near);
+    input_.grid.within(input_.grid.points()[i], kNoiseReach * input_.radii[i], near);
     const auto quarter = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 4);
     std::nth_element(near.begin(), quarter, near.end(), [this](std::uint32_t a, std::uint32_t b) {
       return own_.bends[a] < own_.bends[b];
@@ -111,20 +122,27 @@ class Snapping {
     return own_.bends[*quarter];
   }
 
-  /// False: nothing is sure around, so the point's own plane has to do.
-  bool place(std::uint32_t i, std::vector<std::uint32_t>& near) {
-    for (const float reach : {kSnapReach, kFarSnapReach}) {
-      near.clear();
-      input_.grid.within(input_.grid.points()[i], reach * input_.radii[i], near);
-      std::erase_if(near, [this](std::uint32_t j) { return sure_[j] == 0; });
-      if (!near.empty()) break;
-    }
-    if (near.empty() && own_.confidences[i] >= kPlanar) return false;
-    const std::uint32_t host = hosts_[i] = best_host(i, near);
-    if (host == kNobody) {
-      own_.confidences[i] = 0;
-      return true;
-    }
+  void list_sure(std::uint32_t i, float reach, std::vector<std::uint32_t>& near) const {
+    near.clear();
+    input_.grid.within(input_.grid.points()[i], reach * input_.radii[i], near);
+    std::erase_if(near, [this](std::uint32_t j) { return sure_[j] == 0; });
+  }
+
+  template <class Body>
+  void each_with_memory(const Body& body) const {
+    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = begin; i < end; ++i) body(static_cast<std::uint32_t>(i), near);
+    });
+  }
+
+  void take_host(std::uint32_t i, std::vector<std::uint32_t>& near) {
+    list_sure(i, kSnapReach, near);
+    if (near.empty()) list_sure(i, kFarSnapReach, near);
+    const std::uint32_t host = best_host(i, near);
+    if (host == kNobody) return;
+    hosts_[i] = host;
+    list_sure(i, kFarSnapReach, near);
     second_hosts_[i] = second_host(i, host, near);
     const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
     const float turn = kTurnMargin * bow(input_, own_, host) * way;
@@ -133,7 +151,16 @@ class Snapping {
       own_.residuals[i] = own_.residuals[host];
     }
     own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
-    return true;
+  }
+
+  /// Where a thing is so small that hardly a point of it is sure, a plane has to do.
+  [[nodiscard]] bool is_among_homeless(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    if (own_.confidences[i] < kPlanar) return false;
+    near.clear();
+    input_.grid.within(input_.grid.points()[i], input_.radii[i], near);
+    const auto homeless =
+        std::ranges::count_if(near, [this](std::uint32_t j) { return hosts_[j] == kNobody; });
+    return 2 * static_cast<std::size_t>(homeless) >= near.size();
   }
 
   /// Of sure points the one whose plane the point lies on best.

@@ -177,6 +177,7 @@ SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, d
   for (int round = 0; round < 2 && keep_own_group(axis, spacing); ++round) {
     plane = plane_of(offsets_);
     axis = plane.normal;
+    fit.others = true;
   }
   fit.points = offsets_.size();
   fit.normal = plane.normal;
@@ -259,8 +260,11 @@ double SheetFitter::tile_variance(double tile) const {
 OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
                          std::span<const float> radii, double noise) {
   Normals planes = estimate_normals(grid, radii, kNormalsReach);
-  OwnSheets sheets{
-      std::move(planes.normals), std::move(planes.confidences), std::move(planes.residuals), {}};
+  OwnSheets sheets{std::move(planes.normals),
+                   std::move(planes.confidences),
+                   std::move(planes.residuals),
+                   {},
+                   std::vector<std::uint8_t>(grid.size())};
   sheets.bends = sheets.residuals;
   detail::parallel_ranges(grid.size(), 256, [&](std::size_t begin, std::size_t end) {
     SheetFitter fitter;
@@ -274,6 +278,7 @@ OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
       sheets.confidences[i] = static_cast<float>(fit.planarity);
       sheets.residuals[i] = static_cast<float>(fit.residual);
       sheets.bends[i] = static_cast<float>(fit.bend);
+      sheets.others[i] = fit.others ? 1 : 0;
     }
   });
   return sheets;

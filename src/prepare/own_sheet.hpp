@@ -17,6 +17,7 @@ namespace palpate {
 struct SheetFit {
   std::size_t points = 0;  ///< that the fit is of; below kEnough for a quadric: 0 and nothing else
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, sign arbitrary; zero: undefined
+  bool others = false;                               ///< are there points of other sheets around?
   double planarity = 0;                              ///< 0-1, as Normals::confidences
   double residual = 0;                               ///< rms distance from the plane, m
   double off = 0;        ///< of the place itself from the quadric; of too few points, the plane, m
@@ -64,6 +65,7 @@ struct OwnSheets {
   std::vector<float> confidences;        ///< planarity, 0-1
   std::vector<float> residuals;          ///< from the plane, m
   std::vector<float> bends;              ///< from the quadric where the plane does not fit, m
+  std::vector<std::uint8_t> others;      ///< 1: points of other sheets are around
 };
 
 /// Fitted within 1.15 of each point's `radii`; `noise`: of the points, m. On every core.
