@@ -1,10 +1,25 @@
 #include "field/active_layer.hpp"
 
+#include <algorithm>
+
 namespace palpate {
 namespace {
 
 double lerp(double a, double b, double u) noexcept {
   return a + u * (b - a);
+}
+
+double own_radius(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  const double start = points.radii[i];
+  return points.end_radii.empty() ? start : lerp(start, points.end_radii[i], layer.progress);
+}
+
+/// C_k, less where the point was widened.
+double layer_weight(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  if (!(layer.least_radius > 0)) return layer.weight;
+  const double share = std::min(1.0, own_radius(layer, i) / layer.least_radius);
+  return share * share * layer.weight;
 }
 
 }  // namespace
@@ -27,17 +42,16 @@ Eigen::Vector3d velocity_now(const ActiveLayer& layer, std::uint32_t i) noexcept
 }
 
 double weight_now(const ActiveLayer& layer, std::uint32_t i, bool raw_weights) noexcept {
-  if (raw_weights) return layer.weight;
+  const double weight = layer_weight(layer, i);
+  if (raw_weights) return weight;
   const SurfacePoints& points = *layer.points;
   const double start = points.density_weights[i];
-  if (points.end_density_weights.empty()) return layer.weight * start;
-  return layer.weight * lerp(start, points.end_density_weights[i], layer.progress);
+  if (points.end_density_weights.empty()) return weight * start;
+  return weight * lerp(start, points.end_density_weights[i], layer.progress);
 }
 
 double radius_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
-  const SurfacePoints& points = *layer.points;
-  const double start = points.radii[i];
-  return points.end_radii.empty() ? start : lerp(start, points.end_radii[i], layer.progress);
+  return std::max(own_radius(layer, i), layer.least_radius);
 }
 
 double confidence_now(const ActiveLayer& layer, std::uint32_t i) noexcept {

@@ -22,6 +22,9 @@ struct ActiveLayer {
   /// cannot.
   double until = 0;
   double last_weight = 0;  ///< C_k then
+
+  /// No R is below this, m; a point that it widens weighs as much less as it covers more.
+  double least_radius = 0;
 };
 
 /// The position of a layer's point now, relative to `center` (world frame).

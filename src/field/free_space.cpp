@@ -41,7 +41,7 @@ double largest_weight(const ImplicitSurface& surface, const ActiveLayer& layer, 
     const std::uint32_t index = stack.pop();
     const CellGrid::Cell& cell = points.grid.cells()[index];
     const double reach = std::max<double>(points.cell_reach[index], radius);
-    if (!test.near(cell, reach + ball.radius)) continue;
+    if (!test.near(cell, reach + layer.least_radius + ball.radius)) continue;
     if (cell.children > 0) {
       push_nearest_first(stack, test, points.grid.cells(), cell);
       continue;
@@ -49,7 +49,7 @@ double largest_weight(const ImplicitSurface& surface, const ActiveLayer& layer, 
     for (std::uint32_t i = cell.begin; i < cell.end && total < enough; ++i) {
       if (visits <= 0) break;
       --visits;
-      const float most = radius > 0 ? static_cast<float>(radius) : largest_radius(points, i);
+      const float most = radius > 0 ? static_cast<float>(radius) : largest_radius(layer, i);
       if (point_test.far(i, most + ball_radius)) continue;
       const double squared = position_now(layer, i, ball.center).squaredNorm();
       const double own = radius > 0 ? radius : radius_now(layer, i);

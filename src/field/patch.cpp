@@ -115,7 +115,8 @@ void Patch::face(const Stance& stance) noexcept {
 /// Is a layer the k-th that was gathered, on its way?
 bool Patch::follows(const ActiveLayer& now, std::size_t k) const noexcept {
   const Selection::Run& run = selection_.runs()[k];
-  const bool same = now.points == layers_[k].points && now.source == layers_[k].source;
+  const bool same = now.points == layers_[k].points && now.source == layers_[k].source &&
+                    now.least_radius == layers_[k].least_radius;
   const bool on_the_way = now.progress >= run.from && now.progress <= run.until;
   return same && on_the_way && (run.counts || !(now.weight > 0));
 }

@@ -96,7 +96,7 @@ bool Selection::walk(const ActiveLayer& layer) noexcept {
     const std::uint32_t index = stack.pop();
     const CellGrid::Cell& cell = points.grid.cells()[index];
     const double reach = std::max<double>(points.cell_reach[index], options_.radius);
-    if (!test.near(cell, reach + ball_.radius)) continue;
+    if (!test.near(cell, reach + layer.least_radius + ball_.radius)) continue;
     if (cell.children > 0 && cell.size() > stride_) {
       stack.push_children(cell);
     } else if (!take_near(layer, last, cell.begin, cell.end)) {
@@ -118,7 +118,7 @@ bool Selection::take_near(const ActiveLayer& start, const ActiveLayer& last, std
     if (visits_ >= options_.most_visits) return false;
     ++visits_;
     const auto place = static_cast<std::uint32_t>(i);
-    const float own = radius > 0 ? radius : largest_radius(points, place);
+    const float own = radius > 0 ? radius : largest_radius(start, place);
     if (!test.far(place, own + extra) && reaches(start, last, place) &&
         counts(start, last, place)) {
       if (!take(place)) return false;

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "palpate/field/surface_points.hpp"
+#include "field/active_layer.hpp"
 
 namespace palpate {
 
@@ -90,10 +90,11 @@ class PointTest {
   float slack_;
 };
 
-/// The largest support radius of a point at any time, m.
-[[nodiscard]] inline float largest_radius(const SurfacePoints& points, std::uint32_t i) noexcept {
-  return points.end_radii.empty() ? points.radii[i]
-                                  : std::max(points.radii[i], points.end_radii[i]);
+/// The largest support radius of a layer's point at any time, m.
+[[nodiscard]] inline float largest_radius(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const SurfacePoints& points = *layer.points;
+  const float start = std::max(points.radii[i], static_cast<float>(layer.least_radius));
+  return points.end_radii.empty() ? start : std::max(start, points.end_radii[i]);
 }
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 
 #include "palpate/base/error.hpp"
 #include "scene/disagreement.hpp"
+#include "scene/seams.hpp"
 
 namespace palpate {
 
@@ -23,7 +24,11 @@ Source& Scene::add(std::string name, const SourceOptions& options) {
   const bool taken =
       std::ranges::any_of(sources_, [&](const Source& source) { return source.name() == name; });
   if (taken) throw Error(fmt::format("a source named '{}' is in the scene; choose another", name));
-  return sources_.emplace_back(std::move(name), options);
+  if (!seams_) seams_ = std::make_shared<Seams>();
+  Source& source = sources_.emplace_back(std::move(name), options);
+  source.seams_ = seams_;
+  source.place_ = sources_.size() - 1;
+  return source;
 }
 
 Source& Scene::add(std::string name, const PointCloud& cloud, const SourceOptions& options) {

@@ -15,6 +15,7 @@
 #include "scene/felt_surface.hpp"
 #include "scene/patches.hpp"
 #include "scene/reach_board.hpp"
+#include "scene/seams.hpp"
 #include "scene/source_view.hpp"
 #include "scene/tool_reach.hpp"
 
@@ -40,8 +41,7 @@ constexpr double kFinest = 0.25;
 // A surface may rise this fast and still take a resting proxy along (algorithm.md section 2.4).
 constexpr double kReanchorSpeed = 0.5;  // m/s
 
-// A tool feels points as far away as this, in support radii: normals and weights beside rims need
-// their neighbours, too.
+// A tool feels points so far away, in support radii: normals beside rims need neighbours, too.
 constexpr double kFelt = 2;
 
 }  // namespace
@@ -54,7 +54,7 @@ struct SceneField::State {
       : surface(options), fields(scene.fields_), reach(scale) {
     for (std::size_t i = 0; i < scene.size(); ++i) {
       Source& source = scene.source(i);
-      views.emplace_back(source.handoff_, name);
+      views.emplace_back(source.handoff_, source.seams_->least_radius(i), name);
       boards.push_back(source.reaches_.get());
       soft.push_back(source.options().soft);
     }
@@ -140,13 +140,12 @@ void SceneField::State::list_layers() noexcept {
 void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   ActiveLayer layer = views[source].layer(k, static_cast<int>(source));
   if (layer.points->size() == 0) return;  // a sensor that sees nothing
-  layer.until = 1;
+  if (surface.options.kind == FieldKind::metaball) layer.least_radius = 0;
   layer.last_weight = shown[source]->layers[k].weight_end;
   other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
-  typical_radius = std::min(typical_radius, layer.points->radius);
-  plain_points =
-      plain_points && layer.points->materials.empty() && !fades(*layer.points) && layer.rate == 0;
+  typical_radius = std::min(typical_radius, std::max(layer.points->radius, layer.least_radius));
   moving = moving || layer.rate > 0;
+  plain_points &= !moving && layer.points->materials.empty() && !fades(*layer.points);
   layers[layer_count++] = layer;
 }
 
@@ -248,6 +247,7 @@ void SceneField::change(const FieldOptions& checked) noexcept {
   if (checked == options_) return;  // nothing to gather anew
   options_ = checked;
   state_->surface.change(checked);
+  state_->list_layers();
   state_->patches.forget();
   ++state_->revision;
 }

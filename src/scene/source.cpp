@@ -10,9 +10,13 @@
 #include "prepare/check_options.hpp"
 #include "scene/intake.hpp"
 #include "scene/reach_board.hpp"
+#include "scene/seams.hpp"
 
 namespace palpate {
 namespace {
+
+// How sources disagree changes slowly, and takes milliseconds to tell.
+constexpr std::uint64_t kComparedFrames = 32;
 
 void check_factor(const std::string& name, const char* option, double factor) {
   if (factor >= 0 && factor <= 1) return;
@@ -172,6 +176,11 @@ void Source::hand_over(std::shared_ptr<const Snapshot> snapshot) {
     note(*snapshot);
   }
   handoff_.publish(std::move(snapshot));
+  if (state_.frames % kComparedFrames == 1) compare();
+}
+
+void Source::compare() {
+  if (seams_) seams_->compare(place_, *this);
 }
 
 void Source::note(const Snapshot& snapshot) {
@@ -192,6 +201,7 @@ void Source::publish(std::shared_ptr<const Snapshot> snapshot) {
     points_ = snapshot && !snapshot->layers.empty() ? snapshot->layers.front().points : nullptr;
   }
   handoff_.publish(std::move(snapshot));
+  compare();
 }
 
 std::shared_ptr<const SurfacePoints> Source::points() const {

@@ -26,8 +26,9 @@ constexpr double kCatchUpMore = 0.5;
 
 }  // namespace
 
-SourceView::SourceView(Handoff<Snapshot>& handoff, const std::string& name)
-    : handoff_(&handoff), reader_(handoff.join(name)) {
+SourceView::SourceView(Handoff<Snapshot>& handoff, const std::atomic<double>& least_radius,
+                       const std::string& name)
+    : handoff_(&handoff), wanted_radius_(&least_radius), reader_(handoff.join(name)) {
   if (reader_ == Handoff<Snapshot>::kReaders) {
     throw Error(fmt::format("the scene has {} fields already; destroy one before making another",
                             Handoff<Snapshot>::kReaders));
@@ -42,12 +43,14 @@ bool SourceView::advance(double now) noexcept {
   const Snapshot* const snapshot_before = current_;
   const double progress_before = progress_;
   const double share_before = share_;
+  const double radius_before = std::exchange(least_radius_, wanted_radius_->load());
   look(now);
   change_over(now);
   move(now);
   fade(now, now - shown_);
   shown_ = now;
-  return current_ != snapshot_before || progress_ != progress_before || share_ != share_before;
+  return current_ != snapshot_before || progress_ != progress_before || share_ != share_before ||
+         least_radius_ != radius_before;
 }
 
 /// Where the points are. What was behind when it began closes up in a straight line.
@@ -126,7 +129,13 @@ void SourceView::begin(const Times& before) noexcept {
 ActiveLayer SourceView::layer(std::size_t k, int source) const noexcept {
   const Layer& layer = current_->layers[k];
   const double weight = layer.weight_start + progress_ * (layer.weight_end - layer.weight_start);
-  return {layer.points.get(), source, share_ * weight, progress_, rate_};
+  return {.points = layer.points.get(),
+          .source = source,
+          .weight = share_ * weight,
+          .progress = progress_,
+          .rate = rate_,
+          .until = 1,
+          .least_radius = least_radius_};
 }
 
 }  // namespace palpate

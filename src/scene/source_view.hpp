@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -15,8 +16,10 @@ namespace palpate {
 /// the next. Everything but construction and destruction is real-time.
 class SourceView {
  public:
-  /// `name`: of the reader. @throws Error when the source has no reader's place left.
-  SourceView(Handoff<Snapshot>& handoff, const std::string& name);
+  /// `least_radius`: of all its layers' points, m; may change. `name`: of the reader.
+  /// @throws Error when the source has no reader's place left.
+  SourceView(Handoff<Snapshot>& handoff, const std::atomic<double>& least_radius,
+             const std::string& name);
   ~SourceView();
   SourceView(const SourceView&) = delete;
   SourceView& operator=(const SourceView&) = delete;
@@ -55,6 +58,7 @@ class SourceView {
   void fade(double now, double dt) noexcept;
 
   Handoff<Snapshot>* handoff_;
+  const std::atomic<double>* wanted_radius_;
   std::size_t reader_;
   std::size_t slot_ = 0;  // that holds `current_`; the other holds `next_`
   const Snapshot* current_ = nullptr;
@@ -63,6 +67,7 @@ class SourceView {
   double begun_ = 0;     // when the current one began to be shown, s
   double behind_ = 0;    // how far its surface was behind then, in durations, ...
   double catch_up_ = 1;  // ... and in which time it makes up for that, s
+  double least_radius_ = 0;
   double progress_ = 0;
   double rate_ = 0;  // of progress, 1/s
   double presence_ = 0;

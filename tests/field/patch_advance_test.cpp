@@ -36,12 +36,12 @@ SurfacePoints moving_sheet(unsigned seed) {
   return points;
 }
 
-/// Two sources; the first one's layers fade into one another.
+/// Two sources; the first one's layers fade into one another, the second one's points are widened.
 std::vector<ActiveLayer> layers_at(double u, const std::vector<SurfacePoints>& points) {
   const double rate = u > 0 && u < 1 ? 30 : 0;
   return {{&points[0], 0, 1 - u, u, rate, 1, 0},
           {&points[1], 0, u, u, rate, 1, 1},
-          {&points[2], 1, 1, u, rate, 1, 1}};
+          {&points[2], 1, 1, u, rate, 1, 1, 11e-3}};
 }
 
 void expect_same(const Patch& a, const Patch& b, const ImplicitSurface& surface,
@@ -84,6 +84,22 @@ TEST(PatchAdvance, IsAsGatheringAfresh) {
   }
 }
 
+TEST(PatchAdvance, HoldsAllPointsThatAreWidenedIntoIt) {
+  const std::vector<SurfacePoints> points = {moving_sheet(1), moving_sheet(2), moving_sheet(3)};
+  const ImplicitSurface surface{FieldOptions{}};
+  auto layers = layers_at(0.3, points);
+  for (ActiveLayer& layer : layers) layer.least_radius = 25e-3;
+  Patch all(2048);
+  Patch patch(2048);
+  ASSERT_TRUE(all.gather(layers, 2, Vector3d::Zero(), 1));
+  for (const double x : {-20e-3, 0.0, 13e-3}) {
+    ASSERT_TRUE(patch.gather(layers, 2, {x, 0, 2e-3}, 1e-3));
+    expect_same(patch, all, surface, {x, 1e-3, 2e-3});
+    EXPECT_NEAR(evaluate(surface, all, {x, 1e-3, 2e-3}, 1).radius, 25e-3, 1e-9);
+    EXPECT_NEAR(evaluate(surface, all, {x, 1e-3, 2e-3}, 1).support, 1, 0.4) << "of two";
+  }
+}
+
 TEST(PatchAdvance, RefusesWhatItDoesNotCover) {
   const std::vector<SurfacePoints> points = {moving_sheet(1), moving_sheet(2), moving_sheet(3)};
   Patch patch(2048);
@@ -99,6 +115,9 @@ TEST(PatchAdvance, RefusesWhatItDoesNotCover) {
   auto others = layers_at(0.6, points);
   others[1].points = points.data();
   refused(others);
+  auto wider = layers_at(0.6, points);
+  wider[0].least_radius = 12e-3;
+  refused(wider);
   EXPECT_TRUE(patch.gather(std::vector<ActiveLayer>{{points.data(), 0, 1, 0.5, 30}}, 1,
                            Vector3d::Zero(), 5e-3));  // without `until`
   EXPECT_FALSE(patch.advance(std::vector<ActiveLayer>{{points.data(), 0, 1, 0.6, 30}}));

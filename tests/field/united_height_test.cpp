@@ -66,9 +66,9 @@ TEST(UnitedHeight, SurfacesThatLieApartAreOne) {
 }
 
 TEST(UnitedHeight, FollowsTheSourceThatSeesFinely) {
-  const auto found = crossings_of({sheet(-3e-3), sheet(3e-3, 1, 1, 2 * kRadius)}, 0);
+  const auto found = crossings_of({sheet(-1.5e-3), sheet(1.5e-3, 1, 1, 2 * kRadius)}, 0);
   ASSERT_FALSE(found.empty());
-  EXPECT_NEAR(found.back(), -3e-3, 5e-4);
+  EXPECT_NEAR(found.back(), -1.5e-3, 2.5e-4);
 }
 
 // Where the upper one ends, the surface comes down in a slope, and nowhere in two sheets.

@@ -37,6 +37,7 @@ class Scene {
   friend class SceneField;
 
   std::deque<Source> sources_;
+  std::shared_ptr<Seams> seams_;
   std::shared_ptr<std::atomic<int>> fields_ = std::make_shared<std::atomic<int>>(0);
 };
 

@@ -19,6 +19,7 @@ namespace palpate {
 
 class Intake;
 class ReachBoard;
+class Seams;
 
 /// What points of material 0 feel like. Material 1 is as stiff and rough as the proxy's options
 /// say, and between the two it goes in a straight line.
@@ -75,7 +76,8 @@ class Source {
 
   /// Takes the next frame of a depth camera: filters it, brings it into the surface as the policy
   /// says, publishes. `frame.T_world_sensor`, where set, stands above pose(). Once frames of one
-  /// size have come for a while, nothing is allocated. Not real-time; one thread pushes.
+  /// size have come for a while, nothing is allocated, but where sources are compared, once in 32
+  /// frames. Not real-time; one thread pushes.
   ///
   /// False when the frame was dropped, because fields that stand still hold all snapshots that
   /// there may be; state() names one of them.
@@ -114,6 +116,7 @@ class Source {
   [[nodiscard]] bool room_for(bool clouds);
   void hand_over(std::shared_ptr<const Snapshot> snapshot);
   void note(const Snapshot& snapshot);
+  void compare();
 
   std::string name_;
   mutable std::mutex mutex_;  // of what follows; whoever draws, and the preparing thread
@@ -127,6 +130,8 @@ class Source {
   std::unique_ptr<Intake> intake_;  // the preparing thread's
   std::vector<Reach> found_;        // likewise
   std::unique_ptr<ReachBoard> reaches_;
+  std::shared_ptr<Seams> seams_;  // of the scene
+  std::size_t place_ = 0;         // in it
   Handoff<Snapshot> handoff_;
 };
 
