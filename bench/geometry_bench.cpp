@@ -10,7 +10,6 @@
 #include "clouds.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/geometry/normals.hpp"
-#include "palpate/geometry/orientation.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "peers/peers.hpp"
 
@@ -111,7 +110,9 @@ void add_normal_rows(std::size_t count) {
     std::vector<Eigen::Vector3f> normals;
     for (auto _ : state) {
       normals = estimate_normals(grid, normal_radius(points.size())).normals;
-      orient_to_viewpoint(grid.points(), kViewpoint, normals);
+      for (std::size_t i = 0; i < normals.size(); ++i) {
+        if (normals[i].dot(kViewpoint - grid.points()[i]) < 0) normals[i] = -normals[i];
+      }
     }
     compare(state, points, grid, normals);
   });

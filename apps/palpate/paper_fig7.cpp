@@ -153,7 +153,7 @@ class Feelers {
     const Contact contact = feeler.proxy.step(feeler.field, hip, kPeriod);
     Press& press = feeler.press;
     if (sampled) {
-      const Sample sample = feeler.field.sample(contact.proxy, feeler.proxy.side());
+      const Sample sample = feeler.field.sample(contact.proxy);
       const Vector3d normal = sample.gradient.normalized();
       press.samples.push_back({place_.normal.dot(contact.proxy - place_.point),
                                normal.dot(place_.tangent_x), normal.dot(place_.tangent_y),

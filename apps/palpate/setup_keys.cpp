@@ -57,7 +57,6 @@ constexpr auto kField = std::to_array<SetupKey>({
     {"gradient", KeyKind::text},
     {"threshold", KeyKind::number},
     {"tool_radius", KeyKind::number},
-    {"one_sided", KeyKind::flag},
     {"sharp_edges", KeyKind::flag},
 });
 

@@ -40,10 +40,6 @@ void add_surface_options(CLI::App& command, TouchOptions& o) {
   add("--tool-radius", o.tool_radius, "radius of the ball that touches; 0: a point")
       ->check(not_negative())
       ->type_name("METRES");
-  command
-      .add_flag("--one-sided", o.one_sided,
-                "solid behind the surface: for closed objects, normals outward")
-      ->group(group);
 }
 
 void add_feel_options(CLI::App& command, TouchOptions& o) {

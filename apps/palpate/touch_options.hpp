@@ -31,7 +31,6 @@ struct TouchOptions {
   std::string gradient;
   std::optional<double> threshold;
   double tool_radius = 0;
-  bool one_sided = false;
   bool sharp_edges = true;
 
   std::optional<double> stiffness;        ///< N/m

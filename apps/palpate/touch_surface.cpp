@@ -33,7 +33,6 @@ PrepareOptions prepare_options(const TouchOptions& options, const SourceChoices&
   result.kernel = kernel(options);
   result.paper = options.preset == "paper";
   result.material_from_intensity = wants_material(options);
-  if (options.one_sided && choices.viewpoint.empty()) result.orientation = Orientation::outward;
   if (!choices.viewpoint.empty()) {
     result.viewpoint = parse_point(choices.viewpoint, "--viewpoint");
     result.orientation = Orientation::viewpoint;
@@ -101,7 +100,6 @@ FieldOptions field_options(const TouchOptions& options) {
   result.gradient = choice_of(kGradients, options.gradient).value_or(result.gradient);
   if (options.threshold) result.threshold = *options.threshold;
   result.tool_radius = options.tool_radius;
-  if (options.one_sided) result.two_sided = false;
   if (!options.sharp_edges) result.sharp_edges = false;
   return result;
 }

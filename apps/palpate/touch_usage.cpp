@@ -51,9 +51,6 @@ void check_surface(const TouchOptions& options) {
       !metaball || options.gradient != "normal",
       "--gradient normal needs normals, which a metaball does without; give --field pointset or "
       "balanced");
-  require(!metaball || !options.one_sided,
-          "--one-sided means nothing to a metaball, which surrounds its points; leave it out or "
-          "choose another --field");
   require(options.preset != "paper" || options.tool_radius == 0,
           "--preset paper touches with a point; leave --tool-radius out");
 }

@@ -7,9 +7,9 @@ constexpr double kRadius = 0.01;  // what steps are measured in, m
 
 }  // namespace
 
-Sample TruthField::sample(const Eigen::Vector3d& x, Side /*side*/) const noexcept {
+Sample TruthField::sample(const Eigen::Vector3d& x) const noexcept {
   const Distance found = distance_and_normal(*scene_, x);
-  return {found.value, found.gradient, found.value, 1, kRadius};
+  return {found.value, found.gradient, 1, kRadius};
 }
 
 bool TruthField::is_free(const Ball& ball) const noexcept {

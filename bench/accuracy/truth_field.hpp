@@ -11,7 +11,7 @@ class TruthField final : public Field {
  public:
   explicit TruthField(const TruthScene& scene) : scene_(&scene) {}
 
-  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side side) const noexcept override;
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] FieldTraits traits() const noexcept override;

@@ -66,8 +66,7 @@ void step(Hand& hand, double now, const Vector3d& hip, StreamTrace& trace) {
   const Contact contact = hand.proxy.step(hand.field, hip, kTick);
   trace.felt.proxy.push_back(contact.proxy);
   trace.felt.force.push_back(hand.proxy.options().stiffness * (contact.proxy - hip));
-  const Side side = hand.proxy.side() == 0 ? Side{1} : hand.proxy.side();
-  const Sample here = hand.field.sample(contact.proxy, side);
+  const Sample here = hand.field.sample(contact.proxy);
   const Vector3d slope = here.gradient;
   trace.radius.push_back(here.radius);
   trace.normal.push_back(slope.norm() > 0 ? Vector3d(slope.normalized()) : Vector3d::Zero());

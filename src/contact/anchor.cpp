@@ -30,18 +30,13 @@ bool surface_moved(const Probe& probe, const Sample& here, const Eigen::Vector3d
 
 std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& position,
                                      const Eigen::Vector3d& normal) noexcept {
-  const Side side = probe.side;
   const double reach = std::max(probe.traits().reanchor_reach, kLeastReach * probe.step_length());
   const Eigen::Vector3d top = position + reach * normal;
-  if (!probe.inside(top)) {
-    const Sweep way = first_contact(probe, top, position);
-    if (way.end == Sweep::End::hit) {
-      const std::optional<SurfacePoint> found = project(probe, way.position);
-      if (found && found->normal.dot(normal) > kSameWay) return found;
-    }
-  }
-  probe.side = side;
-  return std::nullopt;
+  if (probe.inside(top)) return std::nullopt;
+  const Sweep way = first_contact(probe, top, position);
+  if (way.end != Sweep::End::hit) return std::nullopt;
+  const std::optional<SurfacePoint> found = project(probe, way.position);
+  return found && found->normal.dot(normal) > kSameWay ? found : std::nullopt;
 }
 
 std::optional<SurfacePoint> recover(Probe& probe, const Eigen::Vector3d& position,

@@ -13,7 +13,7 @@ namespace palpate {
                                  const Eigen::Vector3d& normal, bool changed) noexcept;
 
 /// Looks for the surface from above, along the last normal, within the field's re-anchor reach (at
-/// least R / 2). Empty, and the side untouched, when there is none that faces the same way.
+/// least R / 2). Empty when there is none that faces the same way.
 [[nodiscard]] std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& position,
                                                    const Eigen::Vector3d& normal) noexcept;
 

@@ -4,10 +4,8 @@
 
 namespace palpate {
 
-Probe::Probe(const Field& field, const Texture& texture, Side seen_from,
-             double step_length) noexcept
-    : side(seen_from),
-      field_(field),
+Probe::Probe(const Field& field, const Texture& texture, double step_length) noexcept
+    : field_(field),
       texture_(texture),
       traits_(field.traits()),
       step_length_(step_length > 0 ? step_length : 16 * traits_.resolution) {
@@ -16,7 +14,7 @@ Probe::Probe(const Field& field, const Texture& texture, Side seen_from,
 
 Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   ++evaluations_;
-  Sample sample = field_.sample(x, side);
+  Sample sample = field_.sample(x);
   if (sample.radius > 0) step_length_ = sample.radius;
   if (sample.support <= 0 && sample.value <= 0) sample.value = step_length_;  // nothing known
   if (texture_.amplitude > 0) {

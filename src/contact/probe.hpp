@@ -5,10 +5,10 @@
 
 namespace palpate {
 
-/// A field as the proxy sees it during one step: with its relief, from its side, and counted.
+/// A field as the proxy sees it during one step: with its relief, and counted.
 class Probe {
  public:
-  Probe(const Field& field, const Texture& texture, Side seen_from, double step_length) noexcept;
+  Probe(const Field& field, const Texture& texture, double step_length) noexcept;
   ~Probe() = default;
   Probe(const Probe&) = delete;
   Probe& operator=(const Probe&) = delete;
@@ -24,7 +24,6 @@ class Probe {
   [[nodiscard]] double step_length() const noexcept { return step_length_; }
   [[nodiscard]] int evaluations() const noexcept { return evaluations_; }
 
-  Side side = 0;
   int swept = 0;  ///< evaluations that sweeps have spent
 
  private:

@@ -56,7 +56,6 @@ Proxy::Proxy(const ProxyOptions& options) : options_(options) {
 void Proxy::reset(const Eigen::Vector3d& position) noexcept {
   fault_ = !in_range(position);
   started_ = !fault_;
-  side_ = 0;
   step_length_ = 0;
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
 }
@@ -80,10 +79,9 @@ Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) n
   if (fault_) return faulted();
   if (!started_) reset(hip);
   Contact contact;
-  Probe probe{field, options_.texture, side_, step_length_};
+  Probe probe{field, options_.texture, step_length_};
   if (!touching_) follow(probe, hip, contact);
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
-  side_ = probe.side;
   step_length_ = probe.step_length();
   revision_ = probe.traits().revision;
   field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
@@ -107,9 +105,7 @@ Contact Proxy::faulted() noexcept {
 // Free space: to the hand, or to the first contact on the way.
 void Proxy::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept {
   if (way_is_free(probe, position_, hip)) return release(hip);
-  Sample here = probe.sample(position_);
-  choose_side(probe, here);
-  if (!(here.value > 0)) return touch(probe, position_);
+  if (probe.inside(position_)) return touch(probe, position_);
   const Sweep way = sweep(probe, position_, hip);
   if (way.end == Sweep::End::hit) return touch(probe, way.position);
   if (way.end == Sweep::End::truncated)
@@ -117,16 +113,8 @@ void Proxy::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) n
   release(way.position);
 }
 
-// A two-sided surface that came over a proxy which saw none before is seen from where the proxy is.
-void Proxy::choose_side(Probe& probe, Sample& here) const noexcept {
-  if (!probe.traits().two_sided || probe.side != 0 || here.value > 0) return;
-  probe.side = here.height >= 0 ? 1 : -1;
-  if (probe.side < 0) here = probe.sample(position_);
-}
-
 void Proxy::touch(Probe& probe, const Eigen::Vector3d& place) noexcept {
   release(place);
-  if (probe.side == 0) probe.side = 1;
   touching_ = true;
   surface_ = probe.field().surface(place);
   tank_.restart(wanted_stiffness());

@@ -65,14 +65,13 @@ class Slider {
   // The hand is above the tangent plane: free to go, unless something else is in the way.
   [[nodiscard]] Turn try_release() noexcept {
     const double radius = result_.at.radius;
-    const Side side = probe_.side;
     const Eigen::Vector3d from = result_.at.position + kLift * radius * result_.at.normal;
     const int swept = probe_.swept;
     const Sweep way = first_contact(probe_, from, hip_);
-    if (way.end != Sweep::End::hit) return leave(way, swept, side);
-    if ((way.position - from).norm() < kStay * radius) return stay(side);
+    if (way.end != Sweep::End::hit) return leave(way, swept);
+    if ((way.position - from).norm() < kStay * radius) return Turn::stop;
     const std::optional<SurfacePoint> next = project(probe_, way.position);
-    if (!next) return stay(side);
+    if (!next) return Turn::stop;
     result_.at = *next;
     return Turn::go_on;
   }
@@ -80,19 +79,14 @@ class Slider {
   // A sweep that only had what others left of the budget proves nothing when it is truncated: the
   // proxy stays, lest the force drop for one step, and the next step looks again. One that had most
   // of the budget goes on from where it ended. `swept`: what was spent before it.
-  [[nodiscard]] Turn leave(const Sweep& way, int swept, Side side) noexcept {
+  [[nodiscard]] Turn leave(const Sweep& way, int swept) noexcept {
     const bool clear = way.end == Sweep::End::clear;
     if (!clear && swept >= kSweepBudget / 2) {
       result_.end = Slide::End::postponed;
-      return stay(side);
+      return Turn::stop;
     }
     result_.end = clear ? Slide::End::released : Slide::End::interrupted;
     result_.at.position = clear ? hip_ : way.position;
-    return Turn::stop;
-  }
-
-  [[nodiscard]] Turn stay(Side side) noexcept {
-    probe_.side = side;
     return Turn::stop;
   }
 
@@ -139,18 +133,17 @@ class Slider {
     const SurfacePoint& at = result_.at;
     if (options_.method == ProxyMethod::single_step) return Turn::stop;
     if (step.norm() < kStay * at.radius || exhausted()) return Turn::stop;
-    const Side side = probe_.side;
     const Eigen::Vector3d from = at.position + kLift * at.radius * at.normal;
     const Eigen::Vector3d over = from + step;
     if (probe_.inside(over)) return Turn::stop;
-    if (first_contact(probe_, from, over).end != Sweep::End::clear) return stay(side);
+    if (first_contact(probe_, from, over).end != Sweep::End::clear) return Turn::stop;
     const int swept = probe_.swept;
     const Sweep way = first_contact(probe_, over, hip_);
-    if (way.end != Sweep::End::hit) return leave(way, swept, side);
+    if (way.end != Sweep::End::hit) return leave(way, swept);
     const std::optional<SurfacePoint> next = project(probe_, way.position);
     if (!next || (hip_ - next->position).squaredNorm() >
                      (hip_ - at.position).squaredNorm() - kArmijo * step.squaredNorm()) {
-      return stay(side);
+      return Turn::stop;
     }
     result_.at = *next;
     return Turn::go_on;

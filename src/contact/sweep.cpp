@@ -84,16 +84,11 @@ class Sweeper {
   }
 
   [[nodiscard]] bool ball_is_free(const Interval& interval) noexcept {
-    if (!probe_.is_free({at(interval.middle()), half_length(interval)})) return false;
-    if (probe_.traits().two_sided) probe_.side = 0;
-    return true;
+    return probe_.is_free({at(interval.middle()), half_length(interval)});
   }
 
   // Where in the leaf it is solid; -1 where it is free.
   [[nodiscard]] double solid_end(const Interval& leaf) noexcept {
-    if (probe_.traits().two_sided && probe_.side == 0) {
-      probe_.side = probe_.sample(at(leaf.begin)).height >= 0 ? 1 : -1;
-    }
     if (probe_.inside(at(leaf.middle()))) return leaf.middle();
     if (probe_.inside(at(leaf.end))) return leaf.end;
     return -1;
@@ -120,9 +115,7 @@ class Sweeper {
 
 bool way_is_free(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
   ++probe.swept;
-  if (!probe.is_free({0.5 * (from + to), 0.5 * (to - from).norm()})) return false;
-  if (probe.traits().two_sided) probe.side = 0;
-  return true;
+  return probe.is_free({0.5 * (from + to), 0.5 * (to - from).norm()});
 }
 
 Sweep sweep(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {

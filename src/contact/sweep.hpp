@@ -17,13 +17,13 @@ struct Sweep {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
 };
 
-/// One ball around the whole way: true if it is certainly free. Forgets the side if so.
+/// One ball around the whole way: true if it is certainly free.
 [[nodiscard]] bool way_is_free(Probe& probe, const Eigen::Vector3d& from,
                                const Eigen::Vector3d& to) noexcept;
 
 /// The first contact on the way (algorithm.md 2.2): bisection into balls that are free for certain
 /// and leaves shorter than the field's resolution, whose ends are sampled. No solid chord longer
-/// than the resolution is missed. `from` is taken to be free. Keeps and updates the probe's side.
+/// than the resolution is missed. `from` is taken to be free.
 [[nodiscard]] Sweep sweep(Probe& probe, const Eigen::Vector3d& from,
                           const Eigen::Vector3d& to) noexcept;
 

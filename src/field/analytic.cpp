@@ -31,12 +31,10 @@ AnalyticField::AnalyticField(const AnalyticOptions& options)
   }
 }
 
-Sample AnalyticField::sample(const Eigen::Vector3d& x, Side) const noexcept {
+Sample AnalyticField::sample(const Eigen::Vector3d& x) const noexcept {
   const Distance d = distance(T_shape_world_ * x);
-  const double value = d.value - options_.tool_radius;
-  return {.value = value,
+  return {.value = d.value - options_.tool_radius,
           .gradient = options_.T_world_shape.linear() * d.gradient,
-          .height = value,
           .support = 1,
           .radius = options_.step_length};
 }
@@ -50,8 +48,7 @@ Surface AnalyticField::surface(const Eigen::Vector3d&) const noexcept {
 }
 
 FieldTraits AnalyticField::traits() const noexcept {
-  return {.two_sided = false,
-          .resolution = options_.resolution,
+  return {.resolution = options_.resolution,
           .revision = revision_,
           .reanchor_reach = options_.reanchor_reach};
 }
@@ -115,17 +112,14 @@ UnionField::UnionField(std::vector<const Field*> parts) : parts_(std::move(parts
   if (parts_.empty()) throw Error("union of fields: it has no part; give at least one");
   for (const Field* part : parts_) {
     if (part == nullptr) throw Error("union of fields: a part is null; give fields that live");
-    if (part->traits().two_sided) {
-      throw Error("union of fields: a part is two-sided; unite one-sided fields only");
-    }
   }
 }
 
 std::size_t UnionField::nearest(const Eigen::Vector3d& x, Sample& sample) const noexcept {
   std::size_t best = 0;
-  sample = parts_[0]->sample(x, 1);
+  sample = parts_[0]->sample(x);
   for (std::size_t i = 1; i < parts_.size(); ++i) {
-    const Sample other = parts_[i]->sample(x, 1);
+    const Sample other = parts_[i]->sample(x);
     if (other.value < sample.value) {
       best = i;
       sample = other;
@@ -134,7 +128,7 @@ std::size_t UnionField::nearest(const Eigen::Vector3d& x, Sample& sample) const 
   return best;
 }
 
-Sample UnionField::sample(const Eigen::Vector3d& x, Side) const noexcept {
+Sample UnionField::sample(const Eigen::Vector3d& x) const noexcept {
   Sample sample;
   (void)nearest(x, sample);
   return sample;

@@ -297,7 +297,6 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   }
   Value value;
   if (height) {
-    sample.height = height->f;
     value = capped(surface, place, support, *height);
   } else {
     value = as_length(options, support, level_of(surface, support));

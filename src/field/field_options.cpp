@@ -20,7 +20,6 @@ FieldOptions paper_field(FieldKind kind) {
   options.kind = kind;
   options.gradient = kind == FieldKind::pointset ? GradientKind::normal : GradientKind::exact;
   options.threshold = 0.5;
-  options.two_sided = false;
   options.capped = false;
   options.sharp_edges = false;
   options.raw_weights = true;

@@ -225,7 +225,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;
 }
 
-Sample SceneField::sample(const Vector3d& x, Side /*side*/) const noexcept {
+Sample SceneField::sample(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free; of no length
   const Patch* const patch = state.patch_at({x, 0});

@@ -21,10 +21,7 @@ constexpr double kSteepest = 1.3;
 class Sampler {
  public:
   Sampler(const Field& field, const LocalRegion& region, Lattice& lattice)
-      : field_(field), region_(region), lattice_(lattice) {
-    const Sample seen = field.sample(region.from, 1);
-    side_ = seen.support > 0 && seen.height < 0 ? -1 : 1;
-  }
+      : field_(field), region_(region), lattice_(lattice) {}
 
   /// A cube of `edge` cells, from the corner `first` on.
   void look(const Vector3i& first, int edge) {
@@ -42,7 +39,7 @@ class Sampler {
 
  private:
   void look_at_block(const Vector3i& first, const Vector3d& center, double reach) {
-    const Sample middle = field_.sample(center, side_);
+    const Sample middle = field_.sample(center);
     if (!(std::abs(middle.value) <= kSteepest * reach)) return;
     for (int z = 0; z <= kBlock; ++z) {
       for (int y = 0; y <= kBlock; ++y) {
@@ -53,14 +50,13 @@ class Sampler {
 
   void sample(const Vector3i& corner) {
     if (lattice_.known(corner)) return;
-    const Sample sample = field_.sample(region_.center + lattice_.place(corner), side_);
+    const Sample sample = field_.sample(region_.center + lattice_.place(corner));
     lattice_.put(corner, sample.value, sample.support);
   }
 
   const Field& field_;
   const LocalRegion& region_;
   Lattice& lattice_;
-  Side side_ = 1;
 };
 
 }  // namespace

@@ -19,7 +19,6 @@ struct Mesh {
 /// Where a surface is to be meshed.
 struct LocalRegion {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Vector3d from = Eigen::Vector3d::Zero();    ///< on the side it is looked at from, m
   double radius = 0;  ///< R, m; the mesh reaches kReach of it to every side
   /// Where there is less support the surface is left out: the back of a sheet, where the solid
   /// ends because nothing is known behind it.

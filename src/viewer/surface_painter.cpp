@@ -8,8 +8,6 @@ namespace {
 
 // A proxy that moved by less shows nothing new, in R.
 constexpr double kWorthIt = 0.1;
-// So far in front of a touched surface it is looked at from, in R.
-constexpr double kBefore = 0.3;
 
 // Between the support at which capped solids end behind their surface and that of the surface
 // itself.
@@ -33,11 +31,11 @@ PaintedSurface SurfacePainter::paint() {
   if (state.step == 0) return {};
   const Eigen::Vector3d& proxy = state.contact.proxy;
   follow();
+  field_.end_step(proxy, state.contact.normal);  // it is seen from where the servo's proxy is
   field_.update(state.time, state.hip, proxy);
-  const double radius = field_.sample(proxy, 1).radius;
+  const double radius = field_.sample(proxy).radius;
   if (!worth_it(state, radius)) return {radius, newest_};
-  const Eigen::Vector3d from = proxy + kBefore * radius * state.contact.normal;
-  const Mesh mesh = local_surface(field_, {proxy, from, radius, least_support_of(options_)});
+  const Mesh mesh = local_surface(field_, {proxy, radius, least_support_of(options_)});
   const Eigen::Vector3f center = (proxy - origin_).cast<float>();
   // An empty one takes away what a page had before.
   newest_ = std::make_shared<const std::string>(encode_surface(device_, center, mesh));

@@ -226,7 +226,7 @@ TEST(Touch, PresetPaperAndEveryFieldRun) {
   Shell shell;
   for (const char* more : {"--preset paper", "--preset paper --field pointset", "--field metaball",
                            "--field pointset", "--kernel wendland", "--tool-radius 0.003",
-                           "--one-sided", "--voxel 0.004", "--radius 0.01 --threshold 0.5"}) {
+                           "--voxel 0.004", "--radius 0.01 --threshold 0.5"}) {
     const Outcome outcome =
         shell.run(fmt::format("touch synthetic:sphere --duration 1 --json r.json {}", more));
     EXPECT_EQ(outcome.code, 0) << more << "\n" << outcome.err;

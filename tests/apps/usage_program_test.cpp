@@ -51,7 +51,6 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"touch synthetic:torus --gradient printed", "--field metaball"},
       {"touch synthetic:torus --gradient normal --field metaball", "--gradient normal"},
       {"touch synthetic:torus --gradient normal --preset paper", "--gradient normal"},
-      {"touch synthetic:torus --one-sided --field metaball", "--one-sided"},
       {"touch synthetic:torus --preset paper --tool-radius 0.003", "--tool-radius"},
       {"touch synthetic:torus --tool-radius 0.003 --radius 0.0099", "0.01"},
       {"touch synthetic:torus --trajectory long.csv --duration 3", "--duration"},

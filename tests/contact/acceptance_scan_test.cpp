@@ -96,7 +96,7 @@ Walk walk(Touch& touch, const Vector3d& center, double size, int ticks, double s
     last_force = c.force;
     if (!c.touching) continue;
     ++result.touching;
-    const Sample here = touch.field.sample(c.proxy, touch.proxy.side());
+    const Sample here = touch.field.sample(c.proxy);
     if (here.value < -0.002 * here.radius * here.gradient.norm()) ++result.inside;
   }
   return result;

@@ -11,6 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+const Vector3d kFarAway(0, 0, 1);
+
 struct SweepScene {
   const char* name;
   std::vector<TestPoint> (*make)(const Sampling& sampling);
@@ -52,22 +54,13 @@ struct Truth {
 };
 
 Truth brute_force(const Field& field, const Vector3d& from, const Vector3d& to, double step) {
-  const bool two_sided = field.traits().two_sided;
   const double length = (to - from).norm();
   const int count = static_cast<int>(std::ceil(length / step));
-  Side side = 0;
   Truth truth;
   for (int i = 0; i <= count; ++i) {
     const Vector3d x = from + (to - from) * (static_cast<double>(i) / count);
-    const Sample here = field.sample(x, side);
-    if (two_sided && here.support < FieldOptions{}.minimum_support) {
-      side = 0;
-      if (truth.first >= 0) return truth;
-      continue;
-    }
-    if (two_sided && side == 0) side = here.height >= 0 ? 1 : -1;
-    const double value = two_sided ? field.sample(x, side).value : here.value;
-    if (value <= 0) {
+    const Sample here = field.sample(x);
+    if (here.value <= 0) {
       if (truth.first < 0) truth.first = i * length / count;
       truth.chord = i * length / count - truth.first + step;
       if (truth.chord > 0.2 * here.radius) return truth;
@@ -76,11 +69,6 @@ Truth brute_force(const Field& field, const Vector3d& from, const Vector3d& to, 
     }
   }
   return truth;
-}
-
-bool starts_free(const Field& field, const Vector3d& x) {
-  const Sample here = field.sample(x, 1);
-  return (here.height >= 0 ? here.value : field.sample(x, -1).value) > 0;
 }
 
 struct Tally {
@@ -94,12 +82,13 @@ struct Tally {
 
 void compare(PointField& scene, const Vector3d& from, const Vector3d& to, double radius,
              Tally& tally) {
+  (void)scene.at(kFarAway, kFarAway);  // nothing that was seen before counts
   const Field& field = scene.at(to, from);
-  if (!starts_free(field, from)) return;
+  if (!(field.sample(from).value > 0)) return;
   const double step = 0.002 * radius;
   const Truth truth = brute_force(field, from, to, step);
   const Texture none;
-  Probe probe(field, none, 0, radius);
+  Probe probe(field, none, radius);
   const Sweep found = first_contact(probe, from, to);
   const double reached = (found.position - from).norm();
   tally.contacts += truth.first >= 0 ? 1 : 0;

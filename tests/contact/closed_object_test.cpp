@@ -40,6 +40,7 @@ double most_wound(Scene& scene, const SurfacePoints& points, const FieldOptions&
       {.duration = 10, .radius = points.radius, .depth = 1.5 * points.radius, .seed = seed});
   SceneField field(scene, options);
   Proxy proxy;
+  proxy.reset(path.front().position);
   double most = 0;
   int touching = 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -58,12 +59,8 @@ TEST(ClosedObject, ARabbitIsNeverEntered) {
     Scene scene;
     const auto points = scene.add("rabbit", cloud).points();
     for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset}) {
-      for (const bool two_sided : {true, false}) {
-        for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(effort(6)); ++seed) {
-          const double most =
-              most_wound(scene, *points, {.kind = kind, .two_sided = two_sided}, seed);
-          EXPECT_LT(most, 0.85) << "seed " << seed;
-        }
+      for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(effort(6)); ++seed) {
+        EXPECT_LT(most_wound(scene, *points, {.kind = kind}, seed), 0.85) << "seed " << seed;
       }
     }
   }

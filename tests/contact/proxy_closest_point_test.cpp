@@ -136,9 +136,8 @@ TEST_P(Wedge, ConvergesIntoTheCreaseAndStaysOutside) {
   Proxy proxy;
   const Vector3d middle = Vector3d(std::cos(angle / 2), 0, std::sin(angle / 2));
   proxy.reset(0.03 * middle);
-  drive(proxy, wedge, 0.03 * middle, -0.004 * middle, 0.1, [&](const Vector3d&, const Contact& c) {
-    EXPECT_GT(wedge.sample(c.proxy, 1).value, -2e-5);
-  });
+  drive(proxy, wedge, 0.03 * middle, -0.004 * middle, 0.1,
+        [&](const Vector3d&, const Contact& c) { EXPECT_GT(wedge.sample(c.proxy).value, -2e-5); });
   const Contact last = rest(proxy, wedge, -0.004 * middle);
   expect_force(last, Vector3d::Zero(), -0.004 * middle, 0.03);
 }

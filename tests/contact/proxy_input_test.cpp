@@ -98,9 +98,9 @@ class HostileField final : public Field {
  public:
   explicit HostileField(bool broken) : broken_(broken) {}
 
-  [[nodiscard]] Sample sample(const Vector3d& x, Side side) const noexcept override {
-    const double h = hash(x) + 0.1 * side;
-    Sample sample{.value = 0.01 * (h - 0.3), .height = h - 0.5, .support = h, .radius = 0.01 * h};
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    const double h = hash(x);
+    Sample sample{.value = 0.01 * (h - 0.3), .support = h, .radius = 0.01 * h};
     sample.gradient = Vector3d(hash(2 * x) - 0.5, hash(3 * x) - 0.5, hash(5 * x) - 0.5);
     if (broken_ && h > 0.98) sample.gradient.x() = kNaN;
     if (broken_ && h < 0.02) sample.value = kInf;
@@ -114,7 +114,7 @@ class HostileField final : public Field {
     return {.stiffness_factor = broken_ && hash(x) > 0.9 ? kNaN : 3 * hash(x) - 1};
   }
   [[nodiscard]] FieldTraits traits() const noexcept override {
-    return {.two_sided = true, .resolution = 1e-7, .revision = ++revision_, .reanchor_reach = 0.01};
+    return {.resolution = 1e-7, .revision = ++revision_, .reanchor_reach = 0.01};
   }
 
  private:
@@ -157,7 +157,7 @@ TEST(Input, HostileFieldsCostABoundedNumberOfEvaluationsAndGiveFiniteForces) {
 /// Solid at the origin, with its surface beyond the end of the world.
 class AbyssField final : public Field {
  public:
-  [[nodiscard]] Sample sample(const Vector3d& x, Side) const noexcept override {
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
     const bool near = x.norm() < 1;
     return {.value = near ? -1e300 : 0,
             .gradient = Vector3d::UnitX(),

@@ -9,8 +9,8 @@ namespace palpate::test {
 
 inline const Texture kNoTexture;
 
-/// A flat two-sided sheet z = height, solid for `thickness` behind the side that it is seen from,
-/// with a round domain: what a point-set surface of a disc looks like.
+/// A flat sheet z = height, solid for `thickness` under it, with a round domain: what a point-set
+/// surface of a disc looks like from above.
 class SheetField final : public Field {
  public:
   double height = 0;
@@ -18,17 +18,14 @@ class SheetField final : public Field {
   double disc = 0.05;
   std::uint64_t revision = 0;
   double reach = 0;
-  mutable int samples = 0;
 
-  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side side) const noexcept override {
-    ++samples;
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override {
     const double z = x.z() - height;
-    const double f = (side < 0 ? -1 : 1) * z;
     const double rim = std::hypot(x.x(), x.y()) - disc;
     const double cap = std::max(std::abs(z) - thickness, rim);
-    Sample sample{.value = std::max(f, cap), .height = z, .support = 1, .radius = 0.01};
-    if (f >= cap) {
-      sample.gradient = (side < 0 ? -1 : 1) * Eigen::Vector3d::UnitZ();
+    Sample sample{.value = std::max(z, cap), .support = 1, .radius = 0.01};
+    if (z >= cap) {
+      sample.gradient = Eigen::Vector3d::UnitZ();
     } else if (rim > std::abs(z) - thickness) {
       sample.gradient = Eigen::Vector3d(x.x(), x.y(), 0).normalized();
     } else {
@@ -38,7 +35,6 @@ class SheetField final : public Field {
     return sample;
   }
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
-    ++samples;
     const Eigen::Vector3d& x = ball.center;
     return std::max(std::abs(x.z() - height) - thickness, std::hypot(x.x(), x.y()) - disc) >
            ball.radius;
@@ -47,8 +43,7 @@ class SheetField final : public Field {
     return {.source = 0};
   }
   [[nodiscard]] FieldTraits traits() const noexcept override {
-    return {
-        .two_sided = true, .resolution = 0.01 / 16, .revision = revision, .reanchor_reach = reach};
+    return {.resolution = 0.01 / 16, .revision = revision, .reanchor_reach = reach};
   }
 };
 
@@ -57,11 +52,10 @@ class BowlField final : public Field {
  public:
   explicit BowlField(double radius) : radius_(radius) {}
 
-  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side) const noexcept override {
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override {
     const double length = x.norm();
     Sample sample{.value = radius_ - length, .support = 1, .radius = 0.01};
     sample.gradient = length > 0 ? (-x / length).eval() : Eigen::Vector3d::UnitX().eval();
-    sample.height = sample.value;
     return sample;
   }
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
@@ -77,7 +71,7 @@ class BowlField final : public Field {
 /// Nothing anywhere.
 class EmptyField final : public Field {
  public:
-  [[nodiscard]] Sample sample(const Eigen::Vector3d&, Side) const noexcept override {
+  [[nodiscard]] Sample sample(const Eigen::Vector3d&) const noexcept override {
     return {.value = 1};
   }
   [[nodiscard]] bool is_free(const Ball&) const noexcept override { return true; }
@@ -90,7 +84,7 @@ class EmptyField final : public Field {
 /// Solid everywhere and without a gradient: nothing can be found.
 class FogField final : public Field {
  public:
-  [[nodiscard]] Sample sample(const Eigen::Vector3d&, Side) const noexcept override {
+  [[nodiscard]] Sample sample(const Eigen::Vector3d&) const noexcept override {
     return {.value = -1, .support = 1, .radius = 0.01};
   }
   [[nodiscard]] bool is_free(const Ball&) const noexcept override { return false; }
@@ -103,7 +97,7 @@ class DoubtfulField final : public Field {
  public:
   double floor = -1;  // m
 
-  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side) const noexcept override {
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override {
     const double height = x.z() - floor;
     if (height > 1e-4) return {.value = 1, .support = 1, .radius = 0.01};
     return {.value = height, .gradient = Eigen::Vector3d::UnitZ(), .support = 1, .radius = 0.01};
@@ -118,7 +112,7 @@ class DullPlateField final : public Field {
  public:
   bool dull = false;
 
-  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side) const noexcept override {
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override {
     if (dull && x.z() < 0.02 && x.z() > -0.07) return {.value = -1, .support = 1, .radius = 0.01};
     const double above = x.z();
     const double below = -0.05 - x.z();
@@ -128,7 +122,7 @@ class DullPlateField final : public Field {
             .radius = 0.01};
   }
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
-    return sample(ball.center, 1).value > ball.radius;
+    return sample(ball.center).value > ball.radius;
   }
   [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
   [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-4}; }

@@ -16,26 +16,28 @@ using Eigen::Vector3d;
 /// Points and their patch around the origin.
 class Gathered {
  public:
-  explicit Gathered(const std::vector<TestPoint>& points) : points_(make_points(points)) {
-    patch_.gather(std::vector<ActiveLayer>{{&points_}}, 1, Vector3d::Zero(), 30e-3);
+  /// `stance`: where they are seen from; nullptr: as their normals say.
+  explicit Gathered(const std::vector<TestPoint>& points, const Stance* stance = nullptr)
+      : points_(make_points(points)) {
+    patch_.gather(std::vector<ActiveLayer>{{&points_}}, 1, Vector3d::Zero(), 30e-3,
+                  {.stance = stance});
   }
 
-  [[nodiscard]] double closure(const Vector3d& x, double sign = 1) const {
+  [[nodiscard]] double closure(const Vector3d& x) const {
     simd::Sums sums;
     surface_.sums->all(patch_.columns(), false, x.data(), sums);
-    if (!(sums.v > 0)) return 0;
+    if (!(sums.label[kInFront].v > 0)) return 0;
     const Value radius{sums.wr / sums.w[0], Vector3d::Zero()};
     return crease_closure({.functions = surface_.sums,
                            .columns = &patch_.columns(),
                            .x = x.data(),
-                           .sums = &sums,
-                           .sign = sign,
+                           .all = &sums,
                            .radius = radius})
         .f;
   }
 
   [[nodiscard]] Sample sample(const Vector3d& x, const FieldOptions& options) const {
-    return evaluate(ImplicitSurface(options), patch_, x, 1);
+    return evaluate(ImplicitSurface(options), patch_, x);
   }
 
  private:
@@ -88,9 +90,10 @@ TEST(AcuteCreases, NothingElseIsTouched) {
 
 TEST(AcuteCreases, FromTheirOtherSideTheyAreEdgesAndStay) {
   const double angle = std::numbers::pi / 6;
-  const Gathered points(wedge(fine(kCreaseSupport), angle, 24e-3));
+  const Stance below{Vector3d(12e-3, 0, -6e-3)};
+  const Gathered points(wedge(fine(kCreaseSupport), angle, 24e-3), &below);
   for (double out = 0; out < 2 * kCreaseSupport; out += 0.25e-3) {
-    EXPECT_EQ(points.closure(crease_middle(angle, out), -1), 0) << out;
+    EXPECT_EQ(points.closure(crease_middle(angle, out)), 0) << out;
   }
 }
 

@@ -41,13 +41,13 @@ TEST(Analytic, GradientAgreesWithCentralDifferencesAndHasUnitLength) {
     int kinks = 0;
     for (int i = 0; i < 500; ++i) {
       const Vector3d x = random_place(random);
-      const Sample here = field->sample(x, 1);
+      const Sample here = field->sample(x);
       constexpr double kStep = 1e-7;
       Vector3d difference;
       for (int axis = 0; axis < 3; ++axis) {
         const Vector3d step = kStep * Vector3d::Unit(axis);
         difference[axis] =
-            (field->sample(x + step, 1).value - field->sample(x - step, 1).value) / (2 * kStep);
+            (field->sample(x + step).value - field->sample(x - step).value) / (2 * kStep);
       }
       EXPECT_NEAR(here.gradient.norm(), 1, 1e-12);
       kinks += (difference - here.gradient).norm() > 1e-6 ? 1 : 0;
@@ -62,9 +62,9 @@ TEST(Analytic, DistanceLeadsToTheSurface) {
   for (const Field* field : shapes.fields) {
     for (int i = 0; i < 200; ++i) {
       const Vector3d x = random_place(random);
-      const Sample here = field->sample(x, 1);
+      const Sample here = field->sample(x);
       if (here.value <= 0) continue;
-      EXPECT_NEAR(field->sample(x - here.value * here.gradient, 1).value, 0, 1e-14);
+      EXPECT_NEAR(field->sample(x - here.value * here.gradient).value, 0, 1e-14);
     }
   }
 }
@@ -75,7 +75,7 @@ TEST(Analytic, ABallIsFreeExactlyUpToTheSurface) {
   for (const Field* field : shapes.fields) {
     for (int i = 0; i < 200; ++i) {
       const Vector3d x = random_place(random);
-      const double value = field->sample(x, 1).value;
+      const double value = field->sample(x).value;
       if (value > 0) {
         EXPECT_TRUE(field->is_free({x, value * (1 - 1e-9)}));
         EXPECT_FALSE(field->is_free({x, value * (1 + 1e-9)}));
@@ -87,12 +87,12 @@ TEST(Analytic, ABallIsFreeExactlyUpToTheSurface) {
 }
 
 TEST(Analytic, KnownDistances) {
-  EXPECT_DOUBLE_EQ(PlaneField().sample({1, 2, -0.3}, 1).value, -0.3);
-  EXPECT_DOUBLE_EQ(SphereField(0.5).sample({0, 2, 0}, 1).value, 1.5);
-  EXPECT_DOUBLE_EQ(BoxField({2, 2, 2}).sample({4, 5, 1}, 1).value, 5);
-  EXPECT_DOUBLE_EQ(BoxField({2, 2, 2}).sample({0.25, 0, 0.5}, 1).value, -0.5);
-  EXPECT_DOUBLE_EQ(TorusField(3, 1).sample({0, 3, 4}, 1).value, 3);
-  EXPECT_DOUBLE_EQ(TorusField(3, 1).sample({0, 0, 0}, 1).value, 2);
+  EXPECT_DOUBLE_EQ(PlaneField().sample({1, 2, -0.3}).value, -0.3);
+  EXPECT_DOUBLE_EQ(SphereField(0.5).sample({0, 2, 0}).value, 1.5);
+  EXPECT_DOUBLE_EQ(BoxField({2, 2, 2}).sample({4, 5, 1}).value, 5);
+  EXPECT_DOUBLE_EQ(BoxField({2, 2, 2}).sample({0.25, 0, 0.5}).value, -0.5);
+  EXPECT_DOUBLE_EQ(TorusField(3, 1).sample({0, 3, 4}).value, 3);
+  EXPECT_DOUBLE_EQ(TorusField(3, 1).sample({0, 0, 0}).value, 2);
 }
 
 TEST(Analytic, CentresGiveFiniteUnitGradients) {
@@ -101,7 +101,7 @@ TEST(Analytic, CentresGiveFiniteUnitGradients) {
   const TorusField torus(2, 1);
   for (const Field* field : std::vector<const Field*>{&sphere, &box, &torus}) {
     for (const Vector3d& x : {Vector3d(0, 0, 0), Vector3d(2, 0, 0), Vector3d(0, 0, 1)}) {
-      const Sample here = field->sample(x, 1);
+      const Sample here = field->sample(x);
       EXPECT_TRUE(std::isfinite(here.value));
       EXPECT_NEAR(here.gradient.norm(), 1, 1e-12);
     }
@@ -109,7 +109,7 @@ TEST(Analytic, CentresGiveFiniteUnitGradients) {
 }
 
 TEST(Analytic, ToolRadiusPushesTheSurfaceOut) {
-  EXPECT_DOUBLE_EQ(SphereField(0.05, {.tool_radius = 0.01}).sample({0.1, 0, 0}, 1).value, 0.04);
+  EXPECT_DOUBLE_EQ(SphereField(0.05, {.tool_radius = 0.01}).sample({0.1, 0, 0}).value, 0.04);
 }
 
 TEST(Analytic, MovingTheShapeRaisesTheRevision) {
@@ -119,7 +119,7 @@ TEST(Analytic, MovingTheShapeRaisesTheRevision) {
   pose.translate(Vector3d(0, 0, 0.01));
   plane.set_pose(pose);
   EXPECT_GT(plane.traits().revision, before);
-  EXPECT_DOUBLE_EQ(plane.sample({0, 0, 0.03}, 1).value, 0.02);
+  EXPECT_DOUBLE_EQ(plane.sample({0, 0, 0.03}).value, 0.02);
 }
 
 TEST(Analytic, UnionTellsWhichPartIsTouched) {

@@ -37,13 +37,17 @@ class GradientTest : public testing::TestWithParam<Case> {
       points_[s].sharp_edges = (GetParam().sharp >> s & 1) != 0;
       layers_.push_back({&points_[s], s});
     }
-    patch_.gather(layers_, GetParam().sources, Vector3d::Zero(), 20e-3,
-                  {.raw_weights = GetParam().options.raw_weights});
+    for (Patch* patch : {&above_, &below_}) {
+      const Stance stance{patch == &above_ ? Vector3d(0, 0, 9e-3) : Vector3d(0, 0, -9e-3)};
+      patch->gather(layers_, GetParam().sources, Vector3d::Zero(), 20e-3,
+                    {.raw_weights = GetParam().options.raw_weights, .stance = &stance});
+    }
   }
 
   std::array<SurfacePoints, 2> points_;
   std::vector<ActiveLayer> layers_;
-  Patch patch_{2048};
+  Patch above_{2048};  // seen from there
+  Patch below_{2048};
 };
 
 TEST_P(GradientTest, IsTheDerivativeOfTheValue) {
@@ -53,14 +57,14 @@ TEST_P(GradientTest, IsTheDerivativeOfTheValue) {
   constexpr double h = 2e-8;
   for (int k = 0; k < 400; ++k) {
     const Vector3d x(12e-3 * place(random), 12e-3 * place(random), 8e-3 * place(random));
-    const Side side = k % 2 == 0 ? 1 : -1;
-    const Sample sample = evaluate(surface, patch_, x, side);
+    const Patch& patch = k % 2 == 0 ? above_ : below_;
+    const Sample sample = evaluate(surface, patch, x);
     Vector3d numeric;
     for (int axis = 0; axis < 3; ++axis) {
       const Vector3d step = h * Vector3d::Unit(axis);
-      numeric[axis] = (evaluate(surface, patch_, x + step, side).value -
-                       evaluate(surface, patch_, x - step, side).value) /
-                      (2 * h);
+      numeric[axis] =
+          (evaluate(surface, patch, x + step).value - evaluate(surface, patch, x - step).value) /
+          (2 * h);
     }
     EXPECT_LE((sample.gradient - numeric).norm(), 1e-5 * numeric.norm()) << "at " << x.transpose();
   }
@@ -95,12 +99,12 @@ TEST_P(GradientTest, EveryInstructionSetGivesTheSameBits) {
   std::uniform_real_distribution<double> place(-15e-3, 15e-3);
   for (int k = 0; k < 300; ++k) {
     const Vector3d x(place(random), place(random), place(random));
-    const Sample a = evaluate(plain, patch_, x, 1);
-    const Sample b = evaluate(wide, patch_, x, 1);
+    const Sample a = evaluate(plain, above_, x);
+    const Sample b = evaluate(wide, above_, x);
     EXPECT_EQ(a.value, b.value);
     EXPECT_EQ(a.gradient, b.gradient);
     const Ball ball{x, 2e-3};
-    EXPECT_EQ(is_free(plain, patch_, ball), is_free(wide, patch_, ball));
+    EXPECT_EQ(is_free(plain, above_, ball), is_free(wide, above_, ball));
   }
 }
 
@@ -114,23 +118,26 @@ std::vector<TestPoint> plane_points(double spacing, double radius, int half = 15
   return points;
 }
 
-Patch patch_of(const SurfacePoints& points) {
+/// Around the origin, seen from above or from below.
+Patch patch_of(const SurfacePoints& points, double side = 1) {
   Patch patch(4096);
-  patch.gather(std::vector<ActiveLayer>{{&points}}, 1, Vector3d::Zero(), 10e-3);
+  const Stance stance{Vector3d(0, 0, 9e-3 * side)};
+  patch.gather(std::vector<ActiveLayer>{{&points}}, 1, Vector3d::Zero(), 10e-3,
+               {.stance = &stance});
   return patch;
 }
 
 TEST(Evaluate, HeightOverAPlaneIsExact) {
   const SurfacePoints points = make_points(plane_points(4e-3, 10e-3));
   const Patch patch = patch_of(points);
+  const Patch from_below = patch_of(points, -1);
   for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset}) {
     const ImplicitSurface surface{FieldOptions{.kind = kind}};
     for (const double z : {-3e-3, -1e-3, 0.0, 1e-3, 3e-3}) {
-      const Sample sample = evaluate(surface, patch, {0.3e-3, 0.2e-3, z}, 1);
+      const Sample sample = evaluate(surface, patch, {0.3e-3, 0.2e-3, z});
       EXPECT_NEAR(sample.value, z, 1e-12);
-      EXPECT_NEAR(sample.height, z, 1e-12);
       EXPECT_LT((sample.gradient - Vector3d::UnitZ()).norm(), 1e-9);
-      EXPECT_NEAR(evaluate(surface, patch, {0.3e-3, 0.2e-3, z}, -1).value, -z, 1e-12);
+      EXPECT_NEAR(evaluate(surface, from_below, {0.3e-3, 0.2e-3, z}).value, -z, 1e-12);
     }
   }
 }
@@ -139,15 +146,15 @@ TEST(Evaluate, AToolPushesThePlaneOutByItsRadius) {
   const SurfacePoints points = make_points(plane_points(4e-3, 10e-3));
   const Patch patch = patch_of(points);
   const ImplicitSurface ball{FieldOptions{.tool_radius = 3e-3}};
-  EXPECT_NEAR(evaluate(ball, patch, {0, 0, 3e-3}, 1).value, 0, 1e-12);
-  EXPECT_NEAR(evaluate(ball, patch, {0, 0, -3e-3}, -1).value, 0, 1e-12);
+  EXPECT_NEAR(evaluate(ball, patch, {0, 0, 3e-3}).value, 0, 1e-12);
+  EXPECT_NEAR(evaluate(ball, patch_of(points, -1), {0, 0, -3e-3}).value, 0, 1e-12);
 
   const ImplicitSurface blob{FieldOptions{.kind = FieldKind::metaball, .tool_radius = 3e-3}};
   double low = 0;
   double high = 10e-3;
   for (int i = 0; i < 50; ++i) {
     const double z = 0.5 * (low + high);
-    (evaluate(blob, patch, {0, 0, z}, 1).value < 0 ? low : high) = z;
+    (evaluate(blob, patch, {0, 0, z}).value < 0 ? low : high) = z;
   }
   EXPECT_NEAR(low, 4.9e-3 + 3e-3, 0.3e-3);
 }
@@ -158,8 +165,8 @@ TEST(Evaluate, CapEndsTheSurfaceBehindTheLastRow) {
   const SurfacePoints half = make_points(points);
   const ImplicitSurface surface{FieldOptions{}};
   const Patch patch = patch_of(half);
-  EXPECT_LT(evaluate(surface, patch, {-2e-3, 0, -1e-3}, 1).value, 0);
-  EXPECT_GT(evaluate(surface, patch, {6e-3, 0, -1e-3}, 1).value, 0);  // naive: still "solid"
+  EXPECT_LT(evaluate(surface, patch, {-2e-3, 0, -1e-3}).value, 0);
+  EXPECT_GT(evaluate(surface, patch, {6e-3, 0, -1e-3}).value, 0);  // naive: still "solid"
 }
 
 TEST(Evaluate, FourSourcesThatAgreeRaiseAMetaballByLittle) {
@@ -174,7 +181,7 @@ TEST(Evaluate, FourSourcesThatAgreeRaiseAMetaballByLittle) {
     double high = 10e-3;
     for (int i = 0; i < 50; ++i) {
       const double z = 0.5 * (low + high);
-      (evaluate(surface, patch, {0, 0, z}, 1).value < 0 ? low : high) = z;
+      (evaluate(surface, patch, {0, 0, z}).value < 0 ? low : high) = z;
     }
     return low;
   };
@@ -199,8 +206,8 @@ TEST(Evaluate, PrintedGradientPointsInwards) {
   for (double x = -8e-3; x < 8e-3; x += 1.1e-3) {
     for (double y = -8e-3; y < 8e-3; y += 1.1e-3, ++counted) {
       const Vector3d place(x, y, 5e-3);
-      const Vector3d right = evaluate(exact, patch, place, 1).gradient;
-      if (evaluate(printed, patch, place, 1).gradient.dot(right) < 0) ++inward;
+      const Vector3d right = evaluate(exact, patch, place).gradient;
+      if (evaluate(printed, patch, place).gradient.dot(right) < 0) ++inward;
     }
   }
   EXPECT_GT(inward, 0.9 * counted);
@@ -218,9 +225,9 @@ TEST(Evaluate, DegenerateNeighbourhoodsStayFinite) {
     for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset, FieldKind::metaball}) {
       const ImplicitSurface surface{FieldOptions{.kind = kind}};
       for (const double z : {0.0, 1e-12, 5e-3, 9.999999e-3, 10e-3, 11e-3}) {
-        const Sample sample = evaluate(surface, patch, {0, 0, z}, 1);
+        const Sample sample = evaluate(surface, patch, {0, 0, z});
         EXPECT_TRUE(std::isfinite(sample.value) && sample.gradient.allFinite());
-        EXPECT_TRUE(std::isfinite(sample.radius) && std::isfinite(sample.height));
+        EXPECT_TRUE(std::isfinite(sample.radius));
       }
     }
   }

@@ -46,8 +46,8 @@ std::vector<ActiveLayer> layers_at(double u, const std::vector<SurfacePoints>& p
 
 void expect_same(const Patch& a, const Patch& b, const ImplicitSurface& surface,
                  const Vector3d& x) {
-  const Sample one = evaluate(surface, a, x, 1);
-  const Sample other = evaluate(surface, b, x, 1);
+  const Sample one = evaluate(surface, a, x);
+  const Sample other = evaluate(surface, b, x);
   EXPECT_NEAR(one.value, other.value, 1e-12);
   EXPECT_NEAR(one.support, other.support, 1e-12);
   EXPECT_NEAR(one.radius, other.radius, other.support > 0 ? 1e-12 : 1);

@@ -151,7 +151,7 @@ TEST(SharpContact, ARandomHandNeverGetsInside) {
         EXPECT_FALSE(has(contact.notes, ContactNote::lost));
         if (!contact.touching) continue;
         ++touching;
-        const Sample here = field.sample(contact.proxy, proxy.side());
+        const Sample here = field.sample(contact.proxy);
         const double depth = -here.value / std::max(here.gradient.norm(), 1e-9) / here.radius;
         if (depth > 0.002) ++inside;
       }

@@ -39,7 +39,7 @@ std::vector<double> crossings(SceneField& field, double x) {
   std::vector<double> found;
   double last = 0;
   for (double z = -0.03; z <= 0.03; z += kStep) {
-    const double value = field.sample({x, 0, z}, 1).value;
+    const double value = field.sample({x, 0, z}).value;
     if (last * value < 0) found.push_back(z);
     last = value;
   }
@@ -50,7 +50,7 @@ std::vector<double> crossings_of(const std::vector<std::vector<TestPoint>>& sour
   Scene scene;
   for (const auto& source : sources) add(scene, std::to_string(scene.size()), source);
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update(0, Vector3d::Zero(), {x, 0, 0.025});
   return crossings(field, x);
 }
 
@@ -106,7 +106,7 @@ TEST(UnitedHeight, StaysFiniteWhereASourceHasNoNormal) {
   field.update(0, Vector3d::Zero(), Vector3d::Zero());
   for (double z = -0.01; z <= 0.01; z += 2.5e-4) {
     for (const double x : {0.0, 0.5 * kSpacing, kSpacing}) {
-      const Sample sample = field.sample({x, 0, z}, 1);
+      const Sample sample = field.sample({x, 0, z});
       EXPECT_TRUE(std::isfinite(sample.value) && sample.gradient.allFinite()) << x << " " << z;
     }
   }

@@ -25,7 +25,7 @@ TEST(LimitGrowth, IsTheLowestConeOverAllPoints) {
   std::vector<float> radii;
   for (std::size_t i = 0; i < grid.size(); ++i) radii.push_back(std::pow(10.0f, size(random)));
   std::vector<float> limited = radii;
-  limit_growth(grid, limited);
+  limit_growth(grid, 0.5f, limited);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     float expected = radii[i];
     for (std::size_t j = 0; j < grid.size(); ++j) {
@@ -41,10 +41,10 @@ TEST(LimitGrowth, LeavesEvenRadiiAlone) {
   const CellGrid grid(scattered(100));
   const std::vector<float> even(100, 0.1f);
   std::vector<float> radii = even;
-  limit_growth(grid, radii);
+  limit_growth(grid, 0.5f, radii);
   EXPECT_EQ(radii, even);
   std::vector<float> none;
-  limit_growth(CellGrid(), none);
+  limit_growth(CellGrid(), 0.5f, none);
   EXPECT_TRUE(none.empty());
 }
 
@@ -54,11 +54,30 @@ TEST(LimitGrowth, SparsePointsDoNotReachIntoFineSampling) {
   const CellGrid grid(points);
   std::vector<float> radii;
   for (const Vector3f& p : grid.points()) radii.push_back(p.x() > 1.5f ? 5.0f : 0.08f);
-  limit_growth(grid, radii);
+  limit_growth(grid, 0.5f, radii);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (grid.points()[i].x() > 1.5f) {
       EXPECT_LT(radii[i], 0.6f);
     }
+  }
+}
+
+TEST(LimitGrowth, SparsePointsOfTheSamePlaneMayReach) {
+  std::vector<Vector3f> points = scattered(1000);
+  points.emplace_back(2.0f, 0.5f, 0.0f);
+  points.emplace_back(2.0f, 0.5f, 1.0f);
+  const CellGrid grid(points);
+  std::vector<float> radii;
+  for (const Vector3f& p : grid.points()) radii.push_back(p.x() > 1.5f ? 5.0f : 0.08f);
+  const OwnSheets own{std::vector<Vector3f>(points.size(), Vector3f(0, 0, -1)),
+                      std::vector<float>(points.size(), 1.0f),
+                      std::vector<float>(points.size(), 0.0f),
+                      {}};
+  limit_growth(grid, 0.5f, radii, &own);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const Vector3f& p = grid.points()[i];
+    if (p.x() < 1.5f) continue;
+    EXPECT_EQ(radii[i] == 5.0f, p.z() < 0.5f);
   }
 }
 

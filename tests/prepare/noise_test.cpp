@@ -11,7 +11,7 @@
 #include "prepare/merge_slivers.hpp"
 #include "prepare/noise_map.hpp"
 #include "prepare/noisy_radii.hpp"
-#include "prepare/window_fit.hpp"
+#include "prepare/own_sheet.hpp"
 
 namespace palpate {
 namespace {
@@ -46,41 +46,56 @@ std::vector<Vector3f> sheet(int side, double sigma, int blur = 0, float bend = 0
   return points;
 }
 
-TEST(WindowFit, SeesNoNoiseInACurvedSurface) {
+TEST(SheetFit, SeesNoNoiseInACurvedSurface) {
   const CellGrid grid(sheet(40, 0, 0, 15));
-  WindowFitter fitter;
-  const WindowFit fit = fitter.fit(grid, Vector3f::Zero(), 0.012);
+  SheetFitter fitter;
+  const SheetFit fit = fitter.fit(grid, Vector3f::Zero(), 0.012, kSpacing);
   EXPECT_NEAR(fit.footprint, kSpacing, 0.1 * kSpacing);
-  EXPECT_LT(fit.sigma, 1e-5);
+  EXPECT_LT(fit.bend, 1e-5);
 }
 
-TEST(WindowFit, MeasuresWhiteNoiseWithoutBias) {
+TEST(SheetFit, IsOfOneFaceOfAPlate) {
+  for (const float thickness : {0.6f, 1.0f, 3.0f}) {
+    std::vector<Vector3f> points = sheet(40, 0);
+    for (std::size_t i = 0, count = points.size(); i < count; ++i) {
+      points.push_back(points[i] + Vector3f(0.3f, 0.4f, -thickness) * kSpacing);
+    }
+    SheetFitter fitter;
+    const SheetFit fit =
+        fitter.fit(CellGrid(points), Vector3f::Zero(), 3 * static_cast<double>(kSpacing), kSpacing);
+    EXPECT_GT(std::abs(fit.normal.z()), 0.9999) << thickness;
+    EXPECT_LT(fit.residual, 1e-6) << thickness;
+    EXPECT_EQ(fit.planarity, 1) << thickness;
+  }
+}
+
+TEST(SheetFit, MeasuresWhiteNoiseWithoutBias) {
   const CellGrid grid(sheet(80, 0.001));
-  WindowFitter fitter;
+  SheetFitter fitter;
   double variance = 0;
   double shared = 0;
   for (int i = 0; i < 49; ++i) {
     const Vector3f at(0.015f * static_cast<float>(i % 7 - 3),
                       0.015f * static_cast<float>(i / 7 - 3), 0);
-    const WindowFit fit = fitter.fit(grid, at, 0.03, 0.008);
-    variance += fit.sigma * fit.sigma / 49;
+    const SheetFit fit = fitter.fit(grid, at, 0.03, kSpacing, 0.008);
+    variance += fit.bend * fit.bend / 49;
     shared += fit.shared / 49;
   }
   EXPECT_NEAR(std::sqrt(variance), 0.001, 5e-5);
   EXPECT_NEAR(shared, 1, 0.2);
 }
 
-TEST(WindowFit, StaysFiniteOnDegeneratePoints) {
-  WindowFitter fitter;
+TEST(SheetFit, StaysFiniteOnDegeneratePoints) {
+  SheetFitter fitter;
   const std::vector<Vector3f> same(30, Vector3f(1, 2, 3));
-  const WindowFit point = fitter.fit(CellGrid(same), Vector3f(1, 2, 3), 0.1, 0.02);
-  EXPECT_EQ(point.sigma, 0);
+  const SheetFit point = fitter.fit(CellGrid(same), Vector3f(1, 2, 3), 0.1, 0.01, 0.02);
+  EXPECT_EQ(point.bend, 0);
   std::vector<Vector3f> line;
   for (int i = 0; i < 30; ++i) line.emplace_back(0.01f * static_cast<float>(i), 0, 0);
-  const WindowFit fit = fitter.fit(CellGrid(line), Vector3f(0.15f, 0, 0), 0.2, 0.02);
-  EXPECT_TRUE(std::isfinite(fit.sigma) && std::isfinite(fit.shared));
-  EXPECT_LT(fit.sigma, 1e-6);
-  EXPECT_EQ(fitter.fit(CellGrid(line), Vector3f(9, 9, 9), 0.2).points, 0u);
+  const SheetFit fit = fitter.fit(CellGrid(line), Vector3f(0.15f, 0, 0), 0.2, 0.01, 0.02);
+  EXPECT_TRUE(std::isfinite(fit.bend) && std::isfinite(fit.shared));
+  EXPECT_LT(fit.bend, 1e-6);
+  EXPECT_EQ(fitter.fit(CellGrid(line), Vector3f(9, 9, 9), 0.2, 0.01).points, 0u);
 }
 
 TEST(Noise, IsItsDeviationWhereNeighboursErrIndependently) {

@@ -70,17 +70,16 @@ class RandomGuide final : public HandGuide {
 struct EnergyFuzzScene {
   const char* name;
   std::vector<TestPoint> points;
-  bool two_sided;
 };
 
 std::vector<EnergyFuzzScene> energy_fuzz_scenes() {
   const Sampling clean;
   const Sampling noisy{.jitter = 0.2, .noise = 0.25, .tilt = 0.1};
-  return {{"sphere", ball(clean, 0.03), false},
-          {"noisy_sphere", ball(noisy, 0.03), false},
-          {"sheet", sheet(noisy, 0.03), true},
-          {"plate", plate(noisy, 0.03, 0.008), true},
-          {"corner", wedge(noisy, std::numbers::pi / 2, 0.03), true}};
+  return {{"sphere", ball(clean, 0.03)},
+          {"noisy_sphere", ball(noisy, 0.03)},
+          {"sheet", sheet(noisy, 0.03)},
+          {"plate", plate(noisy, 0.03, 0.008)},
+          {"corner", wedge(noisy, std::numbers::pi / 2, 0.03)}};
 }
 
 using EnergyFuzzCase = std::tuple<int, FieldKind>;
@@ -93,7 +92,6 @@ TEST_P(EnergyFuzz, NoSurfaceGivesMoreThanWasPutIn) {
   scene.add("points").publish(still(made.points));
   ServoOptions options;
   options.field.kind = kind;
-  options.field.two_sided = made.two_sided;
   for (const auto& [mu, delay] : {std::pair{0.0, 1}, {0.4, 1}, {0.0, 3}, {0.4, 3}}) {
     options.proxy.friction = {.static_coefficient = mu, .dynamic_coefficient = mu};
     RandomGuide guide(
@@ -123,7 +121,6 @@ TEST(Energy, WithoutTheGuardAStiffBallGivesWhatNobodyPutIn) {
   Scene scene;
   scene.add("points").publish(still(ball({}, 0.03)));
   ServoOptions options;
-  options.field.two_sided = false;
   options.proxy.stiffness = 2000;
   options.guard = {.slew = 1e9, .damping = 0, .soft_start = 0, .passivity = {.on = false}};
   options.guard.stiffness_share = std::numeric_limits<double>::infinity();

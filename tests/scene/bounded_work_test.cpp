@@ -67,7 +67,7 @@ TEST(BoundedWork, OutsideOfAStepSamplesAreBoundedOneByOne) {
   field.update(0, Vector3d::Zero(), Vector3d::Zero());
   for (int k = 0; k < 2000; ++k) {  // more than a step could gather
     const double x = k % 2 == 0 ? 50e-3 : -50e-3;
-    EXPECT_NEAR(field.sample({x, 0, 2e-3}, 1).value, 2e-3, 1e-6);
+    EXPECT_NEAR(field.sample({x, 0, 2e-3}).value, 2e-3, 1e-6);
   }
   EXPECT_GT(field.visits(), std::uint64_t{SceneField::kStepVisits});
   EXPECT_FALSE(has(field.notes(), FieldNote::work_spent));

@@ -140,7 +140,7 @@ TEST(Scene, CloudsAreClippedToWhereTheHandCanBe) {
     field.update(now, hand, hand);
     if (tick % 200 == 0) source.push(cloud, now, [=] { return now + 0.01; });
     if (tick <= 250) continue;
-    EXPECT_GT(field.sample(hand, 1).support, 0.9) << now;
+    EXPECT_GT(field.sample(hand).support, 0.9) << now;
   }
   EXPECT_LT(source.state().points, cloud.size() * 3 / 4);
 }

@@ -27,11 +27,11 @@ TEST(SceneField, NonFiniteArgumentsAreHarmless) {
   const Vector3d huge = Vector3d::Constant(1e300);
   field.update(0, nan, Vector3d::Zero());
   field.update(0, huge, huge);
-  EXPECT_TRUE(field.sample(huge, 1).gradient.allFinite());
-  EXPECT_EQ(field.sample(nan, 1).support, 0);
+  EXPECT_TRUE(field.sample(huge).gradient.allFinite());
+  EXPECT_EQ(field.sample(nan).support, 0);
   EXPECT_FALSE(field.is_free({nan, 1}));
   field.update(0, Vector3d::Zero(), Vector3d::Zero());
-  EXPECT_NEAR(field.sample({0, 0, 1e-3}, 1).value, 1e-3, 1e-9);
+  EXPECT_NEAR(field.sample({0, 0, 1e-3}).value, 1e-3, 1e-9);
 }
 
 TEST(SceneField, AnOverfullPatchIsThinnedAndSaysSo) {
@@ -43,7 +43,7 @@ TEST(SceneField, AnOverfullPatchIsThinnedAndSaysSo) {
   field.update(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(has(field.notes(), FieldNote::thinned));
   EXPECT_LE(field.patch_points(), SceneField::kPatchPoints);
-  EXPECT_NEAR(field.sample({0, 0, 1e-3}, 1).value, 1e-3, 1e-9);
+  EXPECT_NEAR(field.sample({0, 0, 1e-3}).value, 1e-3, 1e-9);
 }
 
 TEST(SceneField, ALayerWithoutPointsChangesNothing) {
@@ -56,10 +56,10 @@ TEST(SceneField, ALayerWithoutPointsChangesNothing) {
     SceneField field(scene, {.tool_radius = tool});
     const Vector3d high(0, 0, 0.5);
     field.update(0, high, high);
-    EXPECT_GT(field.sample(high, 1).value, 0);
+    EXPECT_GT(field.sample(high).value, 0);
     EXPECT_TRUE(field.is_free({high, 0.4}));
     EXPECT_GT(field.traits().resolution, 0);
-    EXPECT_NEAR(field.sample({0, 0, 2e-3}, 1).value, 2e-3 - tool, 1e-9);
+    EXPECT_NEAR(field.sample({0, 0, 2e-3}).value, 2e-3 - tool, 1e-9);
   }
   source.publish([] {
     auto nothing = std::make_unique<Snapshot>();
@@ -80,7 +80,7 @@ TEST(SceneField, ATimeThatIsNotFiniteLeavesTheSurfaceWhereItWas) {
   field.update(0.5, x, x);
   field.update(std::numeric_limits<double>::quiet_NaN(), x, x);
   EXPECT_TRUE(has(field.notes(), FieldNote::time_not_finite));
-  EXPECT_NEAR(field.sample(x, 1).value, 1e-3, 1e-9);
+  EXPECT_NEAR(field.sample(x).value, 1e-3, 1e-9);
   field.update(0.501, x, x);
   EXPECT_FALSE(has(field.notes(), FieldNote::time_not_finite));
 }
@@ -140,16 +140,16 @@ TEST(SceneField, OneRadiusForAllIsOneEverywhere) {
   SceneField field(scene, options);
   const Vector3d left(-20e-3, 0, 5e-3);
   field.update(0, left, left);
-  EXPECT_NEAR(field.sample(left, 1).radius, 8e-3, 1e-9);
+  EXPECT_NEAR(field.sample(left).radius, 8e-3, 1e-9);
   const Vector3d right(20e-3, 1e-3, 3e-3);
-  EXPECT_NEAR(field.sample(right, 1).radius, 8e-3, 1e-9);  // another patch, the same radius
+  EXPECT_NEAR(field.sample(right).radius, 8e-3, 1e-9);  // another patch, the same radius
   for (double z = 0; z < 40e-3; z += 1e-3) {
     const Ball ball{{20e-3, 0, z}, 3e-3};
     if (!field.is_free(ball)) continue;
-    EXPECT_GT(field.sample(ball.center - Vector3d(0, 0, 3e-3), 1).value, 0);
+    EXPECT_GT(field.sample(ball.center - Vector3d(0, 0, 3e-3)).value, 0);
   }
   field.update(0, right, right);
-  EXPECT_NEAR(field.sample(left, 1).radius, 16e-3, 1e-9);
+  EXPECT_NEAR(field.sample(left).radius, 16e-3, 1e-9);
 }
 
 TEST(SceneField, SaysWhenKernelOrToolDoNotFitThePoints) {
@@ -211,7 +211,7 @@ TEST(SceneField, PointsOfNoWeightAreNotThere) {
     SceneField field(scene, options);
     field.update(0, Vector3d::Zero(), Vector3d::Zero());
     EXPECT_TRUE(field.is_free({{40e-3, 0, 0}, 5e-3}));
-    EXPECT_EQ(field.sample({40e-3, 0, 0}, 1).support, 0);
+    EXPECT_EQ(field.sample({40e-3, 0, 0}).support, 0);
   }
 }
 

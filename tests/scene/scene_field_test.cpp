@@ -24,8 +24,8 @@ TEST(SceneField, WithoutASurfaceEverythingIsFree) {
   field.update(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(has(field.notes(), FieldNote::no_surface));
   EXPECT_TRUE(field.is_free({Vector3d::Zero(), 1}));
-  EXPECT_EQ(field.sample(Vector3d::Zero(), 1).support, 0);
-  EXPECT_GT(field.sample(Vector3d::Zero(), 1).value, 0);
+  EXPECT_EQ(field.sample(Vector3d::Zero()).support, 0);
+  EXPECT_GT(field.sample(Vector3d::Zero()).value, 0);
   EXPECT_EQ(field.surface(Vector3d::Zero()).source, -1);
 }
 
@@ -37,7 +37,7 @@ TEST(SceneField, SamplesAwayFromThePathAreAsGoodAsThoseOnIt) {
   const Vector3d here(1e-3, 2e-3, 3e-3);
   field.update(0, here, here);
   for (double x = -40e-3; x <= 40e-3; x += 3e-3) {
-    const Sample sample = field.sample({x, 1e-3, 2e-3}, 1);
+    const Sample sample = field.sample({x, 1e-3, 2e-3});
     EXPECT_NEAR(sample.value, 2e-3, 1e-9);
     EXPECT_FALSE(field.is_free({{x, 1e-3, 2e-3}, 1e-3}));
     EXPECT_TRUE(field.is_free({{x, 1e-3, 25e-3}, 10e-3}));
@@ -53,7 +53,7 @@ TEST(SceneField, KeepsItsPatchWhileTheToolStaysNear) {
   for (int k = 0; k < 100; ++k) {
     x.x() += 0.1e-3;
     field.update(1e-3 * k, x, x);
-    EXPECT_NEAR(field.sample(x, 1).value, 2e-3, 1e-9);
+    EXPECT_NEAR(field.sample(x).value, 2e-3, 1e-9);
   }
   EXPECT_LE(field.gathers(), 5u);
 }
@@ -87,13 +87,13 @@ TEST(SceneField, ChangesToWhatAFieldOfThoseOptionsIs) {
   changed.update(1e-3, x, x);
   made.update(1e-3, x, x);
   EXPECT_GT(changed.traits().revision, revision);
-  EXPECT_EQ(changed.sample(x, 1).value, made.sample(x, 1).value);
-  EXPECT_EQ(changed.sample(x, 1).gradient, made.sample(x, 1).gradient);
+  EXPECT_EQ(changed.sample(x).value, made.sample(x).value);
+  EXPECT_EQ(changed.sample(x).gradient, made.sample(x).gradient);
   changed.change(paper_field());  // one R for all, and back
   changed.update(2e-3, x, x);
   changed.change(metaball);
   changed.update(3e-3, x, x);
-  EXPECT_EQ(changed.sample(x, 1).value, made.sample(x, 1).value);
+  EXPECT_EQ(changed.sample(x).value, made.sample(x).value);
 }
 
 TEST(SceneField, ASurfaceThatIsTakenAwayIsGone) {
@@ -161,7 +161,7 @@ TEST(SceneField, TwoSourcesMakeOneSurface) {
   for (double x = -30e-3; x <= 30e-3; x += 2e-3) {
     const Vector3d place(x, 0, 1e-3);
     field.update(0, place, place);
-    EXPECT_NEAR(field.sample(place, 1).value, 1e-3, 1e-6) << x;
+    EXPECT_NEAR(field.sample(place).value, 1e-3, 1e-6) << x;
     EXPECT_EQ(field.surface(place).source, x < 0 ? 0 : 1);
   }
 }

@@ -53,7 +53,7 @@ TEST_P(SeamsTest, APlaneIsOnePlane) {
   for (double x = -half; x <= half; x += 2e-3) {
     const Vector3d place(x, 3e-3, 2e-3);
     field.update(0.06, place, place);
-    const Sample sample = field.sample(place, 1);
+    const Sample sample = field.sample(place);
     EXPECT_NEAR(sample.value, 2e-3, 3e-5) << x;
     EXPECT_NEAR(sample.gradient.normalized().z(), 1, 1e-4) << x;
     EXPECT_GT(sample.support, 0.6) << x;
@@ -74,7 +74,7 @@ TEST_P(SeamsTest, AMetaballRisesLittleWhereTheyAgree) {
     double high = 15e-3;
     for (int i = 0; i < 40; ++i) {
       const double z = 0.5 * (low + high);
-      (field.sample({x, 0, z}, 1).value < 0 ? low : high) = z;
+      (field.sample({x, 0, z}).value < 0 ? low : high) = z;
     }
     lowest = std::min(lowest, low);
     highest = std::max(highest, low);

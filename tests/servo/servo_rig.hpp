@@ -29,13 +29,6 @@ inline ServoOptions first_links() {
   return options;
 }
 
-/// The same; a hand that starts under the sheet is pushed out of it.
-inline ServoOptions one_sided() {
-  ServoOptions options = first_links();
-  options.field.two_sided = false;
-  return options;
-}
-
 /// Down through the sheet to 4 mm under it, across, and up again, in a second of milliseconds.
 inline Trajectory visit() {
   Trajectory rows;

@@ -112,7 +112,7 @@ TEST(Servo, ComesUpSoftlyWhenASurfaceAppearsAroundTheHand) {
   Scene scene;
   Source& source = scene.add("sheet");
   FreeDevice device({0, 0, 1e-3});
-  Servo servo(device, scene, test::one_sided());
+  Servo servo(device, scene, test::first_links());
   for (int i = 0; i < 10; ++i) servo.tick(1e-3 * i);
   source.publish(test::still(test::plane(5e-3)));
   double before = 0;

@@ -48,7 +48,7 @@ TEST(ServoThread, StepsOnTheClocksGridUntilTheDeviceIsDone) {
   test::add_sheet(scene);
   FreeDevice device({0, 0, -4e-3});
   device.finish_after(2001);
-  Servo servo(device, scene, test::one_sided());
+  Servo servo(device, scene, test::first_links());
   FakeClock clock;
   {
     ServoThreadOptions options = modest();
@@ -74,7 +74,7 @@ TEST(ServoThread, MakesNoBurstAfterAGap) {
   test::add_sheet(scene);
   FreeDevice device({0, 0, -4e-3});
   device.finish_after(1000);
-  Servo servo(device, scene, test::one_sided());
+  Servo servo(device, scene, test::first_links());
   FakeClock clock([](int wait) { return wait == 500 ? 0.1 : 20e-6; });
   const ServoThread thread(servo, clock, modest());
   wait_for(thread);
@@ -91,7 +91,7 @@ TEST(ServoThread, IsPacedByADeviceThatKeepsTime) {
   FreeDevice device({0, 0, 5e-3});
   device.info().keeps_time = true;
   device.finish_after(1000);
-  Servo servo(device, scene, test::one_sided());
+  Servo servo(device, scene, test::first_links());
   FakeClock clock;
   const ServoThread thread(servo, clock, modest());
   wait_for(thread);
@@ -103,7 +103,7 @@ TEST(ServoThread, EndsWithZeroForceWhenToldTo) {
   Scene scene;
   test::add_sheet(scene);
   FreeDevice device({0, 0, -4e-3});
-  Servo servo(device, scene, test::one_sided());
+  Servo servo(device, scene, test::first_links());
   FakeClock clock;
   ServoThread thread(servo, clock, modest());
   while (servo.state().step < 100) std::this_thread::yield();
@@ -118,7 +118,7 @@ TEST(ServoThread, EndsWhenTheDeviceFails) {
   Scene scene;
   FreeDevice device;
   device.state().status = DeviceStatus::failed;
-  Servo servo(device, scene, test::one_sided());
+  Servo servo(device, scene, test::first_links());
   FakeClock clock;
   const ServoThread thread(servo, clock, modest());
   wait_for(thread);
@@ -130,7 +130,7 @@ TEST(ServoThread, MayBeWatchedAndChangedWhileItRuns) {
   Scene scene;
   Source& source = test::add_sheet(scene);
   FreeDevice device({0, 0, -4e-3});
-  Servo servo(device, scene, test::one_sided());
+  Servo servo(device, scene, test::first_links());
   FakeClock clock;
   const ServoThread thread(servo, clock, modest());
   std::uint64_t before = 0;
@@ -151,7 +151,7 @@ TEST(ServoThread, MayBeWatchedAndChangedWhileItRuns) {
 TEST(ServoThread, RefusesRatesThatNoServoHas) {
   Scene scene;
   FreeDevice device;
-  Servo servo(device, scene, test::one_sided());
+  Servo servo(device, scene, test::first_links());
   FakeClock clock;
   for (const double rate : {0.0, 499.0, 10'001.0, -1.0}) {
     ServoThreadOptions options = modest();

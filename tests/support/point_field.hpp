@@ -20,7 +20,6 @@ class PointField {
     snapshot->layers.push_back({points_});
     scene_.add("points").publish(std::move(snapshot));
     field_ = std::make_unique<SceneField>(scene_, options);
-    field_->update(0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   }
 
   /// The field, ready for a step from `proxy` towards `hip`.
@@ -28,7 +27,6 @@ class PointField {
     field_->update(0, hip, proxy);
     return *field_;
   }
-  [[nodiscard]] const Field& get() const { return *field_; }
   [[nodiscard]] const SurfacePoints& points() const { return *points_; }
 
  private:

@@ -28,16 +28,19 @@ struct ReferencePoint {
 /// only (no tool radius for the metaball, none of the paper's variants).
 class ReferenceField final : public Field {
  public:
-  ReferenceField(std::vector<ReferencePoint> points, const FieldOptions& options)
+  /// `side`: -1: it is seen from behind its normals.
+  ReferenceField(std::vector<ReferencePoint> points, const FieldOptions& options, int side = 1)
       : points_(std::move(points)), options_(options) {
+    for (ReferencePoint& p : points_) p.normal *= side;
     for (const ReferencePoint& p : points_) sources_ = std::max(sources_, p.source + 1);
   }
 
   /// The points of one source each.
-  ReferenceField(const std::vector<const SurfacePoints*>& sources, const FieldOptions& options)
-      : ReferenceField(points_of(sources), options) {}
+  ReferenceField(const std::vector<const SurfacePoints*>& sources, const FieldOptions& options,
+                 int side = 1)
+      : ReferenceField(points_of(sources), options, side) {}
 
-  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side side) const noexcept override {
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override {
     const Sums s = sums_at(x);
     Sample result{.value = 0.35 * typical_radius(), .radius = typical_radius()};
     if (!(s.plain.v > 1e-12)) return result;
@@ -46,11 +49,9 @@ class ReferenceField final : public Field {
     const Dual blob = as_length(radius, options_.threshold, support);
     Dual value = blob;
     if (s.trusted.v > 1e-9 * s.plain.v && options_.kind != FieldKind::metaball) {
-      const double sign = options_.two_sided && side < 0 ? -1 : 1;
-      Dual height = sharpened(s, radius, sign);
+      Dual height = sharpened(s, radius);
       if (sources_ > 1) height = height + united_shift(s.own, radius, options_.kernel);
-      result.height = height.v;
-      value = blend(s, capped(sign * height - closure(s, radius, sign), radius, support), blob);
+      value = blend(s, capped(height - closure(s, radius), radius, support), blob);
     }
     result.value = value.v;
     result.gradient = value.g;
@@ -77,8 +78,7 @@ class ReferenceField final : public Field {
 
   [[nodiscard]] FieldTraits traits() const noexcept override {
     const bool metaball = options_.kind == FieldKind::metaball;
-    return {.two_sided = options_.two_sided && !metaball,
-            .resolution = (metaball ? 0.002 : 1.0 / 16) * typical_radius()};
+    return {.resolution = (metaball ? 0.002 : 1.0 / 16) * typical_radius()};
   }
 
  private:
@@ -184,14 +184,14 @@ class ReferenceField final : public Field {
   }
 
   /// MEAN + sigma chi (RIMLS - MEAN) of nss_fast.md section 1.
-  [[nodiscard]] Dual sharpened(const Sums& s, const Dual& radius, double sign) const {
+  [[nodiscard]] Dual sharpened(const Sums& s, const Dual& radius) const {
     const Dual mean = height_of(s);
     if (options_.kind != FieldKind::balanced || !options_.sharp_edges || s.sharp.v <= 0) {
       return mean;
     }
     const DualVector a = s.q / s.trusted;
     const DualVector mean_normal = s.n / s.trusted;
-    const Dual bulge = sign * ((s.nq / s.trusted - dot(mean_normal, a)) / radius);
+    const Dual bulge = (s.nq / s.trusted - dot(mean_normal, a)) / radius;
     constexpr double kFrom = 0.002;
     const Dual chi = smooth((1 / (0.05 - kFrom)) * (bulge - constant(kFrom)));
     if (chi.v <= 0) return mean;
@@ -221,11 +221,11 @@ class ReferenceField final : public Field {
   }
 
   /// By what acute creases are closed (architecture.md, "The surface").
-  [[nodiscard]] Dual closure(const Sums& s, const Dual& radius, double sign) const {
+  [[nodiscard]] Dual closure(const Sums& s, const Dual& radius) const {
     if (!options_.capped) return {};
     const DualVector a = s.q / s.trusted;
     const DualVector n = s.n / s.trusted;
-    const Dual hollow = sign * ((dot(n, a) - s.nq / s.trusted) / radius);
+    const Dual hollow = (dot(n, a) - s.nq / s.trusted) / radius;
     return 0.2 * radius * smooth(constant(1) - (1 / 0.7) * dot(n, n)) * smooth(100 * hollow);
   }
 

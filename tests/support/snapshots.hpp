@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -32,17 +33,27 @@ inline std::unique_ptr<Snapshot> still(const std::vector<TestPoint>& points, dou
   return snapshot;
 }
 
-/// The height of the surface above the origin as seen from +z.
+/// The height of the surface above the origin, from whichever side it is seen: of the places where
+/// solid ends, the one with most points around it. NaN: there is none.
 inline double height_of(const SceneField& field) {
-  double low = -40e-3;
-  double high = 40e-3;
-  for (int i = 0; i < 60; ++i) {
-    const double z = 0.5 * (low + high);
-    const Sample sample = field.sample({0.3e-3, 0.4e-3, z}, 1);
-    const bool below = sample.support > 0.05 ? sample.height < 0 : z < 0;
-    (below ? low : high) = z;
+  constexpr double kStep = 0.5e-3;
+  const auto at = [&](double z) { return field.sample({0.3e-3, 0.4e-3, z}); };
+  double height = std::numeric_limits<double>::quiet_NaN();
+  double support = 0;
+  bool solid = false;
+  for (double z = -40e-3; z < 40e-3; z += kStep) {
+    if (std::exchange(solid, at(z + kStep).value < 0) == solid) continue;
+    double low = z;
+    double high = z + kStep;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = 0.5 * (low + high);
+      ((at(middle).value < 0) == solid ? high : low) = middle;
+    }
+    if (at(low).support <= support) continue;
+    support = at(low).support;
+    height = low;
   }
-  return 0.5 * (low + high);
+  return height;
 }
 
 }  // namespace palpate::test

@@ -23,7 +23,7 @@ namespace palpate::test {
 struct ViewerRig {
   explicit ViewerRig(ViewerOptions options = {}, ViewerControls controls = {}) {
     add_sheet(scene);
-    servo.emplace(device, scene, one_sided());
+    servo.emplace(device, scene, first_links());
     for (int i = 1; i <= 20; ++i) press(1e-3 * i);
     options.port = 0;
     options.token = kToken;

@@ -62,17 +62,14 @@ class Proxy {
   /// Moves the proxy towards the hand at `hip` (m, world). `dt` is the time since the last step
   /// (s); friction and fading use it. 0 is taken as 1 ns; a negative one is a fault.
   ///
-  /// The first step after construction puts the proxy where the hand is. A one-sided field that is
-  /// solid there pushes the proxy to its nearest front at once; a two-sided one is taken as seen
-  /// from the side the hand is on. Spends at most max_evaluations() evaluations of the field.
+  /// The first step after construction puts the proxy where the hand is. A field that is solid
+  /// there pushes the proxy to its nearest front at once. Spends at most max_evaluations()
+  /// evaluations of the field.
   [[nodiscard]] Contact step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept;
 
   /// Where the proxy is, m, world. The origin until the first step or reset().
   [[nodiscard]] const Eigen::Vector3d& position() const noexcept { return position_; }
   [[nodiscard]] const ProxyOptions& options() const noexcept { return options_; }
-
-  /// The side it sees two-sided surfaces from; 0 outside every surface's domain.
-  [[nodiscard]] Side side() const noexcept { return side_; }
 
   /// What a step spends at most: 800 in sweeps (and what the last interval of one takes), 20 for
   /// each constrained sub-step allowed (and what a Newton takes), and recovery.
@@ -83,12 +80,11 @@ class Proxy {
   /// of its range.
   bool change(double stiffness, const Friction& friction, const Texture& texture) noexcept;
 
-  /// Puts the proxy at `position`, in free space, and forgets contact, side and faults.
+  /// Puts the proxy at `position`, in free space, and forgets contact and faults.
   void reset(const Eigen::Vector3d& position) noexcept;
 
  private:
   void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
-  void choose_side(Probe& probe, Sample& here) const noexcept;
   void touch(Probe& probe, const Eigen::Vector3d& place) noexcept;
   void release(const Eigen::Vector3d& place) noexcept;
   void hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
@@ -114,7 +110,6 @@ class Proxy {
   double step_length_ = 0;                                // R where it was last known, m
   double lost_time_ = 0;                                  // s since the surface was lost
   std::uint64_t revision_ = 0;                            // of the field in the last step
-  Side side_ = 0;
   bool started_ = false;
   bool touching_ = false;
   bool sliding_ = false;

@@ -23,11 +23,11 @@ struct Distance {
   Eigen::Vector3d gradient = Eigen::Vector3d::UnitZ();  ///< unit; any one where several are true
 };
 
-/// A solid known by its exact signed distance. One-sided. The fields that the proxy is tested on to
+/// A solid known by its exact signed distance. The fields that the proxy is tested on to
 /// machine precision; also good as a wall or a floor beside scanned clouds.
 class AnalyticField : public Field {
  public:
-  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side side) const noexcept override;
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] FieldTraits traits() const noexcept override;
@@ -93,14 +93,14 @@ class TorusField final : public AnalyticField {
   double tube_;
 };
 
-/// Several one-sided fields at once: the smallest value counts, with sharp creases where they meet.
+/// Several fields at once: the smallest value counts, with sharp creases where they meet.
 /// The parts are not owned and outlive the union.
 class UnionField final : public Field {
  public:
-  /// @throws Error when there is no part, a part is null, or a part is two-sided.
+  /// @throws Error when there is no part, or a part is null.
   explicit UnionField(std::vector<const Field*> parts);
 
-  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side side) const noexcept override;
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
   /// Of the part that is nearest; `source` is its index.
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;

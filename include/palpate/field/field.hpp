@@ -7,15 +7,10 @@
 
 namespace palpate {
 
-/// Which side of a two-sided surface is free: +1 where its normals point to, -1 the other, 0 not
-/// decided yet.
-using Side = int;
-
 /// The implicit function at one place. Free where value > 0, solid where value <= 0.
 struct Sample {
   double value = 0;                                    ///< length-like, m
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< d value / d x; points outward
-  double height = 0;   ///< signed by the normals and not by `side`: tells which side x is on, m
   double support = 0;  ///< sum of weights (1 on a well sampled surface); 0: nothing known here
   double radius = 0;   ///< support radius R here: the length that steps are measured in, m
 };
@@ -31,7 +26,6 @@ struct Surface {
 
 /// Facts that hold for the whole field between two changes of it.
 struct FieldTraits {
-  bool two_sided = false;      ///< does the proxy have to keep a side?
   double resolution = 0;       ///< sweeps look for solid chords longer than this, m
   std::uint64_t revision = 0;  ///< grows when the surface may have moved since the last tick
   double reanchor_reach = 0;   ///< how far the surface may have stepped over the proxy, m
@@ -45,11 +39,11 @@ class Field {
  public:
   virtual ~Field() = default;
 
-  /// The function at x as seen from `side` (ignored by one-sided fields). Side 0 counts as +1.
-  [[nodiscard]] virtual Sample sample(const Eigen::Vector3d& x, Side side) const noexcept = 0;
+  /// The function at x. A surface that can be touched from both sides is as it looks from where the
+  /// proxy's last step ended: it does not change while a step lasts.
+  [[nodiscard]] virtual Sample sample(const Eigen::Vector3d& x) const noexcept = 0;
 
-  /// True only if the ball certainly holds nothing solid, whatever the side. Two-sided fields
-  /// promise more: then it also lies outside the surface's domain, where sides are forgotten.
+  /// True only if the ball certainly holds nothing solid.
   [[nodiscard]] virtual bool is_free(const Ball& ball) const noexcept = 0;
 
   /// What is touched at x.

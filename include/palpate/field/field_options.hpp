@@ -26,7 +26,6 @@ struct FieldOptions {
   double threshold = 0.4;        ///< metaball level T', of the (united) weight sum
   double minimum_support = 0.3;  ///< Wmin: the surface ends where the weight sum falls below it
   double tool_radius = 0;        ///< radius of the proxy's ball, m; the surface is pushed out by it
-  bool two_sided = true;         ///< solid from both sides; false: closed objects, normals outward
   /// Cap at Wmin, fill acute creases, and blend to the metaball where normals are unsure.
   bool capped = true;
   /// Convex edges keep their shape where points say that they may (SurfacePoints::sharp_edges);

@@ -10,12 +10,13 @@
 
 namespace palpate {
 
-/// How normals get their sign.
+/// What tells the signs of normals. They help sheets to form parts whose signs agree; the free side
+/// of each is the one that the tool comes from. Parts that nothing is known of point outward.
 enum class Orientation {
-  automatic,  ///< to the viewpoint where one is known, else outward
+  automatic,  ///< what is given; else a viewpoint where one is known
   viewpoint,  ///< towards PrepareOptions::viewpoint or the cloud's own
-  outward,    ///< consistently, as if the points bound closed objects
-  given,      ///< as the cloud has them
+  outward,    ///< nothing: outward, or up where points bound nothing
+  given,      ///< the cloud's normals alone
 };
 
 /// How a cloud becomes surface points. What is not set is chosen from the data.
@@ -26,7 +27,8 @@ struct PrepareOptions {
                                                ///< noise asks for more
   double minimum_radius = 0;                   ///< no R below this, m (a tool's radius / 0.3)
   double normal_error = 0.02;  ///< wanted error of normals, rad (theta: 1.15 degrees)
-  std::optional<Eigen::Vector3d> viewpoint = {};  ///< of the sensor, in the cloud's frame, m
+  /// Of the sensor, in the cloud's frame, m. Comes before given signs.
+  std::optional<Eigen::Vector3d> viewpoint = {};
   Orientation orientation = Orientation::automatic;
   std::optional<Box> clip = {};          ///< keep points inside only, in the cloud's frame, m
   bool remove_speckle = true;            ///< let isolated points that noise made weigh nothing
@@ -59,8 +61,8 @@ struct Prepared {
   PrepareReport report;
 };
 
-/// Filters, indexes and orients a cloud and places it in the world. Runs on every core; the result
-/// does not depend on their number.
+/// Filters and indexes a cloud, finds its sheets and places it in the world. Runs on every core;
+/// the result does not depend on their number.
 /// @throws Error when no point is left, an option makes no sense, a point is not finite, a column
 /// is neither empty nor as long as the points, or the pose is not rigid.
 [[nodiscard]] Prepared prepare(

@@ -54,7 +54,7 @@ class SceneField final : public Field {
   /// Wait-free, allocation-free.
   void update(double now, const Eigen::Vector3d& hip, const Eigen::Vector3d& proxy) noexcept;
 
-  [[nodiscard]] Sample sample(const Eigen::Vector3d& x, Side side) const noexcept override;
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] FieldTraits traits() const noexcept override;
