@@ -61,6 +61,11 @@ class Snapping {
       std::vector<std::uint32_t> near;
       for (std::size_t i = begin; i < end; ++i) {
         if (own.confidences[i] < kPlanar) continue;
+        const auto radius = static_cast<double>(input.radii[i]);
+        if (static_cast<double>(own.residuals[i]) <= flat_residual(radius, input.noise)) {
+          sure_[i] = 1;
+          continue;
+        }
         const float smooth = kSmooth * input.radii[i];
         float local = noise;
         if (own.bends[i] > std::max(smooth, kNoisySmooth * noise) &&

@@ -68,9 +68,9 @@ std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
     for (std::size_t k = begin; k < end; ++k) {
       const Eigen::Vector3f& at = grid.points()[std::min(k * step + step / 2, grid.size() - 1)];
       const SheetFit narrow = fitter.fit(grid, at, kReach * spacing, spacing);
-      const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, spacing);
-      const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, spacing);
-      const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, spacing, kTile * spacing);
+      const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, 0);
+      const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
+      const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, 0, 0, kTile * spacing);
       if (!(narrow.bend > 0 && map.bend > 0 && middle.bend > 0)) continue;
       all[k] = {static_cast<float>(wide.bend / middle.bend),
                 static_cast<float>(wide.bend / narrow.bend), static_cast<float>(wide.bend),

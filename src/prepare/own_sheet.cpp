@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 constexpr float kNormalsReach = 1.15f;
 
 // A plane fits that leaves no more than this, of R or of the noise. Two sheets half a spacing apart
-// (0.2 R) leave 0.03 R where the other has one point in forty.
-constexpr double kFlat = 0.03;
+// (0.2 R) leave 0.05 R where the other has one point in fifteen.
+constexpr double kFlat = 0.05;
 constexpr double kNoisyFlat = 1.2;
 
 // Two groups of heights: their means this many deviations within them apart, at least half a
@@ -129,6 +129,10 @@ constexpr double kPlanar = 0.5;
 
 }  // namespace
 
+double flat_residual(double radius, double noise) {
+  return std::max(kFlat * radius, kNoisyFlat * noise);
+}
+
 bool SheetFit::is_sheet(double radius, double noise) const {
   return points >= SheetFitter::kEnough && planarity >= kPlanar &&
          bend <= std::max(kSmooth * radius, kNoisySmooth * noise) && off <= kOnSheet * radius;
@@ -165,29 +169,38 @@ Vector3d SheetFitter::axis_of_nearest(double spacing, const Vector3d& fallback) 
 }
 
 SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
-                          double spacing, double tile) {
+                          double spacing, double smooth, double tile) {
   near_.clear();
   grid.within(center, static_cast<float>(reach), near_);
   offsets_.clear();
   for (const auto i : near_) offsets_.push_back((grid.points()[i] - center).cast<double>());
-  Plane plane = plane_of(offsets_);
-  SheetFit fit;
-  if (plane.normal.isZero()) return fit;
-  Vector3d axis = axis_of_nearest(spacing, plane.normal);
-  for (int round = 0; round < 2 && keep_own_group(axis, spacing); ++round) {
-    plane = plane_of(offsets_);
-    axis = plane.normal;
-    fit.others = true;
+  SheetFit fit = fit_offsets(reach);
+  if (fit.bend > smooth && spacing > 0 && !fit.normal.isZero()) {
+    Vector3d axis = axis_of_nearest(spacing, fit.normal);
+    bool others = false;
+    for (int round = 0; round < 2 && keep_own_group(axis, spacing); ++round) {
+      others = true;
+      axis = plane_of(offsets_).normal;
+    }
+    if (others) fit = fit_offsets(reach);
+    fit.others = others;
   }
+  if (tile > 0 && fit.bend > 0) fit.shared = tile_variance(tile) / (fit.bend * fit.bend);
+  return fit;
+}
+
+SheetFit SheetFitter::fit_offsets(double reach) {
+  const Plane plane = plane_of(offsets_);
+  SheetFit fit;
+  left_.clear();
+  if (plane.normal.isZero()) return fit;
   fit.points = offsets_.size();
   fit.normal = plane.normal;
   fit.planarity = planarity_of(plane, fit.points);
   fit.bend = fit.residual = rms_residual(plane, fit.points);
   fit.off = std::abs(plane.normal.dot(plane.mean));
   fit.footprint = reach * std::sqrt(std::numbers::pi / static_cast<double>(fit.points));
-  if (fit.points < kEnough) return fit;
-  subtract_quadric(reach, fit);
-  if (tile > 0 && fit.bend > 0) fit.shared = tile_variance(tile) / (fit.bend * fit.bend);
+  if (fit.points >= kEnough) subtract_quadric(reach, fit);
   return fit;
 }
 
@@ -269,11 +282,12 @@ OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
   detail::parallel_ranges(grid.size(), 256, [&](std::size_t begin, std::size_t end) {
     SheetFitter fitter;
     for (std::size_t i = begin; i < end; ++i) {
-      const double flat = std::max(kFlat * static_cast<double>(radii[i]), kNoisyFlat * noise);
-      if (static_cast<double>(sheets.residuals[i]) <= flat) continue;
+      const auto radius = static_cast<double>(radii[i]);
+      if (static_cast<double>(sheets.residuals[i]) <= flat_residual(radius, noise)) continue;
+      const double smooth = std::max(kSmooth * radius, kNoisyFlat * noise);
       const SheetFit fit =
           fitter.fit(grid, grid.points()[i], static_cast<double>(kNormalsReach * radii[i]),
-                     static_cast<double>(spacings[i]));
+                     static_cast<double>(spacings[i]), smooth);
       sheets.normals[i] = fit.normal.cast<float>();
       sheets.confidences[i] = static_cast<float>(fit.planarity);
       sheets.residuals[i] = static_cast<float>(fit.residual);

@@ -32,13 +32,17 @@ struct SheetFit {
   [[nodiscard]] bool is_sheet(double radius, double noise) const;
 };
 
+/// What a plane may leave where nothing else need be looked for, m.
+[[nodiscard]] double flat_residual(double radius, double noise);
+
 /// Fits one place after another; keeps its memory in between.
 class SheetFitter {
  public:
-  /// The points within `reach` of `center`, whose spacing is `spacing`. `tile`: side of the tiles;
-  /// 0: `shared` is not looked at. All in m.
+  /// The points within `reach` of `center`, whose spacing is `spacing` (0: all are of one sheet).
+  /// Where a quadric leaves no more than `smooth`, nobody asks for other sheets. `tile`: side of
+  /// the tiles; 0: `shared` is not looked at. All in m.
   [[nodiscard]] SheetFit fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
-                             double spacing, double tile = 0);
+                             double spacing, double smooth = 0, double tile = 0);
 
   /// In how many cells of half a spacing the points of the last fit lie: clusters count once.
   [[nodiscard]] std::size_t places(double spacing);
@@ -48,6 +52,7 @@ class SheetFitter {
  private:
   [[nodiscard]] bool keep_own_group(const Eigen::Vector3d& axis, double spacing);
   [[nodiscard]] Eigen::Vector3d axis_of_nearest(double spacing, const Eigen::Vector3d& fallback);
+  [[nodiscard]] SheetFit fit_offsets(double reach);
   void subtract_quadric(double reach, SheetFit& fit);
   [[nodiscard]] double tile_variance(double tile) const;
 

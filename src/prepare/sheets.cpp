@@ -71,10 +71,7 @@ class Outlook {
     detail::for_each_part(
         input_.grid, reach, block, surroundings,
         [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          if (alone(first, runs)) return;
-          for (std::uint32_t i = first; i < first + count; ++i) {
-            if (own_.confidences[i] > 0) look_from(i, runs, votes);
-          }
+          if (!alone(first, runs)) look_from(first, count, runs, votes);
         });
   }
 
@@ -92,24 +89,37 @@ class Outlook {
     return true;
   }
 
-  void look_from(std::uint32_t i, std::span<const simd::Run> runs, std::vector<Vote>& votes) {
-    const Vector3f& p = input_.grid.points()[i];
-    const float radius = input_.radii[i];
-    const float near = kGapReach * radius;
-    const float voting = kVoteReach * radius;
-    others_.clear();
-    for (const simd::Run& run : runs) {
-      for (std::uint32_t j = run.begin; j < run.end; ++j) {
-        const Vector3f way = input_.grid.points()[j] - p;
-        const float squared = way.squaredNorm();
-        if (squared > near * near || j == i) continue;
-        measure_gap(i, j, way, squared);
-        const bool votes_on = sure_[i] != 0 && sure_[j] != 0 &&
-                              sheets_.sheet[j] != sheets_.sheet[i] && squared <= voting * voting;
-        if (votes_on) others_.push_back({squared, j});
+  void look_from(std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs,
+                 std::vector<Vote>& votes) {
+    std::size_t candidates = 1;
+    for (const simd::Run& run : runs) candidates += run.end - run.begin;
+    if (hits_.size() < candidates) hits_.resize(2 * candidates);
+    simd::Row squared = {};
+    for (std::uint32_t q = 0; q < count; ++q) {
+      const float reach = kGapReach * input_.radii[first + q];
+      squared[q] = reach * reach;
+      others_[q].clear();
+    }
+    const simd::Join join = detail::make_join(input_.grid, first, count, runs);
+    const std::size_t found = simd::best_joins().within(join, squared, hits_.data());
+    for (std::size_t h = 0; h < found; ++h) {
+      for (std::uint32_t bits = hits_[h].queries; bits != 0; bits &= bits - 1) {
+        meet(first, static_cast<std::uint32_t>(std::countr_zero(bits)), hits_[h].candidate);
       }
     }
-    vote(i, votes);
+    for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
+  }
+
+  void meet(std::uint32_t first, std::uint32_t q, std::uint32_t j) {
+    const std::uint32_t i = first + q;
+    if (j == i || own_.confidences[i] <= 0) return;
+    const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
+    const float squared = way.squaredNorm();
+    measure_gap(i, j, way, squared);
+    const float voting = kVoteReach * input_.radii[i];
+    const bool votes_on = sure_[i] != 0 && sure_[j] != 0 && sheets_.sheet[j] != sheets_.sheet[i] &&
+                          squared <= voting * voting;
+    if (votes_on) others_[q].push_back({squared, j});
   }
 
   void measure_gap(std::uint32_t i, std::uint32_t j, const Vector3f& way, float squared) {
@@ -127,11 +137,12 @@ class Outlook {
   }
 
   /// The nearest points of the nearest other sheets.
-  void vote(std::uint32_t i, std::vector<Vote>& votes) {
-    std::sort(others_.begin(), others_.end());
+  void vote(std::uint32_t i, std::vector<std::pair<float, std::uint32_t>>& others,
+            std::vector<Vote>& votes) {
+    std::sort(others.begin(), others.end());
     std::array<std::pair<std::uint32_t, int>, kVoteSheets> heard{};
     std::size_t count = 0;
-    for (const auto& [squared, j] : others_) {
+    for (const auto& [squared, j] : others) {
       const std::uint32_t sheet = sheets_.sheet[j];
       std::size_t k = 0;
       while (k < count && heard[k].first != sheet) ++k;
@@ -150,7 +161,8 @@ class Outlook {
   const OwnSheets& own_;
   PointSheets& sheets_;
   const std::vector<std::uint8_t>& sure_;
-  std::vector<std::pair<float, std::uint32_t>> others_;
+  std::vector<simd::Hit> hits_;
+  std::array<std::vector<std::pair<float, std::uint32_t>>, simd::kQueries> others_;
 };
 
 /// Measures the gaps; returns what sheets say of each other.
