@@ -25,6 +25,7 @@ constexpr float kNoisier = 2.5f;      // than typical that noise may be in place
 // this many of its residuals.
 constexpr float kSnapReach = 1.6f;  // R; where nothing is sure there:
 constexpr float kFarSnapReach = 4;  // R
+constexpr std::size_t kFewSure = 12;
 constexpr float kSnapSlope = 0.12f;
 constexpr float kSnapResiduals = 3;
 constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
@@ -88,7 +89,7 @@ class Snapping {
       if (sure_[i] == 0) {
         take_host(i, near);
       } else if (own_.others[i] != 0) {
-        list_sure(i, kFarSnapReach, near);
+        list_sure(i, near);
         second_hosts_[i] = second_host(i, i, near);
       }
     });
@@ -127,10 +128,14 @@ class Snapping {
     return own_.bends[*quarter];
   }
 
-  void list_sure(std::uint32_t i, float reach, std::vector<std::uint32_t>& near) const {
-    near.clear();
-    input_.grid.within(input_.grid.points()[i], reach * input_.radii[i], near);
-    std::erase_if(near, [this](std::uint32_t j) { return sure_[j] == 0; });
+  /// Sure points around; where they are few, as in the foot of a narrow crease, farther ones too.
+  void list_sure(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    for (const float reach : {kSnapReach, kFarSnapReach}) {
+      near.clear();
+      input_.grid.within(input_.grid.points()[i], reach * input_.radii[i], near);
+      std::erase_if(near, [this](std::uint32_t j) { return sure_[j] == 0; });
+      if (near.size() >= kFewSure) return;
+    }
   }
 
   template <class Body>
@@ -142,12 +147,10 @@ class Snapping {
   }
 
   void take_host(std::uint32_t i, std::vector<std::uint32_t>& near) {
-    list_sure(i, kSnapReach, near);
-    if (near.empty()) list_sure(i, kFarSnapReach, near);
+    list_sure(i, near);
     const std::uint32_t host = best_host(i, near);
     if (host == kNobody) return;
     hosts_[i] = host;
-    list_sure(i, kFarSnapReach, near);
     second_hosts_[i] = second_host(i, host, near);
     const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
     const float turn = kTurnMargin * bow(input_, own_, host) * way;
@@ -332,6 +335,8 @@ Growths grow_sheets(const SheetInput& input, OwnSheets& own) {
     }
     ++sizes[sheet[i] = sheet[root]];
   }
+  std::erase_if(result.twins,
+                [&](const Twin& twin) { return sheet[twin.point] == sheet[twin.host]; });
   result.sheets.part.resize(sizes.size());
   std::iota(result.sheets.part.begin(), result.sheets.part.end(), 0u);
   for (std::uint32_t i = 0; i < count; ++i) {
