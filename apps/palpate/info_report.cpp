@@ -6,6 +6,7 @@
 
 #include "apps/palpate/density_map.hpp"
 #include "apps/palpate/json.hpp"
+#include "apps/palpate/source_report.hpp"
 #include "apps/palpate/words.hpp"
 
 namespace palpate::app {
@@ -64,6 +65,7 @@ void print_surface(const InfoReport& report, std::FILE* out) {
   fmt::print(out, "  noise      {} from the local plane\n", length(report.prepared.noise));
   fmt::print(out, "  holes      {:.1f} % of the points lie at a border or a hole\n",
              100 * report.rim);
+  print_trust(report.prepared, out);
 }
 
 // What touch will do unless told otherwise, in the words of its options.
@@ -131,6 +133,7 @@ Json json_report(const InfoReport& report) {
             {"nine_tenths", report.spacing.nine_tenths}}},
           {"noise_m", r.noise},
           {"rim_share", report.rim},
+          {"trust", {{"low", r.trust_low}, {"untrusted_share", r.untrusted}}},
           {"advice",
            {{"voxel_m", r.voxel},
             {"radius_m", r.radius},

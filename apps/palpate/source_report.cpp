@@ -30,6 +30,7 @@ void print_cloud(const TouchedSource& cloud, const Style& style, std::FILE* out)
   fmt::print(out, "  spacing    {}, noise {}, voxel {}\n", length(r.spacing), length(r.noise),
              r.voxel > 0 ? length(r.voxel) : "none");
   fmt::print(out, "  R          {}\n", range(r.radius_smallest, r.radius, r.radius_largest));
+  print_trust(r, out);
   fmt::print(out,
              "  prepared   {} after {} of reading: filter {}, index {}, spacing {}, normals {}, "
              "weights {}\n",
@@ -53,6 +54,7 @@ Json json_cloud(const TouchedSource& cloud) {
           {"voxel_m", r.voxel},
           {"radius_m",
            {{"median", r.radius}, {"smallest", r.radius_smallest}, {"largest", r.radius_largest}}},
+          {"trust", {{"low", r.trust_low}, {"untrusted_share", r.untrusted}}},
           {"seconds",
            {{"read", cloud.read_seconds},
             {"prepare", cloud.prepare_seconds},
@@ -64,6 +66,13 @@ Json json_cloud(const TouchedSource& cloud) {
 }
 
 }  // namespace
+
+void print_trust(const PrepareReport& prepared, std::FILE* out) {
+  if (prepared.untrusted < 0.01) return;
+  fmt::print(out,
+             "  trust      {:.0f} % of this cloud is not trusted; it is felt as metaball there\n",
+             100 * prepared.untrusted);
+}
 
 void print_source(const TouchedSource& source, std::FILE* out) {
   const Style style(out);

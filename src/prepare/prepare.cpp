@@ -59,6 +59,8 @@ constexpr double kFinestShape = 25;
 // 2.5 spacings' support bridges.
 constexpr double kIrregularMultiple = 3;
 
+constexpr float kTrusted = 0.5f;  // confidence
+
 constexpr float kSlope = 0.5f;  // of R over distance, as it follows from spacings and noise
 
 /// Adds the time since the last lap to `seconds`.
@@ -115,6 +117,7 @@ class Preparation {
     if (options_.estimate_normals) find_sheets();
     finish(points_);
     report_.points_out = points_.size() - report_.speckle - twins_;
+    report_trust();
     report_.radius = points_.radius;
     report_.radius_smallest = points_.smallest_radius;
     report_.radius_largest = *std::max_element(points_.radii.begin(), points_.radii.end());
@@ -263,6 +266,19 @@ class Preparation {
     add_twins(twins, points_);
     twins_ = twins.size();
     watch_.lap(report_.seconds_normals);
+  }
+
+  void report_trust() {
+    std::vector<float> felt;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (points_.density_weights[i] > 0) felt.push_back(points_.confidences[i]);
+    }
+    if (felt.empty()) return;
+    const auto tenth = felt.begin() + static_cast<std::ptrdiff_t>(felt.size() / 10);
+    std::nth_element(felt.begin(), tenth, felt.end());
+    report_.trust_low = *tenth;
+    const auto doubted = std::ranges::count_if(felt, [](float c) { return c < kTrusted; });
+    report_.untrusted = static_cast<double>(doubted) / static_cast<double>(felt.size());
   }
 
   void weigh() {

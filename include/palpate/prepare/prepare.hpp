@@ -49,6 +49,9 @@ struct PrepareReport {
   double radius = 0;           ///< R, median, m
   double radius_smallest = 0;
   double radius_largest = 0;
+  double trust_low = 0;  ///< a tenth of what is felt has a smaller SurfacePoints::confidences
+  double untrusted = 0;  ///< share of what is felt whose normals are not trusted (below 0.5), 0-1;
+                         ///< it is felt as metaball
   double seconds_filter = 0;
   double seconds_index = 0;
   double seconds_spacing = 0;
