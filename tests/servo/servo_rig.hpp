@@ -29,6 +29,13 @@ inline ServoOptions first_links() {
   return options;
 }
 
+/// The same at a metaball, which pushes a hand that starts in it out.
+inline ServoOptions pushed_out() {
+  ServoOptions options = first_links();
+  options.field.kind = FieldKind::metaball;
+  return options;
+}
+
 /// Down through the sheet to 4 mm under it, across, and up again, in a second of milliseconds.
 inline Trajectory visit() {
   Trajectory rows;

@@ -112,9 +112,9 @@ TEST(Servo, ComesUpSoftlyWhenASurfaceAppearsAroundTheHand) {
   Scene scene;
   Source& source = scene.add("sheet");
   FreeDevice device({0, 0, 1e-3});
-  Servo servo(device, scene, test::first_links());
+  Servo servo(device, scene, test::pushed_out());
   for (int i = 0; i < 10; ++i) servo.tick(1e-3 * i);
-  source.publish(test::still(test::plane(5e-3)));
+  source.publish(test::still(test::plane(2e-3)));
   double before = 0;
   for (int i = 10; i < 40; ++i) {
     const ServoState& state = servo.tick(1e-3 * i);

@@ -46,9 +46,9 @@ void wait_for(const ServoThread& thread) {
 TEST(ServoThread, StepsOnTheClocksGridUntilTheDeviceIsDone) {
   Scene scene;
   test::add_sheet(scene);
-  FreeDevice device({0, 0, -4e-3});
+  FreeDevice device({0, 0, -1e-3});
   device.finish_after(2001);
-  Servo servo(device, scene, test::first_links());
+  Servo servo(device, scene, test::pushed_out());
   FakeClock clock;
   {
     ServoThreadOptions options = modest();
@@ -102,8 +102,8 @@ TEST(ServoThread, IsPacedByADeviceThatKeepsTime) {
 TEST(ServoThread, EndsWithZeroForceWhenToldTo) {
   Scene scene;
   test::add_sheet(scene);
-  FreeDevice device({0, 0, -4e-3});
-  Servo servo(device, scene, test::first_links());
+  FreeDevice device({0, 0, -1e-3});
+  Servo servo(device, scene, test::pushed_out());
   FakeClock clock;
   ServoThread thread(servo, clock, modest());
   while (servo.state().step < 100) std::this_thread::yield();
