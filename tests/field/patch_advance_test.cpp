@@ -95,8 +95,8 @@ TEST(PatchAdvance, HoldsAllPointsThatAreWidenedIntoIt) {
   for (const double x : {-20e-3, 0.0, 13e-3}) {
     ASSERT_TRUE(patch.gather(layers, 2, {x, 0, 2e-3}, 1e-3));
     expect_same(patch, all, surface, {x, 1e-3, 2e-3});
-    EXPECT_NEAR(evaluate(surface, all, {x, 1e-3, 2e-3}, 1).radius, 25e-3, 1e-9);
-    EXPECT_NEAR(evaluate(surface, all, {x, 1e-3, 2e-3}, 1).support, 1, 0.4) << "of two";
+    EXPECT_NEAR(evaluate(surface, all, {x, 1e-3, 2e-3}).radius, 25e-3, 1e-9);
+    EXPECT_NEAR(evaluate(surface, all, {x, 1e-3, 2e-3}).support, 1, 0.4) << "of two";
   }
 }
 

@@ -72,6 +72,7 @@ TEST(LimitGrowth, SparsePointsOfTheSamePlaneMayReach) {
   const OwnSheets own{std::vector<Vector3f>(points.size(), Vector3f(0, 0, -1)),
                       std::vector<float>(points.size(), 1.0f),
                       std::vector<float>(points.size(), 0.0f),
+                      {},
                       {}};
   limit_growth(grid, 0.5f, radii, &own);
   for (std::size_t i = 0; i < grid.size(); ++i) {

@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(Radii, DisagreeingSources,
 
 double radius_of(SceneField& field) {
   field.update(0, Vector3d::Zero(), Vector3d::Zero());
-  return field.sample({0, 0, 1e-3}, 1).radius;
+  return field.sample({0, 0, 1e-3}).radius;
 }
 
 TEST(Scene, WidensTheSupportsOfSourcesThatDisagreeAndOfNoOthers) {
