@@ -4,12 +4,9 @@
 #include <cmath>
 #include <optional>
 
-#include "field/acute_creases.hpp"
-#include "field/facing.hpp"
+#include "field/joined_height.hpp"
 #include "field/oriented.hpp"
-#include "field/sharp_edges.hpp"
 #include "field/smooth_step.hpp"
-#include "field/united_height.hpp"
 
 // Notation as in docs/architecture.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
 // A = sum v q / sum v, Nb = sum v n / sum v, W the united support, R(x) = sum w R / sum w.
@@ -21,12 +18,8 @@ using Eigen::Vector3d;
 
 // Weight sums up to this are none: the rim of a support, where ratios of sums mean nothing.
 constexpr double kNoWeight = 1e-12;
-constexpr double kFaint = 1e-9;       // of all weight: normals with less say nothing
+constexpr double kFaintNormals = 1e-9;       // of all weight: normals with less say nothing
 constexpr double kFaintLabel = 1e-6;  // of all normals' weight: a label with less says nothing
-
-// A convex edge between two sheets is as soft as this, of R: a hand that leaves a box over its
-// edge is let go within a third of the support and not at once, as an exact edge would do.
-constexpr double kOverEdges = 0.35;
 
 // The highest above a plane that a metaball's surface may lie, in support radii: further out
 // weights are too flat for it to be found.
@@ -83,31 +76,6 @@ Value level_of(const ImplicitSurface& surface, const Support& support) noexcept 
   return {plane_threshold(options.kernel, eta), slope * d_eta * support.radius.grad};
 }
 
-/// Can the surface of these normals be told here at all?
-bool has_normals(const FieldOptions& options, const simd::LabelSums& sums, double least) noexcept {
-  if (!(sums.v > least)) return false;
-  return options.kind == FieldKind::balanced ||
-         vector(sums.vn).squaredNorm() > 1e-24 * sums.v * sums.v;
-}
-
-/// Smooth maximum of two lengths over a width k, of R, that may vary: C1 (algorithm.md 1.4).
-Value smooth_max(const Value& a, const Value& b, const Value& radius, double width) noexcept {
-  const double k = width * radius.f;
-  const double d = std::abs(a.f - b.f);
-  const Value& larger = a.f > b.f ? a : b;
-  const Value& smaller = a.f > b.f ? b : a;
-  if (d >= k) return larger;
-  const double h = (k - d) / k;
-  const double by_k = (k - d) * (k + d) / (4 * k * k);
-  return {larger.f + 0.25 * h * h * k,
-          (1 - 0.5 * h) * larger.grad + 0.5 * h * smaller.grad + by_k * width * radius.grad};
-}
-
-Value smooth_min(const Value& a, const Value& b, const Value& radius, double width) noexcept {
-  const Value most = smooth_max({-a.f, -a.grad}, {-b.f, -b.grad}, radius, width);
-  return {-most.f, -most.grad};
-}
-
 /// sum v over labels.
 Value trusted(const simd::Sums& sums, int labels) noexcept {
   Value v;
@@ -147,87 +115,6 @@ Sample nothing_here(const Patch& patch) noexcept {
   sample.radius = patch.mean_radius();
   sample.value = 0.35 * sample.radius;
   return sample;
-}
-
-/// May edges be sharpened here?
-bool may_sharpen(const FieldOptions& options, const simd::Columns& columns) noexcept {
-  return options.sharp_edges && columns.uniform_sharp != 0 && options.kind == FieldKind::balanced &&
-         options.gradient == GradientKind::exact;
-}
-
-/// The surface of one label's normals, with its exact gradient.
-Value height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
-  if (may_sharpen(options, *place.columns)) return sharp_balanced(place);
-  const Oriented oriented =
-      options.kind == FieldKind::balanced ? balanced(place.sums()) : pointset(place.sums());
-  if (options.gradient == GradientKind::normal) return {oriented.f, oriented.base};
-  return {oriented.f, oriented.base + place.gradient(oriented.b)};
-}
-
-/// The same, where several sources may tell of one surface at different heights, and with its
-/// creases closed.
-Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
-  Value height = height_at(options, place);
-  if (place.columns->sources > 1 && options.gradient == GradientKind::exact) {
-    const Value shift = united_shift(place);
-    height = {height.f + shift.f, height.grad + shift.grad};
-  }
-  if (!options.capped) return height;
-  const Value closure = crease_closure(place);
-  return {height.f - closure.f, height.grad - closure.grad};
-}
-
-/// How far a label's height is taken out of the way of another's as its share of the weight of
-/// both runs out: R (0.15 / share - 1)^2.
-Value leave(const Value& own, const Value& both, const Value& radius) noexcept {
-  constexpr double kShare = 0.15;
-  const double share = own.f / both.f;
-  if (share >= kShare) return {};
-  const double e = kShare / share - 1;
-  const Vector3d slope = (own.grad - share * both.grad) / both.f;
-  return {radius.f * e * e,
-          e * e * radius.grad - 2 * radius.f * e * kShare / (share * share) * slope};
-}
-
-Value sum(const Value& a, const Value& b) noexcept {
-  return {a.f + b.f, a.grad + b.grad};
-}
-Value difference(const Value& a, const Value& b) noexcept {
-  return {a.f - b.f, a.grad - b.grad};
-}
-
-/// Sheets as they meet: what is across bounds free space with what is in front, and what is behind
-/// bounds the solid with both (Facing).
-std::optional<Value> joined_height(const ImplicitSurface& surface, FieldPlace place,
-                                   double least) noexcept {
-  constexpr double kInCreases = 0.1;  // of R
-  Value height[simd::kHeights];
-  Value weight[simd::kHeights];
-  bool there[simd::kHeights] = {};
-  for (int k = 0; k < std::min(place.columns->labels, simd::kHeights); ++k) {
-    const simd::LabelSums& sums = place.all->label[k];
-    there[k] = has_normals(surface.options, sums, least);
-    if (!there[k]) continue;
-    place.label = k;
-    height[k] = whole_height_at(surface.options, place);
-    weight[k] = {sums.v, vector(sums.grad_v)};
-  }
-  const Value& radius = place.radius;
-  if (!there[kInFront] && !there[kAcross] && !there[kBehind]) return std::nullopt;
-  Value front = there[kInFront] ? height[kInFront] : height[kAcross];
-  Value front_weight = there[kInFront] ? weight[kInFront] : weight[kAcross];
-  if (there[kInFront] && there[kAcross]) {
-    front_weight = sum(weight[kInFront], weight[kAcross]);
-    front = smooth_min(sum(height[kInFront], leave(weight[kInFront], front_weight, radius)),
-                       sum(height[kAcross], leave(weight[kAcross], front_weight, radius)), radius,
-                       kInCreases);
-  }
-  if (!there[kBehind]) return front;
-  if (!there[kInFront] && !there[kAcross]) return height[kBehind];
-  const Value both = sum(front_weight, weight[kBehind]);
-  return smooth_max(difference(front, leave(front_weight, both, radius)),
-                    difference(height[kBehind], leave(weight[kBehind], both, radius)), radius,
-                    kOverEdges);
 }
 
 /// Cap, tool and blend around the normals' surface (algorithm.md 1.4, 1.5).
@@ -292,8 +179,8 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
                          .all = &sums,
                          .radius = support.radius};
   std::optional<Value> height;
-  if (heights > kFaint * support.plain) {
-    height = joined_height(surface, place, kFaintLabel * heights);
+  if (heights > kFaintNormals * support.plain) {
+    height = joined_height(options, place, kFaintLabel * heights);
   }
   Value value;
   if (height) {

@@ -19,39 +19,8 @@ constexpr float kHolds = 1.5f;
 constexpr float kMeets = 1.1f;
 constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks from
 constexpr float kView = 1.2f;  // R beyond the nearest point, within which things are seen
-constexpr float kUnsharp = 2;  // residuals that a height has to be above to tell a side
-constexpr double kHiddenVote = -0.5;
-constexpr float kAcrossReach = 0.9f;  // R within which decided points tell signs
-constexpr double kLeastVote = 1e-3;
-constexpr float kMeetReach = 1.3f;  // R within which sheets meet
-constexpr double kLeastMeeting = 1e-3;
-constexpr double kSameNormal = 0.7;
-constexpr double kSamePlane = 0.3;
-constexpr float kHiddenView = 2.6f;  // R
 
-constexpr std::uint32_t kTried = 24;        // points of a sheet that are compared
-constexpr std::uint32_t kReferences = 400;  // points that they are compared with
-constexpr int kPairs = 16384;               // in one call
-
-double weight(float squared, float reach) noexcept {
-  return wyvill(static_cast<double>(squared / (reach * reach))).w;
-}
-
-std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
-  return std::max<std::uint32_t>(1, (static_cast<std::uint32_t>(count) + most - 1) / most);
-}
-
-/// n_p mirrored by the plane halfway to q, times n_q; their plain product where both lie on one
-/// plane.
-float agreement(const Vector3f& n_p, const Vector3f& n_q, const Vector3f& way,
-                float tolerance) noexcept {
-  const float by_p = n_p.dot(way);
-  const float by_q = n_q.dot(way);
-  const float straight = n_p.dot(n_q);
-  const float squared = way.squaredNorm();
-  const bool one_plane = std::abs(by_p) <= tolerance && std::abs(by_q) <= tolerance;
-  return one_plane || !(squared > 0) ? straight : straight - 2 * by_p * by_q / squared;
-}
+constexpr int kPairs = 16384;  // in one call
 
 }  // namespace
 
@@ -70,10 +39,11 @@ void Facing::forget() noexcept {
 }
 
 void Facing::follow(const Facing& other) noexcept {
+  follows_ = true;
+  if (other.now_.sheet_count == 0) return;
   now_ = other.now_;
   remembered_ = other.remembered_;  // within what was reserved
   remembered_from_ = other.remembered_from_;
-  follows_ = true;
 }
 
 std::uint32_t Facing::part_of(const Key& key) noexcept {
@@ -239,117 +209,6 @@ bool Facing::list_references(const Stance& stance) noexcept {
   }
   for (const Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) add_references(sheet);
   return vanished;
-}
-
-/// What decided points around a part's say of its sign.
-double Facing::across(std::uint32_t part) noexcept {
-  const std::uint32_t step = stride_for(references_.size(), kReferences);
-  double sum = 0;
-  for (const Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
-    if (sheet.part != part) continue;
-    const std::uint32_t skip = stride_for(sheet.count, kTried);
-    for (std::uint32_t k = 0; k < sheet.count && pairs_ > 0; k += skip) {
-      const Point& p = points_[order_[sheet.begin + k]];
-      const float reach = kAcrossReach * p.radius;
-      for (std::size_t r = 0; r < references_.size(); r += step, --pairs_) {
-        const Reference& q = references_[r];
-        const Vector3f way = q.place - p.place;
-        const float squared = way.squaredNorm();
-        if (squared >= reach * reach) continue;
-        const float a = agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
-        sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) *
-               weight(squared, reach);
-      }
-    }
-  }
-  return sum;
-}
-
-/// `continued`: what is decided around a part tells its sign, rather than what is seen of it.
-void Facing::decide_signs(bool continued) noexcept {
-  for (const Point& p : points_) {
-    Sheet& sheet = now_.sheets[p.sheet];
-    const Vector3f way = eye_ - p.place;
-    const float squared = way.squaredNorm();
-    const float height = p.normal.dot(way);
-    const bool hidden = is_hidden(p, height);
-    if (const double w = weight(squared, kHiddenView * radius_); w > 0) {
-      sheet.all += w;
-      if (hidden) sheet.hidden += w;
-      if (hidden) sheet.away += height < 0 ? -w : w;  // by its sign later
-    }
-    if (squared >= view_ * view_) continue;
-    const double w = static_cast<double>(p.confidence) * weight(squared, view_);
-    sheet.weight += w;
-    const float length = std::max(std::sqrt(squared), 1e-12f);
-    const double sharp = std::max(0.f, std::abs(height) - kUnsharp * p.residual) / length;
-    now_.parts[sheet.part].seen += w * sharp * (height < 0 ? -1 : 1) * (hidden ? kHiddenVote : 1.0);
-  }
-  for (std::uint32_t k = 0; k < now_.part_count; ++k) {
-    Part& part = now_.parts[k];
-    if (part.sign != 0) continue;
-    const double vote = continued ? across(k) : 0;
-    part.sign = (std::abs(vote) > kLeastVote ? vote : part.seen) < 0 ? -1 : 1;
-  }
-}
-
-/// By how the sheet lies to those whose label is known.
-std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
-  double parallel[simd::kHeights] = {};
-  double above[simd::kHeights] = {};
-  double all[simd::kHeights] = {};
-  const auto sign = static_cast<float>(now_.parts[sheet.part].sign);
-  const std::uint32_t skip = stride_for(sheet.count, kTried);
-  const std::uint32_t step = stride_for(references_.size(), kReferences);
-  double planes[simd::kHeights] = {};
-  for (std::uint32_t k = 0; k < sheet.count && pairs_ > 0; k += skip) {
-    const Point& p = points_[order_[sheet.begin + k]];
-    const float reach = kMeetReach * p.radius;
-    for (std::size_t r = 0; r < references_.size(); r += step, --pairs_) {
-      const Reference& q = references_[r];
-      const Vector3f way = p.place - q.place;
-      const float squared = way.squaredNorm();
-      if (squared >= reach * reach || !(squared > 0)) continue;
-      const double w = weight(squared, reach);
-      const float length = std::sqrt(squared);
-      parallel[q.label] += w * static_cast<double>(sign * p.normal.dot(q.normal));
-      planes[q.label] += w * static_cast<double>(q.normal.dot(way) / length);
-      above[q.label] += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
-      all[q.label] += w;
-    }
-  }
-  int same = -1;
-  for (int k = 0; k < simd::kHeights; ++k) {
-    const bool one = all[k] > kLeastMeeting && parallel[k] > kSameNormal * all[k] &&
-                     std::abs(planes[k]) < kSamePlane * all[k];
-    if (one && (same < 0 || all[k] > all[same])) same = k;
-  }
-  if (same >= 0) return static_cast<std::uint8_t>(same);
-  if (all[0] + all[1] + all[2] <= kLeastMeeting) {
-    if (sheet.hidden <= 0.5 * sheet.all) return kInFront;
-    const double away = 0.5 * (sheet.hidden - static_cast<double>(sign) * sheet.away);
-    return away > 0.5 * sheet.hidden ? kBehind : kSilent;
-  }
-  const int other = all[kInFront] > kLeastMeeting ? kInFront
-                    : all[kBehind] > all[kAcross] ? kBehind
-                                                  : kAcross;
-  const bool concave = above[other] >= 0;
-  if (other == kBehind && concave) return kInFront;
-  if (other == kAcross && !concave) return kInFront;
-  return concave ? kAcross : kBehind;
-}
-
-/// The weightiest sheet first.
-void Facing::decide_labels() noexcept {
-  for (;;) {
-    Sheet* next = nullptr;
-    for (Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
-      if (sheet.label == kOpen && (!next || sheet.weight > next->weight)) next = &sheet;
-    }
-    if (!next) return;
-    next->label = label_of(*next);
-    add_references(*next);
-  }
 }
 
 bool Facing::write(const Points& points) const noexcept {

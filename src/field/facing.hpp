@@ -55,7 +55,8 @@ class Facing {
   /// time.
   void forget() noexcept;
 
-  /// Takes over another's decisions, which stand in the next call wherever its points are.
+  /// Takes over another's decisions, if it has any; what is decided then stands in the next call,
+  /// wherever its points are.
   void follow(const Facing& other) noexcept;
 
  private:

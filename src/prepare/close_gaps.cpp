@@ -72,10 +72,11 @@ float gap_at(const CellGrid& grid, std::uint32_t i, float radius,
 
 }  // namespace
 
-std::size_t close_gaps(const GapInput& input, std::vector<float>& radii, OwnSheets& own) {
+std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
+                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own) {
   std::vector<std::uint32_t> faint;
   for (std::uint32_t i = 0; i < radii.size(); ++i) {
-    if (input.sums[i] < kFaint) faint.push_back(i);
+    if (sums[i] < kFaint) faint.push_back(i);
   }
   std::vector<std::uint8_t> raised(faint.size());
   const std::vector<float> before = radii;
@@ -84,13 +85,13 @@ std::size_t close_gaps(const GapInput& input, std::vector<float>& radii, OwnShee
     SheetFitter fitter;
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t i = faint[k];
-      const float wanted = kMultiple * gap_at(input.grid, i, before[i], near);
+      const float wanted = kMultiple * gap_at(grid, i, before[i], near);
       if (!(wanted > before[i])) continue;
-      const SheetFit fit =
-          fitter.fit(input.grid, input.grid.points()[i], static_cast<double>(wanted),
-                     static_cast<double>(input.spacings[i]));
+      const SheetFit fit = fitter.fit(grid, grid.points()[i], static_cast<double>(wanted),
+                                      static_cast<double>(spacings[i]));
       if (!fit.is_sheet(static_cast<double>(wanted), 0)) continue;
       radii[i] = wanted;
+      spacings[i] = std::max(spacings[i], wanted / kMultiple);
       own.normals[i] = fit.normal.cast<float>();
       own.confidences[i] = static_cast<float>(fit.planarity);
       own.residuals[i] = static_cast<float>(fit.residual);

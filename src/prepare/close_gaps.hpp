@@ -9,19 +9,13 @@
 
 namespace palpate {
 
-/// Sorted points with their spacings (m) and the sums of their weights (WeightSums::own).
-struct GapInput {
-  const CellGrid& grid;
-  std::span<const float> spacings;
-  std::span<const float> sums;
-};
-
 /// Raises the support radii (m) of points that hardly any other's support reaches, though others
 /// lie on opposite sides of them, to 2.5 times the way to those, where one sheet goes on over the
-/// gap; that sheet becomes the point's own. Beside far denser points (a handful of near-duplicates
-/// is enough) spacings and limit_growth() make R too small, which tears a hole. A stray point has
-/// all others on one side and keeps its radius; so does the corner of a sheet. Returns how many
-/// were raised. Does not depend on the number of threads.
-std::size_t close_gaps(const GapInput& input, std::vector<float>& radii, OwnSheets& own);
+/// gap; that sheet becomes the point's own, and the way its spacing. Beside far denser points (a
+/// handful of near-duplicates is enough) spacings and limit_growth() make R too small, which tears
+/// a hole. A stray point has all others on one side and keeps its radius; so does the corner of a
+/// sheet. Returns how many were raised. Does not depend on the number of threads.
+std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
+                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own);
 
 }  // namespace palpate

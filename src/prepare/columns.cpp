@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace palpate {
+namespace {
+
+constexpr float kTrusted = 0.5f;  // confidence
+
+}  // namespace
 
 std::vector<float> materials_of(const CellGrid& grid, const std::vector<float>& intensities) {
   auto materials = in_grid_order(grid, intensities);
@@ -11,6 +16,30 @@ std::vector<float> materials_of(const CellGrid& grid, const std::vector<float>& 
   const float range = *high - *low;
   for (float& m : materials) m = range > 0 ? (m - from) / range : 1.0f;
   return materials;
+}
+
+void tell_trust(const SurfacePoints& points, PrepareReport& report) {
+  std::vector<float> felt;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points.density_weights[i] > 0) felt.push_back(points.confidences[i]);
+  }
+  if (felt.empty()) return;
+  const auto tenth = felt.begin() + static_cast<std::ptrdiff_t>(felt.size() / 10);
+  std::nth_element(felt.begin(), tenth, felt.end());
+  report.trust_low = *tenth;
+  const auto doubted = std::ranges::count_if(felt, [](float c) { return c < kTrusted; });
+  report.untrusted = static_cast<double>(doubted) / static_cast<double>(felt.size());
+}
+
+PointCloud placed(PointCloud cloud, const Eigen::Isometry3d& T_world_sensor) {
+  const Eigen::Matrix3f turn = T_world_sensor.linear().cast<float>();
+  cloud.origin = T_world_sensor * cloud.origin;
+  if (!turn.isIdentity(0)) {
+    for (auto& p : cloud.positions) p = turn * p;
+    for (auto& n : cloud.normals) n = turn * n;
+  }
+  if (cloud.viewpoint) cloud.viewpoint = T_world_sensor * *cloud.viewpoint;
+  return cloud;
 }
 
 }  // namespace palpate

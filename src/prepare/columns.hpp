@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
+#include "palpate/prepare/prepare.hpp"
 
 namespace palpate {
 
@@ -19,5 +20,11 @@ template <class T>
 /// In grid order; 0 at the lowest, 1 at the highest intensity.
 [[nodiscard]] std::vector<float> materials_of(const CellGrid& grid,
                                               const std::vector<float>& intensities);
+
+/// How far the normals of what is felt are trusted.
+void tell_trust(const SurfacePoints& points, PrepareReport& report);
+
+/// The same points in the world frame.
+[[nodiscard]] PointCloud placed(PointCloud cloud, const Eigen::Isometry3d& T_world_sensor);
 
 }  // namespace palpate

@@ -12,8 +12,8 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kSamples = 1000;
-constexpr std::size_t kFewest = 12;  // points of a window: twice the terms of a quadric
-constexpr double kReach = 3;         // spacings: narrow, so that fine shape is no noise
+constexpr std::size_t kFewestInWindow = 12;  // points of a window: twice the terms of a quadric
+constexpr double kReach = 3;                 // spacings: narrow, so that fine shape is no noise
 
 // Of the residuals that noise alone gives in windows of about 28 points.
 constexpr double kQuarterToMedian = 1.1;
@@ -27,7 +27,7 @@ constexpr double kWideReach = 20;
 constexpr double kTile = 4;
 constexpr double kFlattest = 0.25;    // share of the windows that are believed
 constexpr double kShapeGrowth = 1.5;  // from the middle to the wide window: no longer noise alone
-constexpr double kFlat = 0.02;        // spacings: less noise is none that neighbours could share
+constexpr double kFlatNoise = 0.02;   // spacings: less noise is none that neighbours could share
 constexpr double kNoteworthy = 1.2;
 constexpr double kMostExcess = 4;  // R at most doubles
 constexpr double kMostRise = 5;    // more than neighbours that err together explain
@@ -44,7 +44,7 @@ double narrow_noise(const CellGrid& grid, double spacing) {
   SheetFitter fitter;
   for (std::size_t i = step / 2; i < grid.size(); i += step) {
     const SheetFit fit = fitter.fit(grid, grid.points()[i], kReach * spacing, spacing);
-    if (fit.points >= kFewest) residuals.push_back(static_cast<float>(fit.bend));
+    if (fit.points >= kFewestInWindow) residuals.push_back(static_cast<float>(fit.bend));
   }
   if (residuals.empty()) return 0;
   const auto quarter = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 4);
@@ -92,7 +92,7 @@ double median_of(const std::vector<Widths>& all, const Value& value) {
 
 Noise measure_noise(const CellGrid& grid, double spacing) {
   Noise noise{narrow_noise(grid, spacing), 1};
-  if (noise.sigma < kFlat * spacing) return noise;
+  if (noise.sigma < kFlatNoise * spacing) return noise;
   std::vector<Widths> all = compare_widths(grid, spacing);
   std::stable_sort(all.begin(), all.end(),
                    [](const Widths& a, const Widths& b) { return a.growth < b.growth; });

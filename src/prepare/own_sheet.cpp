@@ -41,7 +41,6 @@ using Terms = Eigen::Matrix<double, kTerms, 1>;
 
 constexpr int kTiles = 16;  // along a window, at most
 constexpr int kEnoughInTile = 6;
-
 struct Plane {
   Vector3d mean = Vector3d::Zero();
   Vector3d normal = Vector3d::Zero();

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "field/density_sums.hpp"
-#include "geometry/parallel.hpp"
 #include "geometry/speckle.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/filters.hpp"
@@ -31,6 +30,7 @@
 #include "prepare/noisy_radii.hpp"
 #include "prepare/own_sheet.hpp"
 #include "prepare/sheets.hpp"
+#include "prepare/strays.hpp"
 #include "prepare/twins.hpp"
 
 namespace palpate {
@@ -47,11 +47,6 @@ constexpr double kSliver = 0.7;
 // The paper's multiple m, its k nearest neighbours and the level of its metaball (section V).
 constexpr double kPaperMultiple = 2.5;
 
-// A point this many typical spacings from its neighbours has to be on a sheet with them.
-constexpr float kStraySpacings = 4;
-constexpr std::size_t kManyInWindow = 120;  // points of a window of three spacings; 28 on a sheet
-constexpr double kOffDenser = 0.3;          // typical spacings
-
 // Noise is not smoothed away at the price of shape of this part of the cloud's size.
 constexpr double kFinestShape = 25;
 
@@ -59,7 +54,8 @@ constexpr double kFinestShape = 25;
 // 2.5 spacings' support bridges.
 constexpr double kIrregularMultiple = 3;
 
-constexpr float kTrusted = 0.5f;  // confidence
+// R of strays, in typical spacings: they are not to reach what is sampled finely.
+constexpr float kStrayRadius = 2.5f;
 
 constexpr float kSlope = 0.5f;  // of R over distance, as it follows from spacings and noise
 
@@ -75,18 +71,6 @@ class Stopwatch {
  private:
   Clock::time_point last_ = Clock::now();
 };
-
-/// The same points in the world frame.
-PointCloud placed(PointCloud cloud, const Eigen::Isometry3d& T_world_sensor) {
-  const Eigen::Matrix3f turn = T_world_sensor.linear().cast<float>();
-  cloud.origin = T_world_sensor * cloud.origin;
-  if (!turn.isIdentity(0)) {
-    for (auto& p : cloud.positions) p = turn * p;
-    for (auto& n : cloud.normals) n = turn * n;
-  }
-  if (cloud.viewpoint) cloud.viewpoint = T_world_sensor * *cloud.viewpoint;
-  return cloud;
-}
 
 /// One cloud on its way to surface points.
 class Preparation {
@@ -117,7 +101,7 @@ class Preparation {
     if (options_.estimate_normals) find_sheets();
     finish(points_);
     report_.points_out = points_.size() - report_.speckle - twins_;
-    report_trust();
+    tell_trust(points_, report_);
     report_.radius = points_.radius;
     report_.radius_smallest = points_.smallest_radius;
     report_.radius_largest = *std::max_element(points_.radii.begin(), points_.radii.end());
@@ -216,36 +200,16 @@ class Preparation {
       given_ = in_grid_order(points_.grid, cloud_->normals);
       take_given_normals(points_.grid, given_, own_sheets_.normals);
     }
-    if (options_.remove_speckle && !options_.radius && !options_.paper) find_strays();
-    watch_.lap(report_.seconds_normals);
-  }
-
-  /// A point much farther from others than most are, and on no sheet with them, is a stray. Its
-  /// support is not to reach what is sampled finely.
-  void find_strays() {
-    const auto spacing = static_cast<float>(report_.spacing);
-    strays_.resize(points_.size());
-    detail::parallel_ranges(points_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      SheetFitter fitter;
-      for (std::size_t i = begin; i < end; ++i) {
-        if (spacings_[i] <= kStraySpacings * spacing) continue;
-        const auto own = static_cast<double>(spacings_[i]);
-        const double radius = kIrregularMultiple * own;
-        const SheetFit fit = fitter.fit(points_.grid, points_.grid.points()[i], radius, own);
-        // Where others lie far denser it has to be on what they tell, as they do.
-        const bool among_denser = fit.points > kManyInWindow;
-        const double most = kOffDenser * report_.spacing + 3 * report_.noise;
-        if (fit.is_sheet(radius, report_.noise) && fitter.places(own) >= SheetFitter::kEnough &&
-            (!among_denser || fit.off <= most)) {
-          continue;
-        }
-        strays_[i] = 1;
+    if (options_.remove_speckle && !options_.radius && !options_.paper) {
+      strays_ =
+          find_strays({points_.grid, spacings_, points_.radii, report_.noise}, report_.spacing);
+      for (std::size_t i = 0; i < strays_.size(); ++i) {
+        if (strays_[i] == 0) continue;
         own_sheets_.confidences[i] = 0;
+        points_.radii[i] = kStrayRadius * static_cast<float>(report_.spacing);
       }
-    });
-    for (std::size_t i = 0; i < strays_.size(); ++i) {
-      if (strays_[i] != 0) points_.radii[i] = kStraySpacings * spacing;
     }
+    watch_.lap(report_.seconds_normals);
   }
 
   void find_sheets() {
@@ -268,24 +232,11 @@ class Preparation {
     watch_.lap(report_.seconds_normals);
   }
 
-  void report_trust() {
-    std::vector<float> felt;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (points_.density_weights[i] > 0) felt.push_back(points_.confidences[i]);
-    }
-    if (felt.empty()) return;
-    const auto tenth = felt.begin() + static_cast<std::ptrdiff_t>(felt.size() / 10);
-    std::nth_element(felt.begin(), tenth, felt.end());
-    report_.trust_low = *tenth;
-    const auto doubted = std::ranges::count_if(felt, [](float c) { return c < kTrusted; });
-    report_.untrusted = static_cast<double>(doubted) / static_cast<double>(felt.size());
-  }
-
   void weigh() {
     points_.kernel = options_.kernel;
     sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
     if (!options_.radius && !options_.paper && options_.estimate_normals &&
-        close_gaps({points_.grid, spacings_, sums_.own}, points_.radii, own_sheets_) > 0) {
+        close_gaps(points_.grid, sums_.own, spacings_, points_.radii, own_sheets_) > 0) {
       limit_growth(points_.grid, 1, points_.radii, &own_sheets_);
       sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
     }

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/neighborhoods.hpp"
 #include "geometry/signed_sets.hpp"
 #include "prepare/grow_sheets.hpp"
+#include "prepare/outlook.hpp"
 
 namespace palpate {
 namespace {
@@ -16,21 +16,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr double kCertain = std::numeric_limits<double>::infinity();
 
-// The next other sheet along a normal.
-constexpr float kGapReach = 1.6f;  // R
-constexpr float kGapTube = 1.3f;   // spacings to the side
-constexpr float kGapSlope = 0.5f;  // of the way to the side, the least height
-constexpr float kGapCosine = 0.8f;
-constexpr float kGapTrust = 0.3f;
-constexpr float kGapResiduals = 3;
-constexpr float kGapSpacings = 0.3f;
-
-// Votes of one sheet on another.
-constexpr float kVoteReach = 1.3f;  // R
-constexpr std::size_t kVoteSheets = 4;
-constexpr int kVotesEach = 3;
 constexpr double kCoherent = 0.5;  // |sum v |v|| over sum v^2
 constexpr double kEnoughVotes = 0.3;
 
@@ -39,150 +26,6 @@ constexpr double kMostHidden = 0.5;  // of a sheet's points
 
 constexpr double kOpen = 0.3;     // |sum a n| / sum a above which a part does not close
 constexpr double kUpright = 0.2;  // sine of the lean that makes an open part have an upper side
-
-/// What the points p and q say of each other's side, -1 ... 1: n_p, mirrored by the plane halfway
-/// between the two, times n_q; their plain product where both lie on one plane.
-float agreement(const SheetInput& input, const OwnSheets& own, std::uint32_t p, std::uint32_t q) {
-  const Vector3f way = input.grid.points()[q] - input.grid.points()[p];
-  const float by_p = own.normals[p].dot(way);
-  const float by_q = own.normals[q].dot(way);
-  const float straight = own.normals[p].dot(own.normals[q]);
-  const float squared = way.squaredNorm();
-  const float tolerance = sheet_tolerance(input, own, p, q);
-  const bool one_plane = std::abs(by_p) <= tolerance && std::abs(by_q) <= tolerance;
-  return one_plane || !(squared > 0) ? straight : straight - 2 * by_p * by_q / squared;
-}
-
-struct Vote {
-  std::uint32_t a;  // sheets, a < b
-  std::uint32_t b;
-  float value;
-};
-
-/// What the points of one block see of other sheets.
-class Outlook {
- public:
-  Outlook(const SheetInput& input, const OwnSheets& own, Growths& grown)
-      : input_(input), own_(own), sheets_(grown.sheets), sure_(grown.sure) {}
-
-  void look(const detail::Block& block, detail::Surroundings& surroundings,
-            std::vector<Vote>& votes) {
-    const detail::Reach reach{.of_points = input_.radii, .times = kGapReach, .of_cells = {}};
-    detail::for_each_part(
-        input_.grid, reach, block, surroundings,
-        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          if (!alone(first, runs)) look_from(first, count, runs, votes);
-        });
-  }
-
- private:
-  /// Is there but one sheet, and does it not curl up?
-  [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
-    constexpr float kCurled = 0.3f;
-    const std::uint32_t sheet = sheets_.sheet[first];
-    const Vector3f& n = own_.normals[first];
-    for (const simd::Run& run : runs) {
-      for (std::uint32_t j = run.begin; j < run.end; ++j) {
-        if (sheets_.sheet[j] != sheet || !(n.dot(own_.normals[j]) > kCurled)) return false;
-      }
-    }
-    return true;
-  }
-
-  void look_from(std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs,
-                 std::vector<Vote>& votes) {
-    std::size_t candidates = 1;
-    for (const simd::Run& run : runs) candidates += run.end - run.begin;
-    if (hits_.size() < candidates) hits_.resize(2 * candidates);
-    simd::Row squared = {};
-    for (std::uint32_t q = 0; q < count; ++q) {
-      const float reach = kGapReach * input_.radii[first + q];
-      squared[q] = reach * reach;
-      others_[q].clear();
-    }
-    const simd::Join join = detail::make_join(input_.grid, first, count, runs);
-    const std::size_t found = simd::best_joins().within(join, squared, hits_.data());
-    for (std::size_t h = 0; h < found; ++h) {
-      for (std::uint32_t bits = hits_[h].queries; bits != 0; bits &= bits - 1) {
-        meet(first, static_cast<std::uint32_t>(std::countr_zero(bits)), hits_[h].candidate);
-      }
-    }
-    for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
-  }
-
-  void meet(std::uint32_t first, std::uint32_t q, std::uint32_t j) {
-    const std::uint32_t i = first + q;
-    if (j == i || own_.confidences[i] <= 0) return;
-    const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
-    const float squared = way.squaredNorm();
-    measure_gap(i, j, way, squared);
-    const float voting = kVoteReach * input_.radii[i];
-    const bool votes_on = sure_[i] != 0 && sure_[j] != 0 && sheets_.sheet[j] != sheets_.sheet[i] &&
-                          squared <= voting * voting;
-    if (votes_on) others_[q].push_back({squared, j});
-  }
-
-  void measure_gap(std::uint32_t i, std::uint32_t j, const Vector3f& way, float squared) {
-    if (own_.confidences[j] < kGapTrust) return;
-    if (std::abs(own_.normals[i].dot(own_.normals[j])) < kGapCosine) return;
-    const float height = own_.normals[i].dot(way);
-    const float off = std::abs(height);
-    const float tube = kGapTube * input_.spacings[i];
-    const float aside = std::max(0.f, squared - height * height);
-    const float least =
-        std::max(kGapResiduals * own_.residuals[i], kGapSpacings * input_.spacings[i]);
-    if (off <= least || aside > tube * tube || off < kGapSlope * std::sqrt(aside)) return;
-    float& gap = height > 0 ? sheets_.above[i] : sheets_.below[i];
-    gap = std::min(gap, off);
-  }
-
-  /// The nearest points of the nearest other sheets.
-  void vote(std::uint32_t i, std::vector<std::pair<float, std::uint32_t>>& others,
-            std::vector<Vote>& votes) {
-    std::sort(others.begin(), others.end());
-    std::array<std::pair<std::uint32_t, int>, kVoteSheets> heard{};
-    std::size_t count = 0;
-    for (const auto& [squared, j] : others) {
-      const std::uint32_t sheet = sheets_.sheet[j];
-      std::size_t k = 0;
-      while (k < count && heard[k].first != sheet) ++k;
-      if (k == kVoteSheets) continue;
-      if (k == count) heard[count++] = {sheet, 0};
-      if (heard[k].second++ == kVotesEach)
-        --heard[k].second;
-      else {
-        const auto [a, b] = std::minmax(sheets_.sheet[i], sheet);
-        votes.push_back({a, b, agreement(input_, own_, i, j)});
-      }
-    }
-  }
-
-  const SheetInput& input_;
-  const OwnSheets& own_;
-  PointSheets& sheets_;
-  const std::vector<std::uint8_t>& sure_;
-  std::vector<simd::Hit> hits_;
-  std::array<std::vector<std::pair<float, std::uint32_t>>, simd::kQueries> others_;
-};
-
-/// Measures the gaps; returns what sheets say of each other.
-std::vector<Vote> look_around(const SheetInput& input, const OwnSheets& own, Growths& grown) {
-  grown.sheets.above.assign(input.grid.size(), kFar);
-  grown.sheets.below.assign(input.grid.size(), kFar);
-  const auto blocks = detail::make_blocks(input.grid, detail::kBlockPoints);
-  std::vector<std::vector<Vote>> votes(blocks.size());
-  detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
-    detail::Surroundings surroundings;
-    Outlook outlook(input, own, grown);
-    for (std::size_t b = begin; b < end; ++b) outlook.look(blocks[b], surroundings, votes[b]);
-  });
-  std::vector<Vote> all;
-  for (const auto& some : votes) all.insert(all.end(), some.begin(), some.end());
-  std::stable_sort(all.begin(), all.end(), [](const Vote& x, const Vote& y) {
-    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
-  });
-  return all;
-}
 
 /// For each sheet the sign that nearly all of its points are known to have, relative to their
 /// normals; 0: not known.
@@ -230,7 +73,7 @@ std::vector<int> known_signs(const SheetInput& input, const KnownSigns& known, c
     if (known.eye) {
       const Vector3f way = *known.eye - input.grid.points()[i];
       const float cosine = own.normals[i].dot(way.normalized());
-      const bool hidden = (cosine > 0 ? sheets.above[i] : sheets.below[i]) < kFar;
+      const bool hidden = (cosine > 0 ? sheets.above[i] : sheets.below[i]) < kCertain;
       hidden ? seen.add_hidden(sheet) : seen.add(sheet, static_cast<double>(cosine));
     }
   }
@@ -248,7 +91,7 @@ struct Link {
 };
 
 /// Which sheets belong together, the surest first.
-std::vector<Link> links_of(const std::vector<Vote>& votes, const std::vector<int>& known) {
+std::vector<Link> links_of(const std::vector<SheetVote>& votes, const std::vector<int>& known) {
   std::vector<Link> links;
   for (std::size_t k = 0; k < votes.size();) {
     Link link{votes[k].a, votes[k].b, 0};
@@ -260,7 +103,7 @@ std::vector<Link> links_of(const std::vector<Vote>& votes, const std::vector<int
     }
     const int both = known[link.a] * known[link.b];
     if (both != 0) {
-      link.value = both * kFar;
+      link.value = both * kCertain;
     } else if (std::abs(link.value) < kCoherent * squares || squares <= kEnoughVotes) {
       continue;
     }
@@ -368,7 +211,7 @@ PointSheets make_sheets(const SheetInput& input, const KnownSigns& known, OwnShe
                         std::vector<Twin>& twins) {
   Growths grown = grow_sheets(input, own);
   twins = std::move(grown.twins);
-  const std::vector<Vote> votes = look_around(input, own, grown);
+  const std::vector<SheetVote> votes = look_around(input, own, grown);
   PointSheets sheets = std::move(grown.sheets);
   const std::vector<int> signs = known_signs(input, known, own, sheets);
   join_parts(input, links_of(votes, signs), signs, own, sheets);

@@ -19,14 +19,17 @@ void Patches::show(std::span<const ActiveLayer> layers, int sources, bool same) 
   far_is_late_ = true;
 }
 
-void Patches::stand(const Stance& stance) noexcept {
+void Patches::stand(const Vector3d& proxy) noexcept {
   constexpr double kMoved = 0.15;  // R after which sheets further on come into view
+  // A proxy that has been moved since its step touches nothing.
+  const Stance stance = last_.proxy == proxy ? last_ : Stance{proxy, Vector3d::Zero()};
   stance_ = stance;
   const double moved = (stance.proxy - faced_.proxy).norm();
   const bool same = stance.touches() == faced_.touches() && moved < kMoved * near_.mean_radius();
   if (same) return;
   faced_ = stance;
   far_.clear();
+  far_.forget_sides();
   const Ball here{stance.proxy, 0};
   const bool covered = near_.covers(here);
   const bool free =
@@ -69,6 +72,7 @@ const Patch* Patches::at(const Ball& ball, double margin) const noexcept {
     return &far_;
   }
   far_is_late_ = false;
+  if (!stepping_) far_.forget_sides();  // what a step has seen once, it sees so to its end
   far_.follow_sides(near_);
   int alone = kGatherVisits;
   int& left = stepping_ ? gather_visits_ : alone;
@@ -116,8 +120,9 @@ void Patches::begin_step() const noexcept {
   free_visits_ = kFreeVisits;
 }
 
-void Patches::end_step() const noexcept {
+void Patches::end_step(const Stance& last) const noexcept {
   stepping_ = false;
+  last_ = last;
 }
 
 }  // namespace palpate

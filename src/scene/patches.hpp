@@ -29,9 +29,9 @@ class Patches {
   /// Where x is in no point's support, it stays what it was; `first`, m, when there was none.
   void choose_radius(const Eigen::Vector3d& x, double first) noexcept;
 
-  /// Where the proxy is: what is gathered from now on is seen from there, and what is around it is
-  /// looked at again where it has moved on.
-  void stand(const Stance& stance) noexcept;
+  /// What is gathered from now on is seen from the proxy, and what is around it is looked at again
+  /// where it has moved on.
+  void stand(const Eigen::Vector3d& proxy) noexcept;
 
   /// The patch around the proxy. Covers nothing when the visits did not suffice.
   void gather_near(const Eigen::Vector3d& center, double extra) noexcept;
@@ -56,7 +56,8 @@ class Patches {
   /// No notes yet, and all visits left for choose_radius() and gather_near() together.
   void begin_update() noexcept;
   void begin_step() const noexcept;
-  void end_step() const noexcept;
+  /// `last`: where the proxy is then.
+  void end_step(const Stance& last) const noexcept;
 
   /// thinned and work_spent, since begin_update().
   [[nodiscard]] FieldNote notes() const noexcept { return notes_; }
@@ -76,6 +77,7 @@ class Patches {
   int sources_ = 1;
   double radius_ = 0;  // R of all points, m; 0: each has its own
 
+  mutable Stance last_;  // after a proxy's last step
   Stance stance_;
   Stance faced_;  // that the near patch was looked at from last
 

@@ -105,7 +105,6 @@ struct SceneField::State {
   bool plain_points = true;  // no materials, no motion, no fading
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
-  Stance last;  // of the proxy, after its last step
   Patches patches{surface};
 };
 
@@ -214,10 +213,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   state.patches.begin_update();
   if (hip.allFinite() && proxy.allFinite()) {
     if (options_.nearest_radius) state.patches.choose_radius(proxy, state.typical_radius);
-    // Whoever has been moved since its step touches nothing.
-    const bool same = proxy == state.last.proxy;
-    const Stance stance{proxy, same ? state.last.normal : Vector3d::Zero().eval()};
-    state.patches.stand(stance);
+    state.patches.stand(proxy);
     state.gather_path(hip, proxy);
     state.publish_reach(hip, proxy);
   }
@@ -256,8 +252,7 @@ void SceneField::begin_step() const noexcept {
   state_->patches.begin_step();
 }
 void SceneField::end_step(const Vector3d& proxy, const Vector3d& normal) const noexcept {
-  state_->patches.end_step();
-  state_->last = {proxy, normal};
+  state_->patches.end_step({proxy, normal});
 }
 
 Surface SceneField::surface(const Vector3d& x) const noexcept {

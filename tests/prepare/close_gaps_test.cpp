@@ -40,10 +40,10 @@ Case make_case(const Vector3f& odd, float radius) {
 
 /// How many radii were raised.
 std::size_t close(Case& made, OwnSheets& own) {
-  const std::vector<float> spacings(made.grid.size(), kGapSpacing);
+  std::vector<float> spacings(made.grid.size(), kGapSpacing);
   own = fit_own_sheets(made.grid, spacings, made.radii, 0);
   const detail::WeightSums sums = weight_sums(made.grid, made.radii, Kernel::wyvill);
-  return close_gaps({made.grid, spacings, sums.own}, made.radii, own);
+  return close_gaps(made.grid, sums.own, spacings, made.radii, own);
 }
 
 TEST(CloseGaps, RaisesWhatOthersLieRoundAbout) {

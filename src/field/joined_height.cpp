@@ -1,0 +1,125 @@
+#include "field/joined_height.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "field/acute_creases.hpp"
+#include "field/facing.hpp"
+#include "field/sharp_edges.hpp"
+#include "field/united_height.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+// A convex edge between two sheets is as soft as this, of R: a hand that leaves a box over its
+// edge is let go within a third of the support and not at once, as an exact edge would do.
+constexpr double kOverEdges = 0.35;
+
+/// Can the surface of these normals be told here at all?
+bool has_normals(const FieldOptions& options, const simd::LabelSums& sums, double least) noexcept {
+  if (!(sums.v > least)) return false;
+  return options.kind == FieldKind::balanced ||
+         vector(sums.vn).squaredNorm() > 1e-24 * sums.v * sums.v;
+}
+
+Value smooth_min(const Value& a, const Value& b, const Value& radius, double width) noexcept {
+  const Value most = smooth_max({-a.f, -a.grad}, {-b.f, -b.grad}, radius, width);
+  return {-most.f, -most.grad};
+}
+
+/// May edges be sharpened here?
+bool may_sharpen(const FieldOptions& options, const simd::Columns& columns) noexcept {
+  return options.sharp_edges && columns.uniform_sharp != 0 && options.kind == FieldKind::balanced &&
+         options.gradient == GradientKind::exact;
+}
+
+/// The surface of one label's normals, with its exact gradient.
+Value height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
+  if (may_sharpen(options, *place.columns)) return sharp_balanced(place);
+  const Oriented oriented =
+      options.kind == FieldKind::balanced ? balanced(place.sums()) : pointset(place.sums());
+  if (options.gradient == GradientKind::normal) return {oriented.f, oriented.base};
+  return {oriented.f, oriented.base + place.gradient(oriented.b)};
+}
+
+/// The same, where several sources may tell of one surface at different heights, and with its
+/// creases closed.
+Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
+  Value height = height_at(options, place);
+  if (place.columns->sources > 1 && options.gradient == GradientKind::exact) {
+    const Value shift = united_shift(place);
+    height = {height.f + shift.f, height.grad + shift.grad};
+  }
+  if (!options.capped) return height;
+  const Value closure = crease_closure(place);
+  return {height.f - closure.f, height.grad - closure.grad};
+}
+
+/// How far a label's height is taken out of the way of another's as its share of the weight of
+/// both runs out: R (0.15 / share - 1)^2.
+Value leave(const Value& own, const Value& both, const Value& radius) noexcept {
+  constexpr double kShare = 0.15;
+  const double share = own.f / both.f;
+  if (share >= kShare) return {};
+  const double e = kShare / share - 1;
+  const Vector3d slope = (own.grad - share * both.grad) / both.f;
+  return {radius.f * e * e,
+          e * e * radius.grad - 2 * radius.f * e * kShare / (share * share) * slope};
+}
+
+Value sum(const Value& a, const Value& b) noexcept {
+  return {a.f + b.f, a.grad + b.grad};
+}
+Value difference(const Value& a, const Value& b) noexcept {
+  return {a.f - b.f, a.grad - b.grad};
+}
+
+}  // namespace
+
+Value smooth_max(const Value& a, const Value& b, const Value& radius, double width) noexcept {
+  const double k = width * radius.f;
+  const double d = std::abs(a.f - b.f);
+  const Value& larger = a.f > b.f ? a : b;
+  const Value& smaller = a.f > b.f ? b : a;
+  if (d >= k) return larger;
+  const double h = (k - d) / k;
+  const double by_k = (k - d) * (k + d) / (4 * k * k);
+  return {larger.f + 0.25 * h * h * k,
+          (1 - 0.5 * h) * larger.grad + 0.5 * h * smaller.grad + by_k * width * radius.grad};
+}
+
+std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place,
+                                   double least) noexcept {
+  constexpr double kInCreases = 0.1;  // of R
+  Value height[simd::kHeights];
+  Value weight[simd::kHeights];
+  bool there[simd::kHeights] = {};
+  for (int k = 0; k < std::min(place.columns->labels, simd::kHeights); ++k) {
+    const simd::LabelSums& sums = place.all->label[k];
+    there[k] = has_normals(options, sums, least);
+    if (!there[k]) continue;
+    place.label = k;
+    height[k] = whole_height_at(options, place);
+    weight[k] = {sums.v, vector(sums.grad_v)};
+  }
+  const Value& radius = place.radius;
+  if (!there[kInFront] && !there[kAcross] && !there[kBehind]) return std::nullopt;
+  Value front = there[kInFront] ? height[kInFront] : height[kAcross];
+  Value front_weight = there[kInFront] ? weight[kInFront] : weight[kAcross];
+  if (there[kInFront] && there[kAcross]) {
+    front_weight = sum(weight[kInFront], weight[kAcross]);
+    front = smooth_min(sum(height[kInFront], leave(weight[kInFront], front_weight, radius)),
+                       sum(height[kAcross], leave(weight[kAcross], front_weight, radius)), radius,
+                       kInCreases);
+  }
+  if (!there[kBehind]) return front;
+  if (!there[kInFront] && !there[kAcross]) return height[kBehind];
+  const Value both = sum(front_weight, weight[kBehind]);
+  return smooth_max(difference(front, leave(front_weight, both, radius)),
+                    difference(height[kBehind], leave(weight[kBehind], both, radius)), radius,
+                    kOverEdges);
+}
+
+}  // namespace palpate

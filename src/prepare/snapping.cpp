@@ -1,0 +1,211 @@
+#include "prepare/snapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "geometry/parallel.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kPlanarFit = 0.5f;  // confidence from which on a fit is a plane
+constexpr float kSmoothBend =
+    0.03f;                          // of R that a quadric may leave: curvature passes, a crease not
+constexpr float kNoisyBend = 1.6f;  // of the noise, likewise
+constexpr float kNoiseReach = 2.5f;  // R within which noise is looked for
+constexpr float kNoisier = 2.5f;     // than typical that noise may be in places
+
+// An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
+// this many of its residuals.
+constexpr float kSnapReach = 1.6f;  // R; where nothing is sure there:
+constexpr float kFarSnapReach = 4;  // R
+constexpr std::size_t kFewSure = 12;
+constexpr float kSnapSlope = 0.12f;
+constexpr float kSnapResiduals = 3;
+constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
+
+// A point lies on a second plane where that is another one and it is off it by so many spacings.
+constexpr float kOtherPlane = 0.97f;
+constexpr float kOnBoth = 0.2f;
+
+/// What becomes of the points that their own fit does not put on a sheet.
+class Snapping {
+ public:
+  Snapping(const SheetInput& input, OwnSheets& own)
+      : input_(input), own_(own), sure_(input.grid.size()) {
+    const auto noise = static_cast<float>(input.noise);
+    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (own.confidences[i] < kPlanarFit) continue;
+        const auto radius = static_cast<double>(input.radii[i]);
+        if (static_cast<double>(own.residuals[i]) <= flat_residual(radius, input.noise)) {
+          sure_[i] = 1;
+          continue;
+        }
+        const float smooth = kSmoothBend * input.radii[i];
+        float local = noise;
+        if (own.bends[i] > std::max(smooth, kNoisyBend * noise) &&
+            own.bends[i] <= kNoisyBend * kNoisier * noise) {
+          local = std::clamp(noise_around(static_cast<std::uint32_t>(i), near), noise,
+                             kNoisier * noise);
+        }
+        sure_[i] = own.bends[i] <= std::max(smooth, kNoisyBend * local) ? 1 : 0;
+      }
+    });
+  }
+
+  void run() {
+    hosts_.assign(sure_.size(), kNoHost);
+    second_hosts_.assign(sure_.size(), kNoHost);
+    for (std::uint32_t i = 0; i < sure_.size(); ++i) {
+      if (sure_[i] != 0) hosts_[i] = i;
+    }
+    each_with_memory([this](std::uint32_t i, std::vector<std::uint32_t>& near) {
+      if (sure_[i] == 0) {
+        take_host(i, near);
+      } else if (own_.others[i] != 0) {
+        list_sure(i, near);
+        second_hosts_[i] = second_host(i, i, near);
+      }
+    });
+    std::vector<std::uint8_t> alone(sure_.size());
+    each_with_memory([&](std::uint32_t i, std::vector<std::uint32_t>& near) {
+      if (hosts_[i] == kNoHost) alone[i] = is_among_homeless(i, near) ? 1 : 0;
+    });
+    for (std::uint32_t i = 0; i < alone.size(); ++i) {
+      if (hosts_[i] != kNoHost) continue;
+      sure_[i] = alone[i];
+      if (alone[i] != 0) hosts_[i] = i;
+      if (alone[i] == 0) own_.confidences[i] = 0;
+    }
+  }
+
+  /// What is known of all points then.
+  [[nodiscard]] Snapped finish() && {
+    Snapped snapped{std::move(sure_), std::move(hosts_), {}};
+    for (std::uint32_t i = 0; i < second_hosts_.size(); ++i) {
+      if (second_hosts_[i] != kNoHost) snapped.twins.push_back({i, second_hosts_[i]});
+    }
+    return snapped;
+  }
+
+ private:
+  /// Noise is not the same everywhere: what the flattest quarter of the fits around leaves, m.
+  float noise_around(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    near.clear();
+    input_.grid.within(input_.grid.points()[i], kNoiseReach * input_.radii[i], near);
+    const auto quarter = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 4);
+    std::nth_element(near.begin(), quarter, near.end(), [this](std::uint32_t a, std::uint32_t b) {
+      return own_.bends[a] < own_.bends[b];
+    });
+    return own_.bends[*quarter];
+  }
+
+  /// Sure points around; where they are few, as in the foot of a narrow crease, farther ones too.
+  void list_sure(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    for (const float reach : {kSnapReach, kFarSnapReach}) {
+      near.clear();
+      input_.grid.within(input_.grid.points()[i], reach * input_.radii[i], near);
+      std::erase_if(near, [this](std::uint32_t j) { return sure_[j] == 0; });
+      if (near.size() >= kFewSure) return;
+    }
+  }
+
+  template <class Body>
+  void each_with_memory(const Body& body) const {
+    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = begin; i < end; ++i) body(static_cast<std::uint32_t>(i), near);
+    });
+  }
+
+  void take_host(std::uint32_t i, std::vector<std::uint32_t>& near) {
+    list_sure(i, near);
+    const std::uint32_t host = best_host(i, near);
+    if (host == kNoHost) return;
+    hosts_[i] = host;
+    second_hosts_[i] = second_host(i, host, near);
+    const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
+    const float turn = kTurnMargin * bow(input_, own_, host) * way;
+    if (std::abs(own_.normals[i].dot(own_.normals[host])) < 1 - 0.5f * turn * turn) {
+      own_.normals[i] = own_.normals[host];
+      own_.residuals[i] = own_.residuals[host];
+    }
+    own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
+  }
+
+  /// Where a thing is so small that hardly a point of it is sure, a plane has to do.
+  [[nodiscard]] bool is_among_homeless(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    if (own_.confidences[i] < kPlanarFit) return false;
+    near.clear();
+    input_.grid.within(input_.grid.points()[i], input_.radii[i], near);
+    const auto homeless =
+        std::ranges::count_if(near, [this](std::uint32_t j) { return hosts_[j] == kNoHost; });
+    return 2 * static_cast<std::size_t>(homeless) >= near.size();
+  }
+
+  /// Of sure points the one whose plane the point lies on best.
+  [[nodiscard]] std::uint32_t best_host(std::uint32_t i,
+                                        const std::vector<std::uint32_t>& near) const {
+    float best = std::numeric_limits<float>::infinity();
+    std::uint32_t host = kNoHost;
+    for (const std::uint32_t j : near) {
+      const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
+      const float length = way.norm();
+      const float off = std::abs(own_.normals[j].dot(way));
+      const float arc = kChord * kTurnMargin * bow(input_, own_, j) * length;
+      const float slope = std::max(kSnapSlope, arc);
+      if (off > std::max(kSnapResiduals * own_.residuals[j], slope * length)) continue;
+      const float cost = off + kNearness * length;
+      if (cost >= best) continue;
+      best = cost;
+      host = j;
+    }
+    return host;
+  }
+
+  /// The nearest sure point of another plane that the point lies on as well.
+  [[nodiscard]] std::uint32_t second_host(std::uint32_t i, std::uint32_t first,
+                                          const std::vector<std::uint32_t>& near) const {
+    float best = std::numeric_limits<float>::infinity();
+    std::uint32_t host = kNoHost;
+    for (const std::uint32_t j : near) {
+      if (std::abs(own_.normals[first].dot(own_.normals[j])) > kOtherPlane) continue;
+      const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
+      const float off = std::abs(own_.normals[j].dot(way));
+      const float on = std::max(kSnapResiduals * own_.residuals[j], kOnBoth * input_.spacings[i]);
+      const float squared = way.squaredNorm();
+      if (off > on || squared >= best) continue;
+      best = squared;
+      host = j;
+    }
+    return host;
+  }
+
+  const SheetInput& input_;
+  OwnSheets& own_;
+  std::vector<std::uint8_t> sure_;
+  std::vector<std::uint32_t> hosts_;
+  std::vector<std::uint32_t> second_hosts_;
+};
+
+}  // namespace
+
+float bow(const SheetInput& input, const OwnSheets& own, std::uint32_t i) {
+  const float reach = 1.15f * input.radii[i];
+  const float square = own.residuals[i] * own.residuals[i] - own.bends[i] * own.bends[i];
+  return std::sqrt(48 * std::max(square, 0.f)) / (reach * reach);
+}
+
+Snapped snap_to_planes(const SheetInput& input, OwnSheets& own) {
+  Snapping snapping(input, own);
+  snapping.run();
+  return std::move(snapping).finish();
+}
+
+}  // namespace palpate
