@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr double kSpacings = 3;    // of the nearest point: free air is farther from it
 constexpr double kFarther = 0.02;  // and than this, m
 constexpr int kPresses = 100;
-constexpr int kTries = 1000;  // for a place in free air
+constexpr int kFileTries = 1000;  // for a place in free air
 
 // The file's cloud in its median spacing, and where air is free in it.
 class FreeAir {
@@ -47,7 +47,7 @@ class FreeAir {
 void add_way(Draft& draft, const FreeAir& air, const Eigen::AlignedBox3d& box) {
   constexpr int kTicks = 150;
   constexpr double kStep = 1.5;
-  for (int i = 0; i < kTries; ++i) {
+  for (int i = 0; i < kFileTries; ++i) {
     Vector3d place = draft.within(box.min(), box.max());
     if (!air.holds(place)) continue;
     const Vector3d step = kStep * draft.direction();
@@ -63,7 +63,7 @@ void add_way(Draft& draft, const FreeAir& air, const Eigen::AlignedBox3d& box) {
 void add_press(Draft& draft, const FreeAir& air) {
   constexpr double kFirst = 10;
   constexpr double kDeep = 3;
-  for (int i = 0; i < kTries; ++i) {
+  for (int i = 0; i < kFileTries; ++i) {
     const Vector3d& point = draft.points[draft.random.bits() % draft.points.size()];
     const Vector3d out = draft.direction();
     double away = kFirst;

@@ -24,9 +24,9 @@ void draw_volume(Draft& draft, bool bush) {
   }
 }
 
-constexpr double kSheet = 80;  // side of the sheet among strays
-constexpr double kAway = 400;  // strays lie so far at most
-constexpr double kClear = 20;  // of any point: free air
+constexpr double kSheet = 80;        // side of the sheet among strays
+constexpr double kStraysAway = 400;  // strays lie so far at most
+constexpr double kClear = 20;        // of any point: free air
 
 // A sheet has two sides: solid is what is very thin.
 Shape make_sheet(Draft& draft) {
@@ -49,7 +49,7 @@ bool way_is_clear(const Draft& draft, const Vector3d& from, const Vector3d& to) 
 // Strays come alone, in pairs, or in clusters of 3 to 6, none near the sheet.
 void draw_stray(Draft& draft, int least, int most) {
   draft.truth = make_sheet(draft);
-  const Vector3d far = Vector3d::Constant(kAway);
+  const Vector3d far = Vector3d::Constant(kStraysAway);
   for (int i = 0; i < 40;) {
     const Vector3d middle = draft.within(-far, far);
     if (draft.truth(middle).value < 3 * kClear) continue;
