@@ -46,11 +46,11 @@ void Facing::follow(const Facing& other) noexcept {
   remembered_from_ = other.remembered_from_;
 }
 
-std::uint32_t Facing::part_of(const Key& key) noexcept {
+std::uint32_t Facing::part_of(const Key& key, bool known) noexcept {
   for (std::uint32_t k = now_.part_count; k-- > 0;) {
     if (now_.parts[k].key == key) return k;
   }
-  Part part{.key = key};
+  Part part{.key = key, .known = known};
   for (std::uint32_t k = 0; k < before_.part_count; ++k) {
     if (before_.parts[k].key == key) part.sign = before_.parts[k].sign;
   }
@@ -59,12 +59,12 @@ std::uint32_t Facing::part_of(const Key& key) noexcept {
 }
 
 /// kMost: there are too many. There are no more parts than sheets.
-std::uint32_t Facing::sheet_of(const Key& key, const Key& part) noexcept {
+std::uint32_t Facing::sheet_of(const Key& key, const Key& part, bool known) noexcept {
   for (std::uint32_t k = now_.sheet_count; k-- > 0;) {
     if (now_.sheets[k].key == key) return k;
   }
   if (now_.sheet_count == kMost) return kMost;
-  Sheet sheet{.key = key, .part = part_of(part)};
+  Sheet sheet{.key = key, .part = part_of(part, known)};
   for (std::uint32_t k = 0; k < before_.sheet_count; ++k) {
     if (before_.sheets[k].key == key) sheet.label = before_.sheets[k].label;
   }
@@ -87,7 +87,8 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
     }
     if (sheet != last) {
       const Key key = own.empty() ? Key{} : Key{&surface, sheet};
-      slot = sheet_of(key, own.empty() ? Key{} : Key{&surface, own.part[sheet]});
+      const Key part = own.empty() ? Key{} : Key{&surface, own.part[sheet]};
+      slot = sheet_of(key, part, own.empty() || own.known[own.part[sheet]] != 0);
       last = sheet;
     }
     sheet_of_place_.push_back(slot);

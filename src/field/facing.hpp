@@ -71,8 +71,9 @@ class Facing {
   };
   struct Part {
     Key key;
-    int sign = 0;       // 0: not decided
-    bool near = false;  // has one of its points weight at the proxy, or nearly?
+    int sign = 0;        // 0: not decided
+    bool known = false;  // do its normals point outward for sure?
+    bool near = false;   // has one of its points weight at the proxy, or nearly?
     double seen = 0;
   };
   struct Sheet {
@@ -113,8 +114,8 @@ class Facing {
     std::uint8_t label;
   };
 
-  std::uint32_t part_of(const Key& key) noexcept;
-  std::uint32_t sheet_of(const Key& key, const Key& part) noexcept;
+  std::uint32_t part_of(const Key& key, bool known) noexcept;
+  std::uint32_t sheet_of(const Key& key, const Key& part, bool known) noexcept;
   void list(const Points& points, const Stance& stance) noexcept;
   void list_layer(const ActiveLayer& layer, std::span<const std::uint32_t> places,
                   const Stance& stance) noexcept;

@@ -90,10 +90,14 @@ void Facing::decide_signs(bool continued) noexcept {
     const double sharp = std::max(0.f, std::abs(height) - kUnsharp * p.residual) / length;
     now_.parts[sheet.part].seen += w * sharp * (height < 0 ? -1 : 1) * (hidden ? kHiddenVote : 1.0);
   }
+  int beside = 0;  // of parts whose normals point outward, as they are seen
+  for (const Part& part : std::span(now_.parts).first(now_.part_count)) {
+    if (part.known) beside += part.sign;
+  }
   for (std::uint32_t k = 0; k < now_.part_count; ++k) {
     Part& part = now_.parts[k];
     if (part.sign != 0) continue;
-    const double vote = continued ? across(k) : 0;
+    const double vote = !continued ? 0 : part.known && beside != 0 ? beside : across(k);
     part.sign = (std::abs(vote) > kLeastVote ? vote : part.seen) < 0 ? -1 : 1;
   }
 }

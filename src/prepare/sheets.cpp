@@ -202,6 +202,7 @@ void join_parts(const SheetInput& input, const std::vector<Link>& links, std::ve
   for (std::uint32_t k = 0; k < count; ++k) {
     signs[k] = known_parts[sheets.part[k]] != 0 ? 1 : outward[sheets.part[k]];
   }
+  for (const int known_part : known_parts) sheets.known.push_back(known_part != 0 ? 1 : 0);
   turn(signs, own, sheets);
 }
 

@@ -17,6 +17,7 @@ struct PointSheets {
 
   std::vector<std::uint32_t> sheet;  ///< of each point; kNone: on none, and without confidence
   std::vector<std::uint32_t> part;   ///< of each sheet: normals of one part agree in their signs
+  std::vector<std::uint8_t> known;   ///< of each part: 1: its normals are known to point outward
   std::vector<float> residual;       ///< rms distance of the sheet's points from their plane, m
   std::vector<float> above;          ///< along +n to the next other sheet, m; infinity: none near
   std::vector<float> below;          ///< along -n, likewise
