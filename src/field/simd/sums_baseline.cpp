@@ -4,7 +4,7 @@
 
 namespace palpate::simd {
 
-const Functions kBaseline{&weights_of, &all_of, &gradient, &bound_of, &near_of,
-                          &share,      &robust, &pull};
+const Functions kBaseline{&weights_of, &all_of, &gradient, &bound_of,
+                          &near_of,    &share,  &robust,   &pull};
 
 }  // namespace palpate::simd

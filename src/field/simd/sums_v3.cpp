@@ -5,7 +5,6 @@
 
 namespace palpate::simd {
 
-const Functions kV3{&weights_of, &all_of, &gradient, &bound_of, &near_of,
-                    &share,      &robust, &pull};
+const Functions kV3{&weights_of, &all_of, &gradient, &bound_of, &near_of, &share, &robust, &pull};
 
 }  // namespace palpate::simd
