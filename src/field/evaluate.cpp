@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 
 // Weight sums up to this are none: the rim of a support, where ratios of sums mean nothing.
 constexpr double kNoWeight = 1e-12;
-constexpr double kFaintNormals = 1e-9;       // of all weight: normals with less say nothing
-constexpr double kFaintLabel = 1e-6;  // of all normals' weight: a label with less says nothing
+constexpr double kFaintNormals = 1e-9;  // of all weight: normals with less say nothing
+constexpr double kFaintLabel = 1e-6;    // of all normals' weight: a label with less says nothing
 
 // The highest above a plane that a metaball's surface may lie, in support radii: further out
 // weights are too flat for it to be found.
