@@ -2,6 +2,7 @@
 #include <cmath>
 #include <span>
 
+#include "field/agreement.hpp"
 #include "field/facing.hpp"
 #include "palpate/field/kernel.hpp"
 
@@ -30,18 +31,6 @@ double weight(float squared, float reach) noexcept {
 
 std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
   return std::max<std::uint32_t>(1, (static_cast<std::uint32_t>(count) + most - 1) / most);
-}
-
-/// n_p mirrored by the plane halfway to q, times n_q; their plain product where both lie on one
-/// plane.
-float agreement(const Vector3f& n_p, const Vector3f& n_q, const Vector3f& way,
-                float tolerance) noexcept {
-  const float by_p = n_p.dot(way);
-  const float by_q = n_q.dot(way);
-  const float straight = n_p.dot(n_q);
-  const float squared = way.squaredNorm();
-  const bool one_plane = std::abs(by_p) <= tolerance && std::abs(by_q) <= tolerance;
-  return one_plane || !(squared > 0) ? straight : straight - 2 * by_p * by_q / squared;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -98,6 +99,35 @@ class Surroundings {
   std::vector<simd::Run> leaves_;
   std::vector<simd::Run> runs_;
   std::size_t count_ = 0;
+};
+
+/// Pairs of points that are near each other, a part after another; keeps its memory in between.
+class NearPairs {
+ public:
+  /// Calls visit(i, j) for each i of [first, first + count) and each j of the runs within
+  /// reach_of(i), m, of it; i itself is one.
+  template <class ReachOf, class Visit>
+  void each(const CellGrid& grid, std::uint32_t first, std::uint32_t count,
+            std::span<const simd::Run> runs, const ReachOf& reach_of, const Visit& visit) {
+    std::size_t candidates = 1;
+    for (const simd::Run& run : runs) candidates += run.end - run.begin;
+    if (hits_.size() < candidates) hits_.resize(2 * candidates);
+    simd::Row squared = {};
+    for (std::uint32_t q = 0; q < count; ++q) {
+      const float reach = reach_of(first + q);
+      squared[q] = reach * reach;
+    }
+    const std::size_t found =
+        simd::best_joins().within(make_join(grid, first, count, runs), squared, hits_.data());
+    for (std::size_t h = 0; h < found; ++h) {
+      for (std::uint32_t bits = hits_[h].queries; bits != 0; bits &= bits - 1) {
+        visit(first + static_cast<std::uint32_t>(std::countr_zero(bits)), hits_[h].candidate);
+      }
+    }
+  }
+
+ private:
+  std::vector<simd::Hit> hits_;
 };
 
 inline constexpr std::uint32_t kBlockPoints = 256;

@@ -1,7 +1,6 @@
 #include "prepare/grow_sheets.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -41,8 +40,8 @@ class Growth {
     std::vector<std::vector<Pair>> across(blocks.size());
     detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
       detail::Surroundings surroundings;
-      std::vector<simd::Hit> hits;
-      for (std::size_t b = begin; b < end; ++b) look(blocks[b], surroundings, hits, across[b]);
+      detail::NearPairs pairs;
+      for (std::size_t b = begin; b < end; ++b) look(blocks[b], surroundings, pairs, across[b]);
     });
     for (const auto& pairs : across) {
       for (const Pair& pair : pairs) sets_.join(pair.a, pair.b, pair.sign);
@@ -52,27 +51,15 @@ class Growth {
 
  private:
   void look(const detail::Block& block, detail::Surroundings& surroundings,
-            std::vector<simd::Hit>& hits, std::vector<Pair>& across) {
+            detail::NearPairs& pairs, std::vector<Pair>& across) {
     const detail::Reach reach{.of_points = input_.spacings, .times = kPairReach, .of_cells = {}};
     detail::for_each_part(
         input_.grid, reach, block, surroundings,
         [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          std::size_t candidates = 1;
-          for (const simd::Run& run : runs) candidates += run.end - run.begin;
-          if (hits.size() < candidates) hits.resize(2 * candidates);
-          simd::Row squared = {};
-          for (std::uint32_t q = 0; q < count; ++q) {
-            const float own = kPairReach * input_.spacings[first + q];
-            squared[q] = own * own;
-          }
-          const simd::Join join = detail::make_join(input_.grid, first, count, runs);
-          const std::size_t found = simd::best_joins().within(join, squared, hits.data());
-          for (std::size_t h = 0; h < found; ++h) {
-            for (std::uint32_t bits = hits[h].queries; bits != 0; bits &= bits - 1) {
-              meet(first + static_cast<std::uint32_t>(std::countr_zero(bits)), hits[h].candidate,
-                   block, across);
-            }
-          }
+          pairs.each(
+              input_.grid, first, count, runs,
+              [this](std::uint32_t i) { return kPairReach * input_.spacings[i]; },
+              [&](std::uint32_t i, std::uint32_t j) { meet(i, j, block, across); });
         });
   }
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "field/agreement.hpp"
 #include "geometry/neighborhoods.hpp"
 
 namespace palpate {
@@ -29,19 +29,6 @@ constexpr float kGapSpacings = 0.3f;
 constexpr float kVoteReach = 1.3f;  // R
 constexpr std::size_t kVoteSheets = 4;
 constexpr int kVotesEach = 3;
-/// What the points p and q say of each other's side, -1 ... 1: n_p, mirrored by the plane halfway
-/// between the two, times n_q; their plain product where both lie on one plane.
-float agreement(const SheetInput& input, const OwnSheets& own, std::uint32_t p, std::uint32_t q) {
-  const Vector3f way = input.grid.points()[q] - input.grid.points()[p];
-  const float by_p = own.normals[p].dot(way);
-  const float by_q = own.normals[q].dot(way);
-  const float straight = own.normals[p].dot(own.normals[q]);
-  const float squared = way.squaredNorm();
-  const float tolerance = sheet_tolerance(input, own, p, q);
-  const bool one_plane = std::abs(by_p) <= tolerance && std::abs(by_q) <= tolerance;
-  return one_plane || !(squared > 0) ? straight : straight - 2 * by_p * by_q / squared;
-}
-
 /// What the points of one block see of other sheets.
 class Outlook {
  public:
@@ -74,22 +61,11 @@ class Outlook {
 
   void look_from(std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs,
                  std::vector<SheetVote>& votes) {
-    std::size_t candidates = 1;
-    for (const simd::Run& run : runs) candidates += run.end - run.begin;
-    if (hits_.size() < candidates) hits_.resize(2 * candidates);
-    simd::Row squared = {};
-    for (std::uint32_t q = 0; q < count; ++q) {
-      const float reach = kGapReach * input_.radii[first + q];
-      squared[q] = reach * reach;
-      others_[q].clear();
-    }
-    const simd::Join join = detail::make_join(input_.grid, first, count, runs);
-    const std::size_t found = simd::best_joins().within(join, squared, hits_.data());
-    for (std::size_t h = 0; h < found; ++h) {
-      for (std::uint32_t bits = hits_[h].queries; bits != 0; bits &= bits - 1) {
-        meet(first, static_cast<std::uint32_t>(std::countr_zero(bits)), hits_[h].candidate);
-      }
-    }
+    for (std::uint32_t q = 0; q < count; ++q) others_[q].clear();
+    pairs_.each(
+        input_.grid, first, count, runs,
+        [this](std::uint32_t i) { return kGapReach * input_.radii[i]; },
+        [&](std::uint32_t i, std::uint32_t j) { meet(first, i - first, j); });
     for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
   }
 
@@ -135,7 +111,10 @@ class Outlook {
         --heard[k].second;
       else {
         const auto [a, b] = std::minmax(sheets_.sheet[i], sheet);
-        votes.push_back({a, b, agreement(input_, own_, i, j)});
+        votes.push_back({a, b,
+                         agreement(own_.normals[i], own_.normals[j],
+                                   input_.grid.points()[j] - input_.grid.points()[i],
+                                   sheet_tolerance(input_, own_, i, j))});
       }
     }
   }
@@ -144,7 +123,7 @@ class Outlook {
   const OwnSheets& own_;
   PointSheets& sheets_;
   const std::vector<std::uint8_t>& sure_;
-  std::vector<simd::Hit> hits_;
+  detail::NearPairs pairs_;
   std::array<std::vector<std::pair<float, std::uint32_t>>, simd::kQueries> others_;
 };
 
