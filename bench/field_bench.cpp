@@ -146,7 +146,7 @@ void palpate_sample(benchmark::State& state, FieldKind kind) {
   for (auto _ : state) {
     const Vector3d& x = places[k];
     k = k + 1 < places.size() ? k + 1 : 0;
-    benchmark::DoNotOptimize(evaluate(surface, walk.at(x), x, 1));
+    benchmark::DoNotOptimize(evaluate(surface, walk.at(x), x));
   }
   walk.report(state);
 }

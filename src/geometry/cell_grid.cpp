@@ -140,9 +140,13 @@ void CellGrid::within(const Eigen::Vector3f& center, float radius,
     if (detail::squared_distance(cell, center) > squared_radius) continue;
     for (std::uint32_t c = cell.children; c-- > 0;) stack[open++] = cell.first_child + c;
     if (cell.children != 0) continue;
-    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-      if (detail::squared_distance(points_[i], center) <= squared_radius) found.push_back(i);
+    std::size_t count = found.size();
+    found.resize(count + cell.size());
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {  // without branches: hits are random
+      found[count] = i;
+      count += detail::squared_distance(points_[i], center) <= squared_radius ? 1 : 0;
     }
+    found.resize(count);
   }
 }
 

@@ -40,12 +40,16 @@ std::size_t step_for(const CellGrid& grid, std::size_t samples) {
 /// the window it passes for noise. 0 where no sample has enough neighbours.
 double narrow_noise(const CellGrid& grid, double spacing) {
   const std::size_t step = step_for(grid, kSamples);
-  std::vector<float> residuals;
-  SheetFitter fitter;
-  for (std::size_t i = step / 2; i < grid.size(); i += step) {
-    const SheetFit fit = fitter.fit(grid, grid.points()[i], kReach * spacing, spacing);
-    if (fit.points >= kFewestInWindow) residuals.push_back(static_cast<float>(fit.bend));
-  }
+  std::vector<float> residuals((grid.size() - step / 2 + step - 1) / step, -1);
+  detail::parallel_ranges(residuals.size(), 64, [&](std::size_t begin, std::size_t end) {
+    SheetFitter fitter;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
+      const SheetFit fit = fitter.fit(grid, at, kReach * spacing, spacing);
+      if (fit.points >= kFewestInWindow) residuals[k] = static_cast<float>(fit.bend);
+    }
+  });
+  std::erase(residuals, -1.f);
   if (residuals.empty()) return 0;
   const auto quarter = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 4);
   std::nth_element(residuals.begin(), quarter, residuals.end());
@@ -70,11 +74,16 @@ std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
       const SheetFit narrow = fitter.fit(grid, at, kReach * spacing, spacing);
       const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, 0);
       const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
-      const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, 0, 0, kTile * spacing);
       if (!(narrow.bend > 0 && map.bend > 0 && middle.bend > 0)) continue;
+      const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, 0);
+      double together = wide.bend;  // looked at where shape does not count
+      if (wide.bend <= kShapeGrowth * middle.bend) {
+        const double tiles = fitter.tile_variance(kWideReach * spacing, kTile * spacing);
+        together = std::max(together, std::sqrt(tiles));
+      }
       all[k] = {static_cast<float>(wide.bend / middle.bend),
                 static_cast<float>(wide.bend / narrow.bend), static_cast<float>(wide.bend),
-                static_cast<float>(wide.bend / map.bend * std::sqrt(std::max(1.0, wide.shared)))};
+                static_cast<float>(together / map.bend)};
     }
   });
   std::erase_if(all, [](const Widths& w) { return w.growth == 0; });

@@ -39,6 +39,15 @@ constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue
 constexpr int kTerms = 6;  // of a quadric's height
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 
+// Of each term, and of x and y together. Products of two terms are found by both: the moments.
+constexpr std::array kPowerOfY{0, 0, 1, 0, 1, 2};
+constexpr std::array kPower{0, 1, 1, 2, 2, 2};
+using Moments = Eigen::Matrix<double, 15, 1>;
+
+Terms terms_at(const Vector3d& p) {
+  return Terms(1, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y());
+}
+
 constexpr int kTiles = 16;  // along a window, at most
 constexpr int kEnoughInTile = 6;
 struct Plane {
@@ -54,7 +63,7 @@ Plane plane_of(const std::vector<Vector3d>& points) {
   Matrix3d second = Matrix3d::Zero();
   for (const Vector3d& p : points) {
     plane.mean += p;
-    second += p * p.transpose();
+    for (int k = 0; k < 3; ++k) second.col(k) += p[k] * p;
   }
   plane.mean /= count;
   const Matrix3d scatter = second / count - plane.mean * plane.mean.transpose();
@@ -168,7 +177,7 @@ Vector3d SheetFitter::axis_of_nearest(double spacing, const Vector3d& fallback) 
 }
 
 SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
-                          double spacing, double smooth, double tile) {
+                          double spacing, double smooth) {
   near_.clear();
   grid.within(center, static_cast<float>(reach), near_);
   offsets_.clear();
@@ -184,14 +193,13 @@ SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, d
     if (others) fit = fit_offsets(reach);
     fit.others = others;
   }
-  if (tile > 0 && fit.bend > 0) fit.shared = tile_variance(tile) / (fit.bend * fit.bend);
   return fit;
 }
 
 SheetFit SheetFitter::fit_offsets(double reach) {
   const Plane plane = plane_of(offsets_);
   SheetFit fit;
-  left_.clear();
+  placed_.clear();
   if (plane.normal.isZero()) return fit;
   fit.points = offsets_.size();
   fit.normal = plane.normal;
@@ -217,35 +225,37 @@ void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
   const Vector3d& normal = fit.normal;
   const Vector3d u = normal.unitOrthogonal();
   const Vector3d v = normal.cross(u);
-  const auto terms_at = [&](const Vector3d& p) {
-    const double x = p.x() / reach;
-    const double y = p.y() / reach;
-    Terms terms;
-    terms << 1, x, y, x * x, x * y, y * y;
-    return terms;
-  };
-  Eigen::Matrix<double, kTerms, kTerms> matrix = Eigen::Matrix<double, kTerms, kTerms>::Zero();
+  Moments moments = Moments::Zero();
   Terms right = Terms::Zero();
-  left_.clear();
-  for (const Vector3d& offset : offsets_) {
-    left_.emplace_back(u.dot(offset), v.dot(offset), normal.dot(offset));
-    const Terms terms = terms_at(left_.back());
-    matrix += terms * terms.transpose();
-    right += terms * left_.back().z();
-  }
-  const Terms quadric = matrix.ldlt().solve(right);
   double squares = 0;
-  for (Vector3d& p : left_) {
-    p.z() -= terms_at(p).dot(quadric);
+  placed_.clear();
+  for (const Vector3d& offset : offsets_) {
+    const Vector3d& p = placed_.emplace_back(u.dot(offset), v.dot(offset), normal.dot(offset));
+    const Terms t = terms_at(p / reach);
+    moments.head<kTerms>() += t;
+    moments.segment<4>(6) += Eigen::Vector4d(t[3] * t[1], t[3] * t[2], t[5] * t[1], t[5] * t[2]);
+    moments.segment<3>(10) += t[3] * t.tail<3>();
+    moments.tail<2>() += t[5] * t.tail<2>();
+    right += p.z() * t;
     squares += p.z() * p.z();
   }
-  fit.bend = std::sqrt(squares / static_cast<double>(left_.size() - kTerms));
-  fit.off = std::abs(quadric[0]);
+  Eigen::Matrix<double, kTerms, kTerms> matrix;
+  for (int row = 0; row < kTerms; ++row) {
+    for (int column = 0; column < kTerms; ++column) {
+      const int y = kPowerOfY[row] + kPowerOfY[column];
+      const int power = kPower[row] + kPower[column];
+      matrix(row, column) = moments[power * (power + 1) / 2 + y];
+    }
+  }
+  quadric_ = matrix.ldlt().solve(right);
+  squares = std::max(squares - quadric_.dot(right), 0.);
+  fit.bend = std::sqrt(squares / static_cast<double>(placed_.size() - kTerms));
+  fit.off = std::abs(quadric_[0]);
 }
 
 /// Mean over the tiles of (sum of residuals)^2 / number: the variance itself where they are
 /// independent.
-double SheetFitter::tile_variance(double tile) const {
+double SheetFitter::tile_variance(double reach, double tile) const {
   struct Tile {
     double sum = 0;
     int count = 0;
@@ -254,9 +264,9 @@ double SheetFitter::tile_variance(double tile) const {
   const auto place = [tile](double along) {
     return std::clamp(static_cast<int>(std::floor(along / tile)) + kTiles / 2, 0, kTiles - 1);
   };
-  for (const Vector3d& p : left_) {
+  for (const Vector3d& p : placed_) {
     Tile& at = tiles[static_cast<std::size_t>(place(p.x()) * kTiles + place(p.y()))];
-    at.sum += p.z();
+    at.sum += p.z() - terms_at(p / reach).dot(quadric_);
     ++at.count;
   }
   double sum = 0;

@@ -23,9 +23,6 @@ struct SheetFit {
   double off = 0;        ///< of the place itself from the quadric; of too few points, the plane, m
   double bend = 0;       ///< rms distance from the quadric, m; of too few points, the plane's
   double footprint = 0;  ///< root of the area per point, m
-  double shared = 1;     ///< variance of the residuals' means over tiles, against what independent
-                         ///< residuals would give: about 1 for these, above for neighbours that err
-                         ///< together
 
   /// Is there a smooth sheet, and is the place on it? Of a fit within `radius`; `noise`: of the
   /// points, m. Curvature passes, a crease does not.
@@ -39,10 +36,13 @@ struct SheetFit {
 class SheetFitter {
  public:
   /// The points within `reach` of `center`, whose spacing is `spacing` (0: all are of one sheet).
-  /// Where a quadric leaves no more than `smooth`, nobody asks for other sheets. `tile`: side of
-  /// the tiles; 0: `shared` is not looked at. All in m.
+  /// Where a quadric leaves no more than `smooth`, nobody asks for other sheets. All in m.
   [[nodiscard]] SheetFit fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
-                             double spacing, double smooth = 0, double tile = 0);
+                             double spacing, double smooth = 0);
+
+  /// Variance of the means of the last fit's residuals over square tiles (side in m), as if of
+  /// one, m^2: the residuals' own where they are independent, more where neighbours err together.
+  [[nodiscard]] double tile_variance(double reach, double tile) const;
 
   /// In how many cells of half a spacing the points of the last fit lie: clusters count once.
   [[nodiscard]] std::size_t places(double spacing);
@@ -54,14 +54,14 @@ class SheetFitter {
   [[nodiscard]] Eigen::Vector3d axis_of_nearest(double spacing, const Eigen::Vector3d& fallback);
   [[nodiscard]] SheetFit fit_offsets(double reach);
   void subtract_quadric(double reach, SheetFit& fit);
-  [[nodiscard]] double tile_variance(double tile) const;
 
   std::vector<std::uint32_t> near_;
   std::vector<Eigen::Vector3d> offsets_;  // from the centre, m; of the own group
   std::vector<Eigen::Vector3d> some_;
   std::vector<double> heights_;
   std::vector<std::array<int, 3>> cells_;
-  std::vector<Eigen::Vector3d> left_;  // place in the plane, and what the quadric leaves; of 1
+  std::vector<Eigen::Vector3d> placed_;       // along and above the plane, m
+  Eigen::Matrix<double, 6, 1> quadric_ = {};  // of its height, over the reach, m
 };
 
 /// What the sheet of each point is like, in sorted order.

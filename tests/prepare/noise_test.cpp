@@ -77,9 +77,9 @@ TEST(SheetFit, MeasuresWhiteNoiseWithoutBias) {
   for (int i = 0; i < 49; ++i) {
     const Vector3f at(0.015f * static_cast<float>(i % 7 - 3),
                       0.015f * static_cast<float>(i / 7 - 3), 0);
-    const SheetFit fit = fitter.fit(grid, at, 0.03, kSpacing, 0.008);
+    const SheetFit fit = fitter.fit(grid, at, 0.03, kSpacing);
     variance += fit.bend * fit.bend / 49;
-    shared += fit.shared / 49;
+    shared += fitter.tile_variance(0.03, 0.008) / (fit.bend * fit.bend) / 49;
   }
   EXPECT_NEAR(std::sqrt(variance), 0.001, 5e-5);
   EXPECT_NEAR(shared, 1, 0.2);
@@ -93,7 +93,7 @@ TEST(SheetFit, StaysFiniteOnDegeneratePoints) {
   std::vector<Vector3f> line;
   for (int i = 0; i < 30; ++i) line.emplace_back(0.01f * static_cast<float>(i), 0, 0);
   const SheetFit fit = fitter.fit(CellGrid(line), Vector3f(0.15f, 0, 0), 0.2, 0.01, 0.02);
-  EXPECT_TRUE(std::isfinite(fit.bend) && std::isfinite(fit.shared));
+  EXPECT_TRUE(std::isfinite(fit.bend) && std::isfinite(fitter.tile_variance(0.2, 0.02)));
   EXPECT_LT(fit.bend, 1e-6);
   EXPECT_EQ(fitter.fit(CellGrid(line), Vector3f(9, 9, 9), 0.2, 0.01).points, 0u);
 }
