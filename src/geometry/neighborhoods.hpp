@@ -130,6 +130,28 @@ class NearPairs {
   std::vector<simd::Hit> hits_;
 };
 
+/// The points that are near each of a part's; keeps its memory in between.
+class NearLists {
+ public:
+  /// Those within `reaches`, m, of each point of [first, first + count); none where that is 0.
+  void find(const CellGrid& grid, std::uint32_t first, std::uint32_t count,
+            std::span<const simd::Run> runs, std::span<const float> reaches) {
+    for (auto& list : lists_) list.clear();
+    const auto own = reaches.subspan(first, count);
+    if (*std::max_element(own.begin(), own.end()) <= 0) return;
+    pairs_.each(
+        grid, first, count, runs, [&](std::uint32_t i) { return reaches[i]; },
+        [&](std::uint32_t i, std::uint32_t j) { lists_[i - first].push_back(j); });
+  }
+
+  /// Of the point first + q, in rising order.
+  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t q) const { return lists_[q]; }
+
+ private:
+  NearPairs pairs_;
+  std::array<std::vector<std::uint32_t>, simd::kQueries> lists_;
+};
+
 inline constexpr std::uint32_t kBlockPoints = 256;
 
 /// Calls body(block, surroundings) for all blocks, on every core when there are many.

@@ -82,8 +82,6 @@ class Outlook {
   }
 
   void measure_gap(std::uint32_t i, std::uint32_t j, const Vector3f& way, float squared) {
-    if (own_.confidences[j] < kGapTrust) return;
-    if (std::abs(own_.normals[i].dot(own_.normals[j])) < kGapCosine) return;
     const float height = own_.normals[i].dot(way);
     const float off = std::abs(height);
     const float tube = kGapTube * input_.spacings[i];
@@ -91,6 +89,8 @@ class Outlook {
     const float least =
         std::max(kGapResiduals * own_.residuals[i], kGapSpacings * input_.spacings[i]);
     if (off <= least || aside > tube * tube || off < kGapSlope * std::sqrt(aside)) return;
+    if (own_.confidences[j] < kGapTrust) return;
+    if (std::abs(own_.normals[i].dot(own_.normals[j])) < kGapCosine) return;
     float& gap = height > 0 ? sheets_.above[i] : sheets_.below[i];
     gap = std::min(gap, off);
   }

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "geometry/parallel.hpp"
+#include "geometry/neighborhoods.hpp"
 #include "palpate/geometry/normals.hpp"
 
 namespace palpate {
@@ -92,6 +92,18 @@ double planarity_of(const Plane& plane, std::size_t points) {
   return ramp(v[1] / v[2], 0.03, 0.07) * (1 - ramp(v[0] / v[1], 0.4, 0.6));
 }
 
+/// May heights fall into two groups? These leave a fifth of the range empty; this asks for a tenth,
+/// in a row, and does not sort.
+bool may_fall_apart(std::span<const double> heights, double spacing) {
+  constexpr double kBins = 31;
+  const auto [lowest, highest] = std::ranges::minmax(heights);
+  if (highest - lowest < kApartSpacings * spacing) return false;
+  const double scale = kBins / (highest - lowest);
+  std::uint32_t empty = ~0u;
+  for (const double h : heights) empty &= ~(1u << static_cast<int>(scale * (h - lowest)));
+  return (empty & (empty >> 1) & (empty >> 2)) != 0;
+}
+
 /// Where sorted heights fall into two groups (the division of least variance within, Otsu 1979);
 /// NaN: they do not.
 double gap_between_groups(std::span<const double> heights, double spacing) {
@@ -151,6 +163,7 @@ bool SheetFitter::keep_own_group(const Vector3d& axis, double spacing) {
   if (offsets_.size() < kFewestToSplit || axis.isZero()) return false;
   heights_.clear();
   for (const Vector3d& offset : offsets_) heights_.push_back(axis.dot(offset));
+  if (!may_fall_apart(heights_, spacing)) return false;
   std::sort(heights_.begin(), heights_.end());
   const double gap = gap_between_groups(heights_, spacing);
   if (std::isnan(gap)) return false;
@@ -180,8 +193,14 @@ SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, d
                           double spacing, double smooth) {
   near_.clear();
   grid.within(center, static_cast<float>(reach), near_);
+  return fit(grid, center, near_, reach, spacing, smooth);
+}
+
+SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center,
+                          std::span<const std::uint32_t> near, double reach, double spacing,
+                          double smooth) {
   offsets_.clear();
-  for (const auto i : near_) offsets_.push_back((grid.points()[i] - center).cast<double>());
+  for (const auto i : near) offsets_.push_back((grid.points()[i] - center).cast<double>());
   SheetFit fit = fit_offsets(reach);
   if (fit.bend > smooth && spacing > 0 && !fit.normal.isZero()) {
     Vector3d axis = axis_of_nearest(spacing, fit.normal);
@@ -288,21 +307,33 @@ OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
                    {},
                    std::vector<std::uint8_t>(grid.size())};
   sheets.bends = sheets.residuals;
-  detail::parallel_ranges(grid.size(), 256, [&](std::size_t begin, std::size_t end) {
+  std::vector<float> reaches(grid.size());  // of second fits, m; 0: the plane does
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const double flat = flat_residual(static_cast<double>(radii[i]), noise);
+    if (static_cast<double>(sheets.residuals[i]) > flat) reaches[i] = kNormalsReach * radii[i];
+  }
+  const auto refit = [&](SheetFitter& fitter, std::uint32_t i,
+                         std::span<const std::uint32_t> near) {
+    const double smooth = std::max(kSmooth * static_cast<double>(radii[i]), kNoisyFlat * noise);
+    const SheetFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
+                                    static_cast<double>(spacings[i]), smooth);
+    sheets.normals[i] = fit.normal.cast<float>();
+    sheets.confidences[i] = static_cast<float>(fit.planarity);
+    sheets.residuals[i] = static_cast<float>(fit.residual);
+    sheets.bends[i] = static_cast<float>(fit.bend);
+    sheets.others[i] = fit.others ? 1 : 0;
+  };
+  detail::for_each_block(grid, [&](const detail::Block& block, detail::Surroundings& around) {
     SheetFitter fitter;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto radius = static_cast<double>(radii[i]);
-      if (static_cast<double>(sheets.residuals[i]) <= flat_residual(radius, noise)) continue;
-      const double smooth = std::max(kSmooth * radius, kNoisyFlat * noise);
-      const SheetFit fit =
-          fitter.fit(grid, grid.points()[i], static_cast<double>(kNormalsReach * radii[i]),
-                     static_cast<double>(spacings[i]), smooth);
-      sheets.normals[i] = fit.normal.cast<float>();
-      sheets.confidences[i] = static_cast<float>(fit.planarity);
-      sheets.residuals[i] = static_cast<float>(fit.residual);
-      sheets.bends[i] = static_cast<float>(fit.bend);
-      sheets.others[i] = fit.others ? 1 : 0;
-    }
+    detail::NearLists near;
+    detail::for_each_part(
+        grid, {.of_points = reaches, .of_cells = {}}, block, around,
+        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+          near.find(grid, first, count, runs, reaches);
+          for (std::uint32_t q = 0; q < count; ++q) {
+            if (reaches[first + q] > 0) refit(fitter, first + q, near.of(q));
+          }
+        });
   });
   return sheets;
 }

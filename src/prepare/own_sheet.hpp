@@ -40,6 +40,11 @@ class SheetFitter {
   [[nodiscard]] SheetFit fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
                              double spacing, double smooth = 0);
 
+  /// The same of the points `near`, which are within `reach`.
+  [[nodiscard]] SheetFit fit(const CellGrid& grid, const Eigen::Vector3f& center,
+                             std::span<const std::uint32_t> near, double reach, double spacing,
+                             double smooth);
+
   /// Variance of the means of the last fit's residuals over square tiles (side in m), as if of
   /// one, m^2: the residuals' own where they are independent, more where neighbours err together.
   [[nodiscard]] double tile_variance(double reach, double tile) const;

@@ -16,7 +16,7 @@ constexpr float kPlanarFit = 0.5f;  // confidence from which on a fit is a plane
 constexpr float kSmoothBend =
     0.03f;                          // of R that a quadric may leave: curvature passes, a crease not
 constexpr float kNoisyBend = 1.6f;  // of the noise, likewise
-constexpr float kNoisier = 2.5f;            // than typical that noise may be in places
+constexpr float kNoisier = 2.5f;    // than typical that noise may be in places
 
 // An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
 // this many of its residuals.
@@ -60,6 +60,7 @@ class Snapping {
     for (std::uint32_t i = 0; i < sure_.size(); ++i) {
       if (sure_[i] != 0) hosts_[i] = i;
     }
+    index_sure();
     each_with_memory([this](std::uint32_t i, std::vector<std::uint32_t>& near) {
       if (sure_[i] == 0) {
         take_host(i, near);
@@ -98,12 +99,22 @@ class Snapping {
     return *quarter;
   }
 
+  void index_sure() {
+    std::vector<Vector3f> places;
+    for (std::uint32_t i = 0; i < sure_.size(); ++i) {
+      if (sure_[i] == 0) continue;
+      sure_points_.push_back(i);
+      places.push_back(input_.grid.points()[i]);
+    }
+    sure_places_ = CellGrid(places);
+  }
+
   /// Sure points around; where they are few, as in the foot of a narrow crease, farther ones too.
   void list_sure(std::uint32_t i, std::vector<std::uint32_t>& near) const {
     for (const float reach : {kSnapReach, kFarSnapReach}) {
       near.clear();
-      input_.grid.within(input_.grid.points()[i], reach * input_.radii[i], near);
-      std::erase_if(near, [this](std::uint32_t j) { return sure_[j] == 0; });
+      sure_places_.within(input_.grid.points()[i], reach * input_.radii[i], near);
+      for (std::uint32_t& j : near) j = sure_points_[sure_places_.order()[j]];
       if (near.size() >= kFewSure) return;
     }
   }
@@ -150,11 +161,11 @@ class Snapping {
       const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
       const float length = way.norm();
       const float off = std::abs(own_.normals[j].dot(way));
-      const float arc = kChord * kTurnMargin * bow(input_, own_, j) * length;
-      const float slope = std::max(kSnapSlope, arc);
-      if (off > std::max(kSnapResiduals * own_.residuals[j], slope * length)) continue;
       const float cost = off + kNearness * length;
       if (cost >= best) continue;
+      const bool on_plane =
+          off <= std::max(kSnapResiduals * own_.residuals[j], kSnapSlope * length);
+      if (!on_plane && off > kChord * kTurnMargin * bow(input_, own_, j) * length) continue;
       best = cost;
       host = j;
     }
@@ -182,6 +193,8 @@ class Snapping {
   const SheetInput& input_;
   OwnSheets& own_;
   std::vector<std::uint8_t> sure_;
+  CellGrid sure_places_;
+  std::vector<std::uint32_t> sure_points_;  // in the order that the index was given them
   std::vector<std::uint32_t> hosts_;
   std::vector<std::uint32_t> second_hosts_;
 };
