@@ -12,6 +12,7 @@ struct InfoOptions {
   std::vector<std::string> clouds;
   ReadingOptions reading;
   std::string json;
+  std::string picture;  ///< of several clouds the first one's: numbered_path()
 };
 
 void add_info_options(CLI::App& command, InfoOptions& options);

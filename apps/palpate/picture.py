@@ -7,7 +7,8 @@ proxy, force, touching, us) and facts.json.
 import os
 import sys
 
-from drawing import FAINT, INK, load_facts, np, plt, use_style
+from drawing import (FAINT, INK, dot_area, lit, load_facts, normalised, np, plt, scale_bar, unit_of,
+                     use_style, viewpoint)
 from matplotlib.collections import LineCollection
 
 HAND = "#2b6cb0"
@@ -34,43 +35,6 @@ class Run:
         self.size = np.linalg.norm(self.force, axis=1)
 
 
-def unit_of(extent):
-    """A length unit in which `extent` metres is an easy number."""
-    if extent < 1:
-        return 1e-3, "mm"
-    return (1.0, "m") if extent < 5000 else (1e3, "km")
-
-
-def normalised(v):
-    """v with length one; z where it has none."""
-    length = np.linalg.norm(v)
-    return v / length if length > 1e-12 else np.array([0.0, 0.0, 1.0])
-
-
-def viewpoint(points, run):
-    """Rows right, up, towards the viewer; and the direction that counts as height."""
-    pushes = run.force[run.touching]
-    mean = pushes.sum(axis=0) / max(run.size[run.touching].sum(), 1e-9) if len(pushes) else np.zeros(3)
-    open_surface = np.linalg.norm(mean) > 0.5
-    height = normalised(mean) if open_surface else np.array([0.0, 0.0, 1.0])
-    # A camera's cloud has y down and z ahead; axes that nearly fit are easier to read.
-    for axis in np.vstack([np.eye(3), -np.eye(3)]):
-        if axis @ height > 0.85:
-            height = axis
-    flat = points - np.outer(points @ height, height)
-    flat = flat - flat.mean(axis=0)
-    _, _, axes = np.linalg.svd(flat[:: max(1, len(flat) // 4000)], full_matrices=False)
-    side = normalised(axes[0] - (axes[0] @ height) * height)
-    if side @ np.array([1.0, 0.3, 0.1]) < 0:
-        side = -side
-    ahead = np.cross(height, side)
-    turn, tilt = np.radians(28), np.radians(42 if open_surface else 24)
-    across = np.cos(turn) * side + np.sin(turn) * ahead
-    back = np.cross(across, height)
-    towards = np.cos(tilt) * back + np.sin(tilt) * height
-    return np.vstack([across, np.cross(towards, across), towards]), height
-
-
 def hidden(path, points, cell):
     """Which places of a path, in view coordinates, lie well behind the points."""
     lowest = np.minimum(points[:, :2].min(axis=0), path[:, :2].min(axis=0))
@@ -89,35 +53,18 @@ def draw_path(axes, path, behind, color, width, label):
         axes.plot(places[:, 0], places[:, 1], color=color, linewidth=width, alpha=alpha, label=name)
 
 
-def scale_bar(axes, unit_name):
-    """A bar of a round length in the lower left corner."""
-    left, right = axes.get_xlim()
-    low, high = axes.get_ylim()
-    wanted = 0.2 * (right - left)
-    decade = 10 ** np.floor(np.log10(wanted))
-    size = max(s * decade for s in (1, 2, 5) if s * decade <= wanted)
-    x, y = left + 0.03 * (right - left), low + 0.035 * (high - low)
-    axes.plot([x, x + size], [y, y], color=INK, linewidth=3, solid_capstyle="butt")
-    axes.text(x + size / 2, y + 0.012 * (high - low), f"{size:g} {unit_name}", ha="center",
-              va="bottom", color=INK)
-
-
 def draw_overview(axes, cloud, normals, run, unit_name):
     """The cloud as seen from where it was touched, with paths and forces."""
     if len(cloud) == 0:
         cloud, normals = run.proxy, np.zeros_like(run.proxy)
-    view, height = viewpoint(cloud, run)
+    pushes, total = run.force[run.touching].sum(axis=0), run.size[run.touching].sum()
+    view, height = viewpoint(cloud, pushes / max(total, 1e-9))
     seen, order = cloud @ view.T, np.argsort(cloud @ view[2])
     tall = cloud @ height
     low, high = np.percentile(tall, [1, 99])
     color = plt.get_cmap("viridis")(np.clip((tall - low) / max(high - low, 1e-9), 0, 1) * 0.92)
-    light = normalised(view[2] + 0.5 * view[1] - 0.5 * view[0])
-    lit = np.where(np.linalg.norm(normals, axis=1) > 0.5, np.abs(normals @ light), 0.8)
-    color[:, :3] = 0.25 + 0.75 * color[:, :3] * (0.45 + 0.55 * lit)[:, None]
-    area = np.ptp(seen[:, 0]) * np.ptp(seen[:, 1])
-    cell = 2.5 * np.sqrt(max(area, 1e-12) / max(len(cloud), 1))
-    points_a_unit = min(590 / max(np.ptp(seen[:, 0]), 1e-9), 520 / max(np.ptp(seen[:, 1]), 1e-9))
-    dot = np.clip((0.62 * cell * points_a_unit) ** 2, 1.5, 60)
+    color[:, :3] = 0.25 + 0.75 * color[:, :3] * lit(normals, view)[:, None]
+    dot, cell = dot_area(seen, 590, 520)
     axes.scatter(seen[order, 0], seen[order, 1], s=dot, c=color[order], linewidths=0, rasterized=True)
     hip, proxy = run.hip @ view.T, run.proxy @ view.T
     draw_path(axes, hip, hidden(hip, seen, cell), HAND, 1.1, "hand")

@@ -13,6 +13,9 @@ namespace palpate::app {
 /// figures.py likewise.
 [[nodiscard]] std::string_view figures_script();
 
+/// trust.py likewise.
+[[nodiscard]] std::string_view trust_script();
+
 /// The project's version.
 [[nodiscard]] std::string_view version();
 

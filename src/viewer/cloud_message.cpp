@@ -16,6 +16,7 @@ constexpr std::uint8_t kCloudKind = 2;
 constexpr std::size_t kCloudHeader = 40;
 constexpr std::uint16_t kColors = 1;
 constexpr std::uint16_t kNormals = 2;
+constexpr std::uint16_t kTrust = 4;
 constexpr float kSteps = 65535;
 
 void put_places(const CloudMessage& message, ByteWriter& bytes) {
@@ -45,11 +46,14 @@ std::string encode(const CloudMessage& message) {
   const std::size_t n = message.places.size();
   assert(message.colors.empty() || message.colors.size() == n);
   assert(message.normals.empty() || message.normals.size() == n);
-  ByteWriter bytes(kCloudHeader + 6 * n + 3 * message.colors.size() + 2 * message.normals.size());
+  assert(message.trust.empty() || message.trust.size() == n);
+  ByteWriter bytes(kCloudHeader + 6 * n + 3 * message.colors.size() + 2 * message.normals.size() +
+                   message.trust.size());
   bytes.put(kCloudKind);
   bytes.put(message.source);
   bytes.put(static_cast<std::uint16_t>((message.colors.empty() ? 0 : kColors) |
-                                       (message.normals.empty() ? 0 : kNormals)));
+                                       (message.normals.empty() ? 0 : kNormals) |
+                                       (message.trust.empty() ? 0 : kTrust)));
   bytes.put(static_cast<std::uint32_t>(n));
   bytes.put(message.stamp);
   put_places(message, bytes);
@@ -59,6 +63,7 @@ std::string encode(const CloudMessage& message) {
   for (const Vector3f& normal : message.normals) {
     for (const std::int8_t part : octahedral(normal)) bytes.put(part);
   }
+  for (const std::uint8_t trust : message.trust) bytes.put(trust);
   return bytes.take();
 }
 

@@ -17,6 +17,7 @@ struct CloudMessage {
   std::vector<Eigen::Vector3f> places;
   std::vector<std::array<std::uint8_t, 3>> colors = {};
   std::vector<Eigen::Vector3f> normals = {};
+  std::vector<std::uint8_t> trust = {};  ///< SurfacePoints::confidences, 255 for 1
 };
 
 [[nodiscard]] std::string encode(const CloudMessage& message);

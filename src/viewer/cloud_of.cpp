@@ -1,5 +1,6 @@
 #include "viewer/cloud_of.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -33,9 +34,11 @@ CloudMessage cloud_of(const SurfacePoints& points, const Eigen::Vector3d& origin
   const std::vector<std::uint32_t> shown = felt(points);
   const std::vector<std::uint32_t> kept = thinned(shown.size(), budget);
   const auto& normals = newest(points.normals, points.end_normals);
+  const auto& confidences = newest(points.confidences, points.end_confidences);
   const Eigen::Vector3f shift = (points.origin - origin).cast<float>();
   CloudMessage message;
   message.places.reserve(kept.size());
+  message.trust.reserve(kept.size());
   if (!normals.empty()) message.normals.reserve(kept.size());
   if (!points.colors.empty()) message.colors.reserve(kept.size());
   for (const std::uint32_t k : kept) {
@@ -44,6 +47,7 @@ CloudMessage cloud_of(const SurfacePoints& points, const Eigen::Vector3d& origin
         points.end_positions.empty() ? points.grid.points()[i] : points.end_positions[i];
     message.places.emplace_back(place + shift);
     if (!normals.empty()) message.normals.push_back(normals[i]);
+    message.trust.push_back(static_cast<std::uint8_t>(std::lround(255 * confidences[i])));
     if (!points.colors.empty()) message.colors.push_back(points.colors[i]);
   }
   return message;

@@ -24,15 +24,8 @@ json json_of(const SettingValue& value) {
 }
 
 const char* name_of(SettingKind kind) {
-  switch (kind) {
-    case SettingKind::choice:
-      return "choice";
-    case SettingKind::on_off:
-      return "switch";
-    case SettingKind::number:
-      break;
-  }
-  return "number";
+  if (kind == SettingKind::choice) return "choice";
+  return kind == SettingKind::on_off ? "switch" : "number";
 }
 
 json json_of(const Setting& setting) {
@@ -69,15 +62,8 @@ json json_of(const SourceReport& source) {
 }
 
 const char* name_of(NoticeLevel level) {
-  switch (level) {
-    case NoticeLevel::warning:
-      return "warning";
-    case NoticeLevel::fault:
-      return "fault";
-    case NoticeLevel::info:
-      break;
-  }
-  return "info";
+  if (level == NoticeLevel::fault) return "fault";
+  return level == NoticeLevel::warning ? "warning" : "info";
 }
 
 const char* name_of(DeviceStatus status) {

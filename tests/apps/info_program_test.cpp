@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
@@ -45,6 +46,30 @@ TEST(Info, OnePointIsACloud) {
   Shell shell;
   const Outcome outcome = shell.run("info -", "1 2 3\n");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+TEST(Info, PictureOfEachCloudIsDrawnOrSaysWhatIsMissing) {
+  Shell shell;
+  const Outcome outcome =
+      shell.run("info synthetic:torus - --picture a.png --json a.json", "1 2 3\n");
+  if (outcome.code == 0) {
+    EXPECT_EQ(shell.read("a.png").substr(1, 3), "PNG");
+    EXPECT_EQ(shell.read("a-2.png").substr(1, 3), "PNG");
+    EXPECT_EQ(nlohmann::json::parse(shell.read("a.json")).size(), 2u);
+  } else {
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("python3-matplotlib"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Info, PictureThatCannotBeDrawnIsToldBeforeTheWork) {
+  Shell shell;
+  const Outcome outcome =
+      shell.run("info synthetic:torus --picture a.png --json a.json", "", "PYTHONHOME=/nowhere");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("python3-matplotlib"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_FALSE(std::filesystem::exists(shell.path("a.json")));
 }
 
 }  // namespace

@@ -27,7 +27,9 @@ TEST(Output, FileThatIsReadOrWrittenTwiceIsRefusedAndStaysAsItWas) {
        {"touch plane.xyz --log plane.xyz", "touch plane.xyz --json ./plane.xyz",
         "touch link.xyz --log plane.xyz", "touch plane.xyz --log link.xyz",
         "touch plane.xyz --picture twin.xyz", "touch plane.xyz --trajectory way.csv --log way.csv",
-        "touch plane.xyz --log new.txt --json ./new.txt", "info plane.xyz --json plane.xyz"}) {
+        "touch plane.xyz --log new.txt --json ./new.txt", "info plane.xyz --json plane.xyz",
+        "info synthetic:sheet plane.xyz --picture a.png --json a-2.png",
+        "info plane.xyz --picture twin.xyz"}) {
     const Outcome outcome = shell.run(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
     EXPECT_NE(outcome.err.find("same file"), std::string::npos) << outcome.err;

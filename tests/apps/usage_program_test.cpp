@@ -57,6 +57,8 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"touch synthetic:torus --trajectory long.csv --seed 3", "--seed"},
       {"touch synthetic:torus --picture -", "--picture"},
       {"touch synthetic:torus --picture a.jpg", "name it a.png"},
+      {"info synthetic:torus --picture a.jpg", "name it a.png"},
+      {"info synthetic:torus camera:simulated --picture a.png", "camera:simulated"},
       {"zwidth --picture a.pdf", "name it a.png"},
       {"paper fig5 --picture -", "--picture"},
       {"touch synthetic:torus --stiffness 1e308", "at most 1e9"},

@@ -84,11 +84,12 @@ TEST(CloudMessage, LiesByteByByteAsTheProtocolSays) {
   message.places = {{1, 10, 5}, {3, 10, 9}};
   message.colors = {{10, 20, 30}, {40, 50, 60}};
   message.normals = {{0, 0, 1}, {1, 0, 0}};
+  message.trust = {7, 255};
   const std::string bytes = encode(message);
-  ASSERT_EQ(bytes.size(), 40u + 2 * (6 + 3 + 2));
+  ASSERT_EQ(bytes.size(), 40u + 2 * (6 + 3 + 2 + 1));
   EXPECT_EQ(u8(bytes, 0), 2);
   EXPECT_EQ(u8(bytes, 1), 2);
-  EXPECT_EQ(u16(bytes, 2), 3);
+  EXPECT_EQ(u16(bytes, 2), 7);
   EXPECT_EQ(u32(bytes, 4), 2u);
   EXPECT_EQ(test::number_at<double>(bytes, 8), 7.25);
   expect_vector(bytes, 16, {1, 10, 5});
@@ -99,6 +100,8 @@ TEST(CloudMessage, LiesByteByByteAsTheProtocolSays) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(u8(bytes, 52 + i), colors[i]);
   const std::array<std::int8_t, 4> normals{0, 0, 127, 0};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(i8(bytes, 58 + i), normals[i]);
+  EXPECT_EQ(u8(bytes, 62), 7);
+  EXPECT_EQ(u8(bytes, 63), 255);
 }
 
 TEST(CloudMessage, OfNoPointsIsAHeaderOfFiniteNumbers) {

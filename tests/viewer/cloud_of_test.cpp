@@ -63,6 +63,20 @@ TEST(CloudOf, ColoursStayWithTheirPoints) {
   }
 }
 
+TEST(CloudOf, TrustStaysWithItsPointsAndIsAByteWhoseUpperHalfIsTrusted) {
+  SurfacePoints points = test::make_points(test::plane(0, 4e-3, 3));
+  points.confidences.assign(points.size(), 0.499F);
+  points.confidences[1] = 0.5F;
+  points.confidences[2] = 1;
+  const CloudMessage cloud = cloud_of(points, Eigen::Vector3d::Zero(), 1000);
+  ASSERT_EQ(cloud.trust.size(), points.size());
+  EXPECT_EQ(cloud.trust[0], 127);
+  EXPECT_EQ(cloud.trust[1], 128);
+  EXPECT_EQ(cloud.trust[2], 255);
+  points.end_confidences.assign(points.size(), 0.F);
+  EXPECT_EQ(cloud_of(points, Eigen::Vector3d::Zero(), 10).trust, std::vector<std::uint8_t>(10));
+}
+
 TEST(CloudOf, ShowsMovingPointsWhereTheyGo) {
   SurfacePoints points = test::make_points(test::plane(0, 4e-3, 3));
   points.end_positions.assign(points.size(), Eigen::Vector3f(1, 2, 3));

@@ -196,8 +196,7 @@ export class App {
     if (message.kind === Kind.cloud) {
       const source = this.session.sources[message.source];
       if (source === undefined) return;
-      source.stamp = message.stamp;
-      source.shown = message.count;
+      source.takeCloud(message);
       this.world.takeCloud(message);
     } else if (message.kind === Kind.surface) {
       this.world.takeSurface(message);

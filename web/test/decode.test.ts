@@ -49,6 +49,7 @@ function cloud(flags: number): ArrayBuffer {
   writer.u16(0, 0, 0, 65535, 65535, 65535, 1, 2, 3);
   if ((flags & 1) !== 0) writer.u8(10, 20, 30, 40, 50, 60, 70, 80, 255);
   if ((flags & 2) !== 0) writer.u8(127, 0, 0, -127, -1, 1);
+  if ((flags & 4) !== 0) writer.u8(0, 127, 255);
   return writer.buffer;
 }
 
@@ -92,8 +93,8 @@ test("a state may have no samples", () => {
   assert.equal((decode(state(0)) as StateMessage).samples.length, 0);
 });
 
-test("a cloud is read with and without colours and normals", () => {
-  const all = decode(cloud(3)) as CloudMessage;
+test("a cloud is read with and without colours, normals and trust", () => {
+  const all = decode(cloud(7)) as CloudMessage;
   assert.equal(all.source, 1);
   assert.equal(all.count, 3);
   assert.equal(all.stamp, 2.5);
@@ -102,12 +103,15 @@ test("a cloud is read with and without colours and normals", () => {
   assert.deepEqual([...all.places], [0, 0, 0, 65535, 65535, 65535, 1, 2, 3]);
   assert.deepEqual([...all.colours!], [10, 20, 30, 40, 50, 60, 70, 80, 255]);
   assert.deepEqual([...all.normals!], [127, 0, 0, -127, -1, 1]);
+  assert.deepEqual([...all.trust!], [0, 127, 255]);
+  assert.deepEqual([...(decode(cloud(4)) as CloudMessage).trust!], [0, 127, 255]);
   const normals = decode(cloud(2)) as CloudMessage;
   assert.equal(normals.colours, undefined);
   assert.deepEqual([...normals.normals!], [127, 0, 0, -127, -1, 1]);
   const bare = decode(cloud(0)) as CloudMessage;
   assert.equal(bare.colours, undefined);
   assert.equal(bare.normals, undefined);
+  assert.equal(bare.trust, undefined);
 });
 
 test("a surface is read, and must not point beyond its vertices", () => {
@@ -126,7 +130,7 @@ test("a surface may be empty: nothing is near", () => {
 });
 
 test("what is cut short anywhere is refused, never read beyond its end", () => {
-  for (const whole of [state(2), oriented(), cloud(3), surface(2)]) {
+  for (const whole of [state(2), oriented(), cloud(7), surface(2)]) {
     for (let bytes = 0; bytes < whole.byteLength; bytes += 1) {
       assert.throws(() => decode(whole.slice(0, bytes)), DecodeError, `${bytes} of ${whole.byteLength}`);
     }

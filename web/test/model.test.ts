@@ -2,9 +2,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { fft } from "../src/model/fft";
 import { Ring } from "../src/model/ring";
-import { DeviceHistory } from "../src/model/session";
+import { DeviceHistory, SourceHistory } from "../src/model/session";
 import { kWindow, Spectrum } from "../src/model/spectrum";
-import type { StateMessage } from "../src/protocol/decode";
+import { decode, type CloudMessage, type StateMessage } from "../src/protocol/decode";
 
 test("the fast transform agrees with the sum it stands for", () => {
   const n = 16;
@@ -53,6 +53,20 @@ test("a ring keeps the newest rows in order", () => {
   assert.equal(ring.from(99), 4);
   ring.clear();
   assert.equal(ring.copy(0).length, 0);
+});
+
+test("the share of a cloud that is not trusted is that of its bytes below 128; a camera's is not told", () => {
+  const buffer = new ArrayBuffer(40 + 4 * 7);
+  const view = new DataView(buffer);
+  view.setUint8(0, 2);
+  view.setUint16(2, 4, true);
+  view.setUint32(4, 4, true);
+  [127, 128, 255, 0].forEach((trust, i) => view.setUint8(40 + 4 * 6 + i, trust));
+  const [still, live] = [new SourceHistory("still", false), new SourceHistory("live", true)];
+  for (const source of [still, live]) source.takeCloud(decode(buffer) as CloudMessage);
+  assert.equal(still.untrusted, 0.5);
+  assert.equal(still.shown, 4);
+  assert.equal(live.untrusted, 0);
 });
 
 function stateAt(time: number, samples: number[]): StateMessage {

@@ -3,8 +3,9 @@ import { test } from "node:test";
 import { Vector3 } from "three";
 import { bend, readPad } from "../src/input/gamepad";
 import { readTranslation } from "../src/input/space_mouse";
-import { decimals, inStep, millimetres, Scale, seconds, short, threeDigits, whole } from "../src/panel/numbers";
+import { decimals, distrust, inStep, millimetres, Scale, seconds, short, threeDigits, whole } from "../src/panel/numbers";
 import { boundsOf } from "../src/view/bounds";
+import { rampTexture } from "../src/view/colours";
 import { lengthInWords, scaleBar } from "../src/view/scale_bar";
 
 test("a scale bar is a round length between 60 and 150 pixels", () => {
@@ -33,6 +34,17 @@ test("numbers read well", () => {
   assert.equal(seconds(0.0412), "41 ms");
   assert.equal(seconds(NaN), "–");
   assert.equal(millimetres(0.00068), "0.68 mm");
+});
+
+test("what is not trusted of a cloud is told from a hundredth on", () => {
+  assert.equal(distrust(0.123), "12 % of this cloud is not trusted; it is felt as metaball there");
+  assert.equal(distrust(0.0099), "");
+});
+
+test("trust changes its hue where a byte stands for a half", () => {
+  const pixels = rampTexture().image.data as Uint8Array;
+  const warm = (byte: number) => pixels[4 * (2 * 256 + byte)]! > pixels[4 * (2 * 256 + byte) + 2]!;
+  for (let byte = 0; byte < 256; byte += 1) assert.equal(warm(byte), byte / 255 < 0.5, String(byte));
 });
 
 test("a slider's scale is even for small ranges and by ratio for wide ones", () => {

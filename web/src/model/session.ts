@@ -1,6 +1,6 @@
 // What the page knows of the program now: the newest of everything, and the past that plots need.
 
-import { Flag, type StateMessage } from "../protocol/decode";
+import { Flag, type CloudMessage, type StateMessage } from "../protocol/decode";
 import type { DeviceReport, SettingValue, SourceReport, Welcome } from "../protocol/messages";
 import { Ring } from "./ring";
 
@@ -48,6 +48,7 @@ export class SourceHistory {
   report: SourceReport | undefined;
   stamp = NaN; // s, of the newest cloud
   shown = 0; // points of the newest cloud
+  untrusted = 0; // share of them, 0 to 1, of a cloud that stands still
   visible = true;
   readonly frames = new Ring(512, 3); // time (s, the page's), latency and age in ms
 
@@ -59,6 +60,14 @@ export class SourceHistory {
   take(report: SourceReport, now: number): void {
     this.report = report;
     this.frames.push(now / 1000, (report.latency ?? NaN) * 1000, (report.age ?? NaN) * 1000);
+  }
+
+  takeCloud(cloud: CloudMessage): void {
+    this.stamp = cloud.stamp;
+    this.shown = cloud.count;
+    if (this.camera || cloud.trust === undefined) return;
+    const doubted = cloud.trust.reduce((sum, trust) => sum + (trust < 128 ? 1 : 0), 0);
+    this.untrusted = doubted / Math.max(cloud.count, 1);
   }
 }
 

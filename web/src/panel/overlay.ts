@@ -1,6 +1,7 @@
 // What lies over the view and follows the eye: scale, axes, the ramp of colours.
 
 import { Quaternion, Vector3 } from "three";
+import type { Colouring } from "../view/cloud";
 import type { World } from "../view/world";
 import { byId, say } from "./dom";
 import { lengthInWords, scaleBar } from "../view/scale_bar";
@@ -55,13 +56,17 @@ export class Overlay {
   }
 
   private showRamp(): void {
-    const asked = this.world.look.colouring;
-    const colouring = asked === "own" && !this.world.hasColours() ? "height" : asked;
-    const ramp = byId("ramp");
-    ramp.hidden = colouring !== "height" && colouring !== "age";
-    ramp.classList.toggle("age", colouring === "age");
     const { x: low, y: high } = this.world.heights;
-    say(byId("ramp-low"), colouring === "age" ? "now" : "0");
-    say(byId("ramp-high"), colouring === "age" ? "1 s old" : `${lengthInWords(high - low)} high`);
+    const ends: Partial<Record<Colouring, [string, string]>> = {
+      height: ["0", `${lengthInWords(high - low)} high`], age: ["now", "1 s old"], trust: ["not trusted", "trusted"],
+    };
+    const colouring = this.world.colouring;
+    const words = ends[colouring];
+    const ramp = byId("ramp");
+    ramp.hidden = words === undefined;
+    if (words === undefined) return;
+    ramp.dataset["of"] = colouring;
+    say(byId("ramp-low"), words[0]);
+    say(byId("ramp-high"), words[1]);
   }
 }

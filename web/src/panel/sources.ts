@@ -3,7 +3,7 @@
 import type { SourceHistory } from "../model/session";
 import { sourceColour } from "../view/colours";
 import { byId, make, say } from "./dom";
-import { millimetres, seconds, short } from "./numbers";
+import { distrust, millimetres, seconds, short } from "./numbers";
 
 interface Row {
   rows: HTMLTableSectionElement;
@@ -32,11 +32,12 @@ function makeRow(source: SourceHistory, index: number, changed: () => void): Row
   const latency = cell("from a frame to what can be touched");
   const age = cell("age of what is felt");
   const dropped = cell("frames left out");
+  const trust = make("td", { colspan: 5, class: "trust" });
   const name = make("th", { scope: "rowgroup", colspan: 5 },
     make("label", {}, box, make("span", {}, source.name), phase));
   return {
     rows: make("tbody", {},
-      make("tr", {}, name), make("tr", {}, rate, points, latency, age, dropped)),
+      make("tr", {}, name), make("tr", {}, rate, points, latency, age, dropped), make("tr", {}, trust)),
     update: () => {
       const report = source.report;
       if (report === undefined) return;
@@ -49,6 +50,7 @@ function makeRow(source: SourceHistory, index: number, changed: () => void): Row
       say(latency, source.camera ? seconds(report.latency ?? NaN) : "–");
       say(age, source.camera ? seconds(report.age ?? NaN) : "–");
       say(dropped, short(report.dropped ?? 0));
+      say(trust, distrust(source.untrusted));
     },
   };
 }

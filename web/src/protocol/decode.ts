@@ -51,6 +51,7 @@ export interface CloudMessage {
   places: Uint16Array; // lower + extent * u / 65535
   colours: Uint8Array | undefined;
   normals: Int8Array | undefined; // octahedral
+  trust: Uint8Array | undefined; // 255 is 1
 }
 
 export interface SurfaceMessage {
@@ -118,7 +119,9 @@ function decodeCloud(buffer: ArrayBuffer, view: DataView): CloudMessage {
   const normals = (flags & 2) !== 0;
   const afterPlaces = 40 + 6 * count;
   const afterColours = afterPlaces + (colours ? 3 * count : 0);
-  need(buffer, afterColours + (normals ? 2 * count : 0), `cloud of ${count} points`);
+  const afterNormals = afterColours + (normals ? 2 * count : 0);
+  const trust = (flags & 4) !== 0;
+  need(buffer, afterNormals + (trust ? count : 0), `cloud of ${count} points`);
   return {
     kind: Kind.cloud,
     source: view.getUint8(1),
@@ -129,6 +132,7 @@ function decodeCloud(buffer: ArrayBuffer, view: DataView): CloudMessage {
     places: new Uint16Array(buffer, 40, 3 * count),
     colours: colours ? new Uint8Array(buffer, afterPlaces, 3 * count) : undefined,
     normals: normals ? new Int8Array(buffer, afterColours, 2 * count) : undefined,
+    trust: trust ? new Uint8Array(buffer, afterNormals, count) : undefined,
   };
 }
 

@@ -9,7 +9,7 @@ import type { CloudMessage } from "../protocol/decode";
 import { kCloudFragment, kCloudVertex } from "./cloud_shader";
 import { screenColour, sourceColour } from "./colours";
 
-export const kColourings = ["source", "height", "normal", "age", "own"] as const;
+export const kColourings = ["source", "height", "normal", "age", "own", "trust"] as const;
 export type Colouring = (typeof kColourings)[number];
 
 const kStale = 1; // s, the age that shows as stale
@@ -44,8 +44,9 @@ export class Cloud {
   stamp = NaN;
   count = 0;
   spacing = 0.002; // m, about
-  hasColours = false;
   hasNormals = false;
+  private hasColours = false;
+  private hasTrust = false;
   private capacity = 0;
 
   constructor(
@@ -68,9 +69,11 @@ export class Cloud {
     this.stamp = message.stamp;
     this.hasColours = message.colours !== undefined;
     this.hasNormals = message.normals !== undefined;
+    this.hasTrust = message.trust !== undefined;
     this.fill("position", message.places);
     if (message.colours !== undefined) this.fill("own", message.colours);
     if (message.normals !== undefined) this.fill("bend", message.normals);
+    if (message.trust !== undefined) this.fill("trust", message.trust);
     const [x, y, z] = message.extent;
     this.points.position.set(...message.lower);
     this.points.scale.set(Math.max(x, 1e-9), Math.max(y, 1e-9), Math.max(z, 1e-9));
@@ -78,10 +81,13 @@ export class Cloud {
     this.spacing = Math.sqrt((x * y + y * z + z * x) / Math.max(message.count, 1));
   }
 
+  knows(colouring: Colouring): boolean {
+    return (colouring !== "own" || this.hasColours) && (colouring !== "trust" || this.hasTrust);
+  }
+
   shade(colouring: Colouring, age: number, heights: Vector2, up: Vector3): void {
     const uniforms = this.points.material.uniforms;
-    const known = colouring === "own" && !this.hasColours ? "height" : colouring;
-    uniforms["mode"]!.value = kColourings.indexOf(known);
+    uniforms["mode"]!.value = kColourings.indexOf(this.knows(colouring) ? colouring : "height");
     uniforms["hasNormals"]!.value = this.hasNormals;
     uniforms["age"]!.value = Number.isFinite(age) ? Math.min(Math.max(age / kStale, 0), 1) : 0;
     uniforms["heights"]!.value = heights;
@@ -100,6 +106,7 @@ export class Cloud {
     geometry.setAttribute("position", new BufferAttribute(new Uint16Array(3 * this.capacity), 3, true));
     geometry.setAttribute("own", new BufferAttribute(new Uint8Array(3 * this.capacity), 3, true));
     geometry.setAttribute("bend", new BufferAttribute(new Int8Array(2 * this.capacity), 2, true));
+    geometry.setAttribute("trust", new BufferAttribute(new Uint8Array(this.capacity), 1, true));
   }
 
   private fill(name: string, values: Uint16Array | Uint8Array | Int8Array): void {

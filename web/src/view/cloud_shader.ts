@@ -13,6 +13,7 @@ export const kCloudVertex = /* glsl */ `
   uniform sampler2D ramps;
   in vec2 bend;      // octahedral normal
   in vec3 own;
+  in float trust;
   out vec3 colour;
   out vec3 facing;
 
@@ -31,13 +32,15 @@ export const kCloudVertex = /* glsl */ `
     vec3 normal = hasNormals ? unbend(bend) : up;
     if (mode == 1) {
       float h = (dot(world.xyz, up) - heights.x) / max(heights.y - heights.x, 1e-9);
-      colour = texture(ramps, vec2(clamp(h, 0.0, 1.0) * 0.996 + 0.002, 0.25)).rgb;
+      colour = texture(ramps, vec2(clamp(h, 0.0, 1.0) * 0.996 + 0.002, 0.5 / 3.0)).rgb;
     } else if (mode == 2 && hasNormals) {
       colour = 0.5 + 0.5 * normal;
     } else if (mode == 3) {
-      colour = texture(ramps, vec2(age * 0.996 + 0.002, 0.75)).rgb;
+      colour = texture(ramps, vec2(age * 0.996 + 0.002, 1.5 / 3.0)).rgb;
     } else if (mode == 4) {
       colour = own;
+    } else if (mode == 5) {
+      colour = texture(ramps, vec2(trust * 0.996 + 0.002, 2.5 / 3.0)).rgb;
     } else {
       colour = sourceColour;
     }

@@ -33,20 +33,23 @@ export function screenColour(name: string): [number, number, number] {
 }
 
 // Viridis (S. van der Walt and N. Smith, CC0) without its darkest fifth, where shading would not show;
-// and a ramp for age: fresh to stale. view.css has the same.
+// a ramp for age: fresh to stale; and two for trust, what is not trusted and what is. view.css has the same.
 const kHeight = [
   "#414487", "#355f8d", "#2a788e", "#21918c", "#22a884", "#44bf70", "#7ad151", "#bddf26", "#fde725",
 ];
 const kAge = ["#0b8f86", "#5aa37c", "#b39b4c", "#b8763f", "#8d5a4f", "#6f6a70"];
+const kDoubt = ["#a3111a", "#f59a35"];
+const kTrust = ["#cfdde8", "#6c9bbd"];
+const kWidth = 256;
 
-function fillRow(pixels: Uint8Array, row: number, width: number, stops: string[]): void {
+function fill(pixels: Uint8Array, first: number, width: number, stops: string[]): void {
   const colours = stops.map((stop) => new Color(stop).getRGB({ r: 0, g: 0, b: 0 }, SRGBColorSpace));
   for (let i = 0; i < width; i += 1) {
     const place = (i / (width - 1)) * (colours.length - 1);
     const k = Math.min(Math.floor(place), colours.length - 2);
     const part = place - k;
     const [a, b] = [colours[k]!, colours[k + 1]!];
-    const at = 4 * (row * width + i);
+    const at = 4 * (first + i);
     pixels[at] = 255 * (a.r + part * (b.r - a.r));
     pixels[at + 1] = 255 * (a.g + part * (b.g - a.g));
     pixels[at + 2] = 255 * (a.b + part * (b.b - a.b));
@@ -54,13 +57,14 @@ function fillRow(pixels: Uint8Array, row: number, width: number, stops: string[]
   }
 }
 
-/** Two rows: height at v = 0.25, age at v = 0.75. */
+/** Three rows: height, age, trust, whose second half, from 128 / 255 on, is trusted. */
 export function rampTexture(): DataTexture {
-  const width = 256;
-  const pixels = new Uint8Array(4 * width * 2);
-  fillRow(pixels, 0, width, kHeight);
-  fillRow(pixels, 1, width, kAge);
-  const texture = new DataTexture(pixels, width, 2, RGBAFormat);
+  const pixels = new Uint8Array(4 * kWidth * 3);
+  fill(pixels, 0, kWidth, kHeight);
+  fill(pixels, kWidth, kWidth, kAge);
+  fill(pixels, 2 * kWidth, kWidth / 2, kDoubt);
+  fill(pixels, 2.5 * kWidth, kWidth / 2, kTrust);
+  const texture = new DataTexture(pixels, kWidth, 3, RGBAFormat);
   texture.magFilter = LinearFilter;
   texture.minFilter = LinearFilter;
   texture.needsUpdate = true;

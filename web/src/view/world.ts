@@ -147,12 +147,9 @@ export class World {
     return this.begun > 0;
   }
 
-  hasColours(): boolean {
-    return this.clouds.some((cloud) => cloud.hasColours);
-  }
-
-  hasNormals(): boolean {
-    return this.clouds.some((cloud) => cloud.hasNormals);
+  /** What is asked for, or height where no cloud knows it. */
+  get colouring(): Colouring {
+    return this.clouds.some((cloud) => cloud.knows(this.look.colouring)) ? this.look.colouring : "height";
   }
 
   /** The first place of the eye: gets better until all is known or somebody takes it. */

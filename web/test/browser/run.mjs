@@ -22,10 +22,17 @@ test("clouds that stand still, without colours and normals, show too", async () 
   await until("sources", async () => /left[\s\S]*still/.test(await text(page, "#sources")));
   assert.ok(await page.locator("#ramp").isVisible(), "coloured by height");
   assert.ok(await page.locator(".chart.frames").isHidden(), "no frames to time");
+  await until("trust", async () => /\d % of this cloud is not trusted/.test(await text(page, "#sources")));
   assert.deepEqual(page.troubles, []);
   await page.context().close();
   await server.close();
 });
+
+test("trust is shown by colour, with its ends named", () =>
+  withPage(kSmall, async (page) => {
+    await page.getByRole("combobox", { name: "Colour by" }).selectOption("trust");
+    await until("the ramp", async () => /not trusted\s*trusted/.test(await text(page, "#ramp")));
+  }));
 
 test("keys take the tool, push it against the table, and let go", () =>
   withPage(kSmall, async (page, program) => {

@@ -29,19 +29,20 @@ export function encodeCloud(source, stamp, points, bare = false) {
   const lower = [0, 1, 2].map((i) => points.reduce((least, p) => Math.min(least, p.place[i]), Infinity));
   const upper = [0, 1, 2].map((i) => points.reduce((most, p) => Math.max(most, p.place[i]), -Infinity));
   const extent = upper.map((u, i) => u - lower[i]);
-  const bytes = Buffer.alloc(40 + (bare ? 6 : 11) * n);
+  const bytes = Buffer.alloc(40 + (bare ? 7 : 12) * n);
   bytes.writeUInt8(2, 0);
   bytes.writeUInt8(source, 1);
-  bytes.writeUInt16LE(bare ? 0 : 3, 2);
+  bytes.writeUInt16LE(bare ? 4 : 7, 2);
   bytes.writeUInt32LE(n, 4);
   bytes.writeDoubleLE(stamp, 8);
   [...lower, ...extent].forEach((value, i) => bytes.writeFloatLE(value, 16 + 4 * i));
-  points.forEach(({ place, normal, colour }, k) => {
+  points.forEach(({ place, normal, colour, trust }, k) => {
     for (let i = 0; i < 3; i += 1) {
       const u = Math.round((65535 * (place[i] - lower[i])) / (extent[i] || 1));
       bytes.writeUInt16LE(Math.min(65535, Math.max(0, u)), 40 + 6 * k + 2 * i);
       if (!bare) bytes.writeUInt8(colour[i], 40 + 6 * n + 3 * k + i);
     }
+    bytes.writeUInt8(trust, 40 + (bare ? 6 : 11) * n + k);
     if (bare) return;
     const [u, v] = octahedral(normal);
     bytes.writeInt8(u, 40 + 9 * n + 2 * k);

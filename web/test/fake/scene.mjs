@@ -80,14 +80,14 @@ function pointOf(random, next, camera) {
     const place = kBall.centre.map((c, i) => c + kBall.radius * normal[i]);
     const facing = normal.reduce((sum, n, i) => sum + n * (camera.eye[i] - place[i]), 0);
     if (facing < 0.05 || place[2] < 0.003) return undefined;
-    return { place, normal, colour: [92, 128, 158] };
+    return { place, normal, colour: [92, 128, 158], trust: 40 };
   }
   const [x, y] = [kTable.half[0] * (2 * p - 1), kTable.half[1] * (2 * q - 1)];
   const place = [x, y, tableHeight(x, y)];
   const way = camera.eye.map((c, i) => c - place[i]);
   if (hitsBall(place, way)) return undefined;
   const check = (Math.floor(x / 0.05) + Math.floor(y / 0.05)) & 1;
-  return { place, normal: tableNormal(x, y), colour: check ? [186, 160, 124] : [158, 130, 96] };
+  return { place, normal: tableNormal(x, y), colour: check ? [186, 160, 124] : [158, 130, 96], trust: 220 };
 }
 
 function hitsBall(from, way) {
