@@ -5,6 +5,9 @@
 
 namespace palpate {
 
+/// Points that an evaluation costs as much as to sum over, besides those that it does sum over.
+inline constexpr int kEvaluationWork = 32;
+
 /// A field as the proxy sees it during one step: with its relief, and counted.
 class Probe {
  public:
@@ -24,7 +27,12 @@ class Probe {
   [[nodiscard]] double step_length() const noexcept { return step_length_; }
   [[nodiscard]] int evaluations() const noexcept { return evaluations_; }
 
-  int swept = 0;  ///< evaluations that sweeps have spent
+  /// What has been spent, in points summed over: what a step's budgets are in.
+  [[nodiscard]] int work() const noexcept {
+    return kEvaluationWork * evaluations_ + field_.points_summed();
+  }
+
+  int swept = 0;  ///< work that sweeps have spent
 
  private:
   const Field& field_;

@@ -19,7 +19,7 @@ constexpr double kMostPace = 4;
 constexpr double kLeastPace = 0.05;
 constexpr int kReleases = 3;
 constexpr int kHalvings = 6;
-constexpr int kEvaluationsPerIteration = 20;
+constexpr int kWorkPerIteration = 20 * kEvaluationWork;
 
 enum class Turn { stop, go_on };
 
@@ -53,8 +53,7 @@ class Slider {
 
  private:
   [[nodiscard]] bool exhausted() const noexcept {
-    return probe_.evaluations() - probe_.swept >=
-           kEvaluationsPerIteration * options_.max_iterations;
+    return probe_.work() - probe_.swept >= kWorkPerIteration * options_.max_iterations;
   }
 
   [[nodiscard]] Slide unfinished() noexcept {
@@ -81,7 +80,7 @@ class Slider {
   // of the budget goes on from where it ended. `swept`: what was spent before it.
   [[nodiscard]] Turn leave(const Sweep& way, int swept) noexcept {
     const bool clear = way.end == Sweep::End::clear;
-    if (!clear && swept >= kSweepBudget / 2) {
+    if (!clear && swept >= kSweepWork / 2) {
       result_.end = Slide::End::postponed;
       return Turn::stop;
     }

@@ -45,11 +45,11 @@ class Sweeper {
         length_(way_.norm()),
         leaf_(probe.traits().resolution > 0 ? probe.traits().resolution
                                             : kBracket * probe.step_length()),
-        spent_before_(probe.evaluations()) {}
+        spent_before_(probe.work()) {}
 
   [[nodiscard]] Sweep run() noexcept {
     const Sweep result = search();
-    probe_.swept += probe_.evaluations() - spent_before_;
+    probe_.swept += probe_.work() - spent_before_;
     return result;
   }
 
@@ -59,7 +59,7 @@ class Sweeper {
     return 0.5 * (i.end - i.begin) * length_;
   }
   [[nodiscard]] bool spent() const noexcept {
-    return probe_.swept + probe_.evaluations() - spent_before_ >= kSweepBudget;
+    return probe_.swept + probe_.work() - spent_before_ >= kSweepWork;
   }
 
   // The first interval is the whole way, of which the caller knows that its ball is not free.
@@ -114,8 +114,10 @@ class Sweeper {
 }  // namespace
 
 bool way_is_free(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
-  ++probe.swept;
-  return probe.is_free({0.5 * (from + to), 0.5 * (to - from).norm()});
+  const int before = probe.work();
+  const bool free = probe.is_free({0.5 * (from + to), 0.5 * (to - from).norm()});
+  probe.swept += probe.work() - before;
+  return free;
 }
 
 Sweep sweep(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {

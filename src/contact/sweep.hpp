@@ -4,7 +4,8 @@
 
 namespace palpate {
 
-inline constexpr int kSweepBudget = 800;  ///< evaluations of all sweeps in one step
+/// Of all sweeps in one step, in Probe::work().
+inline constexpr int kSweepWork = 1000 * kEvaluationWork;
 
 /// Where the way from one place to another ends.
 struct Sweep {

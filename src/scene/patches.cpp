@@ -35,7 +35,11 @@ void Patches::stand(const Vector3d& proxy) noexcept {
   const bool free =
       !stance.touches() && (covered ? is_free(*surface_, near_, here) : walk_is_free(here));
   if (free) near_.forget_sides();
-  if (covered) near_.face(stance);
+  to_face_ = covered;
+}
+
+void Patches::face_near() noexcept {
+  if (std::exchange(to_face_, false)) near_.face(stance_);
 }
 
 void Patches::forget() noexcept {
@@ -54,12 +58,14 @@ void Patches::choose_radius(const Vector3d& x, double first) noexcept {
 }
 
 void Patches::gather_near(const Vector3d& center, double extra) noexcept {
+  to_face_ = false;
   gather(near_, center, extra, update_visits_);
 }
 
 bool Patches::near_covers(std::span<const Ball> balls) noexcept {
   const auto reached = [this](const Ball& ball) { return near_.reaches(ball); };
   if (near_.outdated() && std::ranges::all_of(balls, reached)) {
+    to_face_ = false;
     count(near_, near_.renew(layers_, sources_, update_visits_, &stance_), update_visits_);
   }
   return std::ranges::all_of(balls, [this](const Ball& ball) { return near_.covers(ball); });

@@ -29,13 +29,15 @@ class Patches {
   /// Where x is in no point's support, it stays what it was; `first`, m, when there was none.
   void choose_radius(const Eigen::Vector3d& x, double first) noexcept;
 
-  /// What is gathered from now on is seen from the proxy, and what is around it is looked at again
-  /// where it has moved on.
+  /// What is gathered from now on is seen from the proxy.
   void stand(const Eigen::Vector3d& proxy) noexcept;
 
   /// The patch around the proxy. Covers nothing when the visits did not suffice.
   void gather_near(const Eigen::Vector3d& center, double extra) noexcept;
   [[nodiscard]] const Patch& near() const noexcept { return near_; }
+
+  /// Looks again at what was gathered before, where the proxy has moved on.
+  void face_near() noexcept;
 
   /// Does it cover all of these balls? Where snapshots have changed, their points are looked for
   /// again, if that is all that it takes.
@@ -80,6 +82,7 @@ class Patches {
   mutable Stance last_;  // after a proxy's last step
   Stance stance_;
   Stance faced_;  // that the near patch was looked at from last
+  bool to_face_ = false;
 
   // Samples away from the path are rare and take a patch of their own; that is a cache.
   Patch near_{SceneField::kPatchPoints};

@@ -18,7 +18,7 @@ TEST(Slide, ReleaseThatFewEvaluationsAreLeftForIsPostponed) {
   DoubtfulField field;
   field.floor = 0;
   Probe probe(field, kNoTexture, 0.01);
-  probe.swept = kSweepBudget - 100;
+  probe.swept = kSweepWork - 100 * kEvaluationWork;
   const Slide motion = slide(probe, kStart, kAbove, false, {});
   EXPECT_EQ(motion.end, Slide::End::postponed);
   EXPECT_EQ(motion.at.position, kStart.position);
@@ -33,6 +33,44 @@ TEST(Slide, ReleaseThatEvenAWholeBudgetIsTooShortForGoesOnInFreeSpace) {
   EXPECT_EQ(motion.end, Slide::End::interrupted);
   EXPECT_GT(motion.at.position.z(), 1e-4);
   EXPECT_LT(motion.at.position.z(), kAbove.z());
+}
+
+/// A hollow whose every sample sums over 2000 points.
+class DenseField final : public Field {
+ public:
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    summed_ += 2000;
+    return bowl_.sample(x);
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return bowl_.is_free(ball);
+  }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] FieldTraits traits() const noexcept override { return bowl_.traits(); }
+  void begin_step() const noexcept override { summed_ = 0; }
+  [[nodiscard]] int points_summed() const noexcept override { return summed_; }
+
+ private:
+  BowlField bowl_{0.01};
+  mutable int summed_ = 0;
+};
+
+TEST(Slide, StopsWhereAStepHasSummedEnoughAndGoesOnInTheNext) {
+  const DenseField dense;
+  const BowlField bowl(0.01);
+  const Vector3d hand(0.03, 0, -0.03);
+  Proxy slow{{.max_iterations = 4}};
+  Proxy quick;
+  slow.reset(Vector3d::Zero());
+  quick.reset(Vector3d::Zero());
+  int unfinished = 0;
+  for (int k = 0; k < 60; ++k) {
+    unfinished += has(slow.step(dense, hand, 1e-3).notes, ContactNote::not_converged) ? 1 : 0;
+    EXPECT_LE(dense.points_summed(), 4 * 640 + 32000 + 2 * 11 * 2000);
+    (void)quick.step(bowl, hand, 1e-3);
+  }
+  EXPECT_GT(unfinished, 0);
+  EXPECT_LT((slow.position() - quick.position()).norm(), 1e-5);
 }
 
 // Four radii deep in a hollow, a whole tangent overshoots four times.

@@ -60,7 +60,7 @@ TEST(Sweep, IsTruncatedWhereItIsStillFreeAndGoesOnNextStep) {
   EXPECT_EQ(found.end, Sweep::End::truncated);
   EXPECT_GT(found.position.x(), 0);
   EXPECT_LT(found.position.x(), 0.1);
-  EXPECT_LE(probe.evaluations(), kSweepBudget + 20);
+  EXPECT_LE(probe.evaluations(), kSweepWork / kEvaluationWork + 20);
 
   Proxy proxy;
   proxy.reset({0, 0, 0});

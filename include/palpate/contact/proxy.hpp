@@ -71,9 +71,9 @@ class Proxy {
   [[nodiscard]] const Eigen::Vector3d& position() const noexcept { return position_; }
   [[nodiscard]] const ProxyOptions& options() const noexcept { return options_; }
 
-  /// What a step spends at most: 800 in sweeps (and what the last interval of one takes), 20 for
+  /// What a step spends at most: 1000 in sweeps (and what the last interval of one takes), 20 for
   /// each constrained sub-step allowed (and what a Newton takes), and recovery.
-  [[nodiscard]] int max_evaluations() const noexcept { return 900 + 20 * options_.max_iterations; }
+  [[nodiscard]] int max_evaluations() const noexcept { return 1100 + 20 * options_.max_iterations; }
 
   /// Feels stiffness (N/m), friction and texture like this from the next step on; in contact,
   /// stiffness goes there as EnergyTank allows. False, and nothing changes, where a number is out

@@ -54,6 +54,9 @@ class Field {
   /// A proxy's step begins and ends. What is asked in between is bounded together: a field that has
   /// spent its work answers on the safe side, which is that all it does not know is solid.
   virtual void begin_step() const noexcept {}
+  /// Points that have been summed over since a step began: what its evaluations cost. A field that
+  /// sums over none costs the same everywhere.
+  [[nodiscard]] virtual int points_summed() const noexcept { return 0; }
   /// `proxy`: where it is then, m; `normal`: of the surface that it touches, zero for none.
   virtual void end_step(const Eigen::Vector3d& /*proxy*/,
                         const Eigen::Vector3d& /*normal*/) const noexcept {}

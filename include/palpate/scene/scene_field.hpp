@@ -64,6 +64,7 @@ class SceneField final : public Field {
   void change(const FieldOptions& checked) noexcept;
 
   void begin_step() const noexcept override;
+  [[nodiscard]] int points_summed() const noexcept override;
   void end_step(const Eigen::Vector3d& proxy,
                 const Eigen::Vector3d& normal) const noexcept override;
 
