@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "apps/palpate/json.hpp"
 #include "apps/palpate/names.hpp"
 #include "apps/palpate/words.hpp"
@@ -55,6 +57,31 @@ Json json_notes(const TouchStatistics& s) {
         {{"note", note_text(i).name}, {"steps", s.notes()[i]}, {"text", note_text(i).text}});
   }
   return notes;
+}
+
+void print_unguarded(const Unguarded& run, std::FILE* out) {
+  const GuardCounts& counts = run.counts();
+  std::string words;
+  if (counts.slewed > 0) {
+    words += fmt::format("; {} steps one would have slowed (largest {:.2g} N in a step)",
+                         grouped(counts.slewed), run.largest_change());
+  }
+  if (counts.clamped > 0) {
+    words += fmt::format("; {} steps one would have shortened to {:.3g} N", grouped(counts.clamped),
+                         run.limits().maximum_force);
+  }
+  fmt::print(out, "  guard      none in simulated time{}\n",
+             words.empty() ? "; one would have let every force pass" : words);
+}
+
+// JSON has no infinity: null is no limit.
+Json json_unguarded(const Unguarded& run) {
+  const double most = run.limits().maximum_force;
+  return {{"slew_N_per_s", run.limits().slew},
+          {"maximum_force_N", std::isfinite(most) ? Json(most) : Json()},
+          {"would_slow_steps", run.counts().slewed},
+          {"largest_slowed_step_N", run.largest_change()},
+          {"would_shorten_steps", run.counts().clamped}};
 }
 
 void print_socket(const RemoteDevice& socket, std::FILE* out) {
@@ -147,6 +174,7 @@ void print_hand(const HandReport& report, const std::string& title, std::FILE* o
              report.live == nullptr ? "simulated" : "real");
   if (report.interrupted) fmt::print(out, "  ended      by Ctrl-C\n");
   if (report.live != nullptr) print_live(*report.live, out);
+  if (report.unguarded != nullptr) print_unguarded(*report.unguarded, out);
   fmt::print(out, "  computing  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} us a step\n",
              times.p50, times.p99, times.p999, times.maximum);
   fmt::print(out, "  contacts   {}, {:.3g} % of the time\n", grouped(s.contacts()),
@@ -182,6 +210,7 @@ Json json_hand(const HandReport& report) {
       {"notes", json_notes(s)},
       {"advice", advice(report)}};
   if (report.live != nullptr) json["live"] = json_live(*report.live);
+  if (report.unguarded != nullptr) json["unguarded"] = json_unguarded(*report.unguarded);
   return json;
 }
 

@@ -8,6 +8,7 @@
 #include "apps/palpate/hand.hpp"
 #include "apps/palpate/live_report.hpp"
 #include "apps/palpate/touch_statistics.hpp"
+#include "apps/palpate/unguarded.hpp"
 
 namespace palpate::app {
 
@@ -16,9 +17,10 @@ struct HandReport {
   const Hand& hand;
   const TouchStatistics& statistics;
   FieldOptions field;
-  double stiffness = 0;              ///< of the surface as the run began, N/m in the world
-  const LiveReport* live = nullptr;  ///< of a run in real time
-  bool interrupted = false;          ///< by Ctrl-C
+  double stiffness = 0;                  ///< of the surface as the run began, N/m in the world
+  const LiveReport* live = nullptr;      ///< of a run in real time
+  const Unguarded* unguarded = nullptr;  ///< of one in simulated time
+  bool interrupted = false;              ///< by Ctrl-C
 };
 
 /// Work done on the hand, J: in its own metres, where the cloud is magnified (workspace.hpp).

@@ -26,6 +26,7 @@ namespace {
 struct TouchOutputs {
   std::deque<HandOutputs> hands;
   std::optional<OutputFile> json;
+  std::optional<Unguarded> unguarded;  // of a run in simulated time
 
   explicit TouchOutputs(const TouchOptions& options) {
     const std::size_t count = choose_devices(options).size();
@@ -34,12 +35,17 @@ struct TouchOutputs {
   }
 };
 
-bool play_simulated(Run& run, HandOutputs& outputs) {
+bool play_simulated(Run& run, TouchOutputs& outputs) {
+  const Hand& hand = run.hands.front();
+  Unguarded& unguarded =
+      outputs.unguarded.emplace(run.options.live, hand.device->info(), hand.workspace.scale);
+  HandOutputs& kept = outputs.hands.front();
   Progress progress("touching");
-  const auto whole = static_cast<double>(run.hands.front().steps);
+  const auto whole = static_cast<double>(hand.steps);
   return run_simulated(run, [&](std::size_t, const TouchStep& step) {
-    outputs.add(step);
-    const std::size_t steps = outputs.statistics().steps();
+    kept.add(step);
+    unguarded.add(step);
+    const std::size_t steps = kept.statistics().steps();
     if (steps % 256 == 0) progress.update(static_cast<double>(steps) / whole);
   });
 }
@@ -49,7 +55,7 @@ bool play_simulated(Run& run, HandOutputs& outputs) {
 LiveOutcome play(Run& run, WaitingClock* clock, TouchOutputs& outputs) {
   LiveOutcome outcome;
   if (clock == nullptr) {
-    outcome.interrupted = !play_simulated(run, outputs.hands.front());
+    outcome.interrupted = !play_simulated(run, outputs);
   } else {
     outcome = run_live(run, *clock, [&](std::size_t hand, const TouchStep& step) {
       outputs.hands[hand].add(step);
@@ -70,7 +76,8 @@ std::vector<HandReport> hand_reports(const Run& run, const TouchOutputs& outputs
   std::vector<HandReport> reports;
   for (std::size_t i = 0; i < run.hands.size(); ++i) {
     reports.push_back({run.hands[i], outputs.hands[i].statistics(), run.field, run.proxy.stiffness,
-                       outcome.hands.empty() ? nullptr : &outcome.hands[i], outcome.interrupted});
+                       outcome.hands.empty() ? nullptr : &outcome.hands[i],
+                       outputs.unguarded ? &*outputs.unguarded : nullptr, outcome.interrupted});
   }
   return reports;
 }

@@ -6,9 +6,9 @@ namespace palpate::app {
 
 namespace {
 
-constexpr std::array<ContactNote, 5> kContactNotes = {ContactNote::sweep_truncated,
-                                                      ContactNote::lost, ContactNote::not_converged,
-                                                      ContactNote::reanchored, ContactNote::fault};
+constexpr std::array<ContactNote, 6> kContactNotes = {
+    ContactNote::sweep_truncated, ContactNote::lost,  ContactNote::not_converged,
+    ContactNote::reanchored,      ContactNote::fault, ContactNote::fell};
 constexpr std::array<FieldNote, 4> kFieldNotes = {FieldNote::thinned, FieldNote::no_surface,
                                                   FieldNote::tool_too_large, FieldNote::work_spent};
 
@@ -26,6 +26,9 @@ constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
      "the hand or the surface was nowhere (not finite, or beyond 1e9 m from the origin), so the "
      "force "
      "was zero from there on; repair the trajectory or --pose"},
+    {"fell",
+     "the surface gave way: the hand came off an edge or through a gap, or what it touched had "
+     "gone; a larger --radius closes gaps"},
     {"thinned",
      "more points than the patch holds lay near the tool, so some were left out; give a smaller "
      "--radius or a larger --voxel"},

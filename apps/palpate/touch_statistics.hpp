@@ -35,7 +35,7 @@ struct StepTimes {
 /// Sums up a run, step by step.
 class TouchStatistics {
  public:
-  static constexpr std::size_t kNotes = 9;  ///< five of ContactNote, four of FieldNote
+  static constexpr std::size_t kNotes = 10;  ///< six of ContactNote, four of FieldNote
 
   void add(const TouchStep& step);
 

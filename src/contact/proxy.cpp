@@ -19,6 +19,9 @@ constexpr double kFadeRate = 300;      // N/s, at which it then goes
 constexpr double kTextureStep = 0.25;  // of the wavelength, the longest sub-step
 constexpr int kMostIterations = 1000;
 constexpr double kMuchSofter = 0.95;  // of the stiffness that is wanted
+constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
+constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall ...
+constexpr double kLeastFall = 0.01;  // ... and of R: what iterations leave open is none
 
 void validate(const ProxyOptions& options) {
   const Requirement require{"proxy"};
@@ -80,6 +83,8 @@ Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) n
   if (!started_) reset(hip);
   Contact contact;
   Probe probe{field, options_.texture, step_length_};
+  const bool held = touching_;
+  const Eigen::Vector3d before = position_;
   if (!touching_) follow(probe, hip, contact);
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
   step_length_ = probe.step_length();
@@ -88,10 +93,21 @@ Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) n
   contact.proxy = position_;
   contact.touching = touching_;
   contact.evaluations = probe.evaluations();
+  if (held && fell(before, hip, dt)) contact.notes = contact.notes | ContactNote::fell;
+  if (!has(contact.notes, kBehind)) hand_ = hip;
   if (contact.force.allFinite() && in_range(position_)) return contact;
   fault_ = true;
   release(hip);
   return faulted();
+}
+
+// On a plane the proxy goes no farther than the hand, whose depth bounds what friction held back;
+// on a bulge no farther than twice as far, up to half of its radius deep.
+bool Proxy::fell(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
+                 double dt) const noexcept {
+  const double explained = 2 * (hip - hand_).norm() + surface_.velocity.norm() * dt;
+  const double least = std::max(kFall * (before - hand_).norm(), kLeastFall * step_length_);
+  return (position_ - before).norm() > explained + least;
 }
 
 Contact Proxy::faulted() noexcept {

@@ -220,7 +220,8 @@ class Explorer {
     return way;
   }
 
-  // Through free space from over one place to over another: the flattest arc that touches nothing.
+  // Through free space from over one place to over another: the flattest arc that touches nothing
+  // and passes over what stands between or, where a roof is over everything, under it.
   [[nodiscard]] Route route(const MapSample& from, const MapSample& to) const {
     const Vector3d a = above(from);
     const Vector3d b = above(to);
@@ -228,18 +229,20 @@ class Explorer {
     if (up.norm() < 0.3) up = 0.5 * (a + b) - map_.center();
     if (up.norm() < 1e-9) up = from.normal.unitOrthogonal();
     up.normalize();
-    Route way;
-    for (const double lift : {0.0, 0.25, 0.5, 1.0, 2.0}) {
-      const double height = lift * std::max((b - a).norm(), 4 * clearance());
-      way = arc(a, 0.5 * (a + b) + height * up, b);
-      if (way.clear) break;
+    Route best;
+    for (const double lift : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0}) {
+      Route way = arc(a, b, lift * std::max((b - a).norm(), 4 * clearance()) * up);
+      if (!way.clear) continue;
+      const bool over = std::ranges::all_of(way.places, [&](auto& p) { return open({p, up}); });
+      if (over || !best.clear) best = std::move(way);
+      if (over) break;
     }
-    return way;
+    return best;
   }
 
-  // From a to b, drawn towards `middle`.
-  [[nodiscard]] Route arc(const Vector3d& a, const Vector3d& middle, const Vector3d& b) const {
-    const double length = (middle - a).norm() + (b - middle).norm();
+  // From a to b; begins and ends in the direction of `rise`, to 3/4 of which it goes up.
+  [[nodiscard]] Route arc(const Vector3d& a, const Vector3d& b, const Vector3d& rise) const {
+    const double length = (b - a).norm() + 1.5 * rise.norm();
     const double piece = 0.5 * kClearance * options_.radius;
     const int pieces = static_cast<int>(std::clamp(length / piece, 16.0, 200.0));
     Route way;
@@ -247,7 +250,7 @@ class Explorer {
     double room = 0;  // free around it
     for (int i = 0; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
-      const Vector3d place = (1 - u) * (1 - u) * a + 2 * u * (1 - u) * middle + u * u * b;
+      const Vector3d place = a + u * u * (3 - 2 * u) * (b - a) + 3 * u * (1 - u) * rise;
       way.places.push_back(place);
       if ((place - seen).norm() < room) continue;
       seen = place;

@@ -107,14 +107,14 @@ TEST(TouchStatistics, TimesAreToldToFivePercentAndTheLongestExactly) {
 TEST(TouchStatistics, CountsEveryNoteUnderItsOwnName) {
   TouchStatistics statistics;
   TouchStep each;
-  each.contact.notes = ContactNote::lost | ContactNote::fault;
+  each.contact.notes = ContactNote::lost | ContactNote::fault | ContactNote::fell;
   each.notes = FieldNote::thinned;
   statistics.add(each);
   std::string names;
   for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
     if (statistics.notes()[i] > 0) names += std::string(note_text(i).name) + " ";
   }
-  EXPECT_EQ(names, "lost fault thinned ");
+  EXPECT_EQ(names, "lost fault fell thinned ");
   EXPECT_EQ(statistics.faults(), 1u);
 }
 

@@ -75,6 +75,46 @@ TEST(Exploration, GoesRoundAClosedObjectAndNotThroughIt) {
   for (const TrajectoryRow& row : rows) EXPECT_GT(row.position.norm(), 0.055);
 }
 
+// A floor of 30 x 20 cm and a box on it, 6 cm long, 8 cm high and as wide as the floor. What looks
+// from above sees no walls.
+PointCloud box_on_floor(bool walls) {
+  PointCloud cloud;
+  const auto add = [&cloud](double x, double y, double z, const Vector3f& normal) {
+    cloud.positions.push_back(Vector3d(x, y, z).cast<float>());
+    cloud.normals.push_back(normal);
+  };
+  for (double y = -0.1; y <= 0.1; y += 2e-3) {
+    for (double x = -0.15; x <= 0.15; x += 2e-3) {
+      add(x, y, std::abs(x) <= 0.03 ? 0.08 : 0, Vector3f::UnitZ());
+    }
+    for (double z = 2e-3; walls && z < 0.079; z += 2e-3) {
+      add(-0.03, y, z, -Vector3f::UnitX());
+      add(0.03, y, z, Vector3f::UnitX());
+    }
+  }
+  return cloud;
+}
+
+TEST(Exploration, LiftsOverWhatStandsBetweenTwoPlaces) {
+  for (const bool walls : {false, true}) {
+    const PointCloud cloud = box_on_floor(walls);
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const Trajectory rows = explore(
+          view(cloud), {.duration = 40, .radius = 5e-3, .depth = 3e-3, .patch = 1, .seed = seed});
+      int within = 0;
+      int crossings = 0;
+      for (std::size_t i = 1; i < rows.size(); ++i) {
+        const Vector3d& at = rows[i].position;
+        const bool beside = std::abs(at.x()) > 0.025 || std::abs(at.y()) > 0.1;
+        within += !beside && at.z() < 0.075 ? 1 : 0;
+        crossings += at.x() * rows[i - 1].position.x() < 0 ? 1 : 0;
+      }
+      EXPECT_EQ(within, 0) << "walls " << walls << ", seed " << seed;
+      EXPECT_GT(crossings, 0) << "walls " << walls << ", seed " << seed;
+    }
+  }
+}
+
 TEST(Exploration, SameSeedSameRowsOtherSeedOtherRows) {
   const PointCloud cloud = synthetic_cloud("table");
   const auto last = [&](std::uint64_t seed) {

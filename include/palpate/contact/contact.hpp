@@ -15,6 +15,8 @@ enum class ContactNote : std::uint32_t {
   fault = 1u << 4,            ///< an input was not finite: zero force until reset()
   softer = 1u << 5,           ///< stiffness is much below what is wanted: EnergyTank lets it grow
                               ///< only as motion pays for it
+  fell = 1u << 6,  ///< what held the proxy gave way: it went, in contact or out of it, farther than
+                   ///< twice the hand's way and the surface's by half of |proxy - HIP| before
 };
 
 [[nodiscard]] constexpr ContactNote operator|(ContactNote a, ContactNote b) noexcept {

@@ -99,6 +99,8 @@ class Proxy {
   void fade(double dt) noexcept;
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
   [[nodiscard]] double wanted_stiffness() const noexcept;
+  [[nodiscard]] bool fell(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
+                          double dt) const noexcept;
   [[nodiscard]] Contact faulted() noexcept;
 
   ProxyOptions options_;
@@ -106,6 +108,7 @@ class Proxy {
   Surface surface_;  // where the proxy touches
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();      // of the last contact; zero: none
+  Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();        // that the proxy last caught up with
   Eigen::Vector3d last_force_ = Eigen::Vector3d::Zero();  // N
   double step_length_ = 0;                                // R where it was last known, m
   double lost_time_ = 0;                                  // s since the surface was lost

@@ -31,7 +31,8 @@ struct ExplorationOptions {
 };
 
 /// Where a hand wants to be that explores a surface: it comes down along a normal, presses, slides,
-/// leaves, goes to another place through free space, and so on until the time is over. Strokes
+/// leaves, goes to another place through free space (over all that stands between, wherever such
+/// a way touches nothing), and so on until the time is over. Strokes
 /// begin where nothing was touched yet and follow the points until they end or the stroke is long
 /// enough. Moves begin and end at rest. Larger clouds than `patch` are explored around their median
 /// point. The same input gives the same trajectory; no clock and no thread is involved.
