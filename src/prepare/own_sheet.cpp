@@ -16,10 +16,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Normals come from a little further away than the surface: the balanced field adds their noise
-// (field_choice.md section 2).
-constexpr float kNormalsReach = 1.15f;
-
 // A plane fits that leaves no more than this, of R or of the noise. Two sheets half a spacing apart
 // (0.2 R) leave 0.05 R where the other has one point in fifteen.
 constexpr double kFlat = 0.05;
@@ -296,46 +292,6 @@ double SheetFitter::tile_variance(double reach, double tile) const {
     ++used;
   }
   return used > 0 ? sum / used : 0;
-}
-
-OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
-                         std::span<const float> radii, double noise) {
-  Normals planes = estimate_normals(grid, radii, kNormalsReach);
-  OwnSheets sheets{std::move(planes.normals),
-                   std::move(planes.confidences),
-                   std::move(planes.residuals),
-                   {},
-                   std::vector<std::uint8_t>(grid.size())};
-  sheets.bends = sheets.residuals;
-  std::vector<float> reaches(grid.size());  // of second fits, m; 0: the plane does
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    const double flat = flat_residual(static_cast<double>(radii[i]), noise);
-    if (static_cast<double>(sheets.residuals[i]) > flat) reaches[i] = kNormalsReach * radii[i];
-  }
-  const auto refit = [&](SheetFitter& fitter, std::uint32_t i,
-                         std::span<const std::uint32_t> near) {
-    const double smooth = std::max(kSmooth * static_cast<double>(radii[i]), kNoisyFlat * noise);
-    const SheetFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
-                                    static_cast<double>(spacings[i]), smooth);
-    sheets.normals[i] = fit.normal.cast<float>();
-    sheets.confidences[i] = static_cast<float>(fit.planarity);
-    sheets.residuals[i] = static_cast<float>(fit.residual);
-    sheets.bends[i] = static_cast<float>(fit.bend);
-    sheets.others[i] = fit.others ? 1 : 0;
-  };
-  detail::for_each_block(grid, [&](const detail::Block& block, detail::Surroundings& around) {
-    SheetFitter fitter;
-    detail::NearLists near;
-    detail::for_each_part(
-        grid, {.of_points = reaches, .of_cells = {}}, block, around,
-        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          near.find(grid, first, count, runs, reaches);
-          for (std::uint32_t q = 0; q < count; ++q) {
-            if (reaches[first + q] > 0) refit(fitter, first + q, near.of(q));
-          }
-        });
-  });
-  return sheets;
 }
 
 }  // namespace palpate

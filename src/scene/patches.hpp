@@ -63,6 +63,8 @@ class Patches {
 
   /// thinned and work_spent, since begin_update().
   [[nodiscard]] FieldNote notes() const noexcept { return notes_; }
+  /// Since begin_step(), and as many as gathers take the time of.
+  [[nodiscard]] int points_summed() const noexcept { return summed_; }
   [[nodiscard]] std::uint64_t gathers() const noexcept { return gathers_; }
   [[nodiscard]] std::uint64_t visits() const noexcept { return visits_; }
 
@@ -71,6 +73,7 @@ class Patches {
   static constexpr int kFreeVisits = SceneField::kStepVisits / 5;  // whether a ball is free
   static constexpr int kGatherVisits = SceneField::kStepVisits - kFreeVisits;
 
+  [[nodiscard]] const Patch* find(const Ball& ball, double margin) const noexcept;
   bool gather(Patch& patch, const Eigen::Vector3d& center, double extra, int& left) const noexcept;
   void count(const Patch& patch, bool whole, int& left) const noexcept;
 
@@ -92,6 +95,7 @@ class Patches {
   mutable bool stepping_ = false;
   mutable int gather_visits_ = kGatherVisits;  // that are left
   mutable int free_visits_ = kFreeVisits;
+  mutable int summed_ = 0;
   mutable FieldNote notes_ = FieldNote::none;
   mutable std::uint64_t gathers_ = 0;
   mutable std::uint64_t visits_ = 0;

@@ -41,10 +41,6 @@ constexpr double kFinest = 0.25;
 // A surface may rise this fast and still take a resting proxy along (algorithm.md section 2.4).
 constexpr double kReanchorSpeed = 0.5;  // m/s
 
-// Balls that are asked about in the time of one sum for a sample, and sums in that of a gather.
-constexpr int kBallsASum = 4;
-constexpr int kSumsAGather = 8;
-
 // A tool feels points so far away, in support radii: normals beside rims need neighbours, too.
 constexpr double kFelt = 2;
 
@@ -86,7 +82,6 @@ struct SceneField::State {
   void list_layer(std::size_t source, std::size_t k) noexcept;
   void publish_reach(const Vector3d& hip, const Vector3d& proxy) noexcept;
   void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
-  [[nodiscard]] const Patch* patch_at(const Ball& ball) noexcept;
   [[nodiscard]] double radius() const noexcept;
   [[nodiscard]] double margin() const noexcept;
   [[nodiscard]] FieldNote standing_notes() const noexcept;
@@ -109,7 +104,6 @@ struct SceneField::State {
   bool plain_points = true;  // no materials, no motion, no fading
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
-  int summed = 0;  // points, since begin_step()
   Patches patches{surface};
 };
 
@@ -187,15 +181,6 @@ void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) 
     patches.gather_near(0.5 * (proxy + end), 0.5 * stretch + margin());
 }
 
-/// nullptr: there is no telling.
-const Patch* SceneField::State::patch_at(const Ball& ball) noexcept {
-  const std::uint64_t before = patches.gathers();
-  const Patch* const patch = patches.at(ball, margin());
-  if (patch && patches.gathers() != before)
-    summed += kSumsAGather * static_cast<int>(patch->points());
-  return patch;
-}
-
 /// Tells every source where the tool can be.
 void SceneField::State::publish_reach(const Vector3d& hip, const Vector3d& proxy) noexcept {
   const Reach ball = reach.update(now, hip, proxy, frame_interval, kFelt * radius());
@@ -232,26 +217,21 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
 }
 
 Sample SceneField::sample(const Vector3d& x) const noexcept {
-  State& state = *state_;
+  const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free; of no length
-  const Patch* const patch = state.patch_at({x, 0});
-  if (patch) {
-    state.summed += static_cast<int>(patch->points());
-    return evaluate(state.surface, *patch, x);
-  }
+  const Patch* const patch = state.patches.at({x, 0}, state.margin());
+  if (patch) return evaluate(state.surface, *patch, x);
   return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid: unknown
 }
 
 bool SceneField::is_free(const Ball& ball) const noexcept {
-  State& state = *state_;
+  const State& state = *state_;
   if (state.layer_count == 0) return true;
   if (!ball.center.allFinite() || !std::isfinite(ball.radius)) return false;
   const bool small = ball.radius <= 0.5 * kMargin * state.radius();
   if (!small && !state.patches.covers(ball)) return state.patches.walk_is_free(ball);
-  const Patch* const patch = state.patch_at(ball);
-  if (!patch) return false;
-  state.summed += static_cast<int>(patch->points()) / kBallsASum;
-  return palpate::is_free(state.surface, *patch, ball);
+  const Patch* const patch = state.patches.at(ball, state.margin());
+  return patch && palpate::is_free(state.surface, *patch, ball);
 }
 
 void SceneField::change(const FieldOptions& checked) noexcept {
@@ -264,21 +244,20 @@ void SceneField::change(const FieldOptions& checked) noexcept {
 }
 
 void SceneField::begin_step() const noexcept {
-  state_->summed = 0;
   state_->patches.begin_step();
 }
 int SceneField::points_summed() const noexcept {
-  return state_->summed;
+  return state_->patches.points_summed();
 }
 void SceneField::end_step(const Vector3d& proxy, const Vector3d& normal) const noexcept {
   state_->patches.end_step({proxy, normal});
 }
 
 Surface SceneField::surface(const Vector3d& x) const noexcept {
-  State& state = *state_;
+  const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {};
   if (state.plain()) return {.source = 0};
-  const Patch* const patch = state.patch_at({x, 0});
+  const Patch* const patch = state.patches.at({x, 0}, state.margin());
   if (!patch) return {};
   std::array<double, Scene::kMaxSources> presences{};
   std::ranges::transform(state.views, presences.begin(), &SourceView::presence);
