@@ -20,7 +20,7 @@ constexpr float kMeets = 1.1f;
 constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks from
 constexpr float kView = 1.2f;  // R beyond the nearest point, within which things are seen
 
-constexpr int kPairs = 4096;  // in one call
+constexpr int kPairs = 2048;  // in one call
 
 }  // namespace
 

@@ -74,7 +74,7 @@ bool Patches::near_covers(std::span<const Ball> balls) noexcept {
 const Patch* Patches::at(const Ball& ball, double margin) const noexcept {
   // Balls that are asked about in the time of one sum for a sample, and sums in that of a gather.
   constexpr int kBallsASum = 4;
-  constexpr int kSumsAGather = 8;
+  constexpr int kSumsAGather = 20;
   const std::uint64_t before = gathers_;
   const Patch* const patch = find(ball, margin);
   if (!patch) return nullptr;
