@@ -12,11 +12,17 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kSamples = 1000;
-constexpr std::size_t kFewestInWindow = 12;  // points of a window: twice the terms of a quadric
-constexpr double kReach = 3;                 // spacings: narrow, so that fine shape is no noise
 
-// Of the residuals that noise alone gives in windows of about 28 points.
-constexpr double kQuarterToMedian = 1.1;
+/// Windows of two widths, in spacings: of about 28 and 15 points. In the narrower one noise leaves
+/// the same, and shape that a quadric misses, as a thin rod's, 0.4 of it or less.
+struct Window {
+  double reach;
+  std::size_t fewest;        // points
+  double quarter_to_median;  // of the residuals that noise alone gives
+};
+constexpr Window kNarrow{3, 12, 1.1};
+constexpr Window kNarrowest{2.2, 10, 1.2};
+constexpr double kShape = 0.65;
 
 // Windows, in spacings, that noise and shape are told apart with: shape that a quadratic misses
 // grows with the third power of the window or faster.
@@ -38,22 +44,28 @@ std::size_t step_for(const CellGrid& grid, std::size_t samples) {
 
 /// The residual over samples of the grid, as the flatter quarter has it: where shape is finer than
 /// the window it passes for noise. 0 where no sample has enough neighbours.
-double narrow_noise(const CellGrid& grid, double spacing) {
+double noise_in_windows(const CellGrid& grid, double spacing, const Window& window) {
   const std::size_t step = step_for(grid, kSamples);
   std::vector<float> residuals((grid.size() - step / 2 + step - 1) / step, -1);
   detail::parallel_ranges(residuals.size(), 64, [&](std::size_t begin, std::size_t end) {
     SheetFitter fitter;
     for (std::size_t k = begin; k < end; ++k) {
       const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
-      const SheetFit fit = fitter.fit(grid, at, kReach * spacing, spacing);
-      if (fit.points >= kFewestInWindow) residuals[k] = static_cast<float>(fit.bend);
+      const SheetFit fit = fitter.fit(grid, at, window.reach * spacing, spacing);
+      if (fit.points >= window.fewest) residuals[k] = static_cast<float>(fit.bend);
     }
   });
   std::erase(residuals, -1.f);
   if (residuals.empty()) return 0;
   const auto quarter = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 4);
   std::nth_element(residuals.begin(), quarter, residuals.end());
-  return kQuarterToMedian * *quarter;
+  return window.quarter_to_median * *quarter;
+}
+
+double narrow_noise(const CellGrid& grid, double spacing) {
+  const double narrow = noise_in_windows(grid, spacing, kNarrow);
+  const double narrowest = noise_in_windows(grid, spacing, kNarrowest);
+  return narrowest > 0 && narrowest < kShape * narrow ? narrowest : narrow;
 }
 
 /// What windows of several widths round one place say.
@@ -71,7 +83,7 @@ std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
     SheetFitter fitter;
     for (std::size_t k = begin; k < end; ++k) {
       const Eigen::Vector3f& at = grid.points()[std::min(k * step + step / 2, grid.size() - 1)];
-      const SheetFit narrow = fitter.fit(grid, at, kReach * spacing, spacing);
+      const SheetFit narrow = fitter.fit(grid, at, kNarrow.reach * spacing, spacing);
       const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, 0);
       const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
       if (!(narrow.bend > 0 && map.bend > 0 && middle.bend > 0)) continue;
