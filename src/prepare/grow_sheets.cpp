@@ -81,7 +81,11 @@ class Growth {
     if (std::abs(cosine) < 1 - 0.5f * turn * turn) return;
     const float off =
         std::max(std::abs(own_.normals[a].dot(way)), std::abs(own_.normals[b].dot(way)));
-    const float arc = kChord * std::max(kTurn * near, kTurnMargin * bowed * length * length);
+    // An arc's normals turn by twice as much as it leaves their planes.
+    const float turned =
+        std::sqrt(std::max(0.f, 2 - 2 * std::abs(own_.normals[a].dot(own_.normals[b]))));
+    const float bend = std::min(kTurnMargin * bowed * length, turned + kTurn);
+    const float arc = kChord * std::max(kTurn * near, bend * length);
     if (off > std::max(sheet_tolerance(input_, own_, a, b), arc)) return;
     const int sign = cosine < 0 ? -1 : 1;
     if (inside) {

@@ -64,14 +64,16 @@ class Outlook {
     for (std::uint32_t q = 0; q < count; ++q) others_[q].clear();
     pairs_.each(
         input_.grid, first, count, runs,
-        [this](std::uint32_t i) { return kGapReach * input_.radii[i]; },
+        [this](std::uint32_t i) {
+          return own_.confidences[i] > 0 ? kGapReach * input_.radii[i] : 0;
+        },
         [&](std::uint32_t i, std::uint32_t j) { meet(first, i - first, j); });
     for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
   }
 
   void meet(std::uint32_t first, std::uint32_t q, std::uint32_t j) {
     const std::uint32_t i = first + q;
-    if (j == i || own_.confidences[i] <= 0) return;
+    if (j == i) return;
     const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
     const float squared = way.squaredNorm();
     measure_gap(i, j, way, squared);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "geometry/neighborhoods.hpp"
+#include "geometry/parallel.hpp"
 
 namespace palpate {
 namespace {
@@ -16,7 +16,8 @@ constexpr float kPlanarFit = 0.5f;  // confidence from which on a fit is a plane
 constexpr float kSmoothBend =
     0.03f;                          // of R that a quadric may leave: curvature passes, a crease not
 constexpr float kNoisyBend = 1.6f;  // of the noise, likewise
-constexpr float kNoisier = 2.5f;    // than typical that noise may be in places
+constexpr float kNoiseReach = 2.5f;  // R within which noise is looked for
+constexpr float kNoisier = 2.5f;     // than typical that noise may be in places
 
 // An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
 // this many of its residuals.
@@ -37,19 +38,16 @@ class Snapping {
   Snapping(const SheetInput& input, OwnSheets& own)
       : input_(input), own_(own), sure_(input.grid.size()) {
     const auto noise = static_cast<float>(input.noise);
-    const std::vector<detail::Block> blocks = detail::make_blocks(input.grid, detail::kBlockPoints);
-    detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
-      std::vector<float> bends;
-      for (std::size_t b = begin; b < end; ++b) {
-        const float around = std::clamp(noise_in(blocks[b], bends), noise, kNoisier * noise);
-        for (std::uint32_t i = blocks[b].begin; i < blocks[b].end; ++i) {
-          const bool planar = own.confidences[i] >= kPlanarFit;
-          const float radius = input.radii[i];
-          const bool flat =
-              own.residuals[i] <= flat_residual(static_cast<double>(radius), input.noise);
-          const bool smooth = own.bends[i] <= std::max(kSmoothBend * radius, kNoisyBend * around);
-          sure_[i] = planar && (flat || smooth) ? 1 : 0;
-        }
+    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto radius = static_cast<double>(input.radii[i]);
+        const float bend = own.bends[i];
+        const bool smooth =
+            static_cast<double>(own.residuals[i]) <= flat_residual(radius, input.noise) ||
+            bend <= std::max(kSmoothBend * input.radii[i], kNoisyBend * noise) ||
+            (bend <= kNoisyBend * kNoisier * noise && is_as_around(i, near));
+        sure_[i] = own.confidences[i] >= kPlanarFit && smooth ? 1 : 0;
       }
     });
   }
@@ -91,12 +89,15 @@ class Snapping {
   }
 
  private:
-  /// Noise is not the same everywhere: what the flattest quarter of a block's fits leaves, m.
-  float noise_in(const detail::Block& block, std::vector<float>& bends) const {
-    bends.assign(own_.bends.begin() + block.begin, own_.bends.begin() + block.end);
-    const auto quarter = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 4);
-    std::nth_element(bends.begin(), quarter, bends.end());
-    return *quarter;
+  /// Noise is not the same everywhere: does the fit leave no more than noise does, if the flattest
+  /// quarter of the fits around leaves noise alone?
+  bool is_as_around(std::size_t i, std::vector<std::uint32_t>& near) const {
+    near.clear();
+    input_.grid.within(input_.grid.points()[i], kNoiseReach * input_.radii[i], near);
+    const float noise = own_.bends[i] / kNoisyBend;
+    const auto flatter =
+        std::ranges::count_if(near, [&](std::uint32_t j) { return own_.bends[j] < noise; });
+    return 4 * static_cast<std::size_t>(flatter) <= near.size();
   }
 
   void index_sure() {
