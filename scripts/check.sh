@@ -20,13 +20,13 @@ if [ "${1:-}" = --soak ]; then
 fi
 
 say "packages"
-need_packages build cameras viewer test fuzz lint
+need_packages build cameras viewer test fuzz lint bench
 need_npm
 need_browser
 find_data
 
-say "Debug"
-configure dev
+say "Debug, benches among them"
+configure dev -DPALPATE_BUILD_BENCH=ON
 build dev
 test_preset dev || status=1
 
