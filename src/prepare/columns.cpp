@@ -9,6 +9,21 @@ constexpr float kTrusted = 0.5f;  // confidence
 
 }  // namespace
 
+std::vector<std::uint32_t> first_of_each_place(const CellGrid& grid) {
+  std::vector<std::uint32_t> first;
+  first.reserve(grid.size());
+  for (const CellGrid::Cell& cell : grid.cells()) {
+    if (cell.children > 0) continue;
+    const auto points = grid.points().subspan(cell.begin, cell.size());
+    for (auto p = points.begin(); p != points.end(); ++p) {
+      if (std::find(points.begin(), p, *p) != p) continue;
+      first.push_back(grid.order()[static_cast<std::size_t>(p - grid.points().begin())]);
+    }
+  }
+  std::sort(first.begin(), first.end());
+  return first;
+}
+
 std::vector<float> materials_of(const CellGrid& grid, const std::vector<float>& intensities) {
   auto materials = in_grid_order(grid, intensities);
   const auto [low, high] = std::minmax_element(materials.begin(), materials.end());

@@ -17,6 +17,10 @@ template <class T>
   return sorted;
 }
 
+/// Of points at one place, which tell no more than one of them, the first; in the order that the
+/// grid was given them.
+[[nodiscard]] std::vector<std::uint32_t> first_of_each_place(const CellGrid& grid);
+
 /// In grid order; 0 at the lowest, 1 at the highest intensity.
 [[nodiscard]] std::vector<float> materials_of(const CellGrid& grid,
                                               const std::vector<float>& intensities);

@@ -92,6 +92,12 @@ class Preparation {
 
   Prepared run() {
     index();
+    const auto distinct = first_of_each_place(points_.grid);
+    if (!options_.paper && distinct.size() < points_.size()) {
+      own_ = select(*cloud_, distinct);
+      cloud_ = &own_;
+      index();
+    }
     choose_voxel();
     choose_radii();
     weigh();

@@ -28,10 +28,12 @@ void Patches::stand(const Vector3d& proxy) noexcept {
   const bool same = stance.touches() == faced_.touches() && moved < kMoved * near_.mean_radius();
   if (same) return;
   faced_ = stance;
-  far_.clear();
-  far_.forget_sides();
   const Ball here{stance.proxy, 0};
   const bool covered = near_.covers(here);
+  // A step that went beyond the near patch knows from which side it came.
+  if (!covered && far_.covers(here)) near_.follow_sides(far_);
+  far_.clear();
+  far_.forget_sides();
   const bool free =
       !stance.touches() && (covered ? is_free(*surface_, near_, here) : walk_is_free(here));
   if (free) near_.forget_sides();

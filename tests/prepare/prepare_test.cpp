@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -88,6 +89,21 @@ TEST(Prepare, SpeckleWeighsNothing) {
     EXPECT_EQ(prepared.points.density_weights[i] == 0, high);
   }
   EXPECT_EQ(prepare(cloud, {.remove_speckle = false}).report.speckle, 0u);
+}
+
+TEST(Prepare, PointsAtOnePlaceAreOne) {
+  const PointCloud once = flat();
+  PointCloud often = once;
+  for (int k = 1; k < 100; ++k) {
+    often.positions.insert(often.positions.end(), once.positions.begin(), once.positions.end());
+  }
+  const Prepared expected = prepare(once);
+  const Prepared made = prepare(often);
+  EXPECT_EQ(made.report.points_in, often.size());
+  EXPECT_EQ(made.report.points_out, once.size());
+  EXPECT_TRUE(std::ranges::equal(made.points.grid.points(), expected.points.grid.points()));
+  EXPECT_EQ(made.points.radii, expected.points.radii);
+  EXPECT_EQ(made.points.normals, expected.points.normals);
 }
 
 TEST(Prepare, IntensitiesBecomeMaterials) {

@@ -116,5 +116,37 @@ TEST(NoHoles, InASphereOfRandomPoints) {
   EXPECT_EQ(passed, 0);
 }
 
+TEST(NoHoles, UnderAHandThatJumpedToJustOffTheSurface) {
+  constexpr double kSphere = 0.05;
+  constexpr int kPoints = 12000;
+  PointCloud cloud;
+  for (int i = 0; i < kPoints; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kPoints;
+    const double turn = 2.399963229728653 * i;
+    const Vector3d flat(std::cos(turn), std::sin(turn), 0);
+    cloud.positions.push_back(
+        (kSphere * (std::sqrt(1 - z * z) * flat + Vector3d(0, 0, z))).cast<float>());
+  }
+  Scene scene;
+  const Source& sphere = scene.add("sphere", cloud);
+  SceneField field(scene);
+  const double radius = sphere.report().radius;
+  int passed = 0;
+  for (int i = 0; i < kPoints; i += 60) {
+    const Vector3d place = cloud.point(static_cast<std::size_t>(i));
+    const Vector3d out = (i % 120 == 0 ? 1 : -1) * place.normalized();
+    Proxy proxy;
+    Contact contact;
+    proxy.reset(place + 5 * radius * out);
+    for (const double height : {5.0, 0.003, -5.0, -5.0}) {  // R
+      const Vector3d hand = place + height * radius * out;
+      field.update(0, hand, proxy.position());
+      contact = proxy.step(field, hand, 1e-3);
+    }
+    passed += contact.touching ? 0 : 1;
+  }
+  EXPECT_EQ(passed, 0);
+}
+
 }  // namespace
 }  // namespace palpate
