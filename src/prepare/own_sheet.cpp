@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -189,6 +190,10 @@ SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, d
                           double spacing, double smooth) {
   near_.clear();
   grid.within(center, static_cast<float>(reach), near_);
+  if (const std::size_t step = (near_.size() + kMostPoints - 1) / kMostPoints; step > 1) {
+    for (std::size_t k = 0; k * step < near_.size(); ++k) near_[k] = near_[k * step];
+    near_.resize((near_.size() + step - 1) / step);
+  }
   return fit(grid, center, near_, reach, spacing, smooth);
 }
 
