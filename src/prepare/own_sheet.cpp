@@ -137,8 +137,7 @@ double gap_between_groups(std::span<const double> heights, double spacing) {
   return two ? 0.5 * (upper.front() + lower.back()) : kNone;
 }
 
-// What a sheet's fit may leave, of R or of the noise, and how far off it a point of it may be, of
-// R.
+// What a sheet's fit may leave, of R or of the noise, and how far off it its points may be, of R.
 constexpr double kSmooth = 0.03;
 constexpr double kNoisySmooth = 1.6;
 constexpr double kOnSheet = 0.12;
@@ -248,7 +247,6 @@ void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
   Moments moments = Moments::Zero();
   Terms right = Terms::Zero();
   double squares = 0;
-  placed_.clear();
   for (const Vector3d& offset : offsets_) {
     const Vector3d& p = placed_.emplace_back(u.dot(offset), v.dot(offset), normal.dot(offset));
     const Terms t = terms_at(p / reach);
