@@ -164,6 +164,12 @@ void UnionField::begin_step() const noexcept {
   for (const Field* part : parts_) part->begin_step();
 }
 
+int UnionField::points_summed() const noexcept {
+  int sum = 0;
+  for (const Field* part : parts_) sum += part->points_summed();
+  return sum;
+}
+
 void UnionField::end_step(const Eigen::Vector3d& proxy,
                           const Eigen::Vector3d& normal) const noexcept {
   for (const Field* part : parts_) part->end_step(proxy, normal);

@@ -246,9 +246,11 @@ bool Facing::face(const Points& points, const Stance& stance) noexcept {
   if (!std::exchange(follows_, false)) let_go();
   group();
   choose_eye(stance);
+  const auto older = static_cast<std::ptrdiff_t>(remembered_.size());
   const bool vanished = list_references(stance);
   decide_signs(stance.touches() || vanished);
   decide_labels();
+  if (vanished) references_.erase(references_.begin(), references_.begin() + older);
   std::swap(references_, remembered_);
   remembered_from_ = stance.proxy;
   return write(points);

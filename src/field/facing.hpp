@@ -125,6 +125,8 @@ class Facing {
   [[nodiscard]] bool list_references(const Stance& stance) noexcept;
   [[nodiscard]] bool is_settled(std::span<const ActiveLayer> layers) const noexcept;
   void add_references(const Sheet& sheet) noexcept;
+  template <class Visit>
+  void each_meeting(const Sheet& sheet, float reach, const Visit& visit) noexcept;
   void decide_signs(bool continued) noexcept;
   [[nodiscard]] double across(std::uint32_t part) noexcept;
   void decide_labels() noexcept;

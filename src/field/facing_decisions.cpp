@@ -35,26 +35,33 @@ std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
 
 }  // namespace
 
+/// Calls visit(p, q, way, w) for points p of the sheet and decided ones q that are near it: the way
+/// from q to p and how much it counts, which ends at `reach` of p's R.
+template <class Visit>
+void Facing::each_meeting(const Sheet& sheet, float reach, const Visit& visit) noexcept {
+  const std::uint32_t step = stride_for(references_.size(), kReferences);
+  const std::uint32_t skip = stride_for(sheet.count, kTried);
+  for (std::uint32_t k = 0; k < sheet.count; k += skip) {
+    const Point& p = points_[order_[sheet.begin + k]];
+    for (std::size_t r = 0; r < references_.size() && pairs_ > 0; r += step, --pairs_) {
+      const Vector3f way = p.place - references_[r].place;
+      const double w = weight(way.squaredNorm(), reach * p.radius);
+      if (w > 0) visit(p, references_[r], way, w);
+    }
+  }
+}
+
 /// What decided points around a part's say of its sign.
 double Facing::across(std::uint32_t part) noexcept {
-  const std::uint32_t step = stride_for(references_.size(), kReferences);
   double sum = 0;
   for (const Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
     if (sheet.part != part) continue;
-    const std::uint32_t skip = stride_for(sheet.count, kTried);
-    for (std::uint32_t k = 0; k < sheet.count && pairs_ > 0; k += skip) {
-      const Point& p = points_[order_[sheet.begin + k]];
-      const float reach = kAcrossReach * p.radius;
-      for (std::size_t r = 0; r < references_.size(); r += step, --pairs_) {
-        const Reference& q = references_[r];
-        const Vector3f way = q.place - p.place;
-        const float squared = way.squaredNorm();
-        if (squared >= reach * reach) continue;
-        const float a = agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
-        sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) *
-               weight(squared, reach);
-      }
-    }
+    each_meeting(sheet, kAcrossReach,
+                 [&sum](const Point& p, const Reference& q, const Vector3f& way, double w) {
+                   const float a =
+                       agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
+                   sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
+                 });
   }
   return sum;
 }
@@ -97,25 +104,16 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   double above[simd::kHeights] = {};
   double all[simd::kHeights] = {};
   const auto sign = static_cast<float>(now_.parts[sheet.part].sign);
-  const std::uint32_t skip = stride_for(sheet.count, kTried);
-  const std::uint32_t step = stride_for(references_.size(), kReferences);
   double planes[simd::kHeights] = {};
-  for (std::uint32_t k = 0; k < sheet.count && pairs_ > 0; k += skip) {
-    const Point& p = points_[order_[sheet.begin + k]];
-    const float reach = kMeetReach * p.radius;
-    for (std::size_t r = 0; r < references_.size(); r += step, --pairs_) {
-      const Reference& q = references_[r];
-      const Vector3f way = p.place - q.place;
-      const float squared = way.squaredNorm();
-      if (squared >= reach * reach || !(squared > 0)) continue;
-      const double w = weight(squared, reach);
-      const float length = std::sqrt(squared);
-      parallel[q.label] += w * static_cast<double>(sign * p.normal.dot(q.normal));
-      planes[q.label] += w * static_cast<double>(q.normal.dot(way) / length);
-      above[q.label] += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
-      all[q.label] += w;
-    }
-  }
+  each_meeting(
+      sheet, kMeetReach, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
+        const float length = way.norm();
+        if (!(length > 0)) return;
+        parallel[q.label] += w * static_cast<double>(sign * p.normal.dot(q.normal));
+        planes[q.label] += w * static_cast<double>(q.normal.dot(way) / length);
+        above[q.label] += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
+        all[q.label] += w;
+      });
   int same = -1;
   for (int k = 0; k < simd::kHeights; ++k) {
     const bool one = all[k] > kLeastMeeting && parallel[k] > kSameNormal * all[k] &&

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 #include "geometry/neighborhoods.hpp"
 #include "geometry/signed_sets.hpp"

@@ -109,15 +109,12 @@ class Outlook {
       while (k < count && heard[k].first != sheet) ++k;
       if (k == kVoteSheets) continue;
       if (k == count) heard[count++] = {sheet, 0};
-      if (heard[k].second++ == kVotesEach)
-        --heard[k].second;
-      else {
-        const auto [a, b] = std::minmax(sheets_.sheet[i], sheet);
-        votes.push_back({a, b,
-                         agreement(own_.normals[i], own_.normals[j],
-                                   input_.grid.points()[j] - input_.grid.points()[i],
-                                   sheet_tolerance(input_, own_, i, j))});
-      }
+      if (heard[k].second++ >= kVotesEach) continue;
+      const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
+      const auto [a, b] = std::minmax(sheets_.sheet[i], sheet);
+      votes.push_back(
+          {a, b,
+           agreement(own_.normals[i], own_.normals[j], way, sheet_tolerance(input_, own_, i, j))});
     }
   }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -136,8 +137,7 @@ double gap_between_groups(std::span<const double> heights, double spacing) {
   return two ? 0.5 * (upper.front() + lower.back()) : kNone;
 }
 
-// What a sheet's fit may leave, of R or of the noise, and how far off it a point of it may be, of
-// R.
+// What a sheet's fit may leave, of R or of the noise, and how far off it its points may be, of R.
 constexpr double kSmooth = 0.03;
 constexpr double kNoisySmooth = 1.6;
 constexpr double kOnSheet = 0.12;
@@ -189,6 +189,10 @@ SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, d
                           double spacing, double smooth) {
   near_.clear();
   grid.within(center, static_cast<float>(reach), near_);
+  if (const std::size_t step = (near_.size() + kMostPoints - 1) / kMostPoints; step > 1) {
+    for (std::size_t k = 0; k * step < near_.size(); ++k) near_[k] = near_[k * step];
+    near_.resize((near_.size() + step - 1) / step);
+  }
   return fit(grid, center, near_, reach, spacing, smooth);
 }
 
@@ -243,7 +247,6 @@ void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
   Moments moments = Moments::Zero();
   Terms right = Terms::Zero();
   double squares = 0;
-  placed_.clear();
   for (const Vector3d& offset : offsets_) {
     const Vector3d& p = placed_.emplace_back(u.dot(offset), v.dot(offset), normal.dot(offset));
     const Terms t = terms_at(p / reach);

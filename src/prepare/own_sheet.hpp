@@ -53,6 +53,8 @@ class SheetFitter {
   [[nodiscard]] std::size_t places(double spacing);
 
   static constexpr std::size_t kEnough = 10;  ///< points of a quadric, which has six terms
+  /// The window of a stray far away may hold a whole scan: of more points, every n-th is looked at.
+  static constexpr std::size_t kMostPoints = 1 << 14;
 
  private:
   [[nodiscard]] bool keep_own_group(const Eigen::Vector3d& axis, double spacing);

@@ -1,8 +1,6 @@
 #include "prepare/sheets.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -73,7 +71,7 @@ std::vector<int> known_signs(const SheetInput& input, const KnownSigns& known, c
     if (known.eye) {
       const Vector3f way = *known.eye - input.grid.points()[i];
       const float cosine = own.normals[i].dot(way.normalized());
-      const bool hidden = (cosine > 0 ? sheets.above[i] : sheets.below[i]) < kCertain;
+      const bool hidden = std::isfinite(cosine > 0 ? sheets.above[i] : sheets.below[i]);
       hidden ? seen.add_hidden(sheet) : seen.add(sheet, static_cast<double>(cosine));
     }
   }

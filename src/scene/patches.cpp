@@ -79,7 +79,7 @@ const Patch* Patches::at(const Ball& ball, double margin) const noexcept {
   constexpr int kSumsAGather = 20;
   const std::uint64_t before = gathers_;
   const Patch* const patch = find(ball, margin);
-  if (!patch) return nullptr;
+  if (!patch || !stepping_) return patch;
   const auto points = static_cast<int>(patch->points());
   summed_ += ball.radius > 0 ? points / kBallsASum : points;
   if (gathers_ != before) summed_ += kSumsAGather * points;

@@ -63,7 +63,7 @@ class Patches {
 
   /// thinned and work_spent, since begin_update().
   [[nodiscard]] FieldNote notes() const noexcept { return notes_; }
-  /// Since begin_step(), and as many as gathers take the time of.
+  /// Of the last step, and as many as gathers take the time of.
   [[nodiscard]] int points_summed() const noexcept { return summed_; }
   [[nodiscard]] std::uint64_t gathers() const noexcept { return gathers_; }
   [[nodiscard]] std::uint64_t visits() const noexcept { return visits_; }

@@ -132,6 +132,22 @@ TEST(Analytic, UnionTellsWhichPartIsTouched) {
   EXPECT_EQ(both.surface({0.9, 0, 0}).source, 1);
 }
 
+/// One that says what a sample of it costs.
+class SummingField final : public Field {
+ public:
+  [[nodiscard]] Sample sample(const Vector3d&) const noexcept override { return {.value = 1}; }
+  [[nodiscard]] bool is_free(const Ball&) const noexcept override { return true; }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] FieldTraits traits() const noexcept override { return {}; }
+  [[nodiscard]] int points_summed() const noexcept override { return 700; }
+};
+
+TEST(Analytic, UnionCostsWhatItsPartsCost) {
+  const SummingField points;
+  const SphereField sphere(0.1);
+  EXPECT_EQ(UnionField({&points, &sphere, &points}).points_summed(), 1400);
+}
+
 TEST(Analytic, RefusesShapesThatAreNone) {
   EXPECT_THROW(SphereField(0), Error);
   EXPECT_THROW(SphereField(std::nan("")), Error);

@@ -85,6 +85,15 @@ TEST(SheetFit, MeasuresWhiteNoiseWithoutBias) {
   EXPECT_NEAR(shared, 1, 0.2);
 }
 
+TEST(SheetFit, LooksAtAScanThatAStraySeesAsAWholeByASample) {
+  const CellGrid grid(sheet(300, 0));
+  SheetFitter fitter;
+  const SheetFit fit = fitter.fit(grid, Vector3f(0, 0, 1), 3, 0.5);
+  EXPECT_LE(fit.points, SheetFitter::kMostPoints);
+  EXPECT_GT(fit.points, SheetFitter::kMostPoints / 2);
+  EXPECT_NEAR(fit.off, 1, 1e-6);
+}
+
 TEST(SheetFit, StaysFiniteOnDegeneratePoints) {
   SheetFitter fitter;
   const std::vector<Vector3f> same(30, Vector3f(1, 2, 3));

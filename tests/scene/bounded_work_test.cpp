@@ -69,6 +69,7 @@ TEST(BoundedWork, OutsideOfAStepSamplesAreBoundedOneByOne) {
     const double x = k % 2 == 0 ? 50e-3 : -50e-3;
     EXPECT_NEAR(field.sample({x, 0, 2e-3}).value, 2e-3, 1e-6);
   }
+  EXPECT_EQ(field.points_summed(), 0);  // nobody sets it back to 0 outside of steps
   EXPECT_GT(field.visits(), std::uint64_t{SceneField::kStepVisits});
   EXPECT_FALSE(has(field.notes(), FieldNote::work_spent));
 }

@@ -107,6 +107,7 @@ class UnionField final : public Field {
   /// The finest resolution, the longest reach, the sum of the revisions.
   [[nodiscard]] FieldTraits traits() const noexcept override;
   void begin_step() const noexcept override;
+  [[nodiscard]] int points_summed() const noexcept override;
   void end_step(const Eigen::Vector3d& proxy,
                 const Eigen::Vector3d& normal) const noexcept override;
 
