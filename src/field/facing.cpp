@@ -25,6 +25,8 @@ constexpr int kPairs = 2048;  // in one call
 }  // namespace
 
 Facing::Facing(std::size_t capacity) {
+  now_.clear();
+  before_.clear();
   points_.reserve(capacity);
   sheet_of_place_.reserve(capacity);
   order_.reserve(capacity);
@@ -33,8 +35,7 @@ Facing::Facing(std::size_t capacity) {
 }
 
 void Facing::forget() noexcept {
-  now_.part_count = 0;
-  now_.sheet_count = 0;
+  now_.clear();
   remembered_.clear();
 }
 
@@ -58,18 +59,27 @@ std::uint32_t Facing::part_of(const Key& key, bool known) noexcept {
   return now_.part_count++;
 }
 
+void Facing::Table::clear() noexcept {
+  part_count = 0;
+  sheet_count = 0;
+  slots.fill(kMost);
+}
+
+std::uint8_t* Facing::Table::find(const Key& key) noexcept {
+  auto at = static_cast<std::uint8_t>((key.number * 2654435761u) >> 24);
+  while (slots[at] < kMost && sheets[slots[at]].key != key) ++at;
+  return &slots[at];
+}
+
 /// kMost: there are too many. There are no more parts than sheets.
 std::uint32_t Facing::sheet_of(const Key& key, const Key& part, bool known) noexcept {
-  for (std::uint32_t k = now_.sheet_count; k-- > 0;) {
-    if (now_.sheets[k].key == key) return k;
-  }
-  if (now_.sheet_count == kMost) return kMost;
+  std::uint8_t* const slot = now_.find(key);
+  if (*slot < kMost || now_.sheet_count == kMost) return *slot;
   Sheet sheet{.key = key, .part = part_of(part, known)};
-  for (std::uint32_t k = 0; k < before_.sheet_count; ++k) {
-    if (before_.sheets[k].key == key) sheet.label = before_.sheets[k].label;
-  }
+  const std::uint8_t before = *before_.find(key);
+  if (before < kMost) sheet.label = before_.sheets[before].label;
   now_.sheets[now_.sheet_count] = sheet;
-  return now_.sheet_count++;
+  return *slot = static_cast<std::uint8_t>(now_.sheet_count++);
 }
 
 void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t> places,
@@ -114,8 +124,7 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
 
 void Facing::list(const Points& points, const Stance& stance) noexcept {
   std::swap(before_, now_);
-  now_.part_count = 0;
-  now_.sheet_count = 0;
+  now_.clear();
   points_.clear();
   sheet_of_place_.clear();
   for (std::size_t k = 0; k < points.layers.size(); ++k) {
@@ -194,12 +203,8 @@ void Facing::add_references(const Sheet& sheet) noexcept {
 bool Facing::list_references(const Stance& stance) noexcept {
   references_.clear();
   bool vanished = false;
-  for (std::uint32_t k = 0; k < before_.sheet_count; ++k) {
-    const Sheet& old = before_.sheets[k];
-    const auto known = std::span(now_.sheets).first(now_.sheet_count);
-    vanished =
-        vanished ||
-        (old.near && std::ranges::none_of(known, [&](const Sheet& s) { return s.key == old.key; }));
+  for (const Sheet& old : std::span(before_.sheets).first(before_.sheet_count)) {
+    vanished = vanished || (old.near && *now_.find(old.key) == kMost);
   }
   if (vanished) {
     const Vector3f shift = (remembered_from_ - stance.proxy).cast<float>();

@@ -93,6 +93,11 @@ class Facing {
     std::array<Sheet, kMost> sheets;
     std::uint32_t part_count = 0;
     std::uint32_t sheet_count = 0;
+    std::array<std::uint8_t, 256> slots;  // of sheets, by their keys' hashes and what follows
+
+    void clear() noexcept;
+    /// Where the sheet is in `slots`, or would be.
+    [[nodiscard]] std::uint8_t* find(const Key& key) noexcept;
   };
   /// One point with confidence, and what is asked of it again and again.
   struct Point {
