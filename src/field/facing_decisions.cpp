@@ -21,8 +21,8 @@ constexpr float kMeetReach = 1.3f;  // R within which sheets meet
 constexpr double kLeastMeeting = 1e-3;
 constexpr double kSameNormal = 0.7;
 constexpr double kSamePlane = 0.3;
-constexpr float kHiddenView = 2.6f;         // R
-constexpr std::uint32_t kTried = 16;        // points of a sheet that are compared
+constexpr float kHiddenView = 2.6f;        // R
+constexpr std::uint32_t kTried = 16;       // points of a sheet that are compared
 constexpr std::uint32_t kReferences = 64;  // points that they are compared with
 
 double weight(float squared, float reach) noexcept {
