@@ -24,7 +24,6 @@
 #include "prepare/given_normals.hpp"
 #include "prepare/irregularity.hpp"
 #include "prepare/limit_growth.hpp"
-#include "prepare/merge_slivers.hpp"
 #include "prepare/noise.hpp"
 #include "prepare/noise_map.hpp"
 #include "prepare/noisy_radii.hpp"
@@ -40,9 +39,6 @@ using Clock = std::chrono::steady_clock;
 
 // A cloud this noisy, against its spacing, is thinned to two spacings; a cleaner one is kept whole.
 constexpr double kNoisy = 0.25;
-
-// Centroids closer than this, in leaves, are one piece of surface that a face of the voxels cuts.
-constexpr double kSliver = 0.7;
 
 // The paper's multiple m, its k nearest neighbours and the level of its metaball (section V).
 constexpr double kPaperMultiple = 2.5;
@@ -146,7 +142,6 @@ class Preparation {
     if (noisy && !options_.radius) noise_map_.emplace(points_.grid, spacings_);
     watch_.lap(report_.seconds_spacing);
     own_ = voxel_downsample(*cloud_, report_.voxel, &counts_);
-    if (noisy) own_ = merge_slivers(own_, kSliver * report_.voxel, counts_);
     cloud_ = &own_;
     watch_.lap(report_.seconds_filter);
     index();

@@ -8,7 +8,6 @@
 
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/count_weights.hpp"
-#include "prepare/merge_slivers.hpp"
 #include "prepare/noise_map.hpp"
 #include "prepare/noisy_radii.hpp"
 #include "prepare/own_sheet.hpp"
@@ -161,19 +160,6 @@ TEST(NoisyRadii, ShrinkAtAnEdgeAndKeepTheirFloor) {
     }
     EXPECT_GE(radii[i], 0.0095f);
   }
-}
-
-TEST(MergeSlivers, AveragesByCountsAndKeepsTheRest) {
-  PointCloud cloud;
-  cloud.positions = {{0, 0, 0}, {0, 0, 0.001f}, {0.01f, 0, 0}};
-  cloud.intensities = {10, 20, 30};
-  std::vector<std::uint32_t> counts = {3, 1, 5};
-  const PointCloud merged = merge_slivers(cloud, 0.002, counts);
-  ASSERT_EQ(merged.size(), 2u);
-  EXPECT_NEAR(merged.positions[0].z(), 0.00025f, 1e-9f);
-  EXPECT_FLOAT_EQ(merged.intensities[0], 12.5f);
-  EXPECT_EQ(merged.positions[1], cloud.positions[2]);
-  EXPECT_EQ(counts, (std::vector<std::uint32_t>{4, 5}));
 }
 
 TEST(CountWeights, KeepTheSumOfWeights) {
