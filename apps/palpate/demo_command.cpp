@@ -61,7 +61,8 @@ std::vector<std::string> sources_of(const std::string& name) {
 void add_demo_options(CLI::App& command, DemoOptions& o) {
   command.add_option("scene", o.scene, list())->check(one_of(names()))->type_name("SCENE");
   command
-      .add_option("--duration", o.duration, wrapped("ends after so long (never, but for Ctrl-C)"))
+      .add_option("--duration", o.duration,
+                  wrapped("ends after this time (without it: when Ctrl-C is pressed)"))
       ->check(number("from 0.1 to 86400 s", [](double x) { return x >= 0.1 && x <= 86'400; }))
       ->type_name("SECONDS");
   command.add_flag("--headless", o.headless, wrapped("opens no browser"));

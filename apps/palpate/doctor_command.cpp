@@ -17,7 +17,8 @@ namespace {
 constexpr int kWarnings = 3;
 constexpr double kLongest = 3600;  // s
 
-constexpr const char* kDoctorFooter = R"(It changes nothing; what it tells to run is yours to run.
+constexpr const char* kDoctorFooter =
+    R"(It changes nothing: it prints commands, and you decide whether to run them.
 
 Examples:
   palpate doctor

@@ -28,6 +28,8 @@ constexpr const char* kInfoFooter = R"(Examples:
   palpate info - < scan.pcd
   palpate info sequence:recording camera:openni2
 
+docs/touch.md says what each line of the report means.
+
 Exit codes: 0 done, 1 the input is at fault, 2 the command line is wrong.)";
 
 InfoReport study(const CloudArgument& argument, const ReadingOptions& options,

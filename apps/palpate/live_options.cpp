@@ -11,11 +11,12 @@ void add_live_options(CLI::App& command, LiveOptions& o) {
     return command.add_option(name, value, wrapped(help))->group("Real time");
   };
   add("--maximum-force", o.maximum_force,
-      "no longer force goes to the device, nor one that it cannot hold (what the device can hold)")
+      "largest force that goes to the device, never more than it can hold (what the device can "
+      "hold)")
       ->check(positive())
       ->type_name("N");
   add("--processor", o.processor,
-      "the servo's thread runs on this one alone, from 0; best one that is kept free "
+      "the servo's thread runs on this processor alone, counted from 0; best one that is kept free "
       "(isolcpus=N)")
       ->check(whole_number(0, 1023))
       ->type_name("N");

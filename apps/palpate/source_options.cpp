@@ -27,7 +27,7 @@ void add_surface_of_source(CLI::App& command, SourceChoices& o) {
   add("--radius", o.radius, "support radius R of every point: larger is smoother")
       ->check(positive())
       ->type_name("METRES");
-  add("--voxel", o.voxel, "edge of the voxel filter of clouds; 0 keeps every point")
+  add("--voxel", o.voxel, "edge of the voxel filter of clouds; 0: none")
       ->check(not_negative())
       ->type_name("METRES");
 }
@@ -44,12 +44,16 @@ void add_stream_options(CLI::App& command, SourceChoices& o) {
   add("--history", o.history, "N of average and crossfade, 1 to 7 (4)")
       ->check(whole_number(1, 7))
       ->type_name("N");
-  add("--silence", o.silence, "a surface that nothing confirmed for so long begins to fade (0.3)")
+  add("--silence", o.silence,
+      "a surface that no frame has confirmed for this long begins to fade (0.3)")
       ->check(positive())
       ->type_name("SECONDS");
-  add("--fade", o.fade, "in which it fades away (0.5)")->check(positive())->type_name("SECONDS");
+  add("--fade", o.fade, "time that it takes to fade away (0.5)")
+      ->check(positive())
+      ->type_name("SECONDS");
   add("--noise", o.noise,
-      "sd of a depth pixel, S0 + S1 z + S2 z^2 at z metres, and how much neighbours err together "
+      "standard deviation of a depth pixel, S0 + S1 z + S2 z^2 at z metres, and how much "
+      "neighbours err together "
       "(C >= 1); or a sensor: kinect1, xtion, realsense, tof. Measured from the frames unless "
       "given")
       ->check(parsed_by([](const std::string& text) { (void)parse_noise(text); }))
@@ -58,7 +62,8 @@ void add_stream_options(CLI::App& command, SourceChoices& o) {
       ->check(number("a depth of 0.001 m or more", [](double x) { return x >= 1e-3; }))
       ->type_name("METRES");
   add("--farthest", o.farthest,
-      "nor one beyond this (20, or ten times the first frame's median where that is less)")
+      "the depth filter takes no depth beyond this (20, or ten times the first frame's median "
+      "where that is less)")
       ->check(positive())
       ->type_name("METRES");
   command
@@ -68,10 +73,10 @@ void add_stream_options(CLI::App& command, SourceChoices& o) {
       ->group("Streams");
   command
       .add_flag("--clip-to-reach", o.clip_to_reach,
-                wrapped("of frames taken as clouds, prepare only what the tool can come to before "
+                wrapped("of frames taken as clouds, prepare only what the tool can reach before "
                         "the next one, as the paper does"))
       ->group("Streams");
-  command.add_flag("--loop", o.loop, "sequences begin anew at their end")->group("Streams");
+  command.add_flag("--loop", o.loop, "sequences start again at their end")->group("Streams");
 }
 
 }  // namespace
@@ -87,13 +92,14 @@ void add_reading_options(CLI::App& command, ReadingOptions& o) {
   const auto add = [&](const std::string& name, auto& value, const std::string& help) {
     return command.add_option(name, value, wrapped(help))->group("Reading");
   };
-  add("--scale", o.scale, "metres a unit of the file: 0.001 for millimetres, 0.3048 for feet (1)")
+  add("--scale", o.scale, "metres per unit of the file: 0.001 for millimetres, 0.3048 for feet (1)")
       ->check(positive())
       ->type_name("FACTOR");
-  add("--intrinsics", o.intrinsics, "of a depth image, in pixels; needed for one")
+  add("--intrinsics", o.intrinsics,
+      "focal lengths and centre of a depth image, in pixels; a depth image needs them")
       ->check(parsed_by([](const std::string& text) { (void)parse_intrinsics(text); }))
       ->type_name("FX,FY,CX,CY");
-  add("--depth-unit", o.depth_unit, "metres a step of a depth image (0.001)")
+  add("--depth-unit", o.depth_unit, "metres per step of a depth image's values (0.001)")
       ->check(positive())
       ->type_name("METRES");
 }

@@ -17,7 +17,7 @@ void add_surface_options(CLI::App& command, TouchOptions& o) {
   const auto add = [&](const std::string& name, auto& value, const std::string& help) {
     return command.add_option(name, value, wrapped(help))->group(group);
   };
-  add("--field", o.field, "balanced (default), pointset or metaball")
+  add("--field", o.field, "how points become a surface: balanced (default), pointset or metaball")
       ->check(one_of(names_of(kFields)))
       ->type_name("NAME");
   add("--preset", o.preset,
@@ -28,13 +28,13 @@ void add_surface_options(CLI::App& command, TouchOptions& o) {
       ->check(one_of(names_of(kKernels)))
       ->type_name("NAME");
   add("--gradient", o.gradient,
-      "exact (default), normal (eq. 8) or printed (eq. 4 as printed, which points inward)")
+      "of the metaball: exact (default), or as in the paper: normal (eq. 8) or printed (eq. 4 as "
+      "printed, which points inward)")
       ->check(one_of(names_of(kGradients)))
       ->type_name("NAME");
   add("--threshold", o.threshold,
-      "level of the metaball, 0 to 1; lower is farther out (0.4). Other fields go over to a "
-      "metaball "
-      "where normals cannot be trusted")
+      "level of the metaball, 0 to 1; lower is farther out (0.4). Other fields become a "
+      "metaball where normals cannot be trusted")
       ->check(number("between 0 and 1", [](double x) { return x > 0 && x < 1; }))
       ->type_name("LEVEL");
   add("--tool-radius", o.tool_radius, "radius of the ball that touches; 0: a point")
@@ -61,7 +61,7 @@ void add_feel_options(CLI::App& command, TouchOptions& o) {
   add("--friction-dynamic", o.friction_dynamic, "coefficient while it slides (0)")
       ->check(not_negative())
       ->type_name("MU");
-  add("--friction-viscous", o.friction_viscous, "grows with the speed of sliding (0)")
+  add("--friction-viscous", o.friction_viscous, "friction that grows with the speed of sliding (0)")
       ->check(not_negative())
       ->type_name("N S/M");
   add("--soft-friction", o.soft_friction,
@@ -69,10 +69,11 @@ void add_feel_options(CLI::App& command, TouchOptions& o) {
       "where that is highest")
       ->check(number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }))
       ->type_name("SHARE");
-  add("--texture-amplitude", o.texture_amplitude, "of a fine relief on the surface (0: none)")
+  add("--texture-amplitude", o.texture_amplitude,
+      "amplitude of a fine relief on the surface (0: none)")
       ->check(not_negative())
       ->type_name("METRES");
-  add("--texture-wavelength", o.texture_wavelength, "of that relief (0.004)")
+  add("--texture-wavelength", o.texture_wavelength, "wavelength of that relief (0.004)")
       ->check(positive())
       ->type_name("METRES");
 }
@@ -86,11 +87,14 @@ void add_hand_options(CLI::App& command, TouchOptions& o) {
       ->type_name("FILE");
   add_device_option(command, o.devices, "Hand");
   add("--duration", o.duration,
-      "of the built-in exploration (10); ends a run with a remote device or a page, too (Ctrl-C)")
+      "how long the built-in exploration goes on (10); where it is given, a run with a remote "
+      "device "
+      "or a page ends then, too (without it by Ctrl-C)")
       ->check(number("between 0.01 and 3600 s", [](double x) { return x >= 0.01 && x <= 3600; }))
       ->type_name("SECONDS");
   add("--seed", o.seed,
-      "of the exploration: another one touches other places (1; the next hand has the next)")
+      "which places the exploration touches: another number, other places (1; each further hand "
+      "has the next number)")
       ->check(whole_number(0, kLargestSeed))
       ->type_name("N");
   add("--rate", o.rate,
@@ -103,11 +107,12 @@ void add_time_options(CLI::App& command, TouchOptions& o) {
   command
       .add_flag("--simulated-time", o.simulated_time,
                 wrapped("cameras, preparation and servo on one simulated clock, as fast as they "
-                        "go: the same command gives the same log. Files alone always do"))
+                        "go: the same command gives the same log. Files without a page do so "
+                        "anyway"))
       ->group("Streams");
   command
       .add_option("--latency", o.latency,
-                  wrapped("from a frame's stamp to its surface's being felt in simulated time "
+                  wrapped("time from a frame's stamp until its surface is felt, in simulated time "
                           "(0.01)"))
       ->check(number("between 0 and 10 s", [](double x) { return x >= 0 && x <= 10; }))
       ->type_name("SECONDS")
@@ -138,9 +143,9 @@ constexpr const char* kTouchFooter = R"(Examples:
   gunzip -c dragon.ply.gz | palpate touch -
 
 The log begins with t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,fx,fy,fz,us: seconds, metres in the
-world frame, newtons on the hand (K (proxy - hip); in real time what the guard made of it),
+world frame, newtons on the hand (K (proxy - hip); in real time the force that the guard let pass),
 microseconds of computing. The same input gives the same log but for us. With streams in simulated
-time, t = 0 is the first frame's stamp.
+time, t = 0 is the first frame's stamp. docs/touch.md explains log, report and picture.
 
 Exit codes: 0 done, 1 the input or the run failed, 2 the command line is wrong.)";
 
@@ -150,21 +155,21 @@ void add_touch_options(CLI::App& command, TouchOptions& o) {
   command
       .add_option("sources", o.clouds,
                   wrapped(cloud_help() +
-                          "; or what lives: camera:simulated[:SCENE], camera:openni2, "
+                          "; or a live source: camera:simulated[:SCENE], camera:openni2, "
                           "camera:freenect, sequence:FOLDER, or an .oni file ('palpate cameras' "
                           "lists what is there)"))
       ->type_name("SOURCE");
   command
       .add_option("--setup", o.setup,
                   wrapped("TOML file with sources, poses, surface, material, hand; the command "
-                          "line wins over it (docs/setup.md)"))
+                          "line overrides it (docs/setup.md)"))
       ->type_name("FILE")
       ->group("Reading");
   add_source_options(command, o.choices);
   command
       .add_option("--pose", o.poses,
-                  wrapped("where a source's frame is in the world; once for each that is not at "
-                          "its origin"))
+                  wrapped("where a source's frame is in the world; once for each source that is "
+                          "not at the world's origin"))
       ->type_name("NAME=X,Y,Z,QX,QY,QZ,QW")
       ->allow_extra_args(false)
       ->group("Reading");

@@ -44,12 +44,13 @@ void add_page_options(CLI::App& command, ViewOptions& o) {
   command
       .add_option("--listen", o.listen,
                   wrapped("address that the page is served on (127.0.0.1: this machine alone); "
-                          "who is told the page's address may move the hand"))
+                          "whoever knows the page's address may move the hand"))
       ->check(parsed_by(check_address))
       ->type_name("ADDRESS")
       ->group(kGroup);
   command
-      .add_option("--port", o.port, wrapped("of the page; 0: any (the first free one from 8420)"))
+      .add_option("--port", o.port,
+                  wrapped("port of the page; 0: any (the first free one from 8420)"))
       ->check(whole_number(0, 65535))
       ->type_name("N")
       ->group(kGroup);
