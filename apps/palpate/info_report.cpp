@@ -72,7 +72,10 @@ void print_surface(const InfoReport& report, std::FILE* out) {
 void print_advice(const InfoReport& report, const Style& style, std::FILE* out) {
   const PrepareReport& r = report.prepared;
   fmt::print(out, "{}\n", style.heading("touch would use"));
-  fmt::print(out, "  --voxel    {:.3g} ({} points are left{})\n", r.voxel, grouped(r.points_out),
+  fmt::print(out, "  --voxel    {:.3g} ({} points are left{}{})\n", r.voxel, grouped(r.points_out),
+             r.duplicates > 0
+                 ? fmt::format(", {} were at the place of another", grouped(r.duplicates))
+                 : "",
              r.speckle > 0 ? fmt::format(", {} dropped as speckle", grouped(r.speckle)) : "");
   fmt::print(out, "  --radius   {:.3g} ({:.1f} times the spacing", r.radius,
              r.spacing > 0 ? r.radius / r.spacing : 0);

@@ -20,6 +20,7 @@ void print_cloud(const TouchedSource& cloud, const Style& style, std::FILE* out)
   fmt::print(out, "{} {} ({})\n", style.heading(cloud.argument.name), cloud.argument.path,
              cloud.format);
   fmt::print(out, "  points     {} read, {} felt", grouped(r.points_in), grouped(r.points_out));
+  if (r.duplicates > 0) fmt::print(out, ", {} at the place of another", grouped(r.duplicates));
   if (r.speckle > 0) fmt::print(out, ", {} dropped as speckle", grouped(r.speckle));
   if (cloud.dropped > 0) fmt::print(out, ", {} invalid", grouped(cloud.dropped));
   fmt::print(out, "\n");
@@ -48,6 +49,7 @@ Json json_cloud(const TouchedSource& cloud) {
           {"points_invalid", cloud.dropped},
           {"points_read", r.points_in},
           {"points_felt", r.points_out},
+          {"points_duplicate", r.duplicates},
           {"points_speckle", r.speckle},
           {"spacing_m", r.spacing},
           {"noise_m", r.noise},

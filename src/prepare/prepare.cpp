@@ -90,6 +90,7 @@ class Preparation {
     index();
     const auto distinct = first_of_each_place(points_.grid);
     if (!options_.paper && distinct.size() < points_.size()) {
+      report_.duplicates = points_.size() - distinct.size();
       own_ = select(*cloud_, distinct);
       cloud_ = &own_;
       index();

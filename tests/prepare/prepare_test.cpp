@@ -101,6 +101,7 @@ TEST(Prepare, PointsAtOnePlaceAreOne) {
   const Prepared made = prepare(often);
   EXPECT_EQ(made.report.points_in, often.size());
   EXPECT_EQ(made.report.points_out, once.size());
+  EXPECT_EQ(made.report.duplicates, often.size() - once.size());
   EXPECT_TRUE(std::ranges::equal(made.points.grid.points(), expected.points.grid.points()));
   EXPECT_EQ(made.points.radii, expected.points.radii);
   EXPECT_EQ(made.points.normals, expected.points.normals);

@@ -42,6 +42,7 @@ struct PrepareOptions {
 struct PrepareReport {
   std::size_t points_in = 0;
   std::size_t points_out = 0;  ///< that are felt: after clip, voxel filter, speckle
+  std::size_t duplicates = 0;  ///< points left out, as others lie at their very place
   std::size_t speckle = 0;     ///< points that weigh nothing as speckle
   double spacing = 0;          ///< s, median, m
   double noise = 0;            ///< rms distance from a smooth surface, m
