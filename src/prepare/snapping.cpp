@@ -59,19 +59,23 @@ class Snapping {
       if (sure_[i] != 0) hosts_[i] = i;
     }
     index_sure();
-    detail::parallel_ranges(sure_.size(), 512, [this](std::size_t begin, std::size_t end) {
-      std::vector<std::uint32_t> near;
-      for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
-        if (sure_[i] == 0) {
-          take_host(i, near);
-        } else if (own_.others[i] != 0) {
-          list_sure(i, near);
-          second_hosts_[i] = second_host(i, i, near);
-        }
+    each_with_memory([this](std::uint32_t i, std::vector<std::uint32_t>& near) {
+      if (sure_[i] == 0) {
+        take_host(i, near);
+      } else if (own_.others[i] != 0) {
+        list_sure(i, near);
+        second_hosts_[i] = second_host(i, i, near);
       }
     });
-    for (std::uint32_t i = 0; i < sure_.size(); ++i) {
-      if (hosts_[i] == kNoHost) own_.confidences[i] = 0;
+    std::vector<std::uint8_t> alone(sure_.size());
+    each_with_memory([&](std::uint32_t i, std::vector<std::uint32_t>& near) {
+      if (hosts_[i] == kNoHost) alone[i] = is_among_homeless(i, near) ? 1 : 0;
+    });
+    for (std::uint32_t i = 0; i < alone.size(); ++i) {
+      if (hosts_[i] != kNoHost) continue;
+      sure_[i] = alone[i];
+      if (alone[i] != 0) hosts_[i] = i;
+      if (alone[i] == 0) own_.confidences[i] = 0;
     }
   }
 
@@ -116,6 +120,14 @@ class Snapping {
     }
   }
 
+  template <class Body>
+  void each_with_memory(const Body& body) const {
+    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = begin; i < end; ++i) body(static_cast<std::uint32_t>(i), near);
+    });
+  }
+
   void take_host(std::uint32_t i, std::vector<std::uint32_t>& near) {
     list_sure(i, near);
     const std::uint32_t host = best_host(i, near);
@@ -129,6 +141,16 @@ class Snapping {
       own_.residuals[i] = own_.residuals[host];
     }
     own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
+  }
+
+  /// Where a thing is so small that hardly a point of it is sure, a plane has to do.
+  [[nodiscard]] bool is_among_homeless(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    if (own_.confidences[i] < kPlanarFit) return false;
+    near.clear();
+    input_.grid.within(input_.grid.points()[i], input_.radii[i], near);
+    const auto homeless =
+        std::ranges::count_if(near, [this](std::uint32_t j) { return hosts_[j] == kNoHost; });
+    return 2 * static_cast<std::size_t>(homeless) >= near.size();
   }
 
   /// Of sure points the one whose plane the point lies on best.

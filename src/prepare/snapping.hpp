@@ -19,7 +19,7 @@ struct Snapped {
 
 /// A point is sure of its plane where its own fit is smooth. At edges and creases, where it is not,
 /// a point takes over the fit of the sure one on whose plane it lies. One that lies on none has no
-/// confidence left.
+/// confidence left, unless hardly anything is sure around it.
 [[nodiscard]] Snapped snap_to_planes(const SheetInput& input, OwnSheets& own);
 
 /// The curvature that a sure point's fit tells, 1/m: a sphere's cap of radius a and curvature k is

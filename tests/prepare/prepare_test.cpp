@@ -78,6 +78,12 @@ TEST(Prepare, PutsTheCloudWhereItsPoseSays) {
   }
 }
 
+// Noise that a given radius does not average leaves no point sure of its plane.
+TEST(Prepare, NoisyPointsOfAGivenRadiusKeepTheirNormals) {
+  const PrepareReport report = prepare(flat(2e-3), {.paper = true}).report;
+  EXPECT_LT(report.untrusted, 0.2);
+}
+
 TEST(Prepare, SpeckleWeighsNothing) {
   PointCloud cloud = flat();
   cloud.positions.emplace_back(0.0f, 0.0f, 0.1f);
