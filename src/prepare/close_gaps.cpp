@@ -9,6 +9,7 @@
 
 #include "geometry/distance.hpp"
 #include "geometry/parallel.hpp"
+#include "prepare/sheet_fit.hpp"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
-#include "prepare/own_sheet.hpp"
+#include "prepare/own_sheets.hpp"
 
 namespace palpate {
 

@@ -10,17 +10,20 @@ constexpr float kTrusted = 0.5f;  // confidence
 }  // namespace
 
 std::vector<std::uint32_t> first_of_each_place(const CellGrid& grid) {
-  std::vector<std::uint32_t> first;
-  first.reserve(grid.size());
+  std::vector<std::uint8_t> later(grid.size());  // 1: another one stands there before it
   for (const CellGrid::Cell& cell : grid.cells()) {
     if (cell.children > 0) continue;
     const auto points = grid.points().subspan(cell.begin, cell.size());
-    for (auto p = points.begin(); p != points.end(); ++p) {
-      if (std::find(points.begin(), p, *p) != p) continue;
-      first.push_back(grid.order()[static_cast<std::size_t>(p - grid.points().begin())]);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto before = points.first(k);
+      const bool repeated = std::ranges::find(before, points[k]) != before.end();
+      later[grid.order()[cell.begin + k]] = repeated ? 1 : 0;
     }
   }
-  std::sort(first.begin(), first.end());
+  std::vector<std::uint32_t> first;
+  for (std::uint32_t i = 0; i < later.size(); ++i) {
+    if (later[i] == 0) first.push_back(i);
+  }
   return first;
 }
 

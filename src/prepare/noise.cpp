@@ -6,7 +6,7 @@
 
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "prepare/own_sheet.hpp"
+#include "prepare/sheet_fit.hpp"
 
 namespace palpate {
 namespace {

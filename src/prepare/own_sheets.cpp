@@ -1,15 +1,13 @@
-#include <Eigen/Core>
+#include "prepare/own_sheets.hpp"
+
 #include <algorithm>
 
 #include "geometry/neighborhoods.hpp"
 #include "palpate/geometry/normals.hpp"
-#include "prepare/own_sheet.hpp"
+#include "prepare/sheet_fit.hpp"
 
 namespace palpate {
 namespace {
-
-// Normals come from a little further away than the surface: the balanced field adds their noise.
-constexpr float kNormalsReach = 1.15f;
 
 constexpr double kSmoothFit = 0.03;  // of R that a quadric may leave before others are looked for,
 constexpr double kNoisyFit = 1.2;    // of the noise

@@ -27,7 +27,7 @@
 #include "prepare/noise.hpp"
 #include "prepare/noise_map.hpp"
 #include "prepare/noisy_radii.hpp"
-#include "prepare/own_sheet.hpp"
+#include "prepare/own_sheets.hpp"
 #include "prepare/sheets.hpp"
 #include "prepare/strays.hpp"
 #include "prepare/twins.hpp"

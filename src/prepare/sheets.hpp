@@ -8,7 +8,7 @@
 
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/cell_grid.hpp"
-#include "prepare/own_sheet.hpp"
+#include "prepare/own_sheets.hpp"
 
 namespace palpate {
 

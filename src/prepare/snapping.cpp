@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/parallel.hpp"
+#include "prepare/sheet_fit.hpp"
 
 namespace palpate {
 namespace {
@@ -203,7 +204,7 @@ class Snapping {
 }  // namespace
 
 float bow(const SheetInput& input, const OwnSheets& own, std::uint32_t i) {
-  const float reach = 1.15f * input.radii[i];
+  const float reach = kNormalsReach * input.radii[i];
   const float square = own.residuals[i] * own.residuals[i] - own.bends[i] * own.bends[i];
   return std::sqrt(48 * std::max(square, 0.f)) / (reach * reach);
 }

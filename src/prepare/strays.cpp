@@ -1,6 +1,7 @@
 #include "prepare/strays.hpp"
 
 #include "geometry/parallel.hpp"
+#include "prepare/sheet_fit.hpp"
 
 namespace palpate {
 namespace {

@@ -10,7 +10,7 @@
 #include "prepare/count_weights.hpp"
 #include "prepare/noise_map.hpp"
 #include "prepare/noisy_radii.hpp"
-#include "prepare/own_sheet.hpp"
+#include "prepare/sheet_fit.hpp"
 
 namespace palpate {
 namespace {

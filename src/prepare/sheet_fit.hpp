@@ -71,17 +71,4 @@ class SheetFitter {
   Eigen::Matrix<double, 6, 1> quadric_ = {};  // of its height, over the reach, m
 };
 
-/// What the sheet of each point is like, in sorted order.
-struct OwnSheets {
-  std::vector<Eigen::Vector3f> normals;  ///< unit, sign arbitrary; zero: undefined
-  std::vector<float> confidences;        ///< planarity, 0-1
-  std::vector<float> residuals;          ///< from the plane, m
-  std::vector<float> bends;              ///< from the quadric where the plane does not fit, m
-  std::vector<std::uint8_t> others;      ///< 1: points of other sheets are around
-};
-
-/// Fitted within 1.15 of each point's `radii`; `noise`: of the points, m. On every core.
-[[nodiscard]] OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
-                                       std::span<const float> radii, double noise);
-
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "prepare/own_sheet.hpp"
+#include "prepare/sheet_fit.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
