@@ -22,6 +22,8 @@ constexpr float kView = 1.2f;  // R beyond the nearest point, within which thing
 
 constexpr int kPairs = 2048;  // in one call
 
+constexpr std::uint32_t kOneSided = 1;  // number of the part that is seen from one side alone
+
 }  // namespace
 
 Facing::Facing(std::size_t capacity) {
@@ -96,8 +98,9 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
       continue;
     }
     if (sheet != last) {
-      const Key key = own.empty() ? Key{} : Key{&surface, sheet};
-      const Key part = own.empty() ? Key{} : Key{&surface, own.part[sheet]};
+      const Key all{nullptr, surface.one_sided ? kOneSided : 0};
+      const Key key = own.empty() ? all : Key{&surface, sheet};
+      const Key part = own.empty() ? all : Key{&surface, own.part[sheet]};
       slot = sheet_of(key, part, own.empty() || own.known[own.part[sheet]] != 0);
       last = sheet;
     }
@@ -136,10 +139,18 @@ void Facing::list(const Points& points, const Stance& stance) noexcept {
   if (!points_.empty()) radius_ = radii / static_cast<float>(points_.size());
 }
 
-/// What has no weight at the proxy any more may be seen from another side next.
-void Facing::let_go() noexcept {
+bool Facing::behind() const noexcept {
+  return std::ranges::any_of(std::span(now_.parts).first(now_.part_count), [](const Part& part) {
+    return part.key == Key{nullptr, kOneSided} && part.sign < 0;
+  });
+}
+
+/// What has no weight at the proxy any more may be seen from another side next, and what a free
+/// proxy is behind, at any time.
+void Facing::let_go(const Stance& stance) noexcept {
   for (Part& part : std::span(now_.parts).first(now_.part_count)) {
-    if (!part.near) part.sign = 0;
+    const bool hollow = part.key == Key{nullptr, kOneSided} && part.sign < 0;
+    if (!part.near || (hollow && !stance.touches())) part.sign = 0;
   }
   for (Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
     if (!sheet.near) sheet.label = kOpen;
@@ -219,13 +230,19 @@ bool Facing::list_references(const Stance& stance) noexcept {
 
 bool Facing::write(const Points& points) const noexcept {
   bool changed = false;
+  const Point* point = points_.data();
   for (std::size_t k = 0; k < sheet_of_place_.size(); ++k) {
     const std::uint32_t slot = sheet_of_place_[k];
     std::int8_t sign = 1;
     std::uint8_t label = kInFront;
     if (slot < kMost) {
-      sign = static_cast<std::int8_t>(now_.parts[now_.sheets[slot].part].sign);
+      const Part& part = now_.parts[now_.sheets[slot].part];
+      sign = static_cast<std::int8_t>(part.sign);
       label = now_.sheets[slot].label;
+      if (sign < 0 && part.key == Key{nullptr, kOneSided}) {
+        sign = point->normal.dot(point->place) > 0 ? 0 : 1;
+      }
+      ++point;
     }
     changed = changed || points.signs[k] != sign || points.labels[k] != label;
     points.signs[k] = sign;
@@ -236,8 +253,12 @@ bool Facing::write(const Points& points) const noexcept {
 
 /// Where all points are of one part whose side is known, there is nothing to look at.
 bool Facing::is_settled(std::span<const ActiveLayer> layers) const noexcept {
-  return now_.sheet_count == 1 && now_.sheets[0].key == Key{} && now_.sheets[0].label == kInFront &&
-         std::ranges::all_of(layers, [](const ActiveLayer& l) { return l.points->sheets.empty(); });
+  return now_.sheet_count == 1 && now_.sheets[0].key.owner == nullptr && !behind() &&
+         now_.sheets[0].label == kInFront && std::ranges::all_of(layers, [this](const auto& layer) {
+           const SurfacePoints& points = *layer.points;
+           return points.sheets.empty() &&
+                  (now_.sheets[0].key.number == kOneSided) == points.one_sided;
+         });
 }
 
 bool Facing::face(const Points& points, const Stance& stance) noexcept {
@@ -248,7 +269,7 @@ bool Facing::face(const Points& points, const Stance& stance) noexcept {
   pairs_ = kPairs;
   list(points, stance);
   if (points_.empty()) return write(points);
-  if (!std::exchange(follows_, false)) let_go();
+  if (!std::exchange(follows_, false)) let_go(stance);
   group();
   choose_eye(stance);
   const auto older = static_cast<std::ptrdiff_t>(remembered_.size());

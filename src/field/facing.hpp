@@ -40,7 +40,7 @@ class Facing {
   explicit Facing(std::size_t capacity);
 
   /// The points that count, layer by layer, and what is decided of each: whether its normal is to
-  /// be turned (-1), and its label.
+  /// be turned (-1) or it is not there at all (0), and its label.
   struct Points {
     std::span<const ActiveLayer> layers;
     const Selection* selection = nullptr;
@@ -50,6 +50,10 @@ class Facing {
 
   /// True when a sign or a label is another than before.
   bool face(const Points& points, const Stance& stance) noexcept;
+
+  /// Is the proxy behind what was seen from the other side alone? Such points are not there for it
+  /// until it comes out in front of them.
+  [[nodiscard]] bool behind() const noexcept;
 
   /// The proxy is where no point has weight: what it sees of sheets next, it sees for the first
   /// time.
@@ -63,7 +67,8 @@ class Facing {
   static constexpr std::size_t kMost = 96;  // sheets near the tool; further ones are silent
   static constexpr std::uint8_t kOpen = 0xff;
 
-  /// Whose sheet or part it is. All layers without sheets of their own are of one.
+  /// Whose sheet or part it is. All layers without sheets of their own are of one, but for those
+  /// that were seen from one side alone: these are of another.
   struct Key {
     const void* owner = nullptr;
     std::uint32_t number = 0;
@@ -124,7 +129,7 @@ class Facing {
   void list(const Points& points, const Stance& stance) noexcept;
   void list_layer(const ActiveLayer& layer, std::span<const std::uint32_t> places,
                   const Stance& stance) noexcept;
-  void let_go() noexcept;
+  void let_go(const Stance& stance) noexcept;
   void group() noexcept;
   void choose_eye(const Stance& stance) noexcept;
   [[nodiscard]] bool list_references(const Stance& stance) noexcept;

@@ -203,15 +203,17 @@ void Patch::fill_all() noexcept {
 void Patch::fill_layer(std::size_t k) noexcept {
   const ActiveLayer& layer = layers_[k];
   const SurfacePoints& points = *layer.points;
-  const std::uint32_t* slot = slots_.data() + selection_.runs()[k].first;
+  std::size_t chosen = selection_.runs()[k].first;
   for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
-    const std::uint32_t at = *slot++;
+    const std::int8_t sign = signs_[chosen];
+    const std::uint32_t at = slots_[chosen++];
     const Eigen::Vector3d position = position_now(layer, i, center_);
     for (int axis = 0; axis < 3; ++axis) column(kPosition + axis)[at] = position[axis];
     const double radius = options_.radius > 0 ? options_.radius : radius_now(layer, i);
     column(kRadius)[at] = radius;
     column(kInverseR2)[at] = inverse_square(radius);
-    column(kWeight)[at] = weight_now(layer, i, options_.raw_weights) * selection_.stride();
+    column(kWeight)[at] =
+        sign == 0 ? 0 : weight_now(layer, i, options_.raw_weights) * selection_.stride();
     if (has_materials_)
       column(kMaterial)[at] = points.materials.empty() ? 1.0 : points.materials[i];
     if (has_presences_) column(kPresence)[at] = presence_now(layer, i);

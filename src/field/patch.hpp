@@ -47,6 +47,8 @@ class Patch {
   void face(const Stance& stance) noexcept;
   /// What is seen next is seen for the first time.
   void forget_sides() noexcept { facing_.forget(); }
+  /// Is the tool behind points that hold it from the other side alone?
+  [[nodiscard]] bool behind() const noexcept { return facing_.behind(); }
   /// Takes over what another has decided.
   void follow_sides(const Patch& other) noexcept { facing_.follow(other.facing_); }
 

@@ -105,40 +105,72 @@ TEST_F(MorphTest, ALateFrameStartsFromWhereTheSurfaceWaits) {
   for (std::size_t i = 0; i < points_->size(); i += 7) EXPECT_NEAR(start(i).z(), 3e-3, 1e-6);
 }
 
-TEST_F(MorphTest, ASurfaceThatJumpsFadesFromTheOldToTheNew) {
-  show(0, wall(0.5));
-  show(kFrame, wall(0.5));
-  const std::size_t count = points_->size();
-  show(2 * kFrame, wall(0.4));
-  EXPECT_EQ(points_->size(), 2 * count);
-  EXPECT_EQ(leaving(), count);
-  EXPECT_EQ(coming(), count);
-  for (std::size_t i = 0; i < points_->size(); ++i) EXPECT_EQ(start(i), end(i));
-  show(3 * kFrame, wall(0.4));
-  EXPECT_EQ(points_->size(), count) << "what has faded away is gone";
-  EXPECT_EQ(staying(), count);
-}
-
-TEST_F(MorphTest, WhatFadesGoesOnFadingWhenAFrameComesEarly) {
-  show(0, wall(0.5));
-  show(kFrame, wall(0.5));
-  const std::size_t count = points_->size();
-  show(2 * kFrame, wall(0.4));
-  show(2.25 * kFrame, wall(0.4));
-  EXPECT_EQ(points_->size(), 2 * count);
-  EXPECT_EQ(leaving(), count);
-  EXPECT_EQ(staying(), count);
-  std::vector<float> gone;
-  std::vector<float> come;
-  for (std::size_t i = 0; i < points_->size(); ++i) {
-    const bool goes = points_->end_density_weights[i] == 0;
-    (goes ? gone : come).push_back(points_->density_weights[i]);
-  }
-  EXPECT_NEAR(median(gone) / median(come), 3, 0.01) << "a quarter of the way: 3/4 to 1/4";
-}
-
 test::DepthOf with_hole(double z, double hole_z) {
   return [=](double x, double y) { return std::hypot(x, y) < 0.03 ? hole_z : z; };
+}
+
+TEST_F(MorphTest, WhatComesBetweenHidesAndAppearsSlowly) {
+  show(0, wall(0.5));
+  show(kFrame, wall(0.5));
+  const std::size_t count = points_->size();
+  for (int k = 2; k < 20; ++k) {
+    show(k * kFrame, wall(0.4));
+    ASSERT_EQ(points_->size(), 2 * count);
+    for (std::size_t i = 0; i < points_->size(); i += 7) {
+      EXPECT_EQ(start(i), end(i));
+      const bool hidden = end(i).z() < 0.05;
+      const double sure =
+          hidden ? 1 - (k - 1) * kFrame / 60 : std::min(1.0, (k - 1) * kFrame / 0.5);
+      EXPECT_NEAR(points_->end_presences[i], sure, 1e-4) << k;
+    }
+  }
+  show(20 * kFrame, wall(0.5));
+  EXPECT_EQ(points_->size(), 2 * count) << "it was there all the time, and the other one goes";
+  EXPECT_EQ(coming(), 0u);
+}
+
+TEST_F(MorphTest, WhatIsSeenThroughGoesByItsPresence) {
+  show(0, with_hole(0.5, 0.4));
+  show(kFrame, with_hole(0.5, 0.4));
+  show(2 * kFrame, wall(0.5));
+  const std::size_t count = 4800;
+  EXPECT_GT(points_->size(), count + 40);
+  for (int k = 1; k <= 2; ++k) {
+    for (std::size_t i = 0; i < points_->size(); ++i) {
+      if (end(i).z() < 0.05) continue;
+      EXPECT_NEAR(points_->end_presences[i], 1 - k * kFrame / 0.1, 1e-5);
+    }
+    EXPECT_EQ(leaving(), 0u) << "its weight goes when nobody feels it any more";
+    show((2 + k) * kFrame, wall(0.5));
+  }
+  for (int k = 5; k < 8; ++k) show(k * kFrame, wall(0.5));
+  EXPECT_EQ(points_->size(), count);
+}
+
+TEST_F(MorphTest, WhatMovesAsFastAsAHandMovesAndIsNotAnother) {
+  show(0, wall(0.5));
+  double z = 0.5;
+  for (int k = 1; k < 6; ++k) {
+    z -= 0.9 * kFrame;
+    show(k * kFrame, wall(z));
+    EXPECT_EQ(staying(), points_->size());
+  }
+  EXPECT_NEAR(end(points_->size() / 2).z(), 0.5 - z, 1e-6);
+}
+
+TEST_F(MorphTest, AJumpThatNoHandMakesDoesNotMoveTheSurface) {
+  show(0, wall(0.5));
+  show(kFrame, wall(0.5 - 1.1 * kFrame));
+  EXPECT_GT(coming(), 4500u);
+  for (std::size_t i = 0; i < points_->size(); i += 7) EXPECT_EQ(start(i), end(i));
+}
+
+TEST_F(MorphTest, WhatFliesAloneBetweenTwoSurfacesIsNotShown) {
+  show(0, wall(0.5));
+  const std::size_t count = points_->size();
+  show(kFrame, [](double x, double y) { return std::hypot(x, y) < 0.004 ? 0.3 : 0.5; });
+  EXPECT_EQ(points_->size(), count);
+  EXPECT_EQ(coming(), 0u);
 }
 
 TEST_F(MorphTest, AHoleKeepsItsPointsUntilTheyHaveFaded) {
@@ -176,15 +208,6 @@ TEST_F(MorphTest, APointThatIsSeenAgainBecomesSureAgain) {
   EXPECT_NEAR(*std::min_element(points_->presences.begin(), points_->presences.end()), low, 1e-6);
   EXPECT_NEAR(*std::min_element(points_->end_presences.begin(), points_->end_presences.end()),
               low + kFrame / 0.5, 1e-5);
-}
-
-TEST_F(MorphTest, WhatIsSeenThroughGoesInOneFrame) {
-  show(0, with_hole(0.5, 0.4));
-  show(kFrame, with_hole(0.5, 0.4));
-  show(2 * kFrame, wall(0.5));
-  EXPECT_GT(leaving(), 40u);
-  show(3 * kFrame, wall(0.5));
-  EXPECT_EQ(leaving(), 0u);
 }
 
 TEST_F(MorphTest, AMovingCameraKeepsThePointsOfAStillWall) {

@@ -55,6 +55,10 @@ struct SurfacePoints {
   /// over a neighbourhood gain nothing.
   bool sharp_edges = false;
 
+  /// Was all of it seen from the side that its normals point to, and from nowhere else? Then it
+  /// holds no tool that comes from behind. Only without sheets.
+  bool one_sided = false;
+
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for
 
   std::vector<float> cell_reach;  ///< for each cell: how far its points reach out of its box

@@ -14,7 +14,9 @@ namespace palpate {
 /// What a point of a morphing surface is.
 enum class EntryKind : std::uint8_t {
   live,     ///< the surface that a block shows, or showed last
-  leaving,  ///< fades away over one frame
+  hidden,   ///< by what the block shows
+  going,    ///< has been seen through, and is trusted less and less
+  leaving,  ///< nobody feels it any more: its weight goes over one frame
   outside,  ///< has left the image, which a moving camera looks elsewhere now
 };
 
@@ -22,8 +24,7 @@ enum class EntryKind : std::uint8_t {
 struct Entry {
   std::uint32_t place = 0;  ///< of its block on the curve
   EntryKind kind = EntryKind::live;
-  bool seen = false;     ///< in the last frame
-  double confirmed = 0;  ///< stamp of the last frame that showed it, s
+  double confirmed = 0;  ///< stamp of the last frame that showed it, or what hides it, s
 };
 
 /// Lists which entries are at which block.

@@ -12,11 +12,31 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 constexpr std::size_t kAhead = 32;  // blocks
 
+// Of the blocks around one, how many have to show the same surface: those of a line, or most.
+constexpr float kVouch = 0.25f;
+constexpr float kVouchToMove = 0.6f;
+
+constexpr float kBeside = 0.5f;  // R by which depths of one surface differ from block to block
+
 // What has faded so far is gone.
 constexpr float kGone = 1e-4f;
 
 // Of what a frame says of a point's radius and confidence, this share is taken over.
 constexpr float kShare = 0.25f;
+
+// What moves faster along a ray is another surface, m/s: a hand's reach is quicker than it is felt.
+constexpr float kFastest = 1;
+
+// A surface that jumps goes on by so much faster than before, m/s: 0.3 N a millisecond at 500 N/m.
+constexpr float kSudden = 0.6f;
+
+// Deviations of a block that two frames of one surface may differ by: five of their difference.
+constexpr float kDeviations = 7;
+
+// In which trust in what has been seen through, or is hidden, goes, s: what is gone five times as
+// slowly as a proxy's spring follows (EnergyTank::kTime); who hides a thing may take it along.
+constexpr double kGoes = 0.1;
+constexpr double kHidden = 60;
 
 // Single precision resolves a micrometre as far from the points' origin as this, m.
 constexpr double kFarFromOrigin = 16;
@@ -55,6 +75,10 @@ void Morph::look(const MorphInput& input) {
   const FilteredDepth& depth = input.depth;
   if (order_.columns != depth.columns || order_.rows != depth.rows) {
     order_ = make_block_order(depth.columns, depth.rows);
+    place_of_block_.resize(order_.size());
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+      place_of_block_[order_.blocks[k]] = static_cast<std::uint32_t>(k);
+    }
     resized_ = true;
   }
   if (order_.size() == 0) forget();  // an image without a block has no place for old points
@@ -93,6 +117,7 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
   shift_ = (T_world_sensor.translation() - origin_).cast<float>();
   points.origin = origin_;
   points.kernel = options_.kernel;
+  points.one_sided = true;
   points.sharp_edges =
       std::find(depth.states.begin(), depth.states.end(), BlockState::fitted) != depth.states.end();
   next_entries_.clear();
@@ -114,10 +139,6 @@ void Morph::measure(const MorphInput& input) {
 
 /// Puts every old point at the block that sees it now.
 void Morph::follow_camera(const MorphInput& input) {
-  place_of_block_.resize(order_.size());
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    place_of_block_[order_.blocks[k]] = static_cast<std::uint32_t>(k);
-  }
   const Pinhole& p = input.pinhole;
   const Eigen::Array2f focal = Eigen::Array2d(p.fx, p.fy).cast<float>() / 2;
   const Eigen::Array2f center = Eigen::Array2d(p.cx - 0.5, p.cy - 0.5).cast<float>() / 2;
@@ -134,7 +155,8 @@ void Morph::follow_camera(const MorphInput& input) {
       entry.place = place_of_block_[static_cast<std::size_t>(at.y() * order_.columns + at.x())];
       if (entry.kind == EntryKind::outside) entry.kind = EntryKind::live;
     } else {
-      if (entry.kind == EntryKind::live) entry.kind = EntryKind::outside;
+      const bool stays = entry.kind == EntryKind::live || entry.kind == EntryKind::hidden;
+      if (stays) entry.kind = EntryKind::outside;
       entry.place = std::min(entry.place, static_cast<std::uint32_t>(order_.size() - 1));
     }
   }
@@ -181,87 +203,203 @@ void Morph::fetch(const FilteredDepth& depth, std::size_t block) const {
   surface_.fetch(block);
 }
 
-/// What becomes of one block: of the point that the frame has there, and of the old ones.
+/// What becomes of one block: of the point that the frame has there, and of the old ones. What lies
+/// nearer than what is seen now has been seen through; what lies farther is hidden.
 void Morph::settle(const FilteredDepth& depth, std::size_t place) {
   const std::span<const std::uint32_t> old = by_block_.at(place);
   const std::size_t block = order_.blocks[place];
   const bool shown = surface_.radius(block) > 0;
   if (!shown && old.empty()) return;
   place_ = static_cast<std::uint32_t>(place);
-  std::uint32_t partner = kNone;
-  if (shown) {
-    const Point point = new_point(depth, block);
-    partner = partner_of(old, point.state.position);
-    const bool jumped = depth.jumped[block] != 0;
-    if (partner == kNone || !follow(point, partner, jumped)) {
-      appear(point);
-      partner = kNone;
-    }
+  if (!shown) return hold_one(old);
+  const Point point = new_point(depth, block);
+  const std::uint32_t partner = partner_of(depth, old, point);
+  if (partner == kNone && last_ && beside(depth, block) < kVouch) return hold_one(old);
+  if (partner == kNone) {
+    appear(point);
+  } else {
+    follow(point, partner);
   }
-  bool held = shown;
+  const float at = depth_of(point.state.position);
   for (const std::uint32_t i : old) {
     if (i == partner) continue;
     const EntryKind kind = entries_[i].kind;
-    if (kind == EntryKind::outside || (kind == EntryKind::live && !held)) {
-      hold(i);
-      held = held || kind == EntryKind::live;
-    } else {
+    const float beyond = depth_of(old_point(i).position) - at;
+    if (kind == EntryKind::outside) {
+      hold(i, kind);
+    } else if (kind == EntryKind::leaving || std::abs(beyond) <= point.state.radius) {
       leave(i);
+    } else if (kind == EntryKind::going || beyond < 0 || !may_hide(old, i)) {
+      go(i);
+    } else {
+      hide(i);
     }
   }
 }
 
-/// The nearest of the points that a block has shown so far.
-std::uint32_t Morph::partner_of(std::span<const std::uint32_t> old,
-                                const Eigen::Vector3f& place) const {
-  if (old.size() == 1) return entries_[old[0]].kind == EntryKind::live ? old[0] : kNone;
+/// Nothing sure is measured there: of the points that were seen, one stands for the surface.
+void Morph::hold_one(std::span<const std::uint32_t> old) {
+  bool held = false;
+  for (const std::uint32_t i : old) {
+    const EntryKind kind = entries_[i].kind;
+    const bool second = kind == EntryKind::live && std::exchange(held, true);
+    if (kind == EntryKind::going) {
+      go(i);
+    } else if (kind == EntryKind::leaving || second) {
+      leave(i);
+    } else {
+      hold(i, kind);
+    }
+  }
+}
+
+/// Along the camera's axis, m.
+float Morph::depth_of(const Eigen::Vector3f& position) const {
+  return turn_.col(2).dot(position - shift_);
+}
+
+/// A block remembers one hidden surface: the one that was hidden first. What moves before it leaves
+/// no trail.
+bool Morph::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const {
+  if (entries_[i].kind == EntryKind::hidden) return true;
+  const PointState point = old_point(i);
+  return std::ranges::none_of(old, [&](std::uint32_t other) {
+    return entries_[other].kind == EntryKind::hidden &&
+           (old_point(other).position - point.position).norm() > point.radius;
+  });
+}
+
+/// Which of the old points is seen again: the nearest within R, or within what noise explains; or
+/// what has come along the ray as fast as things move.
+std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std::uint32_t> old,
+                                const Point& seen) const {
+  const std::size_t block = order_.blocks[place_];
   std::uint32_t partner = kNone;
   float nearest = std::numeric_limits<float>::infinity();
   for (const std::uint32_t i : old) {
-    if (entries_[i].kind != EntryKind::live) continue;
-    const float squared = (old_point(i).position - place).squaredNorm();
-    if (squared >= nearest) continue;
-    nearest = squared;
+    const EntryKind kind = entries_[i].kind;
+    if (kind == EntryKind::leaving || kind == EntryKind::outside) continue;
+    const float way = (old_point(i).position - seen.state.position).norm();
+    const float same = std::max(seen.state.radius, kDeviations * depth.deviations[block]);
+    const float fastest =
+        (kFastest + std::min(speed_of(i), kSudden)) * static_cast<float>(moment_.duration);
+    const bool live = kind == EntryKind::live && !moved_;
+    const auto moves = [&] {
+      return live && way <= fastest && beside(depth, block) >= kVouchToMove && !came_aside(seen);
+    };
+    if (way >= nearest || (way > same && !moves())) continue;
+    nearest = way;
     partner = i;
   }
   return partner;
 }
 
-/// Lets the old point go to the new one, if they are one surface. What the filter says of jumps
-/// counts when both saw the point in the last frame, and from the same place.
-bool Morph::follow(const Point& seen, std::uint32_t i, bool jumped) {
-  if (jumped && entries_[i].seen && !moved_) return false;
+/// Calls visit(block) for those around a block.
+template <class Visit>
+void Morph::each_beside(std::size_t block, const Visit& visit) const {
+  const int u = static_cast<int>(block) % order_.columns;
+  const int v = static_cast<int>(block) / order_.columns;
+  for (int y = std::max(0, v - 1); y <= std::min(order_.rows - 1, v + 1); ++y) {
+    for (int x = std::max(0, u - 1); x <= std::min(order_.columns - 1, u + 1); ++x) {
+      const auto other = static_cast<std::size_t>(y * order_.columns + x);
+      if (other != block) visit(other);
+    }
+  }
+}
+
+/// The share of blocks around one that show the same surface: what flies between two has few.
+float Morph::beside(const FilteredDepth& depth, std::size_t block) const {
+  float count = 0;
+  float all = 0;
+  each_beside(block, [&](std::size_t other) {
+    ++all;
+    const float apart = depth.positions[other].z() - depth.positions[block].z();
+    const bool same = surface_.radius(other) > 0 && std::abs(apart) < surface_.radius(block);
+    count += same ? 1.0f : 0.0f;
+  });
+  return all > 0 ? count / all : 1;
+}
+
+/// Was what a block shows now beside it before? Then the rim of something moved, or is noisy.
+bool Morph::came_aside(const Point& seen) const {
+  bool found = false;
+  each_beside(order_.blocks[place_], [&](std::size_t other) {
+    for (const std::uint32_t i : by_block_.at(place_of_block_[other])) {
+      const float apart = depth_of(old_point(i).position) - depth_of(seen.state.position);
+      const bool same = std::abs(apart) < kBeside * seen.state.radius;
+      found = found || (same && entries_[i].kind == EntryKind::live);
+    }
+  });
+  return found;
+}
+
+/// How fast a point has moved while the last snapshot lasted, m/s.
+float Morph::speed_of(std::uint32_t i) const {
+  if (!(last_moment_.duration > 0)) return 0;
+  const Eigen::Vector3f way = last_->end_positions[i] - last_->grid.points()[i];
+  return way.norm() / static_cast<float>(last_moment_.duration);
+}
+
+/// Lets the old point go to the new one.
+void Morph::follow(const Point& seen, std::uint32_t i) {
   const PointState from = old_point(i);
   PointState to = seen.state;
-  if ((to.position - from.position).squaredNorm() > to.radius * to.radius) return false;
+  const Eigen::Vector3f way = to.position - from.position;
+  const float most =
+      std::max(to.radius, (speed_of(i) + kSudden) * static_cast<float>(moment_.duration));
+  if (way.norm() > most) to.position = from.position + most / way.norm() * way;
   to.radius = from.radius + kShare * (to.radius - from.radius);
   to.confidence = from.confidence + kShare * (to.confidence - from.confidence);
   to.weight = std::min(1.0f, seen.area / (to.radius * to.radius));
   if (to.normal.isZero(0)) to.normal = from.normal;
-  const auto rise = static_cast<float>(moment_.duration / options_.fade);
-  to.presence = std::min(1.0f, from.presence + rise);
-  add(from, to, {place_, EntryKind::live, true, moment_.stamp});
-  return true;
+  to.presence = std::min(1.0f, from.presence + share_of(options_.fade));
+  add(from, to, {place_, EntryKind::live, moment_.stamp});
 }
 
 void Morph::appear(const Point& point) {
   PointState from = point.state;
+  PointState to = point.state;
   if (!still_) from.weight = 0;
-  add(from, point.state, {place_, EntryKind::live, true, moment_.stamp});
+  if (last_) {
+    from.presence = 0;
+    to.presence = std::min(1.0f, share_of(options_.fade));
+  }
+  add(from, to, {place_, EntryKind::live, moment_.stamp});
+}
+
+/// Of a time that something takes, s, how much a snapshot lasts.
+float Morph::share_of(double time) const {
+  return static_cast<float>(moment_.duration / time);
 }
 
 /// Nothing says that the point is gone, nothing that it is there.
-void Morph::hold(std::uint32_t i) {
-  const PointState from = old_point(i);
-  const Entry& entry = entries_[i];
-  const double unsure = moment_.stamp + moment_.duration - entry.confirmed - options_.silence;
+void Morph::hold(std::uint32_t i, EntryKind kind) {
+  const double unsure = moment_.stamp + moment_.duration - entries_[i].confirmed - options_.silence;
   const auto sure = static_cast<float>(std::clamp(1 - unsure / options_.fade, 0.0, 1.0));
-  const auto fall = static_cast<float>(moment_.duration / options_.fade);
+  const float presence = old_point(i).presence;
+  keep(i, std::max(std::min(presence, sure), presence - share_of(options_.fade)),
+       {place_, kind, entries_[i].confirmed});
+}
+
+/// Something before it keeps it from being seen.
+void Morph::hide(std::uint32_t i) {
+  keep(i, old_point(i).presence - share_of(kHidden), {place_, EntryKind::hidden, moment_.stamp});
+}
+
+/// It has been seen through.
+void Morph::go(std::uint32_t i) {
+  keep(i, old_point(i).presence - share_of(kGoes),
+       {place_, EntryKind::going, entries_[i].confirmed});
+}
+
+/// Stays where it is, and is as sure as that when the snapshot ends; what nobody is sure of leaves.
+void Morph::keep(std::uint32_t i, float presence, const Entry& entry) {
+  const PointState from = old_point(i);
+  if (from.presence <= 0 || ++held_ > order_.size()) return leave(i);
   PointState to = from;
-  to.presence = std::max(std::min(to.presence, sure), to.presence - fall);
-  if (to.presence <= 0 || ++held_ > order_.size()) return leave(i);
+  to.presence = std::max(0.0f, presence);
   to.weight = last_->end_density_weights[i];
-  add(from, to, {place_, entry.kind, false, entry.confirmed});
+  add(from, to, entry);
 }
 
 void Morph::leave(std::uint32_t i) {
@@ -269,7 +407,7 @@ void Morph::leave(std::uint32_t i) {
   if (from.weight <= kGone) return;
   PointState to = from;
   to.weight = 0;
-  add(from, to, {place_, EntryKind::leaving, false, entries_[i].confirmed});
+  add(from, to, {place_, EntryKind::leaving, entries_[i].confirmed});
 }
 
 void Morph::add(const PointState& from, const PointState& to, const Entry& entry) {

@@ -36,10 +36,11 @@ struct MorphInput {
 /// snapshot lasts, from where the surface is at its start to where the new frame has them. So
 /// whenever a frame comes, the surface goes on without a step.
 ///
-/// A point's identity is its block, or where a moving camera sees it now. A block that shows
-/// another surface than before does not move: the old point fades away and the new one fades in
-/// over the snapshot. A block that shows nothing keeps its point, whose presence fades once nothing
-/// has confirmed it for a while; so does what a moving camera no longer looks at.
+/// A point's identity is its block, or where a moving camera sees it now. What a block shows next
+/// decides: about the same place, or what moves as fast as a hand, and the point goes there;
+/// something nearer, and it is hidden and stays, trusted ever less over a minute; something
+/// farther, and it is gone. Nothing at all, or a camera that looks elsewhere: it stays for a while.
+/// What appears and goes does so by its presence, which is stiffness.
 class Morph {
  public:
   explicit Morph(const MorphOptions& options) : options_(options), surface_(options.kernel) {}
@@ -67,13 +68,26 @@ class Morph {
   void follow_camera(const MorphInput& input);
   void fetch(const FilteredDepth& depth, std::size_t block) const;
   void settle(const FilteredDepth& depth, std::size_t place);
+  void hold_one(std::span<const std::uint32_t> old);
   [[nodiscard]] PointState old_point(std::uint32_t i) const;
+  [[nodiscard]] float depth_of(const Eigen::Vector3f& position) const;
+  [[nodiscard]] float speed_of(std::uint32_t i) const;
+  [[nodiscard]] float share_of(double time) const;
   [[nodiscard]] Point new_point(const FilteredDepth& depth, std::size_t block) const;
-  [[nodiscard]] std::uint32_t partner_of(std::span<const std::uint32_t> old,
-                                         const Eigen::Vector3f& place) const;
-  bool follow(const Point& seen, std::uint32_t i, bool jumped);
+  [[nodiscard]] std::uint32_t partner_of(const FilteredDepth& depth,
+                                         std::span<const std::uint32_t> old,
+                                         const Point& seen) const;
+  template <class Visit>
+  void each_beside(std::size_t block, const Visit& visit) const;
+  [[nodiscard]] float beside(const FilteredDepth& depth, std::size_t block) const;
+  [[nodiscard]] bool came_aside(const Point& seen) const;
+  [[nodiscard]] bool may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const;
+  void follow(const Point& seen, std::uint32_t i);
   void appear(const Point& point);
-  void hold(std::uint32_t i);
+  void hold(std::uint32_t i, EntryKind kind);
+  void hide(std::uint32_t i);
+  void go(std::uint32_t i);
+  void keep(std::uint32_t i, float presence, const Entry& entry);
   void leave(std::uint32_t i);
   void add(const PointState& from, const PointState& to, const Entry& entry);
 

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "palpate/sensor/simulated_camera.hpp"
+
+namespace palpate::events {
+
+inline constexpr double kTick = 1e-3;  ///< s
+inline constexpr double kK = 500;      ///< N/m
+
+/// What is seen, by what camera, and where a hand is, tick by tick; tick 0 is the scene's time 0.
+struct Event {
+  SimulatedScene scene;
+  SimulatedCameraOptions camera;
+  std::vector<Eigen::Vector3d> hip;  ///< m
+  std::size_t begin = 0;             ///< tick at which things begin to happen, and scores
+  double depth = 0;           ///< that the hand should be held at, m; 0: nothing should hold it
+  std::size_t scene_lag = 0;  ///< ticks that what is felt is allowed to be behind the scene
+  bool follows = false;  ///< what holds the hand moves: depth is that of the hand in the scene then
+};
+
+/// What a hand felt.
+struct Felt {
+  std::vector<Eigen::Vector3d> force;  ///< N
+  std::vector<Eigen::Vector3d> proxy;  ///< m
+  std::vector<bool> touching;
+};
+
+/// Plays the event in simulated time with the default way of feeling a depth stream.
+[[nodiscard]] Felt play(const Event& event);
+
+}  // namespace palpate::events

@@ -1,0 +1,272 @@
+#include "events/rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "events/draft.hpp"
+
+namespace palpate::events {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kPress = 0.003;  // m
+constexpr double kRates[] = {15, 30, 60, 90};
+const Vector3d kUp = Vector3d::UnitZ();
+
+void press(Draft& draft, const Vector3d& place, const Vector3d& out, double depth = kPress) {
+  draft.start(place + 0.01 * out);
+  draft.hold(0.6);
+  draft.go(place - depth * out, 0.05);
+  draft.hold(1);
+  draft.event.depth = depth;
+  draft.happens();
+}
+
+// An arm passes between the camera and a pressed table, which it hides for so long.
+Event hidden_by_arm(std::uint64_t seed) {
+  Draft draft(seed);
+  press(draft, draft.place, kUp);
+  const Vector3d view = draft.to_camera(draft.place);
+  const double radius = draft.between(0.02, 0.045);
+  const double hidden = draft.one_of({0.1, 0.3, 1.0, 3.0});
+  const double speed = std::min(1.5, 2 * radius / hidden);
+  const Vector3d way = view.cross(kUp).normalized() * (draft.between(0, 1) < 0.5 ? 1 : -1);
+  const double begin = draft.now();
+  const double length = 2 * radius + 0.2;
+  const Vector3d middle = draft.place + draft.between(0.12, 0.25) * view;
+  SimulatedSolid& arm = draft.cylinder(middle - 0.5 * length * way, view.cross(way), radius, 0.5);
+  arm.motion.velocity = speed * way;
+  arm.motion.begin = begin;
+  arm.motion.end = begin + length / speed;
+  draft.hold(length / speed + 0.5);
+  return draft.event;
+}
+
+// A box is put before it, and stays.
+Event hidden_by_box(std::uint64_t seed) {
+  Draft draft(seed);
+  press(draft, draft.place, kUp);
+  const Vector3d view = draft.to_camera(draft.place);
+  SimulatedSolid& box = draft.block(draft.place + draft.between(0.1, 0.25) * view, view,
+                                    Vector3d::Constant(draft.between(0.02, 0.05)));
+  Draft::comes(box, draft.now() + 0.1);
+  draft.hold(draft.one_of({0.5, 1.5, 3.0}));
+  return draft.event;
+}
+
+// An arm passes through where the hand rests, pressed to nothing.
+Event swept(std::uint64_t seed) {
+  Draft draft(seed);
+  const Vector3d hip = draft.place + draft.between(0.08, 0.16) * kUp;
+  draft.start(hip);
+  draft.hold(1);
+  draft.happens();
+  const double radius = draft.between(0.02, 0.045);
+  const double speed = draft.between(0.1, 1);
+  const Vector3d way = (draft.level_direction() + draft.between(-0.3, 0.3) * kUp).normalized();
+  const Vector3d aside = way.cross(draft.to_camera(hip)).normalized();
+  const double begin = draft.now();
+  const Vector3d miss = draft.between(-0.5, 0.5) * radius * way.cross(aside);
+  SimulatedSolid& arm = draft.cylinder(hip + miss - 0.2 * way, aside, radius, 0.4);
+  arm.motion.velocity = speed * way;
+  arm.motion.begin = begin;
+  arm.motion.end = begin + 0.4 / speed;
+  draft.hold(0.4 / speed + 0.5);
+  return draft.event;
+}
+
+Event vanishes(std::uint64_t seed) {
+  Draft draft(seed);
+  const double half = draft.between(0.02, 0.04);
+  SimulatedSolid& box = draft.block(draft.place + half * kUp, kUp, Vector3d::Constant(half));
+  press(draft, draft.place + 2 * half * kUp, kUp);
+  draft.event.depth = 0;
+  Draft::goes(box, draft.now() + draft.between(0.05, 0.1));
+  draft.hold(1.2);
+  return draft.event;
+}
+
+// A face appears so far before (> 0) or behind where a hand rests in the air.
+Event appears(std::uint64_t seed, double before) {
+  Draft draft(seed);
+  const Vector3d hip = draft.place + draft.between(0.1, 0.16) * kUp;
+  draft.start(hip);
+  draft.hold(1);
+  draft.happens();
+  const Vector3d view = draft.to_camera(hip);
+  const double half = draft.between(0.02, 0.04);
+  SimulatedSolid& box = draft.block(hip + (before - half) * view, view, Vector3d::Constant(half));
+  Draft::comes(box, draft.now() + draft.between(0.05, 0.1));
+  draft.hold(1.5);
+  return draft.event;
+}
+
+// The same before a surface that the hand presses.
+Event appears_on(std::uint64_t seed, double before) {
+  Draft draft(seed);
+  press(draft, draft.place, kUp);
+  SimulatedSolid& box =
+      draft.block(draft.place + (before - 0.1) * kUp, kUp, Vector3d(0.04, 0.04, 0.1));
+  Draft::comes(box, draft.now() + draft.between(0.05, 0.1));
+  draft.event.depth = kPress;
+  draft.hold(1.5);
+  return draft.event;
+}
+
+// What the hand is deep in goes to and fro along its normal.
+Event to_and_fro(std::uint64_t seed, double speed, bool ball) {
+  Draft draft(seed);
+  draft.event.camera.rate = draft.one_of(kRates);
+  const double swing = std::min(0.1, 0.3 * speed);
+  const double depth = swing + 0.02;
+  Vector3d place = draft.place;
+  Vector3d out = kUp;
+  std::size_t moved = 0;
+  if (ball) {
+    const double radius = swing + 0.06;
+    draft.event.scene.solids.resize(1);
+    draft.event.scene.solids[0].solid.T_world_solid.translation() = -1 * kUp;
+    place = Vector3d(draft.place.x(), draft.place.y(), 0);
+    out = draft.to_camera(place);
+    draft.event.scene.solids.push_back(
+        {{SolidKind::ball, Eigen::Isometry3d::Identity(), Vector3d::Constant(radius)}, {}});
+    draft.event.scene.solids.back().solid.T_world_solid.translation() = place - radius * out;
+    moved = 1;
+  } else {
+    draft.event.scene.solids.resize(1);
+  }
+  draft.start(place + 0.02 * out);
+  draft.hold(0.6);
+  draft.go(place - depth * out, 0.1);
+  draft.hold(0.2);
+  SimulatedMotion& motion = draft.event.scene.solids[moved].motion;
+  motion.frequency = speed / (2 * std::numbers::pi * swing);
+  // From rest: the sine's phase is 0 when the hand is deep.
+  motion.swing = swing * out;
+  motion.phase = draft.between(0, 6);
+  draft.event.hip.front() = place + (depth + 0.02) * out;
+  std::fill_n(draft.event.hip.begin(), 600, Vector3d(place + (swing + 0.02) * out));
+  draft.happens();
+  draft.event.depth = depth;
+  draft.event.follows = true;
+  draft.event.scene_lag =
+      static_cast<std::size_t>(std::lround((0.012 + 1 / draft.event.camera.rate) / kTick));
+  draft.hold(std::clamp(2 / motion.frequency, 1.0, 4.0));
+  return draft.event;
+}
+
+// A hand rests on a thin pole; the camera's noise has the same deviation everywhere.
+Event pole(std::uint64_t seed) {
+  Draft draft(seed);
+  const double radius = draft.one_of({0.004, 0.0075, 0.0125, 0.02});
+  const double sigma = draft.one_of({0.001, 0.003, 0.006, 0.015});
+  const Vector3d middle = draft.place + draft.between(0.08, 0.15) * kUp;
+  draft.cylinder(middle, kUp, radius, 0.3);
+  Vector3d out = draft.to_camera(middle);
+  out.z() = 0;
+  out.normalize();
+  draft.event.camera.noise.model.coefficients = {sigma, 0, 0};
+  press(draft, middle + radius * out, out);
+  draft.hold(3);
+  return draft.event;
+}
+
+// From behind a plate that the camera sees from the front, out, and then onto it.
+Event from_behind(std::uint64_t seed) {
+  Draft draft(seed);
+  const Vector3d middle = draft.place + draft.between(0.1, 0.16) * kUp;
+  const Vector3d out = draft.to_camera(middle);
+  draft.block(middle - 0.003 * out, out, Vector3d(0.05, 0.05, 0.003));
+  draft.start(middle - 0.05 * out);
+  draft.hold(0.6);
+  draft.happens();
+  draft.go(middle + 0.03 * out, draft.between(0.03, 0.15));
+  return draft.event;
+}
+
+// The same, and back again: then it holds.
+Event back_again(std::uint64_t seed) {
+  Event event = from_behind(seed);
+  Draft draft(seed);
+  draft.event = event;
+  const Vector3d middle = event.scene.solids.back().solid.T_world_solid.translation();
+  const Vector3d out = draft.to_camera(middle);
+  draft.go(middle + (0.003 - kPress) * out, 0.05);
+  draft.hold(0.3);
+  draft.happens();
+  draft.hold(0.5);
+  draft.event.depth = kPress;
+  return draft.event;
+}
+
+// Over the rim of a plate, 3 mm deep and beyond.
+Event over_rim(std::uint64_t seed) {
+  Draft draft(seed);
+  const Vector3d middle = draft.place + draft.between(0.1, 0.16) * kUp;
+  const Vector3d out = draft.to_camera(middle);
+  draft.block(middle - 0.02 * out, out, Vector3d(0.04, 0.04, 0.02));
+  const Vector3d along =
+      draft.event.scene.solids.back().solid.T_world_solid.linear() * draft.level_direction();
+  press(draft, middle, out);
+  draft.event.depth = 0;
+  draft.go(middle - kPress * out + 0.08 * along, 0.05);
+  return draft.event;
+}
+
+// After the last of some frames the hand goes where it has not been.
+Event ended(std::uint64_t seed, int frames) {
+  Draft draft(seed);
+  draft.event.camera.frames = frames;
+  draft.start(draft.place + 0.05 * kUp);
+  draft.hold(frames / 30.0 + 0.5);
+  for (int i = 0; i < 4; ++i) {
+    const Vector3d next(draft.between(-0.12, 0.12), draft.between(-0.15, 0.15), 0);
+    draft.go(next + 0.02 * kUp, 0.2);
+    draft.go(next - kPress * kUp, 0.05);
+    draft.hold(0.1);
+    if (i == 0) draft.happens();
+    draft.go(next + 0.04 * draft.level_direction() - kPress * kUp, 0.05);
+    draft.go(draft.event.hip.back() + 0.02 * kUp, 0.1);
+  }
+  draft.go(draft.place - kPress * kUp, 0.05);
+  draft.hold(0.1);
+  return draft.event;
+}
+
+}  // namespace
+
+std::vector<Row> all_rows() {
+  std::vector<Row> rows = {{"hidden by an arm", hidden_by_arm},
+                           {"hidden by a box", hidden_by_box},
+                           {"an arm sweeps over a hand", swept},
+                           {"vanishes", vanishes}};
+  for (const double mm : {30., 15., 5., -5., -15., -30.}) {
+    rows.push_back({fmt::format("appears {} mm before a hand", mm),
+                    [mm](std::uint64_t seed) { return appears(seed, 1e-3 * mm); }});
+  }
+  for (const double mm : {30., 15., 5.}) {
+    rows.push_back({fmt::format("appears {} mm over a pressed table", mm),
+                    [mm](std::uint64_t seed) { return appears_on(seed, 1e-3 * mm); }});
+  }
+  for (const double speed : {0.02, 0.1, 0.3, 0.5, 1.0}) {
+    for (const bool ball : {false, true}) {
+      rows.push_back({fmt::format("{} to and fro at {} m/s", ball ? "ball" : "plane", speed),
+                      [=](std::uint64_t seed) { return to_and_fro(seed, speed, ball); }});
+    }
+  }
+  rows.push_back({"pole", pole});
+  rows.push_back({"from behind a plate", from_behind});
+  rows.push_back({"and back onto it", back_again});
+  rows.push_back({"over a rim", over_rim});
+  for (const int frames : {1, 3, 30}) {
+    rows.push_back({fmt::format("ended after {} frames", frames),
+                    [=](std::uint64_t seed) { return ended(seed, frames); }});
+  }
+  return rows;
+}
+
+}  // namespace palpate::events

@@ -1,0 +1,32 @@
+#include "events/event.hpp"
+#include "palpate/contact/proxy.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/scene/scene_field.hpp"
+#include "palpate/sensor/simulated_stream.hpp"
+
+namespace palpate::events {
+
+Felt play(const Event& event) {
+  SimulatedCamera camera(event.scene, event.camera);
+  Scene scene;
+  Source& source = scene.add("camera");
+  SimulatedStream stream(
+      camera, "camera",
+      [&](const DepthFrame& frame, const StartTime& start) { source.push(frame, start); },
+      {.latency = 0.01, .lead = 0.002}, [&] { source.keep(); });
+  SceneField field(scene);
+  Proxy proxy({.stiffness = kK});
+  Felt felt;
+  for (std::size_t i = 0; i < event.hip.size(); ++i) {
+    const double now = static_cast<double>(i) * kTick;
+    stream.advance(now);
+    field.update(now, event.hip[i], proxy.position());
+    const Contact contact = proxy.step(field, event.hip[i], kTick);
+    felt.force.push_back(contact.force);
+    felt.proxy.push_back(contact.proxy);
+    felt.touching.push_back(contact.touching);
+  }
+  return felt;
+}
+
+}  // namespace palpate::events

@@ -1,0 +1,98 @@
+#include "events/score.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::events {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kInside = 0.008;  // m
+constexpr double kHeld = 0.2;      // of the force that there should be
+constexpr std::size_t kMeanTicks = 50;
+
+double depth_of(const Event& event, std::size_t tick, const Vector3d& x) {
+  const double t = static_cast<double>(tick) * kTick;
+  return -distance_and_normal(event.scene, x, t).value;
+}
+
+/// What the hand should be held at; what moves, at the least of the time that it may lag.
+double wanted_depth(const Event& event, std::size_t tick) {
+  if (!event.follows) return event.depth;
+  double least = depth_of(event, tick, event.hip[tick]);
+  for (std::size_t back = 0; back <= std::min(tick, event.scene_lag); back += 5) {
+    least = std::min(least, depth_of(event, tick - back, event.hip[tick]));
+  }
+  return least;
+}
+
+double rms_of(const Event& event, const Felt& felt) {
+  double squares = 0;
+  double count = 0;
+  for (std::size_t i = event.begin + kMeanTicks; i < felt.force.size(); ++i) {
+    Vector3d mean = Vector3d::Zero();
+    for (std::size_t k = 0; k < kMeanTicks; ++k) mean += felt.force[i - k] / kMeanTicks;
+    squares += (felt.force[i - kMeanTicks / 2] - mean).squaredNorm();
+    ++count;
+  }
+  return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
+struct Column {
+  const char* name;
+  double Score::*of;
+  bool high;  ///< is bad
+  int digits;
+};
+constexpr Column kColumns[] = {
+    {"step N", &Score::step, true, 2},  {"most N", &Score::most, true, 1},
+    {"least", &Score::least, false, 2}, {"last", &Score::last, false, 2},
+    {"lost", &Score::lost, true, 3},    {"behind s", &Score::behind, true, 2},
+    {"rms N", &Score::rms, true, 3}};
+
+}  // namespace
+
+Score score(const Event& event, const Felt& felt) {
+  Score out;
+  double lost = 0;
+  for (std::size_t i = event.begin; i < felt.force.size(); ++i) {
+    if (i > 0) out.step = std::max(out.step, (felt.force[i] - felt.force[i - 1]).norm());
+    const double force = felt.force[i].norm();
+    out.most = std::max(out.most, force);
+    if (depth_of(event, i, felt.proxy[i]) > kInside) out.behind += kTick;
+    if (event.depth <= 0) continue;
+    out.last = force / (kK * wanted_depth(event, i));
+    out.least = std::min(out.least, out.last);
+    if (out.last < kHeld) ++lost;
+  }
+  out.lost = lost / static_cast<double>(felt.force.size() - event.begin);
+  out.rms = rms_of(event, felt);
+  return out;
+}
+
+std::string heading() {
+  std::string text = "| event | runs |";
+  std::string rule = "|---|---|";
+  for (const Column& column : kColumns) {
+    text += fmt::format(" {} |", column.name);
+    rule += "---|";
+  }
+  return text + "\n" + rule + "\n";
+}
+
+std::string line(const std::string& name, const std::vector<Score>& scores) {
+  std::string text = fmt::format("| {} | {} |", name, scores.size());
+  for (const Column& column : kColumns) {
+    std::vector<double> values;
+    for (const Score& s : scores) values.push_back(s.*column.of);
+    std::sort(values.begin(), values.end());
+    text += fmt::format(" {:.{}f} ({:.{}f}) |", values[values.size() / 2], column.digits,
+                        column.high ? values.back() : values.front(), column.digits);
+  }
+  return text + "\n";
+}
+
+}  // namespace palpate::events
