@@ -6,6 +6,7 @@
 #include "field/acute_creases.hpp"
 #include "field/facing.hpp"
 #include "field/sharp_edges.hpp"
+#include "field/smooth_step.hpp"
 #include "field/united_height.hpp"
 
 namespace palpate {
@@ -17,6 +18,8 @@ using Eigen::Vector3d;
 // quarter of it. With 0.35 a box in a depth frame lost contact along its edges twice as often as
 // with no labels; with 0.1 hands that leave over an edge are let go as hard as by an exact one.
 constexpr double kOverEdges = 0.2;
+
+constexpr double kBackToBack = 0.8;  // cosine from which on two sheets may be sides of one plate
 
 /// Can the surface of these normals be told here at all?
 bool has_normals(const FieldOptions& options, const simd::LabelSums& sums, double least) noexcept {
@@ -77,6 +80,40 @@ Value difference(const Value& a, const Value& b) noexcept {
   return {a.f - b.f, a.grad - b.grad};
 }
 
+/// How much what is behind faces away from what is in front, 0 to 1: by d = -Nb . Nb' of the two.
+Value back_to_back(FieldPlace place) noexcept {
+  const int labels = std::min(place.columns->labels, simd::kHeights);
+  double v[2] = {};  // of what is in front, and behind
+  Vector3d n[2] = {Vector3d::Zero(), Vector3d::Zero()};
+  for (int k = 0; k < labels; ++k) {
+    v[k == kBehind] += place.all->label[k].v;
+    n[k == kBehind] += vector(place.all->label[k].vn);
+  }
+  for (int side = 0; side < 2; ++side) n[side] /= v[side];
+  const double d = -n[0].dot(n[1]);
+  const SmoothStep away = smooth_step(d, kBackToBack, 1 - kBackToBack);
+  Value result{away.value, Vector3d::Zero()};
+  for (place.label = 0; away.slope > 0 && place.label < labels; ++place.label) {
+    const int side = place.label == kBehind;
+    const double by = -away.slope / v[side];
+    simd::Linear b{};
+    assign(b.alpha, by * n[1 - side]);
+    b.delta = by * d;
+    result.grad += place.gradient(b);
+  }
+  return result;
+}
+
+/// What is behind, where it is the far side of a plate: no nearer to the front than a soft edge is
+/// wide. Where two sheets run together, the plate would end in a hole before they do.
+Value far_side(const FieldPlace& place, const Value& front, const Value& behind) noexcept {
+  const Value thin = {behind.f + front.f + kOverEdges * place.radius.f,
+                      behind.grad + front.grad + kOverEdges * place.radius.grad};
+  if (thin.f <= 0) return behind;
+  const Value away = back_to_back(place);
+  return {behind.f - away.f * thin.f, behind.grad - away.f * thin.grad - thin.f * away.grad};
+}
+
 }  // namespace
 
 Value smooth_max(const Value& a, const Value& b, const Value& radius, double width) noexcept {
@@ -118,9 +155,9 @@ std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place
   if (!there[kBehind]) return front;
   if (!there[kInFront] && !there[kAcross]) return height[kBehind];
   const Value both = sum(front_weight, weight[kBehind]);
-  return smooth_max(difference(front, leave(front_weight, both, radius)),
-                    difference(height[kBehind], leave(weight[kBehind], both, radius)), radius,
-                    kOverEdges);
+  front = difference(front, leave(front_weight, both, radius));
+  const Value behind = difference(height[kBehind], leave(weight[kBehind], both, radius));
+  return smooth_max(front, far_side(place, front, behind), radius, kOverEdges);
 }
 
 }  // namespace palpate
