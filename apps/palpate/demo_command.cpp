@@ -19,10 +19,13 @@ struct DemoScene {
   std::array<const char*, 2> sources;  // null: none
 };
 
-constexpr std::array<DemoScene, 4> kScenes = {{
+constexpr std::array<DemoScene, 5> kScenes = {{
     {"desk",
      "a depth camera over a table-top with a wire and other things, one of them moving",
      {"desk=camera:simulated:desk", nullptr}},
+    {"arm",
+     "a table-top as a structured-light sensor sees it, and an arm that goes to and fro over it",
+     {"arm=camera:simulated:arm,noise=structured", nullptr}},
     {"scan", "a rabbit, as a scanner would show it", {"rabbit=synthetic:rabbit", nullptr}},
     {"two",
      "two depth cameras that see one scene from two sides, 2 mm off",

@@ -17,6 +17,8 @@ namespace {
 constexpr double kLongestNap = 1e-3;  // s; a clock that is not the host's may jump at any time
 constexpr std::uint64_t kJitterStream = 0xa0761d6478bd642fu;
 constexpr std::uint64_t kDropStream = 0xe7037ed1a0b428dbu;
+constexpr std::uint64_t kRepeatStream = 0x8ebc6af09c88c6e3u;
+constexpr std::uint64_t kJumpAt = 100;  // frame, where no number of frames is told
 
 // One even number in [0, 1) for each frame.
 double draw(std::uint64_t seed, std::uint64_t frame) {
@@ -39,6 +41,9 @@ void check(const SimulatedCameraOptions& options) {
          options.jitter);
   demand(options.dropped >= 0 && options.dropped < 1, "a share of dropped frames of",
          options.dropped);
+  demand(options.repeated >= 0 && options.repeated < 1, "a share of repeated frames of",
+         options.repeated);
+  demand(options.jump >= 0 && options.jump <= 3600, "a jump (s) of", options.jump);
   demand(options.frames >= 0, "a number of frames of", options.frames);
   demand(options.loop >= 0, "a loop of frames of", options.loop);
 }
@@ -96,6 +101,16 @@ bool SimulatedCamera::arrives(std::uint64_t frame) const {
          draw(options_.noise.seed ^ kDropStream, frame) >= options_.dropped;
 }
 
+// The frame whose depths this one shows: itself, or one before it that arrived.
+std::uint64_t SimulatedCamera::shown_in(std::uint64_t frame) const {
+  while (
+      frame > first_ && options_.repeated > 0 &&
+      (!arrives(frame) || draw(options_.noise.seed ^ kRepeatStream, frame) < options_.repeated)) {
+    --frame;
+  }
+  return frame;
+}
+
 CameraStatus SimulatedCamera::read(DepthFrame& frame, double timeout) {
   if (options_.clock && !wait_for_frame(timeout)) return CameraStatus::waiting;
   while (!arrives(next_)) ++next_;
@@ -136,11 +151,14 @@ void SimulatedCamera::fill(std::uint64_t number, DepthFrame& frame) {
   if (options_.tell_pose) {
     frame.T_world_sensor = true_pose(frame.stamp - start_) * options_.T_camera_told;
   }
+  const auto half = static_cast<std::uint64_t>(options_.frames / 2);
+  if (number - first_ >= (half > 0 ? half : kJumpAt)) frame.stamp += options_.jump;
+  const std::uint64_t shown = shown_in(number);
   frame.colors.clear();
   if (loop_.empty()) {
-    make_depth(number, frame.depth);
+    make_depth(shown, frame.depth);
   } else {
-    frame.depth = loop_[number % loop_.size()];
+    frame.depth = loop_[shown % loop_.size()];
   }
 }
 

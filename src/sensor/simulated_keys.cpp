@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "base/angle.hpp"
 #include "palpate/base/error.hpp"
@@ -32,12 +34,43 @@ int whole(const std::string& text) {
   return static_cast<int>(value);
 }
 
-NoiseKind noise_kind(const std::string& text) {
-  if (text == "none") return NoiseKind::none;
-  if (text == "a") return NoiseKind::independent;
-  if (text == "b") return NoiseKind::blurred;
-  if (text == "c") return NoiseKind::quantised;
-  throw Error(fmt::format("'{}' is none of none, a, b and c", text));
+double within(const std::string& text, double least, double most) {
+  const double value = number(text);
+  if (value >= least && value <= most) return value;
+  throw Error(fmt::format("{} is not from {:g} to {:g}", text, least, most));
+}
+
+// Some kinds alone, and what families of sensors do in all.
+void set_noise(SimulatedNoiseOptions& noise, const std::string& text) {
+  constexpr std::array<std::string_view, 4> kKinds = {"none", "a", "b", "c"};
+  const auto kind = std::ranges::find(kKinds, text);
+  const std::uint64_t seed = noise.seed;
+  if (kind != kKinds.end()) {
+    noise.kind = static_cast<NoiseKind>(kind - kKinds.begin());
+  } else if (text == "structured") {
+    noise = {.kind = NoiseKind::quantised,
+             .silhouettes = true,
+             .seed = seed,
+             .disparity_step = 1 / 8.0,
+             .curl = 4e-3,
+             .holes = 0.01};
+  } else if (text == "stereo") {
+    const double per_square = 0.08 / (525 * 0.075);  // 0.08 pixels of disparity, 1/m
+    noise = {.kind = NoiseKind::blurred,
+             .model = {.coefficients = {0, 0, per_square}},
+             .silhouettes = true,
+             .seed = seed,
+             .disparity_step = 1 / 32.0,
+             .curl = 6e-3,
+             .holes = 0.02};
+  } else if (text == "tof") {
+    noise = {.model = {.coefficients = {1.5e-3, -0.5e-3, 0.3e-3}},
+             .seed = seed,
+             .mixed = 0.5,
+             .pattern = 1e-3};
+  } else {
+    throw Error(fmt::format("'{}' is none of none, a, b, c, structured, stereo and tof", text));
+  }
 }
 
 // The same view with other pixels.
@@ -47,6 +80,13 @@ void set_width(CameraModel& camera, int width) {
   camera.height = static_cast<int>(std::lround(camera.height * scale));
   Pinhole& p = camera.pinhole;
   p = {p.fx * scale, p.fy * scale, (p.cx + 0.5) * scale - 0.5, (p.cy + 0.5) * scale - 0.5};
+}
+
+// The middle ray meets the table so far from its normal.
+void tilt(SimulatedSetup& setup, double incidence) {
+  Eigen::Isometry3d& pose = setup.camera.T_world_camera;
+  const double now = std::acos(std::clamp(-pose.linear()(2, 2), -1.0, 1.0));
+  pose = Eigen::AngleAxisd(incidence - now, Eigen::Vector3d(pose.linear().col(0))) * pose;
 }
 
 void turn_about_vertical(SimulatedSetup& setup, double angle) {
@@ -60,8 +100,17 @@ struct Key {
 };
 
 using Text = const std::string&;
-constexpr std::array<Key, 12> kKeys = {{
-    {"noise", [](SimulatedSetup& s, Text v) { s.camera.noise.kind = noise_kind(v); }},
+constexpr std::array<Key, 21> kKeys = {{
+    {"noise", [](SimulatedSetup& s, Text v) { set_noise(s.camera.noise, v); }},
+    {"sigma",
+     [](SimulatedSetup& s, Text v) {
+       s.camera.noise.model.coefficients = {within(v, 0, 0.1), 0, 0};
+     }},
+    {"terraces", [](SimulatedSetup& s, Text v) { s.camera.noise.disparity_step = number(v); }},
+    {"curl", [](SimulatedSetup& s, Text v) { s.camera.noise.curl = number(v); }},
+    {"mixed", [](SimulatedSetup& s, Text v) { s.camera.noise.mixed = number(v); }},
+    {"pattern", [](SimulatedSetup& s, Text v) { s.camera.noise.pattern = number(v); }},
+    {"holes", [](SimulatedSetup& s, Text v) { s.camera.noise.holes = number(v); }},
     {"seed",
      [](SimulatedSetup& s, Text v) { s.camera.noise.seed = static_cast<std::uint64_t>(whole(v)); }},
     {"silhouettes", [](SimulatedSetup& s, Text v) { s.camera.noise.silhouettes = whole(v) != 0; }},
@@ -69,9 +118,12 @@ constexpr std::array<Key, 12> kKeys = {{
     {"phase", [](SimulatedSetup& s, Text v) { s.camera.phase = number(v); }},
     {"jitter", [](SimulatedSetup& s, Text v) { s.camera.jitter = number(v); }},
     {"dropped", [](SimulatedSetup& s, Text v) { s.camera.dropped = number(v); }},
+    {"repeat", [](SimulatedSetup& s, Text v) { s.camera.repeated = number(v); }},
+    {"jump", [](SimulatedSetup& s, Text v) { s.camera.jump = number(v); }},
     {"frames", [](SimulatedSetup& s, Text v) { s.camera.frames = whole(v); }},
     {"loop", [](SimulatedSetup& s, Text v) { s.camera.loop = whole(v); }},
     {"view", [](SimulatedSetup& s, Text v) { turn_about_vertical(s, kDegree * number(v)); }},
+    {"tilt", [](SimulatedSetup& s, Text v) { tilt(s, kDegree * within(v, 0, 90)); }},
     {"width", [](SimulatedSetup& s, Text v) { set_width(s.camera.camera, whole(v)); }},
     {"error",
      [](SimulatedSetup& s, Text v) {

@@ -8,14 +8,16 @@
 
 #include "base/random.hpp"
 #include "palpate/base/error.hpp"
+#include "sensor/simulated_faults.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr float kDisparityScale = 525 * 0.075f;  // focal length times base line, pixel m
-constexpr float kDisparitySteps = 8;             // a pixel, as the first Kinect has it
-constexpr float kSilhouetteJump = 0.02f;         // m
+constexpr float kKinectStep = 0.125f;            // of disparity, pixels, as the first Kinect has it
 constexpr std::uint64_t kSilhouetteStream = 0x9e3779b97f4a7c15u;
+constexpr std::uint64_t kPatternStream = 0xc2b2ae3d27d4eb4fu;
+constexpr std::uint64_t kRowStream = 0x165667b19e3779f9u;
 constexpr int kQuantileBits = 16;
 
 double density(double x) {
@@ -82,67 +84,31 @@ void blur_span(const float* in, std::size_t stride, std::size_t count,
   }
 }
 
-float quantise_disparity(float z) {
-  const float steps = std::rint(kDisparitySteps * kDisparityScale / z);
-  return kDisparitySteps * kDisparityScale / std::max(1.0f, steps);
+// `scale` is kDisparityScale over the step; a row that is `offset` steps off rounds elsewhere.
+float quantise_disparity(float z, float scale, float offset) {
+  return scale / std::max(1.0f, std::rint(scale / z + offset));
 }
 
-struct Image {
-  int width;
-  int height;
-  const float* depth;
-
-  [[nodiscard]] float at(int u, int v) const {
-    return depth[static_cast<std::size_t>(v) * width + u];
-  }
-};
-
-// The depths that meet at a pixel, and whether nothing at all is beside it.
-struct Around {
-  float low;
-  float high;
-  bool open = false;
-};
-
-Around around(const Image& image, int u, int v) {
-  Around out{image.at(u, v), image.at(u, v)};
-  const auto look = [&](int uu, int vv) {
-    if (uu < 0 || vv < 0 || uu >= image.width || vv >= image.height) return;
-    const float z = image.at(uu, vv);
-    if (z <= 0) {
-      out.open = true;
-      return;
-    }
-    out.low = std::min(out.low, z);
-    out.high = std::max(out.high, z);
-  };
-  look(u - 1, v);
-  look(u + 1, v);
-  look(u, v - 1);
-  look(u, v + 1);
-  return out;
-}
-
-// Half of the silhouette's pixels are measured as they are.
-void disturb_silhouettes(const Image& exact, std::uint64_t seed, std::vector<float>& depth) {
-  Random random(seed);
-  for (int v = 0; v < exact.height; ++v) {
-    for (int u = 0; u < exact.width; ++u) {
-      if (exact.at(u, v) <= 0) continue;
-      const Around near = around(exact, u, v);
-      if (near.high - near.low < kSilhouetteJump && !near.open) continue;
-      const double draw = random.uniform();
-      const auto share = static_cast<float>(random.uniform());
-      float& z = depth[static_cast<std::size_t>(v) * exact.width + u];
-      if (draw < 0.25) z = 0;
-      if (draw > 0.75) z = near.low + share * (near.high - near.low);
-    }
-  }
+// Steps of disparity, a quarter at most. Correlation windows see the same piece of the sensor and
+// of its pattern in each frame, so it does not change and averaging over frames leaves it.
+float row_offset(std::uint64_t seed, std::uint64_t row) {
+  return static_cast<float>(0.5 * Random(stream(seed ^ kRowStream, row)).uniform() - 0.25);
 }
 
 void check(const SimulatedNoiseOptions& options) {
-  if (!(options.rounding >= 0 && options.rounding < 1)) {
-    throw Error(fmt::format("depths cannot be rounded to {:g} m; give 0 to 1", options.rounding));
+  struct Range {
+    const char* what;
+    double value, least, most;
+  };
+  for (const Range& range : {Range{"a rounding (m)", options.rounding, 0, 1},
+                             Range{"a disparity step (pixels)", options.disparity_step, 0, 8},
+                             Range{"a curl (m)", options.curl, -0.1, 0.1},
+                             Range{"a footprint of mixed pixels", options.mixed, 0, 1},
+                             Range{"a pattern (m)", options.pattern, 0, 0.1},
+                             Range{"a share of holes", options.holes, 0, 0.9}}) {
+    if (range.value >= range.least && range.value <= range.most) continue;
+    throw Error(fmt::format("a simulated camera cannot have {} of {:g}; give {:g} to {:g}",
+                            range.what, range.value, range.least, range.most));
   }
 }
 
@@ -157,7 +123,7 @@ NoiseModel kinect_like_noise() {
 SimulatedNoise::SimulatedNoise(const SimulatedNoiseOptions& options)
     : options_(options), taps_(half_gaussian(blur_of(options.kind))) {
   check(options);
-  if (options.kind != NoiseKind::none) quantiles_ = normal_quantiles();
+  if (options.kind != NoiseKind::none || options.pattern > 0) quantiles_ = normal_quantiles();
 }
 
 const std::vector<float>& SimulatedNoise::unit_noise(int width, int height, std::uint64_t frame) {
@@ -208,24 +174,59 @@ void SimulatedNoise::blur(int width, int height) {
   }
 }
 
-void SimulatedNoise::apply(int width, int height, std::uint64_t frame, std::vector<float>& depth) {
-  if (options_.silhouettes) {
+// What happens where depths jump, to exact depths.
+void SimulatedNoise::disturb_rims(int width, int height, std::uint64_t frame,
+                                  std::vector<float>& depth) {
+  const auto copy = [&] {
     exact_ = depth;
-    disturb_silhouettes({width, height, exact_.data()},
-                        stream(options_.seed ^ kSilhouetteStream, frame), depth);
+    return sensor::DepthView{width, height, exact_.data()};
+  };
+  if (options_.curl != 0) sensor::bend_rims(copy(), options_, depth.data());
+  if (options_.mixed > 0) sensor::mix_rims(copy(), options_, depth.data());
+  if (options_.silhouettes) {
+    sensor::disturb_silhouettes(copy(), stream(options_.seed ^ kSilhouetteStream, frame),
+                                options_.curl != 0, depth.data());
   }
+}
+
+// The same in all frames.
+void SimulatedNoise::add_pattern(std::vector<float>& depth) {
+  if (pattern_.size() != depth.size()) {
+    noise_.resize(depth.size());
+    draw(stream(options_.seed ^ kPatternStream, 0));
+    pattern_ = noise_;
+  }
+  const auto deviation = static_cast<float>(options_.pattern);
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (depth[i] > 0) depth[i] += deviation * pattern_[i];
+  }
+}
+
+void SimulatedNoise::apply(int width, int height, std::uint64_t frame, std::vector<float>& depth) {
+  disturb_rims(width, height, frame, depth);
+  if (options_.pattern > 0) add_pattern(depth);
   const std::vector<float>& noise = unit_noise(width, height, frame);
   const auto step = static_cast<float>(options_.rounding);
   const float steps = step > 0 ? 1 / step : 0;
   const float least = std::max(step, 1e-6f);
-  const bool quantised = options_.kind == NoiseKind::quantised;
-  for (std::size_t i = 0; i < depth.size(); ++i) {
-    const float exact = depth[i];
-    float z = exact + static_cast<float>(options_.model.sigma(exact)) * noise[i];
-    z = std::max(least, z);
-    if (quantised) z = quantise_disparity(z);
-    if (step > 0) z = step * std::rint(steps * z);
-    depth[i] = exact > 0 ? z : 0;
+  const bool terraced = options_.disparity_step > 0;
+  const bool quantised = terraced || options_.kind == NoiseKind::quantised;
+  const float scale =
+      kDisparityScale / (terraced ? static_cast<float>(options_.disparity_step) : kKinectStep);
+  const auto columns = static_cast<std::size_t>(width);
+  for (std::size_t first = 0; first < depth.size(); first += columns) {
+    const float offset = terraced ? row_offset(options_.seed, first / columns) : 0;
+    for (std::size_t i = first; i < first + columns; ++i) {
+      const float exact = depth[i];
+      float z = exact + static_cast<float>(options_.model.sigma(exact)) * noise[i];
+      z = std::max(least, z);
+      if (quantised) z = quantise_disparity(z, scale, offset);
+      if (step > 0) z = step * std::rint(steps * z);
+      depth[i] = exact > 0 ? z : 0;
+    }
+  }
+  if (options_.holes > 0) {
+    sensor::punch_holes({width, height, depth.data()}, options_, frame, depth.data());
   }
 }
 

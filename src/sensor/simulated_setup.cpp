@@ -67,6 +67,44 @@ SimulatedSetup wandering() {
   return setup;
 }
 
+// An arm, 80 mm thick, whose lower side is 130 mm above the table goes to and fro over it, at up to
+// 0.3 m/s.
+SimulatedSetup arm() {
+  SimulatedSetup setup = still();
+  Isometry3d along = Isometry3d::Identity();
+  along.linear() = Eigen::AngleAxisd(90 * kDegree, Vector3d::UnitY()).toRotationMatrix();
+  along.translation() = Vector3d(0, 0, 0.17);
+  SimulatedMotion motion;
+  motion.frequency = 0.3;
+  motion.swing = Vector3d(0, 0.3 / (2 * std::numbers::pi * motion.frequency), 0);
+  setup.scene.solids.push_back({{SolidKind::cylinder, along, Vector3d(0.04, 0.04, 0.3)}, motion});
+  return setup;
+}
+
+// The table and the wall alone.
+SimulatedSetup slant() {
+  SimulatedSetup setup = still();
+  setup.scene.solids.resize(2);
+  set_simulated(setup, "tilt=65");
+  return setup;
+}
+
+// Upright, 1 m away and half a metre before the wall.
+SimulatedSetup poles() {
+  SimulatedSetup setup = still();
+  setup.scene.solids = {setup.scene.solids[kWall]};
+  set_simulated(setup, "tilt=90");
+  setup.camera.T_world_camera.translation().normalize();
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation().y() = 0.3;
+  for (const double thickness : {8e-3, 15e-3, 25e-3, 40e-3}) {
+    const Vector3d size(thickness / 2, thickness / 2, 1);
+    setup.scene.solids.push_back({{SolidKind::cylinder, pose, size}, {}});
+    pose.translation().y() -= 0.2;
+  }
+  return setup;
+}
+
 // A wall and a ball before it come and go along the optical axis, at up to 5 cm/s.
 SimulatedSetup approach() {
   SimulatedSetup setup;
@@ -90,7 +128,7 @@ struct Named {
   SimulatedSetup (*make)();
 };
 
-constexpr std::array<Named, 7> kNamed = {{
+constexpr std::array<Named, 10> kNamed = {{
     {"table", "table-top with sphere, box, cylinder and plate; the sphere moves", table},
     {"desk", "the same with a wire across it", desk},
     {"still", "the table, nothing moves", still},
@@ -100,6 +138,9 @@ constexpr std::array<Named, 7> kNamed = {{
      [] { return turned(40 * kDegree); }},
     {"wander", "the table that stands still with a camera that moves", wandering},
     {"approach", "a wall and a ball that come and go", approach},
+    {"arm", "the table, over which an arm goes to and fro", arm},
+    {"slant", "a table-top, 65 degrees from square to the camera", slant},
+    {"poles", "poles of 8, 15, 25 and 40 mm before a wall", poles},
 }};
 
 std::string known_names() {

@@ -155,6 +155,31 @@ TEST(SimulatedCamera, EndsLoopsAndMayKeepItsPoseToItself) {
   EXPECT_EQ(camera.read(frame, 0), CameraStatus::ended);
 }
 
+TEST(SimulatedCamera, RepeatsFramesAndJumpsAsTold) {
+  SimulatedCameraOptions options = small();
+  options.frames = 200;
+  options.repeated = 0.2;
+  options.dropped = 0.1;
+  options.jump = 2;
+  SimulatedCamera camera = table_camera(options);
+  EXPECT_FALSE(camera.info().repeats) << "it is a fault";
+  DepthFrame frame;
+  std::vector<float> before;
+  double last = -1;
+  int frames = 0;
+  int repeated = 0;
+  while (camera.read(frame, 0) == CameraStatus::frame) {
+    repeated += frame.depth == before ? 1 : 0;
+    before = frame.depth;
+    EXPECT_GT(frame.stamp, last);
+    EXPECT_EQ(frame.stamp > 2 + 99.5 / 30, last >= 0 && frame.stamp > 99.5 / 30);
+    last = frame.stamp;
+    ++frames;
+  }
+  EXPECT_NEAR(repeated, 0.2 * frames, 15);
+  EXPECT_NEAR(last, 2 + 199 / 30.0, 0.2);
+}
+
 TEST(SimulatedCamera, WaitsForItsClockAndLosesWhatNobodyAskedFor) {
   FakeClock clock(100, 1e-4);
   SimulatedCameraOptions options = small();
@@ -188,6 +213,8 @@ TEST(SimulatedCamera, RefusesWhatMakesNoSense) {
   for (const auto& spoil : {+[](SimulatedCameraOptions& o) { o.rate = 0; },
                             +[](SimulatedCameraOptions& o) { o.jitter = 0.02; },
                             +[](SimulatedCameraOptions& o) { o.dropped = 1; },
+                            +[](SimulatedCameraOptions& o) { o.repeated = 1; },
+                            +[](SimulatedCameraOptions& o) { o.jump = -1; },
                             +[](SimulatedCameraOptions& o) { o.loop = -1; },
                             +[](SimulatedCameraOptions& o) { o.frames = -1; }}) {
     SimulatedCameraOptions options = small();

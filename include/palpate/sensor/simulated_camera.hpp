@@ -23,6 +23,8 @@ struct SimulatedCameraOptions {
   double phase = 0;       ///< frame k is taken at start + phase + k / rate + jitter, s
   double jitter = 0;      ///< frames are taken so much too early or too late at most, s
   double dropped = 0;     ///< share of frames that never arrive, 0-1
+  double repeated = 0;    ///< share of frames that show the depths of the frame before, 0-1
+  double jump = 0;        ///< stamps are so far ahead after half of `frames`, or 100 without, s
   int frames = 0;         ///< after so many, lost ones too, it has ended; 0: never
   int loop = 0;           ///< > 0: so many frames are made beforehand, then shown over and over
   bool tell_pose = true;  ///< frames carry their pose
@@ -34,7 +36,8 @@ struct SimulatedCameraOptions {
 };
 
 /// Looks at a simulated scene. Stamps are on the clock that it is given; the scene's time is the
-/// stamp less the start. Frames that nobody asked for in time are gone, as with a real camera.
+/// stamp less the start and less
+/// a jump. Frames that nobody asked for in time are gone, as with a real camera.
 class SimulatedCamera final : public DepthCamera {
  public:
   /// @throws Error when an option is out of its range.
@@ -56,6 +59,7 @@ class SimulatedCamera final : public DepthCamera {
  private:
   [[nodiscard]] double stamp_of(std::uint64_t frame) const;
   [[nodiscard]] bool arrives(std::uint64_t frame) const;
+  [[nodiscard]] std::uint64_t shown_in(std::uint64_t frame) const;
   [[nodiscard]] bool wait_for_frame(double timeout);
   void make_depth(std::uint64_t number, std::vector<float>& depth);
   void fill(std::uint64_t number, DepthFrame& frame);

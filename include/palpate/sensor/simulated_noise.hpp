@@ -26,6 +26,23 @@ struct SimulatedNoiseOptions {
   bool silhouettes = false;  ///< of the pixels at depth jumps a quarter is missing and a quarter
                              ///< lies between the two depths (flying)
   std::uint64_t seed = 0;
+
+  // What sensors do besides; docs/simulated_cameras.md says which. Without any by default.
+  /// Disparities are whole multiples of it after the noise, pixels of a camera with 525 pixels of
+  /// focal length and 75 mm of base line, 0-8; each row is off by up to a quarter of it before they
+  /// are rounded, by the same in all frames.
+  double disparity_step = 0;
+  /// The nearer side of a depth jump goes on over 1 to 3 pixels of the farther one, the same ones
+  /// in all frames, and bends away from the camera from 3 pixels before the jump on, to the square,
+  /// by so much 3 pixels behind it, m, -0.1 to 0.1; < 0: towards the camera. Silhouettes then
+  /// disturb the farther side alone.
+  double curl = 0;
+  /// Pixels gather light over a Gaussian of this deviation, pixels, 0-1: those at depth jumps tell
+  /// the mean of the depths of 3 x 3 pixels, weighed with it and with 1 / z^2.
+  double mixed = 0;
+  double pattern = 0;  ///< deviation of an error that each pixel has in all frames, m, 0-0.1
+  /// Share of pixels in holes, 0-0.9: discs 3 to 12 pixels wide, each there for 2 to 8 frames.
+  double holes = 0;
 };
 
 /// Makes what a sensor would have measured of exact depths. The same options, frame number and
@@ -45,6 +62,8 @@ class SimulatedNoise {
   [[nodiscard]] const SimulatedNoiseOptions& options() const { return options_; }
 
  private:
+  void disturb_rims(int width, int height, std::uint64_t frame, std::vector<float>& depth);
+  void add_pattern(std::vector<float>& depth);
   void draw(std::uint64_t seed);
   void blur(int width, int height);
 
@@ -55,6 +74,7 @@ class SimulatedNoise {
   std::vector<float> row_;
   std::vector<float> padded_;  // the image with its other side above and below
   std::vector<float> exact_;
+  std::vector<float> pattern_;
 };
 
 }  // namespace palpate
