@@ -17,9 +17,7 @@ struct Event {
   SimulatedCameraOptions camera;
   std::vector<Eigen::Vector3d> hip;  ///< m
   std::size_t begin = 0;             ///< tick at which things begin to happen, and scores
-  double depth = 0;           ///< that the hand should be held at, m; 0: nothing should hold it
-  std::size_t scene_lag = 0;  ///< ticks that what is felt is allowed to be behind the scene
-  bool follows = false;  ///< what holds the hand moves: depth is that of the hand in the scene then
+  double depth = 0;  ///< that the hand should be held at, m; 0: nothing should hold it
 };
 
 /// What a hand felt.

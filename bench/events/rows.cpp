@@ -117,45 +117,38 @@ Event appears_on(std::uint64_t seed, double before) {
   return draft.event;
 }
 
-// What the hand is deep in goes to and fro along its normal.
+// What the hand presses goes to and fro along its normal, and the hand with what can be felt of it.
 Event to_and_fro(std::uint64_t seed, double speed, bool ball) {
+  constexpr double kDepth = 0.01;  // m
   Draft draft(seed);
   draft.event.camera.rate = draft.one_of(kRates);
   const double swing = std::min(0.1, 0.3 * speed);
-  const double depth = swing + 0.02;
-  Vector3d place = draft.place;
-  Vector3d out = kUp;
-  std::size_t moved = 0;
+  const Vector3d place(draft.place.x(), draft.place.y(), 0);
+  const Vector3d out = ball ? draft.to_camera(place) : kUp;
+  auto& solids = draft.event.scene.solids;
+  solids.resize(1);
   if (ball) {
-    const double radius = swing + 0.06;
-    draft.event.scene.solids.resize(1);
-    draft.event.scene.solids[0].solid.T_world_solid.translation() = -1 * kUp;
-    place = Vector3d(draft.place.x(), draft.place.y(), 0);
-    out = draft.to_camera(place);
-    draft.event.scene.solids.push_back(
+    const double radius = draft.between(0.06, 0.15);
+    solids[0].solid.T_world_solid.translation() = -2 * kUp;
+    solids.push_back(
         {{SolidKind::ball, Eigen::Isometry3d::Identity(), Vector3d::Constant(radius)}, {}});
-    draft.event.scene.solids.back().solid.T_world_solid.translation() = place - radius * out;
-    moved = 1;
-  } else {
-    draft.event.scene.solids.resize(1);
+    solids.back().solid.T_world_solid.translation() = place - radius * out;
   }
-  draft.start(place + 0.02 * out);
-  draft.hold(0.6);
-  draft.go(place - depth * out, 0.1);
-  draft.hold(0.2);
-  SimulatedMotion& motion = draft.event.scene.solids[moved].motion;
+  SimulatedMotion& motion = solids.back().motion;
   motion.frequency = speed / (2 * std::numbers::pi * swing);
-  // From rest: the sine's phase is 0 when the hand is deep.
   motion.swing = swing * out;
   motion.phase = draft.between(0, 6);
-  draft.event.hip.front() = place + (depth + 0.02) * out;
-  std::fill_n(draft.event.hip.begin(), 600, Vector3d(place + (swing + 0.02) * out));
-  draft.happens();
-  draft.event.depth = depth;
-  draft.event.follows = true;
-  draft.event.scene_lag =
-      static_cast<std::size_t>(std::lround((0.012 + 1 / draft.event.camera.rate) / kTick));
-  draft.hold(std::clamp(2 / motion.frequency, 1.0, 4.0));
+  // A surface is felt 10 ms after its frame was taken, and is there a frame later.
+  const double lag = 0.01 + 1 / draft.event.camera.rate;
+  const auto seconds = 1.6 + std::clamp(2 / motion.frequency, 1.0, 4.0);
+  for (double t = 0; t < seconds; t += kTick) {
+    const double height =
+        swing * std::sin(2 * std::numbers::pi * motion.frequency * (t - lag) + motion.phase);
+    const double depth = std::clamp(0.1 * (t - 0.6), -0.02, kDepth);
+    draft.event.hip.emplace_back(place + (height - depth) * out);
+  }
+  draft.event.begin = 1000;
+  draft.event.depth = kDepth;
   return draft.event;
 }
 

@@ -19,16 +19,6 @@ double depth_of(const Event& event, std::size_t tick, const Vector3d& x) {
   return -distance_and_normal(event.scene, x, t).value;
 }
 
-/// What the hand should be held at; what moves, at the least of the time that it may lag.
-double wanted_depth(const Event& event, std::size_t tick) {
-  if (!event.follows) return event.depth;
-  double least = depth_of(event, tick, event.hip[tick]);
-  for (std::size_t back = 0; back <= std::min(tick, event.scene_lag); back += 5) {
-    least = std::min(least, depth_of(event, tick - back, event.hip[tick]));
-  }
-  return least;
-}
-
 double rms_of(const Event& event, const Felt& felt) {
   double squares = 0;
   double count = 0;
@@ -64,7 +54,7 @@ Score score(const Event& event, const Felt& felt) {
     out.most = std::max(out.most, force);
     if (depth_of(event, i, felt.proxy[i]) > kInside) out.behind += kTick;
     if (event.depth <= 0) continue;
-    out.last = force / (kK * wanted_depth(event, i));
+    out.last = force / (kK * event.depth);
     out.least = std::min(out.least, out.last);
     if (out.last < kHeld) ++lost;
   }

@@ -24,8 +24,11 @@ constexpr float kGone = 1e-4f;
 // Of what a frame says of a point's radius and confidence, this share is taken over.
 constexpr float kShare = 0.25f;
 
-// What moves faster along a ray is another surface, m/s: a hand's reach is quicker than it is felt.
+// What moves faster along its normal is another surface, m/s.
 constexpr float kFastest = 1;
+
+// The least cosine of the angle between a ray and a normal that can be trusted.
+constexpr float kGrazing = 0.3f;
 
 // A surface that jumps goes on by so much faster than before, m/s: 0.3 N a millisecond at 500 N/m.
 constexpr float kSudden = 0.6f;
@@ -269,6 +272,13 @@ bool Morph::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const 
   });
 }
 
+/// How far a surface has gone along its normal when it was at `from`, m: what a block shows of it
+/// goes farther along the ray.
+float Morph::advance_of(const Point& seen, const Eigen::Vector3f& from) {
+  const Eigen::Vector3f way = seen.state.position - from;
+  return std::max(std::abs(way.dot(seen.state.normal)), kGrazing * way.norm());
+}
+
 /// Which of the old points is seen again: the nearest within R, or within what noise explains; or
 /// what has come along the ray as fast as things move.
 std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std::uint32_t> old,
@@ -285,7 +295,8 @@ std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std:
         (kFastest + std::min(speed_of(i), kSudden)) * static_cast<float>(moment_.duration);
     const bool live = kind == EntryKind::live && !moved_;
     const auto moves = [&] {
-      return live && way <= fastest && beside(depth, block) >= kVouchToMove && !came_aside(seen);
+      return live && advance_of(seen, old_point(i).position) <= fastest &&
+             beside(depth, block) >= kVouchToMove && !came_aside(seen);
     };
     if (way >= nearest || (way > same && !moves())) continue;
     nearest = way;
@@ -333,11 +344,11 @@ bool Morph::came_aside(const Point& seen) const {
   return found;
 }
 
-/// How fast a point has moved while the last snapshot lasted, m/s.
+/// How fast a point has moved along its normal while the last snapshot lasted, m/s.
 float Morph::speed_of(std::uint32_t i) const {
   if (!(last_moment_.duration > 0)) return 0;
   const Eigen::Vector3f way = last_->end_positions[i] - last_->grid.points()[i];
-  return way.norm() / static_cast<float>(last_moment_.duration);
+  return std::abs(way.dot(last_->end_normals[i])) / static_cast<float>(last_moment_.duration);
 }
 
 /// Lets the old point go to the new one.
@@ -347,7 +358,8 @@ void Morph::follow(const Point& seen, std::uint32_t i) {
   const Eigen::Vector3f way = to.position - from.position;
   const float most =
       std::max(to.radius, (speed_of(i) + kSudden) * static_cast<float>(moment_.duration));
-  if (way.norm() > most) to.position = from.position + most / way.norm() * way;
+  const float advance = advance_of(seen, from.position);
+  if (advance > most) to.position = from.position + most / advance * way;
   to.radius = from.radius + kShare * (to.radius - from.radius);
   to.confidence = from.confidence + kShare * (to.confidence - from.confidence);
   to.weight = std::min(1.0f, seen.area / (to.radius * to.radius));
