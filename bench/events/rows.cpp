@@ -214,6 +214,7 @@ Event over_rim(std::uint64_t seed) {
 Event ended(std::uint64_t seed, int frames) {
   Draft draft(seed);
   draft.event.camera.frames = frames;
+  draft.event.camera.noise.model.coefficients = {draft.between(0.001, 0.006), 0, 0};
   draft.start(draft.place + 0.05 * kUp);
   draft.hold(frames / 30.0 + 0.5);
   for (int i = 0; i < 4; ++i) {

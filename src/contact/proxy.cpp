@@ -61,6 +61,7 @@ void Proxy::reset(const Eigen::Vector3d& position) noexcept {
   started_ = !fault_;
   step_length_ = 0;
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
+  hand_ = position_;
 }
 
 bool Proxy::change(double stiffness, const Friction& friction, const Texture& texture) noexcept {
@@ -121,19 +122,23 @@ Contact Proxy::faulted() noexcept {
 // Free space: to the hand, or to the first contact on the way.
 void Proxy::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept {
   if (way_is_free(probe, position_, hip)) return release(hip);
-  if (probe.inside(position_)) return touch(probe, position_);
+  if (probe.inside(position_)) return touch(probe, position_, hip);
   const Sweep way = sweep(probe, position_, hip);
-  if (way.end == Sweep::End::hit) return touch(probe, way.position);
+  if (way.end == Sweep::End::hit) return touch(probe, way.position, hip);
   if (way.end == Sweep::End::truncated)
     contact.notes = contact.notes | ContactNote::sweep_truncated;
   release(way.position);
 }
 
-void Proxy::touch(Probe& probe, const Eigen::Vector3d& place) noexcept {
+// A spring that begins stretched by more than the hand has moved begins as much softer: what held
+// the hand before, or where it was, is not its doing.
+void Proxy::touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept {
   release(place);
   touching_ = true;
   surface_ = probe.field().surface(place);
-  tank_.restart(wanted_stiffness());
+  const double stretch = (place - hip).norm();
+  const double moved = (hip - hand_).norm() + kLeastFall * probe.step_length();
+  tank_.restart(wanted_stiffness() * (stretch > moved ? moved / stretch : 1));
 }
 
 void Proxy::release(const Eigen::Vector3d& place) noexcept {

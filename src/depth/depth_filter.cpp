@@ -30,9 +30,9 @@ struct DepthFilter::State {
   depth::NoiseTracker tracker;
   depth::TemporalFilter temporal;
   FilteredDepth out;
-  std::vector<float> last_depth;
+  DepthFrame last;
   std::vector<float> scratch;
-  bool seen = false;  // is there a frame in last_depth?
+  bool seen = false;  // is there a last frame?
 
   void resize(const CameraModel& camera) {
     const depth::BlockGrid grid = depth::block_grid(camera);
@@ -44,11 +44,14 @@ struct DepthFilter::State {
   }
 
   // Is it bit for bit the last frame? Keeps it.
-  bool repeats(const std::vector<float>& depth) {
+  bool repeats(const DepthFrame& frame) {
+    const std::vector<float>& depth = frame.depth;
     const bool same =
-        seen && last_depth.size() == depth.size() &&
-        std::memcmp(last_depth.data(), depth.data(), depth.size() * sizeof(float)) == 0;
-    if (!same) last_depth = depth;
+        seen && last.depth.size() == depth.size() &&
+        std::memcmp(last.depth.data(), depth.data(), depth.size() * sizeof(float)) == 0;
+    if (!same) last.depth = depth;
+    last.camera = frame.camera;
+    last.stamp = frame.stamp;
     seen = true;
     return same;
   }
@@ -75,7 +78,7 @@ struct DepthFilter::State {
     resize(frame.camera);
     const bool same_view =
         seen && region == last_region && T_world_sensor.matrix() == out.T_world_sensor.matrix();
-    out.duplicate = repeats(frame.depth);
+    out.duplicate = repeats(frame);
     out.stamp = frame.stamp;
     out.T_world_sensor = T_world_sensor;
     last_region = region;
@@ -84,9 +87,14 @@ struct DepthFilter::State {
       return out;
     }
     out.noise = noise(frame);
+    return points(frame);
+  }
+
+  // In its view, from what has been measured and what is remembered.
+  const FilteredDepth& points(const DepthFrame& frame) {
     fit(frame);
     temporal.filter(depth::temporal_options(options.memory, options.predict, out.noise.correlation),
-                    T_world_sensor, fits);
+                    out.T_world_sensor, fits);
     depth::write_points(fits, {options.nearest, options.farthest}, out);
     std::copy(temporal.jumped().begin(), temporal.jumped().end(), out.jumped.begin());
     return out;
@@ -116,6 +124,15 @@ const FilteredDepth& DepthFilter::filter(const DepthFrame& frame,
   depth::check(T_world_sensor);
   state_->region.set(depth::block_grid(frame.camera));
   return state_->filter(frame, T_world_sensor);
+}
+
+const FilteredDepth* DepthFilter::fit_all() {
+  State& state = *state_;
+  if (!state.seen) return nullptr;
+  state.region.set(depth::block_grid(state.last.camera));
+  if (state.region == state.last_region) return nullptr;
+  state.last_region = state.region;
+  return &state.points(state.last);
 }
 
 void DepthFilter::reset() {

@@ -78,7 +78,8 @@ std::shared_ptr<const Snapshot> Intake::take(const DepthFrame& frame, const Arri
     fusion_.add(points_of(depth), arrival.T_world_sensor);
     return fused(next_moment(frame.stamp, arrival.start));
   }
-  const MorphInput input{depth, frame.camera.pinhole, arrival.reach, everywhere};
+  pinhole_ = frame.camera.pinhole;
+  const MorphInput input{depth, pinhole_, arrival.reach, everywhere};
   morph_.look(input);
   const Moment moment = next_moment(frame.stamp, arrival.start);
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, frames_);
@@ -90,6 +91,21 @@ std::shared_ptr<const Snapshot> Intake::take(const DepthFrame& frame, const Arri
     morph_.fill_still(input, moment, points);
     layers_.add(std::move(points), moment, snapshot->layers);
   }
+  return snapshot;
+}
+
+std::shared_ptr<Snapshot> Intake::last_of_frames() {
+  constexpr double kLeast = 0.1;  // s, in which a surface goes to where the fit has it
+  if (frames_ != Policy::morph || last_.sequence == 0) return nullptr;
+  const FilteredDepth* const depth = filter_.fit_all();
+  if (depth == nullptr) return nullptr;
+  const MorphInput input{*depth, pinhole_};
+  morph_.look(input);
+  const Moment moment{last_.stamp, last_.end, std::max(kLeast, last_.end - last_.start)};
+  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, frames_);
+  std::shared_ptr<SurfacePoints> points = points_.take();
+  morph_.fill(input, moment, points);
+  snapshot->layers.push_back({std::move(points), 1, 1});
   return snapshot;
 }
 

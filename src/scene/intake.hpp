@@ -36,6 +36,10 @@ class Intake {
   [[nodiscard]] std::shared_ptr<const Snapshot> take(const PointCloud& cloud, double stamp,
                                                      const Arrival& arrival, PrepareReport& report);
 
+  /// A surface that stays: the newest frame's, all of it fitted, from where the last snapshot ends.
+  /// nullptr: what was last is that already.
+  [[nodiscard]] std::shared_ptr<Snapshot> last_of_frames();
+
   /// How many snapshots of clouds or of depth frames may be in use at a time while so many fields
   /// look at them: N + 2 and one for each.
   [[nodiscard]] std::size_t most_snapshots(bool clouds, std::size_t fields) const;
@@ -67,7 +71,8 @@ class Intake {
   Fusion fusion_;
   Recycler<SurfacePoints> points_;
   Recycler<Snapshot, Empty> snapshots_;
-  Snapshot last_;  // without its layers
+  Snapshot last_;    // without its layers
+  Pinhole pinhole_;  // of the last frame
   NoiseModel noise_;
   double median_depth_ = 0;
   std::vector<float> depths_;

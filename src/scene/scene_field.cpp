@@ -38,8 +38,10 @@ constexpr double kToolShare = 0.3;
 // The smallest share of the mean radius that sweeps still follow.
 constexpr double kFinest = 0.25;
 
-// A surface may rise this fast and still take a resting proxy along (algorithm.md section 2.4).
-constexpr double kReanchorSpeed = 0.5;  // m/s
+// A surface may rise this fast and still take a resting proxy along, m/s: one that moves (Morph),
+// from tick to tick; one of clouds that follow one another, from cloud to cloud.
+constexpr double kFastest = 2;
+constexpr double kFastestCloud = 0.5;
 
 // A tool feels points so far away, in support radii: normals beside rims need neighbours, too.
 constexpr double kFelt = 2;
@@ -96,7 +98,8 @@ struct SceneField::State {
   std::size_t layer_count = 0;
   std::array<const Snapshot*, Scene::kMaxSources> shown{};  // of the views
   double typical_radius = 0;                                // of the layers
-  double snapshot_duration = 0;
+  double passed = 0;                                        // between the last two updates, s
+  double cloud_duration = 0;  // of snapshots whose points do not move, s
   double frame_interval = 0;  // the longest of any source
   double now = 0;
   bool other_kernel = false;
@@ -119,8 +122,8 @@ bool SceneField::State::same_snapshots() noexcept {
 
 void SceneField::State::list_layers() noexcept {
   layer_count = 0;
-  snapshot_duration = 0;
   frame_interval = 0;
+  cloud_duration = 0;
   other_kernel = false;
   moving = false;
   plain_points = true;
@@ -128,8 +131,8 @@ void SceneField::State::list_layers() noexcept {
   for (std::size_t s = 0; s < views.size(); ++s) {
     const Snapshot* snapshot = views[s].current();
     if (!snapshot) continue;
-    snapshot_duration = std::max(snapshot_duration, snapshot->end - snapshot->start);
-    frame_interval = std::max({frame_interval, snapshot->interval, snapshot_duration});
+    frame_interval =
+        std::max({frame_interval, snapshot->interval, snapshot->end - snapshot->start});
     for (std::size_t k = 0; k < snapshot->layers.size(); ++k) list_layer(s, k);
   }
   if (layer_count == 0) typical_radius = 0;
@@ -139,6 +142,9 @@ void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   ActiveLayer layer = views[source].layer(k, static_cast<int>(source));
   if (layer.points->size() == 0) return;  // a sensor that sees nothing
   if (surface.options.kind == FieldKind::metaball) layer.least_radius = 0;
+  if (layer.points->end_positions.empty()) {
+    cloud_duration = std::max(cloud_duration, shown[source]->end - shown[source]->start);
+  }
   layer.last_weight = shown[source]->layers[k].weight_end;
   other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
   typical_radius = std::min(typical_radius, std::max(layer.points->radius, layer.least_radius));
@@ -196,7 +202,7 @@ SceneField::~SceneField() = default;
 
 void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) noexcept {
   State& state = *state_;
-  if (std::isfinite(now)) state.now = now;
+  if (std::isfinite(now)) state.passed = std::max(0.0, now - std::exchange(state.now, now));
   bool changed = false;
   for (SourceView& view : state.views) changed = view.advance(state.now) || changed;
   if (changed) {
@@ -279,7 +285,8 @@ FieldTraits SceneField::traits() const noexcept {
   FieldTraits traits;
   traits.resolution = metaball ? 0.002 * smallest : smallest / 16;
   traits.revision = state.revision;
-  traits.reanchor_reach = std::max(0.5 * state.radius(), kReanchorSpeed * state.snapshot_duration);
+  traits.reanchor_reach = std::max(
+      {0.5 * state.radius(), kFastest * state.passed, kFastestCloud * state.cloud_duration});
   return traits;
 }
 

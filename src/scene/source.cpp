@@ -147,10 +147,12 @@ bool Source::push(const PointCloud& cloud, double stamp, const StartTime& start)
 void Source::keep() {
   const Snapshot* newest = handoff_.peek();  // nobody else publishes, so nobody frees it
   if (newest == nullptr) return;
-  auto kept = std::make_shared<Snapshot>(*newest);
+  std::shared_ptr<Snapshot> kept = room_for(false) ? intake_->last_of_frames() : nullptr;
+  if (!kept) kept = std::make_shared<Snapshot>(*newest);
   kept->silent_from = std::numeric_limits<double>::infinity();
   {
     const std::lock_guard lock(mutex_);
+    points_ = kept->layers.empty() ? nullptr : kept->layers.back().points;
     state_.silent_from = kept->silent_from;
   }
   handoff_.publish(std::move(kept));

@@ -85,7 +85,7 @@ class Proxy {
 
  private:
   void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
-  void touch(Probe& probe, const Eigen::Vector3d& place) noexcept;
+  void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
   void release(const Eigen::Vector3d& place) noexcept;
   void hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   [[nodiscard]] std::optional<SurfacePoint> find_surface(Probe& probe, const Eigen::Vector3d& hip,

@@ -92,7 +92,8 @@ class Source {
   bool push(const PointCloud& cloud, double stamp, const StartTime& start);
 
   /// Lets the newest surface stay however long nothing confirms it: a recording has come to its
-  /// end. Points that were fading by themselves go on to. Not real-time; whoever pushes calls it,
+  /// end. Of a depth frame, what was out of every tool's reach is fitted first. Points that were
+  /// fading by themselves go on to. Not real-time; whoever pushes calls it,
   /// after the last push.
   void keep();
 
