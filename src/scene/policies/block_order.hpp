@@ -16,7 +16,7 @@ struct BlockOrder {
   [[nodiscard]] std::size_t size() const { return blocks.size(); }
 };
 
-/// @param columns, rows: 0 to 65536.
+/// @param columns, rows: 0 to 32768.
 [[nodiscard]] BlockOrder make_block_order(int columns, int rows);
 
 }  // namespace palpate

@@ -16,6 +16,10 @@ constexpr std::size_t kAhead = 32;  // blocks
 constexpr float kVouch = 0.25f;
 constexpr float kVouchToMove = 0.6f;
 
+// What is not seen stands behind all that is, on a curve of its own: a cell of the index that held
+// both would be as deep as the scene. Codes of blocks are below it.
+constexpr std::uint32_t kUnseenCode = 1u << 30;
+
 constexpr float kBeside = 0.5f;  // R by which depths of one surface differ from block to block
 
 // What has faded so far is gone.
@@ -97,6 +101,10 @@ void Morph::fill(const MorphInput& input, const Moment& moment,
     if (place + kAhead < order_.size()) fetch(input.depth, order_.blocks[place + kAhead]);
     settle(input.depth, place);
   }
+  for (const Unseen& unseen : unseen_) {
+    writer_.add(kUnseenCode | order_.codes[unseen.entry.place], unseen.from, unseen.to);
+    next_entries_.push_back(unseen.entry);
+  }
   writer_.end();
   std::swap(entries_, next_entries_);
   last_ = points;
@@ -124,6 +132,7 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
   points.sharp_edges =
       std::find(depth.states.begin(), depth.states.end(), BlockState::fitted) != depth.states.end();
   next_entries_.clear();
+  unseen_.clear();
   writer_.begin(points, std::max(entries_.size() + entries_.size() / 16, order_.size() / 2));
 }
 
@@ -423,6 +432,7 @@ void Morph::leave(std::uint32_t i) {
 }
 
 void Morph::add(const PointState& from, const PointState& to, const Entry& entry) {
+  if (entry.kind != EntryKind::live) return unseen_.push_back({from, to, entry});
   writer_.add(order_.codes[place_], from, to);
   next_entries_.push_back(entry);
 }

@@ -62,6 +62,11 @@ class Morph {
 
  private:
   struct Point;
+  struct Unseen {
+    PointState from;
+    PointState to;
+    Entry entry;
+  };
 
   void start(const MorphInput& input, const Moment& moment, SurfacePoints& points);
   void measure(const MorphInput& input);
@@ -114,6 +119,7 @@ class Morph {
   bool resized_ = false;  // the image, since what was shown last
   std::uint32_t place_ = 0;
   std::vector<Entry> next_entries_;
+  std::vector<Unseen> unseen_;  // points that no block shows
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3f turn_ = Eigen::Matrix3f::Identity();  // sensor to world
   Eigen::Vector3f shift_ = Eigen::Vector3f::Zero();
