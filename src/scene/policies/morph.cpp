@@ -293,25 +293,29 @@ float Morph::advance_of(const Point& seen, const Eigen::Vector3f& from) {
 std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std::uint32_t> old,
                                 const Point& seen) const {
   const std::size_t block = order_.blocks[place_];
+  const float same = std::max(seen.state.radius, kDeviations * depth.deviations[block]);
   std::uint32_t partner = kNone;
   float nearest = std::numeric_limits<float>::infinity();
   for (const std::uint32_t i : old) {
     const EntryKind kind = entries_[i].kind;
     if (kind == EntryKind::leaving || kind == EntryKind::outside) continue;
-    const float way = (old_point(i).position - seen.state.position).norm();
-    const float same = std::max(seen.state.radius, kDeviations * depth.deviations[block]);
-    const float fastest =
-        (kFastest + std::min(speed_of(i), kSudden)) * static_cast<float>(moment_.duration);
-    const bool live = kind == EntryKind::live && !moved_;
-    const auto moves = [&] {
-      return live && advance_of(seen, old_point(i).position) <= fastest &&
-             beside(depth, block) >= kVouchToMove && !came_aside(seen);
-    };
-    if (way >= nearest || (way > same && !moves())) continue;
-    nearest = way;
+    const Eigen::Vector3f place = old_point(i).position;
+    const float squared = (place - seen.state.position).squaredNorm();
+    if (squared >= nearest) continue;
+    const bool moves = squared > same * same && kind == EntryKind::live && !moved_ &&
+                       may_move(depth, seen, i, place);
+    if (squared > same * same && !moves) continue;
+    nearest = squared;
     partner = i;
   }
   return partner;
+}
+
+bool Morph::may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
+                     const Eigen::Vector3f& from) const {
+  const float fastest = kFastest + std::min(speed_of(i), kSudden);
+  return advance_of(seen, from) <= fastest * static_cast<float>(moment_.duration) &&
+         beside(depth, order_.blocks[place_]) >= kVouchToMove && !came_aside(seen);
 }
 
 /// Calls visit(block) for those around a block.
@@ -365,10 +369,11 @@ void Morph::follow(const Point& seen, std::uint32_t i) {
   const PointState from = old_point(i);
   PointState to = seen.state;
   const Eigen::Vector3f way = to.position - from.position;
-  const float most =
-      std::max(to.radius, (speed_of(i) + kSudden) * static_cast<float>(moment_.duration));
-  const float advance = advance_of(seen, from.position);
-  if (advance > most) to.position = from.position + most / advance * way;
+  if (way.squaredNorm() > to.radius * to.radius) {
+    const float most = (speed_of(i) + kSudden) * static_cast<float>(moment_.duration);
+    const float advance = std::max(advance_of(seen, from.position), to.radius);
+    to.position = from.position + std::min(1.0f, std::max(most, to.radius) / advance) * way;
+  }
   to.radius = from.radius + kShare * (to.radius - from.radius);
   to.confidence = from.confidence + kShare * (to.confidence - from.confidence);
   to.weight = std::min(1.0f, seen.area / (to.radius * to.radius));
