@@ -38,7 +38,7 @@ Draft::Draft(std::uint64_t seed) : random_(seed) {
   const double far = between(0.6, 0.9);
   const Vector3d eye = far * Vector3d(-std::cos(height) * std::cos(turn),
                                       -std::cos(height) * std::sin(turn), std::sin(height));
-  event.camera.T_world_camera = looking(eye, Vector3d::Zero());
+  look_from(eye);
   event.camera.noise.silhouettes = true;
   event.camera.noise.seed = random_.bits();
   event.scene.solids.push_back({});
@@ -46,6 +46,10 @@ Draft::Draft(std::uint64_t seed) : random_(seed) {
   event.scene.solids[1].solid.T_world_solid =
       with_z(Vector3d(between(0.35, 0.5), 0, 0), -Vector3d::UnitX());
   place = Vector3d(between(-0.08, 0.08), between(-0.1, 0.1), 0);
+}
+
+void Draft::look_from(const Vector3d& eye) {
+  event.camera.T_world_camera = looking(eye, Vector3d::Zero());
 }
 
 Vector3d Draft::level_direction() {

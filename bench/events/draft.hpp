@@ -18,6 +18,9 @@ class Draft {
   }
   Eigen::Vector3d level_direction();
 
+  /// The camera stands there and looks at the origin.
+  void look_from(const Eigen::Vector3d& eye);
+
   /// Unit, from x to the camera.
   [[nodiscard]] Eigen::Vector3d to_camera(const Eigen::Vector3d& x) const;
 

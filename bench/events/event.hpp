@@ -17,7 +17,8 @@ struct Event {
   SimulatedCameraOptions camera;
   std::vector<Eigen::Vector3d> hip;  ///< m
   std::size_t begin = 0;             ///< tick at which things begin to happen, and scores
-  double depth = 0;  ///< that the hand should be held at, m; 0: nothing should hold it
+  double depth = 0;        ///< that the hand should be held at, m; 0: nothing should hold it
+  bool when_deep = false;  ///< only while it is that deep in what stands still
 };
 
 /// What a hand felt.

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "events/draft.hpp"
+#include "sensor/simulated_keys.hpp"
 
 namespace palpate::events {
 namespace {
@@ -152,6 +153,52 @@ Event to_and_fro(std::uint64_t seed, double speed, bool ball) {
   return draft.event;
 }
 
+// As a family of sensors sees it: structured, stereo, tof.
+void seen_by(Draft& draft, const std::string& family) {
+  SimulatedSetup setup;
+  setup.camera.noise.seed = draft.event.camera.noise.seed;
+  set_simulated(setup, "noise=" + family);
+  draft.event.camera.noise = setup.camera.noise;
+}
+
+// Presses all over a table that is seen at a slant; each has to hold.
+Event slant(std::uint64_t seed, const std::string& family) {
+  Draft draft(seed);
+  const double tilt = draft.between(60, 70) * std::numbers::pi / 180;
+  const double far = draft.between(0.7, 1.1);
+  draft.look_from(far * Vector3d(-std::sin(tilt), 0, std::cos(tilt)));
+  draft.event.scene.solids.resize(1);
+  seen_by(draft, family);
+  draft.start(draft.place + 0.02 * kUp);
+  draft.hold(0.6);
+  for (int i = 0; i < 8; ++i) {
+    const Vector3d next(draft.between(-0.15, 0.15), draft.between(-0.15, 0.15), 0);
+    draft.go(next + 0.02 * kUp, 0.3);
+    draft.go(next - kPress * kUp, 0.05);
+    draft.hold(0.2);
+    draft.go(next + 0.02 * kUp, 0.1);
+  }
+  draft.event.begin = 600;
+  draft.event.depth = kPress;
+  draft.event.when_deep = true;
+  return draft.event;
+}
+
+// A hand rests on a thin pole, as a family sees it.
+Event pole_of(std::uint64_t seed, const std::string& family) {
+  Draft draft(seed);
+  const double radius = draft.one_of({0.004, 0.0075, 0.0125, 0.02});
+  const Vector3d middle = draft.place + draft.between(0.08, 0.15) * kUp;
+  draft.cylinder(middle, kUp, radius, 0.3);
+  Vector3d out = draft.to_camera(middle);
+  out.z() = 0;
+  out.normalize();
+  seen_by(draft, family);
+  press(draft, middle + radius * out, out);
+  draft.hold(3);
+  return draft.event;
+}
+
 // A hand rests on a thin pole; the camera's noise has the same deviation everywhere.
 Event pole(std::uint64_t seed) {
   Draft draft(seed);
@@ -226,8 +273,8 @@ Event ended(std::uint64_t seed, int frames) {
     draft.go(next + 0.04 * draft.level_direction() - kPress * kUp, 0.05);
     draft.go(draft.event.hip.back() + 0.02 * kUp, 0.1);
   }
-  draft.go(draft.place - kPress * kUp, 0.05);
-  draft.hold(0.1);
+  draft.event.depth = kPress;
+  draft.event.when_deep = true;
   return draft.event;
 }
 
@@ -253,6 +300,10 @@ std::vector<Row> all_rows() {
     }
   }
   rows.push_back({"pole", pole});
+  for (const std::string family : {"structured", "stereo", "tof"}) {
+    rows.push_back({"pole, " + family, [=](std::uint64_t seed) { return pole_of(seed, family); }});
+    rows.push_back({"slant, " + family, [=](std::uint64_t seed) { return slant(seed, family); }});
+  }
   rows.push_back({"from behind a plate", from_behind});
   rows.push_back({"and back onto it", back_again});
   rows.push_back({"over a rim", over_rim});

@@ -48,17 +48,20 @@ constexpr Column kColumns[] = {
 Score score(const Event& event, const Felt& felt) {
   Score out;
   double lost = 0;
+  double held = 0;
   for (std::size_t i = event.begin; i < felt.force.size(); ++i) {
     if (i > 0) out.step = std::max(out.step, (felt.force[i] - felt.force[i - 1]).norm());
     const double force = felt.force[i].norm();
     out.most = std::max(out.most, force);
     if (depth_of(event, i, felt.proxy[i]) > kInside) out.behind += kTick;
-    if (event.depth <= 0) continue;
+    const bool deep = !event.when_deep || depth_of(event, i, event.hip[i]) > 0.99 * event.depth;
+    if (event.depth <= 0 || !deep) continue;
+    ++held;
     out.last = force / (kK * event.depth);
     out.least = std::min(out.least, out.last);
     if (out.last < kHeld) ++lost;
   }
-  out.lost = lost / static_cast<double>(felt.force.size() - event.begin);
+  out.lost = held > 0 ? lost / held : 0;
   out.rms = rms_of(event, felt);
   return out;
 }
