@@ -142,9 +142,25 @@ Json json_camera(const TouchedSource& source) {
   return json;
 }
 
+std::string in_words(const CameraModel& camera) {
+  const Pinhole& p = camera.pinhole;
+  return fmt::format("{} x {} pixels of a camera of {:.4g} px", camera.width, camera.height,
+                     0.5 * (p.fx + p.fy));
+}
+
+Json json_of(const CameraModel& camera) {
+  const Pinhole& p = camera.pinhole;
+  return {{"width", camera.width},
+          {"height", camera.height},
+          {"pinhole_px", {{"fx", p.fx}, {"fy", p.fy}, {"cx", p.cx}, {"cy", p.cy}}}};
+}
+
 void print_depth_image(const TouchedSource& source, const Style& style, std::FILE* out) {
   fmt::print(out, "{} {} ({})\n", style.heading(source.argument.name), source.argument.path,
              source.format);
+  if (source.lens.width > 0) {
+    fmt::print(out, "  organised  {}, felt as a depth frame\n", in_words(source.lens));
+  }
   print_seen(source.state, out);
   fmt::print(out, "  prepared   {} after {} of reading\n", duration(source.prepare_seconds),
              duration(source.read_seconds));
@@ -155,6 +171,7 @@ Json json_depth_image(const TouchedSource& source) {
                {"file", source.argument.path},
                {"format", source.format},
                {"seconds", {{"read", source.read_seconds}, {"prepare", source.prepare_seconds}}}};
+  if (source.lens.width > 0) json["organised"] = json_of(source.lens);
   json.update(json_seen(source.state));
   return json;
 }

@@ -114,7 +114,8 @@ void add_source_options(CLI::App& command, SourceChoices& o) {
       ->group("Reading");
   command
       .add_flag("--unorganised", o.unorganised,
-                wrapped("take a depth image as a cloud: voxel filter and fitted normals in place "
+                wrapped("take depth images and organised clouds as loose points: voxel filter and "
+                        "fitted normals in place "
                         "of the depth filter"))
       ->group("Reading");
   add_surface_of_source(command, o);

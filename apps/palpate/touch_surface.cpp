@@ -75,6 +75,7 @@ SourceOptions source_options(const TouchOptions& options, const ChosenSource& so
   result.prepare = prepare_options(options, source.choices);
   result.policy = policy_options(options, source);
   result.depth = depth_options(source.choices);
+  result.organised = !taken_as_cloud(options, source);
   return result;
 }
 

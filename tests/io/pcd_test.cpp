@@ -99,7 +99,7 @@ TEST(Pcd, ReadsAsciiWithNan) {
   EXPECT_EQ(first_point(file), Eigen::Vector3f(1, 2, 3));
   EXPECT_EQ(file.declared, 2u);
   EXPECT_EQ(file.dropped, 1u);
-  EXPECT_EQ(file.width, 0u);
+  EXPECT_EQ(file.cloud.width, 0u);
   EXPECT_FALSE(file.cloud.viewpoint);
 }
 
@@ -132,8 +132,8 @@ TEST(Pcd, KeepsTheViewpointWhenOrganisedOrSet) {
   EXPECT_FALSE(read_text(head.text() + rows).cloud.viewpoint);
   const CloudFile grid = read_text(Head{.width = "1", .height = "2"}.text() + rows);
   EXPECT_EQ(grid.cloud.viewpoint, Eigen::Vector3d(0, 0, 0));
-  EXPECT_EQ(grid.width, 1u);
-  EXPECT_EQ(grid.height, 2u);
+  EXPECT_EQ(grid.cloud.width, 1u);
+  EXPECT_EQ(grid.cloud.height, 2u);
 }
 
 TEST(Pcd, ReadsOldHeadersWithoutCountOrWidth) {
