@@ -78,7 +78,7 @@ std::vector<Use> uses_of_frames(const Kinds& kinds) {
        kinds.history,
        "is of the policies average and crossfade, and neither is chosen; add --policy average"},
       {{"--loop"}, kinds.recorded, "is of sequences, and there is none"},
-      {{"--predict", "--memory", "--fit-everywhere"},
+      {{"--memory", "--fit-everywhere"},
        kinds.filtered_live,
        "is of frames that go through the depth filter, and none do"},
       {{"--clip-to-reach"},

@@ -67,11 +67,6 @@ void add_stream_options(CLI::App& command, SourceChoices& o) {
       ->check(positive())
       ->type_name("METRES");
   command
-      .add_flag("--predict", o.predict,
-                wrapped("put what moves where it will be in a frame's time, as far as the depth "
-                        "filter can tell: less lag, more noise"))
-      ->group("Streams");
-  command
       .add_flag("--clip-to-reach", o.clip_to_reach,
                 wrapped("of frames taken as clouds, prepare only what the tool can reach before "
                         "the next one, as the paper does"))

@@ -36,7 +36,6 @@ struct SourceChoices {
   std::optional<double> farthest;      ///< depth, m
   std::optional<int> memory;           ///< frames
   std::optional<double> normal_error;  ///< rad
-  bool predict = false;
   bool fit_everywhere = false;
   bool clip_to_reach = false;
   bool loop = false;

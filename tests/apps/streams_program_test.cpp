@@ -162,20 +162,6 @@ TEST(Streams, ClippingToReachLeavesTheForceAndMostPointsOut) {
   EXPECT_LT(points[1], 0.9 * points[0]);
 }
 
-TEST(Streams, PredictionChangesWhatMovesAndIsOffUnlessAsked) {
-  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
-  Shell shell;
-  const std::string command =
-      "touch camera:simulated:approach,noise=a --simulated-time --duration 0.4 --log ";
-  ASSERT_EQ(shell.run(command + "a.csv").code, 0);
-  shell.write("no.toml", "[stream]\npredict = false\n");
-  ASSERT_EQ(shell.run(command + "b.csv --setup no.toml").code, 0);
-  EXPECT_EQ(without_times(shell, "a.csv"), without_times(shell, "b.csv"));
-  const Outcome outcome = shell.run(command + "c.csv --predict");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(without_times(shell, "a.csv"), without_times(shell, "c.csv"));
-}
-
 TEST(Streams, BrokenImageIsReportedAndTheRestIsFelt) {
   Shell shell;
   write_wall(shell, 6);
