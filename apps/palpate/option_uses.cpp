@@ -104,7 +104,7 @@ std::vector<Use> uses_of_points(const Kinds& kinds) {
       {{"--unorganised"},
        kinds.depth,
        "is of depth images and organised clouds, and there is none"},
-      {{"--radius", "--voxel", "--viewpoint"},
+      {{"--voxel", "--viewpoint"},
        kinds.cloud,
        "is of clouds; the depth filter chooses by itself what pixels and noise allow: leave it "
        "out, or add --unorganised"},

@@ -24,7 +24,9 @@ void add_surface_of_source(CLI::App& command, SourceChoices& o) {
     return command.add_option(name, value, wrapped(help))
         ->group("Surface (chosen from the data unless given)");
   };
-  add("--radius", o.radius, "support radius R of every point: larger is smoother")
+  add("--radius", o.radius,
+      "support radius R of every point, of depth images and streams the smallest: larger is "
+      "smoother")
       ->check(positive())
       ->type_name("METRES");
   add("--voxel", o.voxel, "edge of the voxel filter of clouds; 0: none")

@@ -101,7 +101,7 @@ TEST(SetupErrors, KeysThatNothingHasAUseForAreToldWithFileAndLine) {
   const std::pair<std::string, const char*> cases[] = {
       {torus + "[stream]\nnoise = \"xtion\"\n", "desk.toml, line 4: 'noise' is of depths"},
       {torus + "depth_unit = 0.1\n" + camera, "desk.toml, line 3: 'depth_unit' is of depth images"},
-      {torus + camera + "radius = 0.01\n", "desk.toml, line 5: 'radius' is of clouds"},
+      {torus + camera + "voxel = 0.01\n", "desk.toml, line 5: 'voxel' is of clouds"},
       {camera + "[stream]\nhistory = 3\n", "desk.toml, line 4: 'history' is of the policies"},
   };
   for (const auto& [toml, words] : cases) {

@@ -257,7 +257,7 @@ TEST(Streams, OrganisedCloudGoesThroughTheDepthFilterUnlessUnorganised) {
     return said;
   };
   EXPECT_TRUE(felt_as_image(""));
-  EXPECT_TRUE(felt_as_image("--noise xtion --nearest 0.2"));
+  EXPECT_TRUE(felt_as_image("--noise xtion --nearest 0.2 --radius 0.1"));
   for (const char* more : {"--unorganised", "--voxel 0.01", "--viewpoint 0,0,0"}) {
     EXPECT_FALSE(felt_as_image(more)) << more;
   }

@@ -136,6 +136,17 @@ TEST(Pcd, KeepsTheViewpointWhenOrganisedOrSet) {
   EXPECT_EQ(grid.cloud.height, 2u);
 }
 
+TEST(Pcd, KeepsThePixelsOfAnOrganisedCloudsPoints) {
+  const std::string rows = "0 0 1\nnan nan nan\n0 1 1\n2 2 2\n";
+  const Head grid{.width = "2", .height = "2", .points = "4"};
+  const PointCloud cloud = read_text(grid.text() + rows).cloud;
+  EXPECT_EQ(cloud.width, 2u);
+  EXPECT_EQ(cloud.height, 2u);
+  EXPECT_EQ(cloud.pixels, (std::vector<std::uint32_t>{0, 2, 3}));
+  const Head loose{.width = "4", .height = "1", .points = "4"};
+  EXPECT_TRUE(read_text(loose.text() + rows).cloud.pixels.empty());
+}
+
 TEST(Pcd, ReadsOldHeadersWithoutCountOrWidth) {
   EXPECT_EQ(read_text("COLUMNS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n")
                 .cloud.size(),
