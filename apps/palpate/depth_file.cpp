@@ -19,6 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string lower(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return name;
+}
+
 bool begins_like_an_image(const std::string& path) {
   std::array<char, 4> bytes{};
   std::ifstream(path, std::ios::binary).read(bytes.data(), bytes.size());
@@ -31,10 +36,20 @@ bool begins_like_an_image(const std::string& path) {
 bool is_depth_image(const std::string& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;
-  std::string name = path;
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::string name = lower(path);
   if (name.ends_with(".gz")) name.resize(name.size() - 3);
   return name.ends_with(".png") || name.ends_with(".pgm") || begins_like_an_image(path);
+}
+
+bool may_be_organised(const std::string& path) {
+  std::error_code ignored;
+  if (path.starts_with(kSynthetic)) return false;
+  if (!fs::is_regular_file(path, ignored) || lower(path).ends_with(".pcd.gz")) return true;
+  std::array<char, 2048> bytes{};
+  std::ifstream(path, std::ios::binary).read(bytes.data(), bytes.size());
+  const std::string_view head(bytes.data(), bytes.size());
+  const std::size_t height = head.find("\nHEIGHT ");
+  return height < head.find("\nDATA ") && !head.substr(height).starts_with("\nHEIGHT 1\n");
 }
 
 DepthFrame load_depth_image(const std::string& path, const ReadingOptions& options) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -66,6 +67,26 @@ PrepareQuantiles prepare_times(std::vector<double> ms) {
   return {quantile(ms, 0.5), quantile(ms, 1)};
 }
 
+// The share of frames of a run in simulated time that live would have been overtaken while others
+// were prepared; 0 for a run that was live.
+double share_too_fast(const FeedReport& feed, const PrepareQuantiles& times) {
+  const double prepared_a_second = times.p50 > 0 ? 1e3 / times.p50 : 0;
+  return feed.simulated && times.p50 > 0 && feed.state.rate > prepared_a_second
+             ? 1 - prepared_a_second / feed.state.rate
+             : 0;
+}
+
+void print_too_fast(const FeedReport& feed, const PrepareQuantiles& times, const Style& style,
+                    std::FILE* out) {
+  const double dropped = share_too_fast(feed, times);
+  if (dropped == 0) return;
+  fmt::print(out,
+             "  {} a frame takes {} to prepare and comes every {}: live, {:.0f} % of them would be "
+             "dropped\n",
+             style.warning("too slow  "), duration(1e-3 * times.p50), duration(1 / feed.state.rate),
+             std::min(99.0, std::ceil(100 * dropped)));
+}
+
 void print_seen(const SourceState& state, std::FILE* out) {
   fmt::print(out, "  points     {} felt", grouped(state.points));
   if (state.depth > 0) {
@@ -105,6 +126,7 @@ void print_camera(const TouchedSource& source, const Style& style, std::FILE* ou
       out, "  latency    {} from frame to touchable, {} at worst; prepared in {} (p50), {} (max)\n",
       duration(state.latency_mean), duration(state.latency_worst), duration(1e-3 * times.p50),
       duration(1e-3 * times.longest));
+  print_too_fast(feed, times, style, out);
   const Policy policy = policy_of(source.options, source.as_cloud);
   fmt::print(out, "  policy     {}", name_in(kPolicies, policy));
   if (keeps_history(policy)) fmt::print(out, " of {}", source.options.policy.history);
@@ -137,14 +159,31 @@ Json json_camera(const TouchedSource& source) {
                {"problem", state.problem},
                {"latency_s", {{"mean", state.latency_mean}, {"worst", state.latency_worst}}},
                {"prepare_ms", {{"p50", times.p50}, {"max", times.longest}}},
+               {"would_drop_live", share_too_fast(feed, times)},
                {"policy", policy}};
   json.update(json_seen(source.state));
   return json;
 }
 
+std::string in_words(const CameraModel& camera) {
+  const Pinhole& p = camera.pinhole;
+  return fmt::format("{} x {} pixels of a camera of {:.4g} px", camera.width, camera.height,
+                     0.5 * (p.fx + p.fy));
+}
+
+Json json_of(const CameraModel& camera) {
+  const Pinhole& p = camera.pinhole;
+  return {{"width", camera.width},
+          {"height", camera.height},
+          {"pinhole_px", {{"fx", p.fx}, {"fy", p.fy}, {"cx", p.cx}, {"cy", p.cy}}}};
+}
+
 void print_depth_image(const TouchedSource& source, const Style& style, std::FILE* out) {
   fmt::print(out, "{} {} ({})\n", style.heading(source.argument.name), source.argument.path,
              source.format);
+  if (source.lens.width > 0) {
+    fmt::print(out, "  organised  {}, felt as a depth frame\n", in_words(source.lens));
+  }
   print_seen(source.state, out);
   fmt::print(out, "  prepared   {} after {} of reading\n", duration(source.prepare_seconds),
              duration(source.read_seconds));
@@ -155,6 +194,7 @@ Json json_depth_image(const TouchedSource& source) {
                {"file", source.argument.path},
                {"format", source.format},
                {"seconds", {{"read", source.read_seconds}, {"prepare", source.prepare_seconds}}}};
+  if (source.lens.width > 0) json["organised"] = json_of(source.lens);
   json.update(json_seen(source.state));
   return json;
 }

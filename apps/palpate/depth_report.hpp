@@ -14,7 +14,13 @@ void print_camera(const TouchedSource& source, const Style& style, std::FILE* ou
 /// The same as data: SI units, named in the keys.
 [[nodiscard]] nlohmann::ordered_json json_camera(const TouchedSource& source);
 
-/// What it knows of a depth image, which is filtered as a camera's frame is.
+/// "640 x 480 pixels of a camera of 525 px".
+[[nodiscard]] std::string in_words(const CameraModel& camera);
+
+/// The same as data.
+[[nodiscard]] nlohmann::ordered_json json_of(const CameraModel& camera);
+
+/// What it knows of a depth image or organised cloud, which is filtered as a camera's frame is.
 void print_depth_image(const TouchedSource& source, const Style& style, std::FILE* out);
 
 [[nodiscard]] nlohmann::ordered_json json_depth_image(const TouchedSource& source);

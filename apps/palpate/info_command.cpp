@@ -16,6 +16,7 @@
 #include "apps/palpate/python_drawing.hpp"
 #include "apps/palpate/trust_picture.hpp"
 #include "apps/palpate/waiting.hpp"
+#include "palpate/scene/source.hpp"
 
 namespace palpate::app {
 
@@ -45,6 +46,13 @@ InfoReport study(const CloudArgument& argument, const ReadingOptions& options,
   const Prepared prepared = prepare(cloud);
   report.prepared = prepared.report;
   report.rim = rim_share(prepared.points);
+  report.organised = depth_frame_of(cloud);
+  if (report.organised.frame) {
+    Source felt(argument.name, {});
+    felt.set(cloud);
+    report.image = felt.state();
+    report.image_radius = felt.points()->radius;
+  }
   if (picture != nullptr) picture->take(argument.name, prepared, report.core);
   return report;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "apps/palpate/density_map.hpp"
+#include "apps/palpate/depth_report.hpp"
 #include "apps/palpate/json.hpp"
 #include "apps/palpate/source_report.hpp"
 #include "apps/palpate/words.hpp"
@@ -27,15 +28,28 @@ std::string columns_of(const PointCloud& cloud) {
   return text;
 }
 
+std::string organised_as(const InfoReport& report) {
+  const PointCloud& cloud = report.loaded.file.cloud;
+  if (!report.organised.frame) {
+    return fmt::format("{} x {}, felt as loose points: {}", cloud.width, cloud.height,
+                       report.organised.why_none);
+  }
+  return in_words(report.organised.frame->camera) +
+         (report.image.depth > 0 ? ", felt as a depth frame"
+                                 : ", felt as loose points: half are nearer than 0.1 m or farther "
+                                   "than 20 m; is --scale right?");
+}
+
 void print_points(const InfoReport& report, std::FILE* out) {
   const CloudFile& file = report.loaded.file;
   fmt::print(out, "  points     {}", grouped(file.cloud.size()));
-  if (file.width > 0) fmt::print(out, ", organised as {} x {}", file.width, file.height);
   if (file.dropped > 0) {
     fmt::print(out, ", {} of {} announced dropped as invalid", grouped(file.dropped),
                grouped(file.declared));
   }
-  fmt::print(out, "\n  holds      {}\n", columns_of(file.cloud));
+  fmt::print(out, "\n");
+  if (file.cloud.width > 0) fmt::print(out, "  organised  {}\n", organised_as(report));
+  fmt::print(out, "  holds      {}\n", columns_of(file.cloud));
   if (file.cloud.viewpoint) {
     const Eigen::Vector3d& v = *file.cloud.viewpoint;
     fmt::print(out, "  viewpoint  {:.4g}, {:.4g}, {:.4g}\n", v.x(), v.y(), v.z());
@@ -72,6 +86,10 @@ void print_surface(const InfoReport& report, std::FILE* out) {
 void print_advice(const InfoReport& report, const Style& style, std::FILE* out) {
   const PrepareReport& r = report.prepared;
   fmt::print(out, "{}\n", style.heading("touch would use"));
+  if (report.image.depth > 0) {
+    fmt::print(out, "  the depth filter ({} points, R {}); with --unorganised\n",
+               grouped(report.image.points), length(report.image_radius));
+  }
   fmt::print(out, "  --voxel    {:.3g} ({} points are left{}{})\n", r.voxel, grouped(r.points_out),
              r.duplicates > 0
                  ? fmt::format(", {} were at the place of another", grouped(r.duplicates))
@@ -108,6 +126,16 @@ void print_report(const InfoReport& report, std::FILE* out) {
   print_map(report, style, out);
 }
 
+Json json_organised(const InfoReport& report) {
+  if (!report.organised.frame) return nullptr;
+  Json json = json_of(report.organised.frame->camera);
+  json["residual_px"] = report.organised.residual;
+  json["felt_as_frame"] = report.image.depth > 0;
+  json["points_felt"] = report.image.points;
+  json["radius_m"] = report.image_radius;
+  return json;
+}
+
 Json json_report(const InfoReport& report) {
   const CloudFile& file = report.loaded.file;
   const PrepareReport& r = report.prepared;
@@ -118,8 +146,9 @@ Json json_report(const InfoReport& report) {
           {"points", file.cloud.size()},
           {"points_declared", file.declared},
           {"points_invalid", file.dropped},
-          {"width", file.width},
-          {"height", file.height},
+          {"width", file.cloud.width},
+          {"height", file.cloud.height},
+          {"organised", json_organised(report)},
           {"normals", !file.cloud.normals.empty()},
           {"colors", !file.cloud.colors.empty()},
           {"intensities", !file.cloud.intensities.empty()},

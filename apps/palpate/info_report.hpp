@@ -5,6 +5,8 @@
 
 #include "apps/palpate/cloud_facts.hpp"
 #include "apps/palpate/load.hpp"
+#include "palpate/depth/organised.hpp"
+#include "palpate/scene/source_state.hpp"
 
 namespace palpate::app {
 
@@ -17,6 +19,10 @@ struct InfoReport {
   SpacingFacts spacing;
   PrepareReport prepared;  ///< with the defaults: the advice
   double rim = 0;          ///< share of points at a border or a hole
+
+  OrganisedFrame organised;  ///< of a cloud with rows and columns
+  SourceState image;         ///< felt as that frame; depth 0: it is not
+  double image_radius = 0;   ///< R then, median, m
 };
 
 void print_report(const InfoReport& report, std::FILE* stream);

@@ -44,14 +44,16 @@ Kinds kinds_of(const TouchOptions& options, std::span<const ChosenSource> source
   for (const ChosenSource& source : sources) {
     const std::string& path = source.argument.path;
     const bool live = lives(path);
-    const bool depth = live || is_depth_image(path);
-    const bool cloud = !depth || taken_as_cloud(options, source);
+    const bool image = !live && is_depth_image(path);
+    const bool organised = !live && !image && may_be_organised(path);
+    const bool depth = live || image || organised;
+    const bool cloud = !depth || organised || taken_as_cloud(options, source);
     kinds.lives |= live;
     kinds.still |= !live;
     kinds.recorded |= live && (!path.starts_with(kCamera) || path.ends_with(".oni"));
     kinds.image |= !live && may_be_image(path);
     kinds.depth |= depth;
-    kinds.filtered |= !cloud;
+    kinds.filtered |= depth && !taken_as_cloud(options, source);
     kinds.filtered_live |= live && !cloud;
     kinds.cloud |= cloud;
     kinds.cloud_live |= live && cloud;
@@ -76,7 +78,7 @@ std::vector<Use> uses_of_frames(const Kinds& kinds) {
        kinds.history,
        "is of the policies average and crossfade, and neither is chosen; add --policy average"},
       {{"--loop"}, kinds.recorded, "is of sequences, and there is none"},
-      {{"--predict", "--memory", "--fit-everywhere"},
+      {{"--memory", "--fit-everywhere"},
        kinds.filtered_live,
        "is of frames that go through the depth filter, and none do"},
       {{"--clip-to-reach"},
@@ -99,8 +101,10 @@ std::vector<Use> uses_of_points(const Kinds& kinds) {
       {{"--nearest", "--farthest"},
        kinds.filtered,
        "is of the depth filter, and nothing goes through it"},
-      {{"--unorganised"}, kinds.depth, "is of depth images, and there is none"},
-      {{"--radius", "--voxel", "--viewpoint"},
+      {{"--unorganised"},
+       kinds.depth,
+       "is of depth images and organised clouds, and there is none"},
+      {{"--voxel", "--viewpoint"},
        kinds.cloud,
        "is of clouds; the depth filter chooses by itself what pixels and noise allow: leave it "
        "out, or add --unorganised"},

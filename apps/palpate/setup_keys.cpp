@@ -41,7 +41,6 @@ constexpr auto kFrameKeys = std::to_array<SetupKey>({
     {"nearest", KeyKind::number},
     {"farthest", KeyKind::number},
     {"memory", KeyKind::integer},
-    {"predict", KeyKind::flag},
     {"fit_everywhere", KeyKind::flag},
     {"clip_to_reach", KeyKind::flag},
     {"loop", KeyKind::flag},

@@ -1,10 +1,10 @@
 #include <vector>
 
-#include "apps/palpate/computing_time.hpp"
 #include "apps/palpate/feeding.hpp"
 #include "apps/palpate/interruption.hpp"
 #include "apps/palpate/run.hpp"
 #include "apps/palpate/touch_run.hpp"
+#include "palpate/base/thread_clock.hpp"
 #include "palpate/sensor/simulated_stream.hpp"
 
 namespace palpate::app {
@@ -18,8 +18,9 @@ std::vector<SimulatedStream> make_streams(Run& run) {
   for (std::size_t i = 0; i < run.felt.size(); ++i) {
     TouchedSource& touched = run.touched.sources[i];
     if (!touched.camera) continue;
+    touched.feed.simulated = true;
     Source& felt = run.felt.source(i);
-    streams.emplace_back(*touched.camera, felt.name(), feeding(touched, felt, computing_seconds),
+    streams.emplace_back(*touched.camera, felt.name(), feeding(touched, felt, thread_cpu_seconds),
                          options, [&felt] { felt.keep(); });
   }
   return streams;

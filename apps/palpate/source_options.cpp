@@ -24,7 +24,9 @@ void add_surface_of_source(CLI::App& command, SourceChoices& o) {
     return command.add_option(name, value, wrapped(help))
         ->group("Surface (chosen from the data unless given)");
   };
-  add("--radius", o.radius, "support radius R of every point: larger is smoother")
+  add("--radius", o.radius,
+      "support radius R of every point, of depth images and streams the smallest: larger is "
+      "smoother")
       ->check(positive())
       ->type_name("METRES");
   add("--voxel", o.voxel, "edge of the voxel filter of clouds; 0: none")
@@ -66,11 +68,6 @@ void add_stream_options(CLI::App& command, SourceChoices& o) {
       "where that is less)")
       ->check(positive())
       ->type_name("METRES");
-  command
-      .add_flag("--predict", o.predict,
-                wrapped("put what moves where it will be in a frame's time, as far as the depth "
-                        "filter can tell: less lag, more noise"))
-      ->group("Streams");
   command
       .add_flag("--clip-to-reach", o.clip_to_reach,
                 wrapped("of frames taken as clouds, prepare only what the tool can reach before "
@@ -114,7 +111,8 @@ void add_source_options(CLI::App& command, SourceChoices& o) {
       ->group("Reading");
   command
       .add_flag("--unorganised", o.unorganised,
-                wrapped("take a depth image as a cloud: voxel filter and fitted normals in place "
+                wrapped("take depth images and organised clouds as loose points: voxel filter and "
+                        "fitted normals in place "
                         "of the depth filter"))
       ->group("Reading");
   add_surface_of_source(command, o);

@@ -24,7 +24,7 @@ struct ReadingOptions {
 struct SourceChoices {
   ReadingOptions reading;
   std::string viewpoint;
-  bool unorganised = false;  ///< a depth image as a cloud, without its rows and columns
+  bool unorganised = false;  ///< depth images and organised clouds as loose points
   std::optional<double> radius;
   std::optional<double> voxel;
   std::string policy;
@@ -36,7 +36,6 @@ struct SourceChoices {
   std::optional<double> farthest;      ///< depth, m
   std::optional<int> memory;           ///< frames
   std::optional<double> normal_error;  ///< rad
-  bool predict = false;
   bool fit_everywhere = false;
   bool clip_to_reach = false;
   bool loop = false;

@@ -59,7 +59,6 @@ DepthFilterOptions depth_options(const SourceChoices& choices) {
   if (!choices.noise.empty()) result.noise = parse_noise(choices.noise);
   result.normal_error = choices.normal_error.value_or(result.normal_error);
   result.memory = choices.memory.value_or(result.memory);
-  result.predict = choices.predict;
   result.nearest = choices.nearest.value_or(result.nearest);
   result.farthest = choices.farthest.value_or(result.farthest);
   if (result.nearest < result.farthest) return result;
@@ -75,6 +74,7 @@ SourceOptions source_options(const TouchOptions& options, const ChosenSource& so
   result.prepare = prepare_options(options, source.choices);
   result.policy = policy_options(options, source);
   result.depth = depth_options(source.choices);
+  result.organised = !taken_as_cloud(options, source);
   return result;
 }
 

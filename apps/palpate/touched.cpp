@@ -14,6 +14,7 @@
 #include "apps/palpate/waiting.hpp"
 #include "apps/palpate/words.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/depth/organised.hpp"
 
 namespace palpate::app {
 
@@ -84,6 +85,9 @@ void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& ch
   const Source& source = scene.add(loaded.argument.name, loaded.file.cloud, result.options);
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();
+  result.state = source.state();
+  result.depth_image = result.state.depth > 0;
+  if (result.depth_image) result.lens = depth_frame_of(loaded.file.cloud).frame->camera;
   check_place(loaded.argument, *source.points());
   check_radius(loaded.argument, result.options.prepare, *source.points(), result.prepared.spacing);
   if (has_page(options)) {  // which may want it prepared anew
@@ -91,12 +95,7 @@ void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& ch
   }
 }
 
-// A surface that is there from the start.
-constexpr auto kAtOnce = [] { return 0.0; };
-
-// One frame, in which nothing is known of where the hand will be.
-void push_alone(Source& source, const DepthFrame& frame, TouchedSource& result) {
-  push_frame(result, source, frame, kAtOnce);
+void check_felt(const Source& source, TouchedSource& result) {
   const std::shared_ptr<const SurfacePoints> points = source.points();
   if (!points || points->size() == 0) {
     throw Error(
@@ -131,11 +130,12 @@ void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSour
   result.read_seconds = seconds_since(begin);
   result.format = fmt::format("depth image, {} x {}", frame.camera.width, frame.camera.height);
   result.depth_image = true;
-  result.options.policy.fit_everywhere = true;
   if (!chosen.choices.farthest) believe_no_farther(frame, result.options.depth);
   const Waiting waiting(fmt::format("preparing {}", chosen.argument.name));
   const auto start = WallClock::now();
-  push_alone(scene.add(chosen.argument.name, result.options), frame, result);
+  Source& source = scene.add(chosen.argument.name, result.options);
+  source.set(frame);
+  check_felt(source, result);
   result.prepare_seconds = seconds_since(start);
 }
 
@@ -149,7 +149,9 @@ void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& cho
   if (!chosen.choices.farthest) believe_no_farther(first, result.options.depth);
   Source& source = scene.add(chosen.argument.name, result.options);
   if (first.T_world_sensor) source.set_pose(*first.T_world_sensor);
-  if (explored) push_alone(source, first, result);
+  if (!explored) return;
+  push_frame(result, source, first, [] { return 0.0; });  // in which no tool is known yet
+  check_felt(source, result);
 }
 
 }  // namespace

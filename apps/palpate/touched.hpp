@@ -23,7 +23,7 @@ struct TouchedSource {
   SourceState state;       ///< of a depth image; of what lives, after the run
 
   // Of what stands still:
-  bool depth_image = false;
+  bool depth_image = false;  ///< or an organised cloud that is felt as one
   std::string format;
   std::size_t declared = 0;
   std::size_t dropped = 0;
@@ -35,7 +35,7 @@ struct TouchedSource {
   // Of what lives:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
   bool as_cloud = false;                ///< its frames are taken as clouds
-  CameraModel lens;                     ///< of its first frame
+  CameraModel lens;                     ///< of its first frame; of an organised cloud, too
   FeedReport feed;                      ///< after the run
 };
 

@@ -8,10 +8,7 @@
 namespace palpate::depth {
 namespace {
 
-constexpr float kFollow = 0.8F;          // beta: how fast the speed follows
-constexpr int kCalmFrames = 2;           // after which a moving block stands still
-constexpr float kFarthestAhead = 3e-3F;  // prediction along the normal, m: 1.5 N at 500 N/m
-constexpr float kTooFast = 3.5e-3F;      // m per frame along the normal: no prediction
+constexpr int kCalmFrames = 2;  // after which a moving block stands still
 
 float squared(float x) {
   return x * x;
@@ -40,11 +37,6 @@ void restart(const Measured& now, BlockMemory& m) {
   m.count = 1;
   m.calm = 0;
   m.state = now.state;
-}
-
-void stop(BlockMemory& m) {
-  m.speed = 0;
-  m.moving = false;
 }
 
 /// Is the frame within the gate of what is remembered? Slopes that nothing vouches for are not
@@ -78,18 +70,17 @@ void average(const Measured& now, int memory, BlockMemory& m) {
   average_slopes(now, share, m);
 }
 
-// Takes the frame as it is: whatever lags or runs ahead of what moves is felt.
+// Takes the frame as it is: whatever lags behind what moves is felt.
 void follow(const Measured& now, float gate2, BlockMemory& m) {
   const float d = now.rho - m.rho;
   // Of what comes slowly, each frame alone looks calm.
   const float way = std::max(std::abs(d), std::abs(now.rho - m.calm_since));
   const bool calm = squared(way) <= gate2 * (m.variance + now.variance);
   const std::uint8_t calm_frames = calm ? m.calm + 1 : 0;
-  m.speed += kFollow * (d - m.speed);
   restart(now, m);
   m.calm = calm_frames;
   if (!calm) m.calm_since = now.rho;
-  if (calm_frames >= kCalmFrames) stop(m);
+  if (calm_frames >= kCalmFrames) m.moving = false;
 }
 
 /// Takes in a measured block.
@@ -99,13 +90,12 @@ void step(const Measured& now, const TemporalOptions& options, float gate2, Bloc
   const bool another = m.count == 0 || std::abs(d) > another_surface(std::max(now.rho, m.rho));
   if (another || m.state != now.state) {
     restart(now, m);
-    stop(m);
+    m.moving = false;
   } else if (m.moving) {
     follow(now, gate2, m);
   } else if (agrees(now, m, gate2)) {
     average(now, options.memory, m);
   } else {
-    m.speed = d;
     m.moving = true;
     restart(now, m);
     m.calm_since = now.rho;
@@ -115,27 +105,16 @@ void step(const Measured& now, const TemporalOptions& options, float gate2, Bloc
 void miss(int hold, BlockMemory& m) {
   if (m.count > 0 && m.missed < std::min(hold, 255)) {
     ++m.missed;
-    stop(m);
+    m.moving = false;
   } else {
     m = {};
   }
 }
 
-/// How far ahead of the frame a moving block is put, 1/m: one frame, as far as is safe.
-float ahead(const BlockMemory& m, float x, float y) {
-  if (!m.moving) return 0;
-  const float nz = m.rho - m.slope_x * x - m.slope_y * y;
-  const float length = std::sqrt(squared(m.slope_x) + squared(m.slope_y) + squared(nz));
-  // Along the normal a change of rho moves the surface by n.ray / rho^2, n.ray = rho / length.
-  const float per_meter = m.rho * length;
-  if (std::abs(m.speed) > kTooFast * per_meter) return 0;
-  return std::clamp(m.speed, -kFarthestAhead * per_meter, kFarthestAhead * per_meter);
-}
-
-void write(const BlockMemory& m, float rho, std::size_t i, BlockFits& fits) {
+void write(const BlockMemory& m, std::size_t i, BlockFits& fits) {
   const float share = 1 / static_cast<float>(m.count);
   fits.states[i] = m.state;
-  fits.rho[i] = rho;
+  fits.rho[i] = m.rho;
   fits.variance[i] = m.variance * share + m.extra;
   fits.slope_x[i] = m.slope_x;
   fits.slope_y[i] = m.slope_y;
@@ -145,12 +124,10 @@ void write(const BlockMemory& m, float rho, std::size_t i, BlockFits& fits) {
 
 }  // namespace
 
-TemporalOptions temporal_options(int memory, bool predict, double correlation) {
-  const bool together = correlation > 2;
+TemporalOptions temporal_options(int memory, double correlation) {
   TemporalOptions options;
   options.memory = std::clamp(memory, 1, 255);
-  options.gate = together ? 7 : 5;
-  options.predict = predict && !together;
+  options.gate = correlation > 2 ? 7 : 5;
   return options;
 }
 
@@ -184,23 +161,17 @@ void TemporalFilter::filter(const TemporalOptions& options, const Eigen::Isometr
                             BlockFits& fits) {
   prepare(fits.grid, T_world_sensor);
   const auto gate2 = static_cast<float>(options.gate * options.gate);
-  std::size_t i = 0;
-  for (int row = 0; row < grid_.rows; ++row) {
-    const auto y = static_cast<float>(grid_.y(row));
-    for (int column = 0; column < grid_.columns; ++column, ++i) {
-      BlockMemory& m = memory_[i];
-      jumped_[i] = 0;
-      if (fits.states[i] == BlockState::empty) {
-        miss(options.hold, m);
-        continue;
-      }
-      step(measured(fits, i), options, gate2, m);
-      const float limit = another_surface(m.rho);
-      jumped_[i] = !(expected_[i] > 0 && std::abs(m.rho - expected_[i]) <= limit);
-      const bool predicted = options.predict && m.moving;
-      const float lead = predicted ? ahead(m, static_cast<float>(grid_.x(column)), y) : 0.0F;
-      write(m, m.rho + lead, i, fits);
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    BlockMemory& m = memory_[i];
+    jumped_[i] = 0;
+    if (fits.states[i] == BlockState::empty) {
+      miss(options.hold, m);
+      continue;
     }
+    step(measured(fits, i), options, gate2, m);
+    const float limit = another_surface(m.rho);
+    jumped_[i] = !(expected_[i] > 0 && std::abs(m.rho - expected_[i]) <= limit);
+    write(m, i, fits);
   }
 }
 

@@ -12,15 +12,14 @@
 namespace palpate::depth {
 
 struct TemporalOptions {
-  int memory = 8;        ///< frames that a still block averages, 1 to 255; 1: none
-  double gate = 5;       ///< G: standard deviations within which a block stands still
-  bool predict = false;  ///< moving blocks are put one frame ahead
-  int hold = 10;         ///< frames for which a block that is not measured is remembered
+  int memory = 8;   ///< frames that a still block averages, 1 to 255; 1: none
+  double gate = 5;  ///< G: standard deviations within which a block stands still
+  int hold = 10;    ///< frames for which a block that is not measured is remembered
 };
 
 /// What suits a sensor: G = 5, and 7 where pixels err together (c > 2), since the variances of fits
-/// tell less then; no prediction there either (nss_fast.md section 3).
-[[nodiscard]] TemporalOptions temporal_options(int memory, bool predict, double correlation);
+/// tell less then (nss_fast.md section 3).
+[[nodiscard]] TemporalOptions temporal_options(int memory, double correlation);
 
 /// The filter over time of nss_fast.md section 3, after the fit, a block at a time: what stands
 /// still is averaged, what moves is taken as it is measured. Bounded work; it allocates only when

@@ -16,7 +16,6 @@ struct BlockMemory {
   float slope_variance = 0;  ///< of one frame's slopes, 1/m^2
   float confidence = 0;
   float calm_since = 0;    ///< rho of the last frame that was not calm, 1/m
-  float speed = 0;         ///< v: change of rho while it moves, 1/m per frame
   std::uint8_t count = 0;  ///< frames in the mean; 0: nothing is remembered
   std::uint8_t calm = 0;   ///< frames in a row that a moving block stood still
   std::uint8_t missed = 0;

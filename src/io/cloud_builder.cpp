@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "io/origin.hpp"
 
@@ -76,13 +78,22 @@ CloudBuilder::CloudBuilder(const Input& input, const Columns& columns, ColorScal
   if (columns.intensities) cloud_.intensities.reserve(expected);
 }
 
+void CloudBuilder::organise(std::size_t width, std::size_t height) {
+  if (width * height > std::numeric_limits<std::uint32_t>::max()) return;
+  cloud_.width = width;
+  cloud_.height = height;
+  cloud_.pixels.reserve(points_.capacity());
+}
+
 void CloudBuilder::add(const Row& row) {
+  const auto pixel = static_cast<std::uint32_t>(points_.size() + dropped_);
   const Eigen::Vector3d point = input_.options.scale * three(row, Role::x);
   if (!is_usable(point)) {
     ++dropped_;
     return;
   }
   points_.push_back(point);
+  if (cloud_.width > 0) cloud_.pixels.push_back(pixel);
   if (columns_.normals) cloud_.normals.push_back(unit_normal(three(row, Role::normal_x)));
   if (columns_.colors) {
     const Eigen::Vector3d c = three(row, Role::red);

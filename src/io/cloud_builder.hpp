@@ -27,6 +27,9 @@ class CloudBuilder {
   CloudBuilder(const Input& input, const Columns& columns, ColorScale color_scale,
                std::size_t expected);
 
+  /// Says that rows are the pixels of an image. Before any is added.
+  void organise(std::size_t width, std::size_t height);
+
   void add(const Row& row);
 
   /// Points kept so far.

@@ -64,6 +64,7 @@ CloudFile cloud_of(const Input& input, const DepthImage& image) {
   const double unit = unit_of(input);
   const std::size_t farthest = kFarBeyond * median_depth(image);
   CloudBuilder builder(input, {}, ColorScale::byte, image.samples.size());
+  builder.organise(image.width, image.height);
   Progress progress(input.options, image.samples.size());
   Row row{};
   for (std::size_t i = 0; i < image.samples.size(); ++i) {
@@ -77,8 +78,6 @@ CloudFile cloud_of(const Input& input, const DepthImage& image) {
     builder.add(row);
   }
   CloudFile file = builder.finish(image.format);
-  file.width = image.width;
-  file.height = image.height;
   file.cloud.viewpoint = Eigen::Vector3d::Zero();
   return file;
 }

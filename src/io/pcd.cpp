@@ -82,7 +82,9 @@ class PcdReader {
 
  private:
   CloudBuilder builder(std::size_t room) const {
-    return {input_, uses_.columns, ColorScale::byte, std::min(header_.points, room)};
+    CloudBuilder result(input_, uses_.columns, ColorScale::byte, std::min(header_.points, room));
+    if (header_.organised()) result.organise(header_.width, header_.height);
+    return result;
   }
 
   CloudBuilder read_ascii() {
@@ -185,10 +187,6 @@ class PcdReader {
 
   CloudFile finish(CloudBuilder result, std::string format) const {
     CloudFile file = result.finish(std::move(format));
-    if (header_.organised()) {
-      file.width = header_.width;
-      file.height = header_.height;
-    }
     const bool is_set = header_.viewpoint != PcdHeader{}.viewpoint;
     const Eigen::Vector3d stand =
         input_.options.scale * Eigen::Map<const Eigen::Vector3d>(header_.viewpoint.data());

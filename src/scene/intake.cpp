@@ -19,7 +19,12 @@ constexpr double kClipMargin = 0.3;
 // A sensor is silent no sooner than after so many intervals.
 constexpr double kSilentIntervals = 3;
 
-void check(const PolicyOptions& options) {
+void check(const SourceOptions& source) {
+  for (const double radius : {source.prepare.minimum_radius, source.prepare.radius.value_or(0)}) {
+    if (radius >= 0 && std::isfinite(radius)) continue;
+    throw Error(fmt::format("a support radius of {} m; give a length in metres", radius));
+  }
+  const PolicyOptions& options = source.policy;
   if (options.history < 1 || options.history > static_cast<int>(Snapshot::kMaxLayers) - 1) {
     throw Error(fmt::format("policy: a history of {} clouds; give 1 to {}", options.history,
                             Snapshot::kMaxLayers - 1));
@@ -49,13 +54,15 @@ double time_of(const char* what, double time) {
 }  // namespace
 
 Intake::Intake(const SourceOptions& options)
-    : options_((check(options.policy), options)),
+    : options_((check(options), options)),
       frames_(options.policy.policy.value_or(kDepthPolicy)),
       clouds_(options.policy.policy.value_or(kCloudPolicy)),
       filter_(options.depth),
       morph_({.silence = options.policy.silence,
               .fade = options.policy.fade,
-              .kernel = options.prepare.kernel}),
+              .kernel = options.prepare.kernel,
+              .minimum_radius =
+                  std::max(options.prepare.minimum_radius, options.prepare.radius.value_or(0))}),
       layers_(clouds_, clouds_ == Policy::replace ? 1 : options.policy.history),
       fusion_(options.prepare) {
   last_.presence_end = 0;  // there is none

@@ -2,11 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "palpate/base/error.hpp"
+#include "palpate/depth/organised.hpp"
 #include "prepare/check_options.hpp"
 #include "scene/intake.hpp"
 #include "scene/reach_board.hpp"
@@ -43,6 +45,22 @@ void check(const std::string& name, const Snapshot& snapshot) {
     check_factor(name, "a layer's weight_end", layer.weight_end);
     check(*layer.points);
   }
+}
+
+/// The depth frame that the cloud is to be felt as, if any.
+std::optional<DepthFrame> image_of(const PointCloud& cloud, const SourceOptions& options) {
+  const PrepareOptions& loose = options.prepare;
+  const bool wanted = options.organised && cloud.width > 0 && !loose.voxel && !loose.clip &&
+                      !loose.viewpoint && !loose.material_from_intensity && !loose.paper;
+  std::optional<DepthFrame> image = wanted ? depth_frame_of(cloud).frame : std::nullopt;
+  if (!image) return image;
+  const auto within = [&](float z) {
+    return static_cast<double>(z) > options.depth.nearest &&
+           static_cast<double>(z) < options.depth.farthest;
+  };
+  const auto felt = std::ranges::count_if(image->depth, within);
+  const auto seen = std::ranges::count_if(image->depth, [](float z) { return z > 0; });
+  return 2 * felt > seen ? std::move(image) : std::nullopt;
 }
 
 /// Errors of what `act` does, with the source's name.
@@ -82,6 +100,7 @@ void Source::change(const SourceOptions& options) {
   options_.prepare = options.prepare;
   options_.policy = options.policy;
   options_.depth = options.depth;
+  options_.organised = options.organised;
 }
 
 void Source::take_change() {
@@ -106,14 +125,39 @@ void Source::set_pose(const Eigen::Isometry3d& T_world_sensor) {
 }
 
 void Source::set(const PointCloud& cloud) {
-  Prepared prepared = named(name_, [&] { return prepare(cloud, options().prepare, pose()); });
+  const SourceOptions wanted = options();
+  if (std::optional<DepthFrame> image = image_of(cloud, wanted)) {
+    image->T_world_sensor = pose() * image->T_world_sensor.value_or(Eigen::Isometry3d::Identity());
+    set(*image);
+    return;
+  }
+  Prepared prepared = named(name_, [&] { return prepare(cloud, wanted.prepare, pose()); });
   {
     const std::lock_guard lock(mutex_);
     report_ = prepared.report;
+    state_ = {};
   }
   auto snapshot = std::make_shared<Snapshot>();
   snapshot->layers.push_back(
       {std::make_shared<const SurfacePoints>(std::move(prepared.points)), 1, 1});
+  publish(std::move(snapshot));
+}
+
+void Source::set(const DepthFrame& frame) {
+  SourceOptions whole = options();
+  whole.policy = {.fit_everywhere = true};
+  const StartTime at_once = [] { return 0.0; };
+  const Eigen::Isometry3d stand = frame.T_world_sensor.value_or(pose());
+  auto snapshot = std::make_shared<Snapshot>();
+  named(name_, [&] {
+    check_pose(stand);
+    Intake intake(whole);
+    snapshot->layers = intake.take(frame, {stand, {}, at_once})->layers;
+    const std::lock_guard lock(mutex_);
+    state_ = {};
+    note(*snapshot);
+    note(intake);
+  });
   publish(std::move(snapshot));
 }
 
@@ -127,9 +171,7 @@ bool Source::push(const DepthFrame& frame, const StartTime& start) {
     hand_over(intake_->take(frame, {pose_now, found_, start}));
   });
   const std::lock_guard lock(mutex_);
-  state_.depth = intake_->median_depth();
-  state_.noise = intake_->noise().sigma(state_.depth);
-  state_.correlation = intake_->noise().correlation;
+  note(*intake_);
   return true;
 }
 
@@ -194,6 +236,12 @@ void Source::note(const Snapshot& snapshot) {
   state_.points = points_->size();
   state_.silent_from = snapshot.silent_from;
   state_.fade = snapshot.fade;
+}
+
+void Source::note(const Intake& intake) {
+  state_.depth = intake.median_depth();
+  state_.noise = intake.noise().sigma(state_.depth);
+  state_.correlation = intake.noise().correlation;
 }
 
 void Source::publish(std::shared_ptr<const Snapshot> snapshot) {

@@ -42,6 +42,31 @@ TEST(Info, SuspectsMillimetres) {
   EXPECT_NE(outcome.out.find("--scale 0.001"), std::string::npos);
 }
 
+TEST(Info, TellsTheCameraOfAnOrganisedCloud) {
+  Shell shell;
+  for (const bool bent : {false, true}) {
+    std::string cloud =
+        "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH 64\nHEIGHT 48\nPOINTS 3072\n"
+        "DATA ascii\n";
+    for (int i = 0; i < 64 * 48; ++i) {
+      const double z = 0.5 + 0.001 * (i % 7);
+      const double x = (i % 64 - 31.5) / 60;
+      cloud += fmt::format("{} {} {}\n", (bent ? x * x * x : x) * z, (i / 64 - 23.5) * z / 60, z);
+    }
+    shell.write("wall.pcd", cloud);
+    const Outcome outcome = shell.run("info wall.pcd --json info.json");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(bent ? "64 x 48, felt as loose points: no pinhole camera"
+                                    : "64 x 48 pixels of a camera of 60 px, felt as a depth frame"),
+              std::string::npos)
+        << outcome.out;
+    const auto organised = nlohmann::json::parse(shell.read("info.json"))[0]["organised"];
+    ASSERT_EQ(organised.is_null(), bent);
+    if (bent) continue;
+    EXPECT_NEAR(organised["pinhole_px"]["cx"].get<double>(), 31.5, 1e-6);
+  }
+}
+
 TEST(Info, OnePointIsACloud) {
   Shell shell;
   const Outcome outcome = shell.run("info -", "1 2 3\n");

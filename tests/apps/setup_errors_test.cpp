@@ -35,7 +35,8 @@ TEST(SetupErrors, NameFileLineAndKey) {
       {"[stream]\nmemory = 0\n", {"line 2", "'memory'", "from 1 to 255"}},
       {"[stream]\nmemory = -1\n", {"line 2", "'memory'", "'-1'", "from 1 to 255"}},
       {"[stream]\nhistory = -1\n", {"line 2", "'history'", "'-1'"}},
-      {"[stream]\npredict = \"yes\"\n", {"line 2", "'predict'", "text", "true or false"}},
+      {"[stream]\nclip_to_reach = \"yes\"\n",
+       {"line 2", "'clip_to_reach'", "text", "true or false"}},
       {"[stream]\nnearest = 0\n", {"line 2", "'nearest'", "0.001 m or more"}},
       {"[stream]\nnoise = [1, inf, 1]\n", {"line 2", "'noise'", "not a finite number"}},
       {"[stream]\nnoise = \"radar\"\n", {"line 2", "'noise'", "radar"}},
@@ -66,7 +67,8 @@ TEST(SetupErrors, NameFileLineAndKey) {
       {"[[source]]\nfrom = \"\"\n", {"line 2", "'from'", "empty"}},
       {"[[source]]\nfrom = \"a.ply\"\npose = [0, 0, nan, 0, 0, 0, 1]\n",
        {"line 3", "not a finite number"}},
-      {"[[source]]\nfrom = \"a.ply\"\npredcit = true\n", {"line 3", "did you mean 'predict'?"}},
+      {"[[source]]\nfrom = \"a.ply\"\nclip_to_raech = true\n",
+       {"line 3", "did you mean 'clip_to_reach'?"}},
       {"[[source]]\nfrom = \"a.ply\"\n[[source]]\nname = \"b\"\n", {"line 3", "'from'"}},
       {"[[source]]\nfrom = \"sequence:\"\n", {"line 2", "'from'", "'sequence:'"}},
       {"[[source]]\nfrom = \"a.ply\"\npose = [1, 2]\n",
@@ -99,7 +101,7 @@ TEST(SetupErrors, KeysThatNothingHasAUseForAreToldWithFileAndLine) {
   const std::pair<std::string, const char*> cases[] = {
       {torus + "[stream]\nnoise = \"xtion\"\n", "desk.toml, line 4: 'noise' is of depths"},
       {torus + "depth_unit = 0.1\n" + camera, "desk.toml, line 3: 'depth_unit' is of depth images"},
-      {torus + camera + "radius = 0.01\n", "desk.toml, line 5: 'radius' is of clouds"},
+      {torus + camera + "voxel = 0.01\n", "desk.toml, line 5: 'voxel' is of clouds"},
       {camera + "[stream]\nhistory = 3\n", "desk.toml, line 4: 'history' is of the policies"},
   };
   for (const auto& [toml, words] : cases) {

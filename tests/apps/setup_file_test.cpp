@@ -99,7 +99,6 @@ memory = 3
 [[source]]
 name = "other"
 from = "camera:simulated"
-predict = false
 fit_everywhere = false
 normal_error = 0.005
 
@@ -113,7 +112,6 @@ fade = 0.9
 nearest = 0.4
 farthest = 2
 memory = 12
-predict = true
 fit_everywhere = true
 clip_to_reach = true
 
@@ -161,14 +159,12 @@ TEST(SetupFile, EveryChoiceReachesTheLibrary) {
   EXPECT_EQ(first.depth.nearest, 0.4);
   EXPECT_EQ(first.depth.farthest, 2);
   EXPECT_EQ(first.depth.memory, 3) << "its own";
-  EXPECT_TRUE(first.depth.predict);
   EXPECT_EQ(first.depth.normal_error, 0.01);
   EXPECT_EQ(first.prepare.normal_error, 0.01);
   ASSERT_TRUE(first.prepare.viewpoint);
   EXPECT_EQ(first.prepare.viewpoint->z(), 1.2);
   const SourceOptions second = source_options(options, sources[1]);
   EXPECT_EQ(second.depth.memory, 12) << "of [stream]";
-  EXPECT_FALSE(second.depth.predict);
   EXPECT_FALSE(second.policy.fit_everywhere);
   EXPECT_EQ(second.depth.normal_error, 0.005);
   EXPECT_FALSE(field_options(options).sharp_edges);
@@ -193,7 +189,6 @@ TEST(SetupFile, WhatIsNotSaidIsAsTheLibraryHasIt) {
   EXPECT_EQ(source.policy.silence, PolicyOptions{}.silence);
   EXPECT_FALSE(source.policy.fit_everywhere);
   EXPECT_FALSE(source.policy.clip_to_reach);
-  EXPECT_FALSE(source.depth.predict);
   EXPECT_EQ(source.depth.memory, DepthFilterOptions{}.memory);
   EXPECT_EQ(source.depth.farthest, DepthFilterOptions{}.farthest);
   EXPECT_EQ(source.depth.normal_error, DepthFilterOptions{}.normal_error);
@@ -264,10 +259,10 @@ TEST(SetupFile, ServesRunsOfSeveralKindsButNotOtherSources) {
   shell.write("desk.toml", common + "[stream]\nlatency = 0.02\n");
   const Outcome played = shell.run("touch --setup desk.toml --trajectory hand.csv");
   EXPECT_EQ(played.code, 0) << played.err;
-  shell.write("desk.toml", common + "[stream]\npredict = true\n");
+  shell.write("desk.toml", common + "[stream]\nmemory = 3\n");
   const Outcome useless = shell.run("touch --setup desk.toml --trajectory hand.csv");
   EXPECT_EQ(useless.code, 1) << useless.err;
-  EXPECT_NE(useless.err.find("desk.toml, line 8: 'predict'"), std::string::npos) << useless.err;
+  EXPECT_NE(useless.err.find("desk.toml, line 8: 'memory'"), std::string::npos) << useless.err;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -161,20 +162,6 @@ TEST(Streams, ClippingToReachLeavesTheForceAndMostPointsOut) {
   EXPECT_LT(points[1], 0.9 * points[0]);
 }
 
-TEST(Streams, PredictionChangesWhatMovesAndIsOffUnlessAsked) {
-  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
-  Shell shell;
-  const std::string command =
-      "touch camera:simulated:approach,noise=a --simulated-time --duration 0.4 --log ";
-  ASSERT_EQ(shell.run(command + "a.csv").code, 0);
-  shell.write("no.toml", "[stream]\npredict = false\n");
-  ASSERT_EQ(shell.run(command + "b.csv --setup no.toml").code, 0);
-  EXPECT_EQ(without_times(shell, "a.csv"), without_times(shell, "b.csv"));
-  const Outcome outcome = shell.run(command + "c.csv --predict");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(without_times(shell, "a.csv"), without_times(shell, "c.csv"));
-}
-
 TEST(Streams, BrokenImageIsReportedAndTheRestIsFelt) {
   Shell shell;
   write_wall(shell, 6);
@@ -244,6 +231,36 @@ TEST(Streams, DepthImageGoesThroughTheDepthFilterUnlessUnorganised) {
     EXPECT_EQ(outcome.out.find("voxel") == std::string::npos, std::string(more).empty());
   }
   EXPECT_NE(shell.run("touch wall.pgm").err.find("--intrinsics"), std::string::npos);
+}
+
+// The wall as an organised cloud, with a hole.
+TEST(Streams, OrganisedCloudGoesThroughTheDepthFilterUnlessUnorganised) {
+  Shell shell;
+  std::string cloud =
+      "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 64\nHEIGHT 48\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3072\nDATA ascii\n";
+  for (int i = 0; i < 64 * 48; ++i) {
+    const double z = i < 200 ? std::nan("") : 0.5;
+    cloud += fmt::format("{} {} {}\n", (i % 64 - 31.5) * z / 60, (i / 64 - 23.5) * z / 60, z);
+  }
+  shell.write("wall.pcd", cloud);
+  shell.write("way.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0.48\n0.1,0,0,0.503\n0.2,0,0,0.503\n");
+  const auto felt_as_image = [&](const std::string& more) {
+    const Outcome outcome =
+        shell.run("touch wall.pcd --trajectory way.csv --log log.csv --json r.json " + more);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NEAR(number(columns(shell.read("log.csv"))["fz"].back()), -500 * 3e-3, 0.05) << more;
+    const bool said = outcome.out.find(
+                          "64 x 48 pixels of a camera of 60 px, felt as a depth "
+                          "frame") != std::string::npos;
+    EXPECT_EQ(Json::parse(shell.read("r.json"))["sources"][0].contains("organised"), said);
+    return said;
+  };
+  EXPECT_TRUE(felt_as_image(""));
+  EXPECT_TRUE(felt_as_image("--noise xtion --nearest 0.2 --radius 0.1"));
+  for (const char* more : {"--unorganised", "--voxel 0.01", "--viewpoint 0,0,0"}) {
+    EXPECT_FALSE(felt_as_image(more)) << more;
+  }
 }
 
 TEST(Streams, WhatIsNotThereIsNamed) {

@@ -136,42 +136,6 @@ TEST_F(TemporalFilterTest, WhatStopsDoesNotRunAhead) {
   EXPECT_LT(errors_of(fits_, scene, kStill).rms, 0.5 * depth_sd(0.8));
 }
 
-TEST_F(TemporalFilterTest, PredictionPutsWhatMovesOneFrameAhead) {
-  const TemporalOptions options{.predict = true};
-  BlockScene scene;
-  for (int frame = 0; frame < 20; ++frame) {
-    scene.plane_point.z() = 0.8 - 0.06 * frame / 30;
-    show(scene, options);
-    if (frame < 5) continue;
-    BlockScene next = scene;
-    next.plane_point.z() -= 0.06 / 30;
-    EXPECT_LT(std::abs(errors_of(fits_, next, kStill).mean), 0.1 * 0.06 / 30);
-  }
-  // When it stops at once it is a frame's way ahead, for one frame, and settles soon.
-  show(scene, options);
-  EXPECT_LT(std::abs(errors_of(fits_, scene, kStill).mean), 0.25 * 0.06 / 30);
-  show(scene, options);
-  show(scene, options);
-  EXPECT_LT(std::abs(errors_of(fits_, scene, kStill).mean), depth_sd(0.8));
-}
-
-TEST_F(TemporalFilterTest, PredictionEndsWhereItWouldBeDangerous) {
-  const TemporalOptions options{.predict = true};
-  for (const double speed : {0.1, 0.2}) {
-    filter_.reset();
-    BlockScene scene;
-    for (int frame = 0; frame < 20; ++frame) {
-      scene.plane_point.z() = 0.8 - speed * frame / 30;
-      show(scene, options);
-      const double lead = -errors_of(fits_, scene, kStill).mean;
-      EXPECT_LT(lead, 3.01e-3);
-      if (speed > 0.15 && frame > 3) {
-        EXPECT_LT(lead, 0.1e-3);
-      }
-    }
-  }
-}
-
 TEST_F(TemporalFilterTest, AnotherSurfaceReplacesTheOldOneAtOnce) {
   for (int frame = 0; frame < 5; ++frame) show({.plane_point = {0, 0, 0.6}});
   const BlockScene behind{.plane_point = {0, 0, 0.8}};
@@ -270,11 +234,9 @@ TEST_F(TemporalFilterTest, ForgetsOnResetAndOnAnotherGrid) {
 }
 
 TEST(TemporalOptions, FollowTheNoise) {
-  EXPECT_EQ(temporal_options(8, true, 1).gate, 5);
-  EXPECT_TRUE(temporal_options(8, true, 1).predict);
-  EXPECT_EQ(temporal_options(8, true, 3.5).gate, 7);
-  EXPECT_FALSE(temporal_options(8, true, 3.5).predict);
-  EXPECT_EQ(temporal_options(1000, false, 1).memory, 255);
+  EXPECT_EQ(temporal_options(8, 1).gate, 5);
+  EXPECT_EQ(temporal_options(8, 3.5).gate, 7);
+  EXPECT_EQ(temporal_options(1000, 1).memory, 255);
 }
 
 }  // namespace

@@ -180,7 +180,7 @@ TEST_F(TemporalWarpTest, WhateverComesStaysFinite) {
       fits_.slope_variance[i] = static_cast<float>(random_.uniform());
       fits_.confidences[i] = random_.uniform() < 0.5 ? 0.0F : 1.0F;
     }
-    filter_.filter({.predict = true}, pose, fits_);
+    filter_.filter({}, pose, fits_);
     for (std::size_t i = 0; i < fits_.size(); ++i) {
       if (fits_.states[i] == BlockState::empty) continue;
       ASSERT_TRUE(std::isfinite(fits_.rho[i]) && fits_.rho[i] > 0);

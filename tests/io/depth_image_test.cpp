@@ -48,8 +48,8 @@ const std::vector<std::uint16_t> kSecond{258, 2000, 60000};
 
 void expect_points(const CloudFile& file) {
   ASSERT_EQ(file.cloud.size(), 3u);
-  EXPECT_EQ(file.width, 3u);
-  EXPECT_EQ(file.height, 2u);
+  EXPECT_EQ(file.cloud.width, 3u);
+  EXPECT_EQ(file.cloud.height, 2u);
   EXPECT_EQ(file.declared, 6u);
   EXPECT_EQ(file.dropped, 3u);  // 0, 65535, and 60 m beyond a median of 1 m
   EXPECT_TRUE(file.cloud.point(0).isApprox(Eigen::Vector3d(-0.01, -0.0025, 1), 1e-6));

@@ -99,7 +99,7 @@ TEST(Pcd, ReadsAsciiWithNan) {
   EXPECT_EQ(first_point(file), Eigen::Vector3f(1, 2, 3));
   EXPECT_EQ(file.declared, 2u);
   EXPECT_EQ(file.dropped, 1u);
-  EXPECT_EQ(file.width, 0u);
+  EXPECT_EQ(file.cloud.width, 0u);
   EXPECT_FALSE(file.cloud.viewpoint);
 }
 
@@ -132,8 +132,19 @@ TEST(Pcd, KeepsTheViewpointWhenOrganisedOrSet) {
   EXPECT_FALSE(read_text(head.text() + rows).cloud.viewpoint);
   const CloudFile grid = read_text(Head{.width = "1", .height = "2"}.text() + rows);
   EXPECT_EQ(grid.cloud.viewpoint, Eigen::Vector3d(0, 0, 0));
-  EXPECT_EQ(grid.width, 1u);
-  EXPECT_EQ(grid.height, 2u);
+  EXPECT_EQ(grid.cloud.width, 1u);
+  EXPECT_EQ(grid.cloud.height, 2u);
+}
+
+TEST(Pcd, KeepsThePixelsOfAnOrganisedCloudsPoints) {
+  const std::string rows = "0 0 1\nnan nan nan\n0 1 1\n2 2 2\n";
+  const Head grid{.width = "2", .height = "2", .points = "4"};
+  const PointCloud cloud = read_text(grid.text() + rows).cloud;
+  EXPECT_EQ(cloud.width, 2u);
+  EXPECT_EQ(cloud.height, 2u);
+  EXPECT_EQ(cloud.pixels, (std::vector<std::uint32_t>{0, 2, 3}));
+  const Head loose{.width = "4", .height = "1", .points = "4"};
+  EXPECT_TRUE(read_text(loose.text() + rows).cloud.pixels.empty());
 }
 
 TEST(Pcd, ReadsOldHeadersWithoutCountOrWidth) {

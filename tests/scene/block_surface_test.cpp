@@ -43,9 +43,10 @@ float weight_of(const BlockSurface& surface, std::size_t block) {
   return surface.area(block) / (surface.radius(block) * surface.radius(block));
 }
 
-void expect_weights(const test::DepthOf& surface_depth, float tolerance) {
+void expect_weights(const test::DepthOf& surface_depth, float tolerance,
+                    double minimum_radius = 0) {
   const FilteredDepth depth = depth_of(surface_depth);
-  BlockSurface surface(Kernel::wyvill);
+  BlockSurface surface(Kernel::wyvill, minimum_radius);
   surface.measure(depth);
   std::vector<std::size_t> blocks;
   const std::vector<float> expected = searched_weights(depth, surface, blocks);
@@ -87,6 +88,28 @@ TEST(BlockSurface, RadiiFollowTheSpacingOfRows) {
   surface.measure(slope);
   const double rows = pitch * 0.5 / std::cos(tilt);
   EXPECT_NEAR(surface.radius(middle) / (2.2 * rows), 1, 0.1);
+}
+
+TEST(BlockSurface, NoRadiusIsBelowTheMinimum) {
+  const FilteredDepth depth =
+      depth_of([](double x, double) { return x < 0 ? 0.5 : 0.5 / (1 - 2.5 * x); });
+  BlockSurface plain(Kernel::wyvill);
+  BlockSurface wide(Kernel::wyvill, 9e-3);
+  plain.measure(depth);
+  wide.measure(depth);
+  bool larger = false;
+  for (std::size_t b = 0; b < depth.size(); ++b) {
+    if (depth.states[b] == BlockState::empty) continue;
+    EXPECT_GE(wide.radius(b), 9e-3f);
+    EXPECT_GE(wide.radius(b), plain.radius(b));
+    larger = larger || wide.radius(b) > 9.01e-3f;
+  }
+  EXPECT_TRUE(larger) << "where points are farther apart";
+}
+
+TEST(BlockSurface, WideRadiiWeighAsASearchWould) {
+  expect_weights(test::wall(0.5), 0.06f, 15e-3);
+  expect_weights(test::wall(0.5), 0.06f, 35e-3);
 }
 
 TEST(BlockSurface, RadiiGrowByHalfTheDistanceAtMost) {

@@ -54,6 +54,24 @@ TEST(Push, AFrameIsASurfaceWhereTheSensorSawIt) {
   }
 }
 
+TEST(Push, FramesKeepTheSmallestRadiusThatIsAskedFor) {
+  for (const Policy policy : {Policy::replace, Policy::crossfade, Policy::morph}) {
+    SourceOptions options = depth_source(policy);
+    options.prepare.minimum_radius = 12e-3;
+    const auto smallest = [&] {
+      Scene scene;
+      Source& source = scene.add("camera", options);
+      push(source, 0, 0);
+      return source.points()->smallest_radius;
+    };
+    EXPECT_NEAR(smallest(), 12e-3, 1e-8);
+    options.prepare.radius = 14e-3;
+    EXPECT_NEAR(smallest(), 14e-3, 1e-8);
+    options.prepare.radius = -1.0;
+    EXPECT_THROW(smallest(), Error);
+  }
+}
+
 TEST(Push, MorphGoesInAStraightLineFromFrameToFrame) {
   Scene scene;
   Source& source = scene.add("camera", depth_source(Policy::morph));

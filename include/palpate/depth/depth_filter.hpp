@@ -14,7 +14,6 @@ struct DepthFilterOptions {
   std::optional<NoiseModel> noise = {};  ///< unset: measured, and tracked from then on
   double normal_error = 0.0035;          ///< wanted error of normals, rad (theta: 0.2 degrees)
   int memory = 8;        ///< frames that a still block averages; 1: every frame by itself
-  bool predict = false;  ///< moving blocks are put one frame ahead (nss_fast.md section 3)
   double nearest = 0.1;  ///< depths outside nearest..farthest are not believed, m
   double farthest = 20;
 };

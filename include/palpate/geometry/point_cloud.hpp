@@ -22,6 +22,11 @@ struct PointCloud {
   std::vector<float> intensities;                    ///< in the file's own scale
   std::optional<Eigen::Vector3d> viewpoint;          ///< where the sensor stood, m, if known
 
+  // Of an organised cloud, whose points are pixels of an image; else 0, 0 and empty.
+  std::size_t width = 0;              ///< columns of the image
+  std::size_t height = 0;             ///< rows of the image
+  std::vector<std::uint32_t> pixels;  ///< where each point was: row * width + column
+
   [[nodiscard]] std::size_t size() const { return positions.size(); }
   [[nodiscard]] bool empty() const { return positions.empty(); }
   [[nodiscard]] Eigen::Vector3d point(std::size_t i) const {

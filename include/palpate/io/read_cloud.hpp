@@ -26,8 +26,6 @@ struct CloudFile {
   std::string format;        ///< such as "PLY, binary little endian"
   std::size_t declared = 0;  ///< points that the file announces; of a depth image its pixels
   std::size_t dropped = 0;   ///< of them not finite, beyond 10^12 m, or marked invalid
-  std::size_t width = 0;     ///< columns of an organised cloud, else 0
-  std::size_t height = 0;    ///< rows of an organised cloud, else 0
 };
 
 /// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS (LAZ through the user's liblaszip), 16-bit depth PNG and

@@ -22,7 +22,8 @@ enum class Orientation {
 /// How a cloud becomes surface points. What is not set is chosen from the data.
 struct PrepareOptions {
   std::optional<double> voxel = {};            ///< leaf of the voxel filter, m; 0: keep every point
-  std::optional<double> radius = {};           ///< one support radius R for all points, m
+  std::optional<double> radius = {};           ///< one support radius R for all points, m; of depth
+                                               ///< frames the smallest
   std::optional<double> radius_multiple = {};  ///< m in R = m s; 2.5, irregular points 3, unless
                                                ///< noise asks for more
   double minimum_radius = 0;                   ///< no R below this, m (a tool's radius / 0.3)

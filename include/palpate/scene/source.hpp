@@ -33,7 +33,12 @@ struct SourceOptions {
   PrepareOptions prepare = {};
   SoftMaterial soft = {};         ///< felt where preparation was told to make materials
   PolicyOptions policy = {};      ///< for what is pushed
-  DepthFilterOptions depth = {};  ///< for depth frames that are pushed
+  DepthFilterOptions depth = {};  ///< for depth frames
+  /// Does set() feel an organised cloud as the depth frame that it was made of? Not where that
+  /// camera cannot be told (depth_frame_of()), half of its depths are out of the filter's range, or
+  /// `prepare` asks for what loose points alone have: voxel, clip, viewpoint, materials, the
+  /// paper's way.
+  bool organised = true;
 };
 
 /// Asked once, when of a pushed frame or cloud all is done that can be done before: when its
@@ -73,6 +78,10 @@ class Source {
   /// Prepares a cloud that stands still and makes it this source's surface. Not real-time.
   /// @throws Error as prepare() does.
   void set(const PointCloud& cloud);
+
+  /// The same for a depth frame, all of which is fitted. Its pose, where set, stands above pose().
+  /// @throws Error as push() does.
+  void set(const DepthFrame& frame);
 
   /// Takes the next frame of a depth camera: filters it, brings it into the surface as the policy
   /// says, publishes. `frame.T_world_sensor`, where set, stands above pose(). Once frames of one
@@ -117,6 +126,7 @@ class Source {
   [[nodiscard]] bool room_for(bool clouds);
   void hand_over(std::shared_ptr<const Snapshot> snapshot);
   void note(const Snapshot& snapshot);
+  void note(const Intake& intake);
   void compare();
 
   std::string name_;

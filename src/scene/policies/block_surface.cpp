@@ -64,7 +64,7 @@ void BlockSurface::start(const FilteredDepth& depth) {
     const float side = pitch * depth.positions[b].z();
     const float rows = std::max(side, depth.spacings[b]);
     const float area = side * rows;
-    radii_[b] = std::max(kSpacings * std::sqrt(area), kRows * rows);
+    radii_[b] = std::max({kSpacings * std::sqrt(area), kRows * rows, minimum_radius_});
     areas_[b] = area / whole;
   }
 }
@@ -118,7 +118,8 @@ void BlockSurface::mark_rims(const FilteredDepth& depth) {
 int BlockSurface::half_window(const FilteredDepth& depth, std::size_t block) const {
   const double side = depth.pitch * static_cast<double>(depth.positions[block].z());
   const double half = std::ceil(static_cast<double>(radii_[block]) / side);
-  return std::clamp(static_cast<int>(half), 1, kLargestWindow);
+  const double asked = std::ceil(static_cast<double>(minimum_radius_) / side);
+  return static_cast<int>(std::clamp(half, 1.0, std::max<double>(kLargestWindow, asked)));
 }
 
 bool BlockSurface::near_rim(const FilteredDepth& depth, std::size_t block, int half) const {

@@ -15,7 +15,9 @@ namespace palpate {
 /// are known without a search.
 class BlockSurface {
  public:
-  explicit BlockSurface(Kernel kernel) : kernel_(kernel) {}
+  /// `minimum_radius`: no R below this, m.
+  explicit BlockSurface(Kernel kernel, double minimum_radius = 0)
+      : kernel_(kernel), minimum_radius_(static_cast<float>(minimum_radius)) {}
 
   /// Radii and areas of all blocks. Beside rims and holes a weight is exact inside the balls
   /// (sensor frame), elsewhere that of a whole surface. Allocates when the size of frames changes.
@@ -23,7 +25,8 @@ class BlockSurface {
   /// The same, exact everywhere.
   void measure(const FilteredDepth& depth);
 
-  /// R_i, m: max(2.5 s, 2.2 times the largest spacing of rows) (field_choice.md section 5), limited
+  /// R_i, m: max(2.5 s, 2.2 times the largest spacing of rows) (field_choice.md section 5) and no
+  /// less than the minimum, limited
   /// so that it grows by half the distance at most from block to block; 0 where there is no point.
   [[nodiscard]] float radius(std::size_t block) const { return radii_[block]; }
 
@@ -48,6 +51,7 @@ class BlockSurface {
   void visit_window(const FilteredDepth& depth, std::size_t block, const Visit& visit) const;
 
   Kernel kernel_;
+  float minimum_radius_;
   std::vector<float> radii_;  // 0: no point
   std::vector<float> areas_;
   std::vector<float> sums_;           // S_i

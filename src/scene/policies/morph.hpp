@@ -22,6 +22,7 @@ struct MorphOptions {
   double silence = 0.3;  ///< a point that nothing confirmed for so long begins to fade, s
   double fade = 0.5;     ///< in which it fades away, s
   Kernel kernel = Kernel::wyvill;
+  double minimum_radius = 0;  ///< no R below this, m
 };
 
 /// A filtered depth frame, and where to look at it closely.
@@ -43,7 +44,8 @@ struct MorphInput {
 /// What appears and goes does so by its presence, which is stiffness.
 class Morph {
  public:
-  explicit Morph(const MorphOptions& options) : options_(options), surface_(options.kernel) {}
+  explicit Morph(const MorphOptions& options)
+      : options_(options), surface_(options.kernel, options.minimum_radius) {}
 
   /// What can be done of a frame before it is known when it starts. Allocates only to grow.
   void look(const MorphInput& input);

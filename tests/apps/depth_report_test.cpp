@@ -1,0 +1,49 @@
+#include "apps/palpate/depth_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "apps/palpate/json.hpp"
+
+namespace palpate::app {
+namespace {
+
+TouchedSource fed(double rate, double prepare_ms, bool simulated) {
+  TouchedSource source;
+  source.feed.state.rate = rate;
+  source.feed.prepare_ms = {prepare_ms, prepare_ms};
+  source.feed.simulated = simulated;
+  return source;
+}
+
+std::string printed(const TouchedSource& source) {
+  std::FILE* file = std::tmpfile();
+  print_camera(source, Style(file), file);
+  std::rewind(file);
+  std::array<char, 4096> text{};
+  const std::size_t size = std::fread(text.data(), 1, text.size(), file);
+  std::fclose(file);
+  return {text.data(), size};
+}
+
+TEST(DepthReport, SimulatedTimeSaysWhatLiveWouldBeDropped) {
+  const TouchedSource slow = fed(30, 570, true);
+  const std::string text = printed(slow);
+  EXPECT_NE(text.find("a frame takes 570 ms to prepare and comes every 33.3 ms: live, 95 % of them "
+                      "would be dropped"),
+            std::string::npos)
+      << text;
+  EXPECT_NEAR(json_camera(slow)["would_drop_live"].get<double>(), 1 - 1 / (30 * 0.57), 1e-12);
+  const auto expect_silence = [](const TouchedSource& quick) {
+    EXPECT_EQ(printed(quick).find("would be dropped"), std::string::npos);
+    EXPECT_EQ(json_camera(quick)["would_drop_live"], 0.0);
+  };
+  expect_silence(fed(30, 12, true));
+  expect_silence(fed(30, 570, false));
+  expect_silence(fed(0, 570, true));
+  expect_silence(fed(30, 0, true));
+}
+
+}  // namespace
+}  // namespace palpate::app
