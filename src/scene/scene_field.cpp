@@ -40,7 +40,7 @@ constexpr double kFinest = 0.25;
 
 // A surface may rise this fast and still take a resting proxy along, m/s: one that moves (Morph),
 // from tick to tick; one of clouds that follow one another, from cloud to cloud.
-constexpr double kFastest = 2;
+constexpr double kFastestPoint = 2;
 constexpr double kFastestCloud = 0.5;
 
 // A tool feels points so far away, in support radii: normals beside rims need neighbours, too.
@@ -286,7 +286,7 @@ FieldTraits SceneField::traits() const noexcept {
   traits.resolution = metaball ? 0.002 * smallest : smallest / 16;
   traits.revision = state.revision;
   traits.reanchor_reach = std::max(
-      {0.5 * state.radius(), kFastest * state.passed, kFastestCloud * state.cloud_duration});
+      {0.5 * state.radius(), kFastestPoint * state.passed, kFastestCloud * state.cloud_duration});
   return traits;
 }
 

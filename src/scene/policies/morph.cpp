@@ -2,48 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace palpate {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
 constexpr std::size_t kAhead = 32;  // blocks
-
-// Of the blocks around one, how many have to show the same surface: those of a line, or most.
-constexpr float kVouch = 0.25f;
-constexpr float kVouchToMove = 0.6f;
 
 // What is not seen stands behind all that is, on a curve of its own: a cell of the index that held
 // both would be as deep as the scene. Codes of blocks are below it.
 constexpr std::uint32_t kUnseenCode = 1u << 30;
-
-constexpr float kBeside = 0.5f;  // R by which depths of one surface differ from block to block
-
-// What has faded so far is gone.
-constexpr float kGone = 1e-4f;
-
-// Of what a frame says of a point's radius and confidence, this share is taken over.
-constexpr float kShare = 0.25f;
-
-// What moves faster along its normal is another surface, m/s.
-constexpr float kFastest = 1;
-
-// The least cosine of the angle between a ray and a normal that can be trusted.
-constexpr float kGrazing = 0.3f;
-
-// A surface that jumps goes on by so much faster than before, m/s: 0.3 N a millisecond at 500 N/m.
-constexpr float kSudden = 0.6f;
-
-// Deviations of a block that two frames of one surface may differ by: five of their difference.
-constexpr float kDeviations = 7;
-
-// In which trust in what has been seen through, or is hidden, goes, s: what is gone five times as
-// slowly as a proxy's spring follows (EnergyTank::kTime); who hides a thing may take it along.
-constexpr double kGoes = 0.1;
-constexpr double kHidden = 60;
 
 // Single precision resolves a micrometre as far from the points' origin as this, m.
 constexpr double kFarFromOrigin = 16;
@@ -59,11 +27,6 @@ Eigen::Vector3f mix_normals(const Eigen::Vector3f& a, const Eigen::Vector3f& b, 
 }
 
 }  // namespace
-
-struct Morph::Point {
-  PointState state;
-  float area = 0;  // a_i R_i^2
-};
 
 void Morph::forget() {
   last_.reset();
@@ -213,227 +176,6 @@ void Morph::fetch(const FilteredDepth& depth, std::size_t block) const {
   __builtin_prefetch(&depth.normals[block]);
   __builtin_prefetch(&depth.confidences[block]);
   surface_.fetch(block);
-}
-
-/// What becomes of one block: of the point that the frame has there, and of the old ones. What lies
-/// nearer than what is seen now has been seen through; what lies farther is hidden.
-void Morph::settle(const FilteredDepth& depth, std::size_t place) {
-  const std::span<const std::uint32_t> old = by_block_.at(place);
-  const std::size_t block = order_.blocks[place];
-  const bool shown = surface_.radius(block) > 0;
-  if (!shown && old.empty()) return;
-  place_ = static_cast<std::uint32_t>(place);
-  if (!shown) return hold_one(old);
-  const Point point = new_point(depth, block);
-  const std::uint32_t partner = partner_of(depth, old, point);
-  if (partner == kNone && last_ && beside(depth, block) < kVouch) return hold_one(old);
-  if (partner == kNone) {
-    appear(point);
-  } else {
-    follow(point, partner);
-  }
-  const float at = depth_of(point.state.position);
-  for (const std::uint32_t i : old) {
-    if (i == partner) continue;
-    const EntryKind kind = entries_[i].kind;
-    const float beyond = depth_of(old_point(i).position) - at;
-    if (kind == EntryKind::outside) {
-      hold(i, kind);
-    } else if (kind == EntryKind::leaving || std::abs(beyond) <= point.state.radius) {
-      leave(i);
-    } else if (kind == EntryKind::going || beyond < 0 || !may_hide(old, i)) {
-      go(i);
-    } else {
-      hide(i);
-    }
-  }
-}
-
-/// Nothing sure is measured there: of the points that were seen, one stands for the surface.
-void Morph::hold_one(std::span<const std::uint32_t> old) {
-  bool held = false;
-  for (const std::uint32_t i : old) {
-    const EntryKind kind = entries_[i].kind;
-    const bool second = kind == EntryKind::live && std::exchange(held, true);
-    if (kind == EntryKind::going) {
-      go(i);
-    } else if (kind == EntryKind::leaving || second) {
-      leave(i);
-    } else {
-      hold(i, kind);
-    }
-  }
-}
-
-/// Along the camera's axis, m.
-float Morph::depth_of(const Eigen::Vector3f& position) const {
-  return turn_.col(2).dot(position - shift_);
-}
-
-/// A block remembers one hidden surface: the one that was hidden first. What moves before it leaves
-/// no trail.
-bool Morph::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const {
-  if (entries_[i].kind == EntryKind::hidden) return true;
-  const PointState point = old_point(i);
-  return std::ranges::none_of(old, [&](std::uint32_t other) {
-    return entries_[other].kind == EntryKind::hidden &&
-           (old_point(other).position - point.position).norm() > point.radius;
-  });
-}
-
-/// How far a surface has gone along its normal when it was at `from`, m: what a block shows of it
-/// goes farther along the ray.
-float Morph::advance_of(const Point& seen, const Eigen::Vector3f& from) {
-  const Eigen::Vector3f way = seen.state.position - from;
-  return std::max(std::abs(way.dot(seen.state.normal)), kGrazing * way.norm());
-}
-
-/// Which of the old points is seen again: the nearest within R, or within what noise explains; or
-/// what has come along the ray as fast as things move.
-std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std::uint32_t> old,
-                                const Point& seen) const {
-  const std::size_t block = order_.blocks[place_];
-  const float same = std::max(seen.state.radius, kDeviations * depth.deviations[block]);
-  std::uint32_t partner = kNone;
-  float nearest = std::numeric_limits<float>::infinity();
-  for (const std::uint32_t i : old) {
-    const EntryKind kind = entries_[i].kind;
-    if (kind == EntryKind::leaving || kind == EntryKind::outside) continue;
-    const Eigen::Vector3f place = old_point(i).position;
-    const float squared = (place - seen.state.position).squaredNorm();
-    if (squared >= nearest) continue;
-    const bool moves = squared > same * same && kind == EntryKind::live && !moved_ &&
-                       may_move(depth, seen, i, place);
-    if (squared > same * same && !moves) continue;
-    nearest = squared;
-    partner = i;
-  }
-  return partner;
-}
-
-bool Morph::may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
-                     const Eigen::Vector3f& from) const {
-  const float fastest = kFastest + std::min(speed_of(i), kSudden);
-  return advance_of(seen, from) <= fastest * static_cast<float>(moment_.duration) &&
-         beside(depth, order_.blocks[place_]) >= kVouchToMove && !came_aside(seen);
-}
-
-/// Calls visit(block) for those around a block.
-template <class Visit>
-void Morph::each_beside(std::size_t block, const Visit& visit) const {
-  const int u = static_cast<int>(block) % order_.columns;
-  const int v = static_cast<int>(block) / order_.columns;
-  for (int y = std::max(0, v - 1); y <= std::min(order_.rows - 1, v + 1); ++y) {
-    for (int x = std::max(0, u - 1); x <= std::min(order_.columns - 1, u + 1); ++x) {
-      const auto other = static_cast<std::size_t>(y * order_.columns + x);
-      if (other != block) visit(other);
-    }
-  }
-}
-
-/// The share of blocks around one that show the same surface: what flies between two has few.
-float Morph::beside(const FilteredDepth& depth, std::size_t block) const {
-  float count = 0;
-  float all = 0;
-  each_beside(block, [&](std::size_t other) {
-    ++all;
-    const float apart = depth.positions[other].z() - depth.positions[block].z();
-    const bool same = surface_.radius(other) > 0 && std::abs(apart) < surface_.radius(block);
-    count += same ? 1.0f : 0.0f;
-  });
-  return all > 0 ? count / all : 1;
-}
-
-/// Was what a block shows now beside it before? Then the rim of something moved, or is noisy.
-bool Morph::came_aside(const Point& seen) const {
-  bool found = false;
-  each_beside(order_.blocks[place_], [&](std::size_t other) {
-    for (const std::uint32_t i : by_block_.at(place_of_block_[other])) {
-      const float apart = depth_of(old_point(i).position) - depth_of(seen.state.position);
-      const bool same = std::abs(apart) < kBeside * seen.state.radius;
-      found = found || (same && entries_[i].kind == EntryKind::live);
-    }
-  });
-  return found;
-}
-
-/// How fast a point has moved along its normal while the last snapshot lasted, m/s.
-float Morph::speed_of(std::uint32_t i) const {
-  if (!(last_moment_.duration > 0)) return 0;
-  const Eigen::Vector3f way = last_->end_positions[i] - last_->grid.points()[i];
-  return std::abs(way.dot(last_->end_normals[i])) / static_cast<float>(last_moment_.duration);
-}
-
-/// Lets the old point go to the new one.
-void Morph::follow(const Point& seen, std::uint32_t i) {
-  const PointState from = old_point(i);
-  PointState to = seen.state;
-  const Eigen::Vector3f way = to.position - from.position;
-  if (way.squaredNorm() > to.radius * to.radius) {
-    const float most = (speed_of(i) + kSudden) * static_cast<float>(moment_.duration);
-    const float advance = std::max(advance_of(seen, from.position), to.radius);
-    to.position = from.position + std::min(1.0f, std::max(most, to.radius) / advance) * way;
-  }
-  to.radius = from.radius + kShare * (to.radius - from.radius);
-  to.confidence = from.confidence + kShare * (to.confidence - from.confidence);
-  to.weight = std::min(1.0f, seen.area / (to.radius * to.radius));
-  if (to.normal.isZero(0)) to.normal = from.normal;
-  to.presence = std::min(1.0f, from.presence + share_of(options_.fade));
-  add(from, to, {place_, EntryKind::live, moment_.stamp});
-}
-
-void Morph::appear(const Point& point) {
-  PointState from = point.state;
-  PointState to = point.state;
-  if (!still_) from.weight = 0;
-  if (last_) {
-    from.presence = 0;
-    to.presence = std::min(1.0f, share_of(options_.fade));
-  }
-  add(from, to, {place_, EntryKind::live, moment_.stamp});
-}
-
-/// Of a time that something takes, s, how much a snapshot lasts.
-float Morph::share_of(double time) const {
-  return static_cast<float>(moment_.duration / time);
-}
-
-/// Nothing says that the point is gone, nothing that it is there.
-void Morph::hold(std::uint32_t i, EntryKind kind) {
-  const double unsure = moment_.stamp + moment_.duration - entries_[i].confirmed - options_.silence;
-  const auto sure = static_cast<float>(std::clamp(1 - unsure / options_.fade, 0.0, 1.0));
-  const float presence = old_point(i).presence;
-  keep(i, std::max(std::min(presence, sure), presence - share_of(options_.fade)),
-       {place_, kind, entries_[i].confirmed});
-}
-
-/// Something before it keeps it from being seen.
-void Morph::hide(std::uint32_t i) {
-  keep(i, old_point(i).presence - share_of(kHidden), {place_, EntryKind::hidden, moment_.stamp});
-}
-
-/// It has been seen through.
-void Morph::go(std::uint32_t i) {
-  keep(i, old_point(i).presence - share_of(kGoes),
-       {place_, EntryKind::going, entries_[i].confirmed});
-}
-
-/// Stays where it is, and is as sure as that when the snapshot ends; what nobody is sure of leaves.
-void Morph::keep(std::uint32_t i, float presence, const Entry& entry) {
-  const PointState from = old_point(i);
-  if (from.presence <= 0 || ++held_ > order_.size()) return leave(i);
-  PointState to = from;
-  to.presence = std::max(0.0f, presence);
-  to.weight = last_->end_density_weights[i];
-  add(from, to, entry);
-}
-
-void Morph::leave(std::uint32_t i) {
-  const PointState from = old_point(i);
-  if (from.weight <= kGone) return;
-  PointState to = from;
-  to.weight = 0;
-  add(from, to, {place_, EntryKind::leaving, entries_[i].confirmed});
 }
 
 void Morph::add(const PointState& from, const PointState& to, const Entry& entry) {

@@ -63,7 +63,10 @@ class Morph {
   void forget();
 
  private:
-  struct Point;
+  struct Point {
+    PointState state;
+    float area = 0;  // a_i R_i^2
+  };
   struct Unseen {
     PointState from;
     PointState to;
