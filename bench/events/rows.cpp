@@ -244,8 +244,9 @@ Event back_again(std::uint64_t seed) {
 }
 
 // Over the rim of a plate, 3 mm deep and beyond.
-Event over_rim(std::uint64_t seed) {
+Event over_rim(std::uint64_t seed, const std::string& family) {
   Draft draft(seed);
+  if (!family.empty()) seen_by(draft, family);
   const Vector3d middle = draft.place + draft.between(0.1, 0.16) * kUp;
   const Vector3d out = draft.to_camera(middle);
   draft.block(middle - 0.02 * out, out, Vector3d(0.04, 0.04, 0.02));
@@ -306,7 +307,10 @@ std::vector<Row> all_rows() {
   }
   rows.push_back({"from behind a plate", from_behind});
   rows.push_back({"and back onto it", back_again});
-  rows.push_back({"over a rim", over_rim});
+  for (const std::string family : {"", "structured", "stereo", "tof"}) {
+    rows.push_back({"over a rim" + std::string(family.empty() ? "" : ", ") + family,
+                    [=](std::uint64_t seed) { return over_rim(seed, family); }});
+  }
   for (const int frames : {1, 3, 30}) {
     rows.push_back({fmt::format("ended after {} frames", frames),
                     [=](std::uint64_t seed) { return ended(seed, frames); }});

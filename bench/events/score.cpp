@@ -38,10 +38,10 @@ struct Column {
   int digits;
 };
 constexpr Column kColumns[] = {
-    {"step N", &Score::step, true, 2},  {"most N", &Score::most, true, 1},
-    {"least", &Score::least, false, 2}, {"last", &Score::last, false, 2},
-    {"lost", &Score::lost, true, 3},    {"behind s", &Score::behind, true, 2},
-    {"rms N", &Score::rms, true, 3}};
+    {"step N", &Score::step, true, 2},      {"most N", &Score::most, true, 1},
+    {"least", &Score::least, false, 2},     {"last", &Score::last, false, 2},
+    {"lost", &Score::lost, true, 3},        {"behind s", &Score::behind, true, 2},
+    {"beyond mm", &Score::beyond, true, 1}, {"rms N", &Score::rms, true, 3}};
 
 }  // namespace
 
@@ -53,7 +53,9 @@ Score score(const Event& event, const Felt& felt) {
     if (i > 0) out.step = std::max(out.step, (felt.force[i] - felt.force[i - 1]).norm());
     const double force = felt.force[i].norm();
     out.most = std::max(out.most, force);
-    if (depth_of(event, i, felt.proxy[i]) > kInside) out.behind += kTick;
+    const double inside = depth_of(event, i, felt.proxy[i]);
+    if (inside > kInside) out.behind += kTick;
+    if (felt.touching[i]) out.beyond = std::max(out.beyond, -1e3 * inside);
     const bool deep = !event.when_deep || depth_of(event, i, event.hip[i]) > 0.99 * event.depth;
     if (event.depth <= 0 || !deep) continue;
     ++held;

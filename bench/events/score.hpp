@@ -15,6 +15,7 @@ struct Score {
   double last = 1;    ///< the last force alike
   double lost = 0;    ///< share of ticks with less than 20 % of that
   double behind = 0;  ///< time in which the proxy is more than 8 mm inside of something, s
+  double beyond = 0;  ///< farthest that a proxy which touches is from all solids, mm
   double rms = 0;     ///< of the force about its mean over 50 ms, N
 };
 
