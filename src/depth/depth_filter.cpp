@@ -93,8 +93,9 @@ struct DepthFilter::State {
   // In its view, from what has been measured and what is remembered.
   const FilteredDepth& points(const DepthFrame& frame) {
     fit(frame);
-    temporal.filter(depth::temporal_options(options.memory, out.noise.correlation),
-                    out.T_world_sensor, fits);
+    temporal.filter(
+        depth::temporal_options(options.memory, out.noise.correlation, options.normal_error),
+        out.T_world_sensor, fits);
     depth::write_points(fits, {options.nearest, options.farthest}, out);
     std::copy(temporal.jumped().begin(), temporal.jumped().end(), out.jumped.begin());
     return out;

@@ -8,6 +8,7 @@
 namespace palpate::depth {
 namespace {
 
+constexpr float kLonger = 8;    // times the memory, at most
 constexpr int kCalmFrames = 2;  // after which a moving block stands still
 
 float squared(float x) {
@@ -61,6 +62,15 @@ void average_slopes(const Measured& now, float share, BlockMemory& m) {
   m.confidence += share * (now.confidence - m.confidence);
 }
 
+/// Frames that a still block averages: more where one frame's normal is less sure than is wanted.
+int remembered(const TemporalOptions& options, const BlockMemory& m) {
+  const bool fitted = m.state == BlockState::fitted && m.confidence > 0;
+  if (!fitted || !(options.normal_error > 0) || options.memory == 1) return options.memory;
+  const float wanted = squared(static_cast<float>(options.normal_error) * m.rho);
+  const float longer = std::clamp(m.slope_variance / wanted, 1.0F, kLonger);
+  return std::min(255, static_cast<int>(longer * static_cast<float>(options.memory)));
+}
+
 void average(const Measured& now, int memory, BlockMemory& m) {
   m.count = static_cast<std::uint8_t>(std::min(memory, m.count + 1));
   const float share = 1 / static_cast<float>(m.count);
@@ -87,14 +97,16 @@ void follow(const Measured& now, float gate2, BlockMemory& m) {
 void step(const Measured& now, const TemporalOptions& options, float gate2, BlockMemory& m) {
   m.missed = 0;
   const float d = now.rho - m.rho;
-  const bool another = m.count == 0 || std::abs(d) > another_surface(std::max(now.rho, m.rho));
+  const float moves = another_surface(std::max(now.rho, m.rho));
+  const bool another =
+      m.count == 0 || squared(d) > std::max(squared(moves), gate2 * (m.variance + now.variance));
   if (another || m.state != now.state) {
     restart(now, m);
     m.moving = false;
   } else if (m.moving) {
     follow(now, gate2, m);
   } else if (agrees(now, m, gate2)) {
-    average(now, options.memory, m);
+    average(now, remembered(options, m), m);
   } else {
     m.moving = true;
     restart(now, m);
@@ -124,8 +136,9 @@ void write(const BlockMemory& m, std::size_t i, BlockFits& fits) {
 
 }  // namespace
 
-TemporalOptions temporal_options(int memory, double correlation) {
+TemporalOptions temporal_options(int memory, double correlation, double normal_error) {
   TemporalOptions options;
+  options.normal_error = normal_error;
   options.memory = std::clamp(memory, 1, 255);
   options.gate = correlation > 2 ? 7 : 5;
   return options;

@@ -12,14 +12,16 @@
 namespace palpate::depth {
 
 struct TemporalOptions {
-  int memory = 8;   ///< frames that a still block averages, 1 to 255; 1: none
-  double gate = 5;  ///< G: standard deviations within which a block stands still
-  int hold = 10;    ///< frames for which a block that is not measured is remembered
+  int memory = 8;           ///< frames that a still block averages, 1 to 255; 1: none
+  double gate = 5;          ///< G: standard deviations within which a block stands still
+  double normal_error = 0;  ///< wanted of normals, rad: blocks that are less sure average up to
+                            ///< eight times as many frames; 0: all alike
+  int hold = 10;            ///< frames for which a block that is not measured is remembered
 };
 
 /// What suits a sensor: G = 5, and 7 where pixels err together (c > 2), since the variances of fits
 /// tell less then (nss_fast.md section 3).
-[[nodiscard]] TemporalOptions temporal_options(int memory, double correlation);
+[[nodiscard]] TemporalOptions temporal_options(int memory, double correlation, double normal_error);
 
 /// The filter over time of nss_fast.md section 3, after the fit, a block at a time: what stands
 /// still is averaged, what moves is taken as it is measured. Bounded work; it allocates only when

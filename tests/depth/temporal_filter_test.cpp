@@ -199,6 +199,14 @@ TEST_F(TemporalFilterTest, ABlockThatBecomesFittedStartsAnewWithoutAJump) {
   EXPECT_EQ(jumps(), 3000);
 }
 
+TEST_F(TemporalFilterTest, WhatIsLessSureThanWantedRemembersLonger) {
+  for (const double wanted : {0.0, kSlopeSd * 0.8 / 2}) {  // 1 / rho = 0.8 m; four times the memory
+    filter_.reset();
+    for (int frame = 0; frame < 40; ++frame) show({}, {.normal_error = wanted});
+    for (const BlockMemory& m : filter_.memory()) EXPECT_NEAR(m.count, wanted > 0 ? 32 : 8, 1);
+  }
+}
+
 TEST_F(TemporalFilterTest, BlocksWithoutSlopesDoNotSpoilThem) {
   for (int frame = 0; frame < 8; ++frame) show({});
   test::measure({}, kStill, kSd, kSlopeSd, random_, fits_);
@@ -234,9 +242,9 @@ TEST_F(TemporalFilterTest, ForgetsOnResetAndOnAnotherGrid) {
 }
 
 TEST(TemporalOptions, FollowTheNoise) {
-  EXPECT_EQ(temporal_options(8, 1).gate, 5);
-  EXPECT_EQ(temporal_options(8, 3.5).gate, 7);
-  EXPECT_EQ(temporal_options(1000, 1).memory, 255);
+  EXPECT_EQ(temporal_options(8, 1, 0).gate, 5);
+  EXPECT_EQ(temporal_options(8, 3.5, 0).gate, 7);
+  EXPECT_EQ(temporal_options(1000, 1, 0).memory, 255);
 }
 
 }  // namespace

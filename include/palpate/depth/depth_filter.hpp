@@ -13,7 +13,8 @@ namespace palpate {
 struct DepthFilterOptions {
   std::optional<NoiseModel> noise = {};  ///< unset: measured, and tracked from then on
   double normal_error = 0.0035;          ///< wanted error of normals, rad (theta: 0.2 degrees)
-  int memory = 8;        ///< frames that a still block averages; 1: every frame by itself
+  int memory = 8;  ///< frames that a still block averages, and up to eight times as many where
+                   ///< one frame's normal is worse than that; 1: every frame by itself
   double nearest = 0.1;  ///< depths outside nearest..farthest are not believed, m
   double farthest = 20;
 };
