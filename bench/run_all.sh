@@ -12,7 +12,7 @@ find_data
 
 say "build"
 configure release -DPALPATE_BUILD_BENCH=ON
-build release geometry_bench field_bench depth_bench accuracy_bench streams_bench any_cloud_bench four_cameras_bench viewer_bench device_bench palpate_app
+build release geometry_bench field_bench depth_bench accuracy_bench streams_bench events_bench any_cloud_bench four_cameras_bench viewer_bench device_bench palpate_app
 programs=build/release
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -58,6 +58,8 @@ for noise in a b; do
 done
 say "streams"
 "$programs/bench/streams/streams_bench" >"$scratch/streams.md"
+say "events"
+"$programs/bench/events/events_bench" >"$scratch/events.md"
 say "any cloud"
 "$programs/bench/any_cloud/any_cloud_bench" >"$scratch/any_cloud.txt"
 say "four cameras"
@@ -112,6 +114,12 @@ $(cat "$scratch/b.md")
 raw K (p - h).
 
 $(cat "$scratch/streams.md")
+
+## What happens in a stream
+
+Medians over seeds, and the worst in brackets; layouts, poses and paths are drawn from the seed.
+
+$(cat "$scratch/events.md")
 
 ## Any cloud
 

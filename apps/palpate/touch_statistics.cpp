@@ -9,8 +9,9 @@ namespace {
 constexpr std::array<ContactNote, 6> kContactNotes = {
     ContactNote::sweep_truncated, ContactNote::lost,  ContactNote::not_converged,
     ContactNote::reanchored,      ContactNote::fault, ContactNote::fell};
-constexpr std::array<FieldNote, 4> kFieldNotes = {FieldNote::thinned, FieldNote::no_surface,
-                                                  FieldNote::tool_too_large, FieldNote::work_spent};
+constexpr std::array<FieldNote, 5> kFieldNotes = {FieldNote::thinned, FieldNote::no_surface,
+                                                  FieldNote::tool_too_large, FieldNote::work_spent,
+                                                  FieldNote::behind};
 
 constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
     {"sweep_truncated",
@@ -27,18 +28,20 @@ constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
      "force "
      "was zero from there on; repair the trajectory or --pose"},
     {"fell",
-     "the surface gave way: the hand came off an edge or through a gap, or what it touched had "
-     "gone; a larger --radius closes gaps"},
+     "the surface gave way: the hand came off an edge or through a gap (a larger --radius closes "
+     "gaps), or what it touched had gone"},
     {"thinned",
      "more points than the patch holds lay near the tool, so some were left out; give a smaller "
      "--radius or a larger --voxel"},
-    {"no_surface", "no source had a surface"},
+    {"no_surface", "no source had a surface (yet)"},
     {"tool_too_large",
      "the tool is too large for the surface's R, so it counted for less; give a smaller "
      "--tool-radius"},
     {"work_spent",
      "looking for points took all the work that a step may do, so the proxy stopped short; give a "
      "larger --voxel, or clip the cloud"},
+    {"behind",
+     "the tool was behind what a camera sees, on the side that it never saw, which holds nothing"},
 }};
 
 }  // namespace

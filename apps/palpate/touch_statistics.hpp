@@ -35,7 +35,7 @@ struct StepTimes {
 /// Sums up a run, step by step.
 class TouchStatistics {
  public:
-  static constexpr std::size_t kNotes = 10;  ///< six of ContactNote, four of FieldNote
+  static constexpr std::size_t kNotes = 11;  ///< six of ContactNote, five of FieldNote
 
   void add(const TouchStep& step);
 
