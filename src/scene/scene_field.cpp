@@ -24,13 +24,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// How far a patch reaches beyond what it was gathered for, and what is left of that before the
-// next one is gathered; in support radii.
+// How far a patch reaches beyond what it was gathered for, also where points move and proxies look
+// for the surface farther off, and what is left of that before the next one is gathered; in R.
 constexpr double kMargin = 0.35;
-constexpr double kReserve = 0.1;
-
-// The same where points move, and proxies look for the surface as far as half a radius away.
 constexpr double kMovingMargin = 0.62;
+constexpr double kReserve = 0.1;
 
 // The largest tool, in support radii, that a surface is pushed out by in full.
 constexpr double kToolShare = 0.3;
@@ -38,10 +36,9 @@ constexpr double kToolShare = 0.3;
 // The smallest share of the mean radius that sweeps still follow.
 constexpr double kFinest = 0.25;
 
-// A surface may rise this fast and still take a resting proxy along, m/s: one that moves (Morph),
-// from tick to tick; one of clouds that follow one another, from cloud to cloud.
-constexpr double kFastestPoint = 2;
-constexpr double kFastestCloud = 0.5;
+// A surface may rise this fast and still take a resting proxy along, m/s.
+constexpr double kFastestPoint = 2;    // of points that move, from tick to tick
+constexpr double kFastestCloud = 0.5;  // from cloud to cloud
 
 // A tool feels points so far away, in support radii: normals beside rims need neighbours, too.
 constexpr double kFelt = 2;
@@ -142,9 +139,8 @@ void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   ActiveLayer layer = views[source].layer(k, static_cast<int>(source));
   if (layer.points->size() == 0) return;  // a sensor that sees nothing
   if (surface.options.kind == FieldKind::metaball) layer.least_radius = 0;
-  if (layer.points->end_positions.empty()) {
-    cloud_duration = std::max(cloud_duration, shown[source]->end - shown[source]->start);
-  }
+  const bool still = layer.points->end_positions.empty();
+  if (still) cloud_duration = std::max(cloud_duration, shown[source]->end - shown[source]->start);
   layer.last_weight = shown[source]->layers[k].weight_end;
   other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
   typical_radius = std::min(typical_radius, std::max(layer.points->radius, layer.least_radius));

@@ -49,6 +49,7 @@ void Morph::look(const MorphInput& input) {
     for (std::size_t k = 0; k < order_.size(); ++k) {
       place_of_block_[order_.blocks[k]] = static_cast<std::uint32_t>(k);
     }
+    unseen_.reserve(order_.size());
     resized_ = true;
   }
   if (order_.size() == 0) forget();  // an image without a block has no place for old points
