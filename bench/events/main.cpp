@@ -22,7 +22,9 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     fmt::print("{}", heading());
-    for (const Row& row : all_rows()) {
+    std::vector<Row> rows = all_rows();
+    for (Row& row : hostile_rows()) rows.push_back(std::move(row));
+    for (const Row& row : rows) {
       const auto named = [&](const std::string& part) {
         return row.name.find(part) != std::string::npos;
       };

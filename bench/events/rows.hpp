@@ -16,5 +16,7 @@ struct Row {
 };
 
 [[nodiscard]] std::vector<Row> all_rows();
+/// What touches, hides and passes close by, and other sensors, rates and views.
+[[nodiscard]] std::vector<Row> hostile_rows();
 
 }  // namespace palpate::events

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpate::events {
 namespace {
@@ -52,6 +53,7 @@ Score score(const Event& event, const Felt& felt) {
   for (std::size_t i = event.begin; i < felt.force.size(); ++i) {
     if (i > 0) out.step = std::max(out.step, (felt.force[i] - felt.force[i - 1]).norm());
     const double force = felt.force[i].norm();
+    if (!std::isfinite(force)) out.step = std::numeric_limits<double>::infinity();
     out.most = std::max(out.most, force);
     const double inside = depth_of(event, i, felt.proxy[i]);
     if (inside > kInside) out.behind += kTick;

@@ -33,6 +33,9 @@ constexpr float kGrazing = 0.3f;
 // A surface that jumps goes on by so much faster than before, m/s: 0.3 N a millisecond at 500 N/m.
 constexpr float kSudden = 0.6f;
 
+// The least cosine of the angle between the normals of one surface before and after a frame.
+constexpr float kTurns = 0.5f;
+
 // Deviations of a block that two frames of one surface may differ by: five of their difference.
 constexpr float kDeviations = 7;
 
@@ -142,7 +145,9 @@ std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std:
 bool Morph::may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
                      const Eigen::Vector3f& from) const {
   const float fastest = kFastest + std::min(speed_of(i), kSudden);
-  return advance_of(seen, from) <= fastest * static_cast<float>(moment_.duration) &&
+  const Eigen::Vector3f normal = old_point(i).normal;
+  const bool turns = seen.state.normal.dot(normal) < kTurns * seen.state.normal.squaredNorm();
+  return !turns && advance_of(seen, from) <= fastest * static_cast<float>(moment_.duration) &&
          beside(depth, order_.blocks[place_]) >= kVouchToMove && !came_aside(seen);
 }
 

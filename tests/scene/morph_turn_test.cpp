@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "palpate/depth/depth_filter.hpp"
+#include "scene/policies/morph.hpp"
+#include "support/depth_frames.hpp"
+#include "support/rates.hpp"
+
+namespace palpate {
+namespace {
+
+using test::kFrame;
+
+std::shared_ptr<SurfacePoints> show(Morph& morph, double stamp, const test::DepthOf& depth_of) {
+  const DepthFrame frame = test::frame_of(test::small_camera(), stamp, depth_of);
+  DepthFilter filter({.memory = 1});
+  const FilteredDepth depth = filter.filter(frame, test::looking_down());
+  auto points = std::make_shared<SurfacePoints>();
+  morph.look({depth, frame.camera.pinhole});
+  morph.fill({depth, frame.camera.pinhole}, {stamp, stamp + 0.01, kFrame}, points);
+  check(*points);
+  return points;
+}
+
+constexpr double kTilt = 35 * std::numbers::pi / 180;
+
+test::DepthOf leaning(double z, double tilt) {
+  return test::plane_depth({0, 0, z}, {std::sin(tilt), 0, -std::cos(tilt)});
+}
+
+// Up to 34 mm before one leaning plane, another leans the other way: near enough to have been it a
+// frame ago, were it not for where it faces.
+double before_another(double x, double y) {
+  return std::abs(x) < 0.02 ? leaning(0.48, kTilt)(x, y) : leaning(0.5, -kTilt)(x, y);
+}
+
+TEST(MorphTurnTest, WhatFacesElsewhereHidesASurfaceAndDoesNotTakeItAlong) {
+  Morph morph{{}};
+  const std::size_t count = show(morph, 0, leaning(0.5, -kTilt))->size();
+  const auto points = show(morph, kFrame, before_another);
+  std::size_t still = 0;
+  for (std::size_t i = 0; i < points->size(); ++i) {
+    const Eigen::Vector3f way = points->end_positions[i] - points->grid.points()[i];
+    EXPECT_LT(way.norm(), 5e-3);
+    const bool stays = points->density_weights[i] > 0 && points->end_density_weights[i] > 0;
+    if (stays && points->end_presences[i] > 0.99) ++still;
+  }
+  EXPECT_GT(points->size(), count + 100);
+  EXPECT_EQ(still, count);
+}
+
+}  // namespace
+}  // namespace palpate
