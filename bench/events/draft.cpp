@@ -89,6 +89,15 @@ void Draft::hold(double seconds) {
                    Vector3d(event.hip.back()));
 }
 
+void Draft::press(const Vector3d& place, const Vector3d& out, double depth) {
+  start(place + 0.01 * out);
+  hold(0.6);
+  go(place - depth * out, 0.05);
+  hold(1);
+  event.depth = depth;
+  happens();
+}
+
 void Draft::go(const Vector3d& goal, double speed) {
   const Vector3d from = event.hip.back();
   const auto ticks = std::lround((goal - from).norm() / (speed * kTick));

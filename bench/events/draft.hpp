@@ -5,6 +5,9 @@
 
 namespace palpate::events {
 
+inline constexpr double kPress = 0.003;  ///< m
+inline const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
+
 /// Draws a table-top that a camera looks at, and what stands, hangs and moves over it. World frame:
 /// the table is z = 0, the camera is on the side of negative x.
 class Draft {
@@ -35,6 +38,8 @@ class Draft {
   void start(const Eigen::Vector3d& hip) { event.hip = {hip}; }
   void hold(double seconds);
   void go(const Eigen::Vector3d& goal, double speed);
+  /// Comes from 10 mm outside, goes so deep, rests for a second; then things happen.
+  void press(const Eigen::Vector3d& place, const Eigen::Vector3d& out, double depth = kPress);
   /// Goes on from here: scores begin.
   void happens() { event.begin = event.hip.size(); }
   [[nodiscard]] double now() const { return static_cast<double>(event.hip.size()) * kTick; }

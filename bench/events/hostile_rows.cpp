@@ -15,20 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPress = 0.003;  // m
 constexpr double kDegree = std::numbers::pi / 180;
-const Vector3d kUp = Vector3d::UnitZ();
 
 using Change = std::function<void(Draft&)>;
-
-void press(Draft& draft, const Vector3d& place) {
-  draft.start(place + 0.01 * kUp);
-  draft.hold(0.6);
-  draft.go(place - kPress * kUp, 0.05);
-  draft.hold(1);
-  draft.event.depth = kPress;
-  draft.happens();
-}
 
 void set(Draft& draft, const std::vector<std::string>& assignments) {
   SimulatedSetup setup;
@@ -57,7 +46,7 @@ void passing(Draft& draft, SimulatedSolid& solid, const Vector3d& way, double le
 Event passes(std::uint64_t seed, double low, double high, const Change& change) {
   Draft draft(seed);
   change(draft);
-  press(draft, draft.place);
+  draft.press(draft.place, kUp);
   const Vector3d view = draft.to_camera(draft.place);
   const double radius = draft.between(low, high);
   const Vector3d way = view.cross(kUp).normalized() * (draft.between(0, 1) < 0.5 ? 1 : -1);
@@ -74,7 +63,7 @@ Event passes(std::uint64_t seed, double low, double high, const Change& change) 
 Event lowered(std::uint64_t seed, double aside) {
   constexpr double kHeight = 0.06;  // m, half of the way
   Draft draft(seed);
-  press(draft, draft.place);
+  draft.press(draft.place, kUp);
   const Vector3d side = draft.level_direction();
   const double radius = draft.between(0.02, 0.045);
   const double speed = draft.between(0.05, 0.3);
@@ -93,7 +82,7 @@ Event lowered(std::uint64_t seed, double aside) {
 // A box is pushed over a pressed table, past the hand so far away, or through it.
 Event pushed(std::uint64_t seed, double gap) {
   Draft draft(seed);
-  press(draft, draft.place);
+  draft.press(draft.place, kUp);
   const double half = draft.between(0.015, 0.03);
   const double speed = draft.between(0.05, 0.4);
   const Vector3d way = draft.level_direction();
@@ -113,7 +102,7 @@ Event pushed(std::uint64_t seed, double gap) {
 Event along_shadow(std::uint64_t seed, const Change& change) {
   Draft draft(seed);
   change(draft);
-  press(draft, draft.place);
+  draft.press(draft.place, kUp);
   const Vector3d view = draft.to_camera(draft.place);
   const Vector3d side = view.cross(kUp).normalized();
   const double half = draft.between(0.02, 0.05);
@@ -156,7 +145,7 @@ Event pans(std::uint64_t seed, bool error) {
   motion.frequency = draft.between(0.08, 0.12);
   motion.rock = draft.between(0.6, 0.7);
   motion.axis = Vector3d::UnitZ();
-  press(draft, draft.place);
+  draft.press(draft.place, kUp);
   motion.phase = -2 * std::numbers::pi * motion.frequency * draft.now();
   draft.hold(0.55 / motion.frequency);
   return draft.event;
@@ -166,7 +155,7 @@ Event pans(std::uint64_t seed, bool error) {
 Event rests(std::uint64_t seed, const Change& change) {
   Draft draft(seed);
   change(draft);
-  press(draft, draft.place);
+  draft.press(draft.place, kUp);
   draft.hold(3);
   return draft.event;
 }

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   try {
     fmt::print("{}", heading());
     std::vector<Row> rows = all_rows();
+    for (Row& row : sensor_rows()) rows.push_back(std::move(row));
     for (Row& row : hostile_rows()) rows.push_back(std::move(row));
     for (const Row& row : rows) {
       const auto named = [&](const std::string& part) {

@@ -7,30 +7,18 @@
 #include <numbers>
 
 #include "events/draft.hpp"
-#include "sensor/simulated_keys.hpp"
 
 namespace palpate::events {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPress = 0.003;  // m
 constexpr double kRates[] = {15, 30, 60, 90};
-const Vector3d kUp = Vector3d::UnitZ();
-
-void press(Draft& draft, const Vector3d& place, const Vector3d& out, double depth = kPress) {
-  draft.start(place + 0.01 * out);
-  draft.hold(0.6);
-  draft.go(place - depth * out, 0.05);
-  draft.hold(1);
-  draft.event.depth = depth;
-  draft.happens();
-}
 
 // An arm passes between the camera and a pressed table, which it hides for so long.
 Event hidden_by_arm(std::uint64_t seed) {
   Draft draft(seed);
-  press(draft, draft.place, kUp);
+  draft.press(draft.place, kUp);
   const Vector3d view = draft.to_camera(draft.place);
   const double radius = draft.between(0.02, 0.045);
   const double hidden = draft.one_of({0.1, 0.3, 1.0, 3.0});
@@ -50,7 +38,7 @@ Event hidden_by_arm(std::uint64_t seed) {
 // A box is put before it, and stays.
 Event hidden_by_box(std::uint64_t seed) {
   Draft draft(seed);
-  press(draft, draft.place, kUp);
+  draft.press(draft.place, kUp);
   const Vector3d view = draft.to_camera(draft.place);
   SimulatedSolid& box = draft.block(draft.place + draft.between(0.1, 0.25) * view, view,
                                     Vector3d::Constant(draft.between(0.02, 0.05)));
@@ -84,7 +72,7 @@ Event vanishes(std::uint64_t seed) {
   Draft draft(seed);
   const double half = draft.between(0.02, 0.04);
   SimulatedSolid& box = draft.block(draft.place + half * kUp, kUp, Vector3d::Constant(half));
-  press(draft, draft.place + 2 * half * kUp, kUp);
+  draft.press(draft.place + 2 * half * kUp, kUp);
   draft.event.depth = 0;
   Draft::goes(box, draft.now() + draft.between(0.05, 0.1));
   draft.hold(1.2);
@@ -109,7 +97,7 @@ Event appears(std::uint64_t seed, double before) {
 // The same before a surface that the hand presses.
 Event appears_on(std::uint64_t seed, double before) {
   Draft draft(seed);
-  press(draft, draft.place, kUp);
+  draft.press(draft.place, kUp);
   SimulatedSolid& box =
       draft.block(draft.place + (before - 0.1) * kUp, kUp, Vector3d(0.04, 0.04, 0.1));
   Draft::comes(box, draft.now() + draft.between(0.05, 0.1));
@@ -153,68 +141,6 @@ Event to_and_fro(std::uint64_t seed, double speed, bool ball) {
   return draft.event;
 }
 
-// As a family of sensors sees it: structured, stereo, tof.
-void seen_by(Draft& draft, const std::string& family) {
-  SimulatedSetup setup;
-  setup.camera.noise.seed = draft.event.camera.noise.seed;
-  set_simulated(setup, "noise=" + family);
-  draft.event.camera.noise = setup.camera.noise;
-}
-
-// Presses all over a table that is seen at a slant; each has to hold.
-Event slant(std::uint64_t seed, const std::string& family) {
-  Draft draft(seed);
-  const double tilt = draft.between(60, 70) * std::numbers::pi / 180;
-  const double far = draft.between(0.7, 1.1);
-  draft.look_from(far * Vector3d(-std::sin(tilt), 0, std::cos(tilt)));
-  draft.event.scene.solids.resize(1);
-  seen_by(draft, family);
-  draft.start(draft.place + 0.02 * kUp);
-  draft.hold(0.6);
-  for (int i = 0; i < 8; ++i) {
-    const Vector3d next(draft.between(-0.15, 0.15), draft.between(-0.15, 0.15), 0);
-    draft.go(next + 0.02 * kUp, 0.3);
-    draft.go(next - kPress * kUp, 0.05);
-    draft.hold(0.2);
-    draft.go(next + 0.02 * kUp, 0.1);
-  }
-  draft.event.begin = 600;
-  draft.event.depth = kPress;
-  draft.event.when_deep = true;
-  return draft.event;
-}
-
-// A hand rests on a thin pole, as a family sees it.
-Event pole_of(std::uint64_t seed, const std::string& family) {
-  Draft draft(seed);
-  const double radius = draft.one_of({0.004, 0.0075, 0.0125, 0.02});
-  const Vector3d middle = draft.place + draft.between(0.08, 0.15) * kUp;
-  draft.cylinder(middle, kUp, radius, 0.3);
-  Vector3d out = draft.to_camera(middle);
-  out.z() = 0;
-  out.normalize();
-  seen_by(draft, family);
-  press(draft, middle + radius * out, out);
-  draft.hold(3);
-  return draft.event;
-}
-
-// A hand rests on a thin pole; the camera's noise has the same deviation everywhere.
-Event pole(std::uint64_t seed) {
-  Draft draft(seed);
-  const double radius = draft.one_of({0.004, 0.0075, 0.0125, 0.02});
-  const double sigma = draft.one_of({0.001, 0.003, 0.006, 0.015});
-  const Vector3d middle = draft.place + draft.between(0.08, 0.15) * kUp;
-  draft.cylinder(middle, kUp, radius, 0.3);
-  Vector3d out = draft.to_camera(middle);
-  out.z() = 0;
-  out.normalize();
-  draft.event.camera.noise.model.coefficients = {sigma, 0, 0};
-  press(draft, middle + radius * out, out);
-  draft.hold(3);
-  return draft.event;
-}
-
 // From behind a plate that the camera sees from the front, out, and then onto it.
 Event from_behind(std::uint64_t seed) {
   Draft draft(seed);
@@ -240,21 +166,6 @@ Event back_again(std::uint64_t seed) {
   draft.happens();
   draft.hold(0.5);
   draft.event.depth = kPress;
-  return draft.event;
-}
-
-// Over the rim of a plate, 3 mm deep and beyond.
-Event over_rim(std::uint64_t seed, const std::string& family) {
-  Draft draft(seed);
-  if (!family.empty()) seen_by(draft, family);
-  const Vector3d middle = draft.place + draft.between(0.1, 0.16) * kUp;
-  const Vector3d out = draft.to_camera(middle);
-  draft.block(middle - 0.02 * out, out, Vector3d(0.04, 0.04, 0.02));
-  const Vector3d along =
-      draft.event.scene.solids.back().solid.T_world_solid.linear() * draft.level_direction();
-  press(draft, middle, out);
-  draft.event.depth = 0;
-  draft.go(middle - kPress * out + 0.08 * along, 0.05);
   return draft.event;
 }
 
@@ -300,17 +211,8 @@ std::vector<Row> all_rows() {
                       [=](std::uint64_t seed) { return to_and_fro(seed, speed, ball); }});
     }
   }
-  rows.push_back({"pole", pole});
-  for (const std::string family : {"structured", "stereo", "tof"}) {
-    rows.push_back({"pole, " + family, [=](std::uint64_t seed) { return pole_of(seed, family); }});
-    rows.push_back({"slant, " + family, [=](std::uint64_t seed) { return slant(seed, family); }});
-  }
   rows.push_back({"from behind a plate", from_behind});
   rows.push_back({"and back onto it", back_again});
-  for (const std::string family : {"", "structured", "stereo", "tof"}) {
-    rows.push_back({"over a rim" + std::string(family.empty() ? "" : ", ") + family,
-                    [=](std::uint64_t seed) { return over_rim(seed, family); }});
-  }
   for (const int frames : {1, 3, 30}) {
     rows.push_back({fmt::format("ended after {} frames", frames),
                     [=](std::uint64_t seed) { return ended(seed, frames); }});

@@ -16,6 +16,8 @@ struct Row {
 };
 
 [[nodiscard]] std::vector<Row> all_rows();
+/// What is thin, slanted or has a rim, as families of sensors see it.
+[[nodiscard]] std::vector<Row> sensor_rows();
 /// What touches, hides and passes close by, and other sensors, rates and views.
 [[nodiscard]] std::vector<Row> hostile_rows();
 
