@@ -29,9 +29,7 @@ class MorphTest : public testing::Test {
   const SurfacePoints& show(double stamp, const test::DepthOf& depth_of) {
     const DepthFrame frame = frame_of(small_camera(), stamp, depth_of);
     DepthFilter filter({.memory = 1});
-    FilteredDepth depth = filter.filter(frame, T_world_sensor_);
-    // What the filter would say of jumps if it had seen the frame before.
-    std::fill(depth.jumped.begin(), depth.jumped.end(), 0);
+    const FilteredDepth& depth = filter.filter(frame, T_world_sensor_);
     points_ = std::make_shared<SurfacePoints>();
     morph_.look({depth, frame.camera.pinhole});
     morph_.fill({depth, frame.camera.pinhole}, {stamp, stamp + lead_, kFrame}, points_);
