@@ -195,6 +195,13 @@ TEST_F(MorphTest, AHoleKeepsItsPointsUntilTheyHaveFaded) {
   EXPECT_LT(points_->size(), count - 40);
 }
 
+TEST_F(MorphTest, AHoleIsForgottenAsSoonWhenStampsGoBack) {
+  for (const double stamp : {100.0, 100 + kFrame}) show(stamp, wall(0.5));
+  const std::size_t count = points_->size();
+  for (int k = 0; k * kFrame < 1; ++k) show(k * kFrame, with_hole(0.5, 0));
+  EXPECT_LT(points_->size(), count - 40);
+}
+
 TEST_F(MorphTest, APointThatIsSeenAgainBecomesSureAgain) {
   show(0, wall(0.5));
   int k = 1;
