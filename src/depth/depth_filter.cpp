@@ -1,6 +1,5 @@
 #include "palpate/depth/depth_filter.hpp"
 
-#include <algorithm>
 #include <cstring>
 
 #include "depth/block_fits.hpp"
@@ -82,10 +81,7 @@ struct DepthFilter::State {
     out.stamp = frame.stamp;
     out.T_world_sensor = T_world_sensor;
     last_region = region;
-    if (out.duplicate && same_view) {
-      std::fill(out.jumped.begin(), out.jumped.end(), std::uint8_t{0});
-      return out;
-    }
+    if (out.duplicate && same_view) return out;
     out.noise = noise(frame);
     return points(frame);
   }
@@ -97,7 +93,6 @@ struct DepthFilter::State {
         depth::temporal_options(options.memory, out.noise.correlation, options.normal_error),
         out.T_world_sensor, fits);
     depth::write_points(fits, {options.nearest, options.farthest}, out);
-    std::copy(temporal.jumped().begin(), temporal.jumped().end(), out.jumped.begin());
     return out;
   }
 };

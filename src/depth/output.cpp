@@ -34,7 +34,6 @@ void resize(const BlockGrid& grid, FilteredDepth& out) {
   out.confidences.resize(size);
   out.deviations.resize(size);
   out.spacings.resize(size);
-  out.jumped.resize(size, 1);
 }
 
 void write_points(const BlockFits& fits, const DepthRange& range, FilteredDepth& out) {

@@ -148,26 +148,15 @@ void TemporalFilter::reset() {
   std::fill(memory_.begin(), memory_.end(), BlockMemory{});
 }
 
-void TemporalFilter::repeat() {
-  std::fill(jumped_.begin(), jumped_.end(), std::uint8_t{0});
-}
-
 void TemporalFilter::prepare(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor) {
   if (grid != grid_) {
     grid_ = grid;
     memory_.assign(grid.size(), {});
-    expected_.assign(grid.size(), 0.0F);
-    jumped_.assign(grid.size(), 0);
     warp_.resize(grid.size());
   } else if (T_world_sensor.matrix() != T_world_sensor_.matrix()) {
-    warp_.warp(grid, T_world_sensor.inverse() * T_world_sensor_, memory_, expected_);
-    T_world_sensor_ = T_world_sensor;
-    return;
+    warp_.warp(grid, T_world_sensor.inverse() * T_world_sensor_, memory_);
   }
   T_world_sensor_ = T_world_sensor;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    expected_[i] = memory_[i].count > 0 ? memory_[i].rho : 0.0F;
-  }
 }
 
 void TemporalFilter::filter(const TemporalOptions& options, const Eigen::Isometry3d& T_world_sensor,
@@ -176,14 +165,11 @@ void TemporalFilter::filter(const TemporalOptions& options, const Eigen::Isometr
   const auto gate2 = static_cast<float>(options.gate * options.gate);
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     BlockMemory& m = memory_[i];
-    jumped_[i] = 0;
     if (fits.states[i] == BlockState::empty) {
       miss(options.hold, m);
       continue;
     }
     step(measured(fits, i), options, gate2, m);
-    const float limit = another_surface(m.rho);
-    jumped_[i] = !(expected_[i] > 0 && std::abs(m.rho - expected_[i]) <= limit);
     write(m, i, fits);
   }
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -32,19 +31,12 @@ class TemporalFilter {
   /// so; that nothing confirms them is for others to deal with. What was known of them is
   /// remembered for a while and goes on when they are measured again. `T_world_sensor` is the pose
   /// at the stamp: when it is another than before, what is remembered is put into the new view
-  /// first. A block whose state changes between plain and fitted starts anew, which counts as
-  /// another surface only if it is one.
+  /// first. A block whose state changes between plain and fitted starts anew.
   void filter(const TemporalOptions& options, const Eigen::Isometry3d& T_world_sensor,
               BlockFits& fits);
 
-  /// A frame that repeats the one before was not given to filter(): nothing has jumped.
-  void repeat();
-
   void reset();
 
-  /// Of the last frame, an entry a block; 1: it shows another surface than the block did when it
-  /// was measured last, or nothing is remembered of it.
-  [[nodiscard]] std::span<const std::uint8_t> jumped() const { return jumped_; }
   /// What is remembered, an entry a block; `missed` frames ago where that is not 0.
   [[nodiscard]] std::span<const BlockMemory> memory() const { return memory_; }
 
@@ -54,8 +46,6 @@ class TemporalFilter {
   BlockGrid grid_;
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
   std::vector<BlockMemory> memory_;
-  std::vector<float> expected_;  // rho of what the block showed before, in this view; 0: none
-  std::vector<std::uint8_t> jumped_;
   TemporalWarp warp_;
 };
 

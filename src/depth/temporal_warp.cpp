@@ -164,14 +164,13 @@ bool TemporalWarp::put(const BlockGrid& grid, const std::vector<BlockMemory>& me
 }
 
 void TemporalWarp::warp(const BlockGrid& grid, const Eigen::Isometry3d& T_now_before,
-                        std::vector<BlockMemory>& memory, std::vector<float>& expected) {
+                        std::vector<BlockMemory>& memory) {
   claim(grid, T_now_before, memory);
   std::size_t i = 0;
   for (int row = 0; row < grid.rows; ++row) {
     const auto y = static_cast<float>(grid.y(row));
     for (int column = 0; column < grid.columns; ++column, ++i) {
       const auto x = static_cast<float>(grid.x(column));
-      expected[i] = memory[i].count > 0 ? seen_at(planes_[i], x, y) : 0.0F;
       const bool given = claims_[i].from >= 0 && put(grid, memory, claims_[i], x, y, warped_[i]);
       if (!given) warped_[i] = {};
     }

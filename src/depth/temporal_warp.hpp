@@ -18,11 +18,9 @@ class TemporalWarp {
   /// Takes memory when there are more blocks than ever, and no more.
   void resize(std::size_t blocks);
 
-  /// `T_now_before` takes coordinates of the old sensor frame to the new one's. `expected` gets
-  /// the inverse depth at which each block's ray now meets the plane that the block showed before;
-  /// 0: it showed nothing, or the ray misses it.
+  /// `T_now_before` takes coordinates of the old sensor frame to the new one's.
   void warp(const BlockGrid& grid, const Eigen::Isometry3d& T_now_before,
-            std::vector<BlockMemory>& memory, std::vector<float>& expected);
+            std::vector<BlockMemory>& memory);
 
  private:
   /// The piece that a block of the new view has been given.

@@ -22,8 +22,6 @@ constexpr float kView = 1.2f;  // R beyond the nearest point, within which thing
 
 constexpr int kPairs = 2048;  // in one call
 
-constexpr std::uint32_t kOneSided = 1;  // number of the part that is seen from one side alone
-
 }  // namespace
 
 Facing::Facing(std::size_t capacity) {
@@ -192,8 +190,13 @@ void Facing::choose_eye(const Stance& stance) noexcept {
   }
   eye_ = lift * normal;
   float closest = std::numeric_limits<float>::infinity();
+  float closest_seen = closest;
   for (const Point& point : points_) {
-    closest = std::min(closest, (point.place - eye_).squaredNorm());
+    const float squared = (point.place - eye_).squaredNorm();
+    closest = std::min(closest, squared);
+    if (!is_one_sided(point) || squared >= closest_seen) continue;
+    closest_seen = squared;
+    beside_ = point.normal;
   }
   view_ = std::sqrt(closest) + kView * radius_;
 }
@@ -240,7 +243,7 @@ bool Facing::write(const Points& points) const noexcept {
       sign = static_cast<std::int8_t>(part.sign);
       label = now_.sheets[slot].label;
       if (sign < 0 && part.key == Key{nullptr, kOneSided}) {
-        sign = point->normal.dot(point->place) > 0 ? 0 : 1;
+        sign = height_over(*point) < 0 ? 0 : 1;
       }
       ++point;
     }

@@ -66,6 +66,7 @@ class Facing {
  private:
   static constexpr std::size_t kMost = 96;  // sheets near the tool; further ones are silent
   static constexpr std::uint8_t kOpen = 0xff;
+  static constexpr std::uint32_t kOneSided = 1;  // number of the part seen from one side alone
 
   /// Whose sheet or part it is. All layers without sheets of their own are of one, but for those
   /// that were seen from one side alone: these are of another.
@@ -132,6 +133,8 @@ class Facing {
   void let_go(const Stance& stance) noexcept;
   void group() noexcept;
   void choose_eye(const Stance& stance) noexcept;
+  [[nodiscard]] bool is_one_sided(const Point& point) const noexcept;
+  [[nodiscard]] float height_over(const Point& point) const noexcept;
   [[nodiscard]] bool list_references(const Stance& stance) noexcept;
   [[nodiscard]] bool is_settled(std::span<const ActiveLayer> layers) const noexcept;
   void add_references(const Sheet& sheet) noexcept;
@@ -153,8 +156,9 @@ class Facing {
   std::vector<Reference> remembered_;                          // of the last call
   Eigen::Vector3d remembered_from_ = Eigen::Vector3d::Zero();  // the proxy then
   Eigen::Vector3f eye_ = Eigen::Vector3f::Zero();              // a free place, from the proxy, m
-  float radius_ = 0;                                           // R around the tool, m
-  float view_ = 0;  // how far from the eye what is seen counts, m
+  Eigen::Vector3f beside_ = Eigen::Vector3f::Zero();  // normal of the closest one-sided point
+  float radius_ = 0;                                  // R around the tool, m
+  float view_ = 0;                                    // how far from the eye what is seen counts, m
   bool follows_ = false;
   int pairs_ = 0;  // that may still be compared
 };

@@ -66,13 +66,27 @@ double Facing::across(std::uint32_t part) noexcept {
   return sum;
 }
 
+bool Facing::is_one_sided(const Point& point) const noexcept {
+  return now_.sheets[point.sheet].key == Key{nullptr, kOneSided};
+}
+
+/// How high the eye is above the surface at a point, m. What was seen from one side alone is never
+/// turned, and close above a bulge the planes of most of its points are higher than the eye: half
+/// of what the closest point says keeps these down.
+float Facing::height_over(const Point& point) const noexcept {
+  const Vector3f way = eye_ - point.place;
+  const float height = point.normal.dot(way);
+  const bool bent = is_one_sided(point) && point.normal.dot(beside_) > 0.5f;
+  return bent ? 0.5f * (height + beside_.dot(way)) : height;
+}
+
 /// `continued`: what is decided around a part tells its sign, rather than what is seen of it.
 void Facing::decide_signs(bool continued) noexcept {
   for (const Point& p : points_) {
     Sheet& sheet = now_.sheets[p.sheet];
     const Vector3f way = eye_ - p.place;
     const float squared = way.squaredNorm();
-    const float height = p.normal.dot(way);
+    const float height = height_over(p);
     const bool hidden = is_hidden(p, height);
     if (const double w = weight(squared, kHiddenView * radius_); w > 0) {
       sheet.all += w;

@@ -12,9 +12,10 @@ namespace palpate::test {
 class PointField {
  public:
   explicit PointField(const std::vector<TestPoint>& points, const FieldOptions& options = {},
-                      bool sharp_edges = false) {
+                      bool sharp_edges = false, bool one_sided = false) {
     SurfacePoints made = make_points(points, options.kernel);
     made.sharp_edges = sharp_edges;
+    made.one_sided = one_sided;
     points_ = std::make_shared<SurfacePoints>(std::move(made));
     auto snapshot = std::make_unique<Snapshot>();
     snapshot->layers.push_back({points_});

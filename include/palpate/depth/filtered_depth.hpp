@@ -29,12 +29,10 @@ struct FilteredDepth {
   std::vector<Eigen::Vector3f> normals;    ///< sensor frame, unit, towards the sensor; zero: none
   std::vector<float> confidences;          ///< c_i of the normals, 0-1
   std::vector<float> deviations;           ///< sd of the position along the ray, m
-  std::vector<float> spacings;       ///< s_i: largest distance to a neighbouring block's point
-                                     ///< on the same surface, m (grazing rows are far apart)
-  std::vector<std::uint8_t> jumped;  ///< 1: the block shows another surface than in the frame
-                                     ///< before (or showed none): do not morph, fade
-  NoiseModel noise;                  ///< in use for this frame
-  bool duplicate = false;            ///< the frame repeats the one before, bit for bit
+  std::vector<float> spacings;  ///< s_i: largest distance to a neighbouring block's point
+                                ///< on the same surface, m (grazing rows are far apart)
+  NoiseModel noise;             ///< in use for this frame
+  bool duplicate = false;       ///< the frame repeats the one before, bit for bit
 
   [[nodiscard]] std::size_t size() const { return states.size(); }
 };

@@ -233,11 +233,12 @@ float Morph::share_of(double time) const {
 
 /// Nothing says that the point is gone, nothing that it is there.
 void Morph::hold(std::uint32_t i, EntryKind kind) {
-  const double unsure = moment_.stamp + moment_.duration - entries_[i].confirmed - options_.silence;
+  const double confirmed = std::min(entries_[i].confirmed, moment_.stamp);  // stamps may go back
+  const double unsure = moment_.stamp + moment_.duration - confirmed - options_.silence;
   const auto sure = static_cast<float>(std::clamp(1 - unsure / options_.fade, 0.0, 1.0));
   const float presence = old_point(i).presence;
   keep(i, std::max(std::min(presence, sure), presence - share_of(options_.fade)),
-       {place_, kind, entries_[i].confirmed});
+       {place_, kind, confirmed});
 }
 
 /// Something before it keeps it from being seen.
