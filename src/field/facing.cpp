@@ -233,7 +233,7 @@ bool Facing::list_references(const Stance& stance) noexcept {
 
 bool Facing::write(const Points& points) const noexcept {
   bool changed = false;
-  const Point* point = points_.data();
+  std::size_t next = 0;  // of points_
   for (std::size_t k = 0; k < sheet_of_place_.size(); ++k) {
     const std::uint32_t slot = sheet_of_place_[k];
     std::int8_t sign = 1;
@@ -243,9 +243,9 @@ bool Facing::write(const Points& points) const noexcept {
       sign = static_cast<std::int8_t>(part.sign);
       label = now_.sheets[slot].label;
       if (sign < 0 && part.key == Key{nullptr, kOneSided}) {
-        sign = height_over(*point) < 0 ? 0 : 1;
+        sign = height_over(points_[next]) < 0 ? 0 : 1;
       }
-      ++point;
+      ++next;
     }
     changed = changed || points.signs[k] != sign || points.labels[k] != label;
     points.signs[k] = sign;

@@ -80,7 +80,8 @@ void CellGrid::rebuild(std::span<const Eigen::Vector3f> positions,
                        std::span<const std::uint32_t> codes,
                        std::span<const Eigen::Vector3f> ends) {
   assert(positions.size() == codes.size() && std::is_sorted(codes.begin(), codes.end()));
-  points_.assign(positions.begin(), positions.end());
+  points_.resize(positions.size());  // grows by more than assign() does: counts vary
+  std::ranges::copy(positions, points_.begin());
   order_.resize(positions.size());
   std::iota(order_.begin(), order_.end(), 0u);
   cells_.clear();

@@ -101,9 +101,10 @@ std::shared_ptr<const Snapshot> Intake::take(const DepthFrame& frame, const Arri
   return snapshot;
 }
 
-std::shared_ptr<Snapshot> Intake::last_of_frames() {
+std::shared_ptr<Snapshot> Intake::last_of_frames(const Snapshot& newest) {
   constexpr double kLeast = 0.1;  // s, in which a surface goes to where the fit has it
-  if (frames_ != Policy::morph || last_.sequence == 0) return nullptr;
+  const bool own = newest.sequence > 0 && newest.sequence == last_.sequence;
+  if (frames_ != Policy::morph || !own) return nullptr;
   const FilteredDepth* const depth = filter_.fit_all();
   if (depth == nullptr) return nullptr;
   const MorphInput input{*depth, pinhole_};

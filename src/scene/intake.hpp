@@ -37,8 +37,8 @@ class Intake {
                                                      const Arrival& arrival, PrepareReport& report);
 
   /// A surface that stays: the newest frame's, all of it fitted, from where the last snapshot ends.
-  /// nullptr: what was last is that already.
-  [[nodiscard]] std::shared_ptr<Snapshot> last_of_frames();
+  /// nullptr: `newest` is that already, or was not made here.
+  [[nodiscard]] std::shared_ptr<Snapshot> last_of_frames(const Snapshot& newest);
 
   /// How many snapshots of clouds or of depth frames may be in use at a time while so many fields
   /// look at them: N + 2 and one for each.

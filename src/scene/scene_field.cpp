@@ -30,8 +30,7 @@ constexpr double kMargin = 0.35;
 constexpr double kMovingMargin = 0.62;
 constexpr double kReserve = 0.1;
 
-// The largest tool, in support radii, that a surface is pushed out by in full.
-constexpr double kToolShare = 0.3;
+constexpr double kToolShare = 0.3;  // of R: the largest tool that pushes a surface out in full
 
 // The smallest share of the mean radius that sweeps still follow.
 constexpr double kFinest = 0.25;
@@ -40,8 +39,7 @@ constexpr double kFinest = 0.25;
 constexpr double kFastestPoint = 2;    // of points that move, from tick to tick
 constexpr double kFastestCloud = 0.5;  // from cloud to cloud
 
-// A tool feels points so far away, in support radii: normals beside rims need neighbours, too.
-constexpr double kFelt = 2;
+constexpr double kFelt = 2;  // R that a tool feels: normals beside rims need neighbours, too
 
 }  // namespace
 
@@ -262,10 +260,10 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   if (state.plain()) return {.source = 0};
   const Patch* const patch = state.patches.at({x, 0}, state.margin());
   if (!patch) return {};
-  std::array<double, Scene::kMaxSources> presences{};
-  std::ranges::transform(state.views, presences.begin(), &SourceView::presence);
-  const PatchSurface mean =
-      mean_surface(state.surface, *patch, x, std::span(presences).first(state.views.size()));
+  std::array<double, Scene::kMaxSources> sure{};
+  std::ranges::transform(state.views, sure.begin(), &SourceView::presence);
+  const auto presences = std::span(sure).first(state.views.size());
+  const PatchSurface mean = mean_surface(state.surface, *patch, x, presences);
   if (mean.source < 0) return {};
   return felt_surface(mean, state.soft[static_cast<std::size_t>(mean.source)]);
 }

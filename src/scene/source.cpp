@@ -189,7 +189,7 @@ bool Source::push(const PointCloud& cloud, double stamp, const StartTime& start)
 void Source::keep() {
   const Snapshot* newest = handoff_.peek();  // nobody else publishes, so nobody frees it
   if (newest == nullptr) return;
-  std::shared_ptr<Snapshot> kept = room_for(false) ? intake_->last_of_frames() : nullptr;
+  std::shared_ptr<Snapshot> kept = room_for(false) ? intake_->last_of_frames(*newest) : nullptr;
   if (!kept) kept = std::make_shared<Snapshot>(*newest);
   kept->silent_from = std::numeric_limits<double>::infinity();
   {

@@ -156,21 +156,6 @@ TEST_F(MorphTest, WhatMovesAsFastAsAHandMovesAndIsNotAnother) {
   EXPECT_NEAR(end(points_->size() / 2).z(), 0.5 - z, 1e-6);
 }
 
-TEST_F(MorphTest, AJumpThatNoHandMakesDoesNotMoveTheSurface) {
-  show(0, wall(0.5));
-  show(kFrame, wall(0.5 - 1.1 * kFrame));
-  EXPECT_GT(coming(), 4500u);
-  for (std::size_t i = 0; i < points_->size(); i += 7) EXPECT_EQ(start(i), end(i));
-}
-
-TEST_F(MorphTest, WhatFliesAloneBetweenTwoSurfacesIsNotShown) {
-  show(0, wall(0.5));
-  const std::size_t count = points_->size();
-  show(kFrame, [](double x, double y) { return std::hypot(x, y) < 0.004 ? 0.3 : 0.5; });
-  EXPECT_EQ(points_->size(), count);
-  EXPECT_EQ(coming(), 0u);
-}
-
 TEST_F(MorphTest, AHoleKeepsItsPointsUntilTheyHaveFaded) {
   show(0, wall(0.5));
   const std::size_t count = points_->size();

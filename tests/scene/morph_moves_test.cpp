@@ -37,7 +37,7 @@ double before_another(double x, double y) {
   return std::abs(x) < 0.02 ? leaning(0.48, kTilt)(x, y) : leaning(0.5, -kTilt)(x, y);
 }
 
-TEST(MorphTurnTest, WhatFacesElsewhereHidesASurfaceAndDoesNotTakeItAlong) {
+TEST(MorphMoves, WhatFacesElsewhereHidesASurfaceAndDoesNotTakeItAlong) {
   Morph morph{{}};
   const std::size_t count = show(morph, 0, leaning(0.5, -kTilt))->size();
   const auto points = show(morph, kFrame, before_another);
@@ -50,6 +50,25 @@ TEST(MorphTurnTest, WhatFacesElsewhereHidesASurfaceAndDoesNotTakeItAlong) {
   }
   EXPECT_GT(points->size(), count + 100);
   EXPECT_EQ(still, count);
+}
+
+TEST(MorphMoves, WhatFliesAloneBetweenTwoSurfacesIsNotShown) {
+  Morph morph{{}};
+  const std::size_t count = show(morph, 0, test::wall(0.5))->size();
+  const auto flying = [](double x, double y) { return std::hypot(x, y) < 0.004 ? 0.3 : 0.5; };
+  const auto points = show(morph, kFrame, flying);
+  EXPECT_EQ(points->size(), count);
+  for (std::size_t i = 0; i < count; ++i) EXPECT_GT(points->density_weights[i], 0);
+}
+
+TEST(MorphMoves, AJumpThatNoHandMakesDoesNotMoveTheSurface) {
+  Morph morph{{}};
+  const std::size_t count = show(morph, 0, test::wall(0.5))->size();
+  const auto points = show(morph, kFrame, test::wall(0.5 - 1.1 * kFrame));
+  EXPECT_EQ(points->size(), 2 * count);
+  for (std::size_t i = 0; i < points->size(); i += 7) {
+    EXPECT_EQ(points->grid.points()[i], points->end_positions[i]);
+  }
 }
 
 }  // namespace
