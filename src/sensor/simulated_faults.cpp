@@ -10,7 +10,7 @@
 namespace palpate::sensor {
 namespace {
 
-constexpr float kJump = 0.02f;        // between pixels beside one another, m
+constexpr float kDepthJump = 0.02f;   // between pixels beside one another, m
 constexpr int kRim = 3;               // so far before and behind a jump, pixels
 constexpr int kWindow = 8;            // within which rims go equally far, pixels
 constexpr double kLeastRadius = 1.5;  // of holes, pixels
@@ -65,7 +65,7 @@ void for_jumps(const DepthView& image, const F& f) {
       for (const auto& [du, dv] : {std::pair{1, 0}, {0, 1}}) {
         if (u + du >= image.width || v + dv >= image.height) continue;
         const float other = image.at(u + du, v + dv);
-        if (std::abs(other - z) < kJump || z <= 0 || other <= 0) continue;
+        if (std::abs(other - z) < kDepthJump || z <= 0 || other <= 0) continue;
         other > z ? f(u, v, du, dv) : f(u + du, v + dv, -du, -dv);
       }
     }
@@ -107,7 +107,7 @@ void mix_rims(const DepthView& exact, const SimulatedNoiseOptions& options, floa
   const double beside = std::exp(-0.5 / (options.mixed * options.mixed));
   for_pixels(exact, depth, [&](int u, int v, float& measured) {
     const Around near = around(exact, u, v);
-    if (near.high - near.low < kJump) return;
+    if (near.high - near.low < kDepthJump) return;
     double light = 0;
     double sum = 0;
     for (int i = 0; i < 9; ++i) {
@@ -128,7 +128,7 @@ void disturb_silhouettes(const DepthView& exact, std::uint64_t seed, bool far_si
   Random random(seed);
   for_pixels(exact, depth, [&](int u, int v, float& z) {
     const Around near = around(exact, u, v);
-    if (near.high - near.low < kJump && !near.open) return;
+    if (near.high - near.low < kDepthJump && !near.open) return;
     const double draw = random.uniform();
     const auto share = static_cast<float>(random.uniform());
     if (far_side && z - near.low < near.high - z) return;

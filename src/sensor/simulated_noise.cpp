@@ -96,16 +96,16 @@ float row_offset(std::uint64_t seed, std::uint64_t row) {
 }
 
 void check(const SimulatedNoiseOptions& options) {
-  struct Range {
+  struct Bounded {
     const char* what;
     double value, least, most;
   };
-  for (const Range& range : {Range{"a rounding (m)", options.rounding, 0, 1},
-                             Range{"a disparity step (pixels)", options.disparity_step, 0, 8},
-                             Range{"a curl (m)", options.curl, -0.1, 0.1},
-                             Range{"a footprint of mixed pixels", options.mixed, 0, 1},
-                             Range{"a pattern (m)", options.pattern, 0, 0.1},
-                             Range{"a share of holes", options.holes, 0, 0.9}}) {
+  for (const Bounded& range : {Bounded{"a rounding (m)", options.rounding, 0, 1},
+                               Bounded{"a disparity step (pixels)", options.disparity_step, 0, 8},
+                               Bounded{"a curl (m)", options.curl, -0.1, 0.1},
+                               Bounded{"a footprint of mixed pixels", options.mixed, 0, 1},
+                               Bounded{"a pattern (m)", options.pattern, 0, 0.1},
+                               Bounded{"a share of holes", options.holes, 0, 0.9}}) {
     if (range.value >= range.least && range.value <= range.most) continue;
     throw Error(fmt::format("a simulated camera cannot have {} of {:g}; give {:g} to {:g}",
                             range.what, range.value, range.least, range.most));

@@ -13,11 +13,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRho = 12e-3;                                  // of the bulge, m
-const Sampling kSeen{.spacing = 3e-3, .radius = 8e-3};          // R = 2/3 rho
-const Vector3d kOver = Vector3d(0.3e-3, 0.2e-3, 0);             // beside the middle of the bulge
-const Vector3d kTop = kOver + Vector3d(0, 0, kRho);             // nearly on it
-const Vector3d kPressed = kOver + Vector3d(0, 0, kRho - 4e-3);  // 4 mm deep
+constexpr double kRho = 12e-3;                          // of the bulge, m
+const Sampling kSeen{.spacing = 3e-3, .radius = 8e-3};  // R = 2/3 rho
+const Vector3d kOver = Vector3d(0.3e-3, 0.2e-3, 0);     // beside the middle of the bulge
+const Vector3d kTop = kOver + Vector3d(0, 0, kRho);     // nearly on it
+const Vector3d kDeepInBulge = kOver + Vector3d(0, 0, kRho - 4e-3);  // 4 mm deep
 
 /// The upper half of a ball around the origin, as a camera above sees it.
 std::vector<TestPoint> bulge() {
@@ -27,9 +27,9 @@ std::vector<TestPoint> bulge() {
 }
 
 /// A hand at points that were seen from the side of their normals.
-class Hand {
+class BulgeHand {
  public:
-  Hand(const std::vector<TestPoint>& points, const Vector3d& start)
+  BulgeHand(const std::vector<TestPoint>& points, const Vector3d& start)
       : points_(points, {}, false, true), hip_(start) {
     proxy_.reset(start);
   }
@@ -56,7 +56,7 @@ class Hand {
 };
 
 TEST(OneSided, HoldsAHandFromTheFrontAlone) {
-  Hand hand(bulge(), {1e-3, 0, -0.03});
+  BulgeHand hand(bulge(), {1e-3, 0, -0.03});
   hand.to({1e-3, 0, kRho + 6e-3});
   EXPECT_EQ(hand.most(), 0) << "from behind, and out in front";
   EXPECT_NEAR(hand.to({1e-3, 0, kRho - 4e-3}).force.norm(), 2, 0.05);
@@ -64,8 +64,8 @@ TEST(OneSided, HoldsAHandFromTheFrontAlone) {
 
 TEST(OneSided, AHandThatBeginsCloseAboveABulgeIsInFrontOfIt) {
   for (const double height : {0.2e-3, 0.5e-3, 1e-3, 3e-3}) {
-    Hand hand(bulge(), kTop + Vector3d(0, 0, height));
-    EXPECT_NEAR(hand.to(kPressed).force.norm(), 2, 0.02) << height;
+    BulgeHand hand(bulge(), kTop + Vector3d(0, 0, height));
+    EXPECT_NEAR(hand.to(kDeepInBulge).force.norm(), 2, 0.02) << height;
   }
 }
 
@@ -74,8 +74,8 @@ TEST(OneSided, ABulgeHoldsAHandThatIsBehindALid) {
     std::vector<TestPoint> points = bulge();
     const std::vector<TestPoint> lid = sheet(kSeen, 0.03, kRho + gap);
     points.insert(points.end(), lid.begin(), lid.end());
-    Hand hand(points, kTop + Vector3d(0, 0, 0.5 * gap));
-    EXPECT_NEAR(hand.to(kPressed).force.norm(), 2, 0.02) << gap;
+    BulgeHand hand(points, kTop + Vector3d(0, 0, 0.5 * gap));
+    EXPECT_NEAR(hand.to(kDeepInBulge).force.norm(), 2, 0.02) << gap;
     EXPECT_GT(hand.to({0.7 * kRho, 0, 0.5 * kRho}).force.norm(), 0.5) << gap;
   }
 }
