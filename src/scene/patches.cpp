@@ -26,7 +26,7 @@ void Patches::stand(const Vector3d& proxy) noexcept {
   stance_ = stance;
   const double moved = (stance.proxy - faced_.proxy).norm();
   const bool same = stance.touches() == faced_.touches() && moved < kMoved * near_.mean_radius();
-  if (same && !near_.outdated()) return;  // what moves may have come over a resting tool
+  if (same) return;
   faced_ = stance;
   const Ball here{stance.proxy, 0};
   const bool covered = near_.covers(here);
