@@ -89,10 +89,10 @@ void Draft::hold(double seconds) {
                    Vector3d(event.hip.back()));
 }
 
-void Draft::press(const Vector3d& place, const Vector3d& out, double depth) {
-  start(place + 0.01 * out);
+void Draft::press(const Vector3d& at, const Vector3d& out, double depth) {
+  start(at + 0.01 * out);
   hold(0.6);
-  go(place - depth * out, 0.05);
+  go(at - depth * out, 0.05);
   hold(1);
   event.depth = depth;
   happens();

@@ -39,7 +39,7 @@ class Draft {
   void hold(double seconds);
   void go(const Eigen::Vector3d& goal, double speed);
   /// Comes from 10 mm outside, goes so deep, rests for a second; then things happen.
-  void press(const Eigen::Vector3d& place, const Eigen::Vector3d& out, double depth = kPress);
+  void press(const Eigen::Vector3d& at, const Eigen::Vector3d& out, double depth = kPress);
   /// Goes on from here: scores begin.
   void happens() { event.begin = event.hip.size(); }
   [[nodiscard]] double now() const { return static_cast<double>(event.hip.size()) * kTick; }
