@@ -47,20 +47,20 @@ void check(const std::string& name, const Snapshot& snapshot) {
   }
 }
 
-/// The depth frame that the cloud is to be felt as, if any.
-std::optional<DepthFrame> image_of(const PointCloud& cloud, const SourceOptions& options) {
+/// Is the cloud to be felt as the depth frame that it was made of, if there is one?
+bool wants_image(const PointCloud& cloud, const SourceOptions& options) {
   const PrepareOptions& loose = options.prepare;
-  const bool wanted = options.organised && cloud.width > 0 && !loose.voxel && !loose.clip &&
-                      !loose.viewpoint && !loose.material_from_intensity && !loose.paper;
-  std::optional<DepthFrame> image = wanted ? depth_frame_of(cloud).frame : std::nullopt;
-  if (!image) return image;
+  return options.organised && cloud.width > 0 && !loose.voxel && !loose.clip && !loose.viewpoint &&
+         !loose.material_from_intensity && !loose.paper;
+}
+
+/// Is most of what the frame measured at depths that are felt?
+bool is_mostly_felt(const DepthFrame& frame, const DepthFilterOptions& options) {
   const auto within = [&](float z) {
-    return static_cast<double>(z) > options.depth.nearest &&
-           static_cast<double>(z) < options.depth.farthest;
+    return static_cast<double>(z) > options.nearest && static_cast<double>(z) < options.farthest;
   };
-  const auto felt = std::ranges::count_if(image->depth, within);
-  const auto seen = std::ranges::count_if(image->depth, [](float z) { return z > 0; });
-  return 2 * felt > seen ? std::move(image) : std::nullopt;
+  const auto felt = std::ranges::count_if(frame.depth, within);
+  return 2 * felt > std::ranges::count_if(frame.depth, [](float z) { return z > 0; });
 }
 
 /// Errors of what `act` does, with the source's name.
@@ -126,10 +126,14 @@ void Source::set_pose(const Eigen::Isometry3d& T_world_sensor) {
 
 void Source::set(const PointCloud& cloud) {
   const SourceOptions wanted = options();
-  if (std::optional<DepthFrame> image = image_of(cloud, wanted)) {
-    image->T_world_sensor = pose() * image->T_world_sensor.value_or(Eigen::Isometry3d::Identity());
-    set(*image);
-    return;
+  if (wants_image(cloud, wanted)) {
+    OrganisedFrame image = depth_frame_of(cloud);
+    if (image.frame && is_mostly_felt(*image.frame, wanted.depth)) {
+      auto& pose_in_cloud = image.frame->T_world_sensor;
+      pose_in_cloud = pose() * pose_in_cloud.value_or(Eigen::Isometry3d::Identity());
+      set(*image.frame);
+      return;
+    }
   }
   Prepared prepared = named(name_, [&] { return prepare(cloud, wanted.prepare, pose()); });
   {
