@@ -70,10 +70,8 @@ PrepareQuantiles prepare_times(std::vector<double> ms) {
 // The share of frames of a run in simulated time that live would have been overtaken while others
 // were prepared; 0 for a run that was live.
 double share_too_fast(const FeedReport& feed, const PrepareQuantiles& times) {
-  const double prepared_a_second = times.p50 > 0 ? 1e3 / times.p50 : 0;
-  return feed.simulated && times.p50 > 0 && feed.state.rate > prepared_a_second
-             ? 1 - prepared_a_second / feed.state.rate
-             : 0;
+  if (!feed.simulated || !(times.p50 > 0) || !(feed.state.rate > 0)) return 0;
+  return std::max(0.0, 1 - 1e3 / (times.p50 * feed.state.rate));
 }
 
 void print_too_fast(const FeedReport& feed, const PrepareQuantiles& times, const Style& style,

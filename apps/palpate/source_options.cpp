@@ -112,8 +112,7 @@ void add_source_options(CLI::App& command, SourceChoices& o) {
   command
       .add_flag("--unorganised", o.unorganised,
                 wrapped("take depth images and organised clouds as loose points: voxel filter and "
-                        "fitted normals in place "
-                        "of the depth filter"))
+                        "fitted normals in place of the depth filter"))
       ->group("Reading");
   add_surface_of_source(command, o);
   add_stream_options(command, o);

@@ -42,32 +42,22 @@ Event slant(std::uint64_t seed, const std::string& family) {
   return draft.event;
 }
 
-// A hand rests on a thin pole, as a family sees it.
-Event pole_of(std::uint64_t seed, const std::string& family) {
+// A hand rests on a thin pole, as a family sees it; no family: the noise has the same deviation
+// everywhere.
+Event pole(std::uint64_t seed, const std::string& family) {
   Draft draft(seed);
   const double radius = draft.one_of({0.004, 0.0075, 0.0125, 0.02});
+  if (family.empty()) {
+    const double sigma = draft.one_of({0.001, 0.003, 0.006, 0.015});
+    draft.event.camera.noise.model.coefficients = {sigma, 0, 0};
+  } else {
+    seen_by(draft, family);
+  }
   const Vector3d middle = draft.place + draft.between(0.08, 0.15) * kUp;
   draft.cylinder(middle, kUp, radius, 0.3);
   Vector3d out = draft.to_camera(middle);
   out.z() = 0;
   out.normalize();
-  seen_by(draft, family);
-  draft.press(middle + radius * out, out);
-  draft.hold(3);
-  return draft.event;
-}
-
-// A hand rests on a thin pole; the camera's noise has the same deviation everywhere.
-Event pole(std::uint64_t seed) {
-  Draft draft(seed);
-  const double radius = draft.one_of({0.004, 0.0075, 0.0125, 0.02});
-  const double sigma = draft.one_of({0.001, 0.003, 0.006, 0.015});
-  const Vector3d middle = draft.place + draft.between(0.08, 0.15) * kUp;
-  draft.cylinder(middle, kUp, radius, 0.3);
-  Vector3d out = draft.to_camera(middle);
-  out.z() = 0;
-  out.normalize();
-  draft.event.camera.noise.model.coefficients = {sigma, 0, 0};
   draft.press(middle + radius * out, out);
   draft.hold(3);
   return draft.event;
@@ -92,14 +82,14 @@ Event over_rim(std::uint64_t seed, const std::string& family) {
 
 std::vector<Row> sensor_rows() {
   std::vector<Row> rows;
-  rows.push_back({"pole", pole});
-  for (const std::string family : {"structured", "stereo", "tof"}) {
-    rows.push_back({"pole, " + family, [=](std::uint64_t seed) { return pole_of(seed, family); }});
-    rows.push_back({"slant, " + family, [=](std::uint64_t seed) { return slant(seed, family); }});
-  }
+  const auto add = [&](const std::string& name, const std::string& family, const auto& make) {
+    rows.push_back({family.empty() ? name : name + ", " + family,
+                    [=](std::uint64_t seed) { return make(seed, family); }});
+  };
   for (const std::string family : {"", "structured", "stereo", "tof"}) {
-    rows.push_back({"over a rim" + std::string(family.empty() ? "" : ", ") + family,
-                    [=](std::uint64_t seed) { return over_rim(seed, family); }});
+    add("pole", family, pole);
+    if (!family.empty()) add("slant", family, slant);
+    add("over a rim", family, over_rim);
   }
   return rows;
 }

@@ -50,7 +50,6 @@ struct DepthFilter::State {
         std::memcmp(last.depth.data(), depth.data(), depth.size() * sizeof(float)) == 0;
     if (!same) last.depth = depth;
     last.camera = frame.camera;
-    last.stamp = frame.stamp;
     seen = true;
     return same;
   }

@@ -19,10 +19,10 @@ struct TemporalOptions {
 };
 
 /// What suits a sensor: G = 5, and 7 where pixels err together (c > 2), since the variances of fits
-/// tell less then (nss_fast.md section 3).
+/// tell less then.
 [[nodiscard]] TemporalOptions temporal_options(int memory, double correlation, double normal_error);
 
-/// The filter over time of nss_fast.md section 3, after the fit, a block at a time: what stands
+/// The filter over time, after the fit, a block at a time: what stands
 /// still is averaged, what moves is taken as it is measured. Bounded work; it allocates only when
 /// the grid's size changes.
 class TemporalFilter {
@@ -31,7 +31,7 @@ class TemporalFilter {
   /// so; that nothing confirms them is for others to deal with. What was known of them is
   /// remembered for a while and goes on when they are measured again. `T_world_sensor` is the pose
   /// at the stamp: when it is another than before, what is remembered is put into the new view
-  /// first. A block whose state changes between plain and fitted starts anew.
+  /// first. A block whose state changes between plain and fitted starts again.
   void filter(const TemporalOptions& options, const Eigen::Isometry3d& T_world_sensor,
               BlockFits& fits);
 

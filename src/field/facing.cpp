@@ -96,9 +96,8 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
       continue;
     }
     if (sheet != last) {
-      const Key all{nullptr, surface.one_sided ? kOneSided : 0};
-      const Key key = own.empty() ? all : Key{&surface, sheet};
-      const Key part = own.empty() ? all : Key{&surface, own.part[sheet]};
+      const Key key = own.empty() ? key_of_all(surface) : Key{&surface, sheet};
+      const Key part = own.empty() ? key : Key{&surface, own.part[sheet]};
       slot = sheet_of(key, part, own.empty() || own.known[own.part[sheet]] != 0);
       last = sheet;
     }
@@ -137,18 +136,25 @@ void Facing::list(const Points& points, const Stance& stance) noexcept {
   if (!points_.empty()) radius_ = radii / static_cast<float>(points_.size());
 }
 
+/// Of the sheet and part of points without sheets of their own.
+Facing::Key Facing::key_of_all(const SurfacePoints& points) noexcept {
+  return points.one_sided ? kOneSided : Key{};
+}
+
+/// Is it seen from the side that nobody saw?
+bool Facing::is_absent(const Part& part) noexcept {
+  return part.key == kOneSided && part.sign < 0;
+}
+
 bool Facing::behind() const noexcept {
-  return std::ranges::any_of(std::span(now_.parts).first(now_.part_count), [](const Part& part) {
-    return part.key == Key{nullptr, kOneSided} && part.sign < 0;
-  });
+  return std::ranges::any_of(std::span(now_.parts).first(now_.part_count), is_absent);
 }
 
 /// What has no weight at the proxy any more may be seen from another side next, and what a free
 /// proxy is behind, at any time.
 void Facing::let_go(const Stance& stance) noexcept {
   for (Part& part : std::span(now_.parts).first(now_.part_count)) {
-    const bool hollow = part.key == Key{nullptr, kOneSided} && part.sign < 0;
-    if (!part.near || (hollow && !stance.touches())) part.sign = 0;
+    if (!part.near || (is_absent(part) && !stance.touches())) part.sign = 0;
   }
   for (Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
     if (!sheet.near) sheet.label = kOpen;
@@ -242,9 +248,7 @@ bool Facing::write(const Points& points) const noexcept {
       const Part& part = now_.parts[now_.sheets[slot].part];
       sign = static_cast<std::int8_t>(part.sign);
       label = now_.sheets[slot].label;
-      if (sign < 0 && part.key == Key{nullptr, kOneSided}) {
-        sign = height_over(points_[next]) < 0 ? 0 : 1;
-      }
+      if (is_absent(part)) sign = height_over(points_[next]) < 0 ? 0 : 1;
       ++next;
     }
     changed = changed || points.signs[k] != sign || points.labels[k] != label;
@@ -256,12 +260,10 @@ bool Facing::write(const Points& points) const noexcept {
 
 /// Where all points are of one part whose side is known, there is nothing to look at.
 bool Facing::is_settled(std::span<const ActiveLayer> layers) const noexcept {
-  return now_.sheet_count == 1 && now_.sheets[0].key.owner == nullptr && !behind() &&
-         now_.sheets[0].label == kInFront && std::ranges::all_of(layers, [this](const auto& layer) {
-           const SurfacePoints& points = *layer.points;
-           return points.sheets.empty() &&
-                  (now_.sheets[0].key.number == kOneSided) == points.one_sided;
-         });
+  if (now_.sheet_count != 1 || now_.sheets[0].label != kInFront || behind()) return false;
+  return std::ranges::all_of(layers, [this](const ActiveLayer& layer) {
+    return layer.points->sheets.empty() && now_.sheets[0].key == key_of_all(*layer.points);
+  });
 }
 
 bool Facing::face(const Points& points, const Stance& stance) noexcept {

@@ -66,7 +66,6 @@ class Facing {
  private:
   static constexpr std::size_t kMost = 96;  // sheets near the tool; further ones are silent
   static constexpr std::uint8_t kOpen = 0xff;
-  static constexpr std::uint32_t kOneSided = 1;  // number of the part seen from one side alone
 
   /// Whose sheet or part it is. All layers without sheets of their own are of one, but for those
   /// that were seen from one side alone: these are of another.
@@ -75,6 +74,7 @@ class Facing {
     std::uint32_t number = 0;
     bool operator==(const Key&) const = default;
   };
+  static constexpr Key kOneSided{nullptr, 1};
   struct Part {
     Key key;
     int sign = 0;        // 0: not decided
@@ -133,6 +133,8 @@ class Facing {
   void let_go(const Stance& stance) noexcept;
   void group() noexcept;
   void choose_eye(const Stance& stance) noexcept;
+  [[nodiscard]] static Key key_of_all(const SurfacePoints& points) noexcept;
+  [[nodiscard]] static bool is_absent(const Part& part) noexcept;
   [[nodiscard]] bool is_one_sided(const Point& point) const noexcept;
   [[nodiscard]] float height_over(const Point& point) const noexcept;
   [[nodiscard]] bool list_references(const Stance& stance) noexcept;

@@ -67,7 +67,7 @@ double Facing::across(std::uint32_t part) noexcept {
 }
 
 bool Facing::is_one_sided(const Point& point) const noexcept {
-  return now_.sheets[point.sheet].key == Key{nullptr, kOneSided};
+  return now_.sheets[point.sheet].key == kOneSided;
 }
 
 /// How high the eye is above the surface at a point, m. What was seen from one side alone is never

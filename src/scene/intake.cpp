@@ -89,15 +89,19 @@ std::shared_ptr<const Snapshot> Intake::take(const DepthFrame& frame, const Arri
   const MorphInput input{depth, pinhole_, arrival.reach, everywhere};
   morph_.look(input);
   const Moment moment = next_moment(frame.stamp, arrival.start);
+  if (frames_ == Policy::morph) return morphed(input, moment);
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, frames_);
   std::shared_ptr<SurfacePoints> points = points_.take();
-  if (frames_ == Policy::morph) {
-    morph_.fill(input, moment, points);
-    snapshot->layers.push_back({std::move(points), 1, 1});
-  } else {
-    morph_.fill_still(input, moment, points);
-    layers_.add(std::move(points), moment, snapshot->layers);
-  }
+  morph_.fill_still(input, moment, points);
+  layers_.add(std::move(points), moment, snapshot->layers);
+  return snapshot;
+}
+
+std::shared_ptr<Snapshot> Intake::morphed(const MorphInput& input, const Moment& moment) {
+  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, Policy::morph);
+  std::shared_ptr<SurfacePoints> points = points_.take();
+  morph_.fill(input, moment, points);
+  snapshot->layers.push_back({std::move(points), 1, 1});
   return snapshot;
 }
 
@@ -109,12 +113,7 @@ std::shared_ptr<Snapshot> Intake::last_of_frames(const Snapshot& newest) {
   if (depth == nullptr) return nullptr;
   const MorphInput input{*depth, pinhole_};
   morph_.look(input);
-  const Moment moment{last_.stamp, last_.end, std::max(kLeast, last_.end - last_.start)};
-  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, frames_);
-  std::shared_ptr<SurfacePoints> points = points_.take();
-  morph_.fill(input, moment, points);
-  snapshot->layers.push_back({std::move(points), 1, 1});
-  return snapshot;
+  return morphed(input, {last_.stamp, last_.end, std::max(kLeast, last_.end - last_.start)});
 }
 
 std::shared_ptr<const Snapshot> Intake::take(const PointCloud& cloud, double stamp,

@@ -53,6 +53,7 @@ class Intake {
     void operator()(Snapshot& snapshot) const noexcept { snapshot.layers.clear(); }
   };
 
+  [[nodiscard]] std::shared_ptr<Snapshot> morphed(const MorphInput& input, const Moment& moment);
   [[nodiscard]] std::shared_ptr<const Snapshot> fused(const Moment& moment);
   [[nodiscard]] Moment next_moment(double stamp, const StartTime& start);
   [[nodiscard]] std::shared_ptr<Snapshot> next_snapshot(const Moment& moment, Policy policy);

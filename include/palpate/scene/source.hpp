@@ -102,8 +102,8 @@ class Source {
 
   /// Lets the newest surface stay however long nothing confirms it: a recording has come to its
   /// end. Of a depth frame, what was out of every tool's reach is fitted first. Points that were
-  /// fading by themselves go on to. Not real-time; whoever pushes calls it,
-  /// after the last push.
+  /// fading by themselves go on to. Not real-time; the thread that pushes calls it, after the last
+  /// push.
   void keep();
 
   /// Makes `snapshot` the newest; nullptr: there is no surface any more. Not real-time.

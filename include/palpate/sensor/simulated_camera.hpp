@@ -36,8 +36,8 @@ struct SimulatedCameraOptions {
 };
 
 /// Looks at a simulated scene. Stamps are on the clock that it is given; the scene's time is the
-/// stamp less the start and less
-/// a jump. Frames that nobody asked for in time are gone, as with a real camera.
+/// stamp less the start and less a jump. Frames that nobody asked for in time are gone, as with a
+/// real camera.
 class SimulatedCamera final : public DepthCamera {
  public:
   /// @throws Error when an option is out of its range.

@@ -33,8 +33,8 @@ struct MorphInput {
   bool everywhere = true;         ///< exact weights everywhere
 };
 
-/// The policy for depth streams (algorithm.md section 5.1): the points of the blocks move, while a
-/// snapshot lasts, from where the surface is at its start to where the new frame has them. So
+/// The policy for depth streams (docs/architecture.md, Time): the points of the blocks move, while
+/// a snapshot lasts, from where the surface is at its start to where the new frame has them. So
 /// whenever a frame comes, the surface goes on without a step.
 ///
 /// A point's identity is its block, or where a moving camera sees it now. What a block shows next

@@ -133,17 +133,17 @@ std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std:
     const Eigen::Vector3f place = old_point(i).position;
     const float squared = (place - seen.state.position).squaredNorm();
     if (squared >= nearest) continue;
-    const bool moves = squared > same * same && kind == EntryKind::live && !moved_ &&
-                       may_move(depth, seen, i, place);
-    if (squared > same * same && !moves) continue;
+    if (squared > same * same && !may_move(depth, seen, i, place)) continue;
     nearest = squared;
     partner = i;
   }
   return partner;
 }
 
+/// Has what was at `from` come along the ray to what is seen now?
 bool Morph::may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
                      const Eigen::Vector3f& from) const {
+  if (entries_[i].kind != EntryKind::live || moved_) return false;
   const float fastest = kFastest + std::min(speed_of(i), kSudden);
   const Eigen::Vector3f normal = old_point(i).normal;
   const bool turns = seen.state.normal.dot(normal) < kTurns * seen.state.normal.squaredNorm();
