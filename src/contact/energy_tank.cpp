@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace palpate {
+namespace {
+
+constexpr double kGone = 1;  // N/m: 3 mN at 3 mm
+
+}  // namespace
 
 void EnergyTank::restart(double stiffness) noexcept {
   stiffness_ = stiffness;
@@ -38,6 +43,19 @@ void EnergyTank::rise(double wanted, double half_square, double dt) noexcept {
 
 void EnergyTank::fill(double energy) noexcept {
   energy_ = std::min(kCapacity, energy_ + energy);
+}
+
+void FadingSpring::take(const Eigen::Vector3d& place, double stiffness) noexcept {
+  const double both = stiffness_ + stiffness;
+  if (both > 0) place_ += stiffness / both * (place - place_);
+  stiffness_ = both;
+}
+
+double FadingSpring::fade(const Eigen::Vector3d& hip, double dt) noexcept {
+  const double left = stiffness_ * std::exp(-dt / EnergyTank::kTime);
+  const double energy = 0.5 * (stiffness_ - left) * (place_ - hip).squaredNorm();
+  stiffness_ = left > kGone ? left : 0;
+  return energy;
 }
 
 }  // namespace palpate

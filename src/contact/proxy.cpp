@@ -14,14 +14,14 @@ namespace palpate {
 namespace {
 
 constexpr double kLeastTime = 1e-9;    // s
-constexpr double kKeepLost = 0.02;     // s, for which the force of a lost contact stays
-constexpr double kFadeRate = 300;      // N/s, at which it then goes
+constexpr double kKeepLost = 0.02;     // s, for which the spring of a lost contact stays
 constexpr double kTextureStep = 0.25;  // of the wavelength, the longest sub-step
 constexpr int kMostIterations = 1000;
 constexpr double kMuchSofter = 0.95;  // of the stiffness that is wanted
+constexpr double kFaded = 0.01;       // of the stiffness: a spring that is gone
 constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
-constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall ...
-constexpr double kLeastFall = 0.01;  // ... and of R: what iterations leave open is none
+constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall
+constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
 
 void validate(const ProxyOptions& options) {
   const Requirement require{"proxy"};
@@ -60,6 +60,7 @@ void Proxy::reset(const Eigen::Vector3d& position) noexcept {
   fault_ = !in_range(position);
   started_ = !fault_;
   step_length_ = 0;
+  fading_ = {};
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
   hand_ = position_;
 }
@@ -81,20 +82,34 @@ bool Proxy::change(double stiffness, const Friction& friction, const Texture& te
 Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept {
   if (!in_range(hip) || !std::isfinite(dt) || dt < 0) fault_ = true;
   if (fault_) return faulted();
-  if (!started_) reset(hip);
+  if (!started_) {
+    reset(hip);
+    revision_ = field.traits().revision;
+  }
   Contact contact;
   Probe probe{field, options_.texture, step_length_};
   const bool held = touching_;
   const Eigen::Vector3d before = position_;
+  const double stiffness = held ? tank_.stiffness() : 0;
   if (!touching_) follow(probe, hip, contact);
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
   step_length_ = probe.step_length();
+  const bool changed = probe.traits().revision != revision_;
   revision_ = probe.traits().revision;
   field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
   contact.proxy = position_;
   contact.touching = touching_;
   contact.evaluations = probe.evaluations();
-  if (held && fell(before, hip, dt)) contact.notes = contact.notes | ContactNote::fell;
+  const double jump = unexplained(before, hip, dt);
+  if (held && jump > kFall * (before - hand_).norm())
+    contact.notes = contact.notes | ContactNote::fell;
+  if (changed && jump > probe.traits().reanchor_reach) {
+    fading_.take(before, stiffness);
+    if (touching_) take_over(hip, contact);
+  }
+  tank_.fill(fading_.fade(hip, dt));
+  contact.force += fading_.force(hip);
+  contact.stiffness += fading_.stiffness();
   if (!has(contact.notes, kBehind)) hand_ = hip;
   if (contact.force.allFinite() && in_range(position_)) return contact;
   fault_ = true;
@@ -102,13 +117,21 @@ Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) n
   return faulted();
 }
 
-// On a plane the proxy goes no farther than the hand, whose depth bounds what friction held back;
-// on a bulge no farther than twice as far, up to half of its radius deep.
-bool Proxy::fell(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
-                 double dt) const noexcept {
+// How far the proxy went beyond what motion of the hand and the surface explains, m. On a plane it
+// goes no farther than the hand, on a bulge twice as far, up to half of its radius deep.
+double Proxy::unexplained(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
+                          double dt) const noexcept {
   const double explained = 2 * (hip - hand_).norm() + surface_.velocity.norm() * dt;
-  const double least = std::max(kFall * (before - hand_).norm(), kLeastFall * step_length_);
-  return (position_ - before).norm() > explained + least;
+  const double jump = (position_ - before).norm() - explained;
+  return jump > kLeastFall * step_length_ ? jump : 0;
+}
+
+// Nothing that a surface does gives a hand energy, or takes its force at once: what the spring that
+// it ended gives up while it fades pays for the one that takes over.
+void Proxy::take_over(const Eigen::Vector3d& hip, Contact& contact) noexcept {
+  tank_.take_over(begun_stiffness(position_, hip));
+  contact.stiffness = tank_.stiffness();
+  contact.force = contact.stiffness * (position_ - hip);
 }
 
 Contact Proxy::faulted() noexcept {
@@ -132,19 +155,24 @@ void Proxy::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) n
 
 // A spring that begins stretched by more than the hand has moved begins as much softer: what held
 // the hand before, or where it was, is not its doing.
+double Proxy::begun_stiffness(const Eigen::Vector3d& place,
+                              const Eigen::Vector3d& hip) const noexcept {
+  const double stretch = (place - hip).norm();
+  const double moved = (hip - hand_).norm() + kLeastFall * step_length_;
+  return wanted_stiffness() * (stretch > moved ? moved / stretch : 1);
+}
+
 void Proxy::touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept {
   release(place);
   touching_ = true;
   surface_ = probe.field().surface(place);
-  const double stretch = (place - hip).norm();
-  const double moved = (hip - hand_).norm() + kLeastFall * probe.step_length();
-  tank_.restart(wanted_stiffness() * (stretch > moved ? moved / stretch : 1));
+  step_length_ = probe.step_length();
+  tank_.restart(begun_stiffness(place, hip));
 }
 
 void Proxy::release(const Eigen::Vector3d& place) noexcept {
   position_ = place;
   normal_.setZero();
-  last_force_.setZero();
   lost_time_ = 0;
   touching_ = false;
   sliding_ = false;
@@ -238,38 +266,25 @@ void Proxy::pull(const Eigen::Vector3d& hip, double dissipated, double dt,
   contact.force = contact.stiffness * stretch;
   contact.drift = surface_.velocity;
   contact.source = surface_.source;
-  last_force_ = contact.force;
 }
 
 double Proxy::wanted_stiffness() const noexcept {
-  return options_.stiffness * factor(surface_.stiffness_factor) * factor(surface_.presence);
+  if (lost_time_ > kKeepLost) return 0;
+  const double wanted =
+      options_.stiffness * factor(surface_.stiffness_factor) * factor(surface_.presence);
+  return std::max(0.0, wanted - fading_.stiffness());
 }
 
-// A contact whose surface was not found in this step. Where the search was only cut short, the
-// spring goes on from as far as it came, lest the force drop for one step.
+// A contact whose surface was not found in this step. The spring goes on from as far as the proxy
+// came; where the search was not only cut short, it fades after a moment.
 void Proxy::keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept {
   contact.normal = normal_;
-  if (cut_short_) return pull(hip, 0, dt, contact);
-  contact.notes = contact.notes | ContactNote::lost;
-  fade(dt);
-  contact.force = last_force_;
-  contact.stiffness = tank_.stiffness();
-  contact.drift = surface_.velocity;
-  contact.source = surface_.source;
-  if (last_force_.isZero(0)) let_go(probe, hip);
-}
-
-// The force stays for a moment, then goes.
-void Proxy::fade(double dt) noexcept {
-  lost_time_ += dt;
-  if (lost_time_ <= kKeepLost) return;
-  const double size = last_force_.norm();
-  const double left = size - kFadeRate * dt;
-  if (left > 0) {
-    last_force_ *= left / size;
-  } else {
-    last_force_.setZero();
+  if (!cut_short_) {
+    contact.notes = contact.notes | ContactNote::lost;
+    lost_time_ += dt;
   }
+  pull(hip, 0, dt, contact);
+  if (contact.stiffness <= kFaded * options_.stiffness) let_go(probe, hip);
 }
 
 // Never through what cannot be found: from a free place to the first contact; from inside, only

@@ -36,7 +36,7 @@ constexpr double kToolShare = 0.3;  // of R: the largest tool that pushes a surf
 constexpr double kFinest = 0.25;
 
 // A surface may rise this fast and still take a resting proxy along, m/s.
-constexpr double kFastestPoint = 2;    // of points that move, from tick to tick
+constexpr double kFastestPoint = 1;    // of points that move, from tick to tick
 constexpr double kFastestCloud = 0.5;  // from cloud to cloud
 
 constexpr double kFelt = 2;  // R that a tool feels: normals beside rims need neighbours, too
@@ -279,8 +279,8 @@ FieldTraits SceneField::traits() const noexcept {
   FieldTraits traits;
   traits.resolution = metaball ? 0.002 * smallest : smallest / 16;
   traits.revision = state.revision;
-  traits.reanchor_reach = std::max(
-      {0.5 * state.radius(), kFastestPoint * state.passed, kFastestCloud * state.cloud_duration});
+  traits.reanchor_reach =
+      std::max(kFastestPoint * state.passed, kFastestCloud * state.cloud_duration);
   return traits;
 }
 

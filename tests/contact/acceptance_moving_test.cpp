@@ -80,12 +80,17 @@ TEST(AcceptanceStep, ACloudThatGoesAwayLetsGo) {
   proxy.reset({0, 0, 0.02});
   const Vector3d hip(0, 0, -0.003);
   field.update(0, hip, proxy.position());
-  EXPECT_GT(proxy.step(field, hip, kTick).force.z(), 1);
+  double before = proxy.step(field, hip, kTick).force.z();
+  EXPECT_GT(before, 1);
   source.publish(nullptr);
-  field.update(kTick, hip, proxy.position());
-  const Contact c = proxy.step(field, hip, kTick);
-  EXPECT_FALSE(c.touching);
-  EXPECT_EQ(c.force.norm(), 0);
+  for (int i = 1; i <= 200; ++i) {
+    field.update(i * kTick, hip, proxy.position());
+    const Contact c = proxy.step(field, hip, kTick);
+    EXPECT_FALSE(c.touching);
+    EXPECT_LE(before - c.force.z(), 0.05 * 1.5);
+    before = c.force.z();
+  }
+  EXPECT_EQ(before, 0);
 }
 
 // The gradient is zero there, and a re-anchoring of R / 2 begins inside the point's ball.
@@ -107,7 +112,11 @@ TEST(AcceptanceStep, ASinglePointThatAppearsAtTheProxyLiftsItToItsBall) {
     for (int i = 0; i < 10; ++i) (void)tick();
     show(source, {{proxy.position(), Vector3d::UnitZ(), 0.01, confidence}}, now, 0);
     const double size = confidence > 0 ? 0 : 0.0056;  // a trusted point is a piece of a plane
-    for (int i = 0; i < 200; ++i) EXPECT_NEAR(tick().force.z(), 500 * (0.003 + size), 0.05);
+    for (int i = 0; i < 200; ++i) {
+      const Contact c = tick();
+      EXPECT_NEAR(c.proxy.z(), size, 1e-4);
+      EXPECT_LE(c.force.z(), 1.55);  // what appears gives the hand nothing
+    }
   }
 }
 

@@ -25,6 +25,7 @@ class ServoTick : public testing::Test {
     device_.info().maximum_force = 2;
     ServoOptions options;
     options.guard.soft_start = 0.02;  // every link is at work
+    options.guard.slew = 10;
     options.clutch_button = 0;
     servo_ = std::make_unique<Servo>(device_, scene_, options);
   }

@@ -28,11 +28,13 @@ enum class ContactNote : std::uint32_t {
 
 /// What one proxy step gives.
 struct Contact {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< on the hand, K (proxy - HIP), N, world
+  /// On the hand, N, world: K (proxy - HIP), and what is left of springs that a change of the
+  /// surface ended.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d proxy = Eigen::Vector3d::Zero();   ///< m, world
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< outward unit normal; 0 when not touching
   Eigen::Vector3d drift = Eigen::Vector3d::Zero();   ///< velocity of the touched surface, m/s
-  double stiffness = 0;                              ///< K used for the force, N/m
+  double stiffness = 0;                              ///< of all springs in the force, N/m
   bool touching = false;
   bool sliding = false;  ///< friction gave way in this step
   int iterations = 0;    ///< constrained sub-steps taken

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 namespace palpate {
 
 /// Lets the stiffness of a contact change without ever giving energy to the hand.
@@ -19,6 +21,12 @@ class EnergyTank {
   /// A new contact begins with an empty tank and this stiffness (N/m).
   void restart(double stiffness) noexcept;
 
+  /// A spring of this stiffness (N/m) takes over from one that ended: the tank stays as full.
+  void take_over(double stiffness) noexcept { stiffness_ = stiffness; }
+
+  /// Takes in what a FadingSpring gave up, J.
+  void fill(double energy) noexcept;
+
   /// Moves the stiffness towards `wanted` (N/m) over a step of `dt` (s) in which the spring is
   /// stretched by `stretch` (m) and friction took `dissipated` (J, >= 0). Returns the new
   /// stiffness. Finite for finite arguments; never above max(wanted, what it was).
@@ -30,10 +38,29 @@ class EnergyTank {
  private:
   void fall(double wanted, double half_square, double dt) noexcept;
   void rise(double wanted, double half_square, double dt) noexcept;
-  void fill(double energy) noexcept;
 
   double stiffness_ = 0;
   double energy_ = 0;
+};
+
+/// What is left of springs that ended though no hand let them go: it stays where they were and
+/// loses its stiffness as a contact does, in EnergyTank::kTime. Rests at 0 N/m.
+class FadingSpring {
+ public:
+  /// Takes over a spring from `place` (m) of this stiffness (N/m). Two springs pull like one.
+  void take(const Eigen::Vector3d& place, double stiffness) noexcept;
+
+  /// A step of `dt` (s) with the hand at `hip` (m). Returns the energy that it gave up, J.
+  double fade(const Eigen::Vector3d& hip, double dt) noexcept;
+
+  [[nodiscard]] Eigen::Vector3d force(const Eigen::Vector3d& hip) const noexcept {
+    return stiffness_ * (place_ - hip);
+  }
+  [[nodiscard]] double stiffness() const noexcept { return stiffness_; }  ///< N/m
+
+ private:
+  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
+  double stiffness_ = 0;
 };
 
 }  // namespace palpate

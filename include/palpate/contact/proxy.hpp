@@ -96,23 +96,25 @@ class Proxy {
   void pull(const Eigen::Vector3d& hip, double dissipated, double dt, Contact& contact) noexcept;
   void keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   void cut_short(Contact& contact) noexcept;
-  void fade(double dt) noexcept;
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
   [[nodiscard]] double wanted_stiffness() const noexcept;
-  [[nodiscard]] bool fell(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
-                          double dt) const noexcept;
+  [[nodiscard]] double begun_stiffness(const Eigen::Vector3d& place,
+                                       const Eigen::Vector3d& hip) const noexcept;
+  [[nodiscard]] double unexplained(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
+                                   double dt) const noexcept;
+  void take_over(const Eigen::Vector3d& hip, Contact& contact) noexcept;
   [[nodiscard]] Contact faulted() noexcept;
 
   ProxyOptions options_;
   EnergyTank tank_;
-  Surface surface_;  // where the proxy touches
+  FadingSpring fading_;  // of contacts that a change of the surface ended
+  Surface surface_;      // where the proxy touches
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();      // of the last contact; zero: none
-  Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();        // that the proxy last caught up with
-  Eigen::Vector3d last_force_ = Eigen::Vector3d::Zero();  // N
-  double step_length_ = 0;                                // R where it was last known, m
-  double lost_time_ = 0;                                  // s since the surface was lost
-  std::uint64_t revision_ = 0;                            // of the field in the last step
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of the last contact; zero: none
+  Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();    // that the proxy last caught up with
+  double step_length_ = 0;                            // R where it was last known, m
+  double lost_time_ = 0;                              // s since the surface was lost
+  std::uint64_t revision_ = 0;                        // of the field in the last step
   bool started_ = false;
   bool touching_ = false;
   bool sliding_ = false;
