@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "geometry/parallel.hpp"
+#include "geometry/spread_bits.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::detail {
@@ -21,16 +22,6 @@ constexpr std::size_t kGrain = std::size_t{1} << 16;
 int levels_for(std::size_t n) {
   if (n <= 256) return kLevels;
   return std::min(kLevels, (static_cast<int>(std::bit_width(n)) + 1) / 2 + 1);
-}
-
-// Puts two zero bits between any two of the lower 11 bits.
-std::uint64_t spread(std::uint32_t v) {
-  std::uint64_t x = v;
-  x = (x | (x << 16)) & 0x70000FF;
-  x = (x | (x << 8)) & 0x700F00F;
-  x = (x | (x << 4)) & 0x430C30C3;
-  x = (x | (x << 2)) & 0x49249249;
-  return x;
 }
 
 [[noreturn]] void refuse_not_finite(std::span<const Eigen::Vector3f> positions) {

@@ -37,9 +37,11 @@ void scatter(std::span<const Record> from, std::span<Record> to, int shift, int 
 
 // Least significant digit first, over key bits [shift, shift + bits).
 void sort_by_digits(std::span<Record> records, std::span<Record> scratch, int shift, int bits) {
-  if (records.size() < 64) {
-    std::stable_sort(records.begin(), records.end(),
-                     [shift](Record a, Record b) { return (a >> shift) < (b >> shift); });
+  if (records.size() < 64) {  // by insertion, which needs no memory
+    const auto before = [shift](Record a, Record b) { return (a >> shift) < (b >> shift); };
+    for (auto at = records.begin(); at != records.end(); ++at) {
+      std::rotate(std::upper_bound(records.begin(), at, *at, before), at, at + 1);
+    }
     return;
   }
   const int passes = (bits + kMaxDigitBits - 1) / kMaxDigitBits;

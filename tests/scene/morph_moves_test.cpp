@@ -71,5 +71,24 @@ TEST(MorphMoves, AJumpThatNoHandMakesDoesNotMoveTheSurface) {
   }
 }
 
+// Nine millimetres wide, near and far in turn: what comes before them hides both.
+double strips(double x, double) {
+  return std::fmod(x + 1, 0.04) < 0.02 ? 0.5 : 0.9;
+}
+
+TEST(MorphMoves, CellsOfWhatIsHiddenAreNotAsDeepAsTheScene) {
+  Morph morph{{}};
+  const std::size_t count = show(morph, 0, strips)->size();
+  const auto points = show(morph, kFrame, test::wall(0.3));
+  EXPECT_GT(points->size(), 3 * count / 2);
+  std::size_t leaves = 0;
+  for (const CellGrid::Cell& cell : points->grid.cells()) {
+    if (cell.children > 0) continue;
+    ++leaves;
+    EXPECT_LT(cell.upper.z() - cell.lower.z(), 0.2f);
+  }
+  EXPECT_GT(leaves, points->size() / 16);
+}
+
 }  // namespace
 }  // namespace palpate

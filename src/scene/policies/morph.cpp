@@ -2,16 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "geometry/sort_records.hpp"
+#include "geometry/spread_bits.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t kAhead = 32;  // blocks
 
-// What is not seen stands behind all that is, on a curve of its own: a cell of the index that held
-// both would be as deep as the scene. Codes of blocks are below it.
+// What is not seen stands behind all that is, on a curve through space: cells of the index along
+// the image's would be as deep as the scene. Codes of blocks are below it.
 constexpr std::uint32_t kUnseenCode = 1u << 30;
+constexpr float kUnseenSteps = 1023;  // of that curve along an axis
 
 // Single precision resolves a micrometre as far from the points' origin as this, m.
 constexpr double kFarFromOrigin = 16;
@@ -50,6 +55,8 @@ void Morph::look(const MorphInput& input) {
       place_of_block_[order_.blocks[k]] = static_cast<std::uint32_t>(k);
     }
     unseen_.reserve(order_.size());
+    unseen_order_.reserve(order_.size());
+    sorting_.reserve(order_.size());
     resized_ = true;
   }
   if (order_.size() == 0) forget();  // an image without a block has no place for old points
@@ -65,15 +72,41 @@ void Morph::fill(const MorphInput& input, const Moment& moment,
     if (place + kAhead < order_.size()) fetch(input.depth, order_.blocks[place + kAhead]);
     settle(input.depth, place);
   }
-  for (const Unseen& unseen : unseen_) {
-    writer_.add(kUnseenCode | order_.codes[unseen.entry.place], unseen.from, unseen.to);
-    next_entries_.push_back(unseen.entry);
-  }
+  write_unseen();
   writer_.end();
   std::swap(entries_, next_entries_);
   last_ = points;
   last_moment_ = moment;
   T_world_sensor_ = input.depth.T_world_sensor;
+}
+
+void Morph::write_unseen() {
+  using Eigen::Array3f;
+  Array3f lower = Array3f::Constant(std::numeric_limits<float>::max());
+  Array3f upper = -lower;
+  for (const Unseen& unseen : unseen_) {
+    lower = lower.min(unseen.from.position.array());
+    upper = upper.max(unseen.from.position.array());
+  }
+  const float extent = std::max((upper - lower).maxCoeff(), std::numeric_limits<float>::min());
+  unseen_order_.clear();
+  for (std::size_t i = 0; i < unseen_.size(); ++i) {
+    const Array3f share = (unseen_[i].from.position.array() - lower) / extent;
+    const Eigen::Array3i cell = (kUnseenSteps * share).cast<int>();
+    const auto bits = [&](int axis) {
+      return detail::spread(static_cast<std::uint32_t>(cell[axis]));
+    };
+    const std::uint64_t code = bits(0) << 2 | bits(1) << 1 | bits(2);
+    unseen_order_.push_back(code << detail::kPlaceBits | i);
+  }
+  sorting_.resize(unseen_order_.size());
+  detail::sort_records(unseen_order_, sorting_, detail::kKeyBits);
+  for (const detail::Record record : unseen_order_) {
+    const Unseen& unseen = unseen_[record & detail::kPlaceMask];
+    const auto code = static_cast<std::uint32_t>(record >> detail::kPlaceBits);
+    writer_.add(kUnseenCode | code, unseen.from, unseen.to);
+    next_entries_.push_back(unseen.entry);
+  }
 }
 
 void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& points) {

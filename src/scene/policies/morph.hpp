@@ -78,6 +78,7 @@ class Morph {
   void follow_camera(const MorphInput& input);
   void fetch(const FilteredDepth& depth, std::size_t block) const;
   void settle(const FilteredDepth& depth, std::size_t place);
+  void write_unseen();
   void hold_one(std::span<const std::uint32_t> old);
   [[nodiscard]] PointState old_point(std::uint32_t i) const;
   [[nodiscard]] float depth_of(const Eigen::Vector3f& position) const;
@@ -126,7 +127,9 @@ class Morph {
   bool resized_ = false;  // the image, since what was shown last
   std::uint32_t place_ = 0;
   std::vector<Entry> next_entries_;
-  std::vector<Unseen> unseen_;  // points that no block shows
+  std::vector<Unseen> unseen_;               // points that no block shows
+  std::vector<std::uint64_t> unseen_order_;  // their codes, and places among them
+  std::vector<std::uint64_t> sorting_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3f turn_ = Eigen::Matrix3f::Identity();  // sensor to world
   Eigen::Vector3f shift_ = Eigen::Vector3f::Zero();
