@@ -92,6 +92,7 @@ class Morph {
   void each_beside(std::size_t block, const Visit& visit) const;
   [[nodiscard]] float beside(const FilteredDepth& depth, std::size_t block) const;
   [[nodiscard]] static float advance_of(const Point& seen, const Eigen::Vector3f& from);
+  [[nodiscard]] static bool turns(const Point& seen, const Eigen::Vector3f& normal);
   [[nodiscard]] bool may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
                               const Eigen::Vector3f& from) const;
   [[nodiscard]] bool came_aside(const Point& seen) const;

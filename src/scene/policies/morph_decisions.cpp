@@ -57,7 +57,9 @@ void Morph::settle(const FilteredDepth& depth, std::size_t place) {
   if (!shown) return hold_one(old);
   const Point point = new_point(depth, block);
   const std::uint32_t partner = partner_of(depth, old, point);
-  if (partner == kNone && last_ && beside(depth, block) < kVouch) return hold_one(old);
+  const bool flies = partner == kNone ? last_ && beside(depth, block) < kVouch
+                                      : turns(point, old_point(partner).normal);
+  if (flies) return hold_one(old);
   if (partner == kNone) {
     appear(point);
   } else {
@@ -140,14 +142,18 @@ std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std:
   return partner;
 }
 
+/// Does a surface that faced along `normal` face elsewhere now? One whose normal is not known does
+/// not.
+bool Morph::turns(const Point& seen, const Eigen::Vector3f& normal) {
+  return seen.state.normal.dot(normal) < kTurns * seen.state.normal.squaredNorm();
+}
+
 /// Has what was at `from` come along the ray to what is seen now?
 bool Morph::may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
                      const Eigen::Vector3f& from) const {
   if (entries_[i].kind != EntryKind::live || moved_) return false;
   const float fastest = kFastest + std::min(speed_of(i), kSudden);
-  const Eigen::Vector3f normal = old_point(i).normal;
-  const bool turns = seen.state.normal.dot(normal) < kTurns * seen.state.normal.squaredNorm();
-  return !turns && advance_of(seen, from) <= fastest * static_cast<float>(moment_.duration) &&
+  return !turns(seen, old_point(i).normal) && advance_of(seen, from) <= fastest * static_cast<float>(moment_.duration) &&
          beside(depth, order_.blocks[place_]) >= kVouchToMove && !came_aside(seen);
 }
 
