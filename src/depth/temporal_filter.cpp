@@ -8,8 +8,13 @@
 namespace palpate::depth {
 namespace {
 
-constexpr float kLonger = 8;    // times the memory, at most
-constexpr int kCalmFrames = 2;  // after which a moving block stands still
+constexpr float kLonger = 8;        // times the memory, at most
+constexpr int kCalmFrames = 2;      // after which a moving block stands still
+constexpr float kLearn = 1 / 16.F;  // share of a frame in the scatter that frames show
+
+// Of a variance, what the scatter comes to by chance: five deviations more. A product of two moves
+// has the variance 5 s^4, and s^4 in common with the next; the running mean has 1/31 of the 7.
+constexpr float kSure = 3.4F;
 
 float squared(float x) {
   return x * x;
@@ -38,6 +43,35 @@ void restart(const Measured& now, BlockMemory& m) {
   m.count = 1;
   m.calm = 0;
   m.state = now.state;
+}
+
+/// How far frames of one surface scatter, which is more than their variances say where the fit's
+/// window depends on the noise and where rims are seen now so and now so. Of what stands still
+/// under noise of variance s^2 two moves in a row have the mean product -s^2; of what moves on,
+/// v^2.
+void learn_scatter(const Measured& now, BlockMemory& m) {
+  const bool sloped = now.confidence > 0;
+  const float values[] = {now.rho, sloped ? now.slope_x : m.last[1],
+                          sloped ? now.slope_y : m.last[2]};
+  const float limit = another_surface(std::max(now.rho, m.last[0]));
+  if (m.state != now.state) m.scatter = m.slope_scatter = 0;
+  const bool same = m.state == now.state && std::abs(now.rho - m.last[0]) <= limit;
+  float products[3];
+  for (int k = 0; k < 3; ++k) {
+    const float move = same ? values[k] - m.last[k] : 0.0F;
+    products[k] = move * m.moves[k];
+    m.moves[k] = move;
+    m.last[k] = values[k];
+  }
+  if (!same) return;
+  const float slopes = (products[1] + products[2]) / 2;
+  m.scatter = std::max(0.0F, m.scatter - kLearn * (products[0] + m.scatter));
+  m.slope_scatter = std::max(0.0F, m.slope_scatter - kLearn * (slopes + m.slope_scatter));
+}
+
+/// The variance of one frame that claims to have `claimed`.
+float believed(float claimed, float scatter) {
+  return scatter > kSure * claimed ? scatter : claimed;
 }
 
 /// Is the frame within the gate of what is remembered? Slopes that nothing vouches for are not
@@ -94,12 +128,16 @@ void follow(const Measured& now, float gate2, BlockMemory& m) {
 }
 
 /// Takes in a measured block.
-void step(const Measured& now, const TemporalOptions& options, float gate2, BlockMemory& m) {
+void step(Measured now, const TemporalOptions& options, float gate2, BlockMemory& m) {
   m.missed = 0;
+  learn_scatter(now, m);
   const float d = now.rho - m.rho;
   const float moves = another_surface(std::max(now.rho, m.rho));
   const bool another =
       m.count == 0 || squared(d) > std::max(squared(moves), gate2 * (m.variance + now.variance));
+  // What the gate lets through does not reach another surface.
+  now.variance = believed(now.variance, std::min(m.scatter, squared(moves) / (2 * gate2)));
+  now.slope_variance = believed(now.slope_variance, m.slope_scatter);
   if (another || m.state != now.state) {
     restart(now, m);
     m.moving = false;

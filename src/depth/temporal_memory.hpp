@@ -15,9 +15,13 @@ struct BlockMemory {
   float slope_y = 0;         ///< 1/m
   float slope_variance = 0;  ///< of one frame's slopes, 1/m^2
   float confidence = 0;
-  float calm_since = 0;    ///< rho of the last frame that was not calm, 1/m
-  std::uint8_t count = 0;  ///< frames in the mean; 0: nothing is remembered
-  std::uint8_t calm = 0;   ///< frames in a row that a moving block stood still
+  float calm_since = 0;     ///< rho of the last frame that was not calm, 1/m
+  float last[3] = {};       ///< rho, slope_x and slope_y of the last frame, 1/m
+  float moves[3] = {};      ///< from the frame before to the last, 1/m
+  float scatter = 0;        ///< variance of one frame's rho that the frames themselves show, 1/m^2
+  float slope_scatter = 0;  ///< the same of its slopes
+  std::uint8_t count = 0;   ///< frames in the mean; 0: nothing is remembered
+  std::uint8_t calm = 0;    ///< frames in a row that a moving block stood still
   std::uint8_t missed = 0;
   bool moving = false;
   BlockState state = BlockState::empty;

@@ -158,6 +158,7 @@ bool TemporalWarp::put(const BlockGrid& grid, const std::vector<BlockMemory>& me
   to.slope_y = plane.y() + bend.xy * dx + bend.yy * dy;
   to.rho = rho + 0.5F * (bend.xx * dx * dx + bend.yy * dy * dy) + bend.xy * dx * dy;
   to.calm_since += to.rho - from.rho;
+  to.last[0] = 0;  // how frames scatter is learned in one view
   to.extra += (kInflation * from.variance + from.slope_variance * (dx * dx + dy * dy)) /
               static_cast<float>(from.count);
   return true;

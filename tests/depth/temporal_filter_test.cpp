@@ -66,6 +66,23 @@ TEST_F(TemporalFilterTest, SlopesAreAveragedAlike) {
   EXPECT_LT(sd, kSlopeSd / 3);  // a running mean of weight 1/8 ends at 1 / sqrt(15)
 }
 
+// As beside rims, where a fit's window depends on the noise.
+TEST_F(TemporalFilterTest, FitsThatScatterMoreThanTheySayAreAveragedAllTheSame) {
+  constexpr double kTimes = 10;
+  for (int frame = 0; frame < 60; ++frame) {
+    test::measure({}, kStill, kTimes * kSd, kTimes * kSlopeSd, random_, fits_);
+    std::ranges::fill(fits_.variance, static_cast<float>(kSd * kSd));
+    std::ranges::fill(fits_.slope_variance, static_cast<float>(kSlopeSd * kSlopeSd));
+    filter_.filter({}, kStill, fits_);
+  }
+  EXPECT_LT(begun(), 30);
+  EXPECT_LT(errors_of(fits_, {}, kStill).rms, 0.5 * kTimes * depth_sd(0.8));
+  double sum = 0;
+  for (const float variance : fits_.variance) sum += variance;
+  const double told = std::sqrt(8 * sum / static_cast<double>(fits_.size())) / kSd;
+  EXPECT_NEAR(told, kTimes, 0.2 * kTimes);
+}
+
 TEST_F(TemporalFilterTest, AMemoryOfOneFrameChangesNothing) {
   const TemporalOptions options{.memory = 1};
   for (int frame = 0; frame < 3; ++frame) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numbers>
 
@@ -14,10 +15,13 @@ namespace {
 
 using test::kFrame;
 
-std::shared_ptr<SurfacePoints> show(Morph& morph, double stamp, const test::DepthOf& depth_of) {
+std::shared_ptr<SurfacePoints> show(
+    Morph& morph, double stamp, const test::DepthOf& depth_of,
+    const std::function<void(FilteredDepth&)>& change = [](FilteredDepth&) {}) {
   const DepthFrame frame = test::frame_of(test::small_camera(), stamp, depth_of);
   DepthFilter filter({.memory = 1});
-  const FilteredDepth depth = filter.filter(frame, test::looking_down());
+  FilteredDepth depth = filter.filter(frame, test::looking_down());
+  change(depth);
   auto points = std::make_shared<SurfacePoints>();
   morph.look({depth, frame.camera.pinhole});
   morph.fill({depth, frame.camera.pinhole}, {stamp, stamp + 0.01, kFrame}, points);
@@ -59,6 +63,44 @@ TEST(MorphMoves, WhatFliesAloneBetweenTwoSurfacesIsNotShown) {
   const auto points = show(morph, kFrame, flying);
   EXPECT_EQ(points->size(), count);
   for (std::size_t i = 0; i < count; ++i) EXPECT_GT(points->density_weights[i], 0);
+}
+
+// One block in the middle is so far nearer, and no surer than that.
+std::function<void(FilteredDepth&)> noisy(float nearer, float deviation) {
+  return [=](FilteredDepth& depth) {
+    const auto middle =
+        static_cast<std::size_t>(depth.rows / 2 * depth.columns + depth.columns / 2);
+    depth.positions[middle] *= 1 - nearer / depth.positions[middle].z();
+    depth.deviations[middle] = deviation;
+  };
+}
+
+TEST(MorphMoves, WhatNoiseExplainsTakesNoPointFartherThanItReaches) {
+  Morph morph{{}};
+  const std::size_t count = show(morph, 0, test::wall(0.5))->size();
+  const auto points = show(morph, kFrame, test::wall(0.5), noisy(0.06f, 0.012f));
+  EXPECT_EQ(points->size(), count);
+  for (std::size_t i = 0; i < points->size(); ++i) {
+    const Eigen::Vector3f way = points->end_positions[i] - points->grid.points()[i];
+    EXPECT_LT(way.norm(), 2e-3);
+    EXPECT_GT(points->end_density_weights[i], 0);
+  }
+}
+
+TEST(MorphMoves, APointCountsByItsPrecisionBesideThoseAround) {
+  constexpr float kNearer = 0.003f;
+  Morph morph{{}};
+  const auto points = show(morph, 0, test::wall(0.5), noisy(kNearer, 0.01f));
+  const float wall = points->end_positions[0].z();
+  int found = 0;
+  for (std::size_t i = 0; i < points->size(); ++i) {
+    const bool off = std::abs(points->end_positions[i].z() - wall) > kNearer / 2;
+    found += off ? 1 : 0;
+    if (off) {
+      EXPECT_LT(points->end_density_weights[i], 0.05f);
+    }
+  }
+  EXPECT_EQ(found, 1);
 }
 
 TEST(MorphMoves, AJumpThatNoHandMakesDoesNotMoveTheSurface) {

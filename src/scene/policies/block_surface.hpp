@@ -15,6 +15,10 @@ namespace palpate {
 /// are known without a search.
 class BlockSurface {
  public:
+  /// Of a block, that two frames or neighbours of one surface may differ by: five of the
+  /// difference.
+  static constexpr float kDeviations = 7;
+
   /// `minimum_radius`: no R below this, m.
   explicit BlockSurface(Kernel kernel, double minimum_radius = 0)
       : kernel_(kernel), minimum_radius_(static_cast<float>(minimum_radius)) {}
@@ -32,6 +36,11 @@ class BlockSurface {
 
   /// a_i R_i^2, m^2: the density weight of a point with radius R is this over R^2.
   [[nodiscard]] float area(std::size_t block) const { return areas_[block]; }
+
+  /// What a fitted point counts for, 0-1: its precision over that of the blocks around it which may
+  /// show the same surface, as in a mean of measurements that are not equally good. `depth` is what
+  /// was measured.
+  [[nodiscard]] float trust(const FilteredDepth& depth, std::size_t block) const;
 
   /// Says that both will be asked for soon.
   void fetch(std::size_t block) const {

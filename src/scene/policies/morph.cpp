@@ -200,7 +200,8 @@ Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) con
   state.radius = surface_.radius(block);
   state.confidence = depth.confidences[block];
   point.area = surface_.area(block);
-  state.weight = std::min(1.0f, point.area / (state.radius * state.radius));
+  point.trust = surface_.trust(depth, block);
+  state.weight = point.trust * std::min(1.0f, point.area / (state.radius * state.radius));
   return point;
 }
 

@@ -66,6 +66,7 @@ class Morph {
   struct Point {
     PointState state;
     float area = 0;  // a_i R_i^2
+    float trust = 1;
   };
   struct Unseen {
     PointState from;
@@ -95,6 +96,7 @@ class Morph {
   [[nodiscard]] static bool turns(const Point& seen, const Eigen::Vector3f& normal);
   [[nodiscard]] bool may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
                               const Eigen::Vector3f& from) const;
+  [[nodiscard]] bool stays(const FilteredDepth& depth, const Point& seen, std::uint32_t i) const;
   [[nodiscard]] bool came_aside(const Point& seen) const;
   [[nodiscard]] bool may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const;
   void follow(const Point& seen, std::uint32_t i);

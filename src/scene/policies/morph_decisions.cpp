@@ -36,9 +36,6 @@ constexpr float kSudden = 0.6f;
 // The least cosine of the angle between the normals of one surface before and after a frame.
 constexpr float kTurns = 0.5f;
 
-// Deviations of a block that two frames of one surface may differ by: five of their difference.
-constexpr float kDeviations = 7;
-
 // In which trust in what has been seen through, or is hidden, goes, s: what is gone five times as
 // slowly as a proxy's spring follows (EnergyTank::kTime); who hides a thing may take it along.
 constexpr double kGoes = 0.1;
@@ -60,12 +57,16 @@ void Morph::settle(const FilteredDepth& depth, std::size_t place) {
   const bool flies = partner == kNone ? last_ && beside(depth, block) < kVouch
                                       : turns(point, old_point(partner).normal);
   if (flies) return hold_one(old);
+  float at = depth_of(point.state.position);
   if (partner == kNone) {
     appear(point);
+  } else if (stays(depth, point, partner)) {
+    at = depth_of(old_point(partner).position);
+    keep(partner, old_point(partner).presence + share_of(options_.fade),
+         {place_, EntryKind::live, moment_.stamp});
   } else {
     follow(point, partner);
   }
-  const float at = depth_of(point.state.position);
   for (const std::uint32_t i : old) {
     if (i == partner) continue;
     const EntryKind kind = entries_[i].kind;
@@ -126,7 +127,8 @@ float Morph::advance_of(const Point& seen, const Eigen::Vector3f& from) {
 std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std::uint32_t> old,
                                 const Point& seen) const {
   const std::size_t block = order_.blocks[place_];
-  const float same = std::max(seen.state.radius, kDeviations * depth.deviations[block]);
+  const float same =
+      std::max(seen.state.radius, BlockSurface::kDeviations * depth.deviations[block]);
   std::uint32_t partner = kNone;
   float nearest = std::numeric_limits<float>::infinity();
   for (const std::uint32_t i : old) {
@@ -148,12 +150,21 @@ bool Morph::turns(const Point& seen, const Eigen::Vector3f& normal) {
   return seen.state.normal.dot(normal) < kTurns * seen.state.normal.squaredNorm();
 }
 
+/// Is the old point elsewhere than what is seen now, and noise is all that may have moved it? Such
+/// a frame does not tell where the surface is.
+bool Morph::stays(const FilteredDepth& depth, const Point& seen, std::uint32_t i) const {
+  const Eigen::Vector3f place = old_point(i).position;
+  return (place - seen.state.position).norm() > seen.state.radius &&
+         !may_move(depth, seen, i, place);
+}
+
 /// Has what was at `from` come along the ray to what is seen now?
 bool Morph::may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
                      const Eigen::Vector3f& from) const {
   if (entries_[i].kind != EntryKind::live || moved_) return false;
   const float fastest = kFastest + std::min(speed_of(i), kSudden);
-  return !turns(seen, old_point(i).normal) && advance_of(seen, from) <= fastest * static_cast<float>(moment_.duration) &&
+  return !turns(seen, old_point(i).normal) &&
+         advance_of(seen, from) <= fastest * static_cast<float>(moment_.duration) &&
          beside(depth, order_.blocks[place_]) >= kVouchToMove && !came_aside(seen);
 }
 
@@ -215,7 +226,7 @@ void Morph::follow(const Point& seen, std::uint32_t i) {
   }
   to.radius = from.radius + kShare * (to.radius - from.radius);
   to.confidence = from.confidence + kShare * (to.confidence - from.confidence);
-  to.weight = std::min(1.0f, seen.area / (to.radius * to.radius));
+  to.weight = seen.trust * std::min(1.0f, seen.area / (to.radius * to.radius));
   if (to.normal.isZero(0)) to.normal = from.normal;
   to.presence = std::min(1.0f, from.presence + share_of(options_.fade));
   add(from, to, {place_, EntryKind::live, moment_.stamp});
@@ -263,7 +274,7 @@ void Morph::keep(std::uint32_t i, float presence, const Entry& entry) {
   const PointState from = old_point(i);
   if (from.presence <= 0 || ++held_ > order_.size()) return leave(i);
   PointState to = from;
-  to.presence = std::max(0.0f, presence);
+  to.presence = std::clamp(presence, 0.0f, 1.0f);
   to.weight = last_->end_density_weights[i];
   add(from, to, entry);
 }
