@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   std::uint64_t first_seed = 1;
   int seeds = 5;
   bool each = false;
-  app.add_option("--only", names, "Rows whose names hold one of these")->delimiter(',');
+  app.add_option("--only", names, "Rows whose names hold one of these");
   app.add_option("--seeds", seeds, "Runs a row")->check(CLI::Range(1, 10000));
   app.add_option("--first-seed", first_seed, "Seed of the first run");
   app.add_flag("--each", each, "A line a seed");

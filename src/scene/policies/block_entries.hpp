@@ -25,6 +25,7 @@ struct Entry {
   std::uint32_t place = 0;  ///< of its block on the curve
   EntryKind kind = EntryKind::live;
   double confirmed = 0;  ///< stamp of the last frame that showed it, or what hides it, s
+  float variance = 0;    ///< of where it is along its ray, m^2
 };
 
 /// Lists which entries are at which block.

@@ -201,6 +201,7 @@ Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) con
   state.confidence = depth.confidences[block];
   point.area = surface_.area(block);
   point.trust = surface_.trust(depth, block);
+  point.variance = depth.deviations[block] * depth.deviations[block];
   state.weight = point.trust * std::min(1.0f, point.area / (state.radius * state.radius));
   return point;
 }

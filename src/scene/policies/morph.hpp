@@ -67,6 +67,7 @@ class Morph {
     PointState state;
     float area = 0;  // a_i R_i^2
     float trust = 1;
+    float variance = 0;  // along the ray, m^2
   };
   struct Unseen {
     PointState from;
@@ -99,6 +100,7 @@ class Morph {
   [[nodiscard]] bool stays(const FilteredDepth& depth, const Point& seen, std::uint32_t i) const;
   [[nodiscard]] bool came_aside(const Point& seen) const;
   [[nodiscard]] bool may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const;
+  [[nodiscard]] float gain_of(const Point& seen, float known, float advance) const;
   void follow(const Point& seen, std::uint32_t i);
   void appear(const Point& point);
   void hold(std::uint32_t i, EntryKind kind);

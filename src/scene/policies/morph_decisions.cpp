@@ -12,29 +12,11 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// Of the blocks around one, how many have to show the same surface: those of a line, or most.
+// Of the blocks around one, how many have to show the same surface: those of a line.
 constexpr float kVouch = 0.25f;
-constexpr float kVouchToMove = 0.6f;
-
-constexpr float kBeside = 0.5f;  // R by which depths of one surface differ from block to block
 
 // What has faded so far is gone.
 constexpr float kGone = 1e-4f;
-
-// Of what a frame says of a point's radius and confidence, this share is taken over.
-constexpr float kShare = 0.25f;
-
-// What moves faster along its normal is another surface, m/s.
-constexpr float kFastest = 1;
-
-// The least cosine of the angle between a ray and a normal that can be trusted.
-constexpr float kGrazing = 0.3f;
-
-// A surface that jumps goes on by so much faster than before, m/s: 0.3 N a millisecond at 500 N/m.
-constexpr float kSudden = 0.6f;
-
-// The least cosine of the angle between the normals of one surface before and after a frame.
-constexpr float kTurns = 0.5f;
 
 // In which trust in what has been seen through, or is hidden, goes, s: what is gone five times as
 // slowly as a proxy's spring follows (EnergyTank::kTime); who hides a thing may take it along.
@@ -115,13 +97,6 @@ bool Morph::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const 
   });
 }
 
-/// How far a surface has gone along its normal when it was at `from`, m: what a block shows of it
-/// goes farther along the ray.
-float Morph::advance_of(const Point& seen, const Eigen::Vector3f& from) {
-  const Eigen::Vector3f way = seen.state.position - from;
-  return std::max(std::abs(way.dot(seen.state.normal)), kGrazing * way.norm());
-}
-
 /// Which of the old points is seen again: the nearest within R, or within what noise explains; or
 /// what has come along the ray as fast as things move.
 std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std::uint32_t> old,
@@ -144,94 +119,6 @@ std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std:
   return partner;
 }
 
-/// Does a surface that faced along `normal` face elsewhere now? One whose normal is not known does
-/// not.
-bool Morph::turns(const Point& seen, const Eigen::Vector3f& normal) {
-  return seen.state.normal.dot(normal) < kTurns * seen.state.normal.squaredNorm();
-}
-
-/// Is the old point elsewhere than what is seen now, and noise is all that may have moved it? Such
-/// a frame does not tell where the surface is.
-bool Morph::stays(const FilteredDepth& depth, const Point& seen, std::uint32_t i) const {
-  const Eigen::Vector3f place = old_point(i).position;
-  return (place - seen.state.position).norm() > seen.state.radius &&
-         !may_move(depth, seen, i, place);
-}
-
-/// Has what was at `from` come along the ray to what is seen now?
-bool Morph::may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
-                     const Eigen::Vector3f& from) const {
-  if (entries_[i].kind != EntryKind::live || moved_) return false;
-  const float fastest = kFastest + std::min(speed_of(i), kSudden);
-  return !turns(seen, old_point(i).normal) &&
-         advance_of(seen, from) <= fastest * static_cast<float>(moment_.duration) &&
-         beside(depth, order_.blocks[place_]) >= kVouchToMove && !came_aside(seen);
-}
-
-/// Calls visit(block) for those around a block.
-template <class Visit>
-void Morph::each_beside(std::size_t block, const Visit& visit) const {
-  const int u = static_cast<int>(block) % order_.columns;
-  const int v = static_cast<int>(block) / order_.columns;
-  for (int y = std::max(0, v - 1); y <= std::min(order_.rows - 1, v + 1); ++y) {
-    for (int x = std::max(0, u - 1); x <= std::min(order_.columns - 1, u + 1); ++x) {
-      const auto other = static_cast<std::size_t>(y * order_.columns + x);
-      if (other != block) visit(other);
-    }
-  }
-}
-
-/// The share of blocks around one that show the same surface: what flies between two has few.
-float Morph::beside(const FilteredDepth& depth, std::size_t block) const {
-  float count = 0;
-  float all = 0;
-  each_beside(block, [&](std::size_t other) {
-    ++all;
-    const float apart = depth.positions[other].z() - depth.positions[block].z();
-    const bool same = surface_.radius(other) > 0 && std::abs(apart) < surface_.radius(block);
-    count += same ? 1.0f : 0.0f;
-  });
-  return all > 0 ? count / all : 1;
-}
-
-/// Was what a block shows now beside it before? Then the rim of something moved, or is noisy.
-bool Morph::came_aside(const Point& seen) const {
-  bool found = false;
-  each_beside(order_.blocks[place_], [&](std::size_t other) {
-    for (const std::uint32_t i : by_block_.at(place_of_block_[other])) {
-      const float apart = depth_of(old_point(i).position) - depth_of(seen.state.position);
-      const bool same = std::abs(apart) < kBeside * seen.state.radius;
-      found = found || (same && entries_[i].kind == EntryKind::live);
-    }
-  });
-  return found;
-}
-
-/// How fast a point has moved along its normal while the last snapshot lasted, m/s.
-float Morph::speed_of(std::uint32_t i) const {
-  if (!(last_moment_.duration > 0)) return 0;
-  const Eigen::Vector3f way = last_->end_positions[i] - last_->grid.points()[i];
-  return std::abs(way.dot(last_->end_normals[i])) / static_cast<float>(last_moment_.duration);
-}
-
-/// Lets the old point go to the new one.
-void Morph::follow(const Point& seen, std::uint32_t i) {
-  const PointState from = old_point(i);
-  PointState to = seen.state;
-  const Eigen::Vector3f way = to.position - from.position;
-  if (way.squaredNorm() > to.radius * to.radius) {
-    const float most = (speed_of(i) + kSudden) * static_cast<float>(moment_.duration);
-    const float advance = std::max(advance_of(seen, from.position), to.radius);
-    to.position = from.position + std::min(1.0f, std::max(most, to.radius) / advance) * way;
-  }
-  to.radius = from.radius + kShare * (to.radius - from.radius);
-  to.confidence = from.confidence + kShare * (to.confidence - from.confidence);
-  to.weight = seen.trust * std::min(1.0f, seen.area / (to.radius * to.radius));
-  if (to.normal.isZero(0)) to.normal = from.normal;
-  to.presence = std::min(1.0f, from.presence + share_of(options_.fade));
-  add(from, to, {place_, EntryKind::live, moment_.stamp});
-}
-
 void Morph::appear(const Point& point) {
   PointState from = point.state;
   PointState to = point.state;
@@ -240,7 +127,7 @@ void Morph::appear(const Point& point) {
     from.presence = 0;
     to.presence = std::min(1.0f, share_of(options_.fade));
   }
-  add(from, to, {place_, EntryKind::live, moment_.stamp});
+  add(from, to, {place_, EntryKind::live, moment_.stamp, point.variance});
 }
 
 /// Of a time that something takes, s, how much a snapshot lasts.
@@ -276,7 +163,7 @@ void Morph::keep(std::uint32_t i, float presence, const Entry& entry) {
   PointState to = from;
   to.presence = std::clamp(presence, 0.0f, 1.0f);
   to.weight = last_->end_density_weights[i];
-  add(from, to, entry);
+  add(from, to, {entry.place, entry.kind, entry.confirmed, entries_[i].variance});
 }
 
 void Morph::leave(std::uint32_t i) {
