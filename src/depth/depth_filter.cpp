@@ -1,6 +1,7 @@
 #include "palpate/depth/depth_filter.hpp"
 
 #include <cstring>
+#include <utility>
 
 #include "depth/block_fits.hpp"
 #include "depth/blocks.hpp"
@@ -125,8 +126,7 @@ const FilteredDepth* DepthFilter::fit_all() {
   State& state = *state_;
   if (!state.seen) return nullptr;
   state.region.set(depth::block_grid(state.last.camera));
-  if (state.region == state.last_region) return nullptr;
-  state.last_region = state.region;
+  if (std::exchange(state.last_region, state.region) == state.region) return &state.out;
   return &state.points(state.last);
 }
 

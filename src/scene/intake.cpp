@@ -111,7 +111,7 @@ std::shared_ptr<Snapshot> Intake::last_of_frames(const Snapshot& newest) {
   if (frames_ != Policy::morph || !own) return nullptr;
   const FilteredDepth* const depth = filter_.fit_all();
   if (depth == nullptr) return nullptr;
-  const MorphInput input{*depth, pinhole_};
+  const MorphInput input{.depth = *depth, .pinhole = pinhole_, .last = true};
   morph_.look(input);
   return morphed(input, {last_.stamp, last_.end, std::max(kLeast, last_.end - last_.start)});
 }

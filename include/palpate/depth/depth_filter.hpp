@@ -41,8 +41,7 @@ class DepthFilter {
   /// The same with every block fitted.
   const FilteredDepth& filter(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor);
 
-  /// The last frame again, now with every block fitted; nullptr when there is none, or it is so
-  /// already.
+  /// The last frame again, now with every block fitted; nullptr when there is none.
   const FilteredDepth* fit_all();
 
   /// Forgets earlier frames.

@@ -118,6 +118,8 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
                      : Eigen::Vector3f(Eigen::Vector3f::Zero());
   held_ = 0;
   moment_ = moment;
+  ends_ = input.last;
+  comes_ = input.last ? 1 : share_of(options_.fade);
   progress_ = last_ ? progress(last_moment_, moment.start) : 1;
   const bool resized = std::exchange(resized_, false);
   moved_ = last_ && (resized || T_world_sensor.matrix() != T_world_sensor_.matrix());

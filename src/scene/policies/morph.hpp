@@ -31,6 +31,7 @@ struct MorphInput {
   Pinhole pinhole;                ///< of the undistorted image
   std::span<const Ball> reach{};  ///< where weights beside rims are exact; world frame
   bool everywhere = true;         ///< exact weights everywhere
+  bool last = false;              ///< no frame follows: what it shows is there in full at the end
 };
 
 /// The policy for depth streams (docs/architecture.md, Time): the points of the blocks move, while
@@ -126,6 +127,8 @@ class Morph {
 
   // What is being made.
   Moment moment_;
+  float comes_ = 1;      // presence that what is seen gains
+  bool ends_ = false;    // no frame follows
   double progress_ = 1;  // of what was shown last, at the new start
   bool moved_ = false;   // the camera, or its image has another size
   bool still_ = false;

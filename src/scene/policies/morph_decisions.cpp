@@ -19,7 +19,7 @@ constexpr float kVouch = 0.25f;
 constexpr float kGone = 1e-4f;
 
 // In which trust in what has been seen through, or is hidden, goes, s: what is gone five times as
-// slowly as a proxy's spring follows (EnergyTank::kTime); who hides a thing may take it along.
+// slowly as a proxy's spring follows (EnergyTank::kTime); what hides a thing may take it along.
 constexpr double kGoes = 0.1;
 constexpr double kHidden = 60;
 
@@ -44,8 +44,7 @@ void Morph::settle(const FilteredDepth& depth, std::size_t place) {
     appear(point);
   } else if (stays(depth, point, partner)) {
     at = depth_of(old_point(partner).position);
-    keep(partner, old_point(partner).presence + share_of(options_.fade),
-         {place_, EntryKind::live, moment_.stamp});
+    keep(partner, old_point(partner).presence + comes_, {place_, EntryKind::live, moment_.stamp});
   } else {
     follow(point, partner);
   }
@@ -125,7 +124,7 @@ void Morph::appear(const Point& point) {
   if (!still_) from.weight = 0;
   if (last_) {
     from.presence = 0;
-    to.presence = std::min(1.0f, share_of(options_.fade));
+    to.presence = std::min(1.0f, comes_);
   }
   add(from, to, {place_, EntryKind::live, moment_.stamp, point.variance});
 }
@@ -152,6 +151,7 @@ void Morph::hide(std::uint32_t i) {
 
 /// It has been seen through.
 void Morph::go(std::uint32_t i) {
+  if (ends_) return leave(i);
   keep(i, old_point(i).presence - share_of(kGoes),
        {place_, EntryKind::going, entries_[i].confirmed});
 }

@@ -140,7 +140,7 @@ void Morph::follow(const Point& seen, std::uint32_t i) {
   to.confidence = from.confidence + kShare * (to.confidence - from.confidence);
   to.weight = seen.trust * std::min(1.0f, seen.area / (to.radius * to.radius));
   if (to.normal.isZero(0)) to.normal = from.normal;
-  to.presence = std::min(1.0f, from.presence + share_of(options_.fade));
+  to.presence = std::min(1.0f, from.presence + comes_);
   add(from, to, {place_, EntryKind::live, moment_.stamp, gain < 1 ? known : seen.variance});
 }
 
