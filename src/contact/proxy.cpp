@@ -20,6 +20,7 @@ constexpr int kMostIterations = 1000;
 constexpr double kMuchSofter = 0.95;  // of the stiffness that is wanted
 constexpr double kFaded = 0.01;       // of the stiffness: a spring that is gone
 constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
+constexpr double kFastest = 1;       // m/s: what moves faster has jumped
 constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall
 constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
 
@@ -61,6 +62,7 @@ void Proxy::reset(const Eigen::Vector3d& position) noexcept {
   started_ = !fault_;
   step_length_ = 0;
   fading_ = {};
+  revision_.reset();
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
   hand_ = position_;
 }
@@ -82,19 +84,16 @@ bool Proxy::change(double stiffness, const Friction& friction, const Texture& te
 Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept {
   if (!in_range(hip) || !std::isfinite(dt) || dt < 0) fault_ = true;
   if (fault_) return faulted();
-  if (!started_) {
-    reset(hip);
-    revision_ = field.traits().revision;
-  }
+  if (!started_) reset(hip);
   Contact contact;
   Probe probe{field, options_.texture, step_length_};
   const bool held = touching_;
   const Eigen::Vector3d before = position_;
-  const double stiffness = held ? tank_.stiffness() : 0;
+  const EnergyTank tank = tank_;
   if (!touching_) follow(probe, hip, contact);
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
   step_length_ = probe.step_length();
-  const bool changed = probe.traits().revision != revision_;
+  const bool changed = revision_ && probe.traits().revision != *revision_;
   revision_ = probe.traits().revision;
   field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
   contact.proxy = position_;
@@ -103,9 +102,9 @@ Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) n
   const double jump = unexplained(before, hip, dt);
   if (held && jump > kFall * (before - hand_).norm())
     contact.notes = contact.notes | ContactNote::fell;
-  if (changed && jump > probe.traits().reanchor_reach) {
-    fading_.take(before, stiffness);
-    if (touching_) take_over(hip, contact);
+  if (changed && jump > std::max(probe.traits().reanchor_reach, kFastest * dt)) {
+    if (held) fading_.take(before, tank.stiffness());
+    take_over(held ? tank : tank_, hip, contact);
   }
   tank_.fill(fading_.fade(hip, dt));
   contact.force += fading_.force(hip);
@@ -128,8 +127,10 @@ double Proxy::unexplained(const Eigen::Vector3d& before, const Eigen::Vector3d& 
 
 // Nothing that a surface does gives a hand energy, or takes its force at once: what the spring that
 // it ended gives up while it fades pays for the one that takes over.
-void Proxy::take_over(const Eigen::Vector3d& hip, Contact& contact) noexcept {
-  tank_.take_over(begun_stiffness(position_, hip));
+void Proxy::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
+                      Contact& contact) noexcept {
+  tank_ = before;
+  tank_.take_over(touching_ ? begun_stiffness(position_, hip) : 0);
   contact.stiffness = tank_.stiffness();
   contact.force = contact.stiffness * (position_ - hip);
 }

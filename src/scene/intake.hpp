@@ -37,7 +37,7 @@ class Intake {
                                                      const Arrival& arrival, PrepareReport& report);
 
   /// A surface that stays: the newest frame's, all of it fitted, from where the last snapshot ends.
-  /// nullptr: `newest` is that already, or was not made here.
+  /// nullptr: `newest` was not made here.
   [[nodiscard]] std::shared_ptr<Snapshot> last_of_frames(const Snapshot& newest);
 
   /// How many snapshots of clouds or of depth frames may be in use at a time while so many fields

@@ -36,7 +36,6 @@ constexpr double kToolShare = 0.3;  // of R: the largest tool that pushes a surf
 constexpr double kFinest = 0.25;
 
 // A surface may rise this fast and still take a resting proxy along, m/s.
-constexpr double kFastestPoint = 1;    // of points that move, from tick to tick
 constexpr double kFastestCloud = 0.5;  // from cloud to cloud
 
 constexpr double kFelt = 2;  // R that a tool feels: normals beside rims need neighbours, too
@@ -93,8 +92,7 @@ struct SceneField::State {
   std::size_t layer_count = 0;
   std::array<const Snapshot*, Scene::kMaxSources> shown{};  // of the views
   double typical_radius = 0;                                // of the layers
-  double passed = 0;                                        // between the last two updates, s
-  double cloud_duration = 0;  // of snapshots whose points do not move, s
+  double cloud_duration = 0;  // of snapshots whose points do not move, or between them, s
   double frame_interval = 0;  // the longest of any source
   double now = 0;
   bool other_kernel = false;
@@ -138,7 +136,9 @@ void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   if (layer.points->size() == 0) return;  // a sensor that sees nothing
   if (surface.options.kind == FieldKind::metaball) layer.least_radius = 0;
   const bool still = layer.points->end_positions.empty();
-  if (still) cloud_duration = std::max(cloud_duration, shown[source]->end - shown[source]->start);
+  const Snapshot& newest = *shown[source];
+  if (still)
+    cloud_duration = std::max({cloud_duration, newest.end - newest.start, newest.interval});
   layer.last_weight = shown[source]->layers[k].weight_end;
   other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
   typical_radius = std::min(typical_radius, std::max(layer.points->radius, layer.least_radius));
@@ -196,7 +196,7 @@ SceneField::~SceneField() = default;
 
 void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) noexcept {
   State& state = *state_;
-  if (std::isfinite(now)) state.passed = std::max(0.0, now - std::exchange(state.now, now));
+  if (std::isfinite(now)) state.now = now;
   bool changed = false;
   for (SourceView& view : state.views) changed = view.advance(state.now) || changed;
   if (changed) {
@@ -279,8 +279,7 @@ FieldTraits SceneField::traits() const noexcept {
   FieldTraits traits;
   traits.resolution = metaball ? 0.002 * smallest : smallest / 16;
   traits.revision = state.revision;
-  traits.reanchor_reach =
-      std::max(kFastestPoint * state.passed, kFastestCloud * state.cloud_duration);
+  traits.reanchor_reach = kFastestCloud * state.cloud_duration;
   return traits;
 }
 

@@ -112,7 +112,7 @@ TEST(Moving, VanishedCloudLetsItsForceFade) {
 }
 
 TEST(Moving, SpringThatTakesOverIsPaidForByTheOneThatEnded) {
-  for (const double dz : {-0.001, 0.006}) {  // beyond a reach of 0
+  for (const double dz : {-0.002, 0.006}) {  // farther than 1 m/s in a millisecond
     PlaneField plane;
     Proxy proxy = pressed(plane);
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -129,6 +129,59 @@ TEST(Moving, SpringThatTakesOverIsPaidForByTheOneThatEnded) {
     EXPECT_LE(0.5 * before * stretch, 0.5 * 500 * 0.003 * 0.003 * 1.02);
     EXPECT_NEAR(before, dz < 0 ? 500 * stretch : 0.5, 0.01);
   }
+}
+
+// It appears with a presence of 0, as what a camera begins to see.
+TEST(Moving, WhatPopsUpUnderAHandGivesItNoEnergy) {
+  for (const double dz : {0.002, 0.006, 0.015}) {
+    PlaneField plane;
+    Proxy proxy = pressed(plane);
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translate(Vector3d(0, 0, dz));
+    plane.set_pose(pose);
+    for (int i = 0; i < 600; ++i) {
+      plane.set_surface({.presence = std::min(1.0, i / 500.0)});
+      (void)proxy.step(plane, kHip, kTick);
+    }
+    double energy = 0;
+    const double step = 2e-5;
+    for (double z = kHip.z(); z < dz + 0.001; z += step) {
+      energy += proxy.step(plane, {kHip.x(), kHip.y(), z}, kTick).force.z() * step;
+    }
+    EXPECT_LE(energy, 1.02 * 0.5 * 500 * 0.003 * 0.003) << dz;
+  }
+}
+
+TEST(Moving, ResetForgetsASpringThatFades) {
+  PlaneField plane;
+  Proxy proxy = pressed(plane);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate(Vector3d(0, 0, -1));
+  plane.set_pose(pose);
+  EXPECT_GT(proxy.step(plane, kHip, kTick).force.z(), 1);
+  proxy.reset(kHip);
+  EXPECT_EQ(proxy.step(plane, kHip, kTick).force.norm(), 0);
+}
+
+TEST(Moving, AResetIntoASolidPushesAtOnce) {
+  PlaneField plane;
+  plane.set_pose(Eigen::Isometry3d::Identity());
+  Proxy proxy;
+  proxy.reset({0, 0, -0.002});
+  EXPECT_NEAR(proxy.step(plane, {0, 0, -0.002}, kTick).force.z(), 1, 1e-6);
+}
+
+TEST(Moving, ASlowPlaneThatDoesNotTellItsVelocityCarriesTheHand) {
+  PlaneField plane;
+  Proxy proxy = pressed(plane);
+  double force = 0;
+  for (int i = 1; i <= 100; ++i) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translate(Vector3d(0, 0, 1.5e-4 * i));
+    plane.set_pose(pose);
+    force = proxy.step(plane, kHip, kTick).force.z();
+  }
+  EXPECT_NEAR(force, 500 * (0.015 + 0.003), 0.05);
 }
 
 TEST(Moving, LostContactKeepsItsSpringBrieflyThenFades) {

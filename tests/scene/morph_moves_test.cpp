@@ -131,6 +131,31 @@ TEST(MorphMoves, ABlockThatTurnsAwayWithinAFrameIsNotBelieved) {
   }
 }
 
+// Everything turns, or its normal was not known before: how many points are where, and face as, the
+// wall is told after half a second.
+std::size_t followed_turn(const Eigen::Vector3f& before) {
+  Morph morph{{}};
+  std::shared_ptr<SurfacePoints> points;
+  for (int k = 0; k <= 15; ++k) {
+    points = show(morph, k * kFrame, test::wall(0.5), [&](FilteredDepth& depth) {
+      if (k > 0) return;
+      for (Eigen::Vector3f& normal : depth.normals) normal = before;
+    });
+  }
+  std::size_t good = 0;
+  for (std::size_t i = 0; i < points->size(); ++i) {
+    good += points->end_normals[i].z() > 0.9f && points->end_presences[i] > 0.99f ? 1 : 0;
+  }
+  return good;
+}
+
+TEST(MorphMoves, ATurnThatLastsIsFollowedWithoutAGap) {
+  Morph morph{{}};
+  const std::size_t count = show(morph, 0, test::wall(0.5))->size();
+  EXPECT_EQ(followed_turn(Eigen::Vector3f::UnitX()), count);
+  EXPECT_EQ(followed_turn(Eigen::Vector3f::Zero()), count);
+}
+
 TEST(MorphMoves, APointCountsByItsPrecisionBesideThoseAround) {
   constexpr float kNearer = 0.003f;
   Morph morph{{}};

@@ -102,7 +102,7 @@ class Proxy {
                                        const Eigen::Vector3d& hip) const noexcept;
   [[nodiscard]] double unexplained(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
                                    double dt) const noexcept;
-  void take_over(const Eigen::Vector3d& hip, Contact& contact) noexcept;
+  void take_over(const EnergyTank& before, const Eigen::Vector3d& hip, Contact& contact) noexcept;
   [[nodiscard]] Contact faulted() noexcept;
 
   ProxyOptions options_;
@@ -114,7 +114,7 @@ class Proxy {
   Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();    // that the proxy last caught up with
   double step_length_ = 0;                            // R where it was last known, m
   double lost_time_ = 0;                              // s since the surface was lost
-  std::uint64_t revision_ = 0;                        // of the field in the last step
+  std::optional<std::uint64_t> revision_;             // of the field in the last step
   bool started_ = false;
   bool touching_ = false;
   bool sliding_ = false;

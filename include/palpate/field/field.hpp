@@ -28,7 +28,8 @@ struct Surface {
 struct FieldTraits {
   double resolution = 0;       ///< sweeps look for solid chords longer than this, m
   std::uint64_t revision = 0;  ///< grows when the surface may have moved since the last tick
-  double reanchor_reach = 0;   ///< how far the surface may have stepped over the proxy, m
+  double reanchor_reach = 0;   ///< how far the surface may have stepped over the proxy, m; a
+                               ///< spring that it takes farther, and more than 1 m/s, ends
 };
 
 /// All that a proxy knows of a scene: an implicit surface with its exact gradient.

@@ -96,6 +96,7 @@ class Morph {
   [[nodiscard]] float beside(const FilteredDepth& depth, std::size_t block) const;
   [[nodiscard]] static float advance_of(const Point& seen, const Eigen::Vector3f& from);
   [[nodiscard]] static bool turns(const Point& seen, const Eigen::Vector3f& normal);
+  [[nodiscard]] bool turns_away(const Point& seen, std::uint32_t i) const;
   [[nodiscard]] bool may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
                               const Eigen::Vector3f& from) const;
   [[nodiscard]] bool stays(const FilteredDepth& depth, const Point& seen, std::uint32_t i) const;

@@ -36,8 +36,8 @@ void Morph::settle(const FilteredDepth& depth, std::size_t place) {
   if (!shown) return hold_one(old);
   const Point point = new_point(depth, block);
   const std::uint32_t partner = partner_of(depth, old, point);
-  const bool flies = partner == kNone ? last_ && beside(depth, block) < kVouch
-                                      : turns(point, old_point(partner).normal);
+  const bool flies =
+      partner == kNone ? last_ && beside(depth, block) < kVouch : turns_away(point, partner);
   if (flies) return hold_one(old);
   float at = depth_of(point.state.position);
   if (partner == kNone) {
@@ -159,7 +159,8 @@ void Morph::go(std::uint32_t i) {
 /// Stays where it is, and is as sure as that when the snapshot ends; what nobody is sure of leaves.
 void Morph::keep(std::uint32_t i, float presence, const Entry& entry) {
   const PointState from = old_point(i);
-  if (from.presence <= 0 || ++held_ > order_.size()) return leave(i);
+  const bool unseen = entry.kind != EntryKind::live;
+  if (from.presence <= 0 || (unseen && ++held_ > order_.size())) return leave(i);
   PointState to = from;
   to.presence = std::clamp(presence, 0.0f, 1.0f);
   to.weight = last_->end_density_weights[i];

@@ -45,15 +45,22 @@ float Morph::advance_of(const Point& seen, const Eigen::Vector3f& from) {
 /// Does a surface that faced along `normal` face elsewhere now? One whose normal is not known does
 /// not.
 bool Morph::turns(const Point& seen, const Eigen::Vector3f& normal) {
-  return seen.state.normal.dot(normal) < kTurns * seen.state.normal.squaredNorm();
+  return !normal.isZero(0) &&
+         seen.state.normal.dot(normal) < kTurns * seen.state.normal.squaredNorm();
 }
 
-/// Is the old point elsewhere than what is seen now, and noise is all that may have moved it? Such
-/// a frame does not tell where the surface is.
+/// Has it turned so within a frame? One that goes on to is believed after a while.
+bool Morph::turns_away(const Point& seen, std::uint32_t i) const {
+  return turns(seen, old_point(i).normal) &&
+         moment_.stamp - entries_[i].confirmed < options_.silence;
+}
+
+/// Is the old point elsewhere than what is seen now, within noise, and hardly a block around it
+/// shows that, too? Such a frame does not tell where the surface is.
 bool Morph::stays(const FilteredDepth& depth, const Point& seen, std::uint32_t i) const {
   const Eigen::Vector3f place = old_point(i).position;
   return (place - seen.state.position).norm() > seen.state.radius &&
-         !may_move(depth, seen, i, place);
+         beside(depth, order_.blocks[place_]) < kVouchToMove;
 }
 
 /// Has what was at `from` come along the ray to what is seen now?
