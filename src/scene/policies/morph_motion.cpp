@@ -136,7 +136,6 @@ void Morph::follow(const Point& seen, std::uint32_t i) {
   const float apart = (to.position - from.position).dot(to.normal);
   const float gain = gain_of(seen, known, apart);
   to.position -= (1 - gain) * apart * to.normal;
-  if (gain < 1) to.normal = (from.normal + gain * (to.normal - from.normal)).normalized();
   const Eigen::Vector3f way = to.position - from.position;
   if (way.squaredNorm() > to.radius * to.radius) {
     const float most = (speed_of(i) + kSudden) * static_cast<float>(moment_.duration);
