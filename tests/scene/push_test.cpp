@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "palpate/base/error.hpp"
@@ -9,6 +10,7 @@
 #include "support/effort.hpp"
 #include "support/rates.hpp"
 #include "support/snapshots.hpp"
+#include "support/stream_run.hpp"
 
 namespace palpate {
 namespace {
@@ -157,6 +159,24 @@ TEST(Push, RefusesOptionsThatAreNone) {
   options.policy.history = 4;
   options.policy.fade = 0;
   EXPECT_THROW(Source("camera", options), Error);
+}
+
+// What came with the last frames of a recording is there in full, and what they saw through is not.
+TEST(Push, WhatHadJustComeIsThereWhenAStreamEnds) {
+  for (const double height : {-0.2, 0.1}) {
+    Scene scene;
+    Source& source = scene.add("camera", depth_source(Policy::morph));
+    test::StreamRun run(scene);
+    for (int k = 0; k < 8; ++k) {
+      run.at(k * kFrame, [=, &source] { push(source, k * kFrame, k < 6 ? height : 0); });
+    }
+    run.at(8 * kFrame, [&] { source.keep(); });
+    double last = 0;
+    run.until(
+        2, [](double t) { return Vector3d(0, 0, std::clamp(0.27 - 0.15 * t, -0.003, 0.15)); },
+        [&](double, const Contact& contact) { last = contact.force.z(); });
+    EXPECT_NEAR(last, 500 * 0.003, 0.02) << height;
+  }
 }
 
 }  // namespace

@@ -142,31 +142,6 @@ TEST_F(StreamTimeTest, AKeptSurfaceStaysWhereItIs) {
   }
 }
 
-// What came with the last frames of a recording is there in full, and what they saw through is not.
-TEST_F(StreamTimeTest, WhatHadJustComeIsThereWhenAStreamEnds) {
-  for (const double before : {0.7, 0.4}) {
-    Scene scene;
-    Source& source = scene.add("camera", options());
-    StreamRun run(scene);
-    for (int k = 0; k < 8; ++k) {
-      const double stamp = k * kFrame;
-      run.at(stamp, [=, &source] {
-        source.push(frame_of(small_camera(), stamp, wall(k < 6 ? before : 0.5)),
-                    [=] { return stamp; });
-      });
-    }
-    run.at(8 * kFrame, [&] { source.keep(); });
-    double last = 0;
-    run.until(
-        2,
-        [](double t) {
-          return Vector3d(0, 0, std::max(-0.003, t < 0.8 ? 0.15 : 0.15 - 0.153 * (t - 0.8)));
-        },
-        [&](double, const Contact& contact) { last = contact.force.z(); });
-    EXPECT_NEAR(last, kStiffness * 0.003, 0.02) << before;
-  }
-}
-
 // One that had begun to fade becomes sure again no faster than it fades.
 TEST_F(StreamTimeTest, ASurfaceThatIsKeptTooLateComesBackSlowly) {
   for (int k = 0; k < 12; ++k) push(k * kFrame, k * kFrame, 0);
