@@ -78,6 +78,22 @@ Event over_rim(std::uint64_t seed, const std::string& family) {
   return draft.event;
 }
 
+// Along the rim of a plate, 2 mm inside of it and 3 mm deep: what shakes the force is a washboard.
+Event along_rim(std::uint64_t seed, const std::string& family) {
+  Draft draft(seed);
+  if (!family.empty()) seen_by(draft, family);
+  const Vector3d middle = draft.place + draft.between(0.1, 0.16) * kUp;
+  const Vector3d out = draft.to_camera(middle);
+  const SimulatedSolid& plate = draft.block(middle - 0.02 * out, out, Vector3d(0.04, 0.04, 0.02));
+  const Eigen::Matrix3d axes = plate.solid.T_world_solid.linear();
+  const int across = draft.between(0, 1) < 0.5 ? 0 : 1;
+  const Vector3d rim = middle + (draft.between(0, 1) < 0.5 ? 1 : -1) * 0.038 * axes.col(across);
+  const Vector3d along = axes.col(1 - across);
+  draft.press(rim - 0.03 * along, out);
+  draft.go(rim + 0.03 * along - kPress * out, 0.03);
+  return draft.event;
+}
+
 }  // namespace
 
 std::vector<Row> sensor_rows() {
@@ -90,6 +106,7 @@ std::vector<Row> sensor_rows() {
     add("pole", family, pole);
     if (!family.empty()) add("slant", family, slant);
     add("over a rim", family, over_rim);
+    add("along a rim", family, along_rim);
   }
   return rows;
 }

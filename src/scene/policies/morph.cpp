@@ -119,6 +119,7 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
   held_ = 0;
   moment_ = moment;
   ends_ = input.last;
+  streams_ = last_ && (streams_ || moment.stamp != last_moment_.stamp);
   comes_ = input.last ? 1 : share_of(options_.fade);
   progress_ = last_ ? progress(last_moment_, moment.start) : 1;
   const bool resized = std::exchange(resized_, false);
@@ -202,7 +203,7 @@ Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) con
   state.radius = surface_.radius(block);
   state.confidence = depth.confidences[block];
   point.area = surface_.area(block);
-  point.trust = surface_.trust(depth, block);
+  if (streams_) point.trust = surface_.trust(depth, block);
   point.variance = depth.deviations[block] * depth.deviations[block];
   state.weight = point.trust * std::min(1.0f, point.area / (state.radius * state.radius));
   return point;

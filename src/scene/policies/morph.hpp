@@ -128,10 +128,11 @@ class Morph {
 
   // What is being made.
   Moment moment_;
-  float comes_ = 1;      // presence that what is seen gains
-  bool ends_ = false;    // no frame follows
-  double progress_ = 1;  // of what was shown last, at the new start
-  bool moved_ = false;   // the camera, or its image has another size
+  float comes_ = 1;       // presence that what is seen gains
+  bool ends_ = false;     // no frame follows
+  bool streams_ = false;  // more than one frame has come: what varies among them counts for less
+  double progress_ = 1;   // of what was shown last, at the new start
+  bool moved_ = false;    // the camera, or its image has another size
   bool still_ = false;
   bool resized_ = false;  // the image, since what was shown last
   std::uint32_t place_ = 0;
