@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/morton.hpp"
 #include "geometry/parallel.hpp"
-#include "geometry/spread_bits.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::detail {
@@ -135,9 +135,8 @@ void CellBuilder::make_keys(std::uint32_t begin, std::uint32_t end, const Bounds
     for (std::size_t i = begin + from; i < begin + to; ++i) {
       const std::uint64_t place = place_of(i);
       const Eigen::Vector3f& p = positions_[place];
-      const std::uint64_t key = spread(cell(p.x(), lower.x())) << 2 |
-                                spread(cell(p.y(), lower.y())) << 1 |
-                                spread(cell(p.z(), lower.z()));
+      const std::uint64_t key =
+          morton_key(cell(p.x(), lower.x()), cell(p.y(), lower.y()), cell(p.z(), lower.z()));
       records_[i] = key << shift | place;
     }
   });

@@ -137,9 +137,9 @@ void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   if (surface.options.kind == FieldKind::metaball) layer.least_radius = 0;
   const bool still = layer.points->end_positions.empty();
   const Snapshot& newest = *shown[source];
-  if (still)
-    cloud_duration = std::max({cloud_duration, newest.end - newest.start, newest.interval});
-  layer.last_weight = shown[source]->layers[k].weight_end;
+  const double lasts = std::max(newest.end - newest.start, newest.interval);
+  if (still) cloud_duration = std::max(cloud_duration, lasts);
+  layer.last_weight = newest.layers[k].weight_end;
   other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
   typical_radius = std::min(typical_radius, std::max(layer.points->radius, layer.least_radius));
   moving = moving || layer.rate > 0;

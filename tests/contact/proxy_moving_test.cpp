@@ -11,6 +11,12 @@ using Eigen::Vector3d;
 
 const Vector3d kHip(0.004, 0, -0.003);
 
+void put_at(PlaneField& plane, double height) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate(Vector3d(0, 0, height));
+  plane.set_pose(pose);
+}
+
 Proxy pressed(const Field& field) {
   Proxy proxy;
   proxy.reset({0.004, 0, 0.03});
@@ -24,9 +30,7 @@ TEST_P(Step, PlaneTakesTheProxyAlongInOneStep) {
   const double dz = GetParam();
   PlaneField plane({.reanchor_reach = 0.02});
   Proxy proxy = pressed(plane);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(Vector3d(0, 0, dz));
-  plane.set_pose(pose);
+  put_at(plane, dz);
   const Contact c = proxy.step(plane, kHip, kTick);
   EXPECT_NEAR(c.force.z(), std::max(0.0, 500 * (dz - kHip.z())), 1e-6);
 }
@@ -60,35 +64,29 @@ TEST(Moving, SlowSurfaceNeedsNoReanchoring) {
   PlaneField plane;
   Proxy proxy = pressed(plane);
   for (int i = 0; i < 100; ++i) {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translate(Vector3d(0, 0, 5e-6 * i));
-    plane.set_pose(pose);
+    put_at(plane, 5e-6 * i);
     const Contact c = proxy.step(plane, kHip, kTick);
     EXPECT_FALSE(has(c.notes, ContactNote::reanchored));
     EXPECT_NEAR(c.force.z(), 500 * (5e-6 * i + 0.003), 1e-6);
   }
 }
 
-TEST(Moving, SurfaceThatPassesAFreeProxyTakesItAlong) {
-  PlaneField plane({.reanchor_reach = 0.01});
+// A plane goes from under a proxy that is free to 3 mm above it.
+Contact passed_by(PlaneField plane) {
+  const Vector3d hand(0, 0, 0.001);
   Proxy proxy;
-  proxy.reset({0, 0, 0.001});
-  (void)proxy.step(plane, {0, 0, 0.001}, kTick);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(Vector3d(0, 0, 0.004));
-  plane.set_pose(pose);
-  EXPECT_NEAR(proxy.step(plane, {0, 0, 0.001}, kTick).force.z(), 1.5, 1e-9);
+  proxy.reset(hand);
+  (void)proxy.step(plane, hand, kTick);
+  put_at(plane, 0.004);
+  return proxy.step(plane, hand, kTick);
+}
+
+TEST(Moving, SurfaceThatPassesAFreeProxyTakesItAlong) {
+  EXPECT_NEAR(passed_by(PlaneField({.reanchor_reach = 0.01})).force.z(), 1.5, 1e-9);
 }
 
 TEST(Moving, SurfaceThatAppearsOverAFreeProxyDoesNotPushIt) {
-  PlaneField plane;
-  Proxy proxy;
-  proxy.reset({0, 0, 0.001});
-  (void)proxy.step(plane, {0, 0, 0.001}, kTick);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(Vector3d(0, 0, 0.004));
-  plane.set_pose(pose);
-  const Contact c = proxy.step(plane, {0, 0, 0.001}, kTick);
+  const Contact c = passed_by(PlaneField());
   EXPECT_NEAR(c.proxy.z(), 0.004, 1e-9);
   EXPECT_LE(c.force.norm(), 0.05);
 }
@@ -97,9 +95,7 @@ TEST(Moving, VanishedCloudLetsItsForceFade) {
   const PlaneField plane;
   PlaneField gone({.reanchor_reach = 0});
   Proxy proxy = pressed(plane);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(Vector3d(0, 0, -1));
-  gone.set_pose(pose);
+  put_at(gone, -1);
   double before = 1.5;
   for (int i = 0; i < 200; ++i) {
     const Contact c = proxy.step(gone, kHip, kTick);
@@ -115,9 +111,7 @@ TEST(Moving, SpringThatTakesOverIsPaidForByTheOneThatEnded) {
   for (const double dz : {-0.002, 0.006}) {  // farther than 1 m/s in a millisecond
     PlaneField plane;
     Proxy proxy = pressed(plane);
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translate(Vector3d(0, 0, dz));
-    plane.set_pose(pose);
+    put_at(plane, dz);
     double before = 1.5;
     for (int i = 0; i < 200; ++i) {
       const Contact c = proxy.step(plane, kHip, kTick);
@@ -136,9 +130,7 @@ TEST(Moving, WhatPopsUpUnderAHandGivesItNoEnergy) {
   for (const double dz : {0.002, 0.006, 0.015}) {
     PlaneField plane;
     Proxy proxy = pressed(plane);
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translate(Vector3d(0, 0, dz));
-    plane.set_pose(pose);
+    put_at(plane, dz);
     for (int i = 0; i < 600; ++i) {
       plane.set_surface({.presence = std::min(1.0, i / 500.0)});
       (void)proxy.step(plane, kHip, kTick);
@@ -155,9 +147,7 @@ TEST(Moving, WhatPopsUpUnderAHandGivesItNoEnergy) {
 TEST(Moving, ResetForgetsASpringThatFades) {
   PlaneField plane;
   Proxy proxy = pressed(plane);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(Vector3d(0, 0, -1));
-  plane.set_pose(pose);
+  put_at(plane, -1);
   EXPECT_GT(proxy.step(plane, kHip, kTick).force.z(), 1);
   proxy.reset(kHip);
   EXPECT_EQ(proxy.step(plane, kHip, kTick).force.norm(), 0);
@@ -176,9 +166,7 @@ TEST(Moving, ASlowPlaneThatDoesNotTellItsVelocityCarriesTheHand) {
   Proxy proxy = pressed(plane);
   double force = 0;
   for (int i = 1; i <= 100; ++i) {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translate(Vector3d(0, 0, 1.5e-4 * i));
-    plane.set_pose(pose);
+    put_at(plane, 1.5e-4 * i);
     force = proxy.step(plane, kHip, kTick).force.z();
   }
   EXPECT_NEAR(force, 500 * (0.015 + 0.003), 0.05);

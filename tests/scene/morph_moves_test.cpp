@@ -66,11 +66,14 @@ TEST(MorphMoves, WhatFliesAloneBetweenTwoSurfacesIsNotShown) {
   for (std::size_t i = 0; i < count; ++i) EXPECT_GT(points->density_weights[i], 0);
 }
 
+std::size_t middle_of(const FilteredDepth& depth) {
+  return static_cast<std::size_t>(depth.rows / 2 * depth.columns + depth.columns / 2);
+}
+
 // One block in the middle is so far nearer, and no surer than that.
 std::function<void(FilteredDepth&)> noisy(float nearer, float deviation) {
   return [=](FilteredDepth& depth) {
-    const auto middle =
-        static_cast<std::size_t>(depth.rows / 2 * depth.columns + depth.columns / 2);
+    const std::size_t middle = middle_of(depth);
     depth.positions[middle] *= 1 - nearer / depth.positions[middle].z();
     depth.deviations[middle] = deviation;
   };
@@ -118,8 +121,7 @@ TEST(MorphMoves, ABlockThatTurnsAwayWithinAFrameIsNotBelieved) {
   Morph morph{{}};
   show(morph, 0, test::wall(0.5));
   const auto turned = [](FilteredDepth& depth) {
-    const auto middle =
-        static_cast<std::size_t>(depth.rows / 2 * depth.columns + depth.columns / 2);
+    const std::size_t middle = middle_of(depth);
     depth.positions[middle] *= 1.004f;
     depth.normals[middle] = Eigen::Vector3f::UnitX();
   };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,5 +20,18 @@ struct BlockOrder {
 
 /// @param columns, rows: 0 to 32768.
 [[nodiscard]] BlockOrder make_block_order(int columns, int rows);
+
+/// Calls visit(block) for those around a block, row by row.
+template <class Visit>
+void visit_beside(int columns, int rows, std::size_t block, const Visit& visit) {
+  const int u = static_cast<int>(block) % columns;
+  const int v = static_cast<int>(block) / columns;
+  for (int y = std::max(0, v - 1); y <= std::min(rows - 1, v + 1); ++y) {
+    for (int x = std::max(0, u - 1); x <= std::min(columns - 1, u + 1); ++x) {
+      const auto other = static_cast<std::size_t>(y * columns + x);
+      if (other != block) visit(other);
+    }
+  }
+}
 
 }  // namespace palpate

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/policies/block_order.hpp"
+
 namespace palpate {
 namespace {
 
@@ -101,19 +103,14 @@ float BlockSurface::trust(const FilteredDepth& depth, std::size_t block) const {
     return 1 / (depth.deviations[b] * depth.deviations[b] + sure * sure);
   };
   const float reach = std::max(radii_[block], kDeviations * depth.deviations[block]);
-  const int u = static_cast<int>(block) % depth.columns;
-  const int v = static_cast<int>(block) / depth.columns;
   float count = 0;
   float sum = 0;
-  for (int y = std::max(0, v - 1); y <= std::min(depth.rows - 1, v + 1); ++y) {
-    for (int x = std::max(0, u - 1); x <= std::min(depth.columns - 1, u + 1); ++x) {
-      const auto other = static_cast<std::size_t>(y * depth.columns + x);
-      const float apart = depth.positions[other].z() - depth.positions[block].z();
-      if (other == block || radii_[other] == 0 || std::abs(apart) > reach) continue;
-      ++count;
-      sum += precision(other);
-    }
-  }
+  visit_beside(depth.columns, depth.rows, block, [&](std::size_t other) {
+    const float apart = depth.positions[other].z() - depth.positions[block].z();
+    if (radii_[other] == 0 || std::abs(apart) > reach) return;
+    ++count;
+    sum += precision(other);
+  });
   return sum > 0 ? std::min(1.0f, precision(block) * count / sum) : 1.0f;
 }
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "geometry/morton.hpp"
 #include "geometry/sort_records.hpp"
-#include "geometry/spread_bits.hpp"
 
 namespace palpate {
 namespace {
@@ -92,11 +92,8 @@ void Morph::write_unseen() {
   unseen_order_.clear();
   for (std::size_t i = 0; i < unseen_.size(); ++i) {
     const Array3f share = (unseen_[i].from.position.array() - lower) / extent;
-    const Eigen::Array3i cell = (kUnseenSteps * share).cast<int>();
-    const auto bits = [&](int axis) {
-      return detail::spread(static_cast<std::uint32_t>(cell[axis]));
-    };
-    const std::uint64_t code = bits(0) << 2 | bits(1) << 1 | bits(2);
+    const Eigen::Array<std::uint32_t, 3, 1> cell = (kUnseenSteps * share).cast<std::uint32_t>();
+    const std::uint64_t code = detail::morton_key(cell.x(), cell.y(), cell.z());
     unseen_order_.push_back(code << detail::kPlaceBits | i);
   }
   sorting_.resize(unseen_order_.size());
@@ -205,7 +202,7 @@ Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) con
   point.area = surface_.area(block);
   if (streams_) point.trust = surface_.trust(depth, block);
   point.variance = depth.deviations[block] * depth.deviations[block];
-  state.weight = point.trust * std::min(1.0f, point.area / (state.radius * state.radius));
+  state.weight = point.weight(state.radius);
   return point;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -69,6 +70,10 @@ class Morph {
     float area = 0;  // a_i R_i^2
     float trust = 1;
     float variance = 0;  // along the ray, m^2
+
+    [[nodiscard]] float weight(float radius) const {
+      return trust * std::min(1.0f, area / (radius * radius));
+    }
   };
   struct Unseen {
     PointState from;
@@ -91,8 +96,6 @@ class Morph {
   [[nodiscard]] std::uint32_t partner_of(const FilteredDepth& depth,
                                          std::span<const std::uint32_t> old,
                                          const Point& seen) const;
-  template <class Visit>
-  void each_beside(std::size_t block, const Visit& visit) const;
   [[nodiscard]] float beside(const FilteredDepth& depth, std::size_t block) const;
   [[nodiscard]] static float advance_of(const Point& seen, const Eigen::Vector3f& from);
   [[nodiscard]] static bool turns(const Point& seen, const Eigen::Vector3f& normal);
@@ -108,7 +111,7 @@ class Morph {
   void hold(std::uint32_t i, EntryKind kind);
   void hide(std::uint32_t i);
   void go(std::uint32_t i);
-  void keep(std::uint32_t i, float presence, const Entry& entry);
+  void keep(std::uint32_t i, float presence, EntryKind kind, double confirmed);
   void leave(std::uint32_t i);
   void add(const PointState& from, const PointState& to, const Entry& entry);
 

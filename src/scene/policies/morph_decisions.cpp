@@ -44,7 +44,7 @@ void Morph::settle(const FilteredDepth& depth, std::size_t place) {
     appear(point);
   } else if (stays(depth, point, partner)) {
     at = depth_of(old_point(partner).position);
-    keep(partner, old_point(partner).presence + comes_, {place_, EntryKind::live, moment_.stamp});
+    keep(partner, old_point(partner).presence + comes_, EntryKind::live, moment_.stamp);
   } else {
     follow(point, partner);
   }
@@ -140,31 +140,29 @@ void Morph::hold(std::uint32_t i, EntryKind kind) {
   const double unsure = moment_.stamp + moment_.duration - confirmed - options_.silence;
   const auto sure = static_cast<float>(std::clamp(1 - unsure / options_.fade, 0.0, 1.0));
   const float presence = old_point(i).presence;
-  keep(i, std::max(std::min(presence, sure), presence - share_of(options_.fade)),
-       {place_, kind, confirmed});
+  keep(i, std::max(std::min(presence, sure), presence - share_of(options_.fade)), kind, confirmed);
 }
 
 /// Something before it keeps it from being seen.
 void Morph::hide(std::uint32_t i) {
-  keep(i, old_point(i).presence - share_of(kHidden), {place_, EntryKind::hidden, moment_.stamp});
+  keep(i, old_point(i).presence - share_of(kHidden), EntryKind::hidden, moment_.stamp);
 }
 
 /// It has been seen through.
 void Morph::go(std::uint32_t i) {
   if (ends_) return leave(i);
-  keep(i, old_point(i).presence - share_of(kGoes),
-       {place_, EntryKind::going, entries_[i].confirmed});
+  keep(i, old_point(i).presence - share_of(kGoes), EntryKind::going, entries_[i].confirmed);
 }
 
 /// Stays where it is, and is as sure as that when the snapshot ends; what nobody is sure of leaves.
-void Morph::keep(std::uint32_t i, float presence, const Entry& entry) {
+void Morph::keep(std::uint32_t i, float presence, EntryKind kind, double confirmed) {
   const PointState from = old_point(i);
-  const bool unseen = entry.kind != EntryKind::live;
+  const bool unseen = kind != EntryKind::live;
   if (from.presence <= 0 || (unseen && ++held_ > order_.size())) return leave(i);
   PointState to = from;
   to.presence = std::clamp(presence, 0.0f, 1.0f);
   to.weight = last_->end_density_weights[i];
-  add(from, to, {entry.place, entry.kind, entry.confirmed, entries_[i].variance});
+  add(from, to, {place_, kind, confirmed, entries_[i].variance});
 }
 
 void Morph::leave(std::uint32_t i) {

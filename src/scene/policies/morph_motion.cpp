@@ -73,24 +73,11 @@ bool Morph::may_move(const FilteredDepth& depth, const Point& seen, std::uint32_
          beside(depth, order_.blocks[place_]) >= kVouchToMove && !came_aside(seen);
 }
 
-/// Calls visit(block) for those around a block.
-template <class Visit>
-void Morph::each_beside(std::size_t block, const Visit& visit) const {
-  const int u = static_cast<int>(block) % order_.columns;
-  const int v = static_cast<int>(block) / order_.columns;
-  for (int y = std::max(0, v - 1); y <= std::min(order_.rows - 1, v + 1); ++y) {
-    for (int x = std::max(0, u - 1); x <= std::min(order_.columns - 1, u + 1); ++x) {
-      const auto other = static_cast<std::size_t>(y * order_.columns + x);
-      if (other != block) visit(other);
-    }
-  }
-}
-
 /// The share of blocks around one that show the same surface: what flies between two has few.
 float Morph::beside(const FilteredDepth& depth, std::size_t block) const {
   float count = 0;
   float all = 0;
-  each_beside(block, [&](std::size_t other) {
+  visit_beside(order_.columns, order_.rows, block, [&](std::size_t other) {
     ++all;
     const float apart = depth.positions[other].z() - depth.positions[block].z();
     const bool same = surface_.radius(other) > 0 && std::abs(apart) < surface_.radius(block);
@@ -102,7 +89,7 @@ float Morph::beside(const FilteredDepth& depth, std::size_t block) const {
 /// Was what a block shows now beside it before? Then the rim of something moved, or is noisy.
 bool Morph::came_aside(const Point& seen) const {
   bool found = false;
-  each_beside(order_.blocks[place_], [&](std::size_t other) {
+  visit_beside(order_.columns, order_.rows, order_.blocks[place_], [&](std::size_t other) {
     for (const std::uint32_t i : by_block_.at(place_of_block_[other])) {
       const float apart = depth_of(old_point(i).position) - depth_of(seen.state.position);
       const bool same = std::abs(apart) < kBeside * seen.state.radius;
@@ -144,7 +131,7 @@ void Morph::follow(const Point& seen, std::uint32_t i) {
   }
   to.radius = from.radius + kShare * (to.radius - from.radius);
   to.confidence = from.confidence + kShare * (to.confidence - from.confidence);
-  to.weight = seen.trust * std::min(1.0f, seen.area / (to.radius * to.radius));
+  to.weight = seen.weight(to.radius);
   if (to.normal.isZero(0)) to.normal = from.normal;
   to.presence = std::min(1.0f, from.presence + comes_);
   add(from, to, {place_, EntryKind::live, moment_.stamp, gain < 1 ? known : seen.variance});
