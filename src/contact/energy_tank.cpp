@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kGone = 1;  // N/m: 3 mN at 3 mm
+constexpr double kGone = 0.002;  // of the stiffness: 3 mN of 1.5 N
 
 }  // namespace
 
@@ -49,12 +49,13 @@ void FadingSpring::take(const Eigen::Vector3d& place, double stiffness) noexcept
   const double both = stiffness_ + stiffness;
   if (both > 0) place_ += stiffness / both * (place - place_);
   stiffness_ = both;
+  gone_ = kGone * both;
 }
 
 double FadingSpring::fade(const Eigen::Vector3d& hip, double dt) noexcept {
   const double left = stiffness_ * std::exp(-dt / EnergyTank::kTime);
   const double energy = 0.5 * (stiffness_ - left) * (place_ - hip).squaredNorm();
-  stiffness_ = left > kGone ? left : 0;
+  stiffness_ = left > gone_ ? left : 0;
   return energy;
 }
 

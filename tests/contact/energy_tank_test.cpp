@@ -75,5 +75,32 @@ TEST(EnergyTank, NeverCreatesEnergyWhateverTheStiffnessDoes) {
   }
 }
 
+// A hand in a world of kilometres has a spring of thousandths of a newton a metre.
+TEST(FadingSpring, FadesAlikeInWorldsOfAnyScale) {
+  for (const double stiffness : {5e-4, 500.0, 5e5}) {
+    FadingSpring spring;
+    spring.take({0, 0, 3}, stiffness);
+    double given_up = 0;
+    for (int i = 1; i <= 20; ++i) {
+      given_up += spring.fade(Eigen::Vector3d::Zero(), 1e-3);
+      EXPECT_NEAR(spring.force(Eigen::Vector3d::Zero()).z(),
+                  3 * stiffness * std::exp(-1e-3 * i / EnergyTank::kTime), 1e-9 * stiffness);
+    }
+    for (int i = 0; i < 200; ++i) given_up += spring.fade(Eigen::Vector3d::Zero(), 1e-3);
+    EXPECT_EQ(spring.stiffness(), 0);
+    EXPECT_NEAR(given_up, 0.5 * stiffness * 9, 0.003 * stiffness * 9);
+  }
+}
+
+TEST(FadingSpring, TwoPullLikeBoth) {
+  FadingSpring spring;
+  spring.take({0, 0, 1}, 300);
+  spring.take({1, 0, 0}, 100);
+  const Eigen::Vector3d hip(0.2, -0.5, 0.1);
+  const Eigen::Vector3d both =
+      300 * (Eigen::Vector3d(0, 0, 1) - hip) + 100 * (Eigen::Vector3d(1, 0, 0) - hip);
+  EXPECT_LT((spring.force(hip) - both).norm(), 1e-9);
+}
+
 }  // namespace
 }  // namespace palpate

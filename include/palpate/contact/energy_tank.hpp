@@ -61,6 +61,7 @@ class FadingSpring {
  private:
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
   double stiffness_ = 0;
+  double gone_ = 0;  // stiffness at which it ends
 };
 
 }  // namespace palpate
