@@ -15,6 +15,7 @@
 #include "apps/palpate/words.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/organised.hpp"
+#include "palpate/geometry/spacing.hpp"
 
 namespace palpate::app {
 
@@ -54,14 +55,15 @@ void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
       cloud.path, far, Proxy::kLargestCoordinate));
 }
 
-// Where R reaches over all of a cloud there is no surface any more.
-void check_radius(const CloudArgument& cloud, const PrepareOptions& options,
-                  const SurfacePoints& points, double spacing) {
-  constexpr double kFarBeyond = 100;  // spacings
-  if (!options.radius || points.size() == 0) return;
-  const CellGrid::Cell& root = points.grid.cells().front();
+// Where R reaches over all of a cloud there is no surface any more, and preparing it takes long.
+void check_radius(const CloudArgument& cloud, const PrepareOptions& options, const CellGrid& grid) {
+  if (!options.radius || grid.size() == 0) return;
+  const CellGrid::Cell& root = grid.cells().front();
   const auto across = static_cast<double>((root.upper - root.lower).norm());
-  if (*options.radius <= std::max(across, kFarBeyond * spacing)) return;
+  if (*options.radius <= across) return;
+  constexpr double kFarBeyond = 100;  // spacings
+  const double spacing = mean_spacing(grid);
+  if (*options.radius <= kFarBeyond * spacing) return;
   throw Error(
       fmt::format("--radius {:.4g} is too large for {}, which is {} across: every point would "
                   "reach over all of it; leave it out, or give some times the spacing ({})",
@@ -79,6 +81,9 @@ void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& ch
   if (chosen.choices.reading.scale == 1) {
     result.units = guess_units(core_of(loaded.file.cloud), loaded.file.format);
   }
+  if (const PrepareOptions& prepare = result.options.prepare; prepare.radius) {
+    check_radius(loaded.argument, prepare, CellGrid(loaded.file.cloud.positions));
+  }
   const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
                                     grouped(loaded.file.cloud.size())));
   const auto start = WallClock::now();
@@ -89,7 +94,6 @@ void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& ch
   result.depth_image = result.state.depth > 0;
   if (result.depth_image) result.lens = depth_frame_of(loaded.file.cloud).frame->camera;
   check_place(loaded.argument, *source.points());
-  check_radius(loaded.argument, result.options.prepare, *source.points(), result.prepared.spacing);
   if (has_page(options)) {  // which may want it prepared anew
     result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
   }
@@ -102,7 +106,7 @@ void check_felt(const Source& source, TouchedSource& result) {
         fmt::format("{} shows no surface: there is nothing to touch", result.argument.path));
   }
   check_place(result.argument, *points);
-  check_radius(result.argument, result.options.prepare, *points, source.report().spacing);
+  check_radius(result.argument, result.options.prepare, points->grid);
   result.state = source.state();
 }
 
