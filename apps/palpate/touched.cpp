@@ -50,9 +50,9 @@ void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
                               (points.origin + root.upper.cast<double>()).cwiseAbs().maxCoeff());
   if (far <= Proxy::kLargestCoordinate) return;
   throw Error(fmt::format(
-      "{} reaches {:.4g} m from the origin; beyond {:.0e} m no surface can be resolved: "
-      "are --scale and --pose right?",
-      cloud.path, far, Proxy::kLargestCoordinate));
+      "{} reaches {:.4g} m from the origin; beyond {:.0e} m no surface can be resolved: {} right?",
+      cloud.path, far, Proxy::kLargestCoordinate,
+      lives(cloud.path) ? "is --pose" : "are --scale and --pose"));
 }
 
 // Where R reaches over all of a cloud there is no surface any more, and preparing it takes long.

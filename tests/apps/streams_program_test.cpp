@@ -143,6 +143,26 @@ TEST(Streams, DepthsOutOfRangeAreNotBelieved) {
   }
 }
 
+TEST(Streams, DepthsThatAreAllOutOfRangeAreToldWithARemedy) {
+  Shell shell;
+  write_wall(shell, 6);
+  std::string description = shell.read("wall/sequence.json");
+  description.replace(description.find("0.001"), 5, "1.0");  // millimetres for metres
+  shell.write("wall/sequence.json", description);
+  shell.write("way.csv", into_wall(300));
+  const std::string command = "touch sequence:wall --simulated-time --json r.json ";
+  const Outcome explored = shell.run(command + "--duration 1");
+  EXPECT_EQ(explored.code, 1);
+  const Outcome led = shell.run(command + "--trajectory way.csv");
+  ASSERT_EQ(led.code, 0) << led.err;
+  for (const std::string& told : {explored.err, led.out}) {
+    EXPECT_NE(told.find("farther than 20 m (median 500 m)"), std::string::npos) << told;
+    EXPECT_NE(told.find("depth_unit_m"), std::string::npos) << told;
+    EXPECT_EQ(told.find("--scale"), std::string::npos) << "is of files: " << told;
+  }
+  EXPECT_EQ(Json::parse(shell.read("r.json"))["sources"][0]["frames_touchable"], 0);
+}
+
 TEST(Streams, ClippingToReachLeavesTheForceAndMostPointsOut) {
   if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
