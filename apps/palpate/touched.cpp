@@ -143,18 +143,49 @@ void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSour
   result.prepare_seconds = seconds_since(start);
 }
 
+// Makes it the first frame of the source. False: it shows no surface; `problem` gets the reason, if
+// one is told.
+bool shows(const DepthFrame& frame, const TouchedSource& result, Source& source,
+           std::string& problem) {
+  try {
+    push_frame(result, source, frame, [] { return 0.0; });  // in which no tool is known yet
+  } catch (const Error& error) {
+    problem = error.what();
+    return false;
+  }
+  return source.points() && source.points()->size() > 0;
+}
+
+bool take_next(DepthCamera& camera, double latest, DepthFrame& frame) {
+  try {
+    frame = first_frame(camera);
+  } catch (const Error&) {
+    return false;
+  }
+  return frame.stamp <= latest;
+}
+
 void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& chosen, bool explored,
               const Clock* clock, TouchedSource& result) {
+  constexpr double kFirstLook = 1;  // s of frames, the first of which may be black
   if (wants_material(options)) refuse_material(chosen.argument);
   result.camera = open_live(chosen, clock);
-  const DepthFrame first = first_frame(*result.camera);
-  result.lens = first.camera;
+  DepthFrame first = first_frame(*result.camera);
+  const double latest = first.stamp + kFirstLook;
   result.as_cloud = taken_as_cloud(options, chosen);
-  if (!chosen.choices.farthest) believe_no_farther(first, result.options.depth);
+  const DepthFilterOptions asked = result.options.depth;
   Source& source = scene.add(chosen.argument.name, result.options);
-  if (first.T_world_sensor) source.set_pose(*first.T_world_sensor);
-  if (!explored) return;
-  push_frame(result, source, first, [] { return 0.0; });  // in which no tool is known yet
+  std::string problem;
+  do {
+    result.lens = first.camera;
+    result.options.depth = asked;
+    if (!chosen.choices.farthest) believe_no_farther(first, result.options.depth);
+    source.change(result.options);  // forgets the frames before
+    if (first.T_world_sensor) source.set_pose(*first.T_world_sensor);
+    if (!explored) return;
+    if (shows(first, result, source, problem)) return check_felt(source, result);
+  } while (take_next(*result.camera, latest, first));
+  if (!problem.empty()) throw Error(problem);
   check_felt(source, result);
 }
 

@@ -51,8 +51,9 @@ struct Touched {
 [[nodiscard]] std::string title_of(const Touched& touched);
 
 /// Reads every cloud, prepares it and puts it into the scene; opens every camera and waits for its
-/// first frame, which is prepared only if the surface is to be `explored` before the run. Cameras
-/// keep the time of `clock`, which outlives them; null: simulated time.
+/// first frame or, if the surface is to be `explored` before the run, prepares frames until one of
+/// the first second shows a surface. Cameras keep the time of `clock`, which outlives them; null:
+/// simulated time.
 /// @throws UsageError when a pose names no source; Error as reading, opening and preparing do.
 [[nodiscard]] Touched prepare_touched(const TouchOptions& options, bool explored,
                                       const Clock* clock = nullptr);

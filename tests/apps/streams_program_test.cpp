@@ -238,6 +238,28 @@ TEST(Streams, FramesOfNoUseAreDroppedInSimulatedTimeAndTheReportSaysWhy) {
   EXPECT_EQ(source["phase"], "stalled") << "the picture froze";
 }
 
+TEST(Streams, RecordingsThatBeginBlackAreExplored) {
+  Shell shell;
+  write_wall(shell, 40);
+  const auto blacken = [&](int from, int to) {
+    const std::string black = "P5 64 48 65535\n" + std::string(std::size_t{2} * 64 * 48, '\0');
+    for (int i = from; i < to; ++i) shell.write(fmt::format("wall/{:03}.pgm", i), black);
+  };
+  blacken(0, 5);
+  const std::string command = "touch sequence:wall --simulated-time --duration 1.2 --json r.json ";
+  for (const char* more : {"", "--unorganised"}) {
+    const Outcome outcome = shell.run(command + more);
+    ASSERT_EQ(outcome.code, 0) << more << "\n" << outcome.err;
+    const Json report = Json::parse(shell.read("r.json"));
+    EXPECT_GT(report["contacts"].get<int>(), 0) << more;
+    EXPECT_EQ(report["sources"][0]["drops"]["empty"], 5) << "planning takes nothing from it";
+  }
+  blacken(5, 40);
+  const Outcome outcome = shell.run(command);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("shows no surface"), std::string::npos) << outcome.err;
+}
+
 TEST(Streams, DepthImageGoesThroughTheDepthFilterUnlessUnorganised) {
   Shell shell;
   shell.write("wall.pgm", wall_pgm(0));
