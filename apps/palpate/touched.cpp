@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <iterator>
 
 #include "apps/palpate/depth_file.hpp"
 #include "apps/palpate/frame_cloud.hpp"
@@ -40,6 +42,25 @@ void refuse_material(const CloudArgument& source) {
       fmt::format("--soft-stiffness and --soft-friction need a scalar for each point, and {} has "
                   "depths alone; leave them out",
                   source.path));
+}
+
+// Refuses a frame that measured something, and nothing in range: its unit may be another one.
+void check_range(const DepthFrame& frame, const DepthFilterOptions& range) {
+  const auto out = [&](float z) {
+    return !(static_cast<double>(z) >= range.nearest && static_cast<double>(z) <= range.farthest);
+  };
+  if (!std::ranges::all_of(frame.depth, out)) return;
+  std::vector<float> depths;
+  std::ranges::copy_if(frame.depth, std::back_inserter(depths),
+                       [](float z) { return z > 0 && std::isfinite(z); });
+  if (depths.empty()) return;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::ranges::nth_element(depths, middle);
+  throw Error(
+      fmt::format("all depths are nearer than {} m or farther than {} m (median {:.4g} m); widen "
+                  "the range (--nearest, --farthest), or mend the unit (depth_unit_m of a "
+                  "recording, --depth-unit of an image)",
+                  range.nearest, range.farthest, *middle));
 }
 
 // Farther away the proxy would fault in every step.
@@ -138,6 +159,7 @@ void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSour
   const Waiting waiting(fmt::format("preparing {}", chosen.argument.name));
   const auto start = WallClock::now();
   Source& source = scene.add(chosen.argument.name, result.options);
+  check_range(frame, result.options.depth);
   source.set(frame);
   check_felt(source, result);
   result.prepare_seconds = seconds_since(start);
@@ -232,6 +254,7 @@ void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft) {
 void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
                 const StartTime& start) {
   if (!touched.as_cloud) {
+    check_range(frame, touched.options.depth);
     felt.push(frame, start);
     return;
   }

@@ -64,7 +64,8 @@ struct Touched {
 void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft);
 
 /// Makes a camera's frame part of what is felt: by the depth filter or, where that is wanted, as a
-/// cloud. @throws Error as Source::push() does.
+/// cloud. @throws Error as Source::push() does, and when nothing that the filter could take is in
+/// its range.
 void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
                 const StartTime& start);
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "palpate/base/error.hpp"
@@ -35,25 +34,6 @@ void check(const SourceOptions& source) {
     throw Error(fmt::format("policy: silence of {} s and fade in {} s; give times above 0",
                             options.silence, options.fade));
   }
-}
-
-/// Refuses a frame that measured something, and nothing in range: its unit may be another one.
-void check_range(const DepthFrame& frame, const DepthFilterOptions& range) {
-  const auto out = [&](float z) {
-    return !(static_cast<double>(z) >= range.nearest && static_cast<double>(z) <= range.farthest);
-  };
-  if (!std::ranges::all_of(frame.depth, out)) return;
-  std::vector<float> depths;
-  std::ranges::copy_if(frame.depth, std::back_inserter(depths),
-                       [](float z) { return z > 0 && std::isfinite(z); });
-  if (depths.empty()) return;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
-  throw Error(
-      fmt::format("all depths are nearer than {} m or farther than {} m (median {:.4g} m); widen "
-                  "the range (--nearest, --farthest), or mend the unit (depth_unit_m of a "
-                  "recording, --depth-unit of an image)",
-                  range.nearest, range.farthest, *middle));
 }
 
 /// A filtered frame as a cloud, seen from its origin.
@@ -96,7 +76,6 @@ std::size_t Intake::most_snapshots(bool clouds, std::size_t fields) const {
 
 std::shared_ptr<const Snapshot> Intake::take(const DepthFrame& frame, const Arrival& arrival) {
   time_of("stamp", frame.stamp);
-  check_range(frame, options_.depth);
   const bool everywhere = options_.policy.fit_everywhere;
   const FilteredDepth& depth = everywhere
                                    ? filter_.filter(frame, arrival.T_world_sensor)

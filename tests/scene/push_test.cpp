@@ -152,18 +152,6 @@ TEST(Push, RefusesTimesThatAreNone) {
   EXPECT_EQ(source.state().frames, 0u);
 }
 
-TEST(Push, RefusesFramesWhoseDepthsAreAllOutOfRange) {
-  Source source("camera", depth_source(Policy::morph));
-  const auto push = [&](double z) {
-    source.push(frame_of(small_camera(), 0, wall(z)), [] { return 0.0; });
-  };
-  EXPECT_THROW(push(60), Error);
-  EXPECT_THROW(push(0.05), Error);
-  EXPECT_EQ(source.state().frames, 0u);
-  EXPECT_NO_THROW(push(0)) << "it measured nothing";
-  EXPECT_NO_THROW(push(0.5));
-}
-
 TEST(Push, RefusesOptionsThatAreNone) {
   SourceOptions options = depth_source(Policy::average);
   options.policy.history = 8;

@@ -90,8 +90,8 @@ class Source {
   ///
   /// False when the frame was dropped, because fields that stand still hold all snapshots that
   /// there may be; state() names one of them.
-  /// @throws Error as DepthFilter::filter does, and when a time is not finite, the pose is not
-  /// rigid or nothing that the frame measured is in range.
+  /// @throws Error as DepthFilter::filter does, and when a time is not finite or the pose not
+  /// rigid.
   bool push(const DepthFrame& frame, const StartTime& start);
 
   /// Takes the next cloud of a sensor that delivers clouds, taken at `stamp` (s). Likewise, but
