@@ -101,8 +101,7 @@ Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) n
   contact.touching = touching_;
   contact.evaluations = probe.evaluations();
   const double jump = unexplained(before, hip, dt);
-  if (held && jump > kFall * (before - hand_).norm())
-    contact.notes = contact.notes | ContactNote::fell;
+  if (held && jump > kFall * (before - hand_).norm()) contact.notes |= ContactNote::fell;
   if (changed && jump > std::max(probe.traits().reanchor_reach, kFastest * dt)) {
     if (held) fading_.take(before, tank.stiffness());
     take_over(held ? tank : tank_, hip, contact);
@@ -136,6 +135,7 @@ void Proxy::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
   tank_ = before;
   tank_.take_over(touching_ ? begun_stiffness(position_, hip) : 0);
   contact.stiffness = tank_.stiffness();
+  if (contact.stiffness < kMuchSofter * wanted_stiffness()) contact.notes |= ContactNote::softer;
   contact.force = contact.stiffness * (position_ - hip);
 }
 
@@ -153,8 +153,7 @@ void Proxy::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) n
   if (probe.inside(position_)) return touch(probe, position_, hip);
   const Sweep way = sweep(probe, position_, hip);
   if (way.end == Sweep::End::hit) return touch(probe, way.position, hip);
-  if (way.end == Sweep::End::truncated)
-    contact.notes = contact.notes | ContactNote::sweep_truncated;
+  if (way.end == Sweep::End::truncated) contact.notes |= ContactNote::sweep_truncated;
   release(way.position);
 }
 
@@ -187,7 +186,7 @@ void Proxy::release(const Eigen::Vector3d& place) noexcept {
 // The next step has the whole budget for where this one stopped: it does not re-anchor first.
 void Proxy::cut_short(Contact& contact) noexcept {
   cut_short_ = true;
-  contact.notes = contact.notes | ContactNote::sweep_truncated;
+  contact.notes |= ContactNote::sweep_truncated;
 }
 
 void Proxy::hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept {
@@ -208,7 +207,9 @@ void Proxy::hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& c
                              .friction = law};
   const Slide motion = slide(probe, *at, hip, sliding_, options);
   contact.iterations = motion.iterations;
-  if (settle(motion, contact)) press(probe.field(), hip, motion.dissipated, dt, contact);
+  if (!settle(motion, contact)) return;
+  surface_ = probe.field().surface(position_);
+  pull(hip, motion.dissipated, dt, contact);
 }
 
 // Where the surface is now, near where the proxy touched it. Empty: the contact ended, or is lost.
@@ -219,7 +220,7 @@ std::optional<SurfacePoint> Proxy::find_surface(Probe& probe, const Eigen::Vecto
   const bool changed = probe.traits().revision != revision_;
   if (!cut_short_ && surface_moved(probe, here, normal_, changed)) {
     at = reanchor(probe, position_, normal_);
-    if (at) contact.notes = contact.notes | ContactNote::reanchored;
+    if (at) contact.notes |= ContactNote::reanchored;
   }
   if (!at) at = project(probe, position_, here);
   if (!at) at = recover(probe, position_, normal_);
@@ -246,7 +247,7 @@ bool Proxy::settle(const Slide& motion, Contact& contact) noexcept {
     return false;
   }
   if (motion.end == Slide::End::unfinished) {
-    contact.notes = contact.notes | ContactNote::not_converged;
+    contact.notes |= ContactNote::not_converged;
   }
   position_ = motion.at.position;
   normal_ = motion.at.normal;
@@ -256,18 +257,12 @@ bool Proxy::settle(const Slide& motion, Contact& contact) noexcept {
   return true;
 }
 
-void Proxy::press(const Field& field, const Eigen::Vector3d& hip, double dissipated, double dt,
-                  Contact& contact) noexcept {
-  surface_ = field.surface(position_);
-  pull(hip, dissipated, dt, contact);
-}
-
 void Proxy::pull(const Eigen::Vector3d& hip, double dissipated, double dt,
                  Contact& contact) noexcept {
   const Eigen::Vector3d stretch = position_ - hip;
   const double wanted = wanted_stiffness();
   contact.stiffness = tank_.follow(wanted, stretch.norm(), dissipated, dt);
-  if (contact.stiffness < kMuchSofter * wanted) contact.notes = contact.notes | ContactNote::softer;
+  if (contact.stiffness < kMuchSofter * wanted) contact.notes |= ContactNote::softer;
   contact.force = contact.stiffness * stretch;
   contact.drift = surface_.velocity;
   contact.source = surface_.source;
@@ -285,7 +280,7 @@ double Proxy::wanted_stiffness() const noexcept {
 void Proxy::keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept {
   contact.normal = normal_;
   if (!cut_short_) {
-    contact.notes = contact.notes | ContactNote::lost;
+    contact.notes |= ContactNote::lost;
     lost_time_ += dt;
   }
   pull(hip, 0, dt, contact);

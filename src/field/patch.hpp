@@ -73,7 +73,9 @@ class Patch {
   [[nodiscard]] bool outdated() const noexcept { return outdated_; }
   [[nodiscard]] const Eigen::Vector3d& center() const noexcept { return center_; }
   [[nodiscard]] std::size_t points() const noexcept { return count_; }
-  [[nodiscard]] bool thinned() const noexcept { return selection_.stride() > 1; }
+  /// 1: all points that are there were taken; n: every n-th.
+  [[nodiscard]] std::uint32_t stride() const noexcept { return selection_.stride(); }
+  [[nodiscard]] bool thinned() const noexcept { return stride() > 1; }
   /// Cells and points that the last gather looked at.
   [[nodiscard]] int visits() const noexcept { return selection_.visits(); }
   [[nodiscard]] double smallest_radius() const noexcept { return smallest_radius_; }

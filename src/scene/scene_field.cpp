@@ -100,7 +100,7 @@ struct SceneField::State {
   bool plain_points = true;  // no materials, no motion, no fading
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
-  bool thinned = false;  // is the near patch?
+  std::uint32_t stride = 1;  // of the near patch
   Patches patches{surface};
 };
 
@@ -213,8 +213,8 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
     state.gather_path(hip, proxy);
     state.patches.face_near();
     state.publish_reach(hip, proxy);
-    const bool thinned = state.patches.near().thinned();
-    if (std::exchange(state.thinned, thinned) != thinned) ++state.revision;  // another surface
+    const std::uint32_t stride = state.patches.near().stride();
+    if (std::exchange(state.stride, stride) != stride) ++state.revision;  // another surface
   }
   state.notes = state.standing_notes();
   if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;
@@ -279,11 +279,9 @@ FieldTraits SceneField::traits() const noexcept {
       std::max(state.patches.near().points() > 0 ? state.patches.near().smallest_radius()
                                                  : state.typical_radius,
                kFinest * state.radius());
-  FieldTraits traits;
-  traits.resolution = metaball ? 0.002 * smallest : smallest / 16;
-  traits.revision = state.revision;
-  traits.reanchor_reach = kFastestCloud * state.cloud_duration;
-  return traits;
+  return {.resolution = metaball ? 0.002 * smallest : smallest / 16,
+          .revision = state.revision,
+          .reanchor_reach = kFastestCloud * state.cloud_duration};
 }
 
 FieldNote SceneField::notes() const noexcept {

@@ -8,6 +8,7 @@
 
 #include "apps/palpate/json.hpp"
 #include "apps/program.hpp"
+#include "apps/recorded_wall.hpp"
 #include "support/effort.hpp"
 
 namespace palpate::app {
@@ -20,35 +21,6 @@ std::string press_table(double seconds) {
     text += fmt::format("{},0,0,{}\n", 1e-3 * i, std::max(-4e-3, 0.02 - 1e-4 * i));
   }
   return text;
-}
-
-// A wall 0.5 m ahead, 64 x 48 pixels, with one pixel that tells the frames apart.
-std::string wall_pgm(int number) {
-  std::string text = "P5 64 48 65535\n";
-  for (int i = 0; i < 64 * 48; ++i) {
-    const int depth = i == 0 ? 500 + number : 500;
-    text += static_cast<char>(depth / 256);
-    text += static_cast<char>(depth % 256);
-  }
-  return text;
-}
-
-// As a sequence of 30 frames a second in the folder "wall".
-void write_wall(const Shell& shell, int frames) {
-  std::filesystem::create_directory(shell.path("wall"));
-  for (int i = 0; i < frames; ++i) shell.write(fmt::format("wall/{:03}.pgm", i), wall_pgm(i));
-  shell.write("wall/sequence.json",
-              R"({"width": 64, "height": 48, "fx": 60, "fy": 60, "cx": 31.5, "cy": 23.5,
-                  "depth_unit_m": 0.001, "fps": 30})");
-}
-
-// Forward until the hand is 4 mm deep in the wall, and then at rest.
-std::string into_wall(int steps) {
-  std::string way = "t,hip_x,hip_y,hip_z\n";
-  for (int i = 0; i < steps; ++i) {
-    way += fmt::format("{},0,0,{}\n", 1e-3 * i, std::min(0.504, 0.48 + 1e-4 * i));
-  }
-  return way;
 }
 
 TEST(Streams, TwoCamerasGiveTheSameLogBitForBit) {
@@ -258,51 +230,6 @@ TEST(Streams, RecordingsThatBeginBlackAreExplored) {
   const Outcome outcome = shell.run(command);
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.err.find("shows no surface"), std::string::npos) << outcome.err;
-}
-
-TEST(Streams, DepthImageGoesThroughTheDepthFilterUnlessUnorganised) {
-  Shell shell;
-  shell.write("wall.pgm", wall_pgm(0));
-  shell.write("way.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0.48\n0.1,0,0,0.503\n0.2,0,0,0.503\n");
-  const std::string command =
-      "touch wall.pgm --intrinsics 60,60,31.5,23.5 --trajectory way.csv --log log.csv ";
-  for (const char* more : {"", "--unorganised"}) {
-    const Outcome outcome = shell.run(command + more);
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_NEAR(number(columns(shell.read("log.csv"))["fz"].back()), -500 * 3e-3, 0.05) << more;
-    EXPECT_EQ(outcome.out.find("voxel") == std::string::npos, std::string(more).empty());
-  }
-  EXPECT_NE(shell.run("touch wall.pgm").err.find("--intrinsics"), std::string::npos);
-}
-
-// The wall as an organised cloud, with a hole.
-TEST(Streams, OrganisedCloudGoesThroughTheDepthFilterUnlessUnorganised) {
-  Shell shell;
-  std::string cloud =
-      "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 64\nHEIGHT 48\n"
-      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3072\nDATA ascii\n";
-  for (int i = 0; i < 64 * 48; ++i) {
-    const double z = i < 200 ? std::nan("") : 0.5;
-    cloud += fmt::format("{} {} {}\n", (i % 64 - 31.5) * z / 60, (i / 64 - 23.5) * z / 60, z);
-  }
-  shell.write("wall.pcd", cloud);
-  shell.write("way.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0.48\n0.1,0,0,0.503\n0.2,0,0,0.503\n");
-  const auto felt_as_image = [&](const std::string& more) {
-    const Outcome outcome =
-        shell.run("touch wall.pcd --trajectory way.csv --log log.csv --json r.json " + more);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_NEAR(number(columns(shell.read("log.csv"))["fz"].back()), -500 * 3e-3, 0.05) << more;
-    const bool said = outcome.out.find(
-                          "64 x 48 pixels of a camera of 60 px, felt as a depth "
-                          "frame") != std::string::npos;
-    EXPECT_EQ(Json::parse(shell.read("r.json"))["sources"][0].contains("organised"), said);
-    return said;
-  };
-  EXPECT_TRUE(felt_as_image(""));
-  EXPECT_TRUE(felt_as_image("--noise xtion --nearest 0.2 --radius 0.1"));
-  for (const char* more : {"--unorganised", "--voxel 0.01", "--viewpoint 0,0,0"}) {
-    EXPECT_FALSE(felt_as_image(more)) << more;
-  }
 }
 
 TEST(Streams, WhatIsNotThereIsNamed) {

@@ -22,6 +22,9 @@ enum class ContactNote : std::uint32_t {
 [[nodiscard]] constexpr ContactNote operator|(ContactNote a, ContactNote b) noexcept {
   return static_cast<ContactNote>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
+constexpr ContactNote& operator|=(ContactNote& a, ContactNote b) noexcept {
+  return a = a | b;
+}
 [[nodiscard]] constexpr bool has(ContactNote notes, ContactNote bit) noexcept {
   return (static_cast<std::uint32_t>(notes) & static_cast<std::uint32_t>(bit)) != 0;
 }

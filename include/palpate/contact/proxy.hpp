@@ -91,8 +91,6 @@ class Proxy {
   [[nodiscard]] std::optional<SurfacePoint> find_surface(Probe& probe, const Eigen::Vector3d& hip,
                                                          Contact& contact) noexcept;
   [[nodiscard]] bool settle(const Slide& motion, Contact& contact) noexcept;
-  void press(const Field& field, const Eigen::Vector3d& hip, double dissipated, double dt,
-             Contact& contact) noexcept;
   void pull(const Eigen::Vector3d& hip, double dissipated, double dt, Contact& contact) noexcept;
   void keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   void cut_short(Contact& contact) noexcept;
