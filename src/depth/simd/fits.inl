@@ -38,7 +38,7 @@ inline int first_reach(const FitInput& in, const Chunk& c, int i) {
   int half = 1;
   while (half < kLargestReach) {
     const Extent& e = kExtents.of[half];
-    if (c.variance[i] * e.per_n * e.per_n * e.per_mu <= wanted * wanted) break;
+    if (in.shared * c.variance[i] * e.per_n * e.per_n * e.per_mu <= wanted * wanted) break;
     ++half;
   }
   return half;
@@ -138,19 +138,19 @@ inline int shift_of(int half, bool whole) {
 
 // The best scores that windows beside the block may reach: those of the largest ones, were the
 // surface flat.
-inline Doubles promise(const Chunk& c, const Search& s, const Directions& to, bool whole) {
+inline Doubles promise(const FitInput& in, const Chunk& c, const Search& s, const Directions& to, bool whole) {
   constexpr int kLast = kSizes - 1;
   const Shape g = shape(c.half_u[kLast][s.i], c.half_v[kLast][s.i]);
   const Doubles du = lanes(to.u, shift_of(c.half_u[kLast][s.i], whole));
   const Doubles dv = lanes(to.v, shift_of(c.half_v[kLast][s.i], whole));
-  return c.variance[s.i] * g.per_n *
+  return in.shared * c.variance[s.i] * g.per_n *
          (1.0 + (du * du + s.lever_u2) * g.per_mu + (dv * dv + s.lever_v2) * g.per_mv);
 }
 
 // Lets windows grow in four directions, each until the first that is not explained or cannot win.
 inline void follow(const FitInput& in, const Chunk& c, const Directions& to, bool whole,
                    Search& search) {
-  Mask growing = promise(c, search, to, whole) < search.score;
+  Mask growing = promise(in, c, search, to, whole) < search.score;
   Doubles best = same(search.score);
   Mask affine{};
   Mask size = Mask{} - 1;
