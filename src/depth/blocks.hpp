@@ -39,6 +39,11 @@ void average_blocks(const float* image, int width, const NoiseModel& noise,
   return std::min(0.5 * correlation, 1.0);
 }
 
+/// By how much the variance of a mean of many blocks is larger than if they erred alone.
+[[nodiscard]] inline double shared_error(double correlation) {
+  return std::max(0.25 * correlation * correlation, 1.0);
+}
+
 /// Deviation of the mean of a full block, 1/m, at inverse depth rho.
 [[nodiscard]] inline float block_sigma(const NoiseModel& noise, float rho) {
   const auto& s = noise.coefficients;

@@ -79,7 +79,7 @@ inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk
   Mask growing = ~Mask{};
   Mask affine{};  // of the largest windows that are explained
   Mask edge{};
-  Mask curved{};  // by what the first window shows that is too large
+  Mask curved{};           // by what the first window shows that is too large
   Mask size = Mask{} - 1;  // their number
   for (int k = 0; k < kSizes && any(growing); ++k) {
     if (same_size(c, k, four)) {
@@ -138,7 +138,8 @@ inline int shift_of(int half, bool whole) {
 
 // The best scores that windows beside the block may reach: those of the largest ones, were the
 // surface flat.
-inline Doubles promise(const FitInput& in, const Chunk& c, const Search& s, const Directions& to, bool whole) {
+inline Doubles promise(const FitInput& in, const Chunk& c, const Search& s, const Directions& to,
+                       bool whole) {
   constexpr int kLast = kSizes - 1;
   const Shape g = shape(c.half_u[kLast][s.i], c.half_v[kLast][s.i]);
   const Doubles du = lanes(to.u, shift_of(c.half_u[kLast][s.i], whole));
@@ -281,6 +282,8 @@ void fit_blocks(const FitInput& in, int row, const std::int32_t* columns, int co
     grow_centred(in, row, c);
     for (int i = 0; i < c.count; ++i) {
       if (c.edge[i]) try_aside(in, row, c, i);
+      out.at_edge[c.columns[i]] = c.edge[i];
+      out.flat[c.columns[i]] = c.kind[i] == kAffine;
     }
     finish(in, row, c, out);
   }

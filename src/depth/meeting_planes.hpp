@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "depth/block_fits.hpp"
+#include "depth/blocks.hpp"
+
+namespace palpate::depth {
+
+/// Gives each block near an edge or a crease to one surface.
+///
+/// The window that serves a block best may show a plane that another surface hides there: a table
+/// continued behind a wall, which correlated noise takes for the wall's lowest rows. So where the
+/// planes of two blocks on either side explain what was measured around a block surely better than
+/// its own plane does, it gets one of theirs: of two that meet concavely the nearer one along its
+/// ray, of two that meet convexly the farther one.
+class MeetingPlanes {
+ public:
+  /// Changes the fits of the listed blocks: `columns[row_begin[r]]` on are those of row
+  /// `first_row + r`.
+  void assign(const Blocks& blocks, const NoiseModel& noise, int first_row,
+              const std::vector<std::int32_t>& columns, const std::vector<std::size_t>& row_begin,
+              BlockFits& fits);
+
+ private:
+  /// What a block's fit becomes.
+  struct Change {
+    std::size_t block;
+    float rho, variance, slope_x, slope_y, slope_variance;
+  };
+  std::vector<std::vector<Change>> changes_;  // row by row
+};
+
+}  // namespace palpate::depth
