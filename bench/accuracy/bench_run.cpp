@@ -13,12 +13,6 @@ struct IdealRow {
   std::vector<Trace> ideal;
 };
 
-bool wanted(const std::string& name, const std::vector<std::string>& parts) {
-  return parts.empty() || std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
-           return name.find(part) != std::string::npos;
-         });
-}
-
 // A layout with the paths on it.
 struct Ground {
   std::uint64_t layout = 0;
@@ -39,7 +33,7 @@ Ground ground_of(const BenchOptions& options, int i) {
     rows = make_rows(ground.truth);
   }
   for (Row& row : rows) {
-    if (!wanted(row.name, options.rows)) continue;
+    if (!is_wanted(row.name, options.rows)) continue;
     IdealRow ideal{std::move(row), {}};
     for (const Path& path : ideal.row.paths) {
       ideal.ideal.push_back(ideal_trace(ground.truth, path));
@@ -87,6 +81,12 @@ void run_layout(const BenchOptions& options, const Ground& ground,
 }
 
 }  // namespace
+
+bool is_wanted(const std::string& row, const std::vector<std::string>& parts) {
+  return parts.empty() || std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
+           return row.find(part) != std::string::npos;
+         });
+}
 
 SimulatedNoiseOptions noise_of(const BenchOptions& options, std::uint64_t layout,
                                std::uint64_t seed) {

@@ -44,6 +44,9 @@ struct BenchResults {
   std::vector<Preparation> preparations;
 };
 
+/// Does the row's name hold one of these parts, or are there none?
+[[nodiscard]] bool is_wanted(const std::string& row, const std::vector<std::string>& parts);
+
 /// What is done to the exact depths of a frame of a layout. Drawn layouts have noise of their own.
 [[nodiscard]] SimulatedNoiseOptions noise_of(const BenchOptions& options, std::uint64_t layout,
                                              std::uint64_t seed);

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "accuracy/drawn_table.hpp"
+#include "accuracy/sweep.hpp"
 #include "palpate/base/error.hpp"
 
 namespace {
@@ -18,6 +19,7 @@ struct Arguments {
   palpate::PrepareOptions prepare;
   std::vector<std::string> fields;
   std::vector<std::string> noises = {"a"};
+  bool sweep = false;
   std::string csv_file;
 };
 
@@ -26,10 +28,14 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--seeds", bench.seeds, "Frames")->check(CLI::Range(1, 1000));
   app.add_option("--first-seed", bench.first_seed, "Seed of the first frame");
   auto* fixed = app.add_option("--layout", bench.layout, "Placement of the objects (0-2)");
-  app.add_option("--layouts", bench.layouts, "So many drawn scenes with drawn paths instead")
-      ->check(CLI::Range(1, 100000))
-      ->excludes(fixed);
+  auto* drawn =
+      app.add_option("--layouts", bench.layouts, "So many drawn scenes with drawn paths instead")
+          ->check(CLI::Range(1, 100000))
+          ->excludes(fixed);
   app.add_option("--first-layout", bench.first_layout, "Number (seed) of the first drawn scene");
+  app.add_flag("--sweep", arguments.sweep, "A plane and a sphere alone, by distance and incidence")
+      ->excludes(fixed)
+      ->excludes(drawn);
   app.add_option("--noise", arguments.noises, "a independent, b blurred, c quantised, none")
       ->delimiter(',')
       ->check(CLI::IsMember({"a", "b", "c", "none"}));
@@ -67,19 +73,29 @@ void write_csv(const std::string& file, const std::string& text) {
   if (!out.flush()) throw palpate::Error("cannot write " + file + "; is its folder there?");
 }
 
-std::string heading(const BenchOptions& bench, const std::string& noise) {
-  const std::string layouts =
-      bench.layouts == 0
-          ? fmt::format("layout {}, {} frames", bench.layout, bench.seeds)
-          : fmt::format("drawn layouts {} to {}, {} frames of each", bench.first_layout,
-                        bench.first_layout + static_cast<std::uint64_t>(bench.layouts) - 1,
-                        bench.seeds);
-  return fmt::format("Noise {}, {} from seed {}{}. Median (worst frame).\n\n", noise, layouts,
+std::string heading(const Arguments& arguments, const std::string& noise) {
+  const BenchOptions& bench = arguments.bench;
+  std::string frames = fmt::format("layout {}, {} frames", bench.layout, bench.seeds);
+  if (arguments.sweep) frames = fmt::format("{} frames a bin", bench.seeds);
+  if (bench.layouts > 0) {
+    frames = fmt::format("drawn layouts {} to {}, {} frames of each", bench.first_layout,
+                         bench.first_layout + static_cast<std::uint64_t>(bench.layouts) - 1,
+                         bench.seeds);
+  }
+  return fmt::format("Noise {}, {} from seed {}{}. Median (worst frame).\n\n", noise, frames,
                      bench.first_seed, bench.silhouettes ? ", silhouettes" : "");
 }
 
-std::string report(const BenchOptions& bench, const BenchResults& results,
+std::string report(const Arguments& arguments, const BenchResults& results,
                    const std::vector<Contender>& contenders) {
+  const BenchOptions& bench = arguments.bench;
+  if (arguments.sweep) {
+    std::string text;
+    for (const Contender& contender : contenders) {
+      text += markdown_sweep(results, contender.name) + "\n";
+    }
+    return text;
+  }
   if (bench.layouts > 0) return markdown_drawn(results, contenders, bench.noise) + "\n";
   return fmt::format("{}\nThe first frame:\n\n{}", markdown_table(results, contenders, bench),
                      markdown_preparation(results));
@@ -91,9 +107,9 @@ int run(Arguments& arguments) {
   std::string scores = csv_header();
   for (const std::string& noise : arguments.noises) {
     arguments.bench.noise = kind_of(noise);
-    const BenchResults results = run_bench(arguments.bench, contenders);
-    fmt::print("{}{}", heading(arguments.bench, noise),
-               report(arguments.bench, results, contenders));
+    const BenchResults results = arguments.sweep ? run_sweep(arguments.bench, contenders)
+                                                 : run_bench(arguments.bench, contenders);
+    fmt::print("{}{}", heading(arguments, noise), report(arguments, results, contenders));
     scores += csv(results, arguments.bench);
   }
   if (!arguments.csv_file.empty()) write_csv(arguments.csv_file, scores);

@@ -8,6 +8,7 @@
 #include "accuracy/drawn_table.hpp"
 #include "accuracy/image_outline.hpp"
 #include "accuracy/strokes.hpp"
+#include "accuracy/sweep.hpp"
 #include "accuracy/truth_frame.hpp"
 
 namespace palpate::accuracy {
@@ -128,6 +129,28 @@ TEST(DrawnTable, CountsFramesAboveATarget) {
   EXPECT_NE(markdown_drawn(results, {contender}, NoiseKind::independent)
                 .find("0.10 (0.20) / 0.000 (0.000) / 0.0 (0.0) | 50 / 0 / - |"),
             std::string::npos);
+}
+
+TEST(Sweep, FeelsAnExactPlaneExactly) {
+  BenchOptions options;
+  options.seeds = 1;
+  options.noise = NoiseKind::none;
+  options.rounding = 0;
+  options.rows = {"plane 0.50-0.70 m"};
+  const std::vector<Contender> contenders = {all_contenders()[0]};
+  const BenchResults results = run_sweep(options, contenders);
+  ASSERT_EQ(results.results.size(), 5U);  // bins of incidence
+  for (const Result& result : results.results) {
+    EXPECT_LT(result.score.normal, 0.01) << result.row;
+    EXPECT_LT(std::abs(result.score.height), 0.01) << result.row;
+    EXPECT_EQ(result.score.lost, 0) << result.row;
+    EXPECT_LT(result.score.force, 0.01) << result.row;
+  }
+  EXPECT_EQ(results.results.back().score.normal,
+            run_sweep(options, contenders).results.back().score.normal);
+  const std::string table = markdown_sweep(results, kOrganised);
+  EXPECT_NE(table.find("| plane, 0.5-0.7 m | 0.00 (0.00) / "), std::string::npos) << table;
+  EXPECT_NE(table.find("| sphere, 0.35-0.5 m |  |"), std::string::npos) << table;
 }
 
 }  // namespace
