@@ -93,7 +93,8 @@ Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) n
   if (!touching_) follow(probe, hip, contact);
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
   step_length_ = probe.step_length();
-  const bool changed = revision_ && probe.traits().revision != *revision_;
+  const bool first = !revision_;  // since a reset, which may be into a solid
+  const bool changed = !first && probe.traits().revision != *revision_;
   revision_ = probe.traits().revision;
   field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
   contact.proxy = position_;
@@ -105,6 +106,9 @@ Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) n
   if (changed && jump > std::max(probe.traits().reanchor_reach, kFastest * dt)) {
     if (held) fading_.take(before, tank.stiffness());
     take_over(held ? tank : tank_, hip, contact);
+  } else if (!held && touching_ && !first && !changed) {
+    // The surface may have come to the hand, and not the hand to it.
+    if (begun_stiffness(position_, hip) < tank_.stiffness()) take_over(tank_, hip, contact);
   }
   tank_.fill(fading_.fade(hip, dt));
   contact.force += fading_.force(hip);

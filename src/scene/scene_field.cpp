@@ -100,6 +100,7 @@ struct SceneField::State {
   bool plain_points = true;  // no materials, no motion, no fading
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
+  bool thinned = false;  // is the near patch?
   Patches patches{surface};
 };
 
@@ -212,6 +213,8 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
     state.gather_path(hip, proxy);
     state.patches.face_near();
     state.publish_reach(hip, proxy);
+    const bool thinned = state.patches.near().thinned();
+    if (std::exchange(state.thinned, thinned) != thinned) ++state.revision;  // another surface
   }
   state.notes = state.standing_notes();
   if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;

@@ -91,6 +91,22 @@ TEST(Moving, SurfaceThatAppearsOverAFreeProxyDoesNotPushIt) {
   EXPECT_LE(c.force.norm(), 0.05);
 }
 
+// As where a field takes another side for the front, or finds that there is one.
+TEST(Moving, SurfaceThatIsThereAtOnceWithoutAChangeDoesNotPushAFreeProxy) {
+  const Vector3d hand(0, 0, 0.001);
+  test::SheetField sheet;
+  sheet.thickness = 0.02;
+  sheet.height = -0.01;
+  Proxy proxy;
+  proxy.reset(hand);
+  ASSERT_FALSE(proxy.step(sheet, hand, kTick).touching);
+  sheet.height = 0.004;
+  const Contact c = proxy.step(sheet, hand, kTick);
+  ASSERT_TRUE(c.touching);
+  EXPECT_NEAR(c.proxy.z(), 0.004, 1e-6);
+  EXPECT_LE(c.force.norm(), 0.051);
+}
+
 TEST(Moving, VanishedCloudLetsItsForceFade) {
   const PlaneField plane;
   PlaneField gone({.reanchor_reach = 0});

@@ -46,6 +46,24 @@ TEST(SceneField, AnOverfullPatchIsThinnedAndSaysSo) {
   EXPECT_NEAR(field.sample({0, 0, 1e-3}).value, 1e-3, 1e-9);
 }
 
+// Its surface is another one: a proxy that jumps there has not been pulled by its hand.
+TEST(SceneField, APatchThatIsNoLongerThinnedIsAChange) {
+  Scene scene;
+  auto points = plane(0, 0.5e-3, 30);
+  for (TestPoint& p : points) p.radius = 30e-3;
+  scene.add("plane").publish(still(points));
+  SceneField field(scene);
+  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  ASSERT_TRUE(has(field.notes(), FieldNote::thinned));
+  const std::uint64_t before = field.traits().revision;
+  field.update(1e-3, Vector3d::Zero(), Vector3d::Zero());
+  EXPECT_EQ(field.traits().revision, before);
+  const Vector3d aside(0.045, 0, 0);
+  field.update(2e-3, aside, aside);
+  ASSERT_FALSE(has(field.notes(), FieldNote::thinned)) << field.patch_points();
+  EXPECT_GT(field.traits().revision, before);
+}
+
 TEST(SceneField, ALayerWithoutPointsChangesNothing) {
   Scene scene;
   Source& source = scene.add("camera");
