@@ -10,16 +10,19 @@ namespace palpate::depth {
 namespace {
 
 constexpr std::size_t kRowsAtATime = 8;
-constexpr int kAround = 2;             // blocks to each side that are to be explained
+constexpr int kAround = 2;  // blocks to each side that are to be explained
+constexpr int kSide = 2 * kAround + 1;
+constexpr int kBlocks = kSide * kSide;
 constexpr float kSure = 9;             // three deviations
 constexpr float kOther = 16;           // four: what is farther away is of another surface
 constexpr int kReaches[] = {2, 4, 6};  // blocks; the smallest of all largest windows is 6
 constexpr std::pair<int, int> kAxes[] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
 
-// The plane of the block at (u, v) from the one that is looked at, per unit of the ray.
+// A block's plane, as seen from another block: in units of the ray, with that one at (0, 0).
 struct Plane {
-  float x, y;  // from that one
-  float rho, slope_x, slope_y;
+  float x, y;  // of the block
+  float rho;   // there
+  float slope_x, slope_y;
   float variance, slope_variance;
 
   [[nodiscard]] float at(float to_x, float to_y) const {
@@ -43,9 +46,7 @@ struct Pair {
   Plane a, b;
   bool concave;
 
-  [[nodiscard]] const Plane& seen(float x, float y) const {
-    return (a.at(x, y) > b.at(x, y)) == concave ? a : b;
-  }
+  [[nodiscard]] const Plane& here() const { return (a.at(0, 0) > b.at(0, 0)) == concave ? a : b; }
 };
 
 std::optional<Pair> meeting(const Plane& a, const Plane& b) {
@@ -55,59 +56,88 @@ std::optional<Pair> meeting(const Plane& a, const Plane& b) {
   return Pair{a, b, a_ahead > 0};
 }
 
-// One block and what is around it.
+// What was measured around a block, in lanes for the compiler to take side by side.
+struct Around {
+  static constexpr int kLanes = 8;
+  static constexpr int kPlaces = 32;
+  float x[kPlaces] = {}, y[kPlaces] = {};
+  float rho[kPlaces] = {}, counts[kPlaces] = {};  // 0: nothing was
+
+  Around(float step_x, float step_y) {
+    for (int k = 0; k < kBlocks; ++k) {
+      x[k] = static_cast<float>(k % kSide - kAround) * step_x;
+      y[k] = static_cast<float>(k / kSide - kAround) * step_y;
+    }
+  }
+
+  void look(const Blocks& blocks, int column, int row) {
+    for (int k = 0; k < kBlocks; ++k) {
+      rho[k] = blocks.rho[blocks.at(column + k % kSide - kAround, row + k / kSide - kAround)];
+      counts[k] = rho[k] > 0 ? 1.0F : 0.0F;
+    }
+  }
+
+  // Squares of what the pair leaves, those of other surfaces capped.
+  [[nodiscard]] float misfit(const Pair& pair, float variance) const {
+    const float sign = pair.concave ? 1.0F : -1.0F;
+    const float most = kOther * variance;
+    float sums[kLanes] = {};
+    for (int k = 0; k < kPlaces; k += kLanes) {
+      for (int l = 0; l < kLanes; ++l) {
+        const float a = sign * pair.a.at(x[k + l], y[k + l]);
+        const float b = sign * pair.b.at(x[k + l], y[k + l]);
+        const float off = rho[k + l] - sign * (a > b ? a : b);
+        const float square = off * off;
+        sums[l] += counts[k + l] * (square < most ? square : most);
+      }
+    }
+    float sum = 0;
+    for (const float part : sums) sum += part;
+    return sum;
+  }
+};
+
+// One block on the search for the planes that meet near it.
 struct Place {
   const Blocks& blocks;
   const BlockFits& fits;
   int column, row;
-  float step_x, step_y;
-  float variance;  // of one block
 
+  // Of the block (u, v) away; nothing if that is not on a plane.
   [[nodiscard]] std::optional<Plane> plane(int u, int v) const {
+    const BlockGrid& grid = fits.grid;
     const int c = column + u;
     const int r = row + v;
-    if (c < 0 || r < 0 || c >= fits.grid.columns || r >= fits.grid.rows) return {};
-    const std::size_t i = fits.grid.index(c, r);
+    if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) return {};
+    const std::size_t i = grid.index(c, r);
     const bool fitted = blocks.rho[blocks.at(c, r)] > 0 && fits.states[i] == BlockState::fitted;
     if (!fitted || !fits.flat[i]) return {};
-    return Plane{static_cast<float>(u) * step_x,
-                 static_cast<float>(v) * step_y,
-                 fits.rho[i],
-                 fits.slope_x[i],
-                 fits.slope_y[i],
-                 fits.variance[i],
-                 fits.slope_variance[i]};
+    return own_plane(i, u, v);
   }
 
-  // Squares of what `surface` leaves, another surface's capped.
-  template <class Surface>
-  [[nodiscard]] float misfit(const Surface& surface) const {
-    float sum = 0;
-    for (int v = -kAround; v <= kAround; ++v) {
-      const float* rho = &blocks.rho[blocks.at(column, row + v)];
-      for (int u = -kAround; u <= kAround; ++u) {
-        if (!(rho[u] > 0)) continue;
-        const float off =
-            rho[u] - surface(static_cast<float>(u) * step_x, static_cast<float>(v) * step_y);
-        sum += std::min(off * off, kOther * variance);
-      }
-    }
-    return sum;
+  [[nodiscard]] Plane own_plane(std::size_t i, int u, int v) const {
+    return {static_cast<float>(u * fits.grid.step_x),
+            static_cast<float>(v * fits.grid.step_y),
+            fits.rho[i],
+            fits.slope_x[i],
+            fits.slope_y[i],
+            fits.variance[i],
+            fits.slope_variance[i]};
   }
 
-  // The plane that is seen here of the pair around that leaves less than `most`, and the least.
-  [[nodiscard]] std::optional<Plane> search(float most) const {
+  // The plane that is seen here of the pair that leaves least of what is around: less than `most`.
+  [[nodiscard]] std::optional<Plane> search(const Around& around, float variance,
+                                            float most) const {
     std::optional<Plane> found;
     for (const int reach : kReaches) {
       for (const auto& [u, v] : kAxes) {
         const std::optional<Plane> a = plane(reach * u, reach * v);
         const std::optional<Plane> b = a ? plane(-reach * u, -reach * v) : a;
         const std::optional<Pair> pair = b ? meeting(*a, *b) : std::nullopt;
-        if (!pair) continue;
-        const float left = misfit([&](float x, float y) { return pair->seen(x, y).at(x, y); });
+        const float left = pair ? around.misfit(*pair, variance) : most;
         if (!(left < most)) continue;
         most = left;
-        found = pair->seen(0, 0);
+        found = pair->here();
       }
     }
     return found;
@@ -116,40 +146,42 @@ struct Place {
 
 }  // namespace
 
+void MeetingPlanes::search_row(const Blocks& blocks, const NoiseModel& noise, int row,
+                               std::span<const std::int32_t> columns, const BlockFits& fits,
+                               std::vector<Change>& changes) {
+  const auto together =
+      static_cast<float>(std::min(shared_error(noise.correlation), double{kBlocks}));
+  Around around(static_cast<float>(fits.grid.step_x), static_cast<float>(fits.grid.step_y));
+  changes.clear();
+  for (const std::int32_t column : columns) {
+    const std::size_t i = fits.grid.index(column, row);
+    if (!fits.at_edge[i]) continue;
+    const float rho = blocks.rho[blocks.at(column, row)];
+    const float sigma = block_sigma(noise, rho);
+    const float variance = sigma * sigma;
+    around.look(blocks, column, row);
+    const Place place{blocks, fits, column, row};
+    const Plane own = place.own_plane(i, 0, 0);
+    const float left = around.misfit({own, own, true}, variance);
+    if (!(left > kBlocks * variance)) continue;
+    const std::optional<Plane> seen =
+        place.search(around, variance, left - kSure * together * variance);
+    const float off = seen ? seen->at(0, 0) - rho : 0;
+    if (!seen || off * off > kOther * variance) continue;
+    changes.push_back({i, seen->at(0, 0), seen->variance_at(0, 0), seen->slope_x, seen->slope_y,
+                       seen->slope_variance});
+  }
+}
+
 void MeetingPlanes::assign(const Blocks& blocks, const NoiseModel& noise, int first_row,
                            const std::vector<std::int32_t>& columns,
                            const std::vector<std::size_t>& row_begin, BlockFits& fits) {
   const std::size_t rows = row_begin.size() - 1;
   if (changes_.size() < rows) changes_.resize(rows);
-  constexpr double kBlocks = (2 * kAround + 1) * (2 * kAround + 1);
-  const auto together = static_cast<float>(std::min(shared_error(noise.correlation), kBlocks));
-  const auto step_x = static_cast<float>(fits.grid.step_x);
-  const auto step_y = static_cast<float>(fits.grid.step_y);
   detail::parallel_ranges(rows, kRowsAtATime, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
-      changes_[r].clear();
-      const int row = first_row + static_cast<int>(r);
-      for (std::size_t k = row_begin[r]; k < row_begin[r + 1]; ++k) {
-        const std::size_t i = fits.grid.index(columns[k], row);
-        if (!fits.at_edge[i]) continue;
-        const float rho = blocks.rho[blocks.at(columns[k], row)];
-        const float sigma = block_sigma(noise, rho);
-        const Place place{blocks, fits, columns[k], row, step_x, step_y, sigma * sigma};
-        const Plane own{0,
-                        0,
-                        fits.rho[i],
-                        fits.slope_x[i],
-                        fits.slope_y[i],
-                        fits.variance[i],
-                        fits.slope_variance[i]};
-        const float left = place.misfit([&](float x, float y) { return own.at(x, y); });
-        const std::optional<Plane> seen = place.search(left - kSure * together * sigma * sigma);
-        if (!seen) continue;
-        const float off = seen->at(0, 0) - rho;
-        if (off * off > kOther * sigma * sigma) continue;
-        changes_[r].push_back({i, seen->at(0, 0), seen->variance_at(0, 0), seen->slope_x,
-                               seen->slope_y, seen->slope_variance});
-      }
+      const auto of_row = std::span(columns).subspan(row_begin[r], row_begin[r + 1] - row_begin[r]);
+      search_row(blocks, noise, first_row + static_cast<int>(r), of_row, fits, changes_[r]);
     }
   });
   for (std::size_t r = 0; r < rows; ++r) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "depth/block_fits.hpp"
@@ -28,6 +29,11 @@ class MeetingPlanes {
     std::size_t block;
     float rho, variance, slope_x, slope_y, slope_variance;
   };
+
+  static void search_row(const Blocks& blocks, const NoiseModel& noise, int row,
+                         std::span<const std::int32_t> columns, const BlockFits& fits,
+                         std::vector<Change>& changes);
+
   std::vector<std::vector<Change>> changes_;  // row by row
 };
 
