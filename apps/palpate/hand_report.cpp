@@ -123,10 +123,12 @@ Json json_device(const HandReport& report) {
 }
 
 // Of a hand that felt nothing.
-std::string way_to_surface(const Hand& hand) {
+std::string way_to_surface(const HandReport& report) {
+  const Hand& hand = report.hand;
   if (hand.plan) return "give it more time (--duration)";
   if (hand.led) {
-    return "is the trajectory in metres and in the cloud's frame, and --scale right?";
+    return fmt::format("is the trajectory in metres and in the {}?",
+                       report.scales ? "cloud's frame, and --scale right" : "world's frame");
   }
   // A socket has reasons of single packets, too: they count where none was good.
   const bool counts = hand.socket == nullptr || hand.socket->counts().taken == 0;
@@ -147,7 +149,7 @@ HandEnergy energy_at_hand(const HandReport& report) {
 std::vector<std::string> advice(const HandReport& report) {
   std::vector<std::string> sentences;
   if (report.statistics.touching() == 0) {
-    sentences.push_back("the hand never met the surface: " + way_to_surface(report.hand));
+    sentences.push_back("the hand never met the surface: " + way_to_surface(report));
   }
   const double scale = report.hand.workspace.scale;
   const double felt = scale * report.stiffness;

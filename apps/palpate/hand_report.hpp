@@ -21,6 +21,7 @@ struct HandReport {
   const LiveReport* live = nullptr;      ///< of a run in real time
   const Unguarded* unguarded = nullptr;  ///< of one in simulated time
   bool interrupted = false;              ///< by Ctrl-C
+  bool scales = true;                    ///< is there a file, whose units --scale can mend?
 };
 
 /// Work done on the hand, J: in its own metres, where the cloud is magnified (workspace.hpp).

@@ -73,11 +73,14 @@ std::optional<RealtimeRequest> leave_to_servo(const TouchOptions& options, bool 
 
 std::vector<HandReport> hand_reports(const Run& run, const TouchOutputs& outputs,
                                      const LiveOutcome& outcome) {
+  const bool scales = std::ranges::any_of(
+      run.touched.sources, [](const TouchedSource& source) { return !source.camera; });
   std::vector<HandReport> reports;
   for (std::size_t i = 0; i < run.hands.size(); ++i) {
     reports.push_back({run.hands[i], outputs.hands[i].statistics(), run.field, run.proxy.stiffness,
                        outcome.hands.empty() ? nullptr : &outcome.hands[i],
-                       outputs.unguarded ? &*outputs.unguarded : nullptr, outcome.interrupted});
+                       outputs.unguarded ? &*outputs.unguarded : nullptr, outcome.interrupted,
+                       scales});
   }
   return reports;
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <iterator>
 
 #include "apps/palpate/depth_file.hpp"
 #include "apps/palpate/frame_cloud.hpp"
@@ -42,6 +44,25 @@ void refuse_material(const CloudArgument& source) {
                   source.path));
 }
 
+// Refuses a frame that measured something, and nothing in range: its unit may be another one.
+void check_range(const DepthFrame& frame, const DepthFilterOptions& range) {
+  const auto out = [&](float z) {
+    return !(static_cast<double>(z) >= range.nearest && static_cast<double>(z) <= range.farthest);
+  };
+  if (!std::ranges::all_of(frame.depth, out)) return;
+  std::vector<float> depths;
+  std::ranges::copy_if(frame.depth, std::back_inserter(depths),
+                       [](float z) { return z > 0 && std::isfinite(z); });
+  if (depths.empty()) return;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::ranges::nth_element(depths, middle);
+  throw Error(
+      fmt::format("all depths are nearer than {} m or farther than {} m (median {:.4g} m); widen "
+                  "the range (--nearest, --farthest), or mend the unit (depth_unit_m of a "
+                  "recording, --depth-unit of an image)",
+                  range.nearest, range.farthest, *middle));
+}
+
 // Farther away the proxy would fault in every step.
 void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
   if (points.size() == 0) return;
@@ -50,9 +71,9 @@ void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
                               (points.origin + root.upper.cast<double>()).cwiseAbs().maxCoeff());
   if (far <= Proxy::kLargestCoordinate) return;
   throw Error(fmt::format(
-      "{} reaches {:.4g} m from the origin; beyond {:.0e} m no surface can be resolved: "
-      "are --scale and --pose right?",
-      cloud.path, far, Proxy::kLargestCoordinate));
+      "{} reaches {:.4g} m from the origin; beyond {:.0e} m no surface can be resolved: {} right?",
+      cloud.path, far, Proxy::kLargestCoordinate,
+      lives(cloud.path) ? "is --pose" : "are --scale and --pose"));
 }
 
 // Where R reaches over all of a cloud there is no surface any more, and preparing it takes long.
@@ -138,23 +159,55 @@ void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSour
   const Waiting waiting(fmt::format("preparing {}", chosen.argument.name));
   const auto start = WallClock::now();
   Source& source = scene.add(chosen.argument.name, result.options);
+  check_range(frame, result.options.depth);
   source.set(frame);
   check_felt(source, result);
   result.prepare_seconds = seconds_since(start);
 }
 
+// Makes it the first frame of the source. False: it shows no surface; `problem` gets the reason, if
+// one is told.
+bool shows(const DepthFrame& frame, const TouchedSource& result, Source& source,
+           std::string& problem) {
+  try {
+    push_frame(result, source, frame, [] { return 0.0; });  // in which no tool is known yet
+  } catch (const Error& error) {
+    problem = error.what();
+    return false;
+  }
+  return source.points() && source.points()->size() > 0;
+}
+
+bool take_next(DepthCamera& camera, double latest, DepthFrame& frame) {
+  try {
+    frame = first_frame(camera);
+  } catch (const Error&) {
+    return false;
+  }
+  return frame.stamp <= latest;
+}
+
 void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& chosen, bool explored,
               const Clock* clock, TouchedSource& result) {
+  constexpr double kFirstLook = 1;  // s of frames, the first of which may be black
   if (wants_material(options)) refuse_material(chosen.argument);
   result.camera = open_live(chosen, clock);
-  const DepthFrame first = first_frame(*result.camera);
-  result.lens = first.camera;
+  DepthFrame first = first_frame(*result.camera);
+  const double latest = first.stamp + kFirstLook;
   result.as_cloud = taken_as_cloud(options, chosen);
-  if (!chosen.choices.farthest) believe_no_farther(first, result.options.depth);
+  const DepthFilterOptions asked = result.options.depth;
   Source& source = scene.add(chosen.argument.name, result.options);
-  if (first.T_world_sensor) source.set_pose(*first.T_world_sensor);
-  if (!explored) return;
-  push_frame(result, source, first, [] { return 0.0; });  // in which no tool is known yet
+  std::string problem;
+  do {
+    result.lens = first.camera;
+    result.options.depth = asked;
+    if (!chosen.choices.farthest) believe_no_farther(first, result.options.depth);
+    source.change(result.options);  // forgets the frames before
+    if (first.T_world_sensor) source.set_pose(*first.T_world_sensor);
+    if (!explored) return;
+    if (shows(first, result, source, problem)) return check_felt(source, result);
+  } while (take_next(*result.camera, latest, first));
+  if (!problem.empty()) throw Error(problem);
   check_felt(source, result);
 }
 
@@ -201,6 +254,7 @@ void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft) {
 void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
                 const StartTime& start) {
   if (!touched.as_cloud) {
+    check_range(frame, touched.options.depth);
     felt.push(frame, start);
     return;
   }

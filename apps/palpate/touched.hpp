@@ -51,8 +51,9 @@ struct Touched {
 [[nodiscard]] std::string title_of(const Touched& touched);
 
 /// Reads every cloud, prepares it and puts it into the scene; opens every camera and waits for its
-/// first frame, which is prepared only if the surface is to be `explored` before the run. Cameras
-/// keep the time of `clock`, which outlives them; null: simulated time.
+/// first frame or, if the surface is to be `explored` before the run, prepares frames until one of
+/// the first second shows a surface. Cameras keep the time of `clock`, which outlives them; null:
+/// simulated time.
 /// @throws UsageError when a pose names no source; Error as reading, opening and preparing do.
 [[nodiscard]] Touched prepare_touched(const TouchOptions& options, bool explored,
                                       const Clock* clock = nullptr);
@@ -63,7 +64,8 @@ struct Touched {
 void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft);
 
 /// Makes a camera's frame part of what is felt: by the depth filter or, where that is wanted, as a
-/// cloud. @throws Error as Source::push() does.
+/// cloud. @throws Error as Source::push() does, and when nothing that the filter could take is in
+/// its range.
 void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
                 const StartTime& start);
 

@@ -56,6 +56,12 @@ void check(const DepthFrame& frame) {
                     "the camera's width and height",
                     camera.width, camera.height));
   }
+  if (camera.width < kFewestPixels || camera.height < kFewestPixels) {
+    throw Error(
+        fmt::format("depth filter: a frame of {} x {} pixels has too few to tell slopes from; give "
+                    "{} or more each way",
+                    camera.width, camera.height, kFewestPixels));
+  }
   const auto pixels = static_cast<std::size_t>(camera.width) * camera.height;
   if (frame.depth.size() != pixels) {
     throw Error(fmt::format("depth filter: {} depths for {} x {} pixels; give {}",

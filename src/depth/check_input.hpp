@@ -7,7 +7,10 @@ namespace palpate::depth {
 /// @throws Error when an option is out of range.
 void check(const DepthFilterOptions& options);
 
-/// @throws Error when the frame's size and depths disagree or its camera is none.
+/// Pixels across and down of three blocks: fewer tell no slope.
+inline constexpr int kFewestPixels = 6;
+
+/// @throws Error when the frame's size and depths disagree, its camera is none, or it is too small.
 void check(const DepthFrame& frame);
 
 /// @throws Error when the pose is not finite.

@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include "depth/check_input.hpp"
+
 namespace palpate {
 namespace {
 
@@ -158,7 +160,8 @@ DepthFrame frame_of(const PointCloud& cloud, const std::vector<Sight>& sights, c
 }
 
 bool is_organised(const PointCloud& cloud) {
-  if (cloud.width < 2 || cloud.height < 2 || cloud.pixels.size() != cloud.size()) return false;
+  if (std::min(cloud.width, cloud.height) < depth::kFewestPixels) return false;
+  if (cloud.pixels.size() != cloud.size()) return false;
   const std::size_t pixels = cloud.width * cloud.height;
   return std::ranges::all_of(cloud.pixels, [&](std::uint32_t pixel) { return pixel < pixels; });
 }
@@ -168,7 +171,7 @@ bool is_organised(const PointCloud& cloud) {
 OrganisedFrame depth_frame_of(const PointCloud& cloud) {
   OrganisedFrame result;
   if (!is_organised(cloud)) {
-    result.why_none = "its points are not those of an image";
+    result.why_none = "its points are not those of an image, or of too small a one";
     return result;
   }
   const auto size = static_cast<double>(std::max(cloud.width, cloud.height));

@@ -143,6 +143,26 @@ TEST(Streams, DepthsOutOfRangeAreNotBelieved) {
   }
 }
 
+TEST(Streams, DepthsThatAreAllOutOfRangeAreToldWithARemedy) {
+  Shell shell;
+  write_wall(shell, 6);
+  std::string description = shell.read("wall/sequence.json");
+  description.replace(description.find("0.001"), 5, "1.0");  // millimetres for metres
+  shell.write("wall/sequence.json", description);
+  shell.write("way.csv", into_wall(300));
+  const std::string command = "touch sequence:wall --simulated-time --json r.json ";
+  const Outcome explored = shell.run(command + "--duration 1");
+  EXPECT_EQ(explored.code, 1);
+  const Outcome led = shell.run(command + "--trajectory way.csv");
+  ASSERT_EQ(led.code, 0) << led.err;
+  for (const std::string& told : {explored.err, led.out}) {
+    EXPECT_NE(told.find("farther than 20 m (median 500 m)"), std::string::npos) << told;
+    EXPECT_NE(told.find("depth_unit_m"), std::string::npos) << told;
+    EXPECT_EQ(told.find("--scale"), std::string::npos) << "is of files: " << told;
+  }
+  EXPECT_EQ(Json::parse(shell.read("r.json"))["sources"][0]["frames_touchable"], 0);
+}
+
 TEST(Streams, ClippingToReachLeavesTheForceAndMostPointsOut) {
   if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
@@ -216,6 +236,28 @@ TEST(Streams, FramesOfNoUseAreDroppedInSimulatedTimeAndTheReportSaysWhy) {
   EXPECT_EQ(source["drops"]["empty"], 1);
   EXPECT_EQ(source["drops"]["repeated"], 18);
   EXPECT_EQ(source["phase"], "stalled") << "the picture froze";
+}
+
+TEST(Streams, RecordingsThatBeginBlackAreExplored) {
+  Shell shell;
+  write_wall(shell, 40);
+  const auto blacken = [&](int from, int to) {
+    const std::string black = "P5 64 48 65535\n" + std::string(std::size_t{2} * 64 * 48, '\0');
+    for (int i = from; i < to; ++i) shell.write(fmt::format("wall/{:03}.pgm", i), black);
+  };
+  blacken(0, 5);
+  const std::string command = "touch sequence:wall --simulated-time --duration 1.2 --json r.json ";
+  for (const char* more : {"", "--unorganised"}) {
+    const Outcome outcome = shell.run(command + more);
+    ASSERT_EQ(outcome.code, 0) << more << "\n" << outcome.err;
+    const Json report = Json::parse(shell.read("r.json"));
+    EXPECT_GT(report["contacts"].get<int>(), 0) << more;
+    EXPECT_EQ(report["sources"][0]["drops"]["empty"], 5) << "planning takes nothing from it";
+  }
+  blacken(5, 40);
+  const Outcome outcome = shell.run(command);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("shows no surface"), std::string::npos) << outcome.err;
 }
 
 TEST(Streams, DepthImageGoesThroughTheDepthFilterUnlessUnorganised) {

@@ -161,10 +161,14 @@ TEST(Organised, CloudsWithoutRowsOrWithWrongOnesAreNoFrame) {
   few.width = few.height = 2;
   few.pixels = {0, 3};
   few.positions = {{0, 0, 1}, {1, 1, 1}};
+  DepthFrame small;
+  small.camera = {5, 40, {525, 525, 2, 20}, {}};
+  small.depth.assign(5 * 40, 1);
   PointCloud column = whole;
   column.positions.resize(1);
   column.pixels = {7};
-  for (const PointCloud& cloud : {PointCloud(), loose, shorter, beyond, row, few, column}) {
+  for (const PointCloud& cloud :
+       {PointCloud(), loose, shorter, beyond, row, few, column, organised_cloud(small)}) {
     const OrganisedFrame found = depth_frame_of(cloud);
     EXPECT_FALSE(found.frame && found.frame->depth.empty());
     if (cloud.size() > 2) {

@@ -121,5 +121,37 @@ TEST(Fusion, GoesOnFromWhereTheSurfaceIs) {
   }
 }
 
+// A table and a wall behind it, whose points in the crease preparation puts on both.
+TEST(Fusion, KeepsThePointsOfACreaseWhereTheyAre) {
+  PointCloud crease;
+  crease.viewpoint = Vector3d(-0.3, 0, 0.4);
+  for (int i = 0; i <= 25; ++i) {
+    for (int j = -25; j <= 25; ++j) {
+      const float along = 2e-3f * static_cast<float>(i);
+      const float across = 2e-3f * static_cast<float>(j);
+      crease.positions.emplace_back(-along, across, 0.f);
+      if (i > 0) crease.positions.emplace_back(0.f, across, along);
+    }
+  }
+  PrepareOptions prepare;
+  prepare.voxel = 4e-3;
+  Fusion fusion(prepare);
+  SurfacePoints points;
+  for (int k = 0; k < 3; ++k) {
+    fusion.add(crease, Eigen::Isometry3d::Identity());
+    points = fusion.surface({k * kFrame, k * kFrame, kFrame});
+  }
+  check(points);
+  EXPECT_EQ(points.size(), fusion.report().points_out);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f p = points.end_positions[i];
+    EXPECT_LT((p - points.grid.points()[i]).norm(), 1e-6f) << "the same cloud again";
+    const bool lies = std::abs(p.z()) < 2e-3f;
+    EXPECT_TRUE(lies || std::abs(p.x()) < 2e-3f) << p.transpose();
+    if (std::abs(p.x()) + std::abs(p.z()) < 8e-3f) continue;
+    EXPECT_GT(lies ? points.end_normals[i].z() : -points.end_normals[i].x(), 0.9f);
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -114,19 +114,27 @@ PointCloud Fusion::means() const {
 }
 
 /// What preparation makes of the means is where the voxels' points go. Points that stand for many
-/// weigh more: a voxel that the surface only touches holds few, which lie off it.
+/// weigh more: a voxel that the surface only touches holds few, which lie off it. Points at one
+/// place, such as the two of a crease, are one: what is shown has one sheet only.
 void Fusion::show() {
   const SurfacePoints& ends = prepared_.points;
-  std::vector<Voxel*> voxels;
-  for (auto& [key, voxel] : voxels_) voxels.push_back(&voxel);
-  std::vector<std::uint32_t> counts;
-  for (const std::uint32_t i : ends.grid.order()) {
-    counts.push_back(static_cast<std::uint32_t>(std::lround(kParts * voxels[i]->count)));
+  std::vector<std::uint32_t> counts(ends.size());
+  std::vector<float> weights(ends.size());
+  std::vector<std::uint32_t> places;  // of the voxels' points among the ends
+  std::vector<std::uint32_t> same;
+  for (const auto& [key, voxel] : voxels_) {
+    same.clear();
+    ends.grid.within(voxel.mean().cast<float>(), 0, same);
+    places.push_back(same.front());
+    for (const std::uint32_t k : same) {
+      counts[k] = static_cast<std::uint32_t>(std::lround(kParts * voxel.count));
+      weights[places.back()] += ends.density_weights[k];
+    }
   }
-  std::vector<float> weights = ends.density_weights;
   weigh_by_counts(ends.grid, counts, ends.radii, weights);
-  for (std::size_t k = 0; k < ends.size(); ++k) {
-    Voxel& voxel = *voxels[ends.grid.order()[k]];
+  auto place = places.begin();
+  for (auto& [key, voxel] : voxels_) {
+    const std::uint32_t k = *place++;
     const bool gone = voxel.occupancy < kFaded;
     voxel.end = {ends.grid.points()[k], ends.normals[k],
                  gone ? 0 : weights[k] * static_cast<float>(voxel.occupancy), ends.radii[k],
