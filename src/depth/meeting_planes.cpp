@@ -9,13 +9,14 @@
 namespace palpate::depth {
 namespace {
 
-constexpr std::size_t kRowsAtATime = 8;
-constexpr int kAround = 2;  // blocks to each side that are to be explained
-constexpr int kSide = 2 * kAround + 1;
-constexpr int kBlocks = kSide * kSide;
-constexpr float kSure = 9;             // three deviations
-constexpr float kOther = 16;           // four: what is farther away is of another surface
-constexpr int kReaches[] = {2, 4, 6};  // blocks; the smallest of all largest windows is 6
+constexpr std::size_t kRowsPerPiece = 8;
+constexpr int kHalfWidth = 2;  // blocks to each side that are to be explained
+constexpr int kWidth = 2 * kHalfWidth + 1;
+constexpr int kBlocks = kWidth * kWidth;
+constexpr float kExplained = kBlocks + 21;  // 3 sqrt(2 n): what noise leaves, three deviations up
+constexpr float kCertain = 9;               // three deviations
+constexpr float kElsewhere = 16;            // four: what is farther away is of another surface
+constexpr int kReaches[] = {2, 4, 6};       // blocks; the smallest of all largest windows is 6
 constexpr std::pair<int, int> kAxes[] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
 
 // A block's plane, as seen from another block: in units of the ray, with that one at (0, 0).
@@ -38,7 +39,7 @@ struct Plane {
 // By how much `of`, at its own block, is nearer than `to` continued there; 0: noise may be it.
 float ahead(const Plane& of, const Plane& to) {
   const float gap = of.rho - to.at(of.x, of.y);
-  return gap * gap > kSure * (of.variance + to.variance_at(of.x, of.y)) ? gap : 0;
+  return gap * gap > kCertain * (of.variance + to.variance_at(of.x, of.y)) ? gap : 0;
 }
 
 // Two planes as they are seen where they meet.
@@ -65,14 +66,15 @@ struct Around {
 
   Around(float step_x, float step_y) {
     for (int k = 0; k < kBlocks; ++k) {
-      x[k] = static_cast<float>(k % kSide - kAround) * step_x;
-      y[k] = static_cast<float>(k / kSide - kAround) * step_y;
+      x[k] = static_cast<float>(k % kWidth - kHalfWidth) * step_x;
+      y[k] = static_cast<float>(k / kWidth - kHalfWidth) * step_y;
     }
   }
 
   void look(const Blocks& blocks, int column, int row) {
     for (int k = 0; k < kBlocks; ++k) {
-      rho[k] = blocks.rho[blocks.at(column + k % kSide - kAround, row + k / kSide - kAround)];
+      rho[k] =
+          blocks.rho[blocks.at(column + k % kWidth - kHalfWidth, row + k / kWidth - kHalfWidth)];
       counts[k] = rho[k] > 0 ? 1.0F : 0.0F;
     }
   }
@@ -80,7 +82,7 @@ struct Around {
   // Squares of what the pair leaves, those of other surfaces capped.
   [[nodiscard]] float misfit(const Pair& pair, float variance) const {
     const float sign = pair.concave ? 1.0F : -1.0F;
-    const float most = kOther * variance;
+    const float most = kElsewhere * variance;
     float sums[kLanes] = {};
     for (int k = 0; k < kPlaces; k += kLanes) {
       for (int l = 0; l < kLanes; ++l) {
@@ -98,7 +100,7 @@ struct Around {
 };
 
 // One block on the search for the planes that meet near it.
-struct Place {
+struct Search {
   const Blocks& blocks;
   const BlockFits& fits;
   int column, row;
@@ -126,8 +128,7 @@ struct Place {
   }
 
   // The plane that is seen here of the pair that leaves least of what is around: less than `most`.
-  [[nodiscard]] std::optional<Plane> search(const Around& around, float variance,
-                                            float most) const {
+  [[nodiscard]] std::optional<Plane> run(const Around& around, float variance, float most) const {
     std::optional<Plane> found;
     for (const int reach : kReaches) {
       for (const auto& [u, v] : kAxes) {
@@ -146,13 +147,13 @@ struct Place {
 
 }  // namespace
 
-void MeetingPlanes::search_row(const Blocks& blocks, const NoiseModel& noise, int row,
-                               std::span<const std::int32_t> columns, const BlockFits& fits,
-                               std::vector<Change>& changes) {
+std::size_t MeetingPlanes::search_row(const Blocks& blocks, const NoiseModel& noise, int row,
+                                      std::span<const std::int32_t> columns, const BlockFits& fits,
+                                      Change* changes) {
   const auto together =
       static_cast<float>(std::min(shared_error(noise.correlation), double{kBlocks}));
   Around around(static_cast<float>(fits.grid.step_x), static_cast<float>(fits.grid.step_y));
-  changes.clear();
+  std::size_t count = 0;
   for (const std::int32_t column : columns) {
     const std::size_t i = fits.grid.index(column, row);
     if (!fits.at_edge[i]) continue;
@@ -160,32 +161,40 @@ void MeetingPlanes::search_row(const Blocks& blocks, const NoiseModel& noise, in
     const float sigma = block_sigma(noise, rho);
     const float variance = sigma * sigma;
     around.look(blocks, column, row);
-    const Place place{blocks, fits, column, row};
-    const Plane own = place.own_plane(i, 0, 0);
+    const Search search{blocks, fits, column, row};
+    const Plane own = search.own_plane(i, 0, 0);
     const float left = around.misfit({own, own, true}, variance);
     if (!(left > kBlocks * variance)) continue;
-    const std::optional<Plane> seen =
-        place.search(around, variance, left - kSure * together * variance);
+    const float most = std::min(left - kCertain * together * variance, kExplained * variance);
+    const std::optional<Plane> seen = search.run(around, variance, most);
     const float off = seen ? seen->at(0, 0) - rho : 0;
-    if (!seen || off * off > kOther * variance) continue;
-    changes.push_back({i, seen->at(0, 0), seen->variance_at(0, 0), seen->slope_x, seen->slope_y,
-                       seen->slope_variance});
+    if (!seen || off * off > kElsewhere * variance) continue;
+    changes[count++] = {i,
+                        seen->at(0, 0),
+                        seen->variance_at(0, 0),
+                        seen->slope_x,
+                        seen->slope_y,
+                        seen->slope_variance};
   }
+  return count;
 }
 
 void MeetingPlanes::assign(const Blocks& blocks, const NoiseModel& noise, int first_row,
                            const std::vector<std::int32_t>& columns,
                            const std::vector<std::size_t>& row_begin, BlockFits& fits) {
   const std::size_t rows = row_begin.size() - 1;
-  if (changes_.size() < rows) changes_.resize(rows);
-  detail::parallel_ranges(rows, kRowsAtATime, [&](std::size_t begin, std::size_t end) {
+  changes_.reserve(fits.size());
+  changes_.resize(columns.size());
+  counts_.resize(static_cast<std::size_t>(fits.grid.rows));
+  detail::parallel_ranges(rows, kRowsPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       const auto of_row = std::span(columns).subspan(row_begin[r], row_begin[r + 1] - row_begin[r]);
-      search_row(blocks, noise, first_row + static_cast<int>(r), of_row, fits, changes_[r]);
+      counts_[r] = search_row(blocks, noise, first_row + static_cast<int>(r), of_row, fits,
+                              changes_.data() + row_begin[r]);
     }
   });
   for (std::size_t r = 0; r < rows; ++r) {
-    for (const Change& to : changes_[r]) {
+    for (const Change& to : std::span(changes_).subspan(row_begin[r], counts_[r])) {
       fits.rho[to.block] = to.rho;
       fits.variance[to.block] = to.variance;
       fits.slope_x[to.block] = to.slope_x;

@@ -8,13 +8,14 @@
 
 namespace palpate::depth {
 
-/// Gives each block near an edge or a crease to one surface.
+/// Gives blocks near creases and convex edges to one of the planes that meet there.
 ///
 /// The window that serves a block best may show a plane that another surface hides there: a table
 /// continued behind a wall, which correlated noise takes for the wall's lowest rows. So where the
-/// planes of two blocks on either side explain what was measured around a block surely better than
-/// its own plane does, it gets one of theirs: of two that meet concavely the nearer one along its
-/// ray, of two that meet convexly the farther one.
+/// planes of two blocks on either side explain what was measured around a block, and surely better
+/// than its own plane does, it gets one of theirs: of two that meet concavely the nearer one along
+/// its ray, of two that meet convexly the farther one. Up to six blocks within the rim of what is
+/// fitted, planes may be wanting.
 class MeetingPlanes {
  public:
   /// Changes the fits of the listed blocks: `columns[row_begin[r]]` on are those of row
@@ -30,11 +31,13 @@ class MeetingPlanes {
     float rho, variance, slope_x, slope_y, slope_variance;
   };
 
-  static void search_row(const Blocks& blocks, const NoiseModel& noise, int row,
-                         std::span<const std::int32_t> columns, const BlockFits& fits,
-                         std::vector<Change>& changes);
+  /// Writes what changes in a row from `changes` on; returns how many do.
+  static std::size_t search_row(const Blocks& blocks, const NoiseModel& noise, int row,
+                                std::span<const std::int32_t> columns, const BlockFits& fits,
+                                Change* changes);
 
-  std::vector<std::vector<Change>> changes_;  // row by row
+  std::vector<Change> changes_;  // those of a row stand where its columns do
+  std::vector<std::size_t> counts_;
 };
 
 }  // namespace palpate::depth

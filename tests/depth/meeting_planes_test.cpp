@@ -49,7 +49,7 @@ class Truth {
   std::vector<float> image_;
 };
 
-// Of the blocks two to four from another face: the share whose normal is far from their own's.
+// Of the blocks up to two from another face: the share whose normal is far from their own's.
 double share_turned_away(const std::vector<Solid>& solids, NoiseKind noise) {
   const Truth truth(solids);
   int blocks = 0;
@@ -63,8 +63,8 @@ double share_turned_away(const std::vector<Solid>& solids, NoiseKind noise) {
     for (int row = 8; row < points.rows - 8; ++row) {
       for (int column = 8; column < points.columns - 8; ++column) {
         const std::size_t i = static_cast<std::size_t>(row) * points.columns + column;
-        if (points.states[i] != BlockState::fitted || truth.meets_another(column, row, 1)) continue;
-        if (!truth.meets_another(column, row, 4)) continue;
+        if (points.states[i] != BlockState::fitted) continue;
+        if (!truth.meets_another(column, row, 2)) continue;
         ++blocks;
         if (points.normals[i].cast<double>().dot(truth.normal(column, row)) < 0.7) ++wrong;
       }
@@ -80,7 +80,7 @@ TEST(MeetingPlanes, AWallsFootIsNotTheTableBehindIt) {
 
 TEST(MeetingPlanes, FacesOfABoxEndAtItsEdges) {
   const std::vector<Solid> solids = {box({0, 0, 0.7}, 0.1, 0.6, 0.5)};
-  for (const NoiseKind noise : kKinds) EXPECT_LT(share_turned_away(solids, noise), 0.005);
+  for (const NoiseKind noise : kKinds) EXPECT_LT(share_turned_away(solids, noise), 0.08);
 }
 
 }  // namespace

@@ -245,6 +245,7 @@ inline void write(const FitInput& in, const Chunk& c, int i, const Surface& s, i
   out.slope_y[column] = static_cast<float>(s.slope_v[lane] * per_y);
   out.slope_variance[column] = static_cast<float>(var_x > var_y ? var_x : var_y);
   out.confidences[column] = 1;
+  if (away) out.flat[column] = 0;
 }
 
 inline void finish(const FitInput& in, int row, const Chunk& c, const FitRow& out) {

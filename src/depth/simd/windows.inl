@@ -128,7 +128,7 @@ struct Moments {
 struct Fits {
   Shape shape;
   Doubles m, cu, cv, cuv, cuu, cvv;
-  Doubles variance;  // of the mean of n blocks, times n, (1/m)^2
+  Doubles variance;  // of the mean of n blocks, times n
   Mask affine;       // no hole, and the noise explains what the affine fit leaves
   Mask quadratic;    // or the quadratic one
   Mask bent;         // by far more than noise would bend it
