@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "accuracy/drawn_rows.hpp"
+#include "accuracy/drawn_scene.hpp"
+
 namespace palpate::accuracy {
 namespace {
 
@@ -10,21 +13,34 @@ struct IdealRow {
   std::vector<Trace> ideal;
 };
 
-bool wanted(const std::string& name, const std::vector<std::string>& parts) {
-  return parts.empty() || std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
-           return name.find(part) != std::string::npos;
-         });
-}
-
-std::vector<IdealRow> ideal_rows(const TruthScene& truth, const BenchOptions& options) {
+// A layout with the paths on it.
+struct Ground {
+  std::uint64_t layout = 0;
+  TruthScene truth;
   std::vector<IdealRow> rows;
-  for (Row& row : make_rows(truth)) {
-    if (!wanted(row.name, options.rows)) continue;
-    IdealRow ideal{std::move(row), {}};
-    for (const Path& path : ideal.row.paths) ideal.ideal.push_back(ideal_trace(truth, path));
-    rows.push_back(std::move(ideal));
+};
+
+Ground ground_of(const BenchOptions& options, int i) {
+  Ground ground;
+  std::vector<Row> rows;
+  if (options.layouts > 0) {
+    ground.layout = options.first_layout + static_cast<std::uint64_t>(i);
+    ground.truth = draw_truth_scene(ground.layout);
+    rows = draw_rows(ground.truth, ground.layout);
+  } else {
+    ground.layout = static_cast<std::uint64_t>(options.layout);
+    ground.truth = make_truth_scene(options.layout);
+    rows = make_rows(ground.truth);
   }
-  return rows;
+  for (Row& row : rows) {
+    if (!is_wanted(row.name, options.rows)) continue;
+    IdealRow ideal{std::move(row), {}};
+    for (const Path& path : ideal.row.paths) {
+      ideal.ideal.push_back(ideal_trace(ground.truth, path));
+    }
+    ground.rows.push_back(std::move(ideal));
+  }
+  return ground;
 }
 
 // Contenders that prepare alike share a scene.
@@ -42,33 +58,50 @@ Score score_row(Scene& scene, const Contender& contender, const IdealRow& ideal,
   return scorer.score();
 }
 
-}  // namespace
-
-BenchResults run_bench(const BenchOptions& options, const std::vector<Contender>& contenders) {
-  const TruthScene truth = make_truth_scene(options.layout);
-  const DepthFrame exact = exact_frame(truth);
-  const std::vector<IdealRow> rows = ideal_rows(truth, options);
-  BenchResults out;
+void run_layout(const BenchOptions& options, const Ground& ground,
+                const std::vector<Contender>& contenders, BenchResults& out) {
+  const DepthFrame exact = exact_frame(ground.truth);
   for (int i = 0; i < options.seeds; ++i) {
     const std::uint64_t seed = options.first_seed + static_cast<std::uint64_t>(i);
-    SimulatedNoiseOptions noise;
-    noise.kind = options.noise;
-    noise.seed = seed;
-    noise.silhouettes = options.silhouettes;
-    const DepthFrame frame = noisy_frame(exact, noise);
+    const DepthFrame frame = noisy_frame(exact, noise_of(options, ground.layout, seed));
     std::unique_ptr<Scene> scene;
     for (std::size_t k = 0; k < contenders.size(); ++k) {
       const Contender& contender = contenders[k];
       if (!scene || !prepared_alike(contender, contenders[k - 1])) {
-        scene = make_scene(frame, truth, contender);
+        scene = make_scene(frame, ground.truth, contender);
       }
       const Source& source = scene->source(0);
       out.preparations.push_back({seed, contender.name, source.report(), source.state()});
-      for (const IdealRow& row : rows) {
-        out.results.push_back(
-            {seed, contender.name, row.row.name, score_row(*scene, contender, row, truth)});
+      for (const IdealRow& row : ground.rows) {
+        out.results.push_back({seed, contender.name, row.row.name,
+                               score_row(*scene, contender, row, ground.truth), ground.layout});
       }
     }
+  }
+}
+
+}  // namespace
+
+bool is_wanted(const std::string& row, const std::vector<std::string>& parts) {
+  return parts.empty() || std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
+           return row.find(part) != std::string::npos;
+         });
+}
+
+SimulatedNoiseOptions noise_of(const BenchOptions& options, std::uint64_t layout,
+                               std::uint64_t seed) {
+  SimulatedNoiseOptions noise;
+  noise.kind = options.noise;
+  noise.seed = options.layouts > 0 ? seed + 1000003 * layout : seed;
+  noise.rounding = options.rounding;
+  noise.silhouettes = options.silhouettes;
+  return noise;
+}
+
+BenchResults run_bench(const BenchOptions& options, const std::vector<Contender>& contenders) {
+  BenchResults out;
+  for (int i = 0; i < std::max(1, options.layouts); ++i) {
+    run_layout(options, ground_of(options, i), contenders, out);
   }
   return out;
 }

@@ -11,10 +11,13 @@
 namespace palpate::accuracy {
 
 struct BenchOptions {
-  int layout = 0;
-  int seeds = 8;
+  int layout = 0;   ///< a fixed one, where none is drawn
+  int layouts = 0;  ///< so many are drawn
+  std::uint64_t first_layout = 1;
+  int seeds = 8;  ///< frames of a layout
   std::uint64_t first_seed = 1;
   NoiseKind noise = NoiseKind::independent;
+  double rounding = 1e-3;  ///< of depths, m; 0: none
   bool silhouettes = false;
   std::vector<std::string> rows;  ///< only rows whose names hold one of these; empty: all
 };
@@ -25,6 +28,7 @@ struct Result {
   std::string contender;
   std::string row;
   Score score;
+  std::uint64_t layout = 0;
 };
 
 /// What preparation chose for a frame.
@@ -40,7 +44,14 @@ struct BenchResults {
   std::vector<Preparation> preparations;
 };
 
-/// Scores every contender on every row, with as many frames as there are seeds.
+/// Does the row's name hold one of these parts, or are there none?
+[[nodiscard]] bool is_wanted(const std::string& row, const std::vector<std::string>& parts);
+
+/// What is done to the exact depths of a frame of a layout. Drawn layouts have noise of their own.
+[[nodiscard]] SimulatedNoiseOptions noise_of(const BenchOptions& options, std::uint64_t layout,
+                                             std::uint64_t seed);
+
+/// Scores every contender on every row, with as many frames of every layout as there are seeds.
 [[nodiscard]] BenchResults run_bench(const BenchOptions& options,
                                      const std::vector<Contender>& contenders);
 

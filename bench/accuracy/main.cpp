@@ -1,4 +1,4 @@
-// Table A of the evaluation: one raw depth frame with known truth, touched along known paths.
+// Table A of the evaluation: raw depth frames with known truth, touched along known paths.
 
 #include <fmt/format.h>
 
@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "accuracy/table.hpp"
+#include "accuracy/drawn_table.hpp"
+#include "accuracy/sweep.hpp"
 #include "palpate/base/error.hpp"
 
 namespace {
@@ -17,7 +18,8 @@ struct Arguments {
   BenchOptions bench;
   palpate::PrepareOptions prepare;
   std::vector<std::string> fields;
-  std::string noise = "a";
+  std::vector<std::string> noises = {"a"};
+  bool sweep = false;
   std::string csv_file;
 };
 
@@ -25,9 +27,19 @@ void add_options(CLI::App& app, Arguments& arguments) {
   BenchOptions& bench = arguments.bench;
   app.add_option("--seeds", bench.seeds, "Frames")->check(CLI::Range(1, 1000));
   app.add_option("--first-seed", bench.first_seed, "Seed of the first frame");
-  app.add_option("--layout", bench.layout, "Placement of the objects (0-2)");
-  app.add_option("--noise", arguments.noise, "a independent, b blurred, c quantised")
-      ->check(CLI::IsMember({"a", "b", "c"}));
+  auto* fixed = app.add_option("--layout", bench.layout, "Placement of the objects (0-2)");
+  auto* drawn =
+      app.add_option("--layouts", bench.layouts, "So many drawn scenes with drawn paths instead")
+          ->check(CLI::Range(1, 100000))
+          ->excludes(fixed);
+  app.add_option("--first-layout", bench.first_layout, "Number (seed) of the first drawn scene");
+  app.add_flag("--sweep", arguments.sweep, "A plane and a sphere alone, by distance and incidence")
+      ->excludes(fixed)
+      ->excludes(drawn);
+  app.add_option("--noise", arguments.noises, "a independent, b blurred, c quantised, none")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"a", "b", "c", "none"}));
+  app.add_option("--rounding", bench.rounding, "Depths are whole multiples of it, m; 0: any");
   app.add_flag("--silhouettes", bench.silhouettes, "Missing and flying pixels at depth jumps");
   app.add_option("--rows", bench.rows, "Only rows whose names hold one of these")->delimiter(',');
   app.add_option("--field", arguments.fields, "Only columns whose names hold one of these")
@@ -38,7 +50,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--normal-error", arguments.prepare.normal_error, "Wanted normal error, rad");
 }
 
-palpate::NoiseKind noise_of(const std::string& letter) {
+palpate::NoiseKind kind_of(const std::string& letter) {
+  if (letter == "none") return palpate::NoiseKind::none;
   if (letter == "b") return palpate::NoiseKind::blurred;
   return letter == "c" ? palpate::NoiseKind::quantised : palpate::NoiseKind::independent;
 }
@@ -60,18 +73,46 @@ void write_csv(const std::string& file, const std::string& text) {
   if (!out.flush()) throw palpate::Error("cannot write " + file + "; is its folder there?");
 }
 
-int run(const Arguments& arguments) {
+std::string heading(const Arguments& arguments, const std::string& noise) {
+  const BenchOptions& bench = arguments.bench;
+  std::string frames = fmt::format("layout {}, {} frames", bench.layout, bench.seeds);
+  if (arguments.sweep) frames = fmt::format("{} frames a bin", bench.seeds);
+  if (bench.layouts > 0) {
+    frames = fmt::format("drawn layouts {} to {}, {} frames of each", bench.first_layout,
+                         bench.first_layout + static_cast<std::uint64_t>(bench.layouts) - 1,
+                         bench.seeds);
+  }
+  return fmt::format("Noise {}, {} from seed {}{}. Median (worst frame).\n\n", noise, frames,
+                     bench.first_seed, bench.silhouettes ? ", silhouettes" : "");
+}
+
+std::string report(const Arguments& arguments, const BenchResults& results,
+                   const std::vector<Contender>& contenders) {
+  const BenchOptions& bench = arguments.bench;
+  if (arguments.sweep) {
+    std::string text;
+    for (const Contender& contender : contenders) {
+      text += markdown_sweep(results, contender.name) + "\n";
+    }
+    return text;
+  }
+  if (bench.layouts > 0) return markdown_drawn(results, contenders, bench.noise) + "\n";
+  return fmt::format("{}\nThe first frame:\n\n{}", markdown_table(results, contenders, bench),
+                     markdown_preparation(results));
+}
+
+int run(Arguments& arguments) {
   const std::vector<Contender> contenders = chosen(arguments);
   if (contenders.empty()) throw palpate::Error("no column matches --field; try balanced or paper");
-  const BenchResults results = run_bench(arguments.bench, contenders);
-  fmt::print("Noise {}, layout {}, {} frames from seed {}{}. Median (worst frame).\n\n",
-             arguments.noise, arguments.bench.layout, arguments.bench.seeds,
-             arguments.bench.first_seed, arguments.bench.silhouettes ? ", silhouettes" : "");
-  fmt::print("{}\nThe first frame:\n\n{}", markdown_table(results, contenders, arguments.bench),
-             markdown_preparation(results));
-  if (!arguments.csv_file.empty()) {
-    write_csv(arguments.csv_file, csv(results, arguments.bench));
+  std::string scores = csv_header();
+  for (const std::string& noise : arguments.noises) {
+    arguments.bench.noise = kind_of(noise);
+    const BenchResults results = arguments.sweep ? run_sweep(arguments.bench, contenders)
+                                                 : run_bench(arguments.bench, contenders);
+    fmt::print("{}{}", heading(arguments, noise), report(arguments, results, contenders));
+    scores += csv(results, arguments.bench);
   }
+  if (!arguments.csv_file.empty()) write_csv(arguments.csv_file, scores);
   return 0;
 }
 
@@ -82,7 +123,6 @@ int main(int argc, char** argv) {
   Arguments arguments;
   add_options(app, arguments);
   CLI11_PARSE(app, argc, argv);
-  arguments.bench.noise = noise_of(arguments.noise);
   try {
     return run(arguments);
   } catch (const std::exception& error) {

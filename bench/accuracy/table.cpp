@@ -47,6 +47,7 @@ bool has_row(const BenchResults& results, const std::string& row) {
 }
 
 char letter(NoiseKind noise) {
+  if (noise == NoiseKind::none) return '-';
   if (noise == NoiseKind::independent) return 'a';
   return noise == NoiseKind::blurred ? 'b' : 'c';
 }
@@ -115,16 +116,19 @@ std::string markdown_preparation(const BenchResults& results) {
   return text;
 }
 
+std::string csv_header() {
+  return "layout,noise,seed,field,row,normal_deg,force_N,ripple_N,height_mm,lost,pops,"
+         "step_N,peak_N,energy_J\n";
+}
+
 std::string csv(const BenchResults& results, const BenchOptions& options) {
-  std::string text =
-      "layout,noise,seed,field,row,normal_deg,force_N,ripple_N,height_mm,lost,pops,"
-      "step_N,peak_N,energy_J\n";
+  std::string text;
   for (const Result& r : results.results) {
     const Score& s = r.score;
     text +=
         fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:g},{:.6g},{:.6g},{:.6g}\n",
-                    options.layout, letter(options.noise), r.seed, r.contender, r.row, s.normal,
-                    s.force, s.ripple, s.height, s.lost, s.pops, s.step, s.peak, s.energy);
+                    r.layout, letter(options.noise), r.seed, r.contender, r.row, s.normal, s.force,
+                    s.ripple, s.height, s.lost, s.pops, s.step, s.peak, s.energy);
   }
   return text;
 }

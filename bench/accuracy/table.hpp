@@ -51,7 +51,10 @@ struct Spread {
 /// What preparation chose, one line a contender and the first frame.
 [[nodiscard]] std::string markdown_preparation(const BenchResults& results);
 
-/// Every score as comma-separated values with a header line.
+/// The line above those of csv().
+[[nodiscard]] std::string csv_header();
+
+/// Every score as comma-separated values.
 [[nodiscard]] std::string csv(const BenchResults& results, const BenchOptions& options);
 
 }  // namespace palpate::accuracy

@@ -25,6 +25,9 @@ struct BlockFits {
   std::vector<float> slope_variance;  ///< of either slope (the larger one), 1/m^2
   std::vector<float> confidences;     ///< of the slopes, 0-1; 0: they are unknown and 0
 
+  std::vector<std::uint8_t> at_edge;  ///< of fitted blocks: is there another surface near?
+  std::vector<std::uint8_t> flat;     ///< of fitted blocks: is it a plane over its window?
+
   [[nodiscard]] std::size_t size() const { return states.size(); }
 
   /// Takes memory when the size is new, and no more.
@@ -32,6 +35,8 @@ struct BlockFits {
     grid = new_grid;
     const std::size_t size = new_grid.size();
     states.resize(size, BlockState::empty);
+    at_edge.resize(size);
+    flat.resize(size);
     for (auto* column : {&rho, &variance, &slope_x, &slope_y, &slope_variance, &confidences}) {
       column->resize(size);
     }
@@ -46,7 +51,9 @@ struct BlockFits {
             &slope_x[i],
             &slope_y[i],
             &slope_variance[i],
-            &confidences[i]};
+            &confidences[i],
+            &at_edge[i],
+            &flat[i]};
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -32,11 +33,22 @@ struct Blocks {
 void average_blocks(const float* image, int width, const NoiseModel& noise,
                     const DepthFilterOptions& range, Blocks& blocks);
 
+/// Deviation of the mean of a full block in those of a pixel: half of it where its four pixels err
+/// alone, all of it where they err together.
+[[nodiscard]] inline double block_share(double correlation) {
+  return std::min(0.5 * correlation, 1.0);
+}
+
+/// By how much the variance of a mean of many blocks is larger than if they erred alone.
+[[nodiscard]] inline double shared_error(double correlation) {
+  return std::max(0.25 * correlation * correlation, 1.0);
+}
+
 /// Deviation of the mean of a full block, 1/m, at inverse depth rho.
 [[nodiscard]] inline float block_sigma(const NoiseModel& noise, float rho) {
   const auto& s = noise.coefficients;
   const double pixel = s[2] + rho * (s[1] + rho * s[0]);  // sigma(z) / z^2
-  return static_cast<float>(0.5 * noise.correlation * (pixel > 0 ? pixel : 0));
+  return static_cast<float>(block_share(noise.correlation) * (pixel > 0 ? pixel : 0));
 }
 
 }  // namespace palpate::depth

@@ -68,13 +68,14 @@ void fit_masked(const Blocks& blocks, const SameSurface& same, int column, int r
   fits.slope_x[to] = slope_u * per_x;
   fits.slope_y[to] = slope_v * per_y;
   const float spread = std::max(vv * per_x * per_x, uu * per_y * per_y) / determinant;
-  fits.slope_variance[to] = sigma * sigma * spread;
+  const float variance = sigma * sigma * static_cast<float>(shared_error(same.noise.correlation));
+  fits.slope_variance[to] = variance * spread;
   fits.confidences[to] = 1;
   if (off * off > kGuard * kGuard * own) return;
   const float lever =
       (s.u * s.u * vv - 2 * s.u * s.v * uv + s.v * s.v * uu) / (s.n * s.n * determinant);
   fits.rho[to] += off;
-  fits.variance[to] = sigma * sigma * (1 / s.n + lever);
+  fits.variance[to] = variance * (1 / s.n + lever);
 }
 
 }  // namespace palpate::depth

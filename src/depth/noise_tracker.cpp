@@ -19,6 +19,7 @@ constexpr double kNoteworthy = 0.1;  // relative change that is handed out
 constexpr double kNewest = 0.3;      // weight of a round in the running means of c and misfit
 constexpr double kLeast = 0.5;       // of what a single frame shows, what frames may differ by
 constexpr double kMost = 1.3;
+constexpr double kPattern = 4;  // times that, a fixed pattern: what is larger is what is seen
 
 /// c by the rule of nss_fast.md section 2: what the noise's correlation asks for, and what wide
 /// windows miss, whatever the cause.
@@ -73,7 +74,8 @@ NoiseModel NoiseTracker::State::curve() {
   double weights = 0;
   for (NoiseSample sample : pairs.noise().samples) {
     const double single = spatial.sigma(sample.z);
-    sample.sigma = std::clamp(sample.sigma, kLeast * single, kMost * single);
+    const double least = std::min(kLeast * single, kPattern * sample.sigma);
+    sample.sigma = std::clamp(sample.sigma, least, kMost * single);
     samples.push_back(sample);
     excess += sample.weight * std::log(sample.sigma / single);
     weights += sample.weight;

@@ -27,7 +27,7 @@ simd::FitInput WindowFits::input(const Blocks& blocks, const NoiseModel& noise, 
                                  const BlockRange& range) {
   const BlockGrid& grid = blocks.grid;
   const auto& s = noise.coefficients;
-  const double half = 0.5 * noise.correlation;  // of a block: four pixels
+  const double half = block_share(noise.correlation);
   return {.table = {.sums = table_.front().sums,
                     .first_column = range.first_column,
                     .first_row = range.first_row,
@@ -39,6 +39,7 @@ simd::FitInput WindowFits::input(const Blocks& blocks, const NoiseModel& noise, 
           .step_x = grid.step_x,
           .step_y = grid.step_y,
           .noise = {half * s[0], half * s[1], half * s[2]},
+          .shared = shared_error(noise.correlation),
           .pixel_noise = {s[0], s[1], s[2]},
           .normal_error = normal_error,
           .growth = std::min(2.0, std::sqrt(noise.correlation))};
@@ -89,6 +90,7 @@ void WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double norma
               std::span(columns_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]), fits);
     }
   });
+  meeting_.assign(blocks, noise, region.range().first_row, columns_, row_begin_, fits);
 }
 
 }  // namespace palpate::depth

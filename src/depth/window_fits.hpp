@@ -6,6 +6,7 @@
 #include "depth/block_fits.hpp"
 #include "depth/blocks.hpp"
 #include "depth/fit_region.hpp"
+#include "depth/meeting_planes.hpp"
 #include "depth/neighbors.hpp"
 #include "depth/simd/fits.hpp"
 
@@ -39,6 +40,7 @@ class WindowFits {
   std::vector<Place> table_;
   std::vector<std::int32_t> columns_;  // of the region's blocks, row after row
   std::vector<std::size_t> row_begin_;
+  MeetingPlanes meeting_;
 };
 
 }  // namespace palpate::depth

@@ -51,6 +51,18 @@ NoiseModel from_one_frame(const std::vector<Solid>& solids, const SimulatedNoise
   return from_one_frame(view_of(image));
 }
 
+// A grille before a wall: no window is flat, and single frames show 0.1 m.
+TEST(NoiseTracker, WhatFillsTheImageIsNotTakenForNoise) {
+  std::vector<float> exact(640 * 480);
+  for (std::size_t i = 0; i < exact.size(); ++i) exact[i] = i % 8 < 4 ? 0.7F : 1.0F;
+  NoiseTracker tracker(unknown_sensor_noise());
+  for (std::uint64_t k = 0; k < 12; ++k) {
+    const std::vector<float> image = test::noisy_image(exact, {.seed = 5}, k);
+    tracker.update(view_of(image));
+  }
+  EXPECT_LT(tracker.model().sigma(0.7), 5 * kTruth.sigma(0.7));
+}
+
 TEST(NoiseTracker, FindsIndependentNoiseInOneFrame) {
   for (const int balls : {0, 6, 60}) {
     SCOPED_TRACE(balls);

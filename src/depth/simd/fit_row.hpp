@@ -13,6 +13,8 @@ struct FitRow {
   float* slope_y;
   float* slope_variance;
   float* confidences;
+  std::uint8_t* at_edge;
+  std::uint8_t* flat;
 };
 
 }  // namespace palpate::simd

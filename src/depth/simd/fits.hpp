@@ -37,6 +37,7 @@ struct FitInput {
   double x0, y0;          // ray of block (0, 0)
   double step_x, step_y;  // from block to block
   double noise[3];        // sigma(rho) = noise[2] + noise[1] rho + noise[0] rho^2 of a full block
+  double shared;          // by how much means of many vary more than if their blocks erred alone
   double pixel_noise[3];  // of one pixel, without correlation, alike
   double normal_error;    // theta, rad
   double growth;          // min(2, sqrt c): how much larger windows are for correlated noise

@@ -38,7 +38,7 @@ inline int first_reach(const FitInput& in, const Chunk& c, int i) {
   int half = 1;
   while (half < kLargestReach) {
     const Extent& e = kExtents.of[half];
-    if (c.variance[i] * e.per_n * e.per_n * e.per_mu <= wanted * wanted) break;
+    if (in.shared * c.variance[i] * e.per_n * e.per_n * e.per_mu <= wanted * wanted) break;
     ++half;
   }
   return half;
@@ -79,7 +79,7 @@ inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk
   Mask growing = ~Mask{};
   Mask affine{};  // of the largest windows that are explained
   Mask edge{};
-  Mask curved{};  // by what the first window shows that is too large
+  Mask curved{};           // by what the first window shows that is too large
   Mask size = Mask{} - 1;  // their number
   for (int k = 0; k < kSizes && any(growing); ++k) {
     if (same_size(c, k, four)) {
@@ -138,19 +138,20 @@ inline int shift_of(int half, bool whole) {
 
 // The best scores that windows beside the block may reach: those of the largest ones, were the
 // surface flat.
-inline Doubles promise(const Chunk& c, const Search& s, const Directions& to, bool whole) {
+inline Doubles promise(const FitInput& in, const Chunk& c, const Search& s, const Directions& to,
+                       bool whole) {
   constexpr int kLast = kSizes - 1;
   const Shape g = shape(c.half_u[kLast][s.i], c.half_v[kLast][s.i]);
   const Doubles du = lanes(to.u, shift_of(c.half_u[kLast][s.i], whole));
   const Doubles dv = lanes(to.v, shift_of(c.half_v[kLast][s.i], whole));
-  return c.variance[s.i] * g.per_n *
+  return in.shared * c.variance[s.i] * g.per_n *
          (1.0 + (du * du + s.lever_u2) * g.per_mu + (dv * dv + s.lever_v2) * g.per_mv);
 }
 
 // Lets windows grow in four directions, each until the first that is not explained or cannot win.
 inline void follow(const FitInput& in, const Chunk& c, const Directions& to, bool whole,
                    Search& search) {
-  Mask growing = promise(c, search, to, whole) < search.score;
+  Mask growing = promise(in, c, search, to, whole) < search.score;
   Doubles best = same(search.score);
   Mask affine{};
   Mask size = Mask{} - 1;
@@ -244,6 +245,7 @@ inline void write(const FitInput& in, const Chunk& c, int i, const Surface& s, i
   out.slope_y[column] = static_cast<float>(s.slope_v[lane] * per_y);
   out.slope_variance[column] = static_cast<float>(var_x > var_y ? var_x : var_y);
   out.confidences[column] = 1;
+  if (away) out.flat[column] = 0;
 }
 
 inline void finish(const FitInput& in, int row, const Chunk& c, const FitRow& out) {
@@ -281,6 +283,8 @@ void fit_blocks(const FitInput& in, int row, const std::int32_t* columns, int co
     grow_centred(in, row, c);
     for (int i = 0; i < c.count; ++i) {
       if (c.edge[i]) try_aside(in, row, c, i);
+      out.at_edge[c.columns[i]] = c.edge[i];
+      out.flat[c.columns[i]] = c.kind[i] == kAffine;
     }
     finish(in, row, c, out);
   }

@@ -128,17 +128,18 @@ struct Moments {
 struct Fits {
   Shape shape;
   Doubles m, cu, cv, cuv, cuu, cvv;
-  Doubles variance;  // of one block's inverse depth
+  Doubles variance;  // of the mean of n blocks, times n
   Mask affine;       // no hole, and the noise explains what the affine fit leaves
   Mask quadratic;    // or the quadratic one
   Mask bent;         // by far more than noise would bend it
 };
 
 // Is chi^2 = left / variance one that `degrees` of freedom may have: within three deviations?
+// `together`: by how much the variance of a sum of squares grows as neighbours err together.
 [[gnu::always_inline]] inline Mask explained(const Doubles& left, const Doubles& variance,
-                                             const Doubles& degrees) {
+                                             const Doubles& degrees, double together) {
   const Doubles excess = left - degrees * variance;
-  return (excess <= 0.0) | (excess * excess <= 18.0 * degrees * variance * variance);
+  return (excess <= 0.0) | (excess * excess <= 18.0 * together * degrees * variance * variance);
 }
 
 [[gnu::always_inline]] inline Doubles noise_sigma(const double noise[3], const Doubles& rho) {
@@ -166,13 +167,16 @@ struct Fits {
   const Doubles weights = counts - kBlock * g.area;  // negative where there is a hole
   const Doubles sigma = noise_sigma(input.noise, f.m);
   // The rounding to whole units is noise too.
-  f.variance = larger(sigma * sigma * (weights * g.per_n * (1. / 3)), same(1. / 12));
+  const Doubles variance = larger(sigma * sigma * (weights * g.per_n * (1. / 3)), same(1. / 12));
+  f.variance = input.shared * variance;
   const Doubles left = srr - r * f.m - f.cu * bu - f.cv * bv;
   const Doubles bent = f.cuv * buv + f.cuu * buu + f.cvv * bvv;
   const Mask full = weights >= 0.0;
-  f.affine = full & explained(left, f.variance, g.area - 3.0) & (bent <= 12.0 * f.variance);
+  // A Gaussian's square is half as wide, so squares share half of what the errors do.
+  const double together = input.shared > 2 ? 0.5 * input.shared : 1;
+  f.affine = full & explained(left, variance, g.area - 3.0, together) & (bent <= 12.0 * f.variance);
   f.bent = bent > 30.0 * f.variance;
-  f.quadratic = full & explained(left - bent, f.variance, g.area - 6.0);
+  f.quadratic = full & explained(left - bent, variance, g.area - 6.0, together);
   return f;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/parallel.hpp"
 #include "scene/policies/block_order.hpp"
 
 namespace palpate {
@@ -14,6 +15,7 @@ constexpr float kRows = 2.2f;      // R in the largest distance to a neighbour
 constexpr float kSlope = 0.5f;     // of R over distance
 constexpr float kShareOfAround = 0.8f;
 constexpr int kLargestWindow = 8;  // blocks on either side
+constexpr std::size_t kBlocksAtATime = 256;
 
 // Of R, the deviation of a place that is sure: three of it are where a point weighs half, 0.47 R.
 constexpr float kSure = 0.157f;
@@ -203,17 +205,22 @@ void BlockSurface::weigh_rims(const FilteredDepth& depth) {
     sums_[b] = radii_[b] > 0 ? std::max(1.0f, radii_[b] * radii_[b] / areas_[b]) : 0;
   }
   exact_sums_.resize(exact_.size());
-  for (std::size_t k = 0; k < exact_.size(); ++k) {
+  const auto for_exact = [&](const auto& sum_of) {
+    detail::parallel_ranges(exact_.size(), kBlocksAtATime, [&](std::size_t k, std::size_t end) {
+      for (; k < end; ++k) exact_sums_[k] = sum_of(k);
+    });
+  };
+  for_exact([&](std::size_t k) {
     float sum = 0;
     visit_window(depth, exact_[k], [&](std::size_t, float w) { sum += w; });
-    exact_sums_[k] = sum;
-  }
+    return sum;
+  });
   for (std::size_t k = 0; k < exact_.size(); ++k) sums_[exact_[k]] = exact_sums_[k];
-  for (std::size_t k = 0; k < exact_.size(); ++k) {
+  for_exact([&](std::size_t k) {
     float around = 0;
     visit_window(depth, exact_[k], [&](std::size_t other, float w) { around += w * sums_[other]; });
-    exact_sums_[k] = std::max(exact_sums_[k], kShareOfAround * around / exact_sums_[k]);
-  }
+    return std::max(exact_sums_[k], kShareOfAround * around / exact_sums_[k]);
+  });
   for (std::size_t k = 0; k < exact_.size(); ++k) {
     const float radius = radii_[exact_[k]];
     areas_[exact_[k]] = radius * radius / exact_sums_[k];

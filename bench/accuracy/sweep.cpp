@@ -1,0 +1,153 @@
+#include "accuracy/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "accuracy/draw.hpp"
+#include "accuracy/strokes.hpp"
+
+namespace palpate::accuracy {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::array<double, 7> kDistances = {0.35, 0.5, 0.7, 1.0, 1.4, 1.9, 2.5};  // m
+constexpr std::array<double, 6> kIncidences = {0, 15, 30, 45, 60, 75};              // degrees
+constexpr double kRadius = 0.06;                                                    // m
+constexpr double kSweepLength = 0.1;                                                // m
+constexpr double kHalfArc = 15 * kDegree;
+
+struct Bin {
+  bool sphere = false;
+  std::size_t distance = 0;
+  std::size_t incidence = 0;
+};
+
+struct SweepCase {
+  TruthScene truth;
+  Path path;
+};
+
+std::vector<Bin> all_bins() {
+  std::vector<Bin> bins;
+  for (const bool sphere : {false, true}) {
+    for (std::size_t d = 0; d + 1 < kDistances.size(); ++d) {
+      for (std::size_t i = 0; i + 1 < kIncidences.size(); ++i) bins.push_back({sphere, d, i});
+    }
+  }
+  return bins;
+}
+
+std::string bin_name(const Bin& bin) {
+  return fmt::format("{} {:.2f}-{:.2f} m {:g}-{:g} deg", bin.sphere ? "sphere" : "plane",
+                     kDistances[bin.distance], kDistances[bin.distance + 1],
+                     kIncidences[bin.incidence], kIncidences[bin.incidence + 1]);
+}
+
+// The camera is the world's origin. What is not there is a speck a hundred metres behind it.
+TruthScene empty_scene() {
+  TruthScene scene;
+  for (Solid& solid : scene.solids) {
+    solid.kind = SolidKind::ball;
+    solid.size = Vector3d::Constant(1e-3);
+    solid.T_world_solid.translation() = Vector3d(0, 0, -100);
+  }
+  return scene;
+}
+
+SweepCase draw_case(const Bin& bin, Random& random) {
+  const double z = between(random, kDistances[bin.distance], kDistances[bin.distance + 1]);
+  const double incidence =
+      between(random, kIncidences[bin.incidence], kIncidences[bin.incidence + 1]) * kDegree;
+  const double u = between(random, -0.08, 0.08);
+  const Vector3d place = z * Vector3d(u, between(random, -0.08, 0.08), 1);
+  const double about = between(random, 0, 2 * std::numbers::pi);
+  const double turn = between(random, 0, 2 * std::numbers::pi);
+  const Vector3d view = -place.normalized();
+  const Vector3d right = view.cross(Vector3d::UnitX()).normalized();
+  const Vector3d axis = std::cos(about) * right + std::sin(about) * view.cross(right);
+  const Vector3d normal = Eigen::AngleAxisd(incidence, axis) * view;
+  SweepCase drawn{empty_scene(), {}};
+  Solid& solid = drawn.truth.solids[0];
+  if (bin.sphere) {
+    solid.size = Vector3d::Constant(kRadius);
+    solid.T_world_solid.translation() = place - kRadius * normal;
+    drawn.path = sphere_arc(solid, {normal, axis, kHalfArc});
+    return drawn;
+  }
+  solid.kind = SolidKind::half_space;
+  solid.T_world_solid.linear() << axis, normal.cross(axis), normal;
+  solid.T_world_solid.translation() = place;
+  const Vector3d half = solid.T_world_solid.linear() * Vector3d(std::cos(turn), std::sin(turn), 0) *
+                        (kSweepLength / 2);
+  drawn.path = slide(place - half, place + half, normal, kSlideDepth);
+  return drawn;
+}
+
+Spread spread_of(const BenchResults& results, const std::string& contender, const Bin& bin,
+                 double (*of)(const Score&)) {
+  return spread(results, contender, {bin_name(bin), "", of, {}, {}, ""});
+}
+
+// Empty where the bin was not wanted.
+std::string bin_cell(const BenchResults& results, const std::string& contender, const Bin& bin) {
+  const std::string name = bin_name(bin);
+  const auto is_here = [&](const Result& result) { return result.row == name; };
+  if (std::none_of(results.results.begin(), results.results.end(), is_here)) return "";
+  const Spread normal = spread_of(results, contender, bin, [](const Score& s) { return s.normal; });
+  const Spread height = spread_of(results, contender, bin, [](const Score& s) { return s.height; });
+  const Spread lost =
+      spread_of(results, contender, bin, [](const Score& s) { return 100 * s.lost; });
+  std::string text = fmt::format("{:.2f} ({:.2f}) / {:.2f} ({:.2f})", normal.median, normal.worst,
+                                 height.median, height.worst);
+  if (lost.worst > 0.5) text += fmt::format(", lost {:.0f} ({:.0f}) %", lost.median, lost.worst);
+  return text;
+}
+
+}  // namespace
+
+BenchResults run_sweep(const BenchOptions& options, const std::vector<Contender>& contenders) {
+  BenchResults out;
+  const std::vector<Bin> bins = all_bins();
+  for (std::size_t b = 0; b < bins.size(); ++b) {
+    if (!is_wanted(bin_name(bins[b]), options.rows)) continue;
+    for (int i = 0; i < options.seeds; ++i) {
+      const std::uint64_t seed = options.first_seed + static_cast<std::uint64_t>(i);
+      Random random(seed * 1000 + b);
+      const SweepCase drawn = draw_case(bins[b], random);
+      const Trace ideal = ideal_trace(drawn.truth, drawn.path);
+      const DepthFrame frame =
+          noisy_frame(exact_frame(drawn.truth), noise_of(options, 0, random.bits()));
+      for (const Contender& contender : contenders) {
+        const std::unique_ptr<Scene> scene = make_scene(frame, drawn.truth, contender);
+        Scorer scorer;
+        scorer.add(drawn.path, ideal, rendered_trace(*scene, contender, drawn.path), drawn.truth);
+        out.results.push_back({seed, contender.name, bin_name(bins[b]), scorer.score(), 0});
+      }
+    }
+  }
+  return out;
+}
+
+std::string markdown_sweep(const BenchResults& results, const std::string& contender) {
+  std::string text = fmt::format("| {}: normal deg / height mm |", contender);
+  for (std::size_t i = 0; i + 1 < kIncidences.size(); ++i) {
+    text += fmt::format(" {:g}-{:g} deg |", kIncidences[i], kIncidences[i + 1]);
+  }
+  text += "\n|---|---|---|---|---|---|\n";
+  for (const Bin& bin : all_bins()) {
+    if (bin.incidence == 0) {
+      text += fmt::format("| {}, {:g}-{:g} m |", bin.sphere ? "sphere" : "plane",
+                          kDistances[bin.distance], kDistances[bin.distance + 1]);
+    }
+    text += fmt::format(" {} |", bin_cell(results, contender, bin));
+    if (bin.incidence + 2 == kIncidences.size()) text += "\n";
+  }
+  return text;
+}
+
+}  // namespace palpate::accuracy

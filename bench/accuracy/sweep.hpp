@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "accuracy/table.hpp"
+
+namespace palpate::accuracy {
+
+/// Slides of 3 mm depth on a plane alone, 10 cm long, and on a sphere of 60 mm radius alone, 30
+/// degrees long, in bins of 0.35 to 2.5 m along the optical axis and of 0 to 75 degrees between
+/// normal and line of sight. A frame of a bin draws its distance, incidence, place in the image and
+/// direction from its seed; there are as many as options.seeds.
+[[nodiscard]] BenchResults run_sweep(const BenchOptions& options,
+                                     const std::vector<Contender>& contenders);
+
+/// Normal (degrees) / height (mm) by bin, median (worst), as Markdown; with the share of ticks
+/// without contact where it is more than half a percent in any frame.
+[[nodiscard]] std::string markdown_sweep(const BenchResults& results, const std::string& contender);
+
+}  // namespace palpate::accuracy
