@@ -13,10 +13,10 @@ constexpr std::size_t kRowsPerPiece = 8;
 constexpr int kHalfWidth = 2;  // blocks to each side that are to be explained
 constexpr int kWidth = 2 * kHalfWidth + 1;
 constexpr int kBlocks = kWidth * kWidth;
-constexpr float kExplained = kBlocks + 21;  // 3 sqrt(2 n): what noise leaves, three deviations up
-constexpr float kCertain = 9;               // three deviations
-constexpr float kElsewhere = 16;            // four: what is farther away is of another surface
-constexpr int kReaches[] = {2, 4, 6};       // blocks; the smallest of all largest windows is 6
+constexpr float kLeftByNoise = kBlocks + 21;  // 3 sqrt(2 n): what noise leaves, three deviations up
+constexpr float kCertain = 9;                 // three deviations
+constexpr float kElsewhere = 16;              // four: what is farther away is of another surface
+constexpr int kReaches[] = {2, 4, 6};         // blocks; the smallest of all largest windows is 6
 constexpr std::pair<int, int> kAxes[] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
 
 // A block's plane, as seen from another block: in units of the ray, with that one at (0, 0).
@@ -165,7 +165,7 @@ std::size_t MeetingPlanes::search_row(const Blocks& blocks, const NoiseModel& no
     const Plane own = search.own_plane(i, 0, 0);
     const float left = around.misfit({own, own, true}, variance);
     if (!(left > kBlocks * variance)) continue;
-    const float most = std::min(left - kCertain * together * variance, kExplained * variance);
+    const float most = std::min(left - kCertain * together * variance, kLeftByNoise * variance);
     const std::optional<Plane> seen = search.run(around, variance, most);
     const float off = seen ? seen->at(0, 0) - rho : 0;
     if (!seen || off * off > kElsewhere * variance) continue;
