@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kAround = 16;      // points of a circle
-constexpr int kDirections = 32;  // that two outlines are told apart along
+constexpr int kCirclePoints = 16;  // points of a circle
+constexpr int kDirections = 32;    // that two outlines are told apart along
 constexpr double kBulge = 1.06;  // points at this many radii hold a ball or a circle in their hull
 
 double angle(int i, int n) {
@@ -31,13 +31,13 @@ std::vector<Vector3d> local_hull(const Solid& solid) {
   for (const double z : {-1.0, -0.8, -0.5, 0.0, 0.5, 0.8, 1.0}) {
     const bool ball = solid.kind == SolidKind::ball;
     const double width = kBulge * (ball ? std::sqrt(1 - z * z) : 1.0);
-    for (int i = 0; i < kAround; ++i) {
-      const double c = width * std::cos(angle(i, kAround));
-      const double v = width * std::sin(angle(i, kAround));
+    for (int i = 0; i < kCirclePoints; ++i) {
+      const double c = width * std::cos(angle(i, kCirclePoints));
+      const double v = width * std::sin(angle(i, kCirclePoints));
       points.emplace_back(s.x() * c, s.y() * v, s.z() * (ball ? kBulge * z : z));
     }
     if (solid.kind != SolidKind::block) continue;
-    points.erase(points.end() - kAround, points.end());
+    points.erase(points.end() - kCirclePoints, points.end());
     for (const double x : {-1.0, 1.0}) {
       for (const double y : {-1.0, 1.0}) points.emplace_back(s.x() * x, s.y() * y, s.z() * z);
     }
@@ -70,8 +70,8 @@ std::vector<Vector3d> hull_above_table(const Solid& solid) {
 
 std::vector<Vector3d> circle_on_table(const Vector3d& center, double radius) {
   std::vector<Vector3d> points;
-  for (int i = 0; i < kAround; ++i) {
-    const double a = angle(i, kAround);
+  for (int i = 0; i < kCirclePoints; ++i) {
+    const double a = angle(i, kCirclePoints);
     points.emplace_back(center.x() + radius * std::cos(a), center.y() + radius * std::sin(a), 0);
   }
   return points;

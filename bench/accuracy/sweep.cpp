@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr std::array<double, 7> kDistances = {0.35, 0.5, 0.7, 1.0, 1.4, 1.9, 2.5};  // m
 constexpr std::array<double, 6> kIncidences = {0, 15, 30, 45, 60, 75};              // degrees
-constexpr double kRadius = 0.06;                                                    // m
+constexpr double kBallRadius = 0.06;                                                // m
 constexpr double kSweepLength = 0.1;                                                // m
 constexpr double kHalfArc = 15 * kDegree;
 
@@ -74,8 +74,8 @@ SweepCase draw_case(const Bin& bin, Random& random) {
   SweepCase drawn{empty_scene(), {}};
   Solid& solid = drawn.truth.solids[0];
   if (bin.sphere) {
-    solid.size = Vector3d::Constant(kRadius);
-    solid.T_world_solid.translation() = place - kRadius * normal;
+    solid.size = Vector3d::Constant(kBallRadius);
+    solid.T_world_solid.translation() = place - kBallRadius * normal;
     drawn.path = sphere_arc(solid, {normal, axis, kHalfArc});
     return drawn;
   }
