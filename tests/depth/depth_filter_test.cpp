@@ -59,11 +59,11 @@ TEST(DepthFilter, RefusesFramesThatAreNone) {
     f.camera.width = f.camera.height = 1;
     f.depth.resize(1);
   });
-  for (const auto& [width, height] : {std::pair{4, 4}, {2, 200}, {200, 5}}) {
-    refused([&](DepthFrame& f) {
-      f.camera.width = width;
-      f.camera.height = height;
-      f.depth.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (const std::pair<int, int>& size : {std::pair{4, 4}, {2, 200}, {200, 5}}) {
+    refused([&size](DepthFrame& f) {
+      f.camera.width = size.first;
+      f.camera.height = size.second;
+      f.depth.resize(static_cast<std::size_t>(size.first * size.second));
     });
   }
   Isometry3d nowhere = Isometry3d::Identity();
