@@ -44,23 +44,27 @@ void refuse_material(const CloudArgument& source) {
                   source.path));
 }
 
+// The median of what was measured, m; 0: nothing was.
+double middle_depth(const DepthFrame& frame) {
+  std::vector<float> depths;
+  std::ranges::copy_if(frame.depth, std::back_inserter(depths),
+                       [](float z) { return z > 0 && std::isfinite(z); });
+  return median(depths);
+}
+
 // Refuses a frame that measured something, and nothing in range: its unit may be another one.
 void check_range(const DepthFrame& frame, const DepthFilterOptions& range) {
   const auto out = [&](float z) {
     return !(static_cast<double>(z) >= range.nearest && static_cast<double>(z) <= range.farthest);
   };
   if (!std::ranges::all_of(frame.depth, out)) return;
-  std::vector<float> depths;
-  std::ranges::copy_if(frame.depth, std::back_inserter(depths),
-                       [](float z) { return z > 0 && std::isfinite(z); });
-  if (depths.empty()) return;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
+  const double middle = middle_depth(frame);
+  if (middle == 0) return;
   throw Error(
       fmt::format("all depths are nearer than {} m or farther than {} m (median {:.4g} m); widen "
                   "the range (--nearest, --farthest), or mend the unit (depth_unit_m of a "
                   "recording, --depth-unit of an image)",
-                  range.nearest, range.farthest, *middle));
+                  range.nearest, range.farthest, middle));
 }
 
 // Farther away the proxy would fault in every step.
@@ -135,14 +139,7 @@ void check_felt(const Source& source, TouchedSource& result) {
 // too few and too coarse points to be touched.
 void believe_no_farther(const DepthFrame& frame, DepthFilterOptions& options) {
   constexpr double kFarBeyond = 10;  // times the median depth
-  std::vector<float> depths;
-  for (const float z : frame.depth) {
-    if (z > 0) depths.push_back(z);
-  }
-  if (depths.empty()) return;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  const double farthest = kFarBeyond * static_cast<double>(*middle);
+  const double farthest = kFarBeyond * middle_depth(frame);
   if (farthest > options.nearest) options.farthest = std::min(options.farthest, farthest);
 }
 

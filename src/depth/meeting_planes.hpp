@@ -14,8 +14,8 @@ namespace palpate::depth {
 /// continued behind a wall, which correlated noise takes for the wall's lowest rows. So where the
 /// planes of two blocks on either side explain what was measured around a block, and surely better
 /// than its own plane does, it gets one of theirs: of two that meet concavely the nearer one along
-/// its ray, of two that meet convexly the farther one. Up to six blocks within the rim of what is
-/// fitted, planes may be wanting.
+/// its ray, of two that meet convexly the farther one. Up to six blocks from the rim of what is
+/// fitted, such planes may be missing.
 class MeetingPlanes {
  public:
   /// Changes the fits of the listed blocks: `columns[row_begin[r]]` on are those of row

@@ -15,9 +15,9 @@ constexpr float kStraight = 7.3F;  // 3 sigma of a - 2 b + c
 
 simd::BlockLimits limits_of(const NoiseModel& noise, const BlockGrid& grid) {
   const auto& s = noise.coefficients;
-  const double half = block_share(noise.correlation);
-  return {{static_cast<float>(half * s[0]), static_cast<float>(half * s[1]),
-           static_cast<float>(half * s[2])},
+  const double share = block_share(noise.correlation);
+  return {{static_cast<float>(share * s[0]), static_cast<float>(share * s[1]),
+           static_cast<float>(share * s[2])},
           SameSurface::kClose,
           SameSurface(noise, grid).steep,
           kStraight};

@@ -27,7 +27,7 @@ simd::FitInput WindowFits::input(const Blocks& blocks, const NoiseModel& noise, 
                                  const BlockRange& range) {
   const BlockGrid& grid = blocks.grid;
   const auto& s = noise.coefficients;
-  const double half = block_share(noise.correlation);
+  const double share = block_share(noise.correlation);
   return {.table = {.sums = table_.front().sums,
                     .first_column = range.first_column,
                     .first_row = range.first_row,
@@ -38,7 +38,7 @@ simd::FitInput WindowFits::input(const Blocks& blocks, const NoiseModel& noise, 
           .y0 = grid.y0,
           .step_x = grid.step_x,
           .step_y = grid.step_y,
-          .noise = {half * s[0], half * s[1], half * s[2]},
+          .noise = {share * s[0], share * s[1], share * s[2]},
           .shared = shared_error(noise.correlation),
           .pixel_noise = {s[0], s[1], s[2]},
           .normal_error = normal_error,

@@ -34,11 +34,16 @@ TEST(SceneField, NonFiniteArgumentsAreHarmless) {
   EXPECT_NEAR(field.sample({0, 0, 1e-3}).value, 1e-3, 1e-9);
 }
 
-TEST(SceneField, AnOverfullPatchIsThinnedAndSaysSo) {
-  Scene scene;
+// More points within R than a patch holds.
+void add_dense_plane(Scene& scene) {
   auto dense = plane(0, 0.5e-3, 30);
   for (TestPoint& p : dense) p.radius = 30e-3;
   scene.add("plane").publish(still(dense));
+}
+
+TEST(SceneField, AnOverfullPatchIsThinnedAndSaysSo) {
+  Scene scene;
+  add_dense_plane(scene);
   SceneField field(scene);
   field.update(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(has(field.notes(), FieldNote::thinned));
@@ -49,9 +54,7 @@ TEST(SceneField, AnOverfullPatchIsThinnedAndSaysSo) {
 // Its surface is another one: a proxy that jumps there has not been pulled by its hand.
 TEST(SceneField, APatchThatIsNoLongerThinnedIsAChange) {
   Scene scene;
-  auto points = plane(0, 0.5e-3, 30);
-  for (TestPoint& p : points) p.radius = 30e-3;
-  scene.add("plane").publish(still(points));
+  add_dense_plane(scene);
   SceneField field(scene);
   field.update(0, Vector3d::Zero(), Vector3d::Zero());
   ASSERT_TRUE(has(field.notes(), FieldNote::thinned));
