@@ -61,6 +61,17 @@ double confidence_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
                                         : lerp(start, points.end_confidences[i], layer.progress);
 }
 
+EdgePlane edge_now(const ActiveLayer& layer, std::size_t k) noexcept {
+  const PointEdges& edges = layer.points->edges;
+  const EdgePlane& start = edges.start[k];
+  if (edges.end.empty()) return start;
+  const EdgePlane& end = edges.end[k];
+  const auto u = static_cast<float>(layer.progress);
+  return {start.normal + u * (end.normal - start.normal),
+          start.offset + u * (end.offset - start.offset),
+          start.share + u * (end.share - start.share)};
+}
+
 double presence_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
   const SurfacePoints& points = *layer.points;
   const double start = points.presences.empty() ? 1.0 : points.presences[i];

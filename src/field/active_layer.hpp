@@ -53,6 +53,9 @@ struct ActiveLayer {
 [[nodiscard]] double confidence_now(const ActiveLayer& layer, std::uint32_t i) noexcept;
 [[nodiscard]] double presence_now(const ActiveLayer& layer, std::uint32_t i) noexcept;
 
+/// The k-th of a layer's edges; its normal is of unit length at either end of its way alone.
+[[nodiscard]] EdgePlane edge_now(const ActiveLayer& layer, std::size_t k) noexcept;
+
 /// Does a point count for nothing at any time (speckle)?
 [[nodiscard]] inline bool weightless(const SurfacePoints& points, std::uint32_t i) noexcept {
   return points.density_weights[i] <= 0 &&

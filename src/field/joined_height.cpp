@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "field/acute_creases.hpp"
+#include "field/edges.hpp"
 #include "field/facing.hpp"
-#include "field/sharp_edges.hpp"
 #include "field/smooth_step.hpp"
 #include "field/united_height.hpp"
 
@@ -33,32 +33,33 @@ Value smooth_min(const Value& a, const Value& b, const Value& radius, double wid
   return {-most.f, -most.grad};
 }
 
-/// May edges be sharpened here?
-bool may_sharpen(const FieldOptions& options, const simd::Columns& columns) noexcept {
-  return options.sharp_edges && columns.uniform_sharp != 0 && options.kind == FieldKind::balanced &&
+/// Are there edges here to be kept sharp?
+bool keeps_edges(const FieldOptions& options, const simd::Columns& columns) noexcept {
+  return options.sharp_edges && columns.edges && options.kind == FieldKind::balanced &&
          options.gradient == GradientKind::exact;
 }
 
 /// The surface of one label's normals, with its exact gradient.
 Value height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
-  if (may_sharpen(options, *place.columns)) return sharp_balanced(place);
   const Oriented oriented =
       options.kind == FieldKind::balanced ? balanced(place.sums()) : pointset(place.sums());
   if (options.gradient == GradientKind::normal) return {oriented.f, oriented.base};
   return {oriented.f, oriented.base + place.gradient(oriented.b)};
 }
 
-/// The same, where several sources may tell of one surface at different heights, and with its
-/// creases closed.
+/// The same, where several sources may tell of one surface at different heights, with its creases
+/// closed and its edges sharp.
 Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
   Value height = height_at(options, place);
   if (place.columns->sources > 1 && options.gradient == GradientKind::exact) {
     const Value shift = united_shift(place);
     height = {height.f + shift.f, height.grad + shift.grad};
   }
-  if (!options.capped) return height;
-  const Value closure = crease_closure(place);
-  return {height.f - closure.f, height.grad - closure.grad};
+  if (options.capped) {
+    const Value closure = crease_closure(place);
+    height = {height.f - closure.f, height.grad - closure.grad};
+  }
+  return keeps_edges(options, *place.columns) ? with_edges(place, height) : height;
 }
 
 /// How far a label's height is taken out of the way of another's as its share of the weight of

@@ -24,8 +24,7 @@ Patch::Patch(std::size_t capacity)
       pitch_(capacity_ + kFilling + 2 * kCacheLine),
       data_(kColumns * pitch_, 0.0),
       selection_(capacity_),
-      facing_(capacity_),
-      near_((capacity_ + kFilling) / simd::kLanes, 0) {
+      facing_(capacity_) {
   layers_.reserve(kMostLayers);
   signs_.reserve(capacity_);
   labels_.reserve(capacity_);
@@ -33,16 +32,15 @@ Patch::Patch(std::size_t capacity)
   for (int axis = 0; axis < 3; ++axis) {
     columns_.position[axis] = column(kPosition + axis);
     columns_.normal[axis] = column(kNormal + axis);
+    columns_.edge_normal[axis] = column(kEdgeNormal + axis);
   }
   columns_.weight = column(kWeight);
   columns_.confidence = column(kConfidence);
   columns_.radius = column(kRadius);
   columns_.inverse_r2 = column(kInverseR2);
-  columns_.sharp = column(kSharp);
+  columns_.edge_height = column(kEdgeHeight);
+  columns_.edge_share = column(kEdgeShare);
   columns_.slope = column(kSlope);
-  columns_.trusted = column(kTrusted);
-  columns_.near = near_.data();
-  for (int k = 0; k < 2; ++k) columns_.closeness[k] = column(kCloseness + k);
 }
 
 bool Patch::gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
@@ -89,6 +87,9 @@ void Patch::copy(std::span<const ActiveLayer> layers, int sources, bool whole) n
   sources_ = sources;
   has_materials_ =
       any(layers, [](const ActiveLayer& layer) { return !layer.points->materials.empty(); });
+  columns_.edges = options_.normals && any(layers, [](const ActiveLayer& layer) {
+                     return !layer.points->edges.points.empty();
+                   });
   has_presences_ = any(layers, [](const ActiveLayer& layer) { return fades(*layer.points); });
   count_ = 0;
   for (const Selection::Run& run : selection_.runs()) count_ += run.count;
@@ -157,25 +158,6 @@ void Patch::lay_out() noexcept {
   }
   slots_.resize(count_);
   each([&](std::size_t layer, std::size_t k) { slots_[k] = next[run_of(layer, k)]++; });
-  mark_sharp();
-}
-
-/// Which points take part in sharpening edges.
-void Patch::mark_sharp() noexcept {
-  const auto sharp = [](const ActiveLayer& layer) { return layer.points->sharp_edges; };
-  columns_.uniform_sharp = 0;
-  if (!any(layers_, sharp)) return;
-  const bool all = std::ranges::all_of(layers_, [&](const ActiveLayer& layer) {
-    return sharp(layer) ||
-           selection_.runs()[static_cast<std::size_t>(&layer - layers_.data())].count == 0;
-  });
-  columns_.uniform_sharp = all ? 1 : -1;
-  std::size_t k = 0;
-  for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
-    for (std::uint32_t n = selection_.runs()[layer].count; n-- > 0; ++k) {
-      column(kSharp)[slots_[k]] = sharp(layers_[layer]) ? 1 : 0;
-    }
-  }
 }
 
 /// Brings all columns to what the layers are now.
@@ -219,6 +201,7 @@ void Patch::fill_layer(std::size_t k) noexcept {
     if (has_presences_) column(kPresence)[at] = presence_now(layer, i);
   }
   if (options_.normals) fill_normals(k);
+  if (columns_.edges) fill_edges(k);
   if (has_motion_) fill_velocities(k);
 }
 
@@ -231,6 +214,28 @@ void Patch::fill_normals(std::size_t k) noexcept {
     const Eigen::Vector3d normal = signs_[chosen++] * normal_now(layer, i);
     for (int axis = 0; axis < 3; ++axis) column(kNormal + axis)[at] = normal[axis];
     column(kConfidence)[at] = has_normals ? confidence_now(layer, i) : 0.0;
+  }
+}
+
+/// Of the planes beyond edges: both columns of places rise.
+void Patch::fill_edges(std::size_t k) noexcept {
+  const ActiveLayer& layer = layers_[k];
+  const PointEdges& edges = layer.points->edges;
+  const Eigen::Vector3d center = center_ - layer.points->origin;
+  std::size_t chosen = selection_.runs()[k].first;
+  auto next = edges.points.begin();
+  for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
+    const double sign = signs_[chosen];
+    const std::uint32_t at = slots_[chosen++];
+    next = std::lower_bound(next, edges.points.end(), i);
+    const bool beside = next != edges.points.end() && *next == i;
+    const EdgePlane edge =
+        beside ? edge_now(layer, static_cast<std::size_t>(next - edges.points.begin()))
+               : EdgePlane{};
+    const Eigen::Vector3d normal = sign * edge.normal.cast<double>();
+    for (int axis = 0; axis < 3; ++axis) column(kEdgeNormal + axis)[at] = normal[axis];
+    column(kEdgeHeight)[at] = normal.dot(center) - sign * static_cast<double>(edge.offset);
+    column(kEdgeShare)[at] = sign * static_cast<double>(edge.share);
   }
 }
 

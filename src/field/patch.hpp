@@ -104,11 +104,11 @@ class Patch {
     kConfidence,
     kRadius,
     kInverseR2,
-    kSharp,
+    kEdgeNormal,
+    kEdgeHeight = kEdgeNormal + 3,
+    kEdgeShare,
     kSlope,
-    kTrusted,
-    kCloseness,
-    kMaterial = kCloseness + 2,
+    kMaterial,
     kPresence,
     kVelocity,
     kColumns = kVelocity + 3
@@ -123,9 +123,9 @@ class Patch {
   void lay_out() noexcept;
   void fill(std::span<const ActiveLayer> layers) noexcept;
   void fill_layer(std::size_t k) noexcept;
-  void mark_sharp() noexcept;
   void fill_all() noexcept;
   void fill_normals(std::size_t k) noexcept;
+  void fill_edges(std::size_t k) noexcept;
   void fill_velocities(std::size_t k) noexcept;
   void measure() noexcept;
   [[nodiscard]] double inverse_square(double radius) noexcept;
@@ -145,7 +145,6 @@ class Patch {
   double extra_ = -1;
   bool outdated_ = false;
   GatherOptions options_;
-  std::vector<std::uint32_t> near_;  // scratch of the sums
   bool has_materials_ = false;
   bool has_presences_ = false;
   bool has_motion_ = false;

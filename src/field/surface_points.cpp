@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "geometry/neighborhoods.hpp"
@@ -65,7 +66,35 @@ void check_lengths(const SurfacePoints& points) {
   require_length("end_radii", points.end_radii.size(), optional(points.end_radii.size()));
   require_length("end_confidences", points.end_confidences.size(),
                  optional(points.end_confidences.size()));
+  require_length("edges.start", points.edges.start.size(), points.edges.points.size());
+  require_length("edges.end", points.edges.end.size(),
+                 points.edges.end.empty() ? 0 : points.edges.points.size());
   require_length("cell_reach", points.cell_reach.size(), points.grid.cells().size());
+}
+
+void require_edges(const char* column, const std::vector<EdgePlane>& edges) {
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const EdgePlane& edge = edges[k];
+    if (edge.normal.allFinite() && std::isfinite(edge.offset) && std::abs(edge.share) <= 1)
+      continue;
+    throw Error(
+        fmt::format("surface points: {}[{}] is not finite, or its share {} is not within "
+                    "-1 and 1",
+                    column, k, edge.share));
+  }
+}
+
+void check_edges(const SurfacePoints& points) {
+  const std::vector<std::uint32_t>& places = points.edges.points;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (places[k] < points.size() && (k == 0 || places[k - 1] < places[k])) continue;
+    throw Error(
+        fmt::format("surface points: edges.points[{}] is {}; they must rise and stay below "
+                    "the number of points, {}",
+                    k, places[k], points.size()));
+  }
+  require_edges("edges.start", points.edges.start);
+  require_edges("edges.end", points.edges.end);
 }
 
 }  // namespace
@@ -85,6 +114,7 @@ void check(const SurfacePoints& points) {
   require_finite("normals", points.normals);
   require_finite("end_normals", points.end_normals);
   require_finite("end_positions", points.end_positions);
+  check_edges(points);
   if (!points.origin.allFinite()) throw Error("surface points: the origin is not finite");
 }
 

@@ -28,8 +28,8 @@ struct FieldOptions {
   double tool_radius = 0;        ///< radius of the proxy's ball, m; the surface is pushed out by it
   /// Cap at Wmin, fill acute creases, and blend to the metaball where normals are unsure.
   bool capped = true;
-  /// Convex edges keep their shape where points say that they may (SurfacePoints::sharp_edges);
-  /// `balanced` only. A sample there costs about 2.5 times as much.
+  /// Edges and creases are sharp where points know what they meet (SurfacePoints::edges);
+  /// `balanced` with the exact gradient only.
   bool sharp_edges = true;
   bool raw_weights = false;     ///< ignore density weights (the paper)
   bool nearest_radius = false;  ///< use the R of the point nearest to the proxy for all (the paper)

@@ -25,6 +25,23 @@ struct PointSheets {
   [[nodiscard]] bool empty() const { return sheet.empty(); }
 };
 
+/// What a point's surface meets at an edge nearby: the plane of the face beyond.
+struct EdgePlane {
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, outward
+  float offset = 0;  ///< normal . p of its points p, which are relative to the origin, m
+  /// 0-1: how sure it is. Below 0, down to -1, in a crease: there free is what is above both
+  /// planes; otherwise solid is what is below both.
+  float share = 0;
+};
+
+/// The points beside edges. Columns are as long as each other, or `end` is empty: then it is as
+/// `start`.
+struct PointEdges {
+  std::vector<std::uint32_t> points;  ///< in the grid's sorted order, rising
+  std::vector<EdgePlane> start;
+  std::vector<EdgePlane> end;
+};
+
 /// Indexed points with all that a field needs of them, immutable once made. Every column is in the
 /// grid's sorted order and either as long as the grid or, where it says so, empty.
 ///
@@ -50,10 +67,8 @@ struct SurfacePoints {
   std::vector<float> end_confidences;
   std::vector<float> end_presences;
 
-  /// May convex edges between these points be felt sharp (FieldOptions::sharp_edges)? Only where
-  /// normals do not blur them: organised depth after the noise-sized fit. Normals that are means
-  /// over a neighbourhood gain nothing.
-  bool sharp_edges = false;
+  /// Edges and creases that stay sharp (FieldOptions::sharp_edges); of organised depth.
+  PointEdges edges;
 
   /// Was all of it seen from the side that its normals point to, and from nowhere else? Then it
   /// holds no tool that comes from behind. Only without sheets.

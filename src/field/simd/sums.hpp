@@ -21,17 +21,16 @@ constexpr int kMaxRuns = kLabels * kMaxSources;
 struct Columns {
   const double* position[3];  // m
   const double* normal[3];
-  const double* weight;      // a_i C_k
-  const double* confidence;  // c_i
-  const double* radius;      // R_i, m
-  const double* inverse_r2;  // 1 / R_i^2
-  double uniform_radius;     // R of all points, m; 0: they differ
-  const double* sharp;       // 1: the point takes part in sharpening edges; else 0
-  double uniform_sharp;      // of all points; below 0: they differ
-  double* slope;             // scratch: a_i C_k g_i / R_i^2 of the last call of `all`
-  double* trusted;           // scratch: v_i, of the last call of `near`
-  std::uint32_t* near;       // scratch: where lanes begin of which any is near, of the same call
-  double* closeness[2];      // scratch for `robust`
+  const double* weight;                   // a_i C_k
+  const double* confidence;               // c_i
+  const double* radius;                   // R_i, m
+  const double* inverse_r2;               // 1 / R_i^2
+  double uniform_radius;                  // R of all points, m; 0: they differ
+  const double* edge_normal[3];           // of the plane beyond an edge
+  const double* edge_height;              // of the patch's centre above it, m
+  const double* edge_share;               // 0-1; below 0: in a crease
+  bool edges;                             // does any point lie beside an edge?
+  double* slope;                          // scratch: a_i C_k g_i / R_i^2 of the last call of `all`
   std::uint32_t run_begin[kMaxRuns + 1];  // run of a label l and source s: l * sources + s
   int sources;
   int labels;  // from the first on; those behind have no points
@@ -71,10 +70,13 @@ struct Sums {
   double grad_wr[3];
 };
 
-// sum s_i v_i of the points' sharpness s_i, with its gradient.
-struct Share {
-  double sv;
-  double grad_sv[3];
+// Over the points beside edges, with v_i by how sure their edge is: sum v_i, and sum v_i h_i of the
+// heights of x above what both planes leave.
+struct EdgeSums {
+  double v;
+  double grad_v[3];
+  double vh;
+  double grad_vh[3];
 };
 
 // b_i = n_i . alpha + q_i . beta + (n_i . q_i) gamma + delta.
@@ -85,14 +87,9 @@ struct Linear {
   double delta;
 };
 
-// The derivatives of a sum of v_i phi_i b_i: in x with the normal n held, and in n with x held.
-struct Pull {
-  double place[3];
-  double normal[3];
-};
-
-// phi_i = exp(-|n_i - n|^2 / kSpread^2): how much a point counts to a surface of normal n.
-constexpr double kSpread = 0.5;
+// What edges and creases are rounded over, of R_i, so that heights have gradients.
+constexpr double kOverEdges = 0.005;
+constexpr double kInCreases = 0.05;
 
 struct Functions {
   // The weight sums alone (metaball).
@@ -106,19 +103,9 @@ struct Functions {
   void (*bound)(const Columns&, bool wendland, const double x[3], double h,
                 double out[kMaxSources]) noexcept;
 
-  // Lists where points of [begin, end) have weight at x and what weight, for the functions below,
-  // which look at no others and are to be called with the same x and the number of places that it
-  // returns.
-  std::uint32_t (*near)(const Columns&, std::uint32_t begin, std::uint32_t end, bool wendland,
-                        const double x[3]) noexcept;
-  // The sharp points' share, with the slopes that `all` left.
-  void (*share)(const Columns&, std::uint32_t places, const double x[3], Share&) noexcept;
-  // The moments of v_i phi_i; leaves phi_i in the k-th closeness column.
-  void (*robust)(const Columns&, std::uint32_t places, const double x[3], const double n[3], int k,
-                 Moments&) noexcept;
-  // Derivatives of those, with the slopes that `all` and the phi_i that `robust` left.
-  void (*pull)(const Columns&, std::uint32_t places, const double x[3], const double n[3], int k,
-               const Linear&, Pull&) noexcept;
+  // Over the points [begin, end), with the slopes that `all` left for the same x.
+  void (*edges)(const Columns&, std::uint32_t begin, std::uint32_t end, bool wendland,
+                const double x[3], EdgeSums&) noexcept;
 };
 
 extern const Functions kBaseline;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "field/active_layer.hpp"
 #include "geometry/morton.hpp"
 #include "geometry/sort_records.hpp"
 
@@ -101,8 +102,7 @@ void Morph::write_unseen() {
   for (const detail::Record record : unseen_order_) {
     const Unseen& unseen = unseen_[record & detail::kPlaceMask];
     const auto code = static_cast<std::uint32_t>(record >> detail::kPlaceBits);
-    writer_.add(kUnseenCode | code, unseen.from, unseen.to);
-    next_entries_.push_back(unseen.entry);
+    write(kUnseenCode | code, unseen.from, unseen.to, unseen.entry);
   }
 }
 
@@ -126,14 +126,17 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
   points.origin = origin_;
   points.kernel = options_.kernel;
   points.one_sided = true;
-  points.sharp_edges =
-      std::find(depth.states.begin(), depth.states.end(), BlockState::fitted) != depth.states.end();
   next_entries_.clear();
   unseen_.clear();
   writer_.begin(points, std::max(entries_.size() + entries_.size() / 16, order_.size() / 2));
 }
 
 void Morph::measure(const MorphInput& input) {
+  measure_weights(input);
+  edges_.look(input.depth, surface_);
+}
+
+void Morph::measure_weights(const MorphInput& input) {
   if (input.everywhere) {
     surface_.measure(input.depth);
     return;
@@ -181,7 +184,8 @@ PointState Morph::old_point(std::uint32_t i) const {
             p.end_density_weights[i],
             p.end_radii[i],
             p.end_confidences[i],
-            fades ? p.end_presences[i] : 1.0f};
+            fades ? p.end_presences[i] : 1.0f,
+            old_edge(i)};
   }
   const auto between = [u](float a, float b) { return a + u * (b - a); };
   return {mix(p.grid.points()[i], p.end_positions[i], u) + old_shift_,
@@ -189,7 +193,16 @@ PointState Morph::old_point(std::uint32_t i) const {
           between(p.density_weights[i], p.end_density_weights[i]),
           between(p.radii[i], p.end_radii[i]),
           between(p.confidences[i], p.end_confidences[i]),
-          fades ? between(p.presences[i], p.end_presences[i]) : 1.0f};
+          fades ? between(p.presences[i], p.end_presences[i]) : 1.0f,
+          old_edge(i)};
+}
+
+EdgePlane Morph::old_edge(std::uint32_t i) const {
+  if (entries_[i].edge == kNoEdge) return {};
+  const ActiveLayer layer{.points = last_.get(), .progress = std::min(progress_, 1.0)};
+  EdgePlane edge = edge_now(layer, entries_[i].edge);
+  edge.offset += edge.normal.dot(old_shift_);
+  return edge;
 }
 
 Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) const {
@@ -203,6 +216,9 @@ Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) con
   if (streams_) point.trust = surface_.trust(depth, block);
   point.variance = depth.deviations[block] * depth.deviations[block];
   state.weight = point.weight(state.radius);
+  state.edge = edges_.edge(block);
+  state.edge.normal = turn_ * state.edge.normal;
+  state.edge.offset += state.edge.normal.dot(shift_);
   return point;
 }
 
@@ -216,7 +232,13 @@ void Morph::fetch(const FilteredDepth& depth, std::size_t block) const {
 
 void Morph::add(const PointState& from, const PointState& to, const Entry& entry) {
   if (entry.kind != EntryKind::live) return unseen_.push_back({from, to, entry});
-  writer_.add(order_.codes[place_], from, to);
+  write(order_.codes[place_], from, to, entry);
+}
+
+void Morph::write(std::uint32_t code, const PointState& from, const PointState& to, Entry entry) {
+  const std::uint32_t edges = writer_.edges();
+  writer_.add(code, from, to);
+  entry.edge = writer_.edges() > edges ? edges : kNoEdge;
   next_entries_.push_back(entry);
 }
 

@@ -14,6 +14,7 @@
 #include "scene/policies/block_entries.hpp"
 #include "scene/policies/block_order.hpp"
 #include "scene/policies/block_surface.hpp"
+#include "scene/policies/edge_finder.hpp"
 #include "scene/policies/moment.hpp"
 #include "scene/policies/point_writer.hpp"
 
@@ -83,6 +84,7 @@ class Morph {
 
   void start(const MorphInput& input, const Moment& moment, SurfacePoints& points);
   void measure(const MorphInput& input);
+  void measure_weights(const MorphInput& input);
   void follow_camera(const MorphInput& input);
   void fetch(const FilteredDepth& depth, std::size_t block) const;
   void settle(const FilteredDepth& depth, std::size_t place);
@@ -114,10 +116,13 @@ class Morph {
   void keep(std::uint32_t i, float presence, EntryKind kind, double confirmed);
   void leave(std::uint32_t i);
   void add(const PointState& from, const PointState& to, const Entry& entry);
+  void write(std::uint32_t code, const PointState& from, const PointState& to, Entry entry);
+  [[nodiscard]] EdgePlane old_edge(std::uint32_t i) const;
 
   MorphOptions options_;
   BlockOrder order_;
   BlockSurface surface_;
+  EdgeFinder edges_;
   PointWriter writer_;
   std::vector<Ball> local_reach_;
 

@@ -20,6 +20,9 @@ void PointWriter::begin(SurfacePoints& points, std::size_t expected) {
   unsure_ = false;
   points.materials.clear();
   points.colors.clear();
+  points.edges.points.clear();
+  points.edges.start.clear();
+  points.edges.end.clear();
   make_room(expected);
 }
 
@@ -34,6 +37,14 @@ void PointWriter::make_room(std::size_t room) {
   starts_.resize(std::max(room, starts_.size()));
   codes_.resize(std::max(room, codes_.size()));
   room_ = room;
+}
+
+/// An edge that is not there at one end has its plane there, too.
+void PointWriter::add_edge(const EdgePlane& start, const EdgePlane& end) {
+  PointEdges& edges = points_->edges;
+  edges.points.push_back(static_cast<std::uint32_t>(count_));
+  edges.start.push_back(start.share != 0 ? start : EdgePlane{end.normal, end.offset, 0});
+  edges.end.push_back(end.share != 0 ? end : EdgePlane{start.normal, start.offset, 0});
 }
 
 void PointWriter::end() {

@@ -17,6 +17,7 @@ struct PointState {
   float radius = 0;                                    ///< R_i, m
   float confidence = 0;                                ///< c_i
   float presence = 1;
+  EdgePlane edge;  ///< share 0: it lies beside no edge
 };
 
 /// Writes moving points, which come in the order of a curve, into the columns of surface points,
@@ -42,17 +43,24 @@ class PointWriter {
     p.end_radii[count_] = end.radius;
     p.end_confidences[count_] = end.confidence;
     p.end_presences[count_] = end.presence;
+    if (start.edge.share != 0 || end.edge.share != 0) add_edge(start.edge, end.edge);
     unsure_ = unsure_ || start.presence < 1 || end.presence < 1;
     ++count_;
   }
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
+  /// How many points so far lie beside edges.
+  [[nodiscard]] std::uint32_t edges() const {
+    return static_cast<std::uint32_t>(points_->edges.points.size());
+  }
+
   /// Indexes the points and finishes them as palpate::finish() does.
   void end();
 
  private:
   void make_room(std::size_t room);
+  void add_edge(const EdgePlane& start, const EdgePlane& end);
   void measure_reach();
   void measure_radii();
 

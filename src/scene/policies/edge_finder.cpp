@@ -1,0 +1,144 @@
+#include "scene/policies/edge_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr int kApart = 3;           // blocks: a block that an edge crosses is between the two
+constexpr float kTurned = 0.866f;   // cosine of the least angle between two faces
+constexpr float kSame = 0.94f;      // and of the largest one within a face
+constexpr float kSure = 3;          // deviations
+constexpr float kOfSupport = 0.1f;  // of R, that a face may be bent
+constexpr int kMostAway = 8;        // blocks
+
+}  // namespace
+
+/// What the blocks of a frame say of its faces.
+struct EdgeFinder::Faces {
+  const FilteredDepth& depth;
+  const BlockSurface& surface;
+
+  [[nodiscard]] bool fitted(std::size_t block) const {
+    return depth.states[block] == BlockState::fitted && depth.confidences[block] > 0;
+  }
+
+  /// The block (x, y) away from one; the image's size where there is none.
+  [[nodiscard]] std::size_t beside(std::size_t block, int x, int y) const {
+    const int u = static_cast<int>(block) % depth.columns + x;
+    const int v = static_cast<int>(block) / depth.columns + y;
+    const bool inside = u >= 0 && v >= 0 && u < depth.columns && v < depth.rows;
+    return inside ? static_cast<std::size_t>(v * depth.columns + u) : depth.size();
+  }
+
+  /// How high `block` lies above the plane of another, m.
+  [[nodiscard]] float height(std::size_t block, std::size_t above) const {
+    return depth.normals[above].dot(depth.positions[block] - depth.positions[above]);
+  }
+
+  /// By which `block` may be off a face that it lies on, m.
+  [[nodiscard]] float room(std::size_t block, std::size_t of) const {
+    const float variance = depth.deviations[of] * depth.deviations[of] +
+                           depth.deviations[block] * depth.deviations[block];
+    return kOfSupport * surface.radius(of) + kSure * std::sqrt(variance);
+  }
+
+  [[nodiscard]] bool shares_face(std::size_t block, std::size_t of) const {
+    return block < depth.size() && fitted(block) &&
+           depth.normals[block].dot(depth.normals[of]) >= kSame &&
+           std::abs(height(block, of)) <= room(block, of);
+  }
+
+  [[nodiscard]] float squared_distance(std::size_t a, std::size_t b) const {
+    return (depth.positions[a] - depth.positions[b]).squaredNorm();
+  }
+
+  /// Does the face of a block go on for R?
+  [[nodiscard]] bool goes_on(std::size_t block, int x, int y) const {
+    const float reach = surface.radius(block);
+    for (int k = 1; k <= kMostAway; ++k) {
+      const std::size_t next = beside(block, k * x, k * y);
+      if (!shares_face(next, block)) return false;
+      if (squared_distance(next, block) >= reach * reach) return true;
+    }
+    return true;
+  }
+};
+
+void EdgeFinder::look(const FilteredDepth& depth, const BlockSurface& surface) {
+  numbers_.assign(depth.size(), 0);
+  away_.resize(depth.size());
+  edges_.assign(1, {});
+  const Faces faces{depth, surface};
+  for (int v = 0; v < depth.rows; ++v) {
+    for (int u = 0; u < depth.columns; ++u) {
+      const auto block = static_cast<std::size_t>(v * depth.columns + u);
+      if (!faces.fitted(block)) continue;
+      if (u + kApart < depth.columns) join(faces, block, 1, 0);
+      if (v + kApart < depth.rows) join(faces, block, 0, 1);
+    }
+  }
+}
+
+/// Do the planes of a block and one to its right or below it meet between the two, and explain what
+/// lies there, and do both faces go on?
+void EdgeFinder::join(const Faces& faces, std::size_t a, int x, int y) {
+  const FilteredDepth& depth = faces.depth;
+  const std::size_t b = a + static_cast<std::size_t>(kApart * (y * depth.columns + x));
+  if (!faces.fitted(b) || depth.normals[a].dot(depth.normals[b]) > kTurned) return;
+  const float a_over_b = faces.height(a, b);
+  const float b_over_a = faces.height(b, a);
+  const float both = std::min(std::abs(a_over_b), std::abs(b_over_a));
+  if (!(a_over_b * b_over_a > 0) ||
+      both <= kSure * std::hypot(depth.deviations[a], depth.deviations[b]))
+    return;
+  const float share = a_over_b > 0 ? -1.0f : 1.0f;
+  for (int k = 1; k < kApart; ++k) {
+    const std::size_t between = faces.beside(a, k * x, k * y);
+    if (!faces.fitted(between)) return;
+    const float off = std::max(share * faces.height(between, a), share * faces.height(between, b));
+    if (std::abs(off) > faces.room(between, a)) return;
+  }
+  if (!faces.goes_on(a, -x, -y) || !faces.goes_on(b, x, y)) return;
+  spread(faces, {a, b, x != 0, share});
+  spread(faces, {b, a, x != 0, share});
+}
+
+/// Tells the blocks of a's face within R what lies beyond, unless they know of a nearer edge.
+void EdgeFinder::spread(const Faces& faces, const Meeting& meeting) {
+  const FilteredDepth& depth = faces.depth;
+  const float reach = faces.surface.radius(meeting.a);
+  const float side = static_cast<float>(depth.pitch) * depth.positions[meeting.a].z();
+  const int half = std::min(kMostAway, static_cast<int>(std::ceil(reach / side)));
+  for (int y = -half; y <= half; ++y) {
+    for (int x = -half; x <= half; ++x) {
+      const std::size_t block = faces.beside(meeting.a, x, y);
+      if (!faces.shares_face(block, meeting.a)) continue;
+      const float away = faces.squared_distance(block, meeting.a);
+      const bool told = edge(block).share != 0 && away_[block] <= away;
+      if (told || away > reach * reach ||
+          meeting.share * faces.height(block, meeting.b) > faces.room(block, meeting.b)) {
+        continue;
+      }
+      away_[block] = away;
+      const std::size_t mirrored =
+          faces.beside(meeting.b, meeting.in_row ? -x : x, meeting.in_row ? y : -y);
+      tell(faces, block, faces.shares_face(mirrored, meeting.b) ? mirrored : meeting.b,
+           meeting.share);
+    }
+  }
+}
+
+void EdgeFinder::tell(const Faces& faces, std::size_t block, std::size_t other, float share) {
+  if (numbers_[block] == 0) {
+    numbers_[block] = static_cast<std::uint32_t>(edges_.size());
+    edges_.emplace_back();
+  }
+  const Vector3f& normal = faces.depth.normals[other];
+  edges_[numbers_[block]] = {normal, normal.dot(faces.depth.positions[other]), share};
+}
+
+}  // namespace palpate
