@@ -6,12 +6,14 @@
 #include <random>
 
 #include "palpate/base/error.hpp"
+#include "support/known_edges.hpp"
 #include "support/make_points.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
+using test::draw_edges;
 using test::make_points;
 using test::TestPoint;
 using test::wavy_sheet;
@@ -22,7 +24,7 @@ struct Case {
   int sources = 1;
   double doubtful = 0;  // share of points without trusted normals
   const char* name = "";
-  int sharp = 0;  // sources whose edges may be sharp, as bits
+  int sharp = 0;  // sources that know of edges, as bits
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
@@ -34,7 +36,7 @@ class GradientTest : public testing::TestWithParam<Case> {
   GradientTest() {
     for (int s = 0; s < GetParam().sources; ++s) {
       points_[s] = make_points(wavy_sheet(10 + s, GetParam().doubtful), GetParam().options.kernel);
-      points_[s].sharp_edges = (GetParam().sharp >> s & 1) != 0;
+      if ((GetParam().sharp >> s & 1) != 0) draw_edges(points_[s], static_cast<unsigned>(s));
       layers_.push_back({&points_[s], s});
     }
     for (Patch* patch : {&above_, &below_}) {
@@ -220,7 +222,7 @@ TEST(Evaluate, DegenerateNeighbourhoodsStayFinite) {
       {{{0, 0, 0}, Vector3d::UnitX(), 10e-3, 1}}};
   for (const auto& cloud : clouds) {
     SurfacePoints points = make_points(cloud);
-    points.sharp_edges = true;
+    draw_edges(points, 1);
     const Patch patch = patch_of(points);
     for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset, FieldKind::metaball}) {
       const ImplicitSurface surface{FieldOptions{.kind = kind}};

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "palpate/scene/scene_field.hpp"
+#include "support/known_edges.hpp"
 #include "support/make_points.hpp"
 
 namespace palpate::test {
@@ -17,7 +18,7 @@ class Reference : public testing::TestWithParam<FieldKind> {};
 
 TEST_P(Reference, GradientAgreesWithCentralDifferences) {
   SurfacePoints sharp = make_points(wavy_sheet(1, 0.2));
-  sharp.sharp_edges = true;
+  draw_edges(sharp, 5);
   const SurfacePoints& first = sharp;
   const SurfacePoints second = make_points(wavy_sheet(2, 0.2));
   std::mt19937 random(3);
@@ -64,7 +65,7 @@ TEST_P(Reference, SceneFieldSaysTheSame) {
       std::vector<const SurfacePoints*> all;
       for (int s = 0; s < sources; ++s) {
         SurfacePoints points = make_points(wavy_sheet(10 + static_cast<unsigned>(s), 0.3), kernel);
-        points.sharp_edges = s % 2 == 0;
+        if (s % 2 == 0) draw_edges(points, static_cast<unsigned>(s));
         kept.push_back(std::make_shared<SurfacePoints>(std::move(points)));
         all.push_back(kept.back().get());
         auto snapshot = std::make_unique<Snapshot>();

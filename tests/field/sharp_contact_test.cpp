@@ -37,30 +37,27 @@ std::vector<Contact> follow(PointField& points, const std::vector<Vector3d>& pla
   return contacts;
 }
 
-TEST(SharpContact, CreasesHoldAndFeelAsBefore) {
-  const auto points = wedge(fine(), std::numbers::pi / 2, 30e-3);
-  PointField sharp(points, {}, true);
-  PointField mean(points);
+TEST(SharpContact, CreasesHoldAHandInBothFaces) {
+  PointField sharp(wedge(fine(), std::numbers::pi / 2, 30e-3), {}, true);
   for (const double depth : {3e-3, 6e-3, 10e-3}) {
     const auto at = [&](double out, double along) { return Vector3d(out, along, out); };
     const std::vector<Vector3d> path{at(20e-3, -10e-3), at(-depth, -10e-3), at(-depth, 10e-3)};
-    const auto with = follow(sharp, path);
-    const auto without = follow(mean, path);
+    const auto contacts = follow(sharp, path);
     const auto pressing = static_cast<std::size_t>(30e-3 / 0.1 / kTick);
-    for (std::size_t i = 0; i < with.size(); ++i) {
-      EXPECT_EQ(with[i].force, without[i].force);
-      if (i <= pressing + 150) continue;
-      EXPECT_GT(with[i].force.norm(), 0.8 * kStiffness * depth);
+    const Vector3d right = kStiffness * Vector3d(depth, 0, depth);
+    for (std::size_t i = pressing + 150; i < contacts.size(); ++i) {
+      EXPECT_LT((contacts[i].force - right).norm(), 0.15) << depth;
     }
   }
 }
 
+// Without sheets, both sides of a thin plate are one surface, which lies up to 0.2 R before them.
 TEST(SharpContact, PlatesOfAnyThicknessHold) {
   for (const double thickness : {1e-3, 2e-3, 4e-3, 8e-3, 16e-3}) {
     PointField points(plate(fine(), 24e-3, thickness), {}, true);
     const auto contacts = follow(points, {{0, 0, 10e-3}, {0, 0, -20e-3}, {2e-3, 1e-3, -20e-3}});
     EXPECT_GT(contacts.back().force.z(), 9) << thickness;
-    EXPECT_NEAR(contacts.back().proxy.z(), 0, 1e-3) << thickness;
+    EXPECT_NEAR(contacts.back().proxy.z(), 0, 0.21 * fine().radius) << thickness;
   }
 }
 

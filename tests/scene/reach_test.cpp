@@ -114,7 +114,6 @@ TEST(Scene, FieldsTellSourcesWhereTheyFeel) {
   field.update(0, {0.03, 0, 0}, {0.03, 0, 0});
   const DepthFrame frame = test::frame_of(test::small_camera(), 0, test::wall(0.5), 1e-4);
   source.push(frame, [] { return 0.0; });
-  EXPECT_TRUE(source.points()->sharp_edges) << "there are blocks with a fit";
   EXPECT_EQ(source.state().points, source.points()->size());
 }
 

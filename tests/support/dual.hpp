@@ -34,9 +34,6 @@ inline Dual sqrt(const Dual& a) {
   const double root = std::sqrt(a.v);
   return {root, a.g / (2 * root)};
 }
-inline Dual exp(const Dual& a) {
-  return {std::exp(a.v), std::exp(a.v) * a.g};
-}
 using DualVector = std::array<Dual, 3>;
 inline Dual dot(const DualVector& a, const DualVector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

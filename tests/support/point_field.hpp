@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "palpate/scene/scene_field.hpp"
+#include "support/known_edges.hpp"
 #include "support/make_points.hpp"
 
 namespace palpate::test {
@@ -14,7 +15,7 @@ class PointField {
   explicit PointField(const std::vector<TestPoint>& points, const FieldOptions& options = {},
                       bool sharp_edges = false, bool one_sided = false) {
     SurfacePoints made = make_points(points, options.kernel);
-    made.sharp_edges = sharp_edges;
+    if (sharp_edges) tell_edges(made);
     made.one_sided = one_sided;
     points_ = std::make_shared<SurfacePoints>(std::move(made));
     auto snapshot = std::make_unique<Snapshot>();

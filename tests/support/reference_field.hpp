@@ -20,7 +20,7 @@ struct ReferencePoint {
   double weight = 1;      // C_k a_i
   double confidence = 1;  // c_i
   int source = 0;
-  bool sharp = false;
+  EdgePlane edge;  // its offset relative to the world
 };
 
 /// The field of algorithm.md 1.2-1.5, field_choice.md 2 and architecture.md ("Words") over all
@@ -31,7 +31,11 @@ class ReferenceField final : public Field {
   /// `side`: -1: it is seen from behind its normals.
   ReferenceField(std::vector<ReferencePoint> points, const FieldOptions& options, int side = 1)
       : points_(std::move(points)), options_(options) {
-    for (ReferencePoint& p : points_) p.normal *= side;
+    for (ReferencePoint& p : points_) {
+      p.normal *= side;
+      const auto sign = static_cast<float>(side);
+      p.edge = {sign * p.edge.normal, sign * p.edge.offset, sign * p.edge.share};
+    }
     for (const ReferencePoint& p : points_) sources_ = std::max(sources_, p.source + 1);
   }
 
@@ -49,9 +53,9 @@ class ReferenceField final : public Field {
     const Dual blob = as_length(radius, options_.threshold, support);
     Dual value = blob;
     if (s.trusted.v > 1e-9 * s.plain.v && options_.kind != FieldKind::metaball) {
-      Dual height = sharpened(s, radius);
+      Dual height = height_of(s);
       if (sources_ > 1) height = height + united_shift(s.own, radius, options_.kernel);
-      value = blend(s, capped(height - closure(s, radius), radius, support), blob);
+      value = blend(s, capped(with_edges(s, height - closure(s, radius)), radius, support), blob);
     }
     result.value = value.v;
     result.gradient = value.g;
@@ -94,8 +98,7 @@ class ReferenceField final : public Field {
     Dual trusted;        // sum v, v = w c
     DualVector q, n;     // sum v (p - x), sum v n
     Dual nq;             // sum v n . (p - x)
-    Dual sharp;          // sum v of points that may be sharpened
-    std::vector<Term> terms;
+    Dual edge, edge_height;  // sum e, sum e h: of what points beside edges say
     std::vector<OwnSums> own;  // of each source
   };
 
@@ -103,12 +106,18 @@ class ReferenceField final : public Field {
     std::vector<ReferencePoint> all;
     for (std::size_t s = 0; s < sources.size(); ++s) {
       const SurfacePoints& from = *sources[s];
+      std::vector<EdgePlane> edges(from.size());
+      for (std::size_t k = 0; k < from.edges.points.size(); ++k) {
+        EdgePlane& edge = edges[from.edges.points[k]];
+        edge = from.edges.start[k];
+        edge.offset += edge.normal.dot(from.origin.cast<float>());
+      }
       for (std::size_t i = 0; i < from.size(); ++i) {
         all.push_back({from.origin + from.grid.points()[i].cast<double>(),
                        from.normals.empty() ? Eigen::Vector3d::Zero().eval()
                                             : from.normals[i].cast<double>().eval(),
                        from.radii[i], from.density_weights[i], from.confidences[i],
-                       static_cast<int>(s), from.sharp_edges});
+                       static_cast<int>(s), edges[i]});
       }
     }
     return all;
@@ -134,14 +143,13 @@ class ReferenceField final : public Field {
       s.plain = s.plain + w;
       s.radius = s.radius + p.radius * w;
       s.trusted = s.trusted + v;
-      if (p.sharp) s.sharp = s.sharp + v;
       Term term{v, {}, p.normal};
       for (int k = 0; k < 3; ++k) {
         term.q[static_cast<std::size_t>(k)] = {-away[k], -Eigen::Vector3d::Unit(k)};
       }
       add(s, v, term);
       add_own(p, w, v, term, s.own[static_cast<std::size_t>(p.source)]);
-      if (v.v > 0) s.terms.push_back(term);
+      add_edge(s, p, x, v);
     }
     return s;
   }
@@ -183,37 +191,32 @@ class ReferenceField final : public Field {
     return -0.5 * (dot(mean_normal, a) + s.nq / s.trusted);
   }
 
-  /// MEAN + sigma chi (RIMLS - MEAN) of nss_fast.md section 1.
-  [[nodiscard]] Dual sharpened(const Sums& s, const Dual& radius) const {
-    const Dual mean = height_of(s);
-    if (options_.kind != FieldKind::balanced || !options_.sharp_edges || s.sharp.v <= 0) {
-      return mean;
+  /// By e = v |share|, the height above both planes: the larger of the two, or in a crease the
+  /// smaller, rounded over a part of R.
+  static void add_edge(Sums& s, const ReferencePoint& p, const Eigen::Vector3d& x, const Dual& v) {
+    const double share = p.edge.share;
+    if (share == 0) return;
+    const double sign = share < 0 ? -1 : 1;
+    const Eigen::Vector3d m = p.edge.normal.cast<double>();
+    const Dual own{sign * p.normal.dot(x - p.position), sign * p.normal};
+    const Dual beyond{sign * (m.dot(x) - static_cast<double>(p.edge.offset)), sign * m};
+    const double width = (share < 0 ? 0.05 : 0.005) * p.radius;
+    Dual height = own.v > beyond.v ? own : beyond;
+    const Dual apart = own.v > beyond.v ? own - beyond : beyond - own;
+    if (apart.v < width) {
+      const Dual inside = constant(width) - apart;
+      height = height + 0.25 / width * (inside * inside);
     }
-    const DualVector a = s.q / s.trusted;
-    const DualVector mean_normal = s.n / s.trusted;
-    const Dual bulge = (s.nq / s.trusted - dot(mean_normal, a)) / radius;
-    constexpr double kFrom = 0.002;
-    const Dual chi = smooth((1 / (0.05 - kFrom)) * (bulge - constant(kFrom)));
-    if (chi.v <= 0) return mean;
-    const Dual rimls = height_of(robust(s, robust(s, s)));
-    return mean + s.sharp / s.trusted * chi * (rimls - mean);
+    s.edge = s.edge + std::abs(share) * v;
+    s.edge_height = s.edge_height + share * (v * height);
   }
 
-  /// Sums with every v times exp(-|n_i - n|^2 / 0.5^2), n the mean normal of the sums `before`.
-  [[nodiscard]] static Sums robust(const Sums& s, const Sums& before) {
-    Sums result;
-    const DualVector n = before.n / before.trusted;
-    for (const Term& term : s.terms) {
-      Dual squared;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Dual turn = constant(term.n[static_cast<Eigen::Index>(axis)]) - n[axis];
-        squared = squared + turn * turn;
-      }
-      const Dual v = term.v * exp(-1 / (0.5 * 0.5) * squared);
-      result.trusted = result.trusted + v;
-      add(result, v, term);
+  /// The part of the height that points beside edges have a say in is what they say.
+  [[nodiscard]] Dual with_edges(const Sums& s, const Dual& height) const {
+    if (options_.kind != FieldKind::balanced || !options_.sharp_edges || s.edge.v <= 0) {
+      return height;
     }
-    return result;
+    return height + (s.edge_height - height * s.edge) / s.trusted;
   }
 
   [[nodiscard]] Dual as_length(const Dual& radius, double level, const Dual& support) const {

@@ -52,17 +52,14 @@ struct EdgeFinder::Faces {
            std::abs(height(block, of)) <= room(block, of);
   }
 
-  [[nodiscard]] float squared_distance(std::size_t a, std::size_t b) const {
-    return (depth.positions[a] - depth.positions[b]).squaredNorm();
-  }
-
   /// Does the face of a block go on for R?
   [[nodiscard]] bool goes_on(std::size_t block, int x, int y) const {
     const float reach = surface.radius(block);
     for (int k = 1; k <= kMostAway; ++k) {
       const std::size_t next = beside(block, k * x, k * y);
       if (!shares_face(next, block)) return false;
-      if (squared_distance(next, block) >= reach * reach) return true;
+      const Vector3f way = depth.positions[next] - depth.positions[block];
+      if (way.squaredNorm() >= reach * reach) return true;
     }
     return true;
   }
@@ -103,11 +100,14 @@ void EdgeFinder::join(const Faces& faces, std::size_t a, int x, int y) {
     if (std::abs(off) > faces.room(between, a)) return;
   }
   if (!faces.goes_on(a, -x, -y) || !faces.goes_on(b, x, y)) return;
-  spread(faces, {a, b, x != 0, share});
-  spread(faces, {b, a, x != 0, share});
+  const float t = a_over_b / (a_over_b + b_over_a);
+  const Vector3f edge = depth.positions[a] + t * (depth.positions[b] - depth.positions[a]);
+  spread(faces, {a, b, edge, x != 0, share});
+  spread(faces, {b, a, edge, x != 0, share});
 }
 
-/// Tells the blocks of a's face within R what lies beyond, unless they know of a nearer edge.
+/// Tells the blocks of a's face within R of the edge what lies beyond, unless they know of a nearer
+/// edge.
 void EdgeFinder::spread(const Faces& faces, const Meeting& meeting) {
   const FilteredDepth& depth = faces.depth;
   const float reach = faces.surface.radius(meeting.a);
@@ -117,7 +117,7 @@ void EdgeFinder::spread(const Faces& faces, const Meeting& meeting) {
     for (int x = -half; x <= half; ++x) {
       const std::size_t block = faces.beside(meeting.a, x, y);
       if (!faces.shares_face(block, meeting.a)) continue;
-      const float away = faces.squared_distance(block, meeting.a);
+      const float away = (depth.positions[block] - meeting.edge).squaredNorm();
       const bool told = edge(block).share != 0 && away_[block] <= away;
       if (told || away > reach * reach ||
           meeting.share * faces.height(block, meeting.b) > faces.room(block, meeting.b)) {

@@ -26,6 +26,7 @@ class EdgeFinder {
   /// Two blocks of a row or column whose faces meet between them.
   struct Meeting {
     std::size_t a, b;
+    Eigen::Vector3f edge;  // a place on it, m
     bool in_row;
     float share;
   };
