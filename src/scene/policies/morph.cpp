@@ -118,6 +118,7 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
   ends_ = input.last;
   streams_ = last_ && (streams_ || moment.stamp != last_moment_.stamp);
   comes_ = input.last ? 1 : share_of(options_.fade);
+  doubt_ = std::exp(share_of(options_.fade));
   progress_ = last_ ? progress(last_moment_, moment.start) : 1;
   const bool resized = std::exchange(resized_, false);
   moved_ = last_ && (resized || T_world_sensor.matrix() != T_world_sensor_.matrix());
@@ -200,7 +201,7 @@ Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) con
   state.radius = surface_.radius(block);
   state.confidence = depth.confidences[block];
   point.area = surface_.area(block);
-  if (streams_) point.trust = surface_.trust(depth, block);
+  if (streams_) point.trust = surface_.trust(block);
   point.variance = depth.deviations[block] * depth.deviations[block];
   state.weight = point.weight(state.radius);
   return point;
