@@ -41,13 +41,6 @@ class BlockSurface {
   /// show the same surface, as in a mean of measurements that are not equally good.
   [[nodiscard]] float trust(std::size_t block) const { return trusts_[block]; }
 
-  /// Says that all three will be asked for soon.
-  void fetch(std::size_t block) const {
-    __builtin_prefetch(&radii_[block]);
-    __builtin_prefetch(&areas_[block]);
-    __builtin_prefetch(&trusts_[block]);
-  }
-
  private:
   enum class Exact { nowhere, within, everywhere };
 

@@ -65,7 +65,7 @@ class Morph {
   void forget();
 
  private:
-  struct Point {
+  struct alignas(64) Point {
     PointState state;
     float area = 0;  // a_i R_i^2
     float trust = 1;
@@ -84,7 +84,6 @@ class Morph {
   void start(const MorphInput& input, const Moment& moment, SurfacePoints& points);
   void measure(const MorphInput& input);
   void follow_camera(const MorphInput& input);
-  void fetch(const FilteredDepth& depth, std::size_t block) const;
   void settle(const FilteredDepth& depth, std::size_t place);
   void write_unseen();
   void hold_one(std::span<const std::uint32_t> old);
@@ -142,6 +141,7 @@ class Morph {
   bool still_ = false;
   bool resized_ = false;  // the image, since what was shown last
   std::uint32_t place_ = 0;
+  std::vector<Point> points_;  // that the frame shows, row by row; R = 0: none
   std::vector<Entry> next_entries_;
   std::vector<Unseen> unseen_;               // points that no block shows
   std::vector<std::uint64_t> unseen_order_;  // their codes, and places among them

@@ -30,11 +30,11 @@ constexpr double kHidden = 60;
 void Morph::settle(const FilteredDepth& depth, std::size_t place) {
   const std::span<const std::uint32_t> old = by_block_.at(place);
   const std::size_t block = order_.blocks[place];
-  const bool shown = surface_.radius(block) > 0;
+  const Point& point = points_[block];
+  const bool shown = point.state.radius > 0;
   if (!shown && old.empty()) return;
   place_ = static_cast<std::uint32_t>(place);
   if (!shown) return hold_one(old);
-  const Point point = new_point(depth, block);
   PointState before;
   const std::uint32_t partner = partner_of(depth, old, point, before);
   const bool flies = partner == kNone ? last_ && beside(depth, block) < kVouch
@@ -101,9 +101,8 @@ bool Morph::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const 
 /// what has come along the ray as fast as things move. Tells how it was.
 std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std::uint32_t> old,
                                 const Point& seen, PointState& before) const {
-  const std::size_t block = order_.blocks[place_];
-  const float same =
-      std::max(seen.state.radius, BlockSurface::kDeviations * depth.deviations[block]);
+  constexpr float kDeviations2 = BlockSurface::kDeviations * BlockSurface::kDeviations;
+  const float same2 = std::max(seen.state.radius * seen.state.radius, kDeviations2 * seen.variance);
   std::uint32_t partner = kNone;
   float nearest = std::numeric_limits<float>::infinity();
   for (const std::uint32_t i : old) {
@@ -112,7 +111,7 @@ std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std:
     const PointState state = old_point(i);
     const float squared = (state.position - seen.state.position).squaredNorm();
     if (squared >= nearest) continue;
-    if (squared > same * same && !may_move(depth, seen, i, state)) continue;
+    if (squared > same2 && !may_move(depth, seen, i, state)) continue;
     nearest = squared;
     partner = i;
     before = state;
