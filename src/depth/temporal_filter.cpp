@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "depth/temporal_limits.hpp"
 #include "geometry/parallel.hpp"
 
 namespace palpate::depth {
