@@ -92,6 +92,7 @@ inline Mask look(const FitInput& in, const Chunk& c, const Aside& aside, Search&
   s.v = double(search.row - in.table.rows / 2) - dv;
   const Fits f = fit(in, shape(half_u, half_v), s);
   const Mask good = f.affine | (aside.size < kBentSizes ? f.quadratic : Mask{});
+  if (!any(good)) return good;
   const Doubles off = surface_at(f, f.affine, du, dv).rho - c.rho[search.i];
   const Doubles scores = score(f, f.affine, du, dv, search.lever_u2, search.lever_v2);
   const Mask wins = good & (off * off <= 4 * c.variance[search.i]) & (scores < search.score);
