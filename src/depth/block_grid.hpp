@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "geometry/parallel.hpp"
 #include "palpate/depth/camera_model.hpp"
 
 namespace palpate::depth {
@@ -31,6 +32,16 @@ struct BlockGrid {
   const Pinhole& p = camera.pinhole;
   return {camera.width / 2,    camera.height / 2, (0.5 - p.cx) / p.fx,
           (0.5 - p.cy) / p.fy, 2 / p.fx,          2 / p.fy};
+}
+
+/// Calls body(row) for each row, on several threads: see parallel_ranges().
+template <class Body>
+void for_rows(const BlockGrid& grid, const Body& body) {
+  constexpr std::size_t kRowsAtATime = 8;
+  detail::parallel_ranges(static_cast<std::size_t>(grid.rows), kRowsAtATime,
+                          [&](std::size_t row, std::size_t end) {
+                            for (; row < end; ++row) body(static_cast<int>(row));
+                          });
 }
 
 }  // namespace palpate::depth

@@ -21,11 +21,11 @@ void Blocks::resize(const BlockGrid& new_grid) {
 void average_blocks(const float* image, int width, const NoiseModel& noise,
                     const DepthFilterOptions& range, Blocks& blocks) {
   const simd::DepthGate gate = depth_gate(blocks.grid, kHalfDiagonal, noise, range);
-  for (int row = 0; row < blocks.grid.rows; ++row) {
+  for_rows(blocks.grid, [&](int row) {
     const std::size_t to = blocks.at(0, row);
     simd::best_plain().average(image + std::ptrdiff_t{2} * row * width, width, blocks.grid.columns,
                                gate, blocks.rho.data() + to, blocks.counts.data() + to);
-  }
+  });
 }
 
 }  // namespace palpate::depth

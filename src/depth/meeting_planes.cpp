@@ -72,10 +72,12 @@ struct Around {
   }
 
   void look(const Blocks& blocks, int column, int row) {
-    for (int k = 0; k < kBlocks; ++k) {
-      rho[k] =
-          blocks.rho[blocks.at(column + k % kWidth - kHalfWidth, row + k / kWidth - kHalfWidth)];
-      counts[k] = rho[k] > 0 ? 1.0F : 0.0F;
+    const float* from = &blocks.rho[blocks.at(column - kHalfWidth, row - kHalfWidth)];
+    for (int k = 0; k < kBlocks; k += kWidth, from += blocks.stride) {
+      for (int u = 0; u < kWidth; ++u) {
+        rho[k + u] = from[u];
+        counts[k + u] = from[u] > 0 ? 1.0F : 0.0F;
+      }
     }
   }
 

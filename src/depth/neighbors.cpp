@@ -34,11 +34,11 @@ void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& 
   const simd::BlockLimits limits = limits_of(noise, blocks.grid);
   const auto stride = static_cast<std::ptrdiff_t>(blocks.stride);
   scratch = blocks.rho;
-  for (int row = 0; row < blocks.grid.rows; ++row) {
+  for_rows(blocks.grid, [&](int row) {
     const std::size_t at = blocks.at(0, row);
     simd::best_plain().reject(scratch.data() + at, stride, blocks.grid.columns, limits, kSupporters,
                               blocks.rho.data() + at, blocks.counts.data() + at);
-  }
+  });
 }
 
 void fit_plain(const Blocks& blocks, const NoiseModel& noise, BlockFits& fits) {
@@ -46,11 +46,11 @@ void fit_plain(const Blocks& blocks, const NoiseModel& noise, BlockFits& fits) {
   const auto stride = static_cast<std::ptrdiff_t>(blocks.stride);
   const auto per_x = static_cast<float>(1 / blocks.grid.step_x);
   const auto per_y = static_cast<float>(1 / blocks.grid.step_y);
-  for (int row = 0; row < blocks.grid.rows; ++row) {
+  for_rows(blocks.grid, [&](int row) {
     const std::size_t from = blocks.at(0, row);
     simd::best_plain().fit(blocks.rho.data() + from, blocks.counts.data() + from, stride,
                            blocks.grid.columns, limits, per_x, per_y, fits.row(row));
-  }
+  });
 }
 
 }  // namespace palpate::depth

@@ -42,8 +42,8 @@ void write_points(const BlockFits& fits, const DepthRange& range, FilteredDepth&
   const auto step_y = static_cast<float>(grid.step_y);
   const auto farthest = static_cast<float>(1 / ((1 + kBeyond) * range.farthest));
   const auto nearest = static_cast<float>((1 + kBeyond) / range.nearest);
-  std::size_t i = 0;
-  for (int row = 0; row < grid.rows; ++row) {
+  for_rows(grid, [&](int row) {
+    std::size_t i = grid.index(0, row);
     const auto y = static_cast<float>(grid.y(row));
     for (int column = 0; column < grid.columns; ++column, ++i) {
       const bool sane = fits.rho[i] >= farthest && fits.rho[i] <= nearest;
@@ -59,14 +59,14 @@ void write_points(const BlockFits& fits, const DepthRange& range, FilteredDepth&
       out.normals[i] =
           known ? normal_of(Vector3f(a, b, fits.rho[i] - a * x - b * y)) : Vector3f(0, 0, 0);
       out.confidences[i] = fits.confidences[i];
-      out.deviations[i] = std::sqrt(fits.variance[i]) * z * z * ray.norm();
+      out.deviations[i] = std::sqrt(fits.variance[i] * ray.squaredNorm()) * z * z;
       // How far the next column's and row's points are on the tangent plane.
       const Vector3f to_right = z * step_x * (Vector3f::UnitX() - z * a * ray);
       const Vector3f below = z * step_y * (Vector3f::UnitY() - z * b * ray);
       const float spacing = std::sqrt(std::max(to_right.squaredNorm(), below.squaredNorm()));
       out.spacings[i] = std::min(spacing, kMostGrazing * z * static_cast<float>(out.pitch));
     }
-  }
+  });
 }
 
 }  // namespace palpate::depth

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "depth/temporal_limits.hpp"
+#include "geometry/parallel.hpp"
 
 namespace palpate::depth {
 namespace {
 
+constexpr std::size_t kBlocksAtATime = 4096;
 constexpr float kLonger = 8;        // times the memory, at most
 constexpr int kCalmFrames = 2;      // after which a moving block stands still
 constexpr float kLearn = 1 / 16.F;  // share of a frame in the scatter that frames show
@@ -201,15 +202,17 @@ void TemporalFilter::filter(const TemporalOptions& options, const Eigen::Isometr
                             BlockFits& fits) {
   prepare(fits.grid, T_world_sensor);
   const auto gate2 = static_cast<float>(options.gate * options.gate);
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    BlockMemory& m = memory_[i];
-    if (fits.states[i] == BlockState::empty) {
-      miss(options.hold, m);
-      continue;
+  detail::parallel_ranges(memory_.size(), kBlocksAtATime, [&](std::size_t i, std::size_t end) {
+    for (; i < end; ++i) {
+      BlockMemory& m = memory_[i];
+      if (fits.states[i] == BlockState::empty) {
+        miss(options.hold, m);
+        continue;
+      }
+      step(measured(fits, i), options, gate2, m);
+      write(m, i, fits);
     }
-    step(measured(fits, i), options, gate2, m);
-    write(m, i, fits);
-  }
+  });
 }
 
 }  // namespace palpate::depth

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "depth/temporal_limits.hpp"
-
 namespace palpate::depth {
 namespace {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "depth/fill_gaps.hpp"
-#include "depth/masked_fit.hpp"
 #include "geometry/parallel.hpp"
 
 namespace palpate::depth {
@@ -56,16 +55,11 @@ void WindowFits::list_columns(const Blocks& blocks, const FitRegion& region) {
   }
 }
 
-void WindowFits::fit_row(const simd::FitInput& in, const Blocks& blocks, const SameSurface& same,
-                         int row, std::span<const std::int32_t> columns, BlockFits& fits) const {
-  const std::size_t first = fits.grid.index(0, row);
-  constexpr float kUnfit = -1;
-  for (const std::int32_t column : columns) fits.confidences[first + column] = kUnfit;
+void WindowFits::fit_row(const simd::FitInput& in, int row, std::span<const std::int32_t> columns,
+                         BlockFits& fits) const {
   functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), fits.row(row));
-  for (const std::int32_t column : columns) {
-    fits.states[first + column] = BlockState::fitted;
-    if (fits.confidences[first + column] == kUnfit) fit_masked(blocks, same, column, row, fits);
-  }
+  const std::size_t first = fits.grid.index(0, row);
+  for (const std::int32_t column : columns) fits.states[first + column] = BlockState::fitted;
 }
 
 void WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
@@ -82,11 +76,10 @@ void WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double norma
   const simd::FitInput in = input(blocks, noise, normal_error, range);
   functions_->table(in.table, rows_of(filled_));
   list_columns(blocks, region);
-  const SameSurface same(noise, grid);
   const auto count = static_cast<std::size_t>(region.range().rows);
   detail::parallel_ranges(count, kRowsAtATime, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
-      fit_row(in, blocks, same, region.range().first_row + static_cast<int>(r),
+      fit_row(in, region.range().first_row + static_cast<int>(r),
               std::span(columns_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]), fits);
     }
   });

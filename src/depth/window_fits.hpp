@@ -7,7 +7,6 @@
 #include "depth/blocks.hpp"
 #include "depth/fit_region.hpp"
 #include "depth/meeting_planes.hpp"
-#include "depth/neighbors.hpp"
 #include "depth/simd/fits.hpp"
 
 namespace palpate::depth {
@@ -20,7 +19,7 @@ class WindowFits {
   explicit WindowFits(const simd::FitFunctions& functions = simd::best_fits())
       : functions_(&functions) {}
 
-  /// Replaces the plain fits of the region's blocks.
+  /// Replaces the plain fits of the region's blocks where a window fits.
   void fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
            const FitRegion& region, BlockFits& fits);
 
@@ -32,8 +31,8 @@ class WindowFits {
   [[nodiscard]] simd::FitInput input(const Blocks& blocks, const NoiseModel& noise,
                                      double normal_error, const BlockRange& range);
   void list_columns(const Blocks& blocks, const FitRegion& region);
-  void fit_row(const simd::FitInput& in, const Blocks& blocks, const SameSurface& same, int row,
-               std::span<const std::int32_t> columns, BlockFits& fits) const;
+  void fit_row(const simd::FitInput& in, int row, std::span<const std::int32_t> columns,
+               BlockFits& fits) const;
 
   const simd::FitFunctions* functions_;
   Blocks filled_;

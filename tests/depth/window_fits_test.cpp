@@ -177,6 +177,25 @@ TEST(WindowFits, TellTheirOwnErrors) {
   EXPECT_NEAR(slopes / count, 1, 0.35);
 }
 
+// Of many windows around a block, a small one often fails by chance where the largest is a plane:
+// asked from the smallest on, a tenth of the blocks would be beside an edge.
+TEST(WindowFits, TakeNoChanceForAnEdge) {
+  const Solid table = plane({0, 0, 0.7}, Vector3d(0, -0.8, -0.6).normalized());
+  const NoiseModel noise = kinect_like_noise();
+  int edges = 0;
+  int count = 0;
+  for (std::uint64_t frame = 0; frame < 4; ++frame) {
+    const DepthFrame image = noisy_frame({table}, {.rounding = 0}, frame);
+    const depth::BlockFits fits = fit_all(blocks_of(image, noise), noise);
+    for (int row = 24; row < fits.grid.rows - 24; ++row) {
+      for (int column = 24; column < fits.grid.columns - 24; ++column, ++count) {
+        edges += fits.at_edge[fits.grid.index(column, row)];
+      }
+    }
+  }
+  EXPECT_LT(edges, count / 15);
+}
+
 TEST(WindowFits, GiveTheSameBitsOnOlderProcessors) {
   if (!cpu_has_v3()) GTEST_SKIP() << "this processor has one level of the instruction set only";
   const std::vector<Solid> solids = {sphere({0.03, 0, 0.6}, 0.06),

@@ -129,6 +129,31 @@ TEST(BlockSurface, RadiiGrowByHalfTheDistanceAtMost) {
   }
 }
 
+TEST(BlockSurface, TrustsAPointByItsPrecisionAmongThoseAround) {
+  FilteredDepth depth = depth_of(test::wall(0.5));
+  const auto unsure = static_cast<std::size_t>(depth.columns * 30 + 41);
+  depth.deviations[unsure] = 2e-3f;
+  BlockSurface surface(Kernel::wyvill);
+  surface.measure(depth);
+  const auto precision = [&](std::size_t b) {
+    return 1 / (std::pow(depth.deviations[b], 2) + std::pow(0.157f * surface.radius(b), 2));
+  };
+  for (const std::size_t b : {unsure - 1, unsure, std::size_t{0}, depth.size() - 1}) {
+    double sum = 0;
+    double count = -1;  // not the block itself
+    for (std::size_t other = 0; other < depth.size(); ++other) {
+      const auto columns = static_cast<std::ptrdiff_t>(depth.columns);
+      const auto way = static_cast<std::ptrdiff_t>(other) - static_cast<std::ptrdiff_t>(b);
+      const std::ptrdiff_t u =
+          static_cast<std::ptrdiff_t>(other) % columns - static_cast<std::ptrdiff_t>(b) % columns;
+      if (std::abs(u) > 1 || std::abs((way - u) / columns) > 1) continue;
+      ++count;
+      if (other != b) sum += precision(other);
+    }
+    EXPECT_NEAR(surface.trust(b), std::min(1.0, precision(b) * count / sum), 1e-4) << b;
+  }
+}
+
 TEST(BlockSurface, OutsideOfReachRimsWeighAsIfTheSurfaceWentOn) {
   const FilteredDepth depth = depth_of(test::wall(0.5));
   BlockSurface exact(Kernel::wyvill);

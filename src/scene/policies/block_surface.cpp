@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "geometry/parallel.hpp"
@@ -15,7 +16,8 @@ constexpr float kRows = 2.2f;      // R in the largest distance to a neighbour
 constexpr float kSlope = 0.5f;     // of R over distance
 constexpr float kShareOfAround = 0.8f;
 constexpr int kLargestWindow = 8;  // blocks on either side
-constexpr std::size_t kBlocksAtATime = 256;
+constexpr std::size_t kRowsAtATime = 8;
+constexpr float kNowhere = 1e30f;  // 1 / R^2, 1/m^2
 
 // Of R, the deviation of a place that is sure: three of it are where a point weighs half, 0.47 R.
 constexpr float kSure = 0.157f;
@@ -27,9 +29,24 @@ float whole_sum(Kernel kernel) {
   return static_cast<float>(kernel == Kernel::wyvill ? kTurn * 4 / 27 : kTurn / 14);
 }
 
-float weight(Kernel kernel, float q) {
-  if (kernel == Kernel::wendland) return static_cast<float>(wendland(static_cast<double>(q)).w);
-  const float s = 1 - q;
+constexpr int kLanes = 4;  // blocks side by side
+typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
+typedef std::int32_t Ints __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
+
+template <class Vector, class T>
+Vector load(const T* from) {
+  Vector v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+
+Floats weight(Kernel kernel, const Floats& q) {
+  if (kernel == Kernel::wendland) {
+    Floats w{};
+    for (int l = 0; l < kLanes; ++l) w[l] = float(wendland(double(q[l])).w);
+    return w;
+  }
+  const Floats s = 1 - q;
   return s * s * (5 + 4 * s) * (1.0f / 9);
 }
 
@@ -44,23 +61,32 @@ bool present(const FilteredDepth& depth, std::size_t block) {
 }  // namespace
 
 void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> exact_within) {
-  start(depth);
-  limit_growth(depth);
-  list_rims(depth, exact_within, false);
-  weigh_rims(depth);
+  measure(depth, exact_within, exact_within.empty() ? Exact::nowhere : Exact::within);
 }
 
 void BlockSurface::measure(const FilteredDepth& depth) {
+  measure(depth, {}, Exact::everywhere);
+}
+
+void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact) {
   start(depth);
   limit_growth(depth);
-  list_rims(depth, {}, true);
+  list_rims(depth, balls, exact);
+  lay_out(depth);
+  detail::parallel_ranges(static_cast<std::size_t>(depth.rows), kRowsAtATime,
+                          [&](std::size_t v, std::size_t end) {
+                            for (; v < end; ++v) trust_row(depth, v);
+                          });
+  if (largest_half_ == 0) return;
   weigh_rims(depth);
 }
 
 // Radii by spacing, and areas of a surface that goes on on all sides.
 void BlockSurface::start(const FilteredDepth& depth) {
   const std::size_t count = depth.size();
-  for (auto* column : {&radii_, &areas_}) column->resize(count);
+  for (auto* column : {&radii_, &areas_, &trusts_}) column->resize(count);
+  halves_.assign(count + kLanes, 0);
+  largest_half_ = 0;
   const auto pitch = static_cast<float>(depth.pitch);
   const float whole = whole_sum(kernel_);
   for (std::size_t b = 0; b < count; ++b) {
@@ -96,24 +122,6 @@ void BlockSurface::limit_growth(const FilteredDepth& depth) {
     if ((b + 1) % columns != 0) limit(b, b + 1);
     if (b + columns < depth.size()) limit(b, b + columns);
   }
-}
-
-float BlockSurface::trust(const FilteredDepth& depth, std::size_t block) const {
-  if (depth.states[block] != BlockState::fitted) return 1;
-  const float sure = kSure * radii_[block];
-  const auto precision = [&](std::size_t b) {
-    return 1 / (depth.deviations[b] * depth.deviations[b] + sure * sure);
-  };
-  const float reach = std::max(radii_[block], kDeviations * depth.deviations[block]);
-  float count = 0;
-  float sum = 0;
-  visit_beside(depth.columns, depth.rows, block, [&](std::size_t other) {
-    const float apart = depth.positions[other].z() - depth.positions[block].z();
-    if (radii_[other] == 0 || std::abs(apart) > reach) return;
-    ++count;
-    sum += precision(other);
-  });
-  return sum > 0 ? std::min(1.0f, precision(block) * count / sum) : 1.0f;
 }
 
 // How many blocks of the rectangle from the image's first block to each are empty or lie beside
@@ -161,10 +169,8 @@ bool BlockSurface::near_rim(const FilteredDepth& depth, std::size_t block, int h
   return sum(right, bottom) - sum(left, bottom) - sum(right, top) + sum(left, top) > 0;
 }
 
-void BlockSurface::list_rims(const FilteredDepth& depth, std::span<const Ball> exact_within,
-                             bool everywhere) {
-  exact_.clear();
-  if (!everywhere && exact_within.empty()) return;
+void BlockSurface::list_rims(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact) {
+  if (exact == Exact::nowhere) return;
   mark_rims(depth);
   for (std::size_t b = 0; b < depth.size(); ++b) {
     if (radii_[b] == 0) continue;
@@ -172,59 +178,119 @@ void BlockSurface::list_rims(const FilteredDepth& depth, std::span<const Ball> e
       return (depth.positions[b].cast<double>() - ball.center).squaredNorm() <=
              ball.radius * ball.radius;
     };
-    if (!everywhere && std::none_of(exact_within.begin(), exact_within.end(), inside)) continue;
-    if (near_rim(depth, b, half_window(depth, b))) {
-      exact_.push_back(static_cast<std::uint32_t>(b));
+    if (exact == Exact::within && std::none_of(balls.begin(), balls.end(), inside)) continue;
+    const int half = half_window(depth, b);
+    if (!near_rim(depth, b, half)) continue;
+    halves_[b] = half;
+    largest_half_ = std::max(largest_half_, half);
+  }
+}
+
+// Puts side by side what sums over neighbours need.
+void BlockSurface::lay_out(const FilteredDepth& depth) {
+  const int margin = std::max({margin_, largest_half_, kLanes});
+  const auto stride = static_cast<std::size_t>(depth.columns + 2 * margin);
+  const std::size_t size = stride * static_cast<std::size_t>(depth.rows + 2 * margin) + kLanes;
+  if (margin != margin_ || stride != stride_ || size != x_.size()) {
+    margin_ = margin;
+    stride_ = stride;
+    for (auto* column : {&x_, &y_, &z_, &reaches_, &precisions_, &sums_}) column->assign(size, 0);
+    per_r2_.assign(size, kNowhere);
+    ones_.assign(size, 1);
+  }
+  std::size_t b = 0;
+  for (int v = 0; v < depth.rows; ++v) {
+    for (std::size_t at = place(0, v); at < place(depth.columns, v); ++at, ++b) {
+      const float radius = radii_[b];
+      const float deviation = depth.deviations[b];
+      const float sure = kSure * radius;
+      const bool there = radius > 0;
+      x_[at] = depth.positions[b].x();
+      y_[at] = depth.positions[b].y();
+      z_[at] = depth.positions[b].z();
+      reaches_[at] = std::max(radius, kDeviations * deviation);
+      per_r2_[at] = there ? 1 / (radius * radius) : kNowhere;
+      precisions_[at] = there ? 1 / (deviation * deviation + sure * sure) : 0;
+      sums_[at] = there ? std::max(1.0f, radius * radius / areas_[b]) : 0;
     }
   }
 }
 
-template <class Visit>
-void BlockSurface::visit_window(const FilteredDepth& depth, std::size_t block,
-                                const Visit& visit) const {
-  const int half = half_window(depth, block);
-  const int u = static_cast<int>(block) % depth.columns;
-  const int v = static_cast<int>(block) / depth.columns;
-  const Eigen::Vector3f& place = depth.positions[block];
-  for (int y = std::max(0, v - half); y <= std::min(depth.rows - 1, v + half); ++y) {
-    for (int x = std::max(0, u - half); x <= std::min(depth.columns - 1, u + half); ++x) {
-      const auto other = static_cast<std::size_t>(y * depth.columns + x);
-      const float radius = radii_[other];
-      if (radius == 0) continue;
-      const float q = (depth.positions[other] - place).squaredNorm() / (radius * radius);
-      if (q < 1) visit(other, weight(kernel_, q));
+void BlockSurface::trust_row(const FilteredDepth& depth, std::size_t v) {
+  const std::size_t first = v * static_cast<std::size_t>(depth.columns);
+  const auto stride = static_cast<std::ptrdiff_t>(stride_);
+  const std::ptrdiff_t beside[] = {-stride - 1, -stride,    -stride + 1, -1,
+                                   1,           stride - 1, stride,      stride + 1};
+  for (int u = 0; u < depth.columns; u += kLanes) {
+    const float* const z = &z_[place(u, static_cast<int>(v))];
+    const float* const precisions = &precisions_[place(u, static_cast<int>(v))];
+    const auto own = load<Floats>(precisions);
+    const auto reach = load<Floats>(&reaches_[place(u, static_cast<int>(v))]);
+    Floats count{};
+    Floats sum{};
+    for (const std::ptrdiff_t by : beside) {
+      const auto precision = load<Floats>(precisions + by);
+      const Floats apart = load<Floats>(z + by) - load<Floats>(z);
+      const Ints same = (precision > 0) & (apart <= reach) & (-apart <= reach);
+      count -= __builtin_convertvector(same, Floats);
+      sum += same ? precision : Floats{};
+    }
+    const Floats trust = sum > 0 ? own * count / sum : Floats{} + 1;
+    for (int l = 0; l < std::min(kLanes, depth.columns - u); ++l) {
+      const bool fitted = depth.states[first + u + l] == BlockState::fitted;
+      trusts_[first + u + l] = fitted ? std::min(1.0f, trust[l]) : 1.0f;
     }
   }
+}
+
+// Calls take(block, place, sum) for each block whose sum over what is around it is wanted: of
+// weights times what stands in `factors`.
+template <class Take>
+void BlockSurface::sum_around(const FilteredDepth& depth, const float* factors, const Take& take) {
+  const auto sum = [&](std::size_t at, const Ints& halves, int half) {
+    const auto x = load<Floats>(&x_[at]);
+    const auto y = load<Floats>(&y_[at]);
+    const auto z = load<Floats>(&z_[at]);
+    Floats total{};
+    for (int dv = -half; dv <= half; ++dv) {
+      for (int du = -half; du <= half; ++du) {
+        const std::size_t from = at + dv * static_cast<std::ptrdiff_t>(stride_) + du;
+        const Floats dx = load<Floats>(&x_[from]) - x;
+        const Floats dy = load<Floats>(&y_[from]) - y;
+        const Floats dz = load<Floats>(&z_[from]) - z;
+        const Floats q = (dx * dx + dy * dy + dz * dz) * load<Floats>(&per_r2_[from]);
+        const Floats w = weight(kernel_, q) * load<Floats>(factors + from);
+        const Ints inside = (q < 1) & (halves >= std::max(std::abs(du), std::abs(dv)));
+        total += inside ? w : Floats{};
+      }
+    }
+    return total;
+  };
+  const auto row = [&](int v) {
+    for (int u = 0; u < depth.columns; u += kLanes) {
+      const std::size_t first = static_cast<std::size_t>(v) * depth.columns + u;
+      const auto halves = load<Ints>(&halves_[first]);
+      const int half = std::max({halves[0], halves[1], halves[2], halves[3]});
+      if (half == 0) continue;
+      const Floats sums = sum(place(u, v), halves, half);
+      for (int l = 0; l < std::min(kLanes, depth.columns - u); ++l) {
+        if (halves[l] > 0) take(first + l, place(u + l, v), sums[l]);
+      }
+    }
+  };
+  detail::parallel_ranges(static_cast<std::size_t>(depth.rows), kRowsAtATime,
+                          [&](std::size_t v, std::size_t end) {
+                            for (; v < end; ++v) row(static_cast<int>(v));
+                          });
 }
 
 // a_i = 1 / max(S_i, 0.8 Sbar_i).
 void BlockSurface::weigh_rims(const FilteredDepth& depth) {
-  if (exact_.empty()) return;
-  sums_.resize(depth.size());
-  for (std::size_t b = 0; b < depth.size(); ++b) {
-    sums_[b] = radii_[b] > 0 ? std::max(1.0f, radii_[b] * radii_[b] / areas_[b]) : 0;
-  }
-  exact_sums_.resize(exact_.size());
-  const auto for_exact = [&](const auto& sum_of) {
-    detail::parallel_ranges(exact_.size(), kBlocksAtATime, [&](std::size_t k, std::size_t end) {
-      for (; k < end; ++k) exact_sums_[k] = sum_of(k);
-    });
-  };
-  for_exact([&](std::size_t k) {
-    float sum = 0;
-    visit_window(depth, exact_[k], [&](std::size_t, float w) { sum += w; });
-    return sum;
+  sum_around(depth, ones_.data(), [&](std::size_t, std::size_t at, float sum) { sums_[at] = sum; });
+  sum_around(depth, sums_.data(), [&](std::size_t block, std::size_t at, float around) {
+    const float sum = std::max(sums_[at], kShareOfAround * around / sums_[at]);
+    areas_[block] = radii_[block] * radii_[block] / sum;
   });
-  for (std::size_t k = 0; k < exact_.size(); ++k) sums_[exact_[k]] = exact_sums_[k];
-  for_exact([&](std::size_t k) {
-    float around = 0;
-    visit_window(depth, exact_[k], [&](std::size_t other, float w) { around += w * sums_[other]; });
-    return std::max(exact_sums_[k], kShareOfAround * around / exact_sums_[k]);
-  });
-  for (std::size_t k = 0; k < exact_.size(); ++k) {
-    const float radius = radii_[exact_[k]];
-    areas_[exact_[k]] = radius * radius / exact_sums_[k];
-  }
 }
 
 }  // namespace palpate

@@ -38,35 +38,47 @@ class BlockSurface {
   [[nodiscard]] float area(std::size_t block) const { return areas_[block]; }
 
   /// What a fitted point counts for, 0-1: its precision over that of the blocks around it which may
-  /// show the same surface, as in a mean of measurements that are not equally good. `depth` is what
-  /// was measured.
-  [[nodiscard]] float trust(const FilteredDepth& depth, std::size_t block) const;
-
-  /// Says that both will be asked for soon.
-  void fetch(std::size_t block) const {
-    __builtin_prefetch(&radii_[block]);
-    __builtin_prefetch(&areas_[block]);
-  }
+  /// show the same surface, as in a mean of measurements that are not equally good.
+  [[nodiscard]] float trust(std::size_t block) const { return trusts_[block]; }
 
  private:
+  enum class Exact { nowhere, within, everywhere };
+
+  void measure(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact);
   void start(const FilteredDepth& depth);
   void limit_growth(const FilteredDepth& depth);
   void mark_rims(const FilteredDepth& depth);
-  void weigh_rims(const FilteredDepth& depth);
   [[nodiscard]] int half_window(const FilteredDepth& depth, std::size_t block) const;
   [[nodiscard]] bool near_rim(const FilteredDepth& depth, std::size_t block, int half) const;
-  void list_rims(const FilteredDepth& depth, std::span<const Ball> exact_within, bool everywhere);
-  template <class Visit>
-  void visit_window(const FilteredDepth& depth, std::size_t block, const Visit& visit) const;
+  void list_rims(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact);
+  void lay_out(const FilteredDepth& depth);
+  void trust_row(const FilteredDepth& depth, std::size_t v);
+  template <class Take>
+  void sum_around(const FilteredDepth& depth, const float* factors, const Take& take);
+  void weigh_rims(const FilteredDepth& depth);
 
   Kernel kernel_;
   float minimum_radius_;
   std::vector<float> radii_;  // 0: no point
   std::vector<float> areas_;
-  std::vector<float> sums_;           // S_i
-  std::vector<std::int32_t> rims_;    // blocks without or beside another surface, summed up to each
-  std::vector<std::uint32_t> exact_;  // blocks whose sums are taken from their neighbours
-  std::vector<float> exact_sums_;     // of those
+  std::vector<float> trusts_;
+  std::vector<std::int32_t> rims_;  // blocks without or beside another surface, summed up to each
+  std::vector<std::int32_t>
+      halves_;  // of windows whose sums are taken from neighbours; 0: none are
+  int largest_half_ = 0;
+
+  // The rest has a margin of nothing all around, so that neighbours are there without asking.
+  [[nodiscard]] std::size_t place(int u, int v) const {
+    return static_cast<std::size_t>(v + margin_) * stride_ + static_cast<std::size_t>(u + margin_);
+  }
+  int margin_ = 0;
+  std::size_t stride_ = 0;
+  std::vector<float> x_, y_, z_;   // m
+  std::vector<float> reaches_;     // in depth, of what may be the same surface, m
+  std::vector<float> per_r2_;      // 1 / R^2, 1/m^2
+  std::vector<float> precisions_;  // 1/m^2; 0: no point
+  std::vector<float> sums_;        // S_i
+  std::vector<float> ones_;
 };
 
 }  // namespace palpate

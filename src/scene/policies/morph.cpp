@@ -7,11 +7,13 @@
 
 #include "field/active_layer.hpp"
 #include "geometry/morton.hpp"
+#include "geometry/parallel.hpp"
 #include "geometry/sort_records.hpp"
 
 namespace palpate {
 namespace {
 
+constexpr std::size_t kBlocksAtATime = 2048;
 constexpr std::size_t kAhead = 32;  // blocks
 
 // What is not seen stands behind all that is, on a curve through space: cells of the index along
@@ -69,8 +71,13 @@ void Morph::fill(const MorphInput& input, const Moment& moment,
   start(input, moment, *points);
   if (moved_) follow_camera(input);
   by_block_.sort(entries_, order_.size());
+  points_.resize(order_.size());
+  detail::parallel_ranges(order_.size(), kBlocksAtATime, [&](std::size_t b, std::size_t end) {
+    for (; b < end; ++b) points_[b] = new_point(input.depth, b);
+  });
   for (std::size_t place = 0; place < order_.size(); ++place) {
-    if (place + kAhead < order_.size()) fetch(input.depth, order_.blocks[place + kAhead]);
+    // The curve jumps from row to row, which no processor foresees.
+    if (place + kAhead < order_.size()) __builtin_prefetch(&points_[order_.blocks[place + kAhead]]);
     settle(input.depth, place);
   }
   write_unseen();
@@ -118,6 +125,7 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
   ends_ = input.last;
   streams_ = last_ && (streams_ || moment.stamp != last_moment_.stamp);
   comes_ = input.last ? 1 : share_of(options_.fade);
+  doubt_ = std::exp(share_of(options_.fade));
   progress_ = last_ ? progress(last_moment_, moment.start) : 1;
   const bool resized = std::exchange(resized_, false);
   moved_ = last_ && (resized || T_world_sensor.matrix() != T_world_sensor_.matrix());
@@ -207,27 +215,20 @@ EdgePlane Morph::old_edge(std::uint32_t i) const {
 
 Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) const {
   Point point;
+  if (surface_.radius(block) == 0) return point;
   PointState& state = point.state;
   state.position = turn_ * depth.positions[block] + shift_;
   state.normal = turn_ * depth.normals[block];
   state.radius = surface_.radius(block);
   state.confidence = depth.confidences[block];
   point.area = surface_.area(block);
-  if (streams_) point.trust = surface_.trust(depth, block);
+  if (streams_) point.trust = surface_.trust(block);
   point.variance = depth.deviations[block] * depth.deviations[block];
   state.weight = point.weight(state.radius);
   state.edge = edges_.edge(block);
   state.edge.normal = turn_ * state.edge.normal;
   state.edge.offset += state.edge.normal.dot(shift_);
   return point;
-}
-
-/// The curve jumps from row to row, which no processor foresees.
-void Morph::fetch(const FilteredDepth& depth, std::size_t block) const {
-  __builtin_prefetch(&depth.positions[block]);
-  __builtin_prefetch(&depth.normals[block]);
-  __builtin_prefetch(&depth.confidences[block]);
-  surface_.fetch(block);
 }
 
 void Morph::add(const PointState& from, const PointState& to, const Entry& entry) {

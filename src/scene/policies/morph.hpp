@@ -66,7 +66,7 @@ class Morph {
   void forget();
 
  private:
-  struct Point {
+  struct alignas(64) Point {
     PointState state;
     float area = 0;  // a_i R_i^2
     float trust = 1;
@@ -86,7 +86,6 @@ class Morph {
   void measure(const MorphInput& input);
   void measure_weights(const MorphInput& input);
   void follow_camera(const MorphInput& input);
-  void fetch(const FilteredDepth& depth, std::size_t block) const;
   void settle(const FilteredDepth& depth, std::size_t place);
   void write_unseen();
   void hold_one(std::span<const std::uint32_t> old);
@@ -96,24 +95,26 @@ class Morph {
   [[nodiscard]] float share_of(double time) const;
   [[nodiscard]] Point new_point(const FilteredDepth& depth, std::size_t block) const;
   [[nodiscard]] std::uint32_t partner_of(const FilteredDepth& depth,
-                                         std::span<const std::uint32_t> old,
-                                         const Point& seen) const;
+                                         std::span<const std::uint32_t> old, const Point& seen,
+                                         PointState& before) const;
   [[nodiscard]] float beside(const FilteredDepth& depth, std::size_t block) const;
   [[nodiscard]] static float advance_of(const Point& seen, const Eigen::Vector3f& from);
   [[nodiscard]] static bool turns(const Point& seen, const Eigen::Vector3f& normal);
-  [[nodiscard]] bool turns_away(const Point& seen, std::uint32_t i) const;
+  [[nodiscard]] bool turns_away(const Point& seen, std::uint32_t i, const PointState& before) const;
   [[nodiscard]] bool may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
-                              const Eigen::Vector3f& from) const;
-  [[nodiscard]] bool stays(const FilteredDepth& depth, const Point& seen, std::uint32_t i) const;
+                              const PointState& before) const;
+  [[nodiscard]] bool stays(const FilteredDepth& depth, const Point& seen,
+                           const PointState& before) const;
   [[nodiscard]] bool came_aside(const Point& seen) const;
   [[nodiscard]] bool may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const;
   [[nodiscard]] float gain_of(const Point& seen, float known, float advance) const;
-  void follow(const Point& seen, std::uint32_t i);
+  void follow(const Point& seen, std::uint32_t i, const PointState& from);
   void appear(const Point& point);
   void hold(std::uint32_t i, EntryKind kind);
   void hide(std::uint32_t i);
   void go(std::uint32_t i);
-  void keep(std::uint32_t i, float presence, EntryKind kind, double confirmed);
+  void keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
+            double confirmed);
   void leave(std::uint32_t i);
   void add(const PointState& from, const PointState& to, const Entry& entry);
   void write(std::uint32_t code, const PointState& from, const PointState& to, Entry entry);
@@ -137,6 +138,7 @@ class Morph {
   // What is being made.
   Moment moment_;
   float comes_ = 1;       // presence that what is seen gains
+  float doubt_ = 1;       // by which variances of what is known grow
   bool ends_ = false;     // no frame follows
   bool streams_ = false;  // more than one frame has come: what varies among them counts for less
   double progress_ = 1;   // of what was shown last, at the new start
@@ -144,6 +146,7 @@ class Morph {
   bool still_ = false;
   bool resized_ = false;  // the image, since what was shown last
   std::uint32_t place_ = 0;
+  std::vector<Point> points_;  // that the frame shows, row by row; R = 0: none
   std::vector<Entry> next_entries_;
   std::vector<Unseen> unseen_;               // points that no block shows
   std::vector<std::uint64_t> unseen_order_;  // their codes, and places among them

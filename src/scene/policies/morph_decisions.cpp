@@ -30,23 +30,24 @@ constexpr double kHidden = 60;
 void Morph::settle(const FilteredDepth& depth, std::size_t place) {
   const std::span<const std::uint32_t> old = by_block_.at(place);
   const std::size_t block = order_.blocks[place];
-  const bool shown = surface_.radius(block) > 0;
+  const Point& point = points_[block];
+  const bool shown = point.state.radius > 0;
   if (!shown && old.empty()) return;
   place_ = static_cast<std::uint32_t>(place);
   if (!shown) return hold_one(old);
-  const Point point = new_point(depth, block);
-  const std::uint32_t partner = partner_of(depth, old, point);
-  const bool flies =
-      partner == kNone ? last_ && beside(depth, block) < kVouch : turns_away(point, partner);
+  PointState before;
+  const std::uint32_t partner = partner_of(depth, old, point, before);
+  const bool flies = partner == kNone ? last_ && beside(depth, block) < kVouch
+                                      : turns_away(point, partner, before);
   if (flies) return hold_one(old);
   float at = depth_of(point.state.position);
   if (partner == kNone) {
     appear(point);
-  } else if (stays(depth, point, partner)) {
-    at = depth_of(old_point(partner).position);
-    keep(partner, old_point(partner).presence + comes_, EntryKind::live, moment_.stamp);
+  } else if (stays(depth, point, before)) {
+    at = depth_of(before.position);
+    keep(partner, before, before.presence + comes_, EntryKind::live, moment_.stamp);
   } else {
-    follow(point, partner);
+    follow(point, partner, before);
   }
   for (const std::uint32_t i : old) {
     if (i == partner) continue;
@@ -97,23 +98,23 @@ bool Morph::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const 
 }
 
 /// Which of the old points is seen again: the nearest within R, or within what noise explains; or
-/// what has come along the ray as fast as things move.
+/// what has come along the ray as fast as things move. Tells how it was.
 std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std::uint32_t> old,
-                                const Point& seen) const {
-  const std::size_t block = order_.blocks[place_];
-  const float same =
-      std::max(seen.state.radius, BlockSurface::kDeviations * depth.deviations[block]);
+                                const Point& seen, PointState& before) const {
+  constexpr float kDeviations2 = BlockSurface::kDeviations * BlockSurface::kDeviations;
+  const float same2 = std::max(seen.state.radius * seen.state.radius, kDeviations2 * seen.variance);
   std::uint32_t partner = kNone;
   float nearest = std::numeric_limits<float>::infinity();
   for (const std::uint32_t i : old) {
     const EntryKind kind = entries_[i].kind;
     if (kind == EntryKind::leaving || kind == EntryKind::outside) continue;
-    const Eigen::Vector3f place = old_point(i).position;
-    const float squared = (place - seen.state.position).squaredNorm();
+    const PointState state = old_point(i);
+    const float squared = (state.position - seen.state.position).squaredNorm();
     if (squared >= nearest) continue;
-    if (squared > same * same && !may_move(depth, seen, i, place)) continue;
+    if (squared > same2 && !may_move(depth, seen, i, state)) continue;
     nearest = squared;
     partner = i;
+    before = state;
   }
   return partner;
 }
@@ -139,24 +140,27 @@ void Morph::hold(std::uint32_t i, EntryKind kind) {
   const double confirmed = std::min(entries_[i].confirmed, moment_.stamp);  // stamps may go back
   const double unsure = moment_.stamp + moment_.duration - confirmed - options_.silence;
   const auto sure = static_cast<float>(std::clamp(1 - unsure / options_.fade, 0.0, 1.0));
-  const float presence = old_point(i).presence;
-  keep(i, std::max(std::min(presence, sure), presence - share_of(options_.fade)), kind, confirmed);
+  const PointState from = old_point(i);
+  const float most = std::min(from.presence, sure);
+  keep(i, from, std::max(most, from.presence - share_of(options_.fade)), kind, confirmed);
 }
 
 /// Something before it keeps it from being seen.
 void Morph::hide(std::uint32_t i) {
-  keep(i, old_point(i).presence - share_of(kHidden), EntryKind::hidden, moment_.stamp);
+  const PointState from = old_point(i);
+  keep(i, from, from.presence - share_of(kHidden), EntryKind::hidden, moment_.stamp);
 }
 
 /// It has been seen through.
 void Morph::go(std::uint32_t i) {
   if (ends_) return leave(i);
-  keep(i, old_point(i).presence - share_of(kGoes), EntryKind::going, entries_[i].confirmed);
+  const PointState from = old_point(i);
+  keep(i, from, from.presence - share_of(kGoes), EntryKind::going, entries_[i].confirmed);
 }
 
 /// Stays where it is, and is as sure as that when the snapshot ends; what nobody is sure of leaves.
-void Morph::keep(std::uint32_t i, float presence, EntryKind kind, double confirmed) {
-  const PointState from = old_point(i);
+void Morph::keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
+                 double confirmed) {
   const bool unseen = kind != EntryKind::live;
   if (from.presence <= 0 || (unseen && ++held_ > order_.size())) return leave(i);
   PointState to = from;

@@ -50,26 +50,24 @@ bool Morph::turns(const Point& seen, const Eigen::Vector3f& normal) {
 }
 
 /// Has it turned so within a frame? One that goes on to is believed after a while.
-bool Morph::turns_away(const Point& seen, std::uint32_t i) const {
-  return turns(seen, old_point(i).normal) &&
-         moment_.stamp - entries_[i].confirmed < options_.silence;
+bool Morph::turns_away(const Point& seen, std::uint32_t i, const PointState& before) const {
+  return turns(seen, before.normal) && moment_.stamp - entries_[i].confirmed < options_.silence;
 }
 
 /// Is the old point elsewhere than what is seen now, within noise, and hardly a block around it
 /// shows that, too? Such a frame does not tell where the surface is.
-bool Morph::stays(const FilteredDepth& depth, const Point& seen, std::uint32_t i) const {
-  const Eigen::Vector3f place = old_point(i).position;
-  return (place - seen.state.position).norm() > seen.state.radius &&
+bool Morph::stays(const FilteredDepth& depth, const Point& seen, const PointState& before) const {
+  return (before.position - seen.state.position).norm() > seen.state.radius &&
          beside(depth, order_.blocks[place_]) < kVouchToMove;
 }
 
-/// Has what was at `from` come along the ray to what is seen now?
+/// Has what was there come along the ray to what is seen now?
 bool Morph::may_move(const FilteredDepth& depth, const Point& seen, std::uint32_t i,
-                     const Eigen::Vector3f& from) const {
+                     const PointState& before) const {
   if (entries_[i].kind != EntryKind::live || moved_) return false;
   const float fastest = kFastest + std::min(speed_of(i), kSudden);
-  return !turns(seen, old_point(i).normal) &&
-         advance_of(seen, from) <= fastest * static_cast<float>(moment_.duration) &&
+  return !turns(seen, before.normal) &&
+         advance_of(seen, before.position) <= fastest * static_cast<float>(moment_.duration) &&
          beside(depth, order_.blocks[place_]) >= kVouchToMove && !came_aside(seen);
 }
 
@@ -116,10 +114,9 @@ float Morph::gain_of(const Point& seen, float known, float advance) const {
 }
 
 /// Lets the old point go to the new one.
-void Morph::follow(const Point& seen, std::uint32_t i) {
-  const PointState from = old_point(i);
+void Morph::follow(const Point& seen, std::uint32_t i, const PointState& from) {
   PointState to = seen.state;
-  const float known = entries_[i].variance * std::exp(share_of(options_.fade));
+  const float known = entries_[i].variance * doubt_;
   const float apart = (to.position - from.position).dot(to.normal);
   const float gain = gain_of(seen, known, apart);
   to.position -= (1 - gain) * apart * to.normal;

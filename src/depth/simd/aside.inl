@@ -1,0 +1,156 @@
+#pragma once
+
+// Windows around blocks and beside them. In an anonymous namespace: see windows.inl.
+
+#include "depth/simd/chunk.inl"
+
+namespace palpate::simd {
+namespace {
+
+// Looks up four windows, one around each of the blocks `four`.
+[[gnu::always_inline]] inline Fits fit_four(const FitInput& in, int row, const Chunk& c,
+                                            const int four[kLanes], const int* sizes_u,
+                                            const int* sizes_v) {
+  int half_u[kLanes];
+  int half_v[kLanes];
+  int columns[kLanes];
+  int rows[kLanes];
+  Moments s;
+  for (int l = 0; l < kLanes; ++l) {
+    const int i = four[l];
+    half_u[l] = sizes_u[i];
+    half_v[l] = sizes_v[i];
+    columns[l] = c.columns[i] + c.shift_u[i] - in.table.first_column;
+    rows[l] = row + c.shift_v[i] - in.table.first_row;
+    s.set(in.table, l, columns[l], rows[l], half_u[l], half_v[l]);
+  }
+  s.u = lanes(columns) - double(in.table.columns / 2);
+  s.v = lanes(rows) - double(in.table.rows / 2);
+  return fit(in, shape(half_u, half_v), s);
+}
+
+// Four windows beside a block: along the axes, or between them.
+struct Directions {
+  int u[kLanes];
+  int v[kLanes];
+};
+constexpr Directions kDirections[2] = {{{1, 0, -1, 0}, {0, 1, 0, -1}},
+                                       {{1, -1, -1, 1}, {1, 1, -1, -1}}};
+
+// Windows of one size beside a block, moved there by half of their reach or all of it.
+struct Aside {
+  int size;
+  bool whole, diagonal;
+  double
+      promise;  // best score of windows there, over that of the largest one's mean: if it is flat
+};
+constexpr int kWays = 4;
+constexpr int kAsides = kWays * kSizes;
+
+// The most promising first.
+struct Asides {
+  Aside of[kAsides];
+  constexpr Asides() : of{} {
+    for (int n = 0; n < kAsides; ++n) {
+      Aside aside{n / kWays, n % 4 >= 2, n % 2 == 1, 0};
+      const double share = double(kRatios[aside.size]) * double(kRatios[aside.size]);
+      const double shift = (aside.whole ? 3 : 0.75) * (aside.diagonal ? 2 : 1);
+      aside.promise = (1 + shift + 0.48 / share) / share;
+      int at = n;
+      for (; at > 0 && of[at - 1].promise > aside.promise; --at) of[at] = of[at - 1];
+      of[at] = aside;
+    }
+  }
+};
+constexpr Asides kAsidesInOrder;
+
+// One block on its search beside edges, and the best window found for it.
+struct Search {
+  int i;
+  int column, row;  // in the table
+  Doubles lever_u2, lever_v2;
+  double score;
+  Kind kind;
+  int shift_u, shift_v, half_u, half_v;
+};
+
+// Looks at four windows, takes the best of them that are explained if it wins, and tells which are.
+inline Mask look(const FitInput& in, const Chunk& c, const Aside& aside, Search& search) {
+  const Directions& to = kDirections[aside.diagonal ? 1 : 0];
+  const int half_u = c.half_u[aside.size][search.i];
+  const int half_v = c.half_v[aside.size][search.i];
+  const int shift_u = aside.whole ? half_u : (half_u + 1) / 2;
+  const int shift_v = aside.whole ? half_v : (half_v + 1) / 2;
+  Moments s;
+  for (int l = 0; l < kLanes; ++l) {
+    s.set(in.table, l, search.column + to.u[l] * shift_u, search.row + to.v[l] * shift_v, half_u,
+          half_v);
+  }
+  const Doubles du = lanes(to.u, -shift_u);
+  const Doubles dv = lanes(to.v, -shift_v);
+  s.u = double(search.column - in.table.columns / 2) - du;
+  s.v = double(search.row - in.table.rows / 2) - dv;
+  const Fits f = fit(in, shape(half_u, half_v), s);
+  const Mask good = f.affine | (aside.size < kBentSizes ? f.quadratic : Mask{});
+  if (!any(good)) return good;
+  const Doubles off = surface_at(f, f.affine, du, dv).rho - c.rho[search.i];
+  const Doubles scores = score(f, f.affine, du, dv, search.lever_u2, search.lever_v2);
+  const Mask wins = good & (off * off <= 4 * c.variance[search.i]) & (scores < search.score);
+  if (!any(wins)) return good;
+  for (int l = 0; l < kLanes; ++l) {
+    if (!wins[l] || !(scores[l] < search.score)) continue;
+    search.score = scores[l];
+    search.kind = f.affine[l] ? kAffine : kQuadratic;
+    search.half_u = half_u;
+    search.half_v = half_v;
+    search.shift_u = to.u[l] * shift_u;
+    search.shift_v = to.v[l] * shift_v;
+  }
+  return good;
+}
+
+inline double centred_score(const FitInput& in, int row, const Chunk& c, const Search& search) {
+  const int four[kLanes] = {search.i, search.i, search.i, search.i};
+  const Mask affine = c.kind[search.i] == kAffine ? ~Mask{} : Mask{};
+  const Fits f = fit_four(in, row, c, four, c.best_u, c.best_v);
+  return score(f, affine, Doubles{}, Doubles{}, search.lever_u2, search.lever_v2)[0];
+}
+
+// Near an edge windows beside the block see more of its surface than those around it. Where neither
+// the most promising windows of a way are explained nor the smallest ones, none is.
+inline void try_aside(const FitInput& in, int row, Chunk& c, int i) {
+  const auto lever_u = static_cast<double>(c.lever_u[i]);
+  const auto lever_v = static_cast<double>(c.lever_v[i]);
+  Search search{.i = i,
+                .column = c.columns[i] - in.table.first_column,
+                .row = row - in.table.first_row,
+                .lever_u2 = same(lever_u * lever_u),
+                .lever_v2 = same(lever_v * lever_v),
+                .score = HUGE_VAL,
+                .kind = c.kind[i],
+                .shift_u = 0,
+                .shift_v = 0,
+                .half_u = c.best_u[i],
+                .half_v = c.best_v[i]};
+  if (c.kind[i] != kNone) search.score = centred_score(in, row, c, search);
+  constexpr int kLast = kSizes - 1;
+  const double mean = in.shared * c.variance[i] * kExtents.of[c.half_u[kLast][i]].per_n *
+                      kExtents.of[c.half_v[kLast][i]].per_n;
+  int tried[kWays] = {};
+  for (const Aside& aside : kAsidesInOrder.of) {
+    if (!(aside.promise * mean < search.score)) break;
+    int& times = tried[2 * int{aside.whole} + int{aside.diagonal}];
+    if (times == 1 && !any(look(in, c, {0, aside.whole, aside.diagonal, 0}, search))) times = -1;
+    if (times < 0 || (times > 0 && aside.size == 0)) continue;
+    look(in, c, aside, search);
+    ++times;
+  }
+  c.kind[i] = search.kind;
+  c.shift_u[i] = search.shift_u;
+  c.shift_v[i] = search.shift_v;
+  c.best_u[i] = search.half_u;
+  c.best_v[i] = search.half_v;
+}
+
+}  // namespace
+}  // namespace palpate::simd
