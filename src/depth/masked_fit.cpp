@@ -68,7 +68,8 @@ void fit_masked(const Blocks& blocks, const SameSurface& same, int column, int r
   fits.slope_x[to] = slope_u * per_x;
   fits.slope_y[to] = slope_v * per_y;
   const float spread = std::max(vv * per_x * per_x, uu * per_y * per_y) / determinant;
-  const float variance = sigma * sigma * static_cast<float>(shared_error(same.noise.correlation));
+  const float variance =
+      sigma * sigma * static_cast<float>(shared_error(same.noise.correlation, 1, s.n));
   fits.slope_variance[to] = variance * spread;
   fits.confidences[to] = 1;
   if (off * off > kGuard * kGuard * own) return;

@@ -38,7 +38,9 @@ inline int first_reach(const FitInput& in, const Chunk& c, int i) {
   int half = 1;
   while (half < kLargestReach) {
     const Extent& e = kExtents.of[half];
-    if (in.shared * c.variance[i] * e.per_n * e.per_n * e.per_mu <= wanted * wanted) break;
+    const double per_n = e.per_n * e.per_n;
+    const double shared = in.shared / (1 + kUnseenShare[1] * (in.shared - 1) * per_n);
+    if (shared * c.variance[i] * per_n * e.per_mu <= wanted * wanted) break;
     ++half;
   }
   return half;
@@ -144,7 +146,7 @@ inline Doubles promise(const FitInput& in, const Chunk& c, const Search& s, cons
   const Shape g = shape(c.half_u[kLast][s.i], c.half_v[kLast][s.i]);
   const Doubles du = lanes(to.u, shift_of(c.half_u[kLast][s.i], whole));
   const Doubles dv = lanes(to.v, shift_of(c.half_v[kLast][s.i], whole));
-  return in.shared * c.variance[s.i] * g.per_n *
+  return shared_over(in.shared, 1, g.per_n) * c.variance[s.i] * g.per_n *
          (1.0 + (du * du + s.lever_u2) * g.per_mu + (dv * dv + s.lever_v2) * g.per_mv);
 }
 
