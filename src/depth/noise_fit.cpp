@@ -113,10 +113,15 @@ WindowNoise NoiseFit::fit(std::span<const float> values) {
     }
   }
   double cubic = 0;
+  double moved = 0;
   for (std::size_t a = 0; a < kDegrees; ++a) {
-    cubic += change[a][kDegrees - 1 - a] * change[a][kDegrees - 1 - a];
+    for (std::size_t b = 0; a + b < kDegrees; ++b) {
+      (a + b < 3 ? moved : cubic) += change[a][b] * change[a][b];
+    }
   }
-  return {static_cast<float>(squares_ / (inside_ - kTerms)),
+  const double variance = squares_ / (inside_ - kTerms);
+  if (moved > variance) return {};  // it has not come to rest
+  return {static_cast<float>(variance),
           static_cast<float>(cubic / kDegrees * static_cast<double>(values.size()) / inside_),
           reference_ + surface[0][0] * polynomials_[0][0] * polynomials_[0][0]};
 }

@@ -24,8 +24,8 @@ inline constexpr std::array<int, 3> kNoiseSizes{10, 20, 40};
 
 /// What one window showed.
 struct SeenNoise {
-  float z = 0;        ///< m; 0: it told nothing
-  WindowNoise noise;  ///< of depths, m^2
+  float z = 0;        ///< m; 0: no surface
+  WindowNoise noise;  ///< of depths, m^2; variance 0: less than what the sensor can tell
 };
 
 /// What all of them say.

@@ -40,14 +40,25 @@ void append(const DepthView& frame, const NoiseWindow& window, std::vector<float
   }
 }
 
-// Smallest difference between neighbours along rows that is not 0; infinite: there is none.
-float smallest_step(const std::vector<float>& depths) {
+// Differences between neighbours that are not 0.
+struct Steps {
   float smallest = std::numeric_limits<float>::infinity();
-  for (std::size_t i = 1; i < depths.size(); ++i) {
-    const float step = std::abs(depths[i] - depths[i - 1]);
-    if (step > kSmallStep * depths[i] && step < smallest) smallest = step;
+  std::size_t count = 0;
+};
+
+Steps steps_of(const std::vector<float>& depths, std::size_t row) {
+  Steps steps;
+  for (std::size_t i = row; i < depths.size(); ++i) {
+    bool differs = false;
+    for (const float other : {depths[i - 1], depths[i - row]}) {
+      const float step = std::abs(depths[i] - other);
+      if (!(step > kSmallStep * depths[i])) continue;
+      steps.smallest = std::min(steps.smallest, step);
+      differs = true;
+    }
+    steps.count += differs ? 1 : 0;
   }
-  return smallest;
+  return steps;
 }
 
 }  // namespace
@@ -94,27 +105,27 @@ void NoiseTracker::State::resize(const DepthView& frame) {
   differences.resize(windows.size());
 }
 
-// Inverse depths: planes are planes in them too.
+// Inverse depths: planes are planes in them too. Where most neighbours are alike and nothing is
+// left, noise is below the sensor's step, or there is no measurement at all.
 void NoiseTracker::State::look(const DepthView& frame, std::size_t window) {
   values.clear();
   append(frame, windows[window], values);
-  const float step = smallest_step(values);
+  NoiseFit& fitter = fits[windows[window].level];
+  const Steps steps = steps_of(values, static_cast<std::size_t>(fitter.size()));
   for (float& z : values) z = 1 / z;
-  WindowNoise noise = fits[windows[window].level].fit(values);
+  const WindowNoise noise = fitter.fit(values);
   single[window] = {};
-  // Windows of one value alone tell nothing: their noise is below the sensor's step or they are
-  // no measurement at all.
-  if (!(noise.mean > 0) || std::isinf(step)) return;
   const float z = 1 / noise.mean;
-  noise.variance *= z * z * z * z;
-  noise.power *= z * z * z * z;
+  const float square = z * z * z * z;
+  const float seen = kRounded * steps.smallest;
+  const bool stepped = noise.variance * square > seen * seen;
+  if (!(noise.mean > 0)) return;
+  single[window].z = z;
+  if (!stepped && 2 * steps.count < values.size()) return;
   float least = kFinest * z * kFinest * z;
-  const float seen = kRounded * step;
-  if (noise.variance > seen * seen) least = std::max(least, step * step / 12);
-  const float more = std::max(0.0F, least - noise.variance);
-  noise.variance += more;
-  noise.power += more;
-  single[window] = {z, noise};
+  if (stepped) least = std::max(least, steps.smallest * steps.smallest / 12);
+  const float more = std::max(0.0F, least - noise.variance * square);
+  single[window] = {z, {noise.variance * square + more, noise.power * square + more, noise.mean}};
 }
 
 // Where the scene stands still the difference of two frames is noise, whatever the shape.
