@@ -13,8 +13,6 @@ constexpr float kFlat = 2;               // variances up to this times the sampl
 constexpr double kMedianOfFour = 0.839;  // of the mean of four squares that are 1 in the mean
 constexpr double kMissing = 0.125;       // share of the noise that a size may take for shape
 
-constexpr float kNone = 1e-24F;  // m^2: far below all variances
-
 // Windows of twice the size find more by some factor; infinite ones, by this power of it more. For
 // Gaussian correlation over up to a tenth of the size it leaves 6 % of n_c to be wished for at
 // most.
@@ -61,23 +59,28 @@ double NoiseSurvey::Level::missing(int size) const {
 void NoiseSurvey::find_samples(const std::vector<NoiseWindow>& windows,
                                const std::vector<SeenNoise>& seen, std::size_t level) {
   Level& to = levels_[level];
+  to.bins = {};
+  int silent = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (windows[i].level != level || !(seen[i].z > 0)) continue;
+    silent += seen[i].noise.variance > 0 ? -1 : 1;
+  }
+  if (silent > 0) return;  // then what others show are jumps
   for (int bin = 0; bin < kNoiseBins; ++bin) {
     values_.clear();
     double depths = 0;
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (windows[i].level != level || !(seen[i].z > 0) || noise_bin(seen[i].z) != bin) continue;
-      values_.push_back(std::log(std::max(kNone, seen[i].noise.variance)) -
-                        4 * std::log(seen[i].z));
+      if (windows[i].level != level || !(seen[i].noise.variance > 0)) continue;
+      if (noise_bin(seen[i].z) != bin) continue;
+      values_.push_back(std::log(seen[i].noise.variance) - 4 * std::log(seen[i].z));
       depths += seen[i].z;
     }
-    NoiseSample& sample = to.bins[static_cast<std::size_t>(bin)];
-    sample = {};
     if (values_.size() < kFewest) continue;
     const Half half = closest_half(values_);
-    if (half.width > kAlike || half.middle < std::log(kNone) / 2) continue;
+    if (half.width > kAlike) continue;
     const auto count = static_cast<double>(values_.size());
     const double z = depths / count;
-    sample = {z, z * z * std::exp(half.middle / 2.0), count};
+    to.bins[static_cast<std::size_t>(bin)] = {z, z * z * std::exp(half.middle / 2.0), count};
   }
 }
 
