@@ -56,44 +56,40 @@ double NoiseSurvey::Level::missing(int size) const {
   return NoiseFit::kTerms * power / (size * size);
 }
 
-void NoiseSurvey::find_samples(const std::vector<NoiseWindow>& windows,
-                               const std::vector<SeenNoise>& seen, std::size_t level) {
-  Level& to = levels_[level];
-  to.bins = {};
+void NoiseSurvey::find_samples(std::span<const SeenNoise> windows, std::size_t level) {
+  auto& bins = levels_[level].bins;
+  bins = {};
   int silent = 0;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (windows[i].level != level || !(seen[i].z > 0)) continue;
-    silent += seen[i].noise.variance > 0 ? -1 : 1;
+  for (const SeenNoise& w : windows) {
+    if (w.level == level && w.z > 0) silent += w.noise.variance > 0 ? -1 : 1;
   }
-  if (silent > 0) return;  // then what others show are jumps
+  if (silent > 0) return;  // then what the others show are jumps
   for (int bin = 0; bin < kNoiseBins; ++bin) {
     values_.clear();
     double depths = 0;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (windows[i].level != level || !(seen[i].noise.variance > 0)) continue;
-      if (noise_bin(seen[i].z) != bin) continue;
-      values_.push_back(std::log(seen[i].noise.variance) - 4 * std::log(seen[i].z));
-      depths += seen[i].z;
+    for (const SeenNoise& w : windows) {
+      if (w.level != level || !(w.noise.variance > 0) || noise_bin(w.z) != bin) continue;
+      values_.push_back(std::log(w.noise.variance) - 4 * std::log(w.z));
+      depths += w.z;
     }
     if (values_.size() < kFewest) continue;
     const Half half = closest_half(values_);
     if (half.width > kAlike) continue;
     const auto count = static_cast<double>(values_.size());
     const double z = depths / count;
-    to.bins[static_cast<std::size_t>(bin)] = {z, z * z * std::exp(half.middle / 2.0), count};
+    bins[static_cast<std::size_t>(bin)] = {z, z * z * std::exp(half.middle / 2.0), count};
   }
 }
 
-void NoiseSurvey::find_power(const std::vector<NoiseWindow>& windows,
-                             const std::vector<SeenNoise>& seen, std::size_t level) {
+void NoiseSurvey::find_power(std::span<const SeenNoise> windows, std::size_t level) {
   values_.clear();
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (windows[i].level != level || !(seen[i].noise.variance > 0)) continue;
-    const NoiseSample& sample = levels_[level].bins[static_cast<std::size_t>(noise_bin(seen[i].z))];
-    const double sigma = sample.sigma * seen[i].z * seen[i].z / std::max(1e-9, sample.z * sample.z);
-    const WindowNoise& noise = seen[i].noise;
-    if (sample.weight == 0 || noise.variance > kFlat * sigma * sigma) continue;
-    values_.push_back(noise.power / noise.variance);
+  for (const SeenNoise& w : windows) {
+    if (w.level != level || !(w.noise.variance > 0)) continue;
+    const NoiseSample& sample = levels_[level].bins[static_cast<std::size_t>(noise_bin(w.z))];
+    if (sample.weight == 0) continue;
+    const double sigma = sample.sigma * w.z * w.z / (sample.z * sample.z);
+    if (w.noise.variance > kFlat * sigma * sigma) continue;
+    values_.push_back(w.noise.power / w.noise.variance);
   }
   levels_[level].power = 0;
   if (values_.size() < kFewest) return;
@@ -128,14 +124,13 @@ bool NoiseSurvey::holds(std::size_t level) const {
 }
 
 // The smallest windows that hold the correlation; failing that, the largest that were flat.
-void NoiseSurvey::conclude(const std::vector<NoiseWindow>& windows,
-                           const std::vector<SeenNoise>& seen) {
+void NoiseSurvey::conclude(std::span<const SeenNoise> windows) {
   noise_.samples.clear();
   noise_.shared = 1;
   noise_.whole = false;
   for (std::size_t level = 0; level < kNoiseSizes.size(); ++level) {
-    find_samples(windows, seen, level);
-    find_power(windows, seen, level);
+    find_samples(windows, level);
+    find_power(windows, level);
   }
   std::size_t chosen = 0;
   for (std::size_t level = 0; level < kNoiseSizes.size(); ++level) {

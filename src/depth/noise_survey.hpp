@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
-#include "depth/noise_bins.hpp"
+#include "depth/noise_curve.hpp"
 #include "depth/noise_fit.hpp"
 
 namespace palpate::depth {
@@ -24,6 +25,7 @@ inline constexpr std::array<int, 3> kNoiseSizes{10, 20, 40};
 
 /// What one window showed.
 struct SeenNoise {
+  std::size_t level = 0;
   float z = 0;        ///< m; 0: no surface
   WindowNoise noise;  ///< of depths, m^2; variance 0: less than what the sensor can tell
 };
@@ -39,8 +41,7 @@ struct SurveyedNoise {
 /// from window to window.
 class NoiseSurvey {
  public:
-  /// What windows showed, in the order of lay_noise_windows().
-  void conclude(const std::vector<NoiseWindow>& windows, const std::vector<SeenNoise>& seen);
+  void conclude(std::span<const SeenNoise> windows);
 
   [[nodiscard]] const SurveyedNoise& noise() const { return noise_; }
 
@@ -54,10 +55,8 @@ class NoiseSurvey {
     [[nodiscard]] double missing(int size) const;
   };
 
-  void find_samples(const std::vector<NoiseWindow>& windows, const std::vector<SeenNoise>& seen,
-                    std::size_t level);
-  void find_power(const std::vector<NoiseWindow>& windows, const std::vector<SeenNoise>& seen,
-                  std::size_t level);
+  void find_samples(std::span<const SeenNoise> windows, std::size_t level);
+  void find_power(std::span<const SeenNoise> windows, std::size_t level);
   [[nodiscard]] double growth(std::size_t from, std::size_t to) const;
   [[nodiscard]] bool holds(std::size_t level) const;
 

@@ -101,8 +101,8 @@ void NoiseTracker::State::resize(const DepthView& frame) {
   width = frame.width;
   height = frame.height;
   windows = lay_noise_windows(width, height);
-  single.resize(windows.size());
-  differences.resize(windows.size());
+  for (const NoiseWindow& window : windows) single.push_back({window.level, 0, {}});
+  differences = single;
 }
 
 // Inverse depths: planes are planes in them too. Where most neighbours are alike and nothing is
@@ -114,18 +114,17 @@ void NoiseTracker::State::look(const DepthView& frame, std::size_t window) {
   const Steps steps = steps_of(values, static_cast<std::size_t>(fitter.size()));
   for (float& z : values) z = 1 / z;
   const WindowNoise noise = fitter.fit(values);
-  single[window] = {};
-  const float z = 1 / noise.mean;
-  const float square = z * z * z * z;
+  SeenNoise& to = single[window];
+  to.z = noise.mean > 0 ? 1 / noise.mean : 0;
+  to.noise = {};
+  const float square = to.z * to.z * to.z * to.z;
   const float seen = kRounded * steps.smallest;
   const bool stepped = noise.variance * square > seen * seen;
-  if (!(noise.mean > 0)) return;
-  single[window].z = z;
-  if (!stepped && 2 * steps.count < values.size()) return;
-  float least = kFinest * z * kFinest * z;
+  if (to.z == 0 || (!stepped && 2 * steps.count < values.size())) return;
+  float least = kFinest * to.z * kFinest * to.z;
   if (stepped) least = std::max(least, steps.smallest * steps.smallest / 12);
   const float more = std::max(0.0F, least - noise.variance * square);
-  single[window] = {z, {noise.variance * square + more, noise.power * square + more, noise.mean}};
+  to.noise = {noise.variance * square + more, noise.power * square + more, noise.mean};
 }
 
 // Where the scene stands still the difference of two frames is noise, whatever the shape.
@@ -145,7 +144,7 @@ void NoiseTracker::State::compare(const DepthView& frame) {
     }
     const WindowNoise noise = fits[windows[w].level].fit(values);
     const auto z = static_cast<float>(depth / count);
-    if (noise.variance > kFinest * z * kFinest * z) differences[w] = {z, noise};
+    if (noise.variance > kFinest * z * kFinest * z) differences[w] = {windows[w].level, z, noise};
   }
 }
 
@@ -198,8 +197,8 @@ double NoiseTracker::State::shared(const NoiseModel& noise) const {
 }
 
 void NoiseTracker::State::conclude() {
-  of_single.conclude(windows, single);
-  of_differences.conclude(windows, differences);
+  of_single.conclude(single);
+  of_differences.conclude(differences);
   choose_samples();
   if (samples.empty()) return;
   NoiseModel next = fit_noise_curve(samples, prior);
