@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "depth/block_grid.hpp"
+#include "depth/simd/fits.hpp"
 #include "palpate/depth/depth_filter.hpp"
 
 namespace palpate::depth {
@@ -42,6 +43,12 @@ void average_blocks(const float* image, int width, const NoiseModel& noise,
 /// By how much the variance of a mean of many blocks is larger than if they erred alone.
 [[nodiscard]] inline double shared_error(double correlation) {
   return std::max(0.25 * correlation * correlation, 1.0);
+}
+
+/// The same of a term of degree 0 (the mean itself), 1 or 2 over so many blocks.
+[[nodiscard]] inline double shared_error(double correlation, int degree, double blocks) {
+  const double shared = shared_error(correlation);
+  return shared / (1 + simd::kUnseenShare[degree] * (shared - 1) / blocks);
 }
 
 /// Deviation of the mean of a full block, 1/m, at inverse depth rho.

@@ -152,8 +152,7 @@ struct Search {
 std::size_t MeetingPlanes::search_row(const Blocks& blocks, const NoiseModel& noise, int row,
                                       std::span<const std::int32_t> columns, const BlockFits& fits,
                                       Change* changes) {
-  const auto together =
-      static_cast<float>(std::min(shared_error(noise.correlation), double{kBlocks}));
+  const auto together = static_cast<float>(shared_error(noise.correlation, 2, kBlocks));
   Around around(static_cast<float>(fits.grid.step_x), static_cast<float>(fits.grid.step_y));
   std::size_t count = 0;
   for (const std::int32_t column : columns) {

@@ -1,109 +1,22 @@
 #include "depth/noise_curve.hpp"
 
-#include <Eigen/Dense>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
-#include <optional>
 
 namespace palpate::depth {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 constexpr double kNarrow = 1.25;   // farthest over nearest: below, the prior's shape is kept
-constexpr double kWide = 1.6;      // from here on all three terms are free
-constexpr int kRounds = 5;         // of reweighting
+constexpr int kCurveRounds = 5;    // of reweighting
+constexpr int kDescents = 200;     // of the terms, one after the other
 constexpr double kOutlier = 0.15;  // relative error from which on a sample counts less
 
-double value(const Vector3d& c, double z) {
-  return c(0) + z * (c(1) + z * c(2));
-}
+using Curve = std::array<double, 3>;  // s0, s1, s2
 
-double relative_error(const Vector3d& c, const NoiseSample& s) {
-  return value(c, s.z) / s.sigma - 1;
-}
-
-double robust_weight(const Vector3d& c, const NoiseSample& s) {
-  const double e = relative_error(c, s) / kOutlier;
-  return s.weight / (1 + e * e);
-}
-
-// Sum of the robust losses: what the reweighting brings down.
-double loss(const Vector3d& c, std::span<const NoiseSample> samples) {
-  double sum = 0;
-  for (const NoiseSample& s : samples) {
-    const double e = relative_error(c, s) / kOutlier;
-    sum += s.weight * std::log1p(e * e);
-  }
-  return sum;
-}
-
-/// Least squares over the terms that `used` names; the others are 0.
-Vector3d fit_terms(std::span<const NoiseSample> samples, const std::array<bool, 3>& used) {
-  Vector3d c = Vector3d::Zero();
-  for (int round = 0; round < kRounds; ++round) {
-    Matrix3d normal = Matrix3d::Zero();
-    Vector3d right = Vector3d::Zero();
-    for (const NoiseSample& s : samples) {
-      const double w = round == 0 ? s.weight : robust_weight(c, s);
-      const Vector3d row = Vector3d(1, s.z, s.z * s.z) / s.sigma;
-      normal += w * row * row.transpose();
-      right += w * row;
-    }
-    for (int i = 0; i < 3; ++i) {
-      if (used[static_cast<std::size_t>(i)]) continue;
-      normal.row(i).setZero();
-      normal.col(i).setZero();
-      normal(i, i) = 1;
-      right(i) = 0;
-    }
-    c = normal.ldlt().solve(right);
-  }
-  return c;
-}
-
-/// Nearest and farthest depth that samples lie at.
-struct Span {
-  double near = std::numeric_limits<double>::infinity();
-  double far = 0;
-};
-
-Span span_of(std::span<const NoiseSample> samples) {
-  Span span;
-  for (const NoiseSample& s : samples) {
-    span.near = std::min(span.near, s.z);
-    span.far = std::max(span.far, s.z);
-  }
-  return span;
-}
-
-/// Can the curve be believed beyond the samples?
-bool sane(const Vector3d& c, const Span& span) {
-  if (!c.allFinite() || c(2) < 0) return false;
-  const double near = value(c, span.near);
-  const double far = value(c, span.far);
-  const double before = value(c, span.near / 2);
-  const bool rises = c(1) + 2 * c(2) * span.far >= 0;
-  const double lowest_at = c(2) > 0 ? std::max(0.0, -c(1) / (2 * c(2))) : 0;
-  return near > 0 && far > 0 && rises && before > 0.4 * near && before < 1.2 * near &&
-         value(c, lowest_at) > 0.4 * near && value(c, 0) < 1.6 * near;
-}
-
-// The best curve of one or two terms that are not negative: such curves are sane by themselves.
-Vector3d fit_positive(std::span<const NoiseSample> samples) {
-  Vector3d best = Vector3d::Zero();
-  double least = std::numeric_limits<double>::infinity();
-  for (unsigned mask = 1; mask < 7; ++mask) {
-    const std::array<bool, 3> used{(mask & 1U) != 0, (mask & 2U) != 0, (mask & 4U) != 0};
-    const Vector3d c = fit_terms(samples, used);
-    if (!c.allFinite() || c.minCoeff() < 0) continue;
-    const double l = loss(c, samples);
-    if (l >= least) continue;
-    least = l;
-    best = c;
-  }
-  return best;
+double value(const Curve& c, double z) {
+  return c[0] + z * (c[1] + z * c[2]);
 }
 
 NoiseModel scaled(std::span<const NoiseSample> samples, const NoiseModel& prior) {
@@ -118,19 +31,50 @@ NoiseModel scaled(std::span<const NoiseSample> samples, const NoiseModel& prior)
   return model;
 }
 
+// Least squares of relative errors over sums of terms none of which is negative, so that no sum
+// is; one term after the other.
+Curve descend(std::span<const NoiseSample> samples, std::span<const Curve> terms,
+              const Curve& last) {
+  std::array<double, 4> amounts{};
+  Curve curve{};
+  for (int i = 0; i < kDescents; ++i) {
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      double slope = 0;
+      double bend = 0;
+      for (const NoiseSample& s : samples) {
+        const double off = last == Curve{} ? 0 : (value(last, s.z) / s.sigma - 1) / kOutlier;
+        const double weight = s.weight / (1 + off * off);
+        const double t = value(terms[k], s.z) / s.sigma;
+        slope += weight * t * (1 - value(curve, s.z) / s.sigma);
+        bend += weight * t * t;
+      }
+      const double change = std::max(-amounts[k], slope / bend);
+      amounts[k] += change;
+      for (std::size_t j = 0; j < 3; ++j) curve[j] += change * terms[k][j];
+    }
+  }
+  return curve;
+}
+
 }  // namespace
 
 NoiseModel fit_noise_curve(std::span<const NoiseSample> samples, const NoiseModel& prior) {
   if (samples.empty()) return prior;
-  const Span span = span_of(samples);
-  if (samples.size() < 2 || span.far < kNarrow * span.near) return scaled(samples, prior);
-  Vector3d c = Vector3d::Zero();
-  const bool all_terms = samples.size() >= 4 && span.far > kWide * span.near;
-  if (all_terms) c = fit_terms(samples, {true, true, true});
-  if (!all_terms || !sane(c, span)) c = fit_positive(samples);
-  if (!(c.maxCoeff() > 0)) return scaled(samples, prior);
+  double near = std::numeric_limits<double>::infinity();
+  double far = 0;
+  for (const NoiseSample& s : samples) {
+    near = std::min(near, s.z);
+    far = std::max(far, s.z);
+  }
+  if (far < kNarrow * near) return scaled(samples, prior);
+  // The last one: noise that grows from the nearest sample on.
+  const std::array<Curve, 4> terms{
+      Curve{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {near * near, -2 * near, 1}};
   NoiseModel model = prior;
-  model.coefficients = {c(0), c(1), c(2)};
+  model.coefficients = {};
+  for (int round = 0; round < kCurveRounds; ++round) {
+    model.coefficients = descend(samples, terms, model.coefficients);
+  }
   return model;
 }
 

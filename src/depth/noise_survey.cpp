@@ -1,118 +1,159 @@
 #include "depth/noise_survey.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 namespace palpate::depth {
 namespace {
 
-constexpr int kFewestCorrelated = 4;  // windows
-// Up to which n_c windows of a level are believed: those that are too small for the noise's
-// correlation find a part of it only.
-constexpr std::array<double, 3> kBelievedShared{1.6, 14, 1e9};
-constexpr double kCorrelationCost = 10;  // of a window, in fits of it
-constexpr double kExplained = 0.05;      // share of windows that may stand for all
+constexpr double kWindows = 256;
+constexpr std::size_t kFewest = 4;       // windows that make a sample
+constexpr float kAlike = 1.4F;           // log of variances: half of them lie within a factor of 4
+constexpr float kFlat = 2;               // variances up to this times the sample's are noise
+constexpr double kMedianOfFour = 0.839;  // of the mean of four squares that are 1 in the mean
+constexpr double kMissing = 0.125;       // share of the noise that a size may take for shape
+
+// Windows of twice the size find more by some factor; infinite ones, by this power of it more. For
+// Gaussian correlation over up to a tenth of the size it leaves 6 % of n_c to be wished for at
+// most.
+constexpr double kBeyond = 0.6;
+
+// Mean and width of the half of sorted values that lie closest together.
+struct Half {
+  float middle = 0;
+  float width = 0;
+};
+
+Half closest_half(std::vector<float>& values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t count = (values.size() + 1) / 2;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i + count <= values.size(); ++i) {
+    if (values[i + count - 1] - values[i] < values[best + count - 1] - values[best]) best = i;
+  }
+  float sum = 0;
+  for (std::size_t i = best; i < best + count; ++i) sum += values[i];
+  return {sum / static_cast<float>(count), values[best + count - 1] - values[best]};
+}
 
 }  // namespace
 
-NoiseSurvey::NoiseSurvey()
-    : levels_{NoiseLevel(10, 10, 3), NoiseLevel(20, 20, 6), NoiseLevel(40, 20, 12)} {
-  noise_.samples.reserve(kNoiseBins);
-}
-
-void NoiseSurvey::resize(int width, int height) {
-  for (NoiseLevel& level : levels_) level.resize(width, height);
-  ratios_.reserve(levels_.back().windows());
-  noise_.samples.clear();
-  noise_.shared = 1;
-  level_ = next_ = 0;
-  correlating_ = false;
-}
-
-// One window, or the step to the next level. False: all are measured.
-bool NoiseSurvey::measure_one(const DepthView& frame, double& budget) {
-  NoiseLevel& level = levels_[level_];
-  if (next_ < level.windows()) {
-    level.measure(frame, next_++, fitter_);
-    budget -= level.size() * level.size();
-    return true;
-  }
-  level.find_flat();
-  next_ = 0;
-  return ++level_ < levels_.size();
-}
-
-bool NoiseSurvey::correlate_one(const DepthView& frame, double& budget) {
-  NoiseLevel& level = levels_[level_];
-  if (next_ < level.chosen()) {
-    level.correlate(frame, next_++, fitter_);
-    budget -= kCorrelationCost * level.size() * level.size();
-    return true;
-  }
-  next_ = 0;
-  return ++level_ < levels_.size();
-}
-
-bool NoiseSurvey::advance(const DepthView& frame, int shares) {
-  double budget = 0;
-  for (const NoiseLevel& level : levels_) {
-    const double pixels = level.size() * level.size();
-    budget += pixels * (static_cast<double>(level.windows()) +
-                        kCorrelationCost * static_cast<double>(level.chosen()));
-  }
-  budget = std::max(1.0, budget / shares);
-  if (shares == 1) budget = std::numeric_limits<double>::infinity();
-  while (budget > 0) {
-    if (!correlating_) {
-      correlating_ = !measure_one(frame, budget);
-      if (correlating_) level_ = 0;
-    } else if (!correlate_one(frame, budget)) {
-      conclude();
-      level_ = 0;
-      correlating_ = false;
-      return true;
+std::vector<NoiseWindow> lay_noise_windows(int width, int height) {
+  std::vector<NoiseWindow> windows;
+  const auto apart = static_cast<int>(std::sqrt(width * height / kWindows));
+  for (std::size_t level = 0; level < kNoiseSizes.size(); ++level) {
+    const int size = kNoiseSizes[level];
+    const int stride = std::max(size / 2, apart);
+    for (int v = 0; v + size <= height; v += stride) {
+      for (int u = 0; u + size <= width; u += stride) windows.push_back({level, u, v});
     }
   }
-  return false;
+  return windows;
+}
+
+// Of orthonormal terms each takes the noise's power at its own wavelength.
+double NoiseSurvey::Level::missing(int size) const {
+  return NoiseFit::kTerms * power / (size * size);
+}
+
+void NoiseSurvey::find_samples(std::span<const SeenNoise> windows, std::size_t level) {
+  auto& bins = levels_[level].bins;
+  bins = {};
+  int silent = 0;
+  for (const SeenNoise& w : windows) {
+    if (w.level == level && w.z > 0) silent += w.noise.variance > 0 ? -1 : 1;
+  }
+  if (silent > 0) return;  // then what the others show are jumps
+  for (int bin = 0; bin < kNoiseBins; ++bin) {
+    values_.clear();
+    double depths = 0;
+    for (const SeenNoise& w : windows) {
+      if (w.level != level || !(w.noise.variance > 0) || noise_bin(w.z) != bin) continue;
+      values_.push_back(std::log(w.noise.variance) - 4 * std::log(w.z));
+      depths += w.z;
+    }
+    if (values_.size() < kFewest) continue;
+    const Half half = closest_half(values_);
+    if (half.width > kAlike) continue;
+    const auto count = static_cast<double>(values_.size());
+    const double z = depths / count;
+    bins[static_cast<std::size_t>(bin)] = {z, z * z * std::exp(half.middle / 2.0), count};
+  }
+}
+
+void NoiseSurvey::find_power(std::span<const SeenNoise> windows, std::size_t level) {
+  values_.clear();
+  for (const SeenNoise& w : windows) {
+    if (w.level != level || !(w.noise.variance > 0)) continue;
+    const NoiseSample& sample = levels_[level].bins[static_cast<std::size_t>(noise_bin(w.z))];
+    if (sample.weight == 0) continue;
+    const double sigma = sample.sigma * w.z * w.z / (sample.z * sample.z);
+    if (w.noise.variance > kFlat * sigma * sigma) continue;
+    values_.push_back(w.noise.power / w.noise.variance);
+  }
+  levels_[level].power = 0;
+  if (values_.size() < kFewest) return;
+  const auto middle = values_.begin() + static_cast<std::ptrdiff_t>(values_.size() / 2);
+  std::nth_element(values_.begin(), middle, values_.end());
+  levels_[level].power = *middle / kMedianOfFour;
+}
+
+// By how much variances are larger in windows of another size, where both are known; 0: nowhere.
+double NoiseSurvey::growth(std::size_t from, std::size_t to) const {
+  double sum = 0;
+  double weights = 0;
+  for (std::size_t bin = 0; bin < kNoiseBins; ++bin) {
+    const NoiseSample& a = levels_[from].bins[bin];
+    const NoiseSample& b = levels_[to].bins[bin];
+    if (a.weight == 0 || b.weight == 0) continue;
+    const double weight = std::min(a.weight, b.weight);
+    sum += weight * 2 * std::log(b.sigma / a.sigma);
+    weights += weight;
+  }
+  return weights > 0 ? std::exp(sum / weights) : 0;
+}
+
+// Do windows of this size see the noise as a whole?
+bool NoiseSurvey::holds(std::size_t level) const {
+  const double missing = levels_[level].missing(kNoiseSizes[level]);
+  if (missing > kMissing) return false;
+  if (level + 1 == kNoiseSizes.size()) return true;
+  const double larger = levels_[level + 1].missing(kNoiseSizes[level + 1]);
+  const double more = growth(level, level + 1) * (1 + larger) / (1 + missing);
+  return more < 1 + 2 * kMissing || more > std::exp(kAlike);  // or it is all shape
 }
 
 // The smallest windows that hold the correlation; failing that, the largest that were flat.
-void NoiseSurvey::conclude() {
+void NoiseSurvey::conclude(std::span<const SeenNoise> windows) {
   noise_.samples.clear();
   noise_.shared = 1;
   noise_.whole = false;
-  for (std::size_t i = 0; i < levels_.size(); ++i) {
-    const NoiseLevel& level = levels_[i];
-    if (level.correlated() < kFewestCorrelated) continue;
-    const NoiseCorrelation correlation = level.correlation();
-    if (!(correlation.variance > 0)) continue;
-    noise_.shared = correlation.shared;
-    noise_.whole = correlation.whole && correlation.shared <= kBelievedShared[i];
-    noise_.samples.assign(level.samples().begin(), level.samples().end());
-    const double raised = std::sqrt(std::max(1.0, correlation.variance));
-    for (NoiseSample& sample : noise_.samples) sample.sigma *= raised;
-    if (noise_.whole) break;
+  for (std::size_t level = 0; level < kNoiseSizes.size(); ++level) {
+    find_samples(windows, level);
+    find_power(windows, level);
   }
-}
-
-double NoiseSurvey::misfit(const NoiseModel& model) {
-  ratios_.clear();
-  for (const WindowResidual& r : levels_.back().residuals()) {
-    if (!r.usable || r.step <= 0 || r.block_variance <= 0) continue;
-    ratios_.push_back(static_cast<float>(2 * std::sqrt(r.block_variance) / model.sigma(r.z)));
+  std::size_t chosen = 0;
+  for (std::size_t level = 0; level < kNoiseSizes.size(); ++level) {
+    if (levels_[level].power == 0) continue;
+    chosen = level;
+    if (holds(level)) break;
   }
-  if (ratios_.empty()) return 1;
-  // Where most of the image is clutter, windows that cross edges say nothing of the sensor.
-  const auto explained = std::partition(ratios_.begin(), ratios_.end(),
-                                        [](float ratio) { return ratio < kMostMisfit; });
-  const auto all = static_cast<double>(ratios_.size());
-  const auto count = static_cast<double>(explained - ratios_.begin());
-  if (count < kExplained * all) return kMostMisfit;
-  const auto quarter = ratios_.begin() + static_cast<std::ptrdiff_t>(count / 4);
-  std::nth_element(ratios_.begin(), quarter, explained);
-  return *quarter;
+  const Level& level = levels_[chosen];
+  if (level.power == 0) return;
+  noise_.whole = chosen + 1 == levels_.size() || holds(chosen);
+  double more = 1;
+  if (chosen > 0 && levels_[chosen - 1].power > 0) {
+    more = growth(chosen - 1, chosen) * level.power / levels_[chosen - 1].power;
+  }
+  const double power = level.power * std::pow(std::max(1.0, more), kBeyond);
+  const int size = kNoiseSizes[chosen];
+  const double raised = 1 + NoiseFit::kTerms * (level.power + power) / (2 * size * size);
+  noise_.shared = power / raised;
+  for (NoiseSample sample : level.bins) {
+    if (sample.weight == 0) continue;
+    sample.sigma *= std::sqrt(raised);
+    noise_.samples.push_back(sample);
+  }
 }
 
 }  // namespace palpate::depth

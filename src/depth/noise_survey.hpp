@@ -1,55 +1,68 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
-#include "depth/noise_level.hpp"
-#include "palpate/depth/noise_model.hpp"
+#include "depth/noise_curve.hpp"
+#include "depth/noise_fit.hpp"
 
 namespace palpate::depth {
 
-/// What single frames say of the noise.
-struct FrameNoise {
-  std::vector<NoiseSample> samples;  ///< sigma by depth; none: too little could be used
-  double shared = 1;                 ///< n_c
-  bool whole = false;                ///< the windows held all of the correlation; else n_c is low
+/// A square of pixels whose upper left one is (u, v).
+struct NoiseWindow {
+  std::size_t level = 0;  ///< says the size: kNoiseSizes
+  int u = 0;
+  int v = 0;
 };
 
-/// Looks at the residuals of windows all over the image, of three sizes: small ones see noise and
-/// little shape; where neighbours err together small windows take noise for shape, and larger ones
-/// are used. One round over the image can be spread over many frames.
+/// Pixels along a side. Small windows see noise and little shape; where neighbours err together
+/// they take noise for shape.
+inline constexpr std::array<int, 3> kNoiseSizes{10, 20, 40};
+
+/// Some 256 windows of each size, all over the image.
+[[nodiscard]] std::vector<NoiseWindow> lay_noise_windows(int width, int height);
+
+/// What one window showed.
+struct SeenNoise {
+  std::size_t level = 0;
+  float z = 0;        ///< m; 0: no surface
+  WindowNoise noise;  ///< of depths, m^2; variance 0: less than what the sensor can tell
+};
+
+/// What all of them say.
+struct SurveyedNoise {
+  std::vector<NoiseSample> samples;  ///< by depth; none: too little could be used
+  double shared = 1;                 ///< n_c: over how many pixels the noise's correlation sums up
+  bool whole = false;  ///< windows large enough to hold the correlation were among them
+};
+
+/// Finds the noise that windows have in common: shape, which some of them have besides, differs
+/// from window to window.
 class NoiseSurvey {
  public:
-  NoiseSurvey();
+  void conclude(std::span<const SeenNoise> windows);
 
-  /// Lays windows over images of this size and begins anew. Takes memory when the size is new.
-  void resize(int width, int height);
-
-  /// Does a share of 1 / shares of a round. True when it completes the round: then the results
-  /// below are up to date, and the next call begins another round.
-  bool advance(const DepthView& frame, int shares);
-
-  [[nodiscard]] const FrameNoise& noise() const { return noise_; }
-
-  /// How much wide windows miss beyond what independent noise `model` explains: the lower quarter
-  /// of sqrt(X_q / dof) at c = 1, at most kMostMisfit. 1 where no window could be used. Of the
-  /// round that has just been completed.
-  [[nodiscard]] double misfit(const NoiseModel& model);
-
-  static constexpr double kMostMisfit = 6;
+  [[nodiscard]] const SurveyedNoise& noise() const { return noise_; }
 
  private:
-  bool measure_one(const DepthView& frame, double& budget);
-  bool correlate_one(const DepthView& frame, double& budget);
-  void conclude();
+  /// What windows of one size say.
+  struct Level {
+    std::array<NoiseSample, kNoiseBins> bins{};  // weight 0: nothing
+    double power = 0;  // of the cubic terms, over the variance; 0: nothing is known
 
-  std::array<NoiseLevel, 3> levels_;
-  NoiseWindowFitter fitter_;
-  std::size_t level_ = 0;  // at work on
-  std::size_t next_ = 0;   // window of it
-  bool correlating_ = false;
-  FrameNoise noise_;
-  std::vector<float> ratios_;
+    /// Share of the noise that the fits have taken for shape.
+    [[nodiscard]] double missing(int size) const;
+  };
+
+  void find_samples(std::span<const SeenNoise> windows, std::size_t level);
+  void find_power(std::span<const SeenNoise> windows, std::size_t level);
+  [[nodiscard]] double growth(std::size_t from, std::size_t to) const;
+  [[nodiscard]] bool holds(std::size_t level) const;
+
+  std::array<Level, kNoiseSizes.size()> levels_;
+  std::vector<float> values_;
+  SurveyedNoise noise_;
 };
 
 }  // namespace palpate::depth

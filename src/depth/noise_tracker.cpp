@@ -2,36 +2,63 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <span>
 #include <vector>
 
 #include "depth/noise_curve.hpp"
-#include "depth/noise_pairs.hpp"
 #include "depth/noise_survey.hpp"
 
 namespace palpate::depth {
 namespace {
 
-constexpr int kShares = 128;         // frames that one round of the survey takes
-constexpr int kPatience = 8;         // as long as no frame tells anything, every 8th is looked at
-constexpr double kMargin = 1.05;     // on c from windows that hold the correlation
-constexpr double kWideMargin = 1.2;  // on c from what is known to come out low
-constexpr double kNoteworthy = 0.1;  // relative change that is handed out
-constexpr double kNewest = 0.3;      // weight of a round in the running means of c and misfit
-constexpr double kLeast = 0.5;       // of what a single frame shows, what frames may differ by
-constexpr double kMost = 1.3;
-constexpr double kPattern = 4;  // times that, a fixed pattern: what is larger is what is seen
+constexpr std::size_t kShares = 128;  // frames in which all windows are looked at
+constexpr std::size_t kPatience = 8;  // frames after which something is concluded
+constexpr double kNoteworthy = 0.1;   // relative change that is handed out
+constexpr double kPattern = 4;        // times what frames differ by; what is more is shape
+constexpr double kMoved = 1.25;       // times the noise: what frames differ by then is motion
+// c, at least: windows grow in steps, and where pixels err alone some stop early by chance.
+constexpr double kLeastCorrelation = 1.15;
+constexpr float kSmallStep = 1e-6F;  // of the depth: rounding of floats is no step
+constexpr float kRounded = 0.02F;    // of a step: residuals that rounding to it leaves at least
+constexpr float kFinest = 1e-4F;     // of the depth: no depth camera errs less
 
-/// c by the rule of nss_fast.md section 2: what the noise's correlation asks for, and what wide
-/// windows miss, whatever the cause.
-double correlation(const FrameNoise& frame, double pair_shared, double misfit) {
-  const double margin = frame.whole ? kMargin : kWideMargin;
-  const double from_frame = margin * std::sqrt(frame.shared) / 2;
-  const double from_pairs = kMargin * std::sqrt(pair_shared) / 2;
-  return std::max({1.0, from_frame, from_pairs, kWideMargin * misfit});
+bool differs(double a, double b) {
+  return std::abs(a - b) > kNoteworthy * b;
 }
 
-bool differs(const NoiseModel& a, const NoiseModel& b, double z) {
-  return std::abs(a.sigma(z) - b.sigma(z)) > kNoteworthy * b.sigma(z);
+// Appends the depths of a window, NaN where there is none.
+void append(const DepthView& frame, const NoiseWindow& window, std::vector<float>& depths) {
+  const int size = kNoiseSizes[window.level];
+  for (int v = window.v; v < window.v + size; ++v) {
+    for (int u = window.u; u < window.u + size; ++u) {
+      const float z = frame.at(u, v);
+      depths.push_back(frame.valid(z) ? z : std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+}
+
+// Differences between neighbours that are not 0.
+struct Steps {
+  float smallest = std::numeric_limits<float>::infinity();
+  std::size_t count = 0;
+};
+
+Steps steps_of(const std::vector<float>& depths, std::size_t row) {
+  Steps steps;
+  for (std::size_t i = row; i < depths.size(); ++i) {
+    bool differs = false;
+    for (const float other : {depths[i - 1], depths[i - row]}) {
+      const float step = std::abs(depths[i] - other);
+      if (!(step > kSmallStep * depths[i])) continue;
+      steps.smallest = std::min(steps.smallest, step);
+      differs = true;
+    }
+    steps.count += differs ? 1 : 0;
+  }
+  return steps;
 }
 
 }  // namespace
@@ -39,91 +66,162 @@ bool differs(const NoiseModel& a, const NoiseModel& b, double z) {
 struct NoiseTracker::State {
   NoiseModel prior;
   NoiseModel model;  // handed out
-  NoiseModel spatial;
   int width = 0;
   int height = 0;
-  int waited = 0;          // frames that have told nothing
-  bool surveyed = false;   // single frames have told something
-  double correlation = 1;  // running mean
-  NoiseSurvey survey;
-  NoisePairs pairs;
+  std::size_t turn = 0;    // windows i with i % kShares == turn are looked at
+  std::size_t waited = 0;  // frames that have told nothing
+  bool told = false;
+  std::vector<NoiseWindow> windows;
+  std::vector<SeenNoise> single;       // what single frames show
+  std::vector<SeenNoise> differences;  // what pairs differ by
+  std::vector<float> before;           // the last frame's depths in this turn's windows
+  std::array<NoiseFit, kNoiseSizes.size()> fits{NoiseFit(kNoiseSizes[0]), NoiseFit(kNoiseSizes[1]),
+                                                NoiseFit(kNoiseSizes[2])};
+  NoiseSurvey of_single;
+  NoiseSurvey of_differences;
+  std::vector<float> values;
   std::vector<NoiseSample> samples;
 
-  void update(const DepthView& frame);
   void resize(const DepthView& frame);
-  [[nodiscard]] NoiseModel curve();
-  void conclude(bool round);
+  void look(const DepthView& frame, std::size_t window);
+  void compare(const DepthView& frame);
+  void keep(const DepthView& frame);
+  [[nodiscard]] std::span<const NoiseSample> changes() const;
+  void choose_samples();
+  [[nodiscard]] double shared(const NoiseModel& noise) const;
+  void conclude();
+  void update(const DepthView& frame);
 };
 
 void NoiseTracker::State::resize(const DepthView& frame) {
   if (frame.width == width && frame.height == height) return;
+  const NoiseModel start = prior;
+  *this = {};
+  prior = model = start;
   width = frame.width;
   height = frame.height;
-  survey.resize(width, height);
-  pairs.resize(width, height);
-  samples.reserve(2 * kNoiseBins);
-  waited = 0;
-  surveyed = false;
-  model = spatial = prior;
+  windows = lay_noise_windows(width, height);
+  for (const NoiseWindow& window : windows) single.push_back({window.level, 0, {}});
+  differences = single;
 }
 
-// Frames' differences decide where there are any; elsewhere single frames do, in proportion.
-NoiseModel NoiseTracker::State::curve() {
-  samples.clear();
-  double excess = 0;
+// Inverse depths: planes are planes in them too. Where most neighbours are alike and nothing is
+// left, noise is below the sensor's step, or there is no measurement at all.
+void NoiseTracker::State::look(const DepthView& frame, std::size_t window) {
+  values.clear();
+  append(frame, windows[window], values);
+  NoiseFit& fitter = fits[windows[window].level];
+  const Steps steps = steps_of(values, static_cast<std::size_t>(fitter.size()));
+  for (float& z : values) z = 1 / z;
+  const WindowNoise noise = fitter.fit(values);
+  SeenNoise& to = single[window];
+  to.z = noise.mean > 0 ? 1 / noise.mean : 0;
+  to.noise = {};
+  const float square = to.z * to.z * to.z * to.z;
+  const float seen = kRounded * steps.smallest;
+  const bool stepped = noise.variance * square > seen * seen;
+  if (to.z == 0 || (!stepped && 2 * steps.count < values.size())) return;
+  float least = kFinest * to.z * kFinest * to.z;
+  if (stepped) least = std::max(least, steps.smallest * steps.smallest / 12);
+  const float more = std::max(0.0F, least - noise.variance * square);
+  to.noise = {noise.variance * square + more, noise.power * square + more, noise.mean};
+}
+
+// Where the scene stands still the difference of two frames is noise, whatever the shape.
+void NoiseTracker::State::compare(const DepthView& frame) {
+  std::size_t at = 0;
+  for (std::size_t w = turn; w < windows.size() && at < before.size(); w += kShares) {
+    values.clear();
+    append(frame, windows[w], values);
+    double depth = 0;
+    int count = 0;
+    for (float& value : values) {
+      const float z = value;
+      value = (z - before[at++]) * std::numbers::sqrt2_v<float> / 2;
+      if (std::isnan(value)) continue;
+      depth += z;
+      ++count;
+    }
+    const WindowNoise noise = fits[windows[w].level].fit(values);
+    const auto z = static_cast<float>(depth / count);
+    if (noise.variance > kFinest * z * kFinest * z) differences[w] = {windows[w].level, z, noise};
+  }
+}
+
+// What the next frame will be compared with.
+void NoiseTracker::State::keep(const DepthView& frame) {
+  turn = (turn + 1) % kShares;
+  before.clear();
+  for (std::size_t w = turn; w < windows.size(); w += kShares) append(frame, windows[w], before);
+}
+
+// What differences of frames say; nothing, as long as too few of large windows are among them.
+std::span<const NoiseSample> NoiseTracker::State::changes() const {
+  const SurveyedNoise& noise = of_differences.noise();
+  return std::span(noise.samples).first(noise.whole ? noise.samples.size() : 0);
+}
+
+// A sensor's fixed pattern and its steps show in single frames alone, and fits stumble over them as
+// over what changes. What is far more is shape that fills the image.
+void NoiseTracker::State::choose_samples() {
+  const std::span<const NoiseSample> pairs = changes();
+  samples = of_single.noise().samples;
+  const auto alone = [&](const NoiseSample& pair) {
+    return std::none_of(samples.begin(), samples.end(), [&](const NoiseSample& sample) {
+      return noise_bin(sample.z) == noise_bin(pair.z);
+    });
+  };
+  const std::size_t singles = samples.size();
+  std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(samples), alone);
+  if (pairs.empty()) return;
+  const NoiseModel changing = fit_noise_curve(pairs, prior);
+  for (NoiseSample& sample : std::span(samples).first(singles)) {
+    sample.sigma = std::min(sample.sigma, kPattern * changing.sigma(sample.z));
+  }
+}
+
+// n_c. Frames' differences hold no shape, but no pattern either.
+double NoiseTracker::State::shared(const NoiseModel& noise) const {
+  double parts = 0;  // of the noise, that they show
   double weights = 0;
-  for (NoiseSample sample : pairs.noise().samples) {
-    const double single = spatial.sigma(sample.z);
-    const double least = std::min(kLeast * single, kPattern * sample.sigma);
-    sample.sigma = std::clamp(sample.sigma, least, kMost * single);
-    samples.push_back(sample);
-    excess += sample.weight * std::log(sample.sigma / single);
-    weights += sample.weight;
+  for (const NoiseSample& pair : changes()) {
+    const double part = pair.sigma / noise.sigma(pair.z);
+    if (part > kMoved) continue;
+    parts += pair.weight * part * part;
+    weights += pair.weight;
   }
-  if (weights == 0) return spatial;
-  const double factor = std::exp(excess / weights);
-  const std::size_t compared = samples.size();
-  for (NoiseSample sample : survey.noise().samples) {
-    const auto same_bin = [&](const NoiseSample& s) {
-      return noise_bin(s.z) == noise_bin(sample.z);
-    };
-    const auto end = samples.begin() + static_cast<std::ptrdiff_t>(compared);
-    if (std::any_of(samples.begin(), end, same_bin)) continue;
-    sample.sigma *= factor;
-    samples.push_back(sample);
-  }
-  return fit_noise_curve(samples, prior);
+  double from_single = of_single.noise().samples.empty() ? 0 : of_single.noise().shared;
+  if (weights == 0) return std::max(1.0, from_single);
+  const double from_pairs = parts / weights * of_differences.noise().shared;
+  return std::max({1.0, from_pairs, std::min(from_single, kPattern * kPattern * from_pairs)});
 }
 
-void NoiseTracker::State::conclude(bool round) {
-  NoiseModel next = curve();
-  if (round || !surveyed) {
-    const double newest =
-        depth::correlation(survey.noise(), pairs.noise().shared, survey.misfit(next));
-    correlation += (surveyed ? kNewest : 1.0) * (newest - correlation);
-  }
-  next.correlation = correlation;
-  bool changed =
-      !surveyed || std::abs(next.correlation - model.correlation) > kNoteworthy * model.correlation;
-  for (const NoiseSample& sample : survey.noise().samples) {
-    changed = changed || differs(next, model, sample.z);
+void NoiseTracker::State::conclude() {
+  of_single.conclude(single);
+  of_differences.conclude(differences);
+  choose_samples();
+  if (samples.empty()) return;
+  NoiseModel next = fit_noise_curve(samples, prior);
+  next.correlation = std::max(kLeastCorrelation, std::sqrt(shared(next)));
+  bool changed = !told || differs(next.correlation, model.correlation);
+  for (const NoiseSample& sample : samples) {
+    changed = changed || differs(next.sigma(sample.z), model.sigma(sample.z));
   }
   if (changed) model = next;
-  surveyed = true;
+  told = true;
 }
 
 void NoiseTracker::State::update(const DepthView& frame) {
   resize(frame);
-  if (!pairs.add(frame, spatial, survey.noise().shared)) return;
-  if (!surveyed && waited++ % kPatience > 0) return;
-  const bool round = survey.advance(frame, surveyed ? kShares : 1);
-  if (survey.noise().samples.empty()) return;
-  if (round) spatial = fit_noise_curve(survey.noise().samples, prior);
-  conclude(round);
+  compare(frame);
+  const bool all = !told && waited++ % kPatience == 0;
+  for (std::size_t w = all ? 0 : turn; w < windows.size(); w += all ? 1 : kShares) look(frame, w);
+  keep(frame);
+  if (all || turn % kPatience == 0) conclude();
 }
 
 NoiseTracker::NoiseTracker(const NoiseModel& prior) : state_(std::make_unique<State>()) {
-  state_->prior = state_->model = state_->spatial = prior;
+  state_->prior = state_->model = prior;
 }
 
 NoiseTracker::~NoiseTracker() = default;
@@ -140,9 +238,7 @@ const NoiseModel& NoiseTracker::model() const {
 }
 
 void NoiseTracker::reset() {
-  const NoiseModel prior = state_->prior;
-  state_ = std::make_unique<State>();
-  state_->prior = state_->model = state_->spatial = prior;
+  *this = NoiseTracker(state_->prior);
 }
 
 }  // namespace palpate::depth

@@ -11,10 +11,10 @@ namespace {
 // From recordings: nss_fast.md section 2. Structured light (the first Kinect, the Xtion) has a
 // fixed pattern besides, which is why c stands above what differences of frames give.
 constexpr std::array<SensorProfile, 4> kProfiles{{
-    {"kinect1", {{0.00039, 0, 0.00093}, 3}},
-    {"xtion", {{0.00014, 0, 0.00099}, 3}},
-    {"realsense", {{0, 0, 0.00247}, 5.5}},
-    {"tof", {{0, 0, 0.015}, 2.4}},
+    {"kinect1", {{0.00039, 0, 0.00093}, 6}},
+    {"xtion", {{0.00014, 0, 0.00099}, 6}},
+    {"realsense", {{0, 0, 0.00247}, 11}},
+    {"tof", {{0, 0, 0.015}, 4.8}},
 }};
 
 }  // namespace
@@ -35,7 +35,7 @@ const SensorProfile& sensor_profile(std::string_view name) {
 }
 
 NoiseModel unknown_sensor_noise() {
-  return {{0.0004, 0, 0.0025}, 3};
+  return {{0.0004, 0, 0.0025}, 6};
 }
 
 }  // namespace palpate

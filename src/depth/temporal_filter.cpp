@@ -179,7 +179,7 @@ TemporalOptions temporal_options(int memory, double correlation, double normal_e
   TemporalOptions options;
   options.normal_error = normal_error;
   options.memory = std::clamp(memory, 1, 255);
-  options.gate = correlation > 2 ? 7 : 5;
+  options.gate = correlation > 4 ? 7 : 5;
   return options;
 }
 

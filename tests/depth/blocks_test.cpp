@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 #include "depth/fill_gaps.hpp"
 #include "depth/neighbors.hpp"
@@ -164,6 +166,51 @@ TEST(FillGaps, BridgesWhatIsShortAndOfOneSurface) {
   EXPECT_EQ(filled.counts[filled.at(13, 0)], 4);
   EXPECT_EQ(fill(4, 1.0F), 0);
   EXPECT_EQ(fill(2, 1.3F), 0);
+}
+
+// Orthonormal polynomial of degree 0, 1, 2 over `side` places.
+std::vector<double> polynomial(int degree, int side) {
+  std::vector<double> values;
+  double squares = 0;
+  for (int i = 0; i < side; ++i) {
+    const double x = i - (side - 1) / 2.0;
+    const double mu = (side * side - 1) / 12.0;
+    values.push_back(degree == 0 ? 1 : degree == 1 ? x : x * x - mu);
+    squares += values.back() * values.back();
+  }
+  for (double& value : values) value /= std::sqrt(squares);
+  return values;
+}
+
+// Variance of the polynomial's coefficient under Gaussian correlation of this length.
+double variance_of(const std::vector<double>& p, double length) {
+  double sum = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    for (std::size_t j = 0; j < p.size(); ++j) {
+      const double d = static_cast<double>(i) - static_cast<double>(j);
+      sum += p[i] * p[j] * std::exp(-d * d / (2 * length * length));
+    }
+  }
+  return sum;
+}
+
+// Of windows that the correlation reaches across, as of those that it does not.
+TEST(Blocks, SharedErrorOfATermIsWhatCorrelationLeavesOfIt) {
+  for (const double length : {2.0, 3.0, 4.0}) {                     // blocks
+    const double c = 2 * length * std::sqrt(2 * std::numbers::pi);  // its square counts pixels
+    for (const int side : {9, 13, 21, 41}) {
+      if (length > side / 4.5) continue;
+      SCOPED_TRACE(side / length);
+      const double mean = variance_of(polynomial(0, side), length);
+      const double slope = variance_of(polynomial(1, side), length);
+      const double bend = variance_of(polynomial(2, side), length);
+      const double blocks = side * side;
+      EXPECT_NEAR(depth::shared_error(c, 0, blocks) / (mean * mean), 1, 0.25);
+      EXPECT_NEAR(depth::shared_error(c, 1, blocks) / (mean * slope), 1, 0.25);
+      EXPECT_NEAR(depth::shared_error(c, 2, blocks) / (mean * bend), 1, 0.35);
+    }
+  }
+  EXPECT_EQ(depth::shared_error(1, 2, 25), 1);
 }
 
 }  // namespace

@@ -58,8 +58,8 @@ depth::DepthView view_of(const std::vector<float>& depth, double focal) {
   return {depth, kWidth, kHeight, focal, 0.1F, 20};
 }
 
-// Measured there from differences of frames: sigma = 2.47 z^2 mm, c = 5 to 5.6, which the rule
-// takes 1.2 times.
+// Measured there from differences of frames: sigma = 2.47 z^2 mm, n_c = 80 to 126 in tiles of 16
+// and 32 pixels, which cut it short: c from 9 on.
 TEST_F(NoiseDataTest, ARealSensesNoiseIsThatOfItsKind) {
   const std::vector<float> first = realsense(80);
   if (first.empty()) GTEST_SKIP() << "no RealSense frames in PALPATE_DATA";
@@ -69,8 +69,8 @@ TEST_F(NoiseDataTest, ARealSensesNoiseIsThatOfItsKind) {
     const NoiseModel& model = tracker.update(view_of(depth, 383.8));
     ASSERT_GT(model.sigma(1), 0.8 * 2.47e-3);
     ASSERT_LT(model.sigma(1), 1.6 * 2.47e-3);
-    ASSERT_GT(model.correlation, 5);
-    ASSERT_LT(model.correlation, 8.5);
+    ASSERT_GT(model.correlation, 9);
+    ASSERT_LT(model.correlation, 17);
   }
 }
 
@@ -83,8 +83,8 @@ TEST_F(NoiseDataTest, AKinectsNoiseIsThatOfItsKind) {
   const NoiseModel& model = tracker.update(view_of(depth, 525));
   EXPECT_GT(model.sigma(1), 1.1e-3);
   EXPECT_LT(model.sigma(1), 2.5e-3);
-  EXPECT_GT(model.correlation, 1.5);
-  EXPECT_LT(model.correlation, 4);
+  EXPECT_GT(model.correlation, 3);
+  EXPECT_LT(model.correlation, 8);
 }
 
 /// Median over the blocks that are fitted in all of the frames, of the deviation of z / z^2 (mm at

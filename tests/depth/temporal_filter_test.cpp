@@ -245,7 +245,8 @@ TEST_F(TemporalFilterTest, ForgetsOnResetAndOnAnotherGrid) {
 
 TEST(TemporalOptions, FollowTheNoise) {
   EXPECT_EQ(temporal_options(8, 1, 0).gate, 5);
-  EXPECT_EQ(temporal_options(8, 3.5, 0).gate, 7);
+  EXPECT_EQ(temporal_options(8, 3.5, 0).gate, 5);
+  EXPECT_EQ(temporal_options(8, 7, 0).gate, 7);
   EXPECT_EQ(temporal_options(1000, 1, 0).memory, 255);
 }
 

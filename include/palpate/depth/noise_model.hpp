@@ -8,8 +8,8 @@ namespace palpate {
 /// how much neighbouring pixels err together.
 struct NoiseModel {
   std::array<double, 3> coefficients{};  ///< s0 (m), s1, s2 (1/m)
-  /// c: error of the mean of a 2x2 block over what independent pixels would have; >= 1. The window
-  /// of a fit takes block variances c^2 times larger (nss_fast.md section 2).
+  /// c: error of the mean of many neighbouring pixels over what independent pixels would have;
+  /// >= 1. Its square is the sum of the noise's autocorrelation, in pixels.
   double correlation = 1;
 
   [[nodiscard]] double sigma(double z) const {

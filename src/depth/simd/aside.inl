@@ -134,8 +134,9 @@ inline void try_aside(const FitInput& in, int row, Chunk& c, int i) {
                 .half_v = c.best_v[i]};
   if (c.kind[i] != kNone) search.score = centred_score(in, row, c, search);
   constexpr int kLast = kSizes - 1;
-  const double mean = in.shared * c.variance[i] * kExtents.of[c.half_u[kLast][i]].per_n *
-                      kExtents.of[c.half_v[kLast][i]].per_n;
+  const double per_n =
+      kExtents.of[c.half_u[kLast][i]].per_n * kExtents.of[c.half_v[kLast][i]].per_n;
+  const double mean = shared_over(in.shared, 1, per_n) * c.variance[i] * per_n;
   int tried[kWays] = {};
   for (const Aside& aside : kAsidesInOrder.of) {
     if (!(aside.promise * mean < search.score)) break;

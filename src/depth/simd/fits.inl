@@ -16,7 +16,9 @@ inline int first_reach(const FitInput& in, const Chunk& c, int i) {
   int half = 1;
   while (half < kLargestReach) {
     const Extent& e = kExtents.of[half];
-    if (in.shared * c.variance[i] * e.per_n * e.per_n * e.per_mu <= wanted * wanted) break;
+    const double per_n = e.per_n * e.per_n;
+    const double variance = shared_over(in.shared, 1, per_n) * c.variance[i];
+    if (variance * per_n * e.per_mu <= wanted * wanted) break;
     ++half;
   }
   return half;

@@ -128,7 +128,8 @@ struct Moments {
 struct Fits {
   Shape shape;
   Doubles m, cu, cv, cuv, cuu, cvv;
-  Doubles variance;  // of the mean of n blocks, times n
+  Doubles variance;  // of one block
+  double shared;     // FitInput's
   Mask affine;       // no hole, and the noise explains what the affine fit leaves
   Mask quadratic;    // or the quadratic one
   Mask bent;         // by far more than noise would bend it
@@ -144,6 +145,12 @@ struct Fits {
 
 [[gnu::always_inline]] inline Doubles noise_sigma(const double noise[3], const Doubles& rho) {
   return kRhoUnits * noise[2] + rho * (noise[1] + rho * (noise[0] / kRhoUnits));
+}
+
+// FitInput::shared of terms of a degree.
+template <class T>
+[[gnu::always_inline]] inline T shared_over(double shared, int degree, const T& per_n) {
+  return shared / (1.0 + kUnseenShare[degree] * (shared - 1) * per_n);
 }
 
 [[gnu::always_inline]] inline Fits fit(const FitInput& input, const Shape& g, const Moments& s) {
@@ -168,14 +175,16 @@ struct Fits {
   const Doubles sigma = noise_sigma(input.noise, f.m);
   // The rounding to whole units is noise too.
   const Doubles variance = larger(sigma * sigma * (weights * g.per_n * (1. / 3)), same(1. / 12));
-  f.variance = input.shared * variance;
+  f.variance = variance;
+  f.shared = input.shared;
   const Doubles left = srr - r * f.m - f.cu * bu - f.cv * bv;
   const Doubles bent = f.cuv * buv + f.cuu * buu + f.cvv * bvv;
   const Mask full = weights >= 0.0;
   // A Gaussian's square is half as wide, so squares share half of what the errors do.
   const double together = input.shared > 2 ? 0.5 * input.shared : 1;
-  f.affine = full & explained(left, variance, g.area - 3.0, together) & (bent <= 12.0 * f.variance);
-  f.bent = bent > 30.0 * f.variance;
+  const Doubles bend = variance * shared_over(input.shared, 2, g.per_n);
+  f.affine = full & explained(left, variance, g.area - 3.0, together) & (bent <= 12.0 * bend);
+  f.bent = bent > 30.0 * bend;
   f.quadratic = full & explained(left - bent, variance, g.area - 6.0, together);
   return f;
 }
@@ -188,18 +197,21 @@ struct Surface {
 
 [[gnu::always_inline]] inline Surface affine_at(const Fits& f, const Doubles& du,
                                                 const Doubles& dv) {
-  const Doubles var = f.variance * f.shape.per_n;
+  const Doubles& per_n = f.shape.per_n;
+  const Doubles mean = f.variance * per_n * shared_over(f.shared, 0, per_n);
+  const Doubles var = f.variance * per_n * shared_over(f.shared, 1, per_n);
   return {f.m + f.cu * du + f.cv * dv,
           f.cu,
           f.cv,
-          var * (1.0 + du * du * f.shape.per_mu + dv * dv * f.shape.per_mv),
+          mean + var * (du * du * f.shape.per_mu + dv * dv * f.shape.per_mv),
           var * f.shape.per_mu,
           var * f.shape.per_mv};
 }
 
 // What the quadratic terms add to it.
 [[gnu::always_inline]] inline Surface bend_at(const Fits& f, const Doubles& du, const Doubles& dv) {
-  const Doubles var = f.variance * f.shape.per_n;
+  const Doubles& per_n = f.shape.per_n;
+  const Doubles var = f.variance * per_n * shared_over(f.shared, 2, per_n);
   const Doubles uu = du * du - f.shape.mu;
   const Doubles vv = dv * dv - f.shape.mv;
   const Doubles per_uv = f.shape.per_mu * f.shape.per_mv;

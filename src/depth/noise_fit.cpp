@@ -1,0 +1,129 @@
+#include "depth/noise_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate::depth {
+namespace {
+
+constexpr int kFitRounds = 4;         // each leaves an eighth of what holes have pulled the fit off
+constexpr double kOneSurface = 0.75;  // share of the values that must lie on it
+constexpr float kDeviations = 3;      // from which on a value is none of the surface
+constexpr float kPerMedian = 1.4826F;   // a Gaussian's deviation over its median
+constexpr std::size_t kMedianOf = 256;  // values, about
+
+}  // namespace
+
+NoiseFit::NoiseFit(int size)
+    : size_(size), residuals_(static_cast<std::size_t>(size) * static_cast<std::size_t>(size)) {
+  sorted_.reserve(residuals_.size());
+  const auto n = static_cast<std::size_t>(size);
+  for (std::size_t k = 0; k < kDegrees; ++k) {
+    Row& p = polynomials_[k];
+    for (std::size_t i = 0; i < n; ++i) {
+      p[i] = k == 0 ? 1.0F : polynomials_[k - 1][i] * ((2 * static_cast<float>(i) + 1) / n - 1);
+    }
+    for (std::size_t j = 0; j < k; ++j) {
+      float along = 0;
+      for (std::size_t i = 0; i < n; ++i) along += p[i] * polynomials_[j][i];
+      for (std::size_t i = 0; i < n; ++i) p[i] -= along * polynomials_[j][i];
+    }
+    float squares = 0;
+    for (std::size_t i = 0; i < n; ++i) squares += p[i] * p[i];
+    for (std::size_t i = 0; i < n; ++i) p[i] /= std::sqrt(squares);
+  }
+}
+
+void NoiseFit::subtract(std::span<const float> values, const Coefficients& surface) {
+  const auto n = static_cast<std::size_t>(size_);
+  const auto& q = polynomials_;
+  for (std::size_t j = 0; j < n; ++j) {
+    std::array<float, 3> row{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; a + b < 3; ++b) row[a] += surface[a][b] * q[b][j];
+    }
+    const float* in = values.data() + j * n;
+    float* out = residuals_.data() + j * n;
+    for (std::size_t i = 0; i < n; ++i) {
+      out[i] = in[i] - reference_ - row[0] * q[0][i] - row[1] * q[1][i] - row[2] * q[2][i];
+    }
+  }
+}
+
+// The median of a part of them tells as much.
+float NoiseFit::typical_residual() {
+  sorted_.clear();
+  const std::size_t step = 1 + residuals_.size() / kMedianOf;
+  for (std::size_t i = 0; i < residuals_.size(); i += step) {
+    if (!std::isnan(residuals_[i])) sorted_.push_back(std::abs(residuals_[i]));
+  }
+  if (sorted_.empty()) return 0;
+  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
+  std::nth_element(sorted_.begin(), middle, sorted_.end());
+  return kPerMedian * *middle;
+}
+
+// Coefficients of what lies within the limit; the rest counts as being on the surface.
+NoiseFit::Coefficients NoiseFit::project(float limit) {
+  const auto n = static_cast<std::size_t>(size_);
+  std::array<Row, kDegrees> columns{};
+  Row squares{};
+  std::array<int, kLargest> inside{};
+  for (std::size_t j = 0; j < n; ++j) {
+    const float* residuals = residuals_.data() + j * n;
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool in = std::abs(residuals[i]) <= limit;
+      const float r = in ? residuals[i] : 0.0F;
+      inside[i] += in ? 1 : 0;
+      squares[i] += r * r;
+      for (std::size_t b = 0; b < kDegrees; ++b) columns[b][i] += polynomials_[b][j] * r;
+    }
+  }
+  Coefficients result{};
+  inside_ = 0;
+  squares_ = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    inside_ += inside[i];
+    squares_ += squares[i];
+    for (std::size_t a = 0; a < kDegrees; ++a) {
+      for (std::size_t b = 0; a + b < kDegrees; ++b) {
+        result[a][b] += polynomials_[a][i] * columns[b][i];
+      }
+    }
+  }
+  return result;
+}
+
+WindowNoise NoiseFit::fit(std::span<const float> values) {
+  const auto first = std::find_if(values.begin(), values.end(), [](float x) { return x == x; });
+  if (first == values.end()) return {};
+  reference_ = *first;
+  const auto enough = static_cast<int>(kOneSurface * static_cast<double>(values.size()));
+  Coefficients surface{};
+  Coefficients change{};
+  float limit = std::numeric_limits<float>::infinity();
+  for (int round = 0; round <= kFitRounds; ++round) {
+    subtract(values, surface);
+    if (round > 0) limit = kDeviations * typical_residual();
+    change = project(limit);
+    if (inside_ < enough) return {};
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; a + b < 3; ++b) surface[a][b] += change[a][b];
+    }
+  }
+  double cubic = 0;
+  double moved = 0;
+  for (std::size_t a = 0; a < kDegrees; ++a) {
+    for (std::size_t b = 0; a + b < kDegrees; ++b) {
+      (a + b < 3 ? moved : cubic) += change[a][b] * change[a][b];
+    }
+  }
+  const double variance = squares_ / (inside_ - kTerms);
+  if (moved > variance) return {};  // it has not come to rest
+  return {static_cast<float>(variance),
+          static_cast<float>(cubic / kDegrees * static_cast<double>(values.size()) / inside_),
+          reference_ + surface[0][0] * polynomials_[0][0] * polynomials_[0][0]};
+}
+
+}  // namespace palpate::depth
