@@ -23,7 +23,7 @@ def main(folder, picture):
     unit, unit_name = unit_of(reach)
     normals, source = rows[:, 6:9], rows[:, 9].astype(int)
     view, _ = viewpoint((rows[:, 3:6] - middle) / unit, normals.mean(axis=0))
-    # Cut where most of what two see is cut: across the view, upright.
+    span = np.percentile(np.abs((rows[:, 3:6] - middle) @ view.T / unit), 99)
     thick = max(each["radius_m"] for each in facts["sources"])
     use_style()
     figure, cells = plt.subplots(2, 2, figsize=(14.4, 11), dpi=130, facecolor="white")
@@ -42,10 +42,7 @@ def main(folder, picture):
         low.scatter(seen[cut, 2], seen[cut, 1], s=4, c=COLORS[source[cut] % 8], linewidths=0)
         low.set_xlabel(f"cut through the middle, {unit_name}")
         for each in (axes, low):
-            each.set_aspect("equal", adjustable="datalim")
-    for row in cells:
-        row[0].sharex(row[1])
-        row[0].sharey(row[1])
+            each.set(xlim=(-span, span), ylim=(-0.78 * span, 0.78 * span), aspect="equal")
     scale_bar(cells[0, 0], unit_name)
     for index, each in enumerate(facts["sources"]):
         figure.text(0.03 + 0.23 * (index % 4), 0.965 - 0.03 * (index // 4), each["name"], fontsize=13,
