@@ -1,4 +1,4 @@
-"""Draws sources before and after they were aligned: from aslant, and a cut through their middle.
+"""Draws sources before and after they were aligned: from aslant, and a cut where most points are.
 
 Usage: align.py FOLDER PICTURE. FOLDER holds cloud.f32 (place before and after, normal, source) and
 facts.json.
@@ -25,6 +25,8 @@ def main(folder, picture):
     view, _ = viewpoint((rows[:, 3:6] - middle) / unit, normals.mean(axis=0))
     span = np.percentile(np.abs((rows[:, 3:6] - middle) @ view.T / unit), 99)
     thick = max(each["radius_m"] for each in facts["sources"])
+    counts, edges = np.histogram((rows[:, 3:6] - middle) @ view[0], np.arange(-reach, reach, 2 * thick))
+    cut_at = edges[np.argmax(counts)] + thick
     use_style()
     figure, cells = plt.subplots(2, 2, figsize=(14.4, 11), dpi=130, facecolor="white")
     for column, (title, first) in enumerate((("before", 0), ("after", 3))):
@@ -37,17 +39,17 @@ def main(folder, picture):
                      linewidths=0, rasterized=True)
         axes.set_axis_off()
         axes.set_title(title, loc="left", color=INK, fontsize=15, fontweight="bold")
-        cut = np.abs(rows[:, first:first + 3] @ view[0] - middle @ view[0]) < thick
+        cut = np.abs(places[:, 0] - cut_at) < thick
         low = cells[1, column]
         low.scatter(seen[cut, 2], seen[cut, 1], s=4, c=COLORS[source[cut] % 8], linewidths=0)
-        low.set_xlabel(f"cut through the middle, {unit_name}")
+        low.set_xlabel(f"a cut, {unit_name}")
         for each in (axes, low):
             each.set(xlim=(-span, span), ylim=(-0.78 * span, 0.78 * span), aspect="equal")
     scale_bar(cells[0, 0], unit_name)
     for index, each in enumerate(facts["sources"]):
-        figure.text(0.03 + 0.23 * (index % 4), 0.965 - 0.03 * (index // 4), each["name"], fontsize=13,
+        figure.text(0.03 + 0.23 * (index % 4), 0.965 - 0.05 * (index // 4), each["name"], fontsize=13,
                     color=COLORS[index % 8], fontweight="bold")
-        figure.text(0.03 + 0.23 * (index % 4), 0.95 - 0.03 * (index // 4), color=FAINT, fontsize=10,
+        figure.text(0.03 + 0.23 * (index % 4), 0.945 - 0.05 * (index // 4), color=FAINT, fontsize=10,
                     s=f"{1e3 * each['before_m']:.2f} mm apart before, {1e3 * each['after_m']:.2f} after")
     figure.subplots_adjust(left=0.05, right=0.98, top=0.88, bottom=0.06, hspace=0.08, wspace=0.08)
     figure.savefig(picture, format="png")

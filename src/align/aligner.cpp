@@ -222,14 +222,12 @@ double Aligner::score(const Poses& poses, Moving moving) const {
 
 void Aligner::place(Poses& poses, std::size_t source) const {
   const std::vector<Vector3d> around = turns();
-  const std::vector<Isometry3d>& starts = sources_[source].starts;
-  std::vector<Poses> found(starts.size() * around.size(), poses);
+  std::vector<Poses> found(around.size(), poses);
   std::vector<double> scores(found.size());
   const Moving moving{source, source + 1};
   parallel_ranges(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      found[i][source] =
-          starts[i / around.size()] * turned(around[i % around.size()], middles_[source]);
+      found[i][source] = turned(around[i], middles_[source]);
       refine(found[i], moving, size_, kStride);
       scores[i] = score(found[i], moving);
     }

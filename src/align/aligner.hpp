@@ -41,7 +41,7 @@ class Aligner {
  public:
   explicit Aligner(const std::vector<RoughSource>& sources);
 
-  /// Beside those before it: the best of all that comes of its starts.
+  /// Beside those before it: the best of what comes of several turns.
   /// @throws Error when that shares too little.
   void place(Poses& poses, std::size_t source) const;
   /// From coarse to fine: where `reach` (m) is large, so are heights that count.

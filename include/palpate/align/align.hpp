@@ -13,8 +13,6 @@ namespace palpate {
 struct RoughSource {
   std::string name;                             ///< for messages
   std::shared_ptr<const SurfacePoints> points;  ///< where it roughly stands
-  /// What may bring it from there to where it belongs, roughly; of several the best is taken.
-  std::vector<Eigen::Isometry3d> starts = {Eigen::Isometry3d::Identity()};
 };
 
 /// How one surface lies on the others.
