@@ -174,8 +174,7 @@ Equations Aligner::equations(const std::vector<Match>& matches, Moving moving, d
     add(e.doubt, m.doubt, w / 2);
     const Vector3d cell = (4 * (m.place - middle_) / size_).array().floor();
     VectorXd& part =
-        parts.try_emplace({int(cell.x()), int(cell.y()), int(cell.z())}, VectorXd::Zero(size))
-            .first->second;
+        parts.try_emplace({int(cell.x()), int(cell.y()), int(cell.z())}, zero.col(0)).first->second;
     part.segment<6>(a) += w * m.height * m.row;
     part.segment<6>(b) -= w * m.height * m.row;
   }
@@ -184,11 +183,8 @@ Equations Aligner::equations(const std::vector<Match>& matches, Moving moving, d
     e.scatter += part * part.transpose();
   }
   const Index kept = 6 * static_cast<Index>(moving.end - moving.begin);
-  for (MatrixXd* m : {&e.information, &e.doubt, &e.scatter}) {
-    *m = m->bottomRightCorner(kept, kept).eval();
-  }
-  e.slope = e.slope.tail(kept).eval();
-  return e;
+  const auto last = [&](const MatrixXd& m) -> MatrixXd { return m.bottomRightCorner(kept, kept); };
+  return {last(e.information), last(e.doubt), last(e.scatter), e.slope.tail(kept)};
 }
 
 // How far it moved, m.
