@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 
+#include "apps/palpate/align_command.hpp"
 #include "apps/palpate/cameras_command.hpp"
 #include "apps/palpate/demo_command.hpp"
 #include "apps/palpate/devices_command.hpp"
@@ -40,6 +41,10 @@ int run(int argc, char** argv) {
   CLI::App* touch_command =
       program.add_subcommand("touch", "Touch clouds and what cameras see, and report the forces");
   add_touch_options(*touch_command, touch_options);
+  AlignOptions align_options;
+  CLI::App* align_command =
+      program.add_subcommand("align", "Find the poses of cameras and clouds from what they see");
+  add_align_options(*align_command, align_options);
   InfoOptions info_options;
   CLI::App* info_command =
       program.add_subcommand("info", "Say what is in a cloud or what a camera delivers");
@@ -79,13 +84,15 @@ int run(int argc, char** argv) {
   }
   if (program.get_subcommands().empty()) {
     throw UsageError(
-        "a command is missing: touch, info, cameras, devices, doctor, paper, demo or zwidth; "
+        "a command is missing: touch, align, info, cameras, devices, doctor, paper, demo or "
+        "zwidth; "
         "'palpate --help' tells more");
   }
   if (touch_command->parsed()) {
     apply_setup(*touch_command, touch_options);
     touch(touch_options);
   }
+  if (align_command->parsed()) align_sources(*align_command, align_options);
   if (info_command->parsed()) info(info_options);
   if (cameras_command->parsed()) cameras(cameras_options);
   if (doctor_app->parsed()) return examine(doctor_options);

@@ -16,6 +16,9 @@ namespace palpate::app {
 /// trust.py likewise.
 [[nodiscard]] std::string_view trust_script();
 
+/// align.py likewise.
+[[nodiscard]] std::string_view align_script();
+
 /// The project's version.
 [[nodiscard]] std::string_view version();
 

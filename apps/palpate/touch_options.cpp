@@ -151,7 +151,7 @@ Exit codes: 0 done, 1 the input or the run failed, 2 the command line is wrong.)
 
 }  // namespace
 
-void add_touch_options(CLI::App& command, TouchOptions& o) {
+void add_placed_sources(CLI::App& command, TouchOptions& o) {
   command
       .add_option("sources", o.clouds,
                   wrapped(cloud_help() +
@@ -173,6 +173,10 @@ void add_touch_options(CLI::App& command, TouchOptions& o) {
       ->type_name("NAME=X,Y,Z,QX,QY,QZ,QW")
       ->allow_extra_args(false)
       ->group("Reading");
+}
+
+void add_touch_options(CLI::App& command, TouchOptions& o) {
+  add_placed_sources(command, o);
   add_surface_options(command, o);
   add_feel_options(command, o);
   add_hand_options(command, o);

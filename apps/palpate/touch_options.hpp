@@ -58,6 +58,9 @@ struct TouchOptions {
   std::string picture;
 };
 
+/// Adds those that say which sources there are, how they are read and where they stand.
+void add_placed_sources(CLI::App& command, TouchOptions& options);
+
 /// Adds every option of `palpate touch`.
 void add_touch_options(CLI::App& command, TouchOptions& options);
 

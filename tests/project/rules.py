@@ -14,14 +14,15 @@ FLOORS = {
     "field": {"base", "geometry"},
     "contact": {"base", "geometry"},  # and field/field.hpp: see ALLOWED
     "prepare": {"base", "geometry", "field"},
+    "align": {"base", "geometry", "field"},
     "scene": {"base", "geometry", "depth", "field", "prepare"},
     "sensor": {"base", "geometry", "depth", "io", "field", "prepare", "scene"},
     "device": {"base", "geometry", "io", "field", "contact", "prepare", "scene"},
     "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "device"},
     "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
                "servo"},
-    "apps": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "sensor",
-             "device", "servo", "viewer"},
+    "apps": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "align", "scene",
+             "sensor", "device", "servo", "viewer"},
 }
 # Single headers that a floor may include of a floor that it may not see otherwise.
 ALLOWED = {("contact", "palpate/field/field.hpp")}

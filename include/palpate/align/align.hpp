@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "palpate/field/surface_points.hpp"
+
+namespace palpate {
+
+/// A surface that is to be aligned with others.
+struct RoughSource {
+  std::string name;                             ///< for messages
+  std::shared_ptr<const SurfacePoints> points;  ///< where it roughly stands
+};
+
+/// How one surface lies on the others.
+struct Fit {
+  double residual = 0;  ///< median distance along the normals where both are there, m
+  double overlap = 0;   ///< share of its points that lie on another surface, 0-1
+};
+
+/// Where one source belongs.
+struct AlignedSource {
+  Eigen::Isometry3d T_aligned_rough = Eigen::Isometry3d::Identity();  ///< both in the world frame
+  Fit before;
+  Fit after;
+  /// One sigma of where it is, m, in the worst direction, in the middle of what it shares with
+  /// others, and of how it is turned, rad, about the worst axis; 0: the first one.
+  double place_deviation = 0;
+  double turn_deviation = 0;
+};
+
+/// Moves all but the first so that the surfaces lie on one another where they overlap. Sources that
+/// are off by some 10 cm and 10 degrees are found back. Point-to-plane ICP (Chen and Medioni 1992),
+/// each source first against those before it from several starts, then all at once. How sure the
+/// answer is follows from what the fit leaves in places far apart. Not real-time; any thread; the
+/// same input gives the same answer.
+/// @throws Error naming the source that has no normals or too few points, that shares too little
+/// with those before it, or that what it shares leaves free to slide or turn; of less than two.
+[[nodiscard]] std::vector<AlignedSource> align(const std::vector<RoughSource>& sources);
+
+}  // namespace palpate
