@@ -53,8 +53,13 @@ struct ActiveLayer {
 [[nodiscard]] double confidence_now(const ActiveLayer& layer, std::uint32_t i) noexcept;
 [[nodiscard]] double presence_now(const ActiveLayer& layer, std::uint32_t i) noexcept;
 
-/// The k-th of a layer's edges; its normal is of unit length at either end of its way alone.
-[[nodiscard]] EdgePlane edge_now(const ActiveLayer& layer, std::size_t k) noexcept;
+/// Does a layer's point lie beside an edge at any time?
+[[nodiscard]] inline bool has_edge(const ActiveLayer& layer, std::uint32_t i) noexcept {
+  const std::vector<std::uint32_t>& edges = layer.points->edges.of_point;
+  return !edges.empty() && edges[i] != PointEdges::kNone;
+}
+/// The plane beyond it; share 0: there is none.
+[[nodiscard]] EdgePlane edge_now(const ActiveLayer& layer, std::uint32_t i) noexcept;
 
 /// Does a point count for nothing at any time (speckle)?
 [[nodiscard]] inline bool weightless(const SurfacePoints& points, std::uint32_t i) noexcept {

@@ -51,15 +51,16 @@ Value height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
 /// closed and its edges sharp.
 Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
   Value height = height_at(options, place);
-  if (place.columns->sources > 1 && options.gradient == GradientKind::exact) {
-    const Value shift = united_shift(place);
-    height = {height.f + shift.f, height.grad + shift.grad};
-  }
   if (options.capped) {
     const Value closure = crease_closure(place);
     height = {height.f - closure.f, height.grad - closure.grad};
   }
-  return keeps_edges(options, *place.columns) ? with_edges(place, height) : height;
+  if (keeps_edges(options, *place.columns)) height = with_edges(place, height);
+  if (place.columns->sources > 1 && options.gradient == GradientKind::exact) {
+    const Value shift = united_shift(place);
+    height = {height.f + shift.f, height.grad + shift.grad};
+  }
+  return height;
 }
 
 /// How far a label's height is taken out of the way of another's as its share of the weight of

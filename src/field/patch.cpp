@@ -87,15 +87,13 @@ void Patch::copy(std::span<const ActiveLayer> layers, int sources, bool whole) n
   sources_ = sources;
   has_materials_ =
       any(layers, [](const ActiveLayer& layer) { return !layer.points->materials.empty(); });
-  columns_.edges = options_.normals && any(layers, [](const ActiveLayer& layer) {
-                     return !layer.points->edges.points.empty();
-                   });
   has_presences_ = any(layers, [](const ActiveLayer& layer) { return fades(*layer.points); });
   count_ = 0;
   for (const Selection::Run& run : selection_.runs()) count_ += run.count;
   signs_.assign(count_, 1);
   labels_.assign(count_, kInFront);
   layers_.assign(layers.begin(), layers.end());  // within what was reserved
+  columns_.edges = knows_edges();
   if (options_.stance) turn(*options_.stance);
   options_.stance = nullptr;
   lay_out();
@@ -217,26 +215,27 @@ void Patch::fill_normals(std::size_t k) noexcept {
   }
 }
 
-/// Of the planes beyond edges: both columns of places rise.
 void Patch::fill_edges(std::size_t k) noexcept {
-  const ActiveLayer& layer = layers_[k];
-  const PointEdges& edges = layer.points->edges;
-  const Eigen::Vector3d center = center_ - layer.points->origin;
   std::size_t chosen = selection_.runs()[k].first;
-  auto next = edges.points.begin();
   for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
     const double sign = signs_[chosen];
     const std::uint32_t at = slots_[chosen++];
-    next = std::lower_bound(next, edges.points.end(), i);
-    const bool beside = next != edges.points.end() && *next == i;
-    const EdgePlane edge =
-        beside ? edge_now(layer, static_cast<std::size_t>(next - edges.points.begin()))
-               : EdgePlane{};
-    const Eigen::Vector3d normal = sign * edge.normal.cast<double>();
-    for (int axis = 0; axis < 3; ++axis) column(kEdgeNormal + axis)[at] = normal[axis];
-    column(kEdgeHeight)[at] = normal.dot(center) - sign * static_cast<double>(edge.offset);
+    const EdgePlane edge = edge_now(layers_[k], i);
+    for (int axis = 0; axis < 3; ++axis) {
+      column(kEdgeNormal + axis)[at] = sign * static_cast<double>(edge.normal[axis]);
+    }
+    column(kEdgeHeight)[at] = sign * static_cast<double>(edge.height);
     column(kEdgeShare)[at] = sign * static_cast<double>(edge.share);
   }
+}
+
+/// Does any of the chosen points lie beside an edge?
+bool Patch::knows_edges() const noexcept {
+  for (std::size_t k = 0; options_.normals && k < layers_.size(); ++k) {
+    const auto beside = [&](std::uint32_t i) { return has_edge(layers_[k], i); };
+    if (std::ranges::any_of(selection_.places(selection_.runs()[k]), beside)) return true;
+  }
+  return false;
 }
 
 void Patch::fill_velocities(std::size_t k) noexcept {

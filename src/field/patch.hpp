@@ -126,6 +126,7 @@ class Patch {
   void fill_all() noexcept;
   void fill_normals(std::size_t k) noexcept;
   void fill_edges(std::size_t k) noexcept;
+  [[nodiscard]] bool knows_edges() const noexcept;
   void fill_velocities(std::size_t k) noexcept;
   void measure() noexcept;
   [[nodiscard]] double inverse_square(double radius) noexcept;

@@ -66,16 +66,17 @@ void check_lengths(const SurfacePoints& points) {
   require_length("end_radii", points.end_radii.size(), optional(points.end_radii.size()));
   require_length("end_confidences", points.end_confidences.size(),
                  optional(points.end_confidences.size()));
-  require_length("edges.start", points.edges.start.size(), points.edges.points.size());
+  require_length("edges.of_point", points.edges.of_point.size(),
+                 optional(points.edges.of_point.size()));
   require_length("edges.end", points.edges.end.size(),
-                 points.edges.end.empty() ? 0 : points.edges.points.size());
+                 points.edges.end.empty() ? 0 : points.edges.start.size());
   require_length("cell_reach", points.cell_reach.size(), points.grid.cells().size());
 }
 
 void require_edges(const char* column, const std::vector<EdgePlane>& edges) {
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const EdgePlane& edge = edges[k];
-    if (edge.normal.allFinite() && std::isfinite(edge.offset) && std::abs(edge.share) <= 1)
+    if (edge.normal.allFinite() && std::isfinite(edge.height) && std::abs(edge.share) <= 1)
       continue;
     throw Error(
         fmt::format("surface points: {}[{}] is not finite, or its share {} is not within "
@@ -84,17 +85,15 @@ void require_edges(const char* column, const std::vector<EdgePlane>& edges) {
   }
 }
 
-void check_edges(const SurfacePoints& points) {
-  const std::vector<std::uint32_t>& places = points.edges.points;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    if (places[k] < points.size() && (k == 0 || places[k - 1] < places[k])) continue;
-    throw Error(
-        fmt::format("surface points: edges.points[{}] is {}; they must rise and stay below "
-                    "the number of points, {}",
-                    k, places[k], points.size()));
+void check_edges(const PointEdges& edges) {
+  for (std::size_t i = 0; i < edges.of_point.size(); ++i) {
+    const std::uint32_t edge = edges.of_point[i];
+    if (edge < edges.start.size() || edge == PointEdges::kNone) continue;
+    throw Error(fmt::format("surface points: edges.of_point[{}] is {}, and there are {} edges", i,
+                            edge, edges.start.size()));
   }
-  require_edges("edges.start", points.edges.start);
-  require_edges("edges.end", points.edges.end);
+  require_edges("edges.start", edges.start);
+  require_edges("edges.end", edges.end);
 }
 
 }  // namespace
@@ -114,7 +113,7 @@ void check(const SurfacePoints& points) {
   require_finite("normals", points.normals);
   require_finite("end_normals", points.end_normals);
   require_finite("end_positions", points.end_positions);
-  check_edges(points);
+  check_edges(points.edges);
   if (!points.origin.allFinite()) throw Error("surface points: the origin is not finite");
 }
 

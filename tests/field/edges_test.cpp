@@ -151,12 +151,13 @@ TEST(Edges, PlanesAreWhatTheyWere) {
   }
 }
 
-// The wedge is free for x > 0 and z > 0: what is above both faces is, but for 1/80 of R in the foot.
+// The wedge is free for x > 0 and z > 0: what is above both faces is, but for 1/50 of R in the
+// foot.
 TEST(Edges, CreasesAreSharp) {
   const Pair crease(wedge(fine(), std::numbers::pi / 2, 20e-3));
-  for (double a = 0; a <= 6e-3; a += 0.9e-3) {
-    for (double b = 0; b <= 6e-3; b += 0.7e-3) {
-      EXPECT_NEAR(crease.sharp({a, 0.4e-3, b}).value, std::min(a, b), 0.0126 * 8e-3);
+  for (double a = 0; a <= 2.5e-3; a += 0.3e-3) {
+    for (double b = 0; b <= 2.5e-3; b += 0.2e-3) {
+      EXPECT_NEAR(crease.sharp({a, 0.4e-3, b}).value, std::min(a, b), 0.02 * 8e-3);
     }
   }
   EXPECT_LT(crease.mean({1e-3, 0.4e-3, 1e-3}).value, 0.5e-3);
@@ -174,9 +175,9 @@ TEST(Edges, AreSeenFromTheOtherSideAsWell) {
       const Vector3d x(a, 0.4e-3, b);
       const Sample front = seen_from_outside.sharp(x);
       expect_same_edges(front, turned_round.sharp(x), x);
-      if (std::max(a, b) > 1e-3) continue;
-      EXPECT_NEAR(seen_from_inside.sharp(x).value, -std::max(a, b), 0.0126 * 8e-3);
       if (front.value != seen_from_outside.mean(x).value) ++sharpened;
+      if (std::max(a, b) > 1e-3 || std::min(a, b) < -2.5e-3) continue;
+      EXPECT_NEAR(seen_from_inside.sharp(x).value, -std::max(a, b), 0.0126 * 8e-3);
     }
   }
   EXPECT_GT(sharpened, 50);
@@ -205,6 +206,35 @@ TEST(Edges, AHalfSharpSceneIsHalfSharp) {
   for (const Vector3d& x : {Vector3d(-1e-3, 0, -2e-3), Vector3d(-2e-3, 0, 0.5e-3)}) {
     const double expected = 0.75 * pair.mean(x).value + 0.25 * pair.sharp(x).value;
     EXPECT_NEAR(evaluate(surface, patch, x).value, expected, 1e-12);
+  }
+}
+
+// Halfway, and far from the world's origin.
+TEST(Edges, GoWithTheirPointsAndByAndBy) {
+  const Eigen::Vector3f way(2e-3f, -1e-3f, 3e-3f);
+  const Vector3d far(40, -30, 20);
+  SurfacePoints points = make_points(ridge(fine(), 30e-3));
+  tell_edges(points);
+  points.origin = far;
+  for (const Eigen::Vector3f& place : points.grid.points()) {
+    points.end_positions.push_back(place + way);
+  }
+  points.edges.end = points.edges.start;
+  for (EdgePlane& edge : points.edges.end) edge.share = 0;
+  finish(points);
+  check(points);
+  Patch patch(16384);
+  patch.gather(std::vector<ActiveLayer>{{.points = &points, .progress = 0.5}}, 1, far, 20e-3);
+  const Pair still(ridge(fine(), 30e-3));
+  const ImplicitSurface surface{FieldOptions{}};
+  for (double a = -6e-3; a <= 4e-3; a += 0.9e-3) {
+    for (double b = -6e-3; b <= 4e-3; b += 0.7e-3) {
+      const Vector3d x(a, 0.4e-3, b);
+      const double half = 0.5 * (still.mean(x).value + still.sharp(x).value);
+      if (std::abs(half) > 2e-3) continue;  // the cap is not halved
+      const Vector3d place = far + x + 0.5 * way.cast<double>();
+      EXPECT_NEAR(evaluate(surface, patch, place).value, half, 1e-8) << x.transpose();
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 #include "field/free_space.hpp"
 #include "field/mean_surface.hpp"
 #include "field/patch.hpp"
+#include "support/known_edges.hpp"
 #include "support/make_points.hpp"
 
 namespace palpate {
@@ -32,6 +33,9 @@ SurfacePoints moving_sheet(unsigned seed) {
     points.end_presences.push_back(std::abs(unit(random)));
   }
   points.presences.assign(points.size(), 1);
+  test::draw_edges(points, seed);
+  points.edges.end = points.edges.start;
+  for (EdgePlane& edge : points.edges.end) edge.share *= unit(random);
   finish(points);
   return points;
 }

@@ -37,6 +37,11 @@ double valley(double x, double y) {
 double blunt(double x, double y) {
   return std::max(roof(x, y), 0.5 + 3.5e-3 * std::tan(kTilt));
 }
+/// A ridge of 50 degrees, which flat points near its line follow.
+double shallow(double x, double y) {
+  return std::max(leaning(25 * std::numbers::pi / 180)(x, y),
+                  leaning(-25 * std::numbers::pi / 180)(x, y));
+}
 double flat(double, double) {
   return 0.5;
 }
@@ -57,17 +62,17 @@ struct Found {
     finder.look(depth, surface);
   }
 
-  /// Calls visit(x, edge) for all blocks in the middle of the image with a fit.
-  void each(const std::function<void(double, double, const EdgePlane&)>& visit) const {
+  /// Calls visit(place, R, edge) for all blocks in the middle of the image with a fit.
+  void each(const std::function<void(const Vector3d&, double, const EdgePlane&)>& visit) const {
     for (std::size_t b = 0; b < depth.size(); ++b) {
       const int row = static_cast<int>(b) / depth.columns;
       if (depth.states[b] != BlockState::fitted || row < 10 || row >= depth.rows - 10) continue;
-      visit(depth.positions[b].x(), surface.radius(b), finder.edge(b));
+      visit(depth.positions[b].cast<double>(), surface.radius(b), finder.edge(b));
     }
   }
   [[nodiscard]] int told() const {
     int count = 0;
-    each([&](double, double, const EdgePlane& edge) { count += edge.share != 0 ? 1 : 0; });
+    each([&](const Vector3d&, double, const EdgePlane& edge) { count += edge.share != 0 ? 1 : 0; });
     return count;
   }
 };
@@ -79,7 +84,8 @@ TEST_P(TwoFaces, AreToldToTheBlocksOfEachOther) {
   const Found found(filtered(convex ? roof : valley));
   int near = 0;
   int told = 0;
-  found.each([&](double x, double radius, const EdgePlane& edge) {
+  found.each([&](const Vector3d& place, double radius, const EdgePlane& edge) {
+    const double x = place.x();
     if (std::abs(x) < 0.7 * radius * std::cos(kTilt)) ++near;
     if (edge.share == 0) return;
     if (std::abs(x) < 0.7 * radius * std::cos(kTilt)) ++told;
@@ -90,7 +96,7 @@ TEST_P(TwoFaces, AreToldToTheBlocksOfEachOther) {
     const double tilt = (x > 0) == convex ? -kTilt : kTilt;
     const Vector3d normal(std::sin(tilt), 0, -std::cos(tilt));
     EXPECT_GT(edge.normal.cast<double>().dot(normal), std::cos(0.05)) << x;
-    EXPECT_NEAR(edge.normal.z() * 0.5f - edge.offset, 0, 0.4e-3) << x;
+    EXPECT_NEAR(edge.height, normal.dot(place - Vector3d(0, 0, 0.5)), 0.6e-3) << x;
   });
   EXPECT_GT(near, 100);
   EXPECT_GT(told, 0.9 * near);
@@ -141,45 +147,83 @@ std::shared_ptr<SurfacePoints> show(Morph& morph, double stamp, FilteredDepth de
   return points;
 }
 
-/// The first point that is there with an edge at one end of its way.
-double largest_share(const std::vector<EdgePlane>& edges) {
-  double largest = 0;
-  for (const EdgePlane& edge : edges) {
-    largest = std::max(largest, std::abs(static_cast<double>(edge.share)));
+/// Calls visit(edge at the start, at the end, i) for all points with an edge.
+void each_edge(const SurfacePoints& points,
+               const std::function<void(const EdgePlane&, const EdgePlane&, std::size_t)>& visit) {
+  for (std::size_t i = 0; i < points.edges.of_point.size(); ++i) {
+    const std::uint32_t edge = points.edges.of_point[i];
+    if (edge == PointEdges::kNone) continue;
+    visit(points.edges.start[edge], points.edges.end[edge], i);
   }
-  return largest;
 }
 
-TEST(EdgesOfAStream, ComeAndGoWhileASnapshotLasts) {
+// The flat image turns into faces, which takes its points along, and back.
+TEST(EdgesOfAStream, ComeAndGoByAndByOnPointsThatAreThere) {
   Morph morph{{}};
-  ASSERT_TRUE(show(morph, 0, filtered(flat))->edges.points.empty());
-  const auto comes = show(morph, kFrame, filtered(roof));
-  ASSERT_GT(comes->edges.points.size(), 100u);
-  EXPECT_EQ(largest_share(comes->edges.end), 1);
-  const auto stays = show(morph, 2 * kFrame, filtered(roof, kNoise, 2));
-  EXPECT_EQ(largest_share(stays->edges.start), 1);
-  const auto goes = show(morph, 3 * kFrame, filtered(flat));
-  EXPECT_EQ(largest_share(goes->edges.start), 1);
+  ASSERT_TRUE(show(morph, 0, filtered(flat))->edges.of_point.empty());
+  int coming = 0;
+  each_edge(*show(morph, kFrame, filtered(shallow)),
+            [&](const EdgePlane& start, const EdgePlane& end, std::size_t) {
+              ++coming;
+              EXPECT_TRUE(start.share == 0 || start.share == 1) << "nor a point that appears";
+              EXPECT_EQ(end.share, start.share == 0 ? 0.25f : 1.0f);
+            });
+  EXPECT_GT(coming, 100);
+  for (int k = 2; k < 20; ++k) (void)show(morph, k * kFrame, filtered(shallow, kNoise, 2));
+  int going = 0;
+  each_edge(*show(morph, 20 * kFrame, filtered(flat)),
+            [&](const EdgePlane& start, const EdgePlane& end, std::size_t) {
+              going += start.share > 0.9f && end.share == 0.75f * start.share ? 1 : 0;
+              EXPECT_LE(end.share, start.share);
+            });
+  EXPECT_GT(going, 100);
+}
+
+TEST(EdgesOfAStream, AreSteadyWhereNoiseHardlyLetsThemBeFound) {
+  Morph morph{{}};
+  double change = 0;
+  int count = 0;
+  for (unsigned k = 0; k < 20; ++k) {
+    const auto points = show(morph, k * kFrame, filtered(shallow, 2e-3, k + 1));
+    if (k < 5) continue;
+    each_edge(*points, [&](const EdgePlane& start, const EdgePlane& end, std::size_t i) {
+      if (!points->presences.empty() && points->presences[i] == 0) return;
+      change += std::abs(static_cast<double>(end.share - start.share));
+      ++count;
+    });
+  }
+  EXPECT_GT(count, 1000);
+  EXPECT_LT(change, 0.2 * count);
 }
 
 TEST(EdgesOfAStream, StayWhereTheyAreWhenTheOriginMoves) {
   Morph morph{{}};
   FilteredDepth depth = filtered(roof);
   (void)show(morph, 0, depth);
-  depth.T_world_sensor.translation().x() += 20;
   const Vector3d camera(20, 0, 0.5);
   const auto points = show(morph, kFrame, depth, camera);
   // The line of the ridge is at x = 0 and x = 20, at height 0.
   int checked = 0;
-  for (const EdgePlane& edge : points->edges.start) {
-    const Vector3d normal = edge.normal.cast<double>();
-    const double first = normal.dot(-points->origin) - static_cast<double>(edge.offset);
-    const double second =
-        normal.dot(Vector3d(20, 0, 0) - points->origin) - static_cast<double>(edge.offset);
-    EXPECT_LT(std::min(std::abs(first), std::abs(second)), 1.5e-3);
+  each_edge(*points, [&](const EdgePlane& start, const EdgePlane&, std::size_t i) {
+    const Vector3d place = points->origin + points->grid.points()[i].cast<double>();
+    const Vector3d ridge(place.x() > 10 ? 20 : 0, place.y(), 0);
+    const double at_ridge = start.normal.cast<double>().dot(ridge - place);
+    EXPECT_NEAR(at_ridge + static_cast<double>(start.height), 0, 1.5e-3);
     ++checked;
-  }
+  });
   EXPECT_GT(checked, 200);
+}
+
+TEST(EdgesOfAStream, CreasesOfWhatNobodySeesGo) {
+  Morph morph{{}};
+  for (int k = 0; k < 3; ++k) (void)show(morph, k * kFrame, filtered(valley));
+  const auto points = show(morph, 3 * kFrame, filtered([](double, double) { return 0.4; }));
+  int hidden = 0;
+  each_edge(*points, [&](const EdgePlane& start, const EdgePlane& end, std::size_t) {
+    hidden += start.share < 0 ? 1 : 0;
+    EXPECT_EQ(end.share, 0);
+  });
+  EXPECT_GT(hidden, 100);
 }
 
 }  // namespace

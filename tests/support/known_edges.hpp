@@ -7,8 +7,14 @@
 
 namespace palpate::test {
 
-/// Tells points with a face of another direction within R the plane of its nearest point, as what
-/// makes frames into points does.
+inline void add_edge(SurfacePoints& points, std::uint32_t i, const Eigen::Vector3f& normal,
+                     const Eigen::Vector3f& place, float share) {
+  points.edges.of_point.resize(points.size(), PointEdges::kNone);
+  points.edges.of_point[i] = static_cast<std::uint32_t>(points.edges.start.size());
+  points.edges.start.push_back({normal, normal.dot(points.grid.points()[i] - place), share});
+}
+
+/// Tells points with one of another face within R its plane: the nearest one's.
 inline void tell_edges(SurfacePoints& points) {
   const auto& places = points.grid.points();
   for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -23,9 +29,8 @@ inline void tell_edges(SurfacePoints& points) {
     }
     if (other == i) continue;
     const Eigen::Vector3f& normal = points.normals[other];
-    const bool concave = points.normals[i].dot(places[other] - places[i]) > 0;
-    points.edges.points.push_back(i);
-    points.edges.start.push_back({normal, normal.dot(places[other]), concave ? -1.0f : 1.0f});
+    const bool concave = (points.normals[i] - normal).dot(places[other] - places[i]) > 0;
+    add_edge(points, i, normal, places[other], concave ? -1.0f : 1.0f);
   }
 }
 
@@ -38,8 +43,7 @@ inline void draw_edges(SurfacePoints& points, unsigned seed) {
     const Eigen::Vector3f turn(uniform(random), uniform(random), uniform(random));
     const Eigen::Vector3f normal = (points.normals[i] + turn).normalized();
     const Eigen::Vector3f place = points.grid.points()[i] + points.radii[i] * 0.3f * turn;
-    points.edges.points.push_back(i);
-    points.edges.start.push_back({normal, normal.dot(place), uniform(random)});
+    add_edge(points, i, normal, place, uniform(random));
   }
 }
 

@@ -20,7 +20,7 @@ struct ReferencePoint {
   double weight = 1;      // C_k a_i
   double confidence = 1;  // c_i
   int source = 0;
-  EdgePlane edge;  // its offset relative to the world
+  EdgePlane edge;
 };
 
 /// The field of algorithm.md 1.2-1.5, field_choice.md 2 and architecture.md ("Words") over all
@@ -34,7 +34,7 @@ class ReferenceField final : public Field {
     for (ReferencePoint& p : points_) {
       p.normal *= side;
       const auto sign = static_cast<float>(side);
-      p.edge = {sign * p.edge.normal, sign * p.edge.offset, sign * p.edge.share};
+      p.edge = {sign * p.edge.normal, sign * p.edge.height, sign * p.edge.share};
     }
     for (const ReferencePoint& p : points_) sources_ = std::max(sources_, p.source + 1);
   }
@@ -53,9 +53,9 @@ class ReferenceField final : public Field {
     const Dual blob = as_length(radius, options_.threshold, support);
     Dual value = blob;
     if (s.trusted.v > 1e-9 * s.plain.v && options_.kind != FieldKind::metaball) {
-      Dual height = height_of(s);
+      Dual height = with_edges(s, height_of(s) - closure(s, radius));
       if (sources_ > 1) height = height + united_shift(s.own, radius, options_.kernel);
-      value = blend(s, capped(with_edges(s, height - closure(s, radius)), radius, support), blob);
+      value = blend(s, capped(height, radius, support), blob);
     }
     result.value = value.v;
     result.gradient = value.g;
@@ -94,11 +94,11 @@ class ReferenceField final : public Field {
 
   struct Sums {
     std::vector<Dual> by_source;
-    Dual plain, radius;  // sum w, sum w R
-    Dual trusted;        // sum v, v = w c
-    DualVector q, n;     // sum v (p - x), sum v n
-    Dual nq;             // sum v n . (p - x)
-    Dual edge, edge_height;  // sum e, sum e h: of what points beside edges say
+    Dual plain, radius;        // sum w, sum w R
+    Dual trusted;              // sum v, v = w c
+    DualVector q, n;           // sum v (p - x), sum v n
+    Dual nq;                   // sum v n . (p - x)
+    Dual edge, edge_height;    // sum e, sum e h: of what points beside edges say
     std::vector<OwnSums> own;  // of each source
   };
 
@@ -106,21 +106,21 @@ class ReferenceField final : public Field {
     std::vector<ReferencePoint> all;
     for (std::size_t s = 0; s < sources.size(); ++s) {
       const SurfacePoints& from = *sources[s];
-      std::vector<EdgePlane> edges(from.size());
-      for (std::size_t k = 0; k < from.edges.points.size(); ++k) {
-        EdgePlane& edge = edges[from.edges.points[k]];
-        edge = from.edges.start[k];
-        edge.offset += edge.normal.dot(from.origin.cast<float>());
-      }
       for (std::size_t i = 0; i < from.size(); ++i) {
         all.push_back({from.origin + from.grid.points()[i].cast<double>(),
                        from.normals.empty() ? Eigen::Vector3d::Zero().eval()
                                             : from.normals[i].cast<double>().eval(),
                        from.radii[i], from.density_weights[i], from.confidences[i],
-                       static_cast<int>(s), edges[i]});
+                       static_cast<int>(s), edge_of(from, i)});
       }
     }
     return all;
+  }
+
+  static EdgePlane edge_of(const SurfacePoints& from, std::size_t i) {
+    const std::vector<std::uint32_t>& edges = from.edges.of_point;
+    const bool none = edges.empty() || edges[i] == PointEdges::kNone;
+    return none ? EdgePlane{} : from.edges.start[edges[i]];
   }
 
   [[nodiscard]] double typical_radius() const {
@@ -199,7 +199,8 @@ class ReferenceField final : public Field {
     const double sign = share < 0 ? -1 : 1;
     const Eigen::Vector3d m = p.edge.normal.cast<double>();
     const Dual own{sign * p.normal.dot(x - p.position), sign * p.normal};
-    const Dual beyond{sign * (m.dot(x) - static_cast<double>(p.edge.offset)), sign * m};
+    const double above = static_cast<double>(p.edge.height) + m.dot(x - p.position);
+    const Dual beyond{sign * above, sign * m};
     const double width = (share < 0 ? 0.05 : 0.005) * p.radius;
     Dual height = own.v > beyond.v ? own : beyond;
     const Dual apart = own.v > beyond.v ? own - beyond : beyond - own;

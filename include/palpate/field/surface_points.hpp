@@ -27,17 +27,18 @@ struct PointSheets {
 
 /// What a point's surface meets at an edge nearby: the plane of the face beyond.
 struct EdgePlane {
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, outward
-  float offset = 0;  ///< normal . p of its points p, which are relative to the origin, m
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< outward, unit; between two planes, a mean
+  float height = 0;                                  ///< of the point above the plane, m
   /// 0-1: how sure it is. Below 0, down to -1, in a crease: there free is what is above both
-  /// planes; otherwise solid is what is below both.
+  /// planes; otherwise solid is what is below both. So an edge that becomes a crease is none first.
   float share = 0;
 };
 
-/// The points beside edges. Columns are as long as each other, or `end` is empty: then it is as
-/// `start`.
+/// Edges that points lie beside. `end` is as long as `start`, or empty: then it is as `start`.
 struct PointEdges {
-  std::vector<std::uint32_t> points;  ///< in the grid's sorted order, rising
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  std::vector<std::uint32_t> of_point;  ///< which one, or kNone; as long as the grid, or empty
   std::vector<EdgePlane> start;
   std::vector<EdgePlane> end;
 };

@@ -27,7 +27,7 @@ struct Columns {
   const double* inverse_r2;               // 1 / R_i^2
   double uniform_radius;                  // R of all points, m; 0: they differ
   const double* edge_normal[3];           // of the plane beyond an edge
-  const double* edge_height;              // of the patch's centre above it, m
+  const double* edge_height;              // of the point above it, m
   const double* edge_share;               // 0-1; below 0: in a crease
   bool edges;                             // does any point lie beside an edge?
   double* slope;                          // scratch: a_i C_k g_i / R_i^2 of the last call of `all`
@@ -86,10 +86,6 @@ struct Linear {
   double gamma;
   double delta;
 };
-
-// What edges and creases are rounded over, of R_i, so that heights have gradients.
-constexpr double kOverEdges = 0.005;
-constexpr double kInCreases = 0.05;
 
 struct Functions {
   // The weight sums alone (metaball).

@@ -217,61 +217,6 @@ void gradient(const Columns& c, std::uint32_t begin, std::uint32_t end, const do
   store(total, 1, out);
 }
 
-// The larger of h above a point's own plane and k above the one beyond the edge, or in a crease the
-// smaller, with how much of its slope is k's: (h + k) / 2 + |k - h| / 2, rounded where they cross.
-struct Larger {
-  Lanes height;
-  Lanes of_k;
-};
-[[gnu::always_inline]] inline Larger larger(const Lanes& h, const Lanes& k, const Lanes& width) {
-  const Lanes d = k - h;
-  const Lanes inside = width - stdx::abs(d);
-  const Lanes t = 0.5 * (inside + stdx::abs(inside));
-  const Lanes past = stdx::abs(d + width) - stdx::abs(d - width);  // 2 width beyond the rounding
-  const Lanes inverse = 1.0 / width;
-  return {0.5 * (h + k + stdx::abs(d)) + 0.25 * inverse * t * t, 0.5 + 0.25 * inverse * past};
-}
-
-constexpr double kNoWidth = 1e-12;  // m: what fills up lanes has no radius
-
-template <bool kWendland>
-void edges(const Columns& c, std::uint32_t begin, std::uint32_t end, const double x[3],
-           EdgeSums& out) noexcept {
-  Lanes v = 0;
-  Lanes vh = 0;
-  Vector grad_v;
-  Vector grad_vh;
-  for (std::uint32_t i = begin; i < end; i += kLanes) {
-    const Lanes signed_share = load(c.edge_share + i);
-    const Lanes share = stdx::abs(signed_share);
-    if (!(sum(share) > 0)) continue;
-    const Lanes sign = stdx::copysign(Lanes(1.0), signed_share);
-    const Vector q = offsets(c, i, x);
-    const Vector n = load3(c.normal, i);
-    const Vector m = load3(c.edge_normal, i);
-    const Lanes width = (0.5 * (kOverEdges + kInCreases) + 0.5 * (kOverEdges - kInCreases) * sign) *
-                            load(c.radius + i) +
-                        kNoWidth;
-    const Lanes k = load(c.edge_height + i) + m.x * x[0] + m.y * x[1] + m.z * x[2];
-    const Larger both = larger(-sign * dot(n, q), sign * k, width);
-    const Lanes height = sign * both.height;
-    const Lanes trust = share * load(c.confidence + i);
-    const Lanes w = load(c.weight + i) * kernel<kWendland>(dot(q, q) * load(c.inverse_r2 + i)).w;
-    const Lanes vi = kScaleW<kWendland> * (w * trust);
-    const Lanes slope = load(c.slope + i) * trust;
-    v += vi;
-    vh += vi * height;
-    add(grad_v, slope, q);
-    add(grad_vh, slope * height, q);
-    add(grad_vh, vi * (1.0 - both.of_k), n);
-    add(grad_vh, vi * both.of_k, m);
-  }
-  out.v = sum(v);
-  out.vh = sum(vh);
-  store(grad_v, 1, out.grad_v);
-  store(grad_vh, 1, out.grad_vh);
-}
-
 template <bool kWendland>
 void bound(const Columns& c, const double x[3], double h, double out[kMaxSources]) noexcept {
   for (int s = 0; s < c.sources; ++s) out[s] = 0;
@@ -303,10 +248,6 @@ void all_of(const Columns& c, bool wendland, const double x[3], Sums& out) noexc
   } else {
     uneven ? all<false, true>(c, x, out) : all<false, false>(c, x, out);
   }
-}
-void edges_of(const Columns& c, std::uint32_t begin, std::uint32_t end, bool wendland,
-              const double x[3], EdgeSums& out) noexcept {
-  wendland ? edges<true>(c, begin, end, x, out) : edges<false>(c, begin, end, x, out);
 }
 void bound_of(const Columns& c, bool wendland, const double x[3], double h,
               double out[kMaxSources]) noexcept {

@@ -1,4 +1,6 @@
 #include "field/simd/sums.inl"
+// Needs the one above.
+#include "field/simd/edges.inl"
 
 namespace palpate::simd {
 

@@ -20,15 +20,12 @@ enum class EntryKind : std::uint8_t {
   outside,  ///< has left the image, which a moving camera looks elsewhere now
 };
 
-inline constexpr std::uint32_t kNoEdge = ~std::uint32_t{0};
-
 /// What is remembered of a point besides what the field needs of it.
 struct Entry {
   std::uint32_t place = 0;  ///< of its block on the curve
   EntryKind kind = EntryKind::live;
-  double confirmed = 0;          ///< stamp of the last frame that showed it, or what hides it, s
-  float variance = 0;            ///< of where it is along its ray, m^2
-  std::uint32_t edge = kNoEdge;  ///< among the points' edges
+  double confirmed = 0;  ///< stamp of the last frame that showed it, or what hides it, s
+  float variance = 0;    ///< of where it is along its ray, m^2
 };
 
 /// Lists which entries are at which block.

@@ -11,7 +11,7 @@ using Eigen::Vector3f;
 constexpr int kApart = 3;           // blocks: a block that an edge crosses is between the two
 constexpr float kTurned = 0.866f;   // cosine of the least angle between two faces
 constexpr float kSame = 0.94f;      // and of the largest one within a face
-constexpr float kSure = 3;          // deviations
+constexpr float kCertainly = 3;     // deviations
 constexpr float kOfSupport = 0.1f;  // of R, that a face may be bent
 constexpr int kMostAway = 8;        // blocks
 
@@ -23,7 +23,8 @@ struct EdgeFinder::Faces {
   const BlockSurface& surface;
 
   [[nodiscard]] bool fitted(std::size_t block) const {
-    return depth.states[block] == BlockState::fitted && depth.confidences[block] > 0;
+    return depth.states[block] == BlockState::fitted && depth.confidences[block] > 0 &&
+           surface.radius(block) > 0;
   }
 
   /// The block (x, y) away from one; the image's size where there is none.
@@ -43,7 +44,7 @@ struct EdgeFinder::Faces {
   [[nodiscard]] float room(std::size_t block, std::size_t of) const {
     const float variance = depth.deviations[of] * depth.deviations[of] +
                            depth.deviations[block] * depth.deviations[block];
-    return kOfSupport * surface.radius(of) + kSure * std::sqrt(variance);
+    return kOfSupport * surface.radius(of) + kCertainly * std::sqrt(variance);
   }
 
   [[nodiscard]] bool shares_face(std::size_t block, std::size_t of) const {
@@ -52,7 +53,7 @@ struct EdgeFinder::Faces {
            std::abs(height(block, of)) <= room(block, of);
   }
 
-  /// Does the face of a block go on for R?
+  /// Does the face of a block go on for R, or as far as is looked?
   [[nodiscard]] bool goes_on(std::size_t block, int x, int y) const {
     const float reach = surface.radius(block);
     for (int k = 1; k <= kMostAway; ++k) {
@@ -66,9 +67,8 @@ struct EdgeFinder::Faces {
 };
 
 void EdgeFinder::look(const FilteredDepth& depth, const BlockSurface& surface) {
-  numbers_.assign(depth.size(), 0);
+  edges_.assign(depth.size(), {});
   away_.resize(depth.size());
-  edges_.assign(1, {});
   const Faces faces{depth, surface};
   for (int v = 0; v < depth.rows; ++v) {
     for (int u = 0; u < depth.columns; ++u) {
@@ -90,7 +90,7 @@ void EdgeFinder::join(const Faces& faces, std::size_t a, int x, int y) {
   const float b_over_a = faces.height(b, a);
   const float both = std::min(std::abs(a_over_b), std::abs(b_over_a));
   if (!(a_over_b * b_over_a > 0) ||
-      both <= kSure * std::hypot(depth.deviations[a], depth.deviations[b]))
+      both <= kCertainly * std::hypot(depth.deviations[a], depth.deviations[b]))
     return;
   const float share = a_over_b > 0 ? -1.0f : 1.0f;
   for (int k = 1; k < kApart; ++k) {
@@ -106,39 +106,32 @@ void EdgeFinder::join(const Faces& faces, std::size_t a, int x, int y) {
   spread(faces, {b, a, edge, x != 0, share});
 }
 
-/// Tells the blocks of a's face within R of the edge what lies beyond, unless they know of a nearer
-/// edge.
+/// Tells the blocks of a's face within R of the edge, in its row and column, what lies beyond.
 void EdgeFinder::spread(const Faces& faces, const Meeting& meeting) {
-  const FilteredDepth& depth = faces.depth;
   const float reach = faces.surface.radius(meeting.a);
-  const float side = static_cast<float>(depth.pitch) * depth.positions[meeting.a].z();
-  const int half = std::min(kMostAway, static_cast<int>(std::ceil(reach / side)));
-  for (int y = -half; y <= half; ++y) {
-    for (int x = -half; x <= half; ++x) {
-      const std::size_t block = faces.beside(meeting.a, x, y);
-      if (!faces.shares_face(block, meeting.a)) continue;
-      const float away = (depth.positions[block] - meeting.edge).squaredNorm();
-      const bool told = edge(block).share != 0 && away_[block] <= away;
-      if (told || away > reach * reach ||
-          meeting.share * faces.height(block, meeting.b) > faces.room(block, meeting.b)) {
-        continue;
-      }
-      away_[block] = away;
-      const std::size_t mirrored =
-          faces.beside(meeting.b, meeting.in_row ? -x : x, meeting.in_row ? y : -y);
-      tell(faces, block, faces.shares_face(mirrored, meeting.b) ? mirrored : meeting.b,
-           meeting.share);
-    }
+  const float side = static_cast<float>(faces.depth.pitch) * faces.depth.positions[meeting.a].z();
+  const int half = static_cast<int>(std::min(float{kMostAway}, std::ceil(reach / side)));
+  for (int k = -half; k <= half; ++k) {
+    tell(faces, meeting, k, 0);
+    if (k != 0) tell(faces, meeting, 0, k);
   }
 }
 
-void EdgeFinder::tell(const Faces& faces, std::size_t block, std::size_t other, float share) {
-  if (numbers_[block] == 0) {
-    numbers_[block] = static_cast<std::uint32_t>(edges_.size());
-    edges_.emplace_back();
-  }
-  const Vector3f& normal = faces.depth.normals[other];
-  edges_[numbers_[block]] = {normal, normal.dot(faces.depth.positions[other]), share};
+/// The same of the block (x, y) from a, unless it knows of a nearer edge.
+void EdgeFinder::tell(const Faces& faces, const Meeting& meeting, int x, int y) {
+  const FilteredDepth& depth = faces.depth;
+  const std::size_t block = faces.beside(meeting.a, x, y);
+  if (block == depth.size()) return;
+  const float reach = faces.surface.radius(meeting.a);
+  const float away = (depth.positions[block] - meeting.edge).squaredNorm();
+  const bool told = edges_[block].share != 0 && away_[block] <= away;
+  if (told || away > reach * reach || !faces.shares_face(block, meeting.a)) return;
+  if (meeting.share * faces.height(block, meeting.b) > faces.room(block, meeting.b)) return;
+  const std::size_t mirrored =
+      faces.beside(meeting.b, meeting.in_row ? -x : x, meeting.in_row ? y : -y);
+  const std::size_t other = faces.shares_face(mirrored, meeting.b) ? mirrored : meeting.b;
+  edges_[block] = {depth.normals[other], faces.height(block, other), meeting.share};
+  away_[block] = away;
 }
 
 }  // namespace palpate

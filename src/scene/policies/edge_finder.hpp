@@ -19,7 +19,7 @@ class EdgeFinder {
   void look(const FilteredDepth& depth, const BlockSurface& surface);
 
   /// Of a block, in the sensor's frame; share 0: it lies beside no edge.
-  [[nodiscard]] const EdgePlane& edge(std::size_t block) const { return edges_[numbers_[block]]; }
+  [[nodiscard]] const EdgePlane& edge(std::size_t block) const { return edges_[block]; }
 
  private:
   struct Faces;
@@ -33,9 +33,8 @@ class EdgeFinder {
 
   void join(const Faces& faces, std::size_t a, int x, int y);
   void spread(const Faces& faces, const Meeting& meeting);
-  void tell(const Faces& faces, std::size_t block, std::size_t other, float share);
+  void tell(const Faces& faces, const Meeting& meeting, int x, int y);
 
-  std::vector<std::uint32_t> numbers_;  // of the blocks' edges; 0: none
   std::vector<EdgePlane> edges_;
   std::vector<float> away_;  // squared, of a block from where its faces meet, m^2
 };

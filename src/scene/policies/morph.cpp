@@ -109,7 +109,8 @@ void Morph::write_unseen() {
   for (const detail::Record record : unseen_order_) {
     const Unseen& unseen = unseen_[record & detail::kPlaceMask];
     const auto code = static_cast<std::uint32_t>(record >> detail::kPlaceBits);
-    write(kUnseenCode | code, unseen.from, unseen.to, unseen.entry);
+    writer_.add(kUnseenCode | code, unseen.from, unseen.to, unseen.edge);
+    next_entries_.push_back(unseen.entry);
   }
 }
 
@@ -192,8 +193,7 @@ PointState Morph::old_point(std::uint32_t i) const {
             p.end_density_weights[i],
             p.end_radii[i],
             p.end_confidences[i],
-            fades ? p.end_presences[i] : 1.0f,
-            old_edge(i)};
+            fades ? p.end_presences[i] : 1.0f};
   }
   const auto between = [u](float a, float b) { return a + u * (b - a); };
   return {mix(p.grid.points()[i], p.end_positions[i], u) + old_shift_,
@@ -201,16 +201,17 @@ PointState Morph::old_point(std::uint32_t i) const {
           between(p.density_weights[i], p.end_density_weights[i]),
           between(p.radii[i], p.end_radii[i]),
           between(p.confidences[i], p.end_confidences[i]),
-          fades ? between(p.presences[i], p.end_presences[i]) : 1.0f,
-          old_edge(i)};
+          fades ? between(p.presences[i], p.end_presences[i]) : 1.0f};
 }
 
 EdgePlane Morph::old_edge(std::uint32_t i) const {
-  if (entries_[i].edge == kNoEdge) return {};
-  const ActiveLayer layer{.points = last_.get(), .progress = std::min(progress_, 1.0)};
-  EdgePlane edge = edge_now(layer, entries_[i].edge);
-  edge.offset += edge.normal.dot(old_shift_);
-  return edge;
+  return edge_now({.points = last_.get(), .progress = std::min(progress_, 1.0)}, i);
+}
+
+/// Of what the block shows that is looked at.
+EdgePlane Morph::new_edge() const {
+  const EdgePlane& edge = edges_.edge(order_.blocks[place_]);
+  return {turn_ * edge.normal, edge.height, edge.share};
 }
 
 Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) const {
@@ -225,21 +226,13 @@ Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) con
   if (streams_) point.trust = surface_.trust(block);
   point.variance = depth.deviations[block] * depth.deviations[block];
   state.weight = point.weight(state.radius);
-  state.edge = edges_.edge(block);
-  state.edge.normal = turn_ * state.edge.normal;
-  state.edge.offset += state.edge.normal.dot(shift_);
   return point;
 }
 
-void Morph::add(const PointState& from, const PointState& to, const Entry& entry) {
-  if (entry.kind != EntryKind::live) return unseen_.push_back({from, to, entry});
-  write(order_.codes[place_], from, to, entry);
-}
-
-void Morph::write(std::uint32_t code, const PointState& from, const PointState& to, Entry entry) {
-  const std::uint32_t edges = writer_.edges();
-  writer_.add(code, from, to);
-  entry.edge = writer_.edges() > edges ? edges : kNoEdge;
+void Morph::add(const PointState& from, const PointState& to, const EdgeWay& edge,
+                const Entry& entry) {
+  if (entry.kind != EntryKind::live) return unseen_.push_back({from, to, edge, entry});
+  writer_.add(order_.codes[place_], from, to, edge);
   next_entries_.push_back(entry);
 }
 

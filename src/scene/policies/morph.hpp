@@ -79,6 +79,7 @@ class Morph {
   struct Unseen {
     PointState from;
     PointState to;
+    EdgeWay edge;
     Entry entry;
   };
 
@@ -116,9 +117,9 @@ class Morph {
   void keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
             double confirmed);
   void leave(std::uint32_t i);
-  void add(const PointState& from, const PointState& to, const Entry& entry);
-  void write(std::uint32_t code, const PointState& from, const PointState& to, Entry entry);
+  void add(const PointState& from, const PointState& to, const EdgeWay& edge, const Entry& entry);
   [[nodiscard]] EdgePlane old_edge(std::uint32_t i) const;
+  [[nodiscard]] EdgePlane new_edge() const;
 
   MorphOptions options_;
   BlockOrder order_;

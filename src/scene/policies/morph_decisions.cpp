@@ -127,7 +127,8 @@ void Morph::appear(const Point& point) {
     from.presence = 0;
     to.presence = std::min(1.0f, comes_);
   }
-  add(from, to, {place_, EntryKind::live, moment_.stamp, point.variance});
+  const EdgePlane edge = new_edge();
+  add(from, to, {edge, edge}, {place_, EntryKind::live, moment_.stamp, point.variance});
 }
 
 /// Of a time that something takes, s, how much a snapshot lasts.
@@ -166,7 +167,10 @@ void Morph::keep(std::uint32_t i, const PointState& from, float presence, EntryK
   PointState to = from;
   to.presence = std::clamp(presence, 0.0f, 1.0f);
   to.weight = last_->end_density_weights[i];
-  add(from, to, {place_, kind, confirmed, entries_[i].variance});
+  const EdgePlane was = old_edge(i);
+  EdgePlane edge = was;
+  if (unseen && edge.share < 0) edge.share = 0;  // what it meets may not be there any more
+  add(from, to, {was, edge}, {place_, kind, confirmed, entries_[i].variance});
 }
 
 void Morph::leave(std::uint32_t i) {
@@ -174,7 +178,8 @@ void Morph::leave(std::uint32_t i) {
   if (from.weight <= kGone) return;
   PointState to = from;
   to.weight = 0;
-  add(from, to, {place_, EntryKind::leaving, entries_[i].confirmed});
+  const EdgePlane edge = old_edge(i);
+  add(from, to, {edge, edge}, {place_, EntryKind::leaving, entries_[i].confirmed});
 }
 
 }  // namespace palpate

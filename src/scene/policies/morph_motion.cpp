@@ -18,8 +18,10 @@ constexpr float kBeside = 0.5f;  // R by which depths of one surface differ from
 constexpr float kUnsure = 4;
 constexpr float kAgree = 5;
 
-// Of what a frame says of a point's radius and confidence, this share is taken over.
+// Of what a frame says of a point's radius, confidence and edge, this share is taken over; an edge
+// with no more than the other share is none.
 constexpr float kShare = 0.25f;
+constexpr float kLeastShare = 0.01f;
 
 // What moves faster along its normal is another surface, m/s.
 constexpr float kFastest = 1;
@@ -131,7 +133,13 @@ void Morph::follow(const Point& seen, std::uint32_t i, const PointState& from) {
   to.weight = seen.weight(to.radius);
   if (to.normal.isZero(0)) to.normal = from.normal;
   to.presence = std::min(1.0f, from.presence + comes_);
-  add(from, to, {place_, EntryKind::live, moment_.stamp, gain < 1 ? known : seen.variance});
+  const EdgePlane was = old_edge(i);
+  EdgePlane edge = new_edge();
+  const float share = was.share + kShare * (edge.share - was.share);
+  if (edge.share == 0) edge = was;
+  edge.share = std::abs(share) > kLeastShare ? share : 0;
+  add(from, to, {was, edge},
+      {place_, EntryKind::live, moment_.stamp, gain < 1 ? known : seen.variance});
 }
 
 }  // namespace palpate

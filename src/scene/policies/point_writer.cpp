@@ -20,7 +20,6 @@ void PointWriter::begin(SurfacePoints& points, std::size_t expected) {
   unsure_ = false;
   points.materials.clear();
   points.colors.clear();
-  points.edges.points.clear();
   points.edges.start.clear();
   points.edges.end.clear();
   make_room(expected);
@@ -34,21 +33,26 @@ void PointWriter::make_room(std::size_t room) {
         &p.end_radii, &p.end_confidences, &p.end_presences}) {
     column->resize(room);
   }
+  p.edges.of_point.resize(room);
   starts_.resize(std::max(room, starts_.size()));
   codes_.resize(std::max(room, codes_.size()));
   room_ = room;
 }
 
-/// An edge that is not there at one end has its plane there, too.
-void PointWriter::add_edge(const EdgePlane& start, const EdgePlane& end) {
+/// Where there is none, there is the other end's plane.
+std::uint32_t PointWriter::add_edge(const EdgeWay& edge) {
   PointEdges& edges = points_->edges;
-  edges.points.push_back(static_cast<std::uint32_t>(count_));
-  edges.start.push_back(start.share != 0 ? start : EdgePlane{end.normal, end.offset, 0});
-  edges.end.push_back(end.share != 0 ? end : EdgePlane{start.normal, start.offset, 0});
+  const auto number = static_cast<std::uint32_t>(edges.start.size());
+  const EdgePlane& start = edge.start.share != 0 ? edge.start : edge.end;
+  const EdgePlane& end = edge.end.share != 0 ? edge.end : edge.start;
+  edges.start.push_back({start.normal, start.height, edge.start.share});
+  edges.end.push_back({end.normal, end.height, edge.end.share});
+  return number;
 }
 
 void PointWriter::end() {
   make_room(count_);
+  if (points_->edges.start.empty()) points_->edges.of_point.clear();
   if (!unsure_) {
     points_->presences.clear();
     points_->end_presences.clear();

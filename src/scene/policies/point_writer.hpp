@@ -17,7 +17,12 @@ struct PointState {
   float radius = 0;                                    ///< R_i, m
   float confidence = 0;                                ///< c_i
   float presence = 1;
-  EdgePlane edge;  ///< share 0: it lies beside no edge
+};
+
+/// What a point meets at either end of its way; share 0: no edge.
+struct EdgeWay {
+  EdgePlane start;
+  EdgePlane end;
 };
 
 /// Writes moving points, which come in the order of a curve, into the columns of surface points,
@@ -27,7 +32,8 @@ class PointWriter {
   /// What `points` held is lost. `expected`: about how many points will come.
   void begin(SurfacePoints& points, std::size_t expected);
 
-  void add(std::uint32_t code, const PointState& start, const PointState& end) {
+  void add(std::uint32_t code, const PointState& start, const PointState& end,
+           const EdgeWay& edge) {
     if (count_ == room_) make_room(count_ + count_ / 4 + 1024);
     codes_[count_] = code;
     starts_[count_] = start.position;
@@ -43,24 +49,20 @@ class PointWriter {
     p.end_radii[count_] = end.radius;
     p.end_confidences[count_] = end.confidence;
     p.end_presences[count_] = end.presence;
-    if (start.edge.share != 0 || end.edge.share != 0) add_edge(start.edge, end.edge);
+    const bool beside = edge.start.share != 0 || edge.end.share != 0;
+    p.edges.of_point[count_] = beside ? add_edge(edge) : PointEdges::kNone;
     unsure_ = unsure_ || start.presence < 1 || end.presence < 1;
     ++count_;
   }
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
-  /// How many points so far lie beside edges.
-  [[nodiscard]] std::uint32_t edges() const {
-    return static_cast<std::uint32_t>(points_->edges.points.size());
-  }
-
   /// Indexes the points and finishes them as palpate::finish() does.
   void end();
 
  private:
   void make_room(std::size_t room);
-  void add_edge(const EdgePlane& start, const EdgePlane& end);
+  [[nodiscard]] std::uint32_t add_edge(const EdgeWay& edge);
   void measure_reach();
   void measure_radii();
 

@@ -1,0 +1,73 @@
+// Heights above two planes at once, for points beside edges. Included after sums.inl by one source
+// file for each level, in an anonymous namespace as that.
+
+#include "field/simd/sums.hpp"
+
+namespace palpate::simd {
+namespace {
+
+// The larger of h above a point's own plane and k above the one beyond the edge, or in a crease the
+// smaller, with how much of its slope is k's: (h + k) / 2 + |k - h| / 2, rounded where they cross.
+struct Larger {
+  Lanes height;
+  Lanes of_k;
+};
+[[gnu::always_inline]] inline Larger larger(const Lanes& h, const Lanes& k, const Lanes& width) {
+  const Lanes d = k - h;
+  const Lanes inside = width - stdx::abs(d);
+  const Lanes t = 0.5 * (inside + stdx::abs(inside));
+  const Lanes past = stdx::abs(d + width) - stdx::abs(d - width);  // 2 width beyond the rounding
+  const Lanes inverse = 1.0 / width;
+  return {0.5 * (h + k + stdx::abs(d)) + 0.25 * inverse * t * t, 0.5 + 0.25 * inverse * past};
+}
+
+// What edges and creases are rounded over, of R_i, so that heights have gradients.
+constexpr double kRoundEdge = 0.005;
+constexpr double kRoundCrease = 0.05;
+constexpr double kNoWidth = 1e-12;  // m: what fills up lanes has no radius
+
+template <bool kWendland>
+void edges(const Columns& c, std::uint32_t begin, std::uint32_t end, const double x[3],
+           EdgeSums& out) noexcept {
+  Lanes v = 0;
+  Lanes vh = 0;
+  Vector grad_v;
+  Vector grad_vh;
+  for (std::uint32_t i = begin; i < end; i += kLanes) {
+    const Lanes signed_share = load(c.edge_share + i);
+    const Lanes share = stdx::abs(signed_share);
+    if (!(sum(share) > 0)) continue;
+    const Lanes sign = stdx::copysign(Lanes(1.0), signed_share);
+    const Vector q = offsets(c, i, x);
+    const Vector n = load3(c.normal, i);
+    const Vector m = load3(c.edge_normal, i);
+    Lanes width = kRoundEdge;
+    stdx::where(sign < 0, width) = kRoundCrease;
+    width = width * load(c.radius + i) + kNoWidth;
+    const Lanes k = load(c.edge_height + i) - dot(m, q);
+    const Larger both = larger(-sign * dot(n, q), sign * k, width);
+    const Lanes height = sign * both.height;
+    const Lanes trust = share * load(c.confidence + i);
+    const Lanes w = load(c.weight + i) * kernel<kWendland>(dot(q, q) * load(c.inverse_r2 + i)).w;
+    const Lanes vi = kScaleW<kWendland> * (w * trust);
+    const Lanes slope = load(c.slope + i) * trust;
+    v += vi;
+    vh += vi * height;
+    add(grad_v, slope, q);
+    add(grad_vh, slope * height, q);
+    add(grad_vh, vi * (1.0 - both.of_k), n);
+    add(grad_vh, vi * both.of_k, m);
+  }
+  out.v = sum(v);
+  out.vh = sum(vh);
+  store(grad_v, 1, out.grad_v);
+  store(grad_vh, 1, out.grad_vh);
+}
+
+void edges_of(const Columns& c, std::uint32_t begin, std::uint32_t end, bool wendland,
+              const double x[3], EdgeSums& out) noexcept {
+  wendland ? edges<true>(c, begin, end, x, out) : edges<false>(c, begin, end, x, out);
+}
+
+}  // namespace
+}  // namespace palpate::simd
