@@ -121,7 +121,7 @@ std::string setup_text(const CLI::App& command, const AlignOptions& options,
   return text.str();
 }
 
-std::string in_words(const Fit& fit) {
+std::string fit_in_words(const Fit& fit) {
   return fmt::format("{} apart, {:.0f} % of it lies on others", length(fit.residual),
                      100 * fit.overlap);
 }
@@ -130,8 +130,8 @@ void print_source(const ChosenSource& source, const AlignedSource& aligned, std:
   const Style style(out);
   const Eigen::Isometry3d& moved = aligned.T_aligned_rough;
   fmt::print(out, "{} {}\n", style.heading(source.argument.name), source.argument.path);
-  fmt::print(out, "  before     {}\n  after      {}\n", in_words(aligned.before),
-             in_words(aligned.after));
+  fmt::print(out, "  before     {}\n  after      {}\n", fit_in_words(aligned.before),
+             fit_in_words(aligned.after));
   if (aligned.place_deviation > 0) {
     fmt::print(out, "  turned by  {:.2f} degrees\n  sure to    {} and {:.3f} degrees (one sigma)\n",
                kDegrees * Eigen::AngleAxisd(moved.linear()).angle(),
@@ -175,7 +175,7 @@ std::vector<AlignedSource> solve(const Touched& touched) {
   return align(rough);
 }
 
-void write(std::optional<OutputFile>& file, const std::string& text) {
+void write_to(std::optional<OutputFile>& file, const std::string& text) {
   if (!file) return;
   file->write(text);
   file->close();
@@ -219,8 +219,8 @@ void align_sources(const CLI::App& command, AlignOptions& options) {
     print_source(chosen[i], aligned[i], out);
     report.push_back(json_of(chosen[i], aligned[i]));
   }
-  write(json, report.dump(2) + "\n");
-  write(output, setup_text(command, options, chosen));
+  write_to(json, report.dump(2) + "\n");
+  write_to(output, setup_text(command, options, chosen));
   if (picture) picture->draw(touched, aligned);
 }
 

@@ -16,7 +16,7 @@ constexpr double kMissing = 0.125;       // share of the noise that a size may t
 // Windows of twice the size find more by some factor; infinite ones, by this power of it more. For
 // Gaussian correlation over up to a tenth of the size it leaves 6 % of n_c to be wished for at
 // most.
-constexpr double kBeyond = 0.6;
+constexpr double kSharedPower = 0.6;
 
 // Mean and width of the half of sorted values that lie closest together.
 struct Half {
@@ -145,7 +145,7 @@ void NoiseSurvey::conclude(std::span<const SeenNoise> windows) {
   if (chosen > 0 && levels_[chosen - 1].power > 0) {
     more = growth(chosen - 1, chosen) * level.power / levels_[chosen - 1].power;
   }
-  const double power = level.power * std::pow(std::max(1.0, more), kBeyond);
+  const double power = level.power * std::pow(std::max(1.0, more), kSharedPower);
   const int size = kNoiseSizes[chosen];
   const double raised = 1 + NoiseFit::kTerms * (level.power + power) / (2 * size * size);
   noise_.shared = power / raised;

@@ -20,27 +20,27 @@ using Eigen::Vector3d;
 using test::DepthOf;
 using test::kFrame;
 
-constexpr double kTilt = 35 * std::numbers::pi / 180;  // of both faces
+constexpr double kLean = 35 * std::numbers::pi / 180;  // of both faces
 constexpr double kNoise = 0.5e-3;                      // m
 
-DepthOf leaning(double tilt, double at = 0) {
+DepthOf face_leaning(double tilt, double at = 0) {
   return test::plane_depth({at, 0, 0.5}, {std::sin(tilt), 0, -std::cos(tilt)});
 }
 /// Two faces that meet in the line x = 0 at z = 0.5 m.
 double roof(double x, double y) {
-  return std::max(leaning(kTilt)(x, y), leaning(-kTilt)(x, y));
+  return std::max(face_leaning(kLean)(x, y), face_leaning(-kLean)(x, y));
 }
 double valley(double x, double y) {
-  return std::min(leaning(kTilt)(x, y), leaning(-kTilt)(x, y));
+  return std::min(face_leaning(kLean)(x, y), face_leaning(-kLean)(x, y));
 }
 /// The roof, cut off 3.5 mm to each side of the line, which is less than R.
 double blunt(double x, double y) {
-  return std::max(roof(x, y), 0.5 + 3.5e-3 * std::tan(kTilt));
+  return std::max(roof(x, y), 0.5 + 3.5e-3 * std::tan(kLean));
 }
 /// A ridge of 50 degrees, which flat points near its line follow.
 double shallow(double x, double y) {
-  return std::max(leaning(25 * std::numbers::pi / 180)(x, y),
-                  leaning(-25 * std::numbers::pi / 180)(x, y));
+  return std::max(face_leaning(25 * std::numbers::pi / 180)(x, y),
+                  face_leaning(-25 * std::numbers::pi / 180)(x, y));
 }
 double flat(double, double) {
   return 0.5;
@@ -86,14 +86,14 @@ TEST_P(TwoFaces, AreToldToTheBlocksOfEachOther) {
   int told = 0;
   found.each([&](const Vector3d& place, double radius, const EdgePlane& edge) {
     const double x = place.x();
-    if (std::abs(x) < 0.7 * radius * std::cos(kTilt)) ++near;
+    if (std::abs(x) < 0.7 * radius * std::cos(kLean)) ++near;
     if (edge.share == 0) return;
-    if (std::abs(x) < 0.7 * radius * std::cos(kTilt)) ++told;
+    if (std::abs(x) < 0.7 * radius * std::cos(kLean)) ++told;
     EXPECT_EQ(edge.share, convex ? 1 : -1);
     EXPECT_LT(std::abs(x), radius) << "too far away to matter";
     if (std::abs(x) < 1.5e-3) return;  // which of the two faces a block on the line has
     // Of the other face: (sin, 0, -cos) of its tilt, through (0, 0, 0.5).
-    const double tilt = (x > 0) == convex ? -kTilt : kTilt;
+    const double tilt = (x > 0) == convex ? -kLean : kLean;
     const Vector3d normal(std::sin(tilt), 0, -std::cos(tilt));
     EXPECT_GT(edge.normal.cast<double>().dot(normal), std::cos(0.05)) << x;
     EXPECT_NEAR(edge.height, normal.dot(place - Vector3d(0, 0, 0.5)), 0.6e-3) << x;
@@ -136,8 +136,8 @@ TEST(EdgeFinder, ToleratesAnyFrame) {
   EXPECT_EQ(Found(FilteredDepth{}).told(), 0);
 }
 
-std::shared_ptr<SurfacePoints> show(Morph& morph, double stamp, FilteredDepth depth,
-                                    const Vector3d& camera = {0, 0, 0.5}) {
+std::shared_ptr<SurfacePoints> show_frame(Morph& morph, double stamp, FilteredDepth depth,
+                                          const Vector3d& camera = {0, 0, 0.5}) {
   depth.T_world_sensor.translation() = camera;
   auto points = std::make_shared<SurfacePoints>();
   const Pinhole pinhole = test::small_camera().pinhole;
@@ -160,18 +160,18 @@ void each_edge(const SurfacePoints& points,
 // The flat image turns into faces, which takes its points along, and back.
 TEST(EdgesOfAStream, ComeAndGoByAndByOnPointsThatAreThere) {
   Morph morph{{}};
-  ASSERT_TRUE(show(morph, 0, filtered(flat))->edges.of_point.empty());
+  ASSERT_TRUE(show_frame(morph, 0, filtered(flat))->edges.of_point.empty());
   int coming = 0;
-  each_edge(*show(morph, kFrame, filtered(shallow)),
+  each_edge(*show_frame(morph, kFrame, filtered(shallow)),
             [&](const EdgePlane& start, const EdgePlane& end, std::size_t) {
               ++coming;
               EXPECT_TRUE(start.share == 0 || start.share == 1) << "nor a point that appears";
               EXPECT_EQ(end.share, start.share == 0 ? 0.25f : 1.0f);
             });
   EXPECT_GT(coming, 100);
-  for (int k = 2; k < 20; ++k) (void)show(morph, k * kFrame, filtered(shallow, kNoise, 2));
+  for (int k = 2; k < 20; ++k) (void)show_frame(morph, k * kFrame, filtered(shallow, kNoise, 2));
   int going = 0;
-  each_edge(*show(morph, 20 * kFrame, filtered(flat)),
+  each_edge(*show_frame(morph, 20 * kFrame, filtered(flat)),
             [&](const EdgePlane& start, const EdgePlane& end, std::size_t) {
               going += start.share > 0.9f && end.share == 0.75f * start.share ? 1 : 0;
               EXPECT_LE(end.share, start.share);
@@ -184,7 +184,7 @@ TEST(EdgesOfAStream, AreSteadyWhereNoiseHardlyLetsThemBeFound) {
   double change = 0;
   int count = 0;
   for (unsigned k = 0; k < 20; ++k) {
-    const auto points = show(morph, k * kFrame, filtered(shallow, 2e-3, k + 1));
+    const auto points = show_frame(morph, k * kFrame, filtered(shallow, 2e-3, k + 1));
     if (k < 5) continue;
     each_edge(*points, [&](const EdgePlane& start, const EdgePlane& end, std::size_t i) {
       if (!points->presences.empty() && points->presences[i] == 0) return;
@@ -199,9 +199,9 @@ TEST(EdgesOfAStream, AreSteadyWhereNoiseHardlyLetsThemBeFound) {
 TEST(EdgesOfAStream, StayWhereTheyAreWhenTheOriginMoves) {
   Morph morph{{}};
   FilteredDepth depth = filtered(roof);
-  (void)show(morph, 0, depth);
+  (void)show_frame(morph, 0, depth);
   const Vector3d camera(20, 0, 0.5);
-  const auto points = show(morph, kFrame, depth, camera);
+  const auto points = show_frame(morph, kFrame, depth, camera);
   // The line of the ridge is at x = 0 and x = 20, at height 0.
   int checked = 0;
   each_edge(*points, [&](const EdgePlane& start, const EdgePlane&, std::size_t i) {
@@ -216,8 +216,8 @@ TEST(EdgesOfAStream, StayWhereTheyAreWhenTheOriginMoves) {
 
 TEST(EdgesOfAStream, CreasesOfWhatNobodySeesGo) {
   Morph morph{{}};
-  for (int k = 0; k < 3; ++k) (void)show(morph, k * kFrame, filtered(valley));
-  const auto points = show(morph, 3 * kFrame, filtered([](double, double) { return 0.4; }));
+  for (int k = 0; k < 3; ++k) (void)show_frame(morph, k * kFrame, filtered(valley));
+  const auto points = show_frame(morph, 3 * kFrame, filtered([](double, double) { return 0.4; }));
   int hidden = 0;
   each_edge(*points, [&](const EdgePlane& start, const EdgePlane& end, std::size_t) {
     hidden += start.share < 0 ? 1 : 0;
