@@ -160,7 +160,7 @@ void each_edge(const SurfacePoints& points,
 // The flat image turns into faces, which takes its points along, and back.
 TEST(EdgesOfAStream, ComeAndGoByAndByOnPointsThatAreThere) {
   Morph morph{{}};
-  ASSERT_TRUE(show_frame(morph, 0, filtered(flat))->edges.of_point.empty());
+  ASSERT_TRUE(show_frame(morph, 0, filtered(flat))->edges.start.empty());
   int coming = 0;
   each_edge(*show_frame(morph, kFrame, filtered(shallow)),
             [&](const EdgePlane& start, const EdgePlane& end, std::size_t) {

@@ -34,6 +34,9 @@ void PointWriter::make_room(std::size_t room) {
     column->resize(room);
   }
   p.edges.of_point.resize(room);
+  for (auto* edges : {&p.edges.start, &p.edges.end}) {
+    if (edges->capacity() < room) edges->reserve(2 * room);
+  }
   starts_.resize(std::max(room, starts_.size()));
   codes_.resize(std::max(room, codes_.size()));
   room_ = room;
@@ -52,7 +55,6 @@ std::uint32_t PointWriter::add_edge(const EdgeWay& edge) {
 
 void PointWriter::end() {
   make_room(count_);
-  if (points_->edges.start.empty()) points_->edges.of_point.clear();
   if (!unsure_) {
     points_->presences.clear();
     points_->end_presences.clear();
