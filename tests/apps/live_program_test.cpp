@@ -94,8 +94,8 @@ TEST(LiveProgram, GuardAndServoAreAsTheSetUpSays) {
   if (too_slow_for_cameras()) GTEST_SKIP() << "no surface is ready in time";
   Shell shell;
   std::string way = "t,hip_x,hip_y,hip_z\n";
-  for (int i = 0; i < 3500; ++i) {  // down once there is a surface, on a slow machine too
-    const int down = std::max(0, i - 2000);
+  for (int i = 0; i < 7500; ++i) {  // down once there is a surface, on a slow machine too
+    const int down = std::max(0, i - 6000);
     way += fmt::format("{},0,0,{}\n", 1e-3 * i, std::max(-4e-3, 0.02 - 1e-4 * down));
   }
   shell.write("way.csv", way);
