@@ -175,12 +175,6 @@ std::vector<AlignedSource> solve(const Touched& touched) {
   return align(rough);
 }
 
-void write_to(std::optional<OutputFile>& file, const std::string& text) {
-  if (!file) return;
-  file->write(text);
-  file->close();
-}
-
 }  // namespace
 
 void add_align_options(CLI::App& command, AlignOptions& options) {
@@ -219,8 +213,8 @@ void align_sources(const CLI::App& command, AlignOptions& options) {
     print_source(chosen[i], aligned[i], out);
     report.push_back(json_of(chosen[i], aligned[i]));
   }
-  write_to(json, report.dump(2) + "\n");
-  write_to(output, setup_text(command, options, chosen));
+  write_whole(json, report.dump(2) + "\n");
+  write_whole(output, setup_text(command, options, chosen));
   if (picture) picture->draw(touched, aligned);
 }
 

@@ -119,4 +119,10 @@ void OutputFile::fail(const char* what) const {
   throw Error(fmt::format("{} {}: {}; choose another place", path_, what, std::strerror(errno)));
 }
 
+void write_whole(std::optional<OutputFile>& file, std::string_view text) {
+  if (!file) return;
+  file->write(text);
+  file->close();
+}
+
 }  // namespace palpate::app

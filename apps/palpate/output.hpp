@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -45,5 +46,8 @@ class OutputFile {
   bool nameless_ = false;
   std::unique_ptr<std::FILE, Closer> file_;
 };
+
+/// Writes all of a file that was asked for, if any. @throws Error as OutputFile does.
+void write_whole(std::optional<OutputFile>& file, std::string_view text);
 
 }  // namespace palpate::app

@@ -81,10 +81,7 @@ template <class Figure>
 void tell(const Figure& figure, const PaperOptions& options, Outputs& outputs) {
   print_figure(figure, options.source, options.csv == "-" ? stderr : stdout);
   const std::string table = csv(figure);
-  if (outputs.csv) {
-    outputs.csv->write(table);
-    outputs.csv->close();
-  }
+  write_whole(outputs.csv, table);
   if (!outputs.picture) return;
   const Waiting waiting("drawing the picture");
   draw_by_python(figures_script(),

@@ -104,11 +104,7 @@ void tell(const TouchReport& report, TouchOutputs& outputs) {
   const TouchOptions& options = report.options;
   const bool stdout_taken = options.log == "-" || options.json == "-";
   print_report(report, stdout_taken ? stderr : stdout);
-  if (outputs.json) {
-    outputs.json->write(json_report(report).dump(2));
-    outputs.json->write("\n");
-    outputs.json->close();
-  }
+  if (outputs.json) write_whole(outputs.json, json_report(report).dump(2) + "\n");
   for (std::size_t i = 0; i < report.hands.size(); ++i) {
     outputs.hands[i].draw(report.felt, title_of(report.touched), report.hands[i]);
   }

@@ -146,10 +146,7 @@ void run_wall_trial(const WallTrialRunOptions& options) {
   fmt::print(stderr, "holds {}\n", device->info().name);
   TrialThread thread(*device, clock, options.trial);
   const WallTrialState state = lead(thread, interruption);
-  if (json) {
-    json->write(found(options, device->info(), state));
-    json->close();
-  }
+  if (json) write_whole(json, found(options, device->info(), state));
   if (state.stable > 0)
     return tell(state, options.trial.damping, options.json == "-" ? stderr : stdout);
   const std::string reason = device->reason();

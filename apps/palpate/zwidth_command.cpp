@@ -46,12 +46,6 @@ struct ZWidthOutputs {
   }
 };
 
-void write(std::optional<OutputFile>& file, const std::string& text) {
-  if (!file) return;
-  file->write(text);
-  file->close();
-}
-
 }  // namespace
 
 void add_zwidth_options(CLI::App& command, ZWidthChoices& choices) {
@@ -125,8 +119,8 @@ void zwidth(const ZWidthChoices& choices) {
     return measure_zwidth(options, [&](double done) { progress.update(done); });
   }();
   print_zwidth(map, options.csv == "-" || options.json == "-" ? stderr : stdout);
-  write(outputs.csv, csv(map));
-  write(outputs.json, facts(map) + "\n");
+  write_whole(outputs.csv, csv(map));
+  write_whole(outputs.json, facts(map) + "\n");
   if (!outputs.picture) return;
   const Waiting waiting("drawing the picture");
   draw_by_python(figures_script(), {{"facts.json", facts(map)}, {"table.csv", csv(map)}},

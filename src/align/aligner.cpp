@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "field/newest.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/spacing.hpp"
@@ -32,11 +33,6 @@ constexpr double kTukey = 4.685;        // sigmas: 95 % as sharp as least square
 constexpr double kGaussian = 1.4826;    // sigma over the median of absolute values
 constexpr double kTurn = 10 * std::numbers::pi / 180;  // that starts are apart
 constexpr double kShrink = 0.7;                        // reach, from step to step
-
-template <class Column>
-const Column& newest(const Column& start, const Column& end) {
-  return end.empty() ? start : end;
-}
 
 bool counts(const SurfacePoints& p, std::size_t i) {
   return newest(p.density_weights, p.end_density_weights)[i] > 0 &&

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "field/newest.hpp"
 #include "palpate/geometry/spacing.hpp"
 
 namespace palpate {
@@ -19,13 +20,12 @@ const Eigen::Vector3f& end_of(const SurfacePoints& points, std::size_t i) {
 }
 
 const Eigen::Vector3f& normal_of(const SurfacePoints& points, std::size_t i) {
-  return points.end_normals.empty() ? points.normals[i] : points.end_normals[i];
+  return newest(points.normals, points.end_normals)[i];
 }
 
 bool counts(const SurfacePoints& points, std::size_t i) {
-  const auto& weights =
-      points.end_density_weights.empty() ? points.density_weights : points.end_density_weights;
-  return weights[i] > 0 && points.confidences[i] > 0;
+  return newest(points.density_weights, points.end_density_weights)[i] > 0 &&
+         points.confidences[i] > 0;
 }
 
 }  // namespace

@@ -4,15 +4,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "field/newest.hpp"
 #include "viewer/thinned.hpp"
 
 namespace palpate::viewer {
 namespace {
-
-template <class Column>
-const Column& newest(const Column& start, const Column& end) {
-  return end.empty() ? start : end;
-}
 
 /// Of what has not faded away, in the grid's order.
 std::vector<std::uint32_t> felt(const SurfacePoints& points) {

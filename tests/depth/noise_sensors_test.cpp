@@ -12,11 +12,10 @@ namespace palpate {
 namespace {
 
 using depth::NoiseTracker;
+using test::kBlurred;
+using test::kDepths;
+using test::kTruth;
 using test::view_of;
-
-constexpr double kSensorDepths[] = {0.5, 0.6, 0.7, 0.85, 1.0};
-const NoiseModel kSensorTruth = kinect_like_noise();
-constexpr double kSensorBlurred = 7.1;  // c of NoiseKind::blurred
 
 /// A sensor's errors, and what is to be told of them.
 struct Sensor {
@@ -57,7 +56,7 @@ const Sensor kSensors[] = {
        apply({.seed = 1}, frame, depth);
        fly(frame, depth);
      },
-     {kSensorTruth.coefficients, 1.15},
+     {kTruth.coefficients, 1.15},
      0.9,
      1.2},
     {"flying pixels, blurred",
@@ -65,7 +64,7 @@ const Sensor kSensors[] = {
        apply({.kind = NoiseKind::blurred, .seed = 1}, frame, depth);
        fly(frame, depth);
      },
-     {kSensorTruth.coefficients, kSensorBlurred},
+     {kTruth.coefficients, kBlurred},
      0.9,
      1.2},
     {"time of flight", disturb_by_light, {{0, 0, 0.0063}, 5}, 0.6, 1.3},
@@ -113,7 +112,7 @@ TEST(NoiseTracker, FindsTheErrorsOfAllKindsOfSensors) {
       const NoiseModel& model = tracker.update(view_of(image));
       if (frame % 139 > 0) continue;
       SCOPED_TRACE(std::string(sensor.name) + ", frame " + std::to_string(frame));
-      for (const double z : kSensorDepths) {
+      for (const double z : kDepths) {
         EXPECT_GT(model.sigma(z) / sensor.truth.sigma(z), sensor.low) << z;
         EXPECT_LT(model.sigma(z) / sensor.truth.sigma(z), sensor.high) << z;
       }
@@ -131,10 +130,10 @@ TEST(NoiseTracker, TellsNoiseFromClutterOverManyFrames) {
     apply({.kind = NoiseKind::blurred, .seed = 1}, frame % 12, image);
     tracker.update(view_of(image));
   }
-  for (const double z : kSensorDepths) {
-    EXPECT_NEAR(tracker.model().sigma(z), kSensorTruth.sigma(z), 0.2 * kSensorTruth.sigma(z));
+  for (const double z : kDepths) {
+    EXPECT_NEAR(tracker.model().sigma(z), kTruth.sigma(z), 0.2 * kTruth.sigma(z));
   }
-  EXPECT_NEAR(tracker.model().correlation, kSensorBlurred, 0.2 * kSensorBlurred);
+  EXPECT_NEAR(tracker.model().correlation, kBlurred, 0.2 * kBlurred);
 }
 
 }  // namespace

@@ -15,11 +15,10 @@ namespace {
 
 using depth::DepthView;
 using depth::NoiseTracker;
+using test::kBlurred;
+using test::kDepths;
+using test::kTruth;
 using test::view_of;
-
-constexpr double kDepths[] = {0.5, 0.6, 0.7, 0.85, 1.0};
-const NoiseModel kTruth = kinect_like_noise();
-constexpr double kBlurred = 7.1;  // c of NoiseKind::blurred
 
 /// Largest and smallest of what the model says over what is true.
 struct Range {

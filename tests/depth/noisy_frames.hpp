@@ -16,6 +16,10 @@ namespace palpate::test {
 
 inline constexpr CameraModel kKinect{640, 480, {525, 525, 319.5, 239.5}, {}};
 
+inline constexpr double kDepths[] = {0.5, 0.6, 0.7, 0.85, 1.0};  ///< where sigma is compared, m
+inline const NoiseModel kTruth = kinect_like_noise();
+inline constexpr double kBlurred = 7.1;  ///< c of NoiseKind::blurred
+
 /// The camera of the simulated frames in its own frame: z forward.
 inline depth::DepthView view_of(const std::vector<float>& image,
                                 const CameraModel& camera = kKinect) {

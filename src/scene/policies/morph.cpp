@@ -64,6 +64,7 @@ void Morph::look(const MorphInput& input) {
   }
   if (order_.size() == 0) forget();  // an image without a block has no place for old points
   measure(input);
+  edges_.look(depth, surface_);
 }
 
 void Morph::fill(const MorphInput& input, const Moment& moment,
@@ -141,11 +142,6 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
 }
 
 void Morph::measure(const MorphInput& input) {
-  measure_weights(input);
-  edges_.look(input.depth, surface_);
-}
-
-void Morph::measure_weights(const MorphInput& input) {
   if (input.everywhere) {
     surface_.measure(input.depth);
     return;

@@ -85,7 +85,6 @@ class Morph {
 
   void start(const MorphInput& input, const Moment& moment, SurfacePoints& points);
   void measure(const MorphInput& input);
-  void measure_weights(const MorphInput& input);
   void follow_camera(const MorphInput& input);
   void settle(const FilteredDepth& depth, std::size_t place);
   void write_unseen();
