@@ -32,13 +32,18 @@ export async function touchDown(page, device = 0) {
   return touchAnew(page, device);
 }
 
-/** Takes the tool and presses until it feels `more` newtons than at first; resolves to what it felt at first. */
+/**
+ * Takes the tool and presses until it is 1.5 mm deeper and feels `more` newtons than at first; resolves to
+ * what it felt at first. Both, as a guard that has just let go gives force back while the hand rests.
+ */
 export async function press(page, more, device = 0) {
   let first = await touchDown(page, device);
   for (let tries = 0; tries < 5; ++tries) {
-    const { force } = first;
     await page.keyboard.down("ArrowDown");
-    const strong = await soon(async () => (await felt(page, device)).force > force + more, kPress);
+    const strong = await soon(async () => {
+      const now = await felt(page, device);
+      return now.force > first.force + more && waysInto(first, now).hip > 1.5e-3;
+    }, kPress);
     await page.keyboard.up("ArrowDown");
     if (strong) return first;
     first = await touchAnew(page, device); // a step that came late has taken the force away
