@@ -25,8 +25,10 @@ struct BlockFits {
   std::vector<float> slope_variance;  ///< of either slope (the larger one), 1/m^2
   std::vector<float> confidences;     ///< of the slopes, 0-1; 0: they are unknown and 0
 
-  std::vector<std::uint8_t> at_edge;  ///< of fitted blocks: is there another surface near?
-  std::vector<std::uint8_t> flat;     ///< of fitted blocks: is it a plane over its window?
+  // Of fitted blocks:
+  std::vector<std::uint8_t> flat;     ///< is it a plane over its window?
+  std::vector<std::uint8_t> reach_u;  ///< blocks to the side of the largest window; 0: no edge near
+  std::vector<std::uint8_t> reach_v;  ///< and to its top
 
   [[nodiscard]] std::size_t size() const { return states.size(); }
 
@@ -35,8 +37,7 @@ struct BlockFits {
     grid = new_grid;
     const std::size_t size = new_grid.size();
     states.resize(size, BlockState::empty);
-    at_edge.resize(size);
-    flat.resize(size);
+    for (auto* column : {&flat, &reach_u, &reach_v}) column->resize(size);
     for (auto* column : {&rho, &variance, &slope_x, &slope_y, &slope_variance, &confidences}) {
       column->resize(size);
     }
@@ -52,8 +53,9 @@ struct BlockFits {
             &slope_y[i],
             &slope_variance[i],
             &confidences[i],
-            &at_edge[i],
-            &flat[i]};
+            &flat[i],
+            &reach_u[i],
+            &reach_v[i]};
   }
 };
 

@@ -83,7 +83,7 @@ void WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double norma
               std::span(columns_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]), fits);
     }
   });
-  meeting_.assign(blocks, noise, region.range().first_row, columns_, row_begin_, fits);
+  faces_.refit(in, filled_, noise, fits);
 }
 
 }  // namespace palpate::depth

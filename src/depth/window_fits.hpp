@@ -5,8 +5,8 @@
 
 #include "depth/block_fits.hpp"
 #include "depth/blocks.hpp"
+#include "depth/face_fits.hpp"
 #include "depth/fit_region.hpp"
-#include "depth/meeting_planes.hpp"
 #include "depth/simd/fits.hpp"
 
 namespace palpate::depth {
@@ -39,7 +39,7 @@ class WindowFits {
   std::vector<Place> table_;
   std::vector<std::int32_t> columns_;  // of the region's blocks, row after row
   std::vector<std::size_t> row_begin_;
-  MeetingPlanes meeting_;
+  FaceFits faces_;
 };
 
 }  // namespace palpate::depth

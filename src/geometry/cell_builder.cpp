@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kLevels = kKeyBits / 3;
 constexpr std::size_t kGrain = std::size_t{1} << 16;
+constexpr std::size_t kCellsAtATime = 512;
 
 // Levels that even out a surface of n points: four children a cell, and some to spare.
 int levels_for(std::size_t n) {
@@ -212,8 +213,9 @@ std::vector<CellGrid::Cell> CellBuilder::cells() const {
   return {cells_.begin(), cells_.end()};
 }
 
-void fit_boxes(std::span<const Eigen::Vector3f> points, std::span<CellGrid::Cell> cells) {
-  parallel_ranges(cells.size(), kGrain / 8, [&](std::size_t begin, std::size_t end) {
+void fit_boxes(std::span<const Eigen::Vector3f> points, std::span<CellGrid::Cell> cells,
+               std::span<const Eigen::Vector3f> ends) {
+  parallel_ranges(cells.size(), kCellsAtATime, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       CellGrid::Cell& cell = cells[i];
       if (cell.children != 0) continue;
@@ -221,6 +223,10 @@ void fit_boxes(std::span<const Eigen::Vector3f> points, std::span<CellGrid::Cell
       for (std::uint32_t k = cell.begin + 1; k < cell.end; ++k) {
         cell.lower = cell.lower.cwiseMin(points[k]);
         cell.upper = cell.upper.cwiseMax(points[k]);
+      }
+      for (std::uint32_t k = cell.begin; !ends.empty() && k < cell.end; ++k) {
+        cell.lower = cell.lower.cwiseMin(ends[k]);
+        cell.upper = cell.upper.cwiseMax(ends[k]);
       }
     }
   });

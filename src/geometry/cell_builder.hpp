@@ -52,7 +52,9 @@ class CellBuilder {
   std::pmr::vector<std::uint8_t> depths_;  // levels used up by the keys of each cell's points
 };
 
-/// Fits the boxes of leaves to their points and those of other cells to their children's.
-void fit_boxes(std::span<const Eigen::Vector3f> points, std::span<CellGrid::Cell> cells);
+/// Fits the boxes of leaves to their points, and to where these are going unless they stay, and
+/// those of other cells to their children's.
+void fit_boxes(std::span<const Eigen::Vector3f> points, std::span<CellGrid::Cell> cells,
+               std::span<const Eigen::Vector3f> ends = {});
 
 }  // namespace palpate::detail

@@ -91,23 +91,7 @@ void CellGrid::rebuild(std::span<const Eigen::Vector3f> positions,
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
     if (cells_[cell].size() > kLeafPoints) divide(cell, codes);
   }
-  detail::fit_boxes(points_, cells_);
-  if (!ends.empty()) stretch_boxes(ends);
-}
-
-// Lets boxes hold where the points are going as well.
-void CellGrid::stretch_boxes(std::span<const Eigen::Vector3f> ends) {
-  for (std::size_t i = cells_.size(); i-- > 0;) {  // children stand behind their parents
-    Cell& cell = cells_[i];
-    for (std::uint32_t k = cell.begin; cell.children == 0 && k < cell.end; ++k) {
-      cell.lower = cell.lower.cwiseMin(ends[k]);
-      cell.upper = cell.upper.cwiseMax(ends[k]);
-    }
-    for (std::uint32_t c = 0; c < cell.children; ++c) {
-      cell.lower = cell.lower.cwiseMin(cells_[cell.first_child + c].lower);
-      cell.upper = cell.upper.cwiseMax(cells_[cell.first_child + c].upper);
-    }
-  }
+  detail::fit_boxes(points_, cells_, ends);
 }
 
 void CellGrid::divide(std::size_t cell, std::span<const std::uint32_t> codes) {

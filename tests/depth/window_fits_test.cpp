@@ -189,7 +189,7 @@ TEST(WindowFits, TakeNoChanceForAnEdge) {
     const depth::BlockFits fits = fit_all(blocks_of(image, noise), noise);
     for (int row = 24; row < fits.grid.rows - 24; ++row) {
       for (int column = 24; column < fits.grid.columns - 24; ++column, ++count) {
-        edges += fits.at_edge[fits.grid.index(column, row)];
+        edges += fits.reach_u[fits.grid.index(column, row)] > 0;
       }
     }
   }

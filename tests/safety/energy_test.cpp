@@ -11,7 +11,7 @@
 #include <memory>
 #include <numbers>
 
-#include "apps/palpate/exploration_plan.hpp"
+#include "apps/palpate/run/exploration_plan.hpp"
 #include "palpate/io/read_cloud.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "safety/given_energy.hpp"

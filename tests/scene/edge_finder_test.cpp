@@ -67,7 +67,9 @@ struct Found {
     for (std::size_t b = 0; b < depth.size(); ++b) {
       const int row = static_cast<int>(b) / depth.columns;
       if (depth.states[b] != BlockState::fitted || row < 10 || row >= depth.rows - 10) continue;
-      visit(depth.positions[b].cast<double>(), surface.radius(b), finder.edge(b));
+      const std::uint32_t number = finder.number(b);
+      const EdgePlane edge = number == EdgeFinder::kNone ? EdgePlane() : finder.plane(number);
+      visit(depth.positions[b].cast<double>(), surface.radius(b), edge);
     }
   }
   [[nodiscard]] int told() const {

@@ -75,7 +75,6 @@ class CellGrid {
 
  private:
   void divide(std::size_t cell, std::span<const std::uint32_t> codes);
-  void stretch_boxes(std::span<const Eigen::Vector3f> ends);
 
   std::vector<Eigen::Vector3f> points_;
   std::vector<std::uint32_t> order_;

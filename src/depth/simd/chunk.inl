@@ -11,9 +11,7 @@ namespace palpate::simd {
 namespace {
 
 constexpr int kChunk = 64;
-constexpr int kSizes = 6;      // windows r_max / 4 ... r_max, equal ratios
 constexpr int kBentSizes = 4;  // quadratic fits up to 2/3 r_max: cubic terms would bias larger ones
-constexpr float kRatios[kSizes] = {.25F, .329877F, .435275F, .574349F, .757858F, 1};
 
 enum Kind : int { kNone, kAffine, kQuadratic };
 

@@ -13,8 +13,9 @@ struct FitRow {
   float* slope_y;
   float* slope_variance;
   float* confidences;
-  std::uint8_t* at_edge;
   std::uint8_t* flat;
+  std::uint8_t* reach_u;
+  std::uint8_t* reach_v;
 };
 
 }  // namespace palpate::simd

@@ -12,7 +12,12 @@ namespace palpate::simd {
 
 constexpr int kWindowSums = 8;         // doubles at each place of a table
 constexpr int kLargestWindow = 40;     // blocks from a window's middle to its border, at most
+constexpr double kBlock = 1 << 20;     // what each block that is no hole adds to the last sum
 constexpr double kRhoUnits = 1 << 20;  // inverse depths are counted in 2^-20 / m
+
+// Windows that are tried, as shares of the largest: equal ratios.
+constexpr int kSizes = 6;
+constexpr float kRatios[kSizes] = {.25F, .329877F, .435275F, .574349F, .757858F, 1};
 
 // What hangs together over a length that is not small beside a window is no error of slopes and
 // bends in it: over n blocks the error of a term of degree 0, 1, 2 varies shared / (1 + this

@@ -177,7 +177,12 @@ void fit_blocks(const FitInput& in, int row, const std::int32_t* columns, int co
       if (c.kind[i] != kNone) rest[fitted++] = i;
     }
     finish(in, row, c, rest, fitted, out);
-    for (int i = 0; i < c.count; ++i) out.at_edge[c.columns[i]] = c.edge[i];
+    constexpr int kLargest = kSizes - 1;
+    for (int i = 0; i < c.count; ++i) {
+      const int reach_u = c.edge[i] ? c.half_u[kLargest][i] : 0;
+      out.reach_u[c.columns[i]] = static_cast<std::uint8_t>(reach_u);
+      out.reach_v[c.columns[i]] = static_cast<std::uint8_t>(c.half_v[kLargest][i]);
+    }
   }
 }
 

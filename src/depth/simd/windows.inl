@@ -14,10 +14,6 @@ constexpr int kLanes = 4;
 typedef double Doubles __attribute__((vector_size(kLanes * sizeof(double))));
 typedef long long Mask __attribute__((vector_size(kLanes * sizeof(double))));
 
-// Counts and weights share a sum: each block that is not a hole adds kBlock, and 12 / pixels if it
-// was measured.
-constexpr double kBlock = 1 << 20;
-
 [[gnu::always_inline]] inline Doubles load(const double* from) {
   Doubles v;
   std::memcpy(&v, from, sizeof v);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/parallel.hpp"
 #include "palpate/depth/filtered_depth.hpp"
 #include "palpate/field/kernel.hpp"
 #include "palpate/geometry/ball.hpp"
@@ -41,17 +42,41 @@ class BlockSurface {
   /// show the same surface, as in a mean of measurements that are not equally good.
   [[nodiscard]] float trust(std::size_t block) const { return trusts_[block]; }
 
+  // The same of all blocks.
+  [[nodiscard]] const std::vector<float>& radii() const { return radii_; }
+  [[nodiscard]] const std::vector<float>& areas() const { return areas_; }
+  [[nodiscard]] const std::vector<float>& trusts() const { return trusts_; }
+  void prefetch(std::size_t block) const {
+    __builtin_prefetch(&radii_[block]);
+    __builtin_prefetch(&areas_[block]);
+    __builtin_prefetch(&trusts_[block]);
+  }
+
  private:
+  static constexpr int kLargestWindow = 8;  // blocks on either side
+
   enum class Exact { nowhere, within, everywhere };
+
+  template <class Visit>
+  static void each_row(const FilteredDepth& depth, const Visit& visit) {
+    constexpr std::size_t kRowsAtATime = 8;
+    detail::parallel_ranges(static_cast<std::size_t>(depth.rows), kRowsAtATime,
+                            [&](std::size_t v, std::size_t end) {
+                              for (; v < end; ++v) visit(v);
+                            });
+  }
 
   void measure(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact);
   void start(const FilteredDepth& depth);
   void limit_growth(const FilteredDepth& depth);
+  void carry(const FilteredDepth& depth, std::ptrdiff_t sign);
   void mark_rims(const FilteredDepth& depth);
   [[nodiscard]] int half_window(const FilteredDepth& depth, std::size_t block) const;
   [[nodiscard]] bool near_rim(const FilteredDepth& depth, std::size_t block, int half) const;
   void list_rims(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact);
-  void lay_out(const FilteredDepth& depth);
+  void make_room(const FilteredDepth& depth, int margin);
+  void lay_out_places(const FilteredDepth& depth, std::size_t v);
+  void lay_out(const FilteredDepth& depth, std::size_t v);
   void trust_row(const FilteredDepth& depth, std::size_t v);
   template <class Take>
   void sum_around(const FilteredDepth& depth, const float* factors, const Take& take);
@@ -64,7 +89,8 @@ class BlockSurface {
   std::vector<float> trusts_;
   std::vector<std::int32_t> rims_;  // blocks without or beside another surface, summed up to each
   std::vector<std::int32_t>
-      halves_;  // of windows whose sums are taken from neighbours; 0: none are
+      halves_;                   // of windows whose sums are taken from neighbours; 0: none are
+  std::vector<int> row_halves_;  // the largest of each row
   int largest_half_ = 0;
 
   // The rest has a margin of nothing all around, so that neighbours are there without asking.

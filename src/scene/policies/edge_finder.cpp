@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/parallel.hpp"
+#include "scene/policies/lanes.hpp"
+
 namespace palpate {
 namespace {
 
@@ -14,6 +17,9 @@ constexpr float kSame = 0.94f;      // and of the largest one within a face
 constexpr float kCertainly = 3;     // deviations
 constexpr float kOfSupport = 0.1f;  // of R, that a face may be bent
 constexpr int kMostAway = 8;        // blocks
+constexpr std::size_t kRowsAtOnce = 8;
+constexpr std::uint8_t kInRow = 1;
+constexpr std::uint8_t kInColumn = 2;
 
 }  // namespace
 
@@ -67,40 +73,78 @@ struct EdgeFinder::Faces {
 };
 
 void EdgeFinder::look(const FilteredDepth& depth, const BlockSurface& surface) {
-  edges_.assign(depth.size(), {});
-  away_.resize(depth.size());
+  for (const Told& told : told_) of_block_[told.block] = kNone;
+  told_.clear();
+  if (of_block_.size() != depth.size()) {
+    of_block_.assign(depth.size(), kNone);
+    told_.reserve(depth.size());
+  }
   const Faces faces{depth, surface};
-  for (int v = 0; v < depth.rows; ++v) {
-    for (int u = 0; u < depth.columns; ++u) {
-      const auto block = static_cast<std::size_t>(v * depth.columns + u);
-      if (!faces.fitted(block)) continue;
-      if (u + kApart < depth.columns) join(faces, block, 1, 0);
-      if (v + kApart < depth.rows) join(faces, block, 0, 1);
+  meets_.resize(depth.size());
+  detail::parallel_ranges(static_cast<std::size_t>(depth.rows), kRowsAtOnce,
+                          [&](std::size_t v, std::size_t end) {
+                            for (; v < end; ++v) look_at(faces, static_cast<int>(v));
+                          });
+  for (std::size_t block = 0; block < depth.size(); ++block) {
+    if ((meets_[block] & kInRow) != 0) join(faces, block, 1, 0);
+    if ((meets_[block] & kInColumn) != 0) join(faces, block, 0, 1);
+  }
+}
+
+/// Which blocks of a row belong to faces that meet others?
+void EdgeFinder::look_at(const Faces& faces, int v) {
+  const FilteredDepth& depth = faces.depth;
+  const std::size_t first = static_cast<std::size_t>(v) * static_cast<std::size_t>(depth.columns);
+  const auto row = depth.states.begin() + static_cast<std::ptrdiff_t>(first);
+  std::fill_n(meets_.begin() + static_cast<std::ptrdiff_t>(first), depth.columns, 0);
+  if (std::find(row, row + depth.columns, BlockState::fitted) == row + depth.columns) return;
+  // Most of an image is flat: there is nothing to look at.
+  const auto flat = [&](std::size_t block, std::size_t by) {
+    const Vector3f* const normals = depth.normals.data() + block;
+    return block + by + kLanes <= depth.size() &&
+           all(dot(load(normals), load(normals + by)) > kTurned);
+  };
+  const auto look_along = [&](int u, int x, int y, std::uint8_t which) {
+    if (flat(first + u, static_cast<std::size_t>(kApart * (y * depth.columns + x)))) return;
+    for (int k = u; k < std::min(u + kLanes, depth.columns - kApart * x); ++k) {
+      if (v + kApart * y < depth.rows && meets(faces, first + k, x, y)) meets_[first + k] |= which;
     }
+  };
+  for (int u = 0; u < depth.columns; u += kLanes) {
+    look_along(u, 1, 0, kInRow);
+    look_along(u, 0, 1, kInColumn);
   }
 }
 
 /// Do the planes of a block and one to its right or below it meet between the two, and explain what
 /// lies there, and do both faces go on?
-void EdgeFinder::join(const Faces& faces, std::size_t a, int x, int y) {
+bool EdgeFinder::meets(const Faces& faces, std::size_t a, int x, int y) {
   const FilteredDepth& depth = faces.depth;
   const std::size_t b = a + static_cast<std::size_t>(kApart * (y * depth.columns + x));
-  if (!faces.fitted(b) || depth.normals[a].dot(depth.normals[b]) > kTurned) return;
+  if (!faces.fitted(a) || !faces.fitted(b)) return false;
+  if (depth.normals[a].dot(depth.normals[b]) > kTurned) return false;
   const float a_over_b = faces.height(a, b);
   const float b_over_a = faces.height(b, a);
   const float both = std::min(std::abs(a_over_b), std::abs(b_over_a));
   if (!(a_over_b * b_over_a > 0) ||
       both <= kCertainly * std::hypot(depth.deviations[a], depth.deviations[b]))
-    return;
+    return false;
   const float share = a_over_b > 0 ? -1.0f : 1.0f;
   for (int k = 1; k < kApart; ++k) {
     const std::size_t between = faces.beside(a, k * x, k * y);
-    if (!faces.fitted(between)) return;
+    if (!faces.fitted(between)) return false;
     const float off = std::max(share * faces.height(between, a), share * faces.height(between, b));
-    if (std::abs(off) > faces.room(between, a)) return;
+    if (std::abs(off) > faces.room(between, a)) return false;
   }
-  if (!faces.goes_on(a, -x, -y) || !faces.goes_on(b, x, y)) return;
-  const float t = a_over_b / (a_over_b + b_over_a);
+  return faces.goes_on(a, -x, -y) && faces.goes_on(b, x, y);
+}
+
+void EdgeFinder::join(const Faces& faces, std::size_t a, int x, int y) {
+  const FilteredDepth& depth = faces.depth;
+  const std::size_t b = a + static_cast<std::size_t>(kApart * (y * depth.columns + x));
+  const float a_over_b = faces.height(a, b);
+  const float share = a_over_b > 0 ? -1.0f : 1.0f;
+  const float t = a_over_b / (a_over_b + faces.height(b, a));
   const Vector3f edge = depth.positions[a] + t * (depth.positions[b] - depth.positions[a]);
   spread(faces, {a, b, edge, x != 0, share});
   spread(faces, {b, a, edge, x != 0, share});
@@ -124,14 +168,19 @@ void EdgeFinder::tell(const Faces& faces, const Meeting& meeting, int x, int y) 
   if (block == depth.size()) return;
   const float reach = faces.surface.radius(meeting.a);
   const float away = (depth.positions[block] - meeting.edge).squaredNorm();
-  const bool told = edges_[block].share != 0 && away_[block] <= away;
-  if (told || away > reach * reach || !faces.shares_face(block, meeting.a)) return;
+  std::uint32_t& number = of_block_[block];
+  const bool nearer = number != kNone && told_[number].away <= away;
+  if (nearer || away > reach * reach || !faces.shares_face(block, meeting.a)) return;
   if (meeting.share * faces.height(block, meeting.b) > faces.room(block, meeting.b)) return;
   const std::size_t mirrored =
       faces.beside(meeting.b, meeting.in_row ? -x : x, meeting.in_row ? y : -y);
   const std::size_t other = faces.shares_face(mirrored, meeting.b) ? mirrored : meeting.b;
-  edges_[block] = {depth.normals[other], faces.height(block, other), meeting.share};
-  away_[block] = away;
+  if (number == kNone) {
+    number = static_cast<std::uint32_t>(told_.size());
+    told_.emplace_back();
+  }
+  const EdgePlane plane{depth.normals[other], faces.height(block, other), meeting.share};
+  told_[number] = {plane, block, away};
 }
 
 }  // namespace palpate

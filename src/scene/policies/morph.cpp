@@ -13,8 +13,10 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kBlocksAtATime = 2048;
-constexpr std::size_t kAhead = 32;  // blocks
+// Places that are settled together: as many as a processor's cache holds, for so many threads.
+constexpr std::size_t kPlaces = 512;
+constexpr std::size_t kPieces = 16;
+constexpr std::size_t kAhead = 64;
 
 // What is not seen stands behind all that is, on a curve through space: cells of the index along
 // the image's would be as deep as the scene. Codes of blocks are below it.
@@ -72,28 +74,88 @@ void Morph::fill(const MorphInput& input, const Moment& moment,
   start(input, moment, *points);
   if (moved_) follow_camera(input);
   by_block_.sort(entries_, order_.size());
-  points_.resize(order_.size());
-  detail::parallel_ranges(order_.size(), kBlocksAtATime, [&](std::size_t b, std::size_t end) {
-    for (; b < end; ++b) points_[b] = new_point(input.depth, b);
-  });
-  for (std::size_t place = 0; place < order_.size(); ++place) {
-    // The curve jumps from row to row, which no processor foresees.
-    if (place + kAhead < order_.size()) __builtin_prefetch(&points_[order_.blocks[place + kAhead]]);
-    settle(input.depth, place);
+  pieces_.resize(kPieces);
+  extremes_ = {};
+  for (std::size_t place = 0; place < order_.size(); place += kPieces * kPlaces) {
+    settle(input.depth, place, std::min(order_.size(), place + kPieces * kPlaces));
   }
   write_unseen();
-  writer_.end();
+  writer_.end(extremes_);
   std::swap(entries_, next_entries_);
   last_ = points;
   last_moment_ = moment;
   T_world_sensor_ = input.depth.T_world_sensor;
 }
 
+/// Places of the curve, shared out: what becomes of their points is decided, then there is known
+/// where they stand among all, then they are written.
+void Morph::settle(const FilteredDepth& depth, std::size_t begin, std::size_t end) {
+  const std::size_t pieces = (end - begin + kPlaces - 1) / kPlaces;
+  detail::parallel_ranges(pieces, 1, [&](std::size_t k, std::size_t last) {
+    for (; k < last; ++k) {
+      const std::size_t first = begin + k * kPlaces;
+      look_at(depth, first, std::min(end, first + kPlaces), pieces_[k]);
+    }
+  });
+  for (std::size_t k = 0; k < pieces; ++k) {
+    Piece& piece = pieces_[k];
+    piece.first = writer_.append(piece.count);
+    gather_unseen(piece);
+  }
+  next_entries_.resize(writer_.count());
+  detail::parallel_ranges(pieces, 1, [&](std::size_t k, std::size_t last) {
+    for (; k < last; ++k) write(pieces_[k]);
+  });
+  for (std::size_t k = 0; k < pieces; ++k) {
+    extremes_.add(pieces_[k].extremes);
+    for (const auto& [at, edge] : pieces_[k].edges) writer_.add_edge(at, edge);
+  }
+}
+
+void Morph::look_at(const FilteredDepth& depth, std::size_t begin, std::size_t end,
+                    Piece& piece) const {
+  piece.going_on.clear();
+  piece.shown.clear();
+  piece.unseen.clear();
+  for (std::size_t place = begin; place < end; place += kLanes) {
+    prefetch(depth, place + kAhead);
+    const Four four = new_points(depth, place);
+    FourWays& ways = piece.going_on.emplace_back();
+    if (place + kLanes <= end && goes_on(four, ways)) continue;
+    piece.going_on.pop_back();
+    for (int l = 0; l < kLanes && place + l < end; ++l) settle(depth, point_of(four, l), piece);
+  }
+  piece.count = kLanes * piece.going_on.size() + piece.shown.size();
+}
+
+void Morph::write(Piece& piece) {
+  piece.extremes = {};
+  piece.edges.clear();
+  std::size_t at = piece.first;
+  auto four = piece.going_on.begin();
+  const auto write_fours_before = [&](std::size_t place) {
+    for (; four != piece.going_on.end() && four->place < place; ++four, at += kLanes) {
+      write(at, *four, piece);
+    }
+  };
+  for (const Way& way : piece.shown) {
+    write_fours_before(way.entry.place);
+    write(at++, way, piece);
+  }
+  write_fours_before(order_.size());
+}
+
+void Morph::write(std::size_t at, const Way& way, Piece& piece) {
+  writer_.write(at, way, piece.extremes);
+  if (way.edge.start.share != 0 || way.edge.end.share != 0) piece.edges.push_back({at, way.edge});
+  next_entries_[at] = way.entry;
+}
+
 void Morph::write_unseen() {
   using Eigen::Array3f;
   Array3f lower = Array3f::Constant(std::numeric_limits<float>::max());
   Array3f upper = -lower;
-  for (const Unseen& unseen : unseen_) {
+  for (const Way& unseen : unseen_) {
     lower = lower.min(unseen.from.position.array());
     upper = upper.max(unseen.from.position.array());
   }
@@ -107,11 +169,14 @@ void Morph::write_unseen() {
   }
   sorting_.resize(unseen_order_.size());
   detail::sort_records(unseen_order_, sorting_, detail::kKeyBits);
+  std::size_t at = writer_.append(unseen_.size());
+  next_entries_.resize(writer_.count());
   for (const detail::Record record : unseen_order_) {
-    const Unseen& unseen = unseen_[record & detail::kPlaceMask];
-    const auto code = static_cast<std::uint32_t>(record >> detail::kPlaceBits);
-    writer_.add(kUnseenCode | code, unseen.from, unseen.to, unseen.edge);
-    next_entries_.push_back(unseen.entry);
+    Way& unseen = unseen_[record & detail::kPlaceMask];
+    unseen.code = kUnseenCode | static_cast<std::uint32_t>(record >> detail::kPlaceBits);
+    writer_.write(at, unseen, extremes_);
+    writer_.add_edge(at, unseen.edge);
+    next_entries_[at++] = unseen.entry;
   }
 }
 
@@ -136,7 +201,6 @@ void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& 
   points.origin = origin_;
   points.kernel = options_.kernel;
   points.one_sided = true;
-  next_entries_.clear();
   unseen_.clear();
   writer_.begin(points, std::max(entries_.size() + entries_.size() / 16, order_.size() / 2));
 }
@@ -205,31 +269,10 @@ EdgePlane Morph::old_edge(std::uint32_t i) const {
 }
 
 /// Of what the block shows that is looked at.
-EdgePlane Morph::new_edge() const {
-  const EdgePlane& edge = edges_.edge(order_.blocks[place_]);
+EdgePlane Morph::new_edge(const Point& point) const {
+  if (point.edge == kNone) return {};
+  const EdgePlane& edge = edges_.plane(point.edge);
   return {turn_ * edge.normal, edge.height, edge.share};
-}
-
-Morph::Point Morph::new_point(const FilteredDepth& depth, std::size_t block) const {
-  Point point;
-  if (surface_.radius(block) == 0) return point;
-  PointState& state = point.state;
-  state.position = turn_ * depth.positions[block] + shift_;
-  state.normal = turn_ * depth.normals[block];
-  state.radius = surface_.radius(block);
-  state.confidence = depth.confidences[block];
-  point.area = surface_.area(block);
-  if (streams_) point.trust = surface_.trust(block);
-  point.variance = depth.deviations[block] * depth.deviations[block];
-  state.weight = point.weight(state.radius);
-  return point;
-}
-
-void Morph::add(const PointState& from, const PointState& to, const EdgeWay& edge,
-                const Entry& entry) {
-  if (entry.kind != EntryKind::live) return unseen_.push_back({from, to, edge, entry});
-  writer_.add(order_.codes[place_], from, to, edge);
-  next_entries_.push_back(entry);
 }
 
 }  // namespace palpate

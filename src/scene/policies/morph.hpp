@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "palpate/depth/filtered_depth.hpp"
@@ -66,34 +67,78 @@ class Morph {
   void forget();
 
  private:
+  static constexpr std::uint32_t kNone = EdgeFinder::kNone;
+
+  // A block is much less sure than what is known from this ratio of variances on, and agrees with
+  // it within so many deviations of the difference.
+  static constexpr float kUnsure = 4;
+  static constexpr float kAgree = 5;
+
+  // Of what a frame says of a point's radius, confidence and edge, this share is taken over.
+  static constexpr float kShare = 0.25f;
+
+  // The least cosine of the angle between the normals of one surface before and after a frame.
+  static constexpr float kTurns = 0.5f;
+
+  /// What the frame shows at a place of the curve; R = 0: nothing.
   struct alignas(64) Point {
     PointState state;
     float area = 0;  // a_i R_i^2
     float trust = 1;
     float variance = 0;  // along the ray, m^2
+    std::uint32_t place = 0;
+    std::uint32_t edge = kNone;  // the finder's
 
     [[nodiscard]] float weight(float radius) const {
       return trust * std::min(1.0f, area / (radius * radius));
     }
   };
-  struct Unseen {
-    PointState from;
-    PointState to;
-    EdgeWay edge;
-    Entry entry;
+  /// The same of four places.
+  struct Four {
+    Vectors position, normal;
+    Floats radius, confidence, area, trust, variance;
+    Ints edges;
+    std::uint32_t place;  // the first
+  };
+  /// What becomes of four points that their blocks show again.
+  struct FourWays {
+    PointStates from, to;
+    Floats variance;
+    std::uint32_t place;  // the first
+  };
+  /// Some places of the curve, one thread's at a time.
+  struct Piece {
+    std::vector<FourWays> going_on;
+    std::vector<Way> shown;   // of places where there is more to decide, in their order
+    std::vector<Way> unseen;  // points that no block shows
+    std::vector<std::pair<std::size_t, EdgeWay>> edges;  // of points
+    std::size_t count = 0;                               // of points that blocks show
+    std::size_t first = 0;                               // of them
+    PointWriter::Extremes extremes;
   };
 
   void start(const MorphInput& input, const Moment& moment, SurfacePoints& points);
   void measure(const MorphInput& input);
   void follow_camera(const MorphInput& input);
-  void settle(const FilteredDepth& depth, std::size_t place);
+  void settle(const FilteredDepth& depth, std::size_t begin, std::size_t end);
+  void look_at(const FilteredDepth& depth, std::size_t begin, std::size_t end, Piece& piece) const;
+  void settle(const FilteredDepth& depth, const Point& point, Piece& to) const;
+  void gather_unseen(const Piece& piece);
+  void write(Piece& piece);
+  void write(std::size_t at, const Way& way, Piece& piece);
+  void write(std::size_t at, const FourWays& ways, Piece& piece);
   void write_unseen();
-  void hold_one(std::span<const std::uint32_t> old);
+  [[nodiscard]] bool goes_on(const Four& seen, FourWays& ways) const;
+  [[nodiscard]] PointStates old_points(std::uint32_t i) const;
+  void follow(const Four& seen, FourWays& ways) const;
+  [[nodiscard]] static Point point_of(const Four& seen, int lane);
+  void hold_one(std::span<const std::uint32_t> old, const Point& point, Piece& to) const;
   [[nodiscard]] PointState old_point(std::uint32_t i) const;
   [[nodiscard]] float depth_of(const Eigen::Vector3f& position) const;
   [[nodiscard]] float speed_of(std::uint32_t i) const;
   [[nodiscard]] float share_of(double time) const;
-  [[nodiscard]] Point new_point(const FilteredDepth& depth, std::size_t block) const;
+  void prefetch(const FilteredDepth& depth, std::size_t place) const;
+  [[nodiscard]] Four new_points(const FilteredDepth& depth, std::size_t place) const;
   [[nodiscard]] std::uint32_t partner_of(const FilteredDepth& depth,
                                          std::span<const std::uint32_t> old, const Point& seen,
                                          PointState& before) const;
@@ -108,17 +153,19 @@ class Morph {
   [[nodiscard]] bool came_aside(const Point& seen) const;
   [[nodiscard]] bool may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const;
   [[nodiscard]] float gain_of(const Point& seen, float known, float advance) const;
-  void follow(const Point& seen, std::uint32_t i, const PointState& from);
-  void appear(const Point& point);
-  void hold(std::uint32_t i, EntryKind kind);
-  void hide(std::uint32_t i);
-  void go(std::uint32_t i);
-  void keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
-            double confirmed);
-  void leave(std::uint32_t i);
-  void add(const PointState& from, const PointState& to, const EdgeWay& edge, const Entry& entry);
+  [[nodiscard]] Way follow(const Point& seen, std::uint32_t i, const PointState& from) const;
+  [[nodiscard]] EdgeWay edge_of(const Point& seen, std::uint32_t i) const;
+  [[nodiscard]] Way appear(const Point& point) const;
+  [[nodiscard]] Way hold(std::uint32_t i, EntryKind kind) const;
+  [[nodiscard]] Way hide(std::uint32_t i) const;
+  [[nodiscard]] Way go(std::uint32_t i) const;
+  [[nodiscard]] Way keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
+                         double confirmed) const;
+  [[nodiscard]] Way leave(std::uint32_t i) const;
+  static void leave(Way& way);
+  void add(Way way, const Point& at, Piece& to) const;
   [[nodiscard]] EdgePlane old_edge(std::uint32_t i) const;
-  [[nodiscard]] EdgePlane new_edge() const;
+  [[nodiscard]] EdgePlane new_edge(const Point& point) const;
 
   MorphOptions options_;
   BlockOrder order_;
@@ -145,10 +192,10 @@ class Morph {
   bool moved_ = false;    // the camera, or its image has another size
   bool still_ = false;
   bool resized_ = false;  // the image, since what was shown last
-  std::uint32_t place_ = 0;
-  std::vector<Point> points_;  // that the frame shows, row by row; R = 0: none
+  std::vector<Piece> pieces_;
+  PointWriter::Extremes extremes_;
   std::vector<Entry> next_entries_;
-  std::vector<Unseen> unseen_;               // points that no block shows
+  std::vector<Way> unseen_;                  // points that no block shows
   std::vector<std::uint64_t> unseen_order_;  // their codes, and places among them
   std::vector<std::uint64_t> sorting_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();

@@ -10,8 +10,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
 // Of the blocks around one, how many have to show the same surface: those of a line.
 constexpr float kVouch = 0.25f;
 
@@ -27,56 +25,52 @@ constexpr double kHidden = 60;
 
 /// What becomes of one block: of the point that the frame has there, and of the old ones. What lies
 /// nearer than what is seen now has been seen through; what lies farther is hidden.
-void Morph::settle(const FilteredDepth& depth, std::size_t place) {
-  const std::span<const std::uint32_t> old = by_block_.at(place);
-  const std::size_t block = order_.blocks[place];
-  const Point& point = points_[block];
-  const bool shown = point.state.radius > 0;
-  if (!shown && old.empty()) return;
-  place_ = static_cast<std::uint32_t>(place);
-  if (!shown) return hold_one(old);
+void Morph::settle(const FilteredDepth& depth, const Point& point, Piece& to) const {
+  const std::span<const std::uint32_t> old = by_block_.at(point.place);
+  if (!(point.state.radius > 0)) return hold_one(old, point, to);
   PointState before;
   const std::uint32_t partner = partner_of(depth, old, point, before);
-  const bool flies = partner == kNone ? last_ && beside(depth, block) < kVouch
+  const bool flies = partner == kNone ? last_ && beside(depth, order_.blocks[point.place]) < kVouch
                                       : turns_away(point, partner, before);
-  if (flies) return hold_one(old);
+  if (flies) return hold_one(old, point, to);
   float at = depth_of(point.state.position);
   if (partner == kNone) {
-    appear(point);
+    add(appear(point), point, to);
   } else if (stays(depth, point, before)) {
     at = depth_of(before.position);
-    keep(partner, before, before.presence + comes_, EntryKind::live, moment_.stamp);
+    const float presence = before.presence + comes_;
+    add(keep(partner, before, presence, EntryKind::live, moment_.stamp), point, to);
   } else {
-    follow(point, partner, before);
+    add(follow(point, partner, before), point, to);
   }
   for (const std::uint32_t i : old) {
     if (i == partner) continue;
     const EntryKind kind = entries_[i].kind;
     const float beyond = depth_of(old_point(i).position) - at;
     if (kind == EntryKind::outside) {
-      hold(i, kind);
+      add(hold(i, kind), point, to);
     } else if (kind == EntryKind::leaving || std::abs(beyond) <= point.state.radius) {
-      leave(i);
+      add(leave(i), point, to);
     } else if (kind == EntryKind::going || beyond < 0 || !may_hide(old, i)) {
-      go(i);
+      add(go(i), point, to);
     } else {
-      hide(i);
+      add(hide(i), point, to);
     }
   }
 }
 
 /// Nothing sure is measured there: of the points that were seen, one stands for the surface.
-void Morph::hold_one(std::span<const std::uint32_t> old) {
+void Morph::hold_one(std::span<const std::uint32_t> old, const Point& point, Piece& to) const {
   bool held = false;
   for (const std::uint32_t i : old) {
     const EntryKind kind = entries_[i].kind;
     const bool second = kind == EntryKind::live && std::exchange(held, true);
     if (kind == EntryKind::going) {
-      go(i);
+      add(go(i), point, to);
     } else if (kind == EntryKind::leaving || second) {
-      leave(i);
+      add(leave(i), point, to);
     } else {
-      hold(i, kind);
+      add(hold(i, kind), point, to);
     }
   }
 }
@@ -119,7 +113,7 @@ std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std:
   return partner;
 }
 
-void Morph::appear(const Point& point) {
+Way Morph::appear(const Point& point) const {
   PointState from = point.state;
   PointState to = point.state;
   if (!still_) from.weight = 0;
@@ -127,8 +121,8 @@ void Morph::appear(const Point& point) {
     from.presence = 0;
     to.presence = std::min(1.0f, comes_);
   }
-  const EdgePlane edge = new_edge();
-  add(from, to, {edge, edge}, {place_, EntryKind::live, moment_.stamp, point.variance});
+  const EdgePlane edge = new_edge(point);
+  return {from, to, EdgeWay{edge, edge}, Entry{moment_.stamp, point.variance}};
 }
 
 /// Of a time that something takes, s, how much a snapshot lasts.
@@ -137,49 +131,72 @@ float Morph::share_of(double time) const {
 }
 
 /// Nothing says that the point is gone, nothing that it is there.
-void Morph::hold(std::uint32_t i, EntryKind kind) {
+Way Morph::hold(std::uint32_t i, EntryKind kind) const {
   const double confirmed = std::min(entries_[i].confirmed, moment_.stamp);  // stamps may go back
   const double unsure = moment_.stamp + moment_.duration - confirmed - options_.silence;
   const auto sure = static_cast<float>(std::clamp(1 - unsure / options_.fade, 0.0, 1.0));
   const PointState from = old_point(i);
   const float most = std::min(from.presence, sure);
-  keep(i, from, std::max(most, from.presence - share_of(options_.fade)), kind, confirmed);
+  const float presence = std::max(most, from.presence - share_of(options_.fade));
+  return keep(i, from, presence, kind, confirmed);
 }
 
 /// Something before it keeps it from being seen.
-void Morph::hide(std::uint32_t i) {
+Way Morph::hide(std::uint32_t i) const {
   const PointState from = old_point(i);
-  keep(i, from, from.presence - share_of(kHidden), EntryKind::hidden, moment_.stamp);
+  return keep(i, from, from.presence - share_of(kHidden), EntryKind::hidden, moment_.stamp);
 }
 
 /// It has been seen through.
-void Morph::go(std::uint32_t i) {
+Way Morph::go(std::uint32_t i) const {
   if (ends_) return leave(i);
   const PointState from = old_point(i);
-  keep(i, from, from.presence - share_of(kGoes), EntryKind::going, entries_[i].confirmed);
+  const float presence = from.presence - share_of(kGoes);
+  return keep(i, from, presence, EntryKind::going, entries_[i].confirmed);
 }
 
 /// Stays where it is, and is as sure as that when the snapshot ends; what nobody is sure of leaves.
-void Morph::keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
-                 double confirmed) {
-  const bool unseen = kind != EntryKind::live;
-  if (from.presence <= 0 || (unseen && ++held_ > order_.size())) return leave(i);
+Way Morph::keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
+                double confirmed) const {
+  if (from.presence <= 0) return leave(i);
   PointState to = from;
   to.presence = std::clamp(presence, 0.0f, 1.0f);
   to.weight = last_->end_density_weights[i];
   const EdgePlane was = old_edge(i);
   EdgePlane edge = was;
-  if (unseen && edge.share < 0) edge.share = 0;  // what it meets may not be there any more
-  add(from, to, {was, edge}, {place_, kind, confirmed, entries_[i].variance});
+  if (kind != EntryKind::live && edge.share < 0)
+    edge.share = 0;  // what it meets may not be there any more
+  return {from, to, EdgeWay{was, edge}, Entry{confirmed, entries_[i].variance, 0, kind}};
 }
 
-void Morph::leave(std::uint32_t i) {
+Way Morph::leave(std::uint32_t i) const {
   const PointState from = old_point(i);
-  if (from.weight <= kGone) return;
-  PointState to = from;
-  to.weight = 0;
-  const EdgePlane edge = old_edge(i);
-  add(from, to, {edge, edge}, {place_, EntryKind::leaving, entries_[i].confirmed});
+  Way way{from, from, {old_edge(i), {}}, entries_[i]};
+  leave(way);
+  return way;
+}
+
+void Morph::leave(Way& way) {
+  way.to = way.from;
+  way.to.weight = 0;
+  way.edge.end = way.edge.start;
+  way.entry.kind = EntryKind::leaving;
+}
+
+void Morph::add(Way way, const Point& at, Piece& to) const {
+  if (way.entry.kind == EntryKind::leaving && way.from.weight <= kGone) return;
+  way.entry.place = at.place;
+  way.code = order_.codes[at.place];
+  (way.entry.kind == EntryKind::live ? to.shown : to.unseen).push_back(way);
+}
+
+/// No more of them than there are blocks: what comes later leaves.
+void Morph::gather_unseen(const Piece& piece) {
+  for (Way way : piece.unseen) {
+    const bool held = way.entry.kind != EntryKind::leaving && ++held_ > order_.size();
+    if (held) leave(way);
+    if (!held || way.from.weight > kGone) unseen_.push_back(way);
+  }
 }
 
 }  // namespace palpate

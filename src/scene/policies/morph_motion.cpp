@@ -13,15 +13,7 @@ constexpr float kVouchToMove = 0.6f;
 
 constexpr float kBeside = 0.5f;  // R by which depths of one surface differ from block to block
 
-// A block is much less sure than what is known from this ratio of variances on, and agrees with it
-// within so many deviations of the difference.
-constexpr float kUnsure = 4;
-constexpr float kAgree = 5;
-
-// Of what a frame says of a point's radius, confidence and edge, this share is taken over; an edge
-// with no more than the other share is none.
-constexpr float kShare = 0.25f;
-constexpr float kLeastShare = 0.01f;
+constexpr float kLeastShare = 0.01f;  // of an edge; with less it is none
 
 // What moves faster along its normal is another surface, m/s.
 constexpr float kFastest = 1;
@@ -31,9 +23,6 @@ constexpr float kGrazing = 0.3f;
 
 // A surface that jumps goes on by so much faster than before, m/s: 0.3 N a millisecond at 500 N/m.
 constexpr float kSudden = 0.6f;
-
-// The least cosine of the angle between the normals of one surface before and after a frame.
-constexpr float kTurns = 0.5f;
 
 }  // namespace
 
@@ -60,7 +49,7 @@ bool Morph::turns_away(const Point& seen, std::uint32_t i, const PointState& bef
 /// shows that, too? Such a frame does not tell where the surface is.
 bool Morph::stays(const FilteredDepth& depth, const Point& seen, const PointState& before) const {
   return (before.position - seen.state.position).norm() > seen.state.radius &&
-         beside(depth, order_.blocks[place_]) < kVouchToMove;
+         beside(depth, order_.blocks[seen.place]) < kVouchToMove;
 }
 
 /// Has what was there come along the ray to what is seen now?
@@ -70,7 +59,7 @@ bool Morph::may_move(const FilteredDepth& depth, const Point& seen, std::uint32_
   const float fastest = kFastest + std::min(speed_of(i), kSudden);
   return !turns(seen, before.normal) &&
          advance_of(seen, before.position) <= fastest * static_cast<float>(moment_.duration) &&
-         beside(depth, order_.blocks[place_]) >= kVouchToMove && !came_aside(seen);
+         beside(depth, order_.blocks[seen.place]) >= kVouchToMove && !came_aside(seen);
 }
 
 /// The share of blocks around one that show the same surface: what flies between two has few.
@@ -89,7 +78,7 @@ float Morph::beside(const FilteredDepth& depth, std::size_t block) const {
 /// Was what a block shows now beside it before? Then the rim of something moved, or is noisy.
 bool Morph::came_aside(const Point& seen) const {
   bool found = false;
-  visit_beside(order_.columns, order_.rows, order_.blocks[place_], [&](std::size_t other) {
+  visit_beside(order_.columns, order_.rows, order_.blocks[seen.place], [&](std::size_t other) {
     for (const std::uint32_t i : by_block_.at(place_of_block_[other])) {
       const float apart = depth_of(old_point(i).position) - depth_of(seen.state.position);
       const bool same = std::abs(apart) < kBeside * seen.state.radius;
@@ -116,7 +105,7 @@ float Morph::gain_of(const Point& seen, float known, float advance) const {
 }
 
 /// Lets the old point go to the new one.
-void Morph::follow(const Point& seen, std::uint32_t i, const PointState& from) {
+Way Morph::follow(const Point& seen, std::uint32_t i, const PointState& from) const {
   PointState to = seen.state;
   const float known = entries_[i].variance * doubt_;
   const float apart = (to.position - from.position).dot(to.normal);
@@ -133,13 +122,18 @@ void Morph::follow(const Point& seen, std::uint32_t i, const PointState& from) {
   to.weight = seen.weight(to.radius);
   if (to.normal.isZero(0)) to.normal = from.normal;
   to.presence = std::min(1.0f, from.presence + comes_);
+  return {from, to, edge_of(seen, i), Entry{moment_.stamp, gain < 1 ? known : seen.variance}};
+}
+
+/// What an old point that is seen again meets: most meet nothing.
+EdgeWay Morph::edge_of(const Point& seen, std::uint32_t i) const {
+  if (seen.edge == kNone && last_->edges.of_point[i] == PointEdges::kNone) return {};
   const EdgePlane was = old_edge(i);
-  EdgePlane edge = new_edge();
+  EdgePlane edge = new_edge(seen);
   const float share = was.share + kShare * (edge.share - was.share);
   if (edge.share == 0) edge = was;
   edge.share = std::abs(share) > kLeastShare ? share : 0;
-  add(from, to, {was, edge},
-      {place_, EntryKind::live, moment_.stamp, gain < 1 ? known : seen.variance});
+  return {was, edge};
 }
 
 }  // namespace palpate

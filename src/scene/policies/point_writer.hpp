@@ -3,9 +3,12 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "palpate/field/surface_points.hpp"
+#include "scene/policies/block_entries.hpp"
+#include "scene/policies/lanes.hpp"
 
 namespace palpate {
 
@@ -19,50 +22,65 @@ struct PointState {
   float presence = 1;
 };
 
+/// Of points side by side.
+struct PointStates {
+  Vectors position, normal;
+  Floats weight, radius, confidence, presence;
+};
+
 /// What a point meets at either end of its way; share 0: no edge.
 struct EdgeWay {
   EdgePlane start;
   EdgePlane end;
 };
 
-/// Writes moving points, which come in the order of a curve, into the columns of surface points,
-/// using their memory again.
+/// Of a point while a snapshot lasts.
+struct Way {
+  PointState from;
+  PointState to;
+  EdgeWay edge;
+  Entry entry;
+  std::uint32_t code = 0;  ///< of its place in the index, never falling from point to point
+};
+
+/// Writes moving points into the columns of surface points, using their memory again. Several
+/// threads may write points of their own.
 class PointWriter {
  public:
+  /// What is to be known of all points together.
+  struct Extremes {
+    Floats radius = Floats{} + std::numeric_limits<float>::max();  ///< the smallest in each lane, m
+    Floats presence = Floats{} + 1.0f;                             ///< the least
+
+    void add(const Extremes& other) {
+      radius = least(radius, other.radius);
+      presence = least(presence, other.presence);
+    }
+  };
+
   /// What `points` held is lost. `expected`: about how many points will come.
   void begin(SurfacePoints& points, std::size_t expected);
 
-  void add(std::uint32_t code, const PointState& start, const PointState& end,
-           const EdgeWay& edge) {
-    if (count_ == room_) make_room(count_ + count_ / 4 + 1024);
-    codes_[count_] = code;
-    starts_[count_] = start.position;
-    SurfacePoints& p = *points_;
-    p.normals[count_] = start.normal;
-    p.density_weights[count_] = start.weight;
-    p.radii[count_] = start.radius;
-    p.confidences[count_] = start.confidence;
-    p.presences[count_] = start.presence;
-    p.end_positions[count_] = end.position;
-    p.end_normals[count_] = end.normal;
-    p.end_density_weights[count_] = end.weight;
-    p.end_radii[count_] = end.radius;
-    p.end_confidences[count_] = end.confidence;
-    p.end_presences[count_] = end.presence;
-    const bool beside = edge.start.share != 0 || edge.end.share != 0;
-    p.edges.of_point[count_] = beside ? add_edge(edge) : PointEdges::kNone;
-    unsure_ = unsure_ || start.presence < 1 || end.presence < 1;
-    ++count_;
-  }
+  /// Makes room for so many points behind those there are; tells where. Allocates only to grow.
+  std::size_t append(std::size_t count);
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
+  /// Writes a point into the room for it. Codes of points never fall.
+  void write(std::size_t at, const Way& way, Extremes& extremes);
+
+  /// Writes points side by side that lie beside no edge.
+  void write(std::size_t at, const std::uint32_t* codes, const PointStates& from,
+             const PointStates& to, Extremes& extremes);
+
+  /// Puts a written point beside an edge. One thread, in rising order of points.
+  void add_edge(std::size_t at, const EdgeWay& edge);
+
   /// Indexes the points and finishes them as palpate::finish() does.
-  void end();
+  void end(const Extremes& extremes);
 
  private:
   void make_room(std::size_t room);
-  [[nodiscard]] std::uint32_t add_edge(const EdgeWay& edge);
   void measure_reach();
   void measure_radii();
 
@@ -72,7 +90,6 @@ class PointWriter {
   std::vector<float> sample_;
   std::size_t count_ = 0;
   std::size_t room_ = 0;
-  bool unsure_ = false;
 };
 
 }  // namespace palpate
