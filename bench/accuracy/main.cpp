@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "accuracy/drawn_table.hpp"
+#include "accuracy/recorded.hpp"
 #include "accuracy/sweep.hpp"
 #include "palpate/base/error.hpp"
 
@@ -16,6 +17,7 @@ using namespace palpate::accuracy;
 
 struct Arguments {
   BenchOptions bench;
+  RecordedOptions recorded;
   palpate::PrepareOptions prepare;
   std::vector<std::string> fields;
   std::vector<std::string> noises = {"a"};
@@ -36,6 +38,17 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("--sweep", arguments.sweep, "A plane and a sphere alone, by distance and incidence")
       ->excludes(fixed)
       ->excludes(drawn);
+  RecordedOptions& recorded = arguments.recorded;
+  auto* recording =
+      app.add_option("--recording", recorded.folder, "Flat parts of a real recording instead")
+          ->excludes(fixed)
+          ->excludes(drawn);
+  app.add_option("--first-frame", recorded.first, "Number of its first frame, from 0")
+      ->needs(recording);
+  app.add_option("--frames", recorded.count, "Frames through which nothing moves")
+      ->needs(recording)
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--ways", recorded.ways, "Straight ways through its free air")->needs(recording);
   app.add_option("--noise", arguments.noises, "a independent, b blurred, c quantised, none")
       ->delimiter(',')
       ->check(CLI::IsMember({"a", "b", "c", "none"}));
@@ -104,6 +117,11 @@ std::string report(const Arguments& arguments, const BenchResults& results,
 int run(Arguments& arguments) {
   const std::vector<Contender> contenders = chosen(arguments);
   if (contenders.empty()) throw palpate::Error("no column matches --field; try balanced or paper");
+  if (!arguments.recorded.folder.empty()) {
+    arguments.recorded.seed = arguments.bench.first_seed;
+    fmt::print("{}", recorded_report(arguments.recorded, contenders));
+    return 0;
+  }
   std::string scores = csv_header();
   for (const std::string& noise : arguments.noises) {
     arguments.bench.noise = kind_of(noise);

@@ -50,6 +50,13 @@ Path slide(const Vector3d& from, const Vector3d& to, const Vector3d& normal, dou
       .build();
 }
 
+Path slide_over(const Solid& half_space, double turn, double length, double depth) {
+  const Eigen::Isometry3d& pose = half_space.T_world_solid;
+  const Vector3d half = pose.linear() * Vector3d(std::cos(turn), std::sin(turn), 0) * (length / 2);
+  const Vector3d place = pose.translation();
+  return slide(place - half, place + half, pose.linear().col(2), depth);
+}
+
 Vector3d direction_on(const Arc& arc, double t) {
   const double angle = (2 * t - 1) * arc.half;
   return std::cos(angle) * arc.middle + std::sin(angle) * arc.side;

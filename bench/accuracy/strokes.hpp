@@ -12,6 +12,9 @@ inline constexpr double kPathClearance = 0.01;  ///< above the surface, where pa
 [[nodiscard]] Path slide(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                          const Eigen::Vector3d& normal, double depth);
 
+/// The same over the middle of a half-space, `length` long (m), `turn` from its x (rad).
+[[nodiscard]] Path slide_over(const Solid& half_space, double turn, double length, double depth);
+
 /// A part of a great circle: its middle, its direction there (unit vectors) and half of it, rad.
 struct Arc {
   Eigen::Vector3d middle;

@@ -48,17 +48,6 @@ std::string bin_name(const Bin& bin) {
                      kIncidences[bin.incidence], kIncidences[bin.incidence + 1]);
 }
 
-// The camera is the world's origin. What is not there is a speck a hundred metres behind it.
-TruthScene empty_scene() {
-  TruthScene scene;
-  for (Solid& solid : scene.solids) {
-    solid.kind = SolidKind::ball;
-    solid.size = Vector3d::Constant(1e-3);
-    solid.T_world_solid.translation() = Vector3d(0, 0, -100);
-  }
-  return scene;
-}
-
 SweepCase draw_case(const Bin& bin, Random& random) {
   const double z = between(random, kDistances[bin.distance], kDistances[bin.distance + 1]);
   const double incidence =
@@ -71,7 +60,7 @@ SweepCase draw_case(const Bin& bin, Random& random) {
   const Vector3d right = view.cross(Vector3d::UnitX()).normalized();
   const Vector3d axis = std::cos(about) * right + std::sin(about) * view.cross(right);
   const Vector3d normal = Eigen::AngleAxisd(incidence, axis) * view;
-  SweepCase drawn{empty_scene(), {}};
+  SweepCase drawn{make_empty_scene(), {}};
   Solid& solid = drawn.truth.solids[0];
   if (bin.sphere) {
     solid.size = Vector3d::Constant(kBallRadius);
@@ -79,12 +68,8 @@ SweepCase draw_case(const Bin& bin, Random& random) {
     drawn.path = sphere_arc(solid, {normal, axis, kHalfArc});
     return drawn;
   }
-  solid.kind = SolidKind::half_space;
-  solid.T_world_solid.linear() << axis, normal.cross(axis), normal;
-  solid.T_world_solid.translation() = place;
-  const Vector3d half = solid.T_world_solid.linear() * Vector3d(std::cos(turn), std::sin(turn), 0) *
-                        (kSweepLength / 2);
-  drawn.path = slide(place - half, place + half, normal, kSlideDepth);
+  solid = half_space(place, normal, axis);
+  drawn.path = slide_over(solid, turn, kSweepLength, kSlideDepth);
   return drawn;
 }
 

@@ -16,7 +16,6 @@ std::vector<double> values_of(const BenchResults& results, const std::string& co
       values.push_back(target.of(result.score));
     }
   }
-  std::sort(values.begin(), values.end());
   return values;
 }
 
@@ -59,14 +58,18 @@ Limit limit_of(const Target& target, const std::string& contender) {
   return contender == kUnorganised ? target.points : Limit{};
 }
 
-Spread spread(const BenchResults& results, const std::string& contender, const Target& target) {
-  const std::vector<double> values = values_of(results, contender, target);
+Spread spread(std::vector<double> values) {
   if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
   const double median =
       values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
   return {median,
           std::abs(values.front()) > std::abs(values.back()) ? values.front() : values.back()};
+}
+
+Spread spread(const BenchResults& results, const std::string& contender, const Target& target) {
+  return spread(values_of(results, contender, target));
 }
 
 bool met(const BenchResults& results, const std::string& contender, const Target& target) {

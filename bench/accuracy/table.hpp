@@ -36,6 +36,7 @@ struct Spread {
   double worst = 0;  ///< the largest in absolute value
 };
 
+[[nodiscard]] Spread spread(std::vector<double> values);
 [[nodiscard]] Spread spread(const BenchResults& results, const std::string& contender,
                             const Target& target);
 

@@ -23,6 +23,15 @@ struct TruthScene {
 /// @throws palpate::Error when there is no such layout.
 [[nodiscard]] TruthScene make_truth_scene(int layout = 0);
 
+/// One with nothing in it and the camera at the world's origin: what has to be there is a speck a
+/// hundred metres behind it.
+[[nodiscard]] TruthScene make_empty_scene();
+
+/// All behind a plane through `place` (m) that faces along `normal`; `side` is its own x. Both
+/// unit, at a right angle.
+[[nodiscard]] Solid half_space(const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
+                               const Eigen::Vector3d& side);
+
 /// To the nearest solid: exact wherever x is outside of all of them.
 [[nodiscard]] Distance distance_and_normal(const TruthScene& scene, const Eigen::Vector3d& x);
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/palpate/exploration_plan.hpp"
+#include "apps/palpate/run/exploration_plan.hpp"
 #include "device/double_library.hpp"
 #include "device/drivers.hpp"
 #include "device/fake_haply_service.hpp"

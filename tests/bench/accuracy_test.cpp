@@ -39,6 +39,21 @@ TEST(Accuracy, OfTheDefaultsMeetsTableA) {
   expect_targets_met(options);
 }
 
+// A frame in which two sides of a small ball were once taken for faces that meet, with 24 degrees.
+TEST(Accuracy, OfABallIsNotThatOfAPolyhedron) {
+  BenchOptions options;
+  options.layouts = 1;
+  options.first_layout = 408;
+  options.seeds = 1;
+  options.noise = NoiseKind::blurred;
+  options.rows = {"sphere"};
+  std::vector<Contender> contenders = all_contenders();
+  contenders.resize(1);
+  const BenchResults results = run_bench(options, contenders);
+  ASSERT_EQ(results.results.size(), 1u);
+  EXPECT_LT(results.results[0].score.normal, 12);
+}
+
 TEST(Accuracy, OfTheDefaultsMeetsTableAWhereNeighboursErrTogether) {
   if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   BenchOptions options;

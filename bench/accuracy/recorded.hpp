@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "accuracy/contender.hpp"
+
+namespace palpate::accuracy {
+
+struct RecordedOptions {
+  std::filesystem::path folder;  ///< of a recording, as docs/sequences.md describes it
+  std::size_t first = 0;         ///< number of its first frame that is used
+  std::size_t count = 1;         ///< frames through which nothing moved
+  int patches = 40;              ///< flat parts that are touched
+  int ways = 10000;              ///< through free air
+  std::uint64_t seed = 1;
+};
+
+/// Flat parts of a real recording, touched in each of its frames, against planes of the frames'
+/// averages; what noise is measured there and what the filter is told; and straight ways through
+/// air that is farther from all that a frame shows than 20 mm and than noise takes it. As Markdown.
+/// @throws palpate::Error when the recording has no such frames, or nothing flat.
+[[nodiscard]] std::string recorded_report(const RecordedOptions& options,
+                                          const std::vector<Contender>& contenders);
+
+}  // namespace palpate::accuracy
