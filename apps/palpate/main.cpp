@@ -3,20 +3,20 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 
-#include "apps/palpate/align_command.hpp"
-#include "apps/palpate/cameras_command.hpp"
-#include "apps/palpate/demo_command.hpp"
-#include "apps/palpate/devices_command.hpp"
-#include "apps/palpate/doctor_command.hpp"
-#include "apps/palpate/errors.hpp"
-#include "apps/palpate/info_command.hpp"
-#include "apps/palpate/paper_command.hpp"
-#include "apps/palpate/picture_script.hpp"
-#include "apps/palpate/setup_file.hpp"
-#include "apps/palpate/suggestion.hpp"
-#include "apps/palpate/touch_command.hpp"
-#include "apps/palpate/words.hpp"
-#include "apps/palpate/zwidth_command.hpp"
+#include "apps/palpate/align/align_command.hpp"
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/suggestion.hpp"
+#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/devices/cameras_command.hpp"
+#include "apps/palpate/devices/devices_command.hpp"
+#include "apps/palpate/doctor/doctor_command.hpp"
+#include "apps/palpate/info/info_command.hpp"
+#include "apps/palpate/options/setup_file.hpp"
+#include "apps/palpate/paper/paper_command.hpp"
+#include "apps/palpate/plot/picture_script.hpp"
+#include "apps/palpate/touch/demo_command.hpp"
+#include "apps/palpate/touch/touch_command.hpp"
+#include "apps/palpate/zwidth/zwidth_command.hpp"
 
 namespace palpate::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/chosen_source.hpp"
+#include "apps/palpate/options/chosen_source.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 

@@ -1,8 +1,8 @@
-#include "apps/palpate/arguments.hpp"
+#include "apps/palpate/cli/arguments.hpp"
 
 #include <gtest/gtest.h>
 
-#include "apps/palpate/errors.hpp"
+#include "apps/palpate/cli/errors.hpp"
 
 namespace palpate::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "apps/palpate/browser.hpp"
+#include "apps/palpate/view/browser.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "apps/palpate/cloud_facts.hpp"
+#include "apps/palpate/sources/cloud_facts.hpp"
 
 #include <gtest/gtest.h>
 

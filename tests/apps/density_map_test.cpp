@@ -1,4 +1,4 @@
-#include "apps/palpate/density_map.hpp"
+#include "apps/palpate/info/density_map.hpp"
 
 #include <gtest/gtest.h>
 

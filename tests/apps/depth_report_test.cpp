@@ -1,10 +1,10 @@
-#include "apps/palpate/depth_report.hpp"
+#include "apps/palpate/report/depth_report.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "apps/palpate/json.hpp"
+#include "apps/palpate/cli/json.hpp"
 
 namespace palpate::app {
 namespace {

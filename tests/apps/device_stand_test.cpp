@@ -1,10 +1,10 @@
 // Where a device stands in the scene, as the options behind its name say.
-#include "apps/palpate/device_stand.hpp"
+#include "apps/palpate/options/device_stand.hpp"
 
 #include <gtest/gtest.h>
 
-#include "apps/palpate/device_choice.hpp"
-#include "apps/palpate/errors.hpp"
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/options/device_choice.hpp"
 #include "support/contains.hpp"
 
 namespace palpate::app {

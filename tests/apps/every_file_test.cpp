@@ -7,10 +7,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/exploration_plan.hpp"
-#include "apps/palpate/touch_run.hpp"
-#include "apps/palpate/touch_surface.hpp"
-#include "apps/palpate/touched.hpp"
+#include "apps/palpate/options/touch_surface.hpp"
+#include "apps/palpate/run/exploration_plan.hpp"
+#include "apps/palpate/sources/touched.hpp"
+#include "apps/palpate/touch/touch_run.hpp"
 #include "apps/program.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"

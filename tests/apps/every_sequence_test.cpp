@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "apps/palpate/run.hpp"
-#include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/options/touch_surface.hpp"
+#include "apps/palpate/run/run.hpp"
 #include "support/effort.hpp"
 
 namespace palpate::app {

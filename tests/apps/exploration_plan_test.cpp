@@ -1,8 +1,8 @@
-#include "apps/palpate/exploration_plan.hpp"
+#include "apps/palpate/run/exploration_plan.hpp"
 
 #include <gtest/gtest.h>
 
-#include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/options/touch_surface.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/synthetic.hpp"
 

@@ -1,10 +1,10 @@
-#include "apps/palpate/live_run.hpp"
+#include "apps/palpate/touch/live_run.hpp"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/options/touch_surface.hpp"
 
 namespace palpate::app {
 namespace {

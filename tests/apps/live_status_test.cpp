@@ -1,4 +1,4 @@
-#include "apps/palpate/live_status.hpp"
+#include "apps/palpate/touch/live_status.hpp"
 
 #include <gtest/gtest.h>
 

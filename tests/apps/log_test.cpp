@@ -1,4 +1,4 @@
-#include "apps/palpate/log.hpp"
+#include "apps/palpate/report/log.hpp"
 
 #include <gtest/gtest.h>
 

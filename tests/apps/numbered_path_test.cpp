@@ -1,4 +1,4 @@
-#include "apps/palpate/numbered_path.hpp"
+#include "apps/palpate/cli/numbered_path.hpp"
 
 #include <gtest/gtest.h>
 

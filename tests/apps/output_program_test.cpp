@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/output.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "apps/program.hpp"
 
 namespace palpate::app {

@@ -1,4 +1,4 @@
-#include "apps/palpate/recording.hpp"
+#include "apps/palpate/report/recording.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "apps/palpate/setup_file.hpp"
+#include "apps/palpate/options/setup_file.hpp"
 #include "apps/setup_parsed.hpp"
 #include "palpate/base/error.hpp"
 

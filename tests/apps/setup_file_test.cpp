@@ -1,4 +1,4 @@
-#include "apps/palpate/setup_file.hpp"
+#include "apps/palpate/options/setup_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "apps/palpate/chosen_source.hpp"
-#include "apps/palpate/setup_keys.hpp"
-#include "apps/palpate/touch_surface.hpp"
+#include "apps/palpate/options/chosen_source.hpp"
+#include "apps/palpate/options/setup_keys.hpp"
+#include "apps/palpate/options/touch_surface.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 #include "support/effort.hpp"

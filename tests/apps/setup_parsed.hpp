@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "apps/palpate/setup_file.hpp"
+#include "apps/palpate/options/setup_file.hpp"
 #include "apps/program.hpp"
 
 namespace palpate::app {

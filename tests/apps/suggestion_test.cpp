@@ -1,4 +1,4 @@
-#include "apps/palpate/suggestion.hpp"
+#include "apps/palpate/cli/suggestion.hpp"
 
 #include <gtest/gtest.h>
 

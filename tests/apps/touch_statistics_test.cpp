@@ -1,4 +1,4 @@
-#include "apps/palpate/touch_statistics.hpp"
+#include "apps/palpate/run/touch_statistics.hpp"
 
 #include <gtest/gtest.h>
 

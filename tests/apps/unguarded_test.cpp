@@ -1,4 +1,4 @@
-#include "apps/palpate/unguarded.hpp"
+#include "apps/palpate/run/unguarded.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

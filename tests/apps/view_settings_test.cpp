@@ -1,4 +1,4 @@
-#include "apps/palpate/view_settings.hpp"
+#include "apps/palpate/run/view_settings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "apps/palpate/words.hpp"
+#include "apps/palpate/cli/words.hpp"
 
 #include <gtest/gtest.h>
 

@@ -24,6 +24,9 @@ FLOORS = {
     "apps": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "align", "scene",
              "sensor", "device", "servo", "viewer"},
 }
+# The rooms of the program, from the top down: what stands in one line sees what stands below it.
+ROOMS = [{"align", "devices", "doctor", "info", "paper", "touch", "zwidth"}, {"view"}, {"report"},
+         {"run"}, {"sources"}, {"options"}, {"plot"}, {"cli"}]
 # Single headers that a floor may include of a floor that it may not see otherwise.
 ALLOWED = {("contact", "palpate/field/field.hpp")}
 
@@ -68,6 +71,23 @@ def floors(root):
                 continue
             if there not in FLOORS[here]:
                 yield f"{name}:{number}: {here} must not include {found[1]} of {there}"
+
+
+def rooms(root):
+    """Includes of the program's files point down its rooms; only main.cpp stands in none."""
+    height = {room: -depth for depth, row in enumerate(ROOMS) for room in row}
+    for path in sources(root, ("apps",)):
+        name = path.relative_to(root)
+        if name.parts[1:] == ("palpate", "main.cpp"):
+            continue
+        here = name.parts[2]
+        if here not in height:
+            yield f"{name}: no room of the program; ROOMS in tests/project/rules.py lists them"
+            continue
+        for number, line in enumerate(lines(path), 1):
+            found = re.match(r'\s*#\s*include\s+"apps/palpate/(\w+)/', line)
+            if found and found[1] != here and height.get(found[1], 1) >= height[here]:
+                yield f"{name}:{number}: {here} must not include what is in {found[1]}"
 
 
 def public_headers(root):
@@ -133,7 +153,7 @@ def links(root):
 
 
 RULES = {rule.__name__: rule
-         for rule in (floors, public_headers, macros, marks, size, readme, links)}
+         for rule in (floors, rooms, public_headers, macros, marks, size, readme, links)}
 
 
 def main():

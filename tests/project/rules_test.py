@@ -41,6 +41,15 @@ class Rules(unittest.TestCase):
                  "src/base/a.cpp": "#include <vector>\n"}
         self.assertEqual(self.found(rules.floors, files), [])
 
+    def test_a_room_of_the_program_sees_those_below_it_alone(self):
+        for line, count in (('#include "apps/palpate/cli/words.hpp"\n', 0),
+                            ('#include "apps/palpate/view/view.hpp"\n', 1),
+                            ('#include "apps/palpate/attic/view.hpp"\n', 1)):
+            files = {"apps/palpate/run/a.cpp": line}
+            self.assertEqual(len(self.found(rules.rooms, files)), count, line)
+        self.assertEqual(len(self.found(rules.rooms, {"apps/palpate/a.cpp": ""})), 1)
+        self.assertEqual(self.found(rules.rooms, {"apps/palpate/main.cpp": ""}), [])
+
     def test_a_third_party_in_a_public_header_is_found(self):
         name = "include/palpate/io/a.hpp"
         for line in ("#include <fmt/format.h>\n", "#include <zlib.h>\n", '#include "io/b.hpp"\n'):

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <span>
 
+#include "apps/palpate/cli/words.hpp"
 #include "apps/palpate/doctor/kernel.hpp"
 #include "apps/palpate/doctor/rights.hpp"
-#include "apps/palpate/words.hpp"
 
 namespace palpate::app::doctor {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "apps/palpate/words.hpp"
+#include "apps/palpate/cli/words.hpp"
 
 namespace palpate::app::doctor {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "apps/palpate/python_drawing.hpp"
+#include "apps/palpate/plot/python_drawing.hpp"
 
 namespace palpate::app::doctor {
 

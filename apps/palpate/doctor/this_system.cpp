@@ -17,7 +17,7 @@
 #include <string_view>
 #include <thread>
 
-#include "apps/palpate/child_program.hpp"
+#include "apps/palpate/cli/child_program.hpp"
 #include "apps/palpate/doctor/library_trial.hpp"
 #include "palpate/base/waiting_clock.hpp"
 #include "palpate/sensor/open_camera.hpp"

@@ -1,0 +1,221 @@
+#include "apps/palpate/align/align_command.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <sstream>
+
+#include "apps/palpate/align/align_picture.hpp"
+#include "apps/palpate/cli/distinct_files.hpp"
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/option_checks.hpp"
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/waiting.hpp"
+#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/options/chosen_source.hpp"
+#include "apps/palpate/options/setup_file.hpp"
+#include "apps/palpate/options/setup_keys.hpp"
+#include "apps/palpate/options/touch_usage.hpp"
+#include "apps/palpate/sources/touched.hpp"
+#include "palpate/align/align.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+constexpr const char* kAlignFooter = R"(Examples:
+  palpate align camera:simulated:left camera:simulated:right,error=0.05 --output desk.toml
+  palpate align --setup rough.toml --output desk.toml --picture desk.png
+  palpate align a.ply b.ply --pose b=0.1,0,0,0,0,0,1
+  palpate touch --setup desk.toml
+
+The first source stays where it is; each of the others shares surface with those before it and stands
+right to some 10 cm and 10 degrees: by --pose, by the set-up file or, where cameras stand close
+together, without either. What they see together must not slide along itself, as a bare table-top does.
+docs/cameras.md tells more.
+
+Exit codes: 0 done, 1 the input is at fault or holds no sure answer, 2 the command line is wrong.)";
+
+std::vector<double> numbers_of(const Eigen::Isometry3d& pose) {
+  const Eigen::Vector3d p = pose.translation();
+  const Eigen::Quaterniond q(pose.linear());
+  return {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
+}
+
+toml::array list_of(const std::string& text) {
+  toml::array list;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) list.push_back(std::stod(part));
+  return list;
+}
+
+void insert(toml::table& part, const SetupKey& key, const std::string& text) {
+  const bool is_list = text.find(',') != std::string::npos;
+  if (key.kind == KeyKind::number) {
+    part.insert_or_assign(key.key, std::stod(text));
+  } else if (key.kind == KeyKind::integer) {
+    part.insert_or_assign(key.key, std::stoll(text));
+  } else if (key.kind == KeyKind::flag) {
+    part.insert_or_assign(key.key, true);
+  } else if (key.kind == KeyKind::numbers || (key.kind == KeyKind::numbers_or_text && is_list)) {
+    part.insert_or_assign(key.key, list_of(text));
+  } else {
+    part.insert_or_assign(key.key, text);
+  }
+}
+
+// What the command line says of sources stands above all that the file does.
+void insert_given(toml::table& file, toml::array& sources, const CLI::App& command) {
+  for (const char* section : {"reading", "surface", "stream"}) {
+    for (const SetupKey& key : keys_of(section)) {
+      const CLI::Option* option = command.get_option_no_throw(option_of(key.key));
+      if (option == nullptr || option->count() == 0) continue;
+      toml::table& part = *file.insert(section, toml::table{}).first->second.as_table();
+      insert(part, key, option->results().back());
+      for (toml::node& source : sources) source.as_table()->erase(key.key);
+    }
+  }
+}
+
+// As a set-up file in the folder of `output` names it.
+std::string path_from(const std::string& output, const std::string& path) {
+  const bool sequence = path.starts_with(kSequence);
+  const std::string file = sequence ? path.substr(kSequence.size()) : path;
+  if (!sequence && (path == "-" || path.starts_with(kCamera) || path.starts_with(kSynthetic))) {
+    return path;
+  }
+  if (fs::path(file).is_absolute()) return path;
+  const fs::path folder = fs::absolute(output).parent_path();
+  return (sequence ? std::string(kSequence) : "") + fs::proximate(file, folder).string();
+}
+
+// The set-up file that was read, if any, with these sources and their poses.
+std::string setup_text(const CLI::App& command, const AlignOptions& options,
+                       const std::vector<ChosenSource>& chosen) {
+  const std::string& setup = options.touch.setup;
+  toml::table file = setup.empty() ? toml::table{} : toml::parse_file(setup);
+  toml::array sources;
+  if (const toml::array* list = file["source"].as_array()) sources = *list;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (i >= sources.size()) sources.push_back(toml::table{});
+    toml::table& source = *sources[i].as_table();
+    source.insert_or_assign("name", chosen[i].argument.name);
+    source.insert_or_assign("from", path_from(options.output, chosen[i].argument.path));
+    toml::array pose;
+    for (const double number : numbers_of(chosen[i].pose)) pose.push_back(number);
+    source.insert_or_assign("pose", pose);
+  }
+  insert_given(file, sources, command);
+  file.insert_or_assign("source", sources);
+  std::ostringstream text;
+  text << "# Poses found by palpate align.\n" << file << "\n";
+  return text.str();
+}
+
+std::string fit_in_words(const Fit& fit) {
+  return fmt::format("{} apart, {:.0f} % of it lies on others", length(fit.residual),
+                     100 * fit.overlap);
+}
+
+void print_source(const ChosenSource& source, const AlignedSource& aligned, std::FILE* out) {
+  const Style style(out);
+  const Eigen::Isometry3d& moved = aligned.T_aligned_rough;
+  fmt::print(out, "{} {}\n", style.heading(source.argument.name), source.argument.path);
+  fmt::print(out, "  before     {}\n  after      {}\n", fit_in_words(aligned.before),
+             fit_in_words(aligned.after));
+  if (aligned.place_deviation > 0) {
+    fmt::print(out, "  turned by  {:.2f} degrees\n  sure to    {} and {:.3f} degrees (one sigma)\n",
+               kDegrees * Eigen::AngleAxisd(moved.linear()).angle(),
+               length(aligned.place_deviation), kDegrees * aligned.turn_deviation);
+  }
+  fmt::print(out, "  pose       --pose {}={:.6g}\n", source.argument.name,
+             fmt::join(numbers_of(source.pose), ","));
+}
+
+nlohmann::ordered_json json_of(const ChosenSource& source, const AlignedSource& aligned) {
+  const auto fit = [](const Fit& f) {
+    return nlohmann::ordered_json{{"residual_m", f.residual}, {"overlap", f.overlap}};
+  };
+  return {{"name", source.argument.name},
+          {"source", source.argument.path},
+          {"pose", numbers_of(source.pose)},
+          {"before", fit(aligned.before)},
+          {"after", fit(aligned.after)},
+          {"sigma", {{"place_m", aligned.place_deviation}, {"turn_rad", aligned.turn_deviation}}}};
+}
+
+void check_outputs(const AlignOptions& options) {
+  check_usage(options.touch);
+  if (options.output.empty()) return;
+  check_distinct({}, {{"--output", options.output},
+                      {"--json", options.touch.json},
+                      {"--picture", options.touch.picture}});
+  if (options.output == "-" || !fs::exists(options.output)) return;
+  throw UsageError(
+      fmt::format("--output {} is there already and is not overwritten; name another "
+                  "file or remove it",
+                  options.output));
+}
+
+std::vector<AlignedSource> solve(const Touched& touched) {
+  std::vector<RoughSource> rough;
+  for (std::size_t i = 0; i < touched.sources.size(); ++i) {
+    rough.push_back({touched.sources[i].argument.name, touched.scene.source(i).points()});
+  }
+  const Waiting waiting("aligning");
+  return align(rough);
+}
+
+}  // namespace
+
+void add_align_options(CLI::App& command, AlignOptions& options) {
+  add_placed_sources(command, options.touch);
+  const auto add = [&](const std::string& name, std::string& value, const std::string& help) {
+    return command.add_option(name, value, wrapped(help))->group("Output");
+  };
+  add("--output", options.output,
+      "the poses as a set-up file for 'palpate touch --setup', with all else that --setup and the "
+      "command line say; never overwrites one")
+      ->type_name("FILE.toml");
+  add_json_option(command, options.touch.json)->group("Output");
+  add("--picture", options.touch.picture,
+      "the sources before and after as PNG (needs python3-matplotlib)")
+      ->type_name("FILE.png");
+  command.footer(kAlignFooter);
+  options.touch.choices.fit_everywhere = true;
+}
+
+void align_sources(const CLI::App& command, AlignOptions& options) {
+  apply_setup(command, options.touch);
+  check_outputs(options);
+  std::optional<OutputFile> output, json;
+  if (!options.output.empty()) output.emplace(options.output);
+  if (!options.touch.json.empty()) json.emplace(options.touch.json);
+  std::optional<AlignPicture> picture;
+  if (!options.touch.picture.empty()) picture.emplace(options.touch.picture);
+  std::vector<ChosenSource> chosen = choose_sources(options.touch);
+  require(chosen.size() > 1, "aligning takes two sources or more; name another");
+  const Touched touched = prepare_touched(options.touch, true);
+  const std::vector<AlignedSource> aligned = solve(touched);
+  nlohmann::ordered_json report = nlohmann::ordered_json::array();
+  std::FILE* out = options.output == "-" || options.touch.json == "-" ? stderr : stdout;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    chosen[i].pose = aligned[i].T_aligned_rough * chosen[i].pose;
+    print_source(chosen[i], aligned[i], out);
+    report.push_back(json_of(chosen[i], aligned[i]));
+  }
+  write_whole(json, report.dump(2) + "\n");
+  write_whole(output, setup_text(command, options, chosen));
+  if (picture) picture->draw(touched, aligned);
+}
+
+}  // namespace palpate::app

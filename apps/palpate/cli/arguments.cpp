@@ -1,0 +1,198 @@
+#include "apps/palpate/cli/arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "apps/palpate/cli/errors.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/depth/sensor_profiles.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+std::optional<double> number_in(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+// "simulated:table,rate=60" is called simulated-table.
+std::string name_of_camera(std::string_view text) {
+  std::string name;
+  for (const char c : text.substr(0, text.find(','))) {
+    const bool fits = is_name({&c, 1});
+    if (fits) name += c;
+    if (!fits && !name.empty() && name.back() != '-') name += '-';
+  }
+  while (name.ends_with('-')) name.pop_back();
+  return name.empty() ? "camera" : name;
+}
+
+std::string name_of_path(const std::string& path) {
+  if (path == "-") return "stdin";
+  if (path.starts_with(kSynthetic)) return path.substr(kSynthetic.size());
+  if (path.starts_with(kCamera)) return name_of_camera(path.substr(kCamera.size()));
+  std::filesystem::path file(path);
+  if (path.starts_with(kSequence)) file = path.substr(kSequence.size());
+  if (!file.has_filename()) file = file.parent_path();  // a folder with a slash behind it
+  std::filesystem::path name = file.filename();
+  if (name.extension() == ".gz") name = name.stem();
+  return name.stem().empty() ? "cloud" : name.stem().string();
+}
+
+std::string free_name(const std::string& wanted, const std::set<std::string>& taken) {
+  std::string name = wanted;
+  for (int i = 2; taken.contains(name); ++i) name = fmt::format("{}-{}", wanted, i);
+  return name;
+}
+
+}  // namespace
+
+std::vector<double> parse_numbers(const std::string& text, std::size_t count,
+                                  const std::string& option, const std::string& form) {
+  std::vector<double> values;
+  std::string_view rest = text;
+  while (true) {
+    const std::size_t end = rest.find(',');
+    const std::optional<double> value = number_in(rest.substr(0, end));
+    if (!value) {
+      const std::string_view wrong = rest.substr(0, end);
+      const std::string where = wrong == text ? "" : fmt::format(" in '{}'", text);
+      throw UsageError(
+          fmt::format("{}: '{}' is not a finite number{}; write {}", option, wrong, where, form));
+    }
+    values.push_back(*value);
+    if (end == std::string_view::npos) break;
+    rest.remove_prefix(end + 1);
+  }
+  if (values.size() != count) {
+    throw UsageError(fmt::format("{}: '{}' has {} numbers instead of {}; write {}", option, text,
+                                 values.size(), count, form));
+  }
+  return values;
+}
+
+Eigen::Vector3d parse_point(const std::string& text, const std::string& option) {
+  const std::vector<double> v = parse_numbers(text, 3, option, "x,y,z in metres, such as 0,0,1.2");
+  return {v[0], v[1], v[2]};
+}
+
+Pinhole parse_intrinsics(const std::string& text) {
+  const std::vector<double> v =
+      parse_numbers(text, 4, "--intrinsics", "fx,fy,cx,cy in pixels, such as 525,525,319.5,239.5");
+  if (v[0] <= 0 || v[1] <= 0) {
+    throw UsageError(fmt::format("--intrinsics: focal lengths {}, {} must be above 0", v[0], v[1]));
+  }
+  return {v[0], v[1], v[2], v[3]};
+}
+
+NoiseModel parse_noise(const std::string& text) {
+  if (std::ranges::none_of(text, [](char c) { return c == ','; })) {
+    try {
+      return sensor_profile(text).noise;
+    } catch (const Error& error) {
+      throw UsageError(fmt::format("--noise: {}", error.what()));
+    }
+  }
+  const auto commas = static_cast<std::size_t>(std::ranges::count(text, ','));
+  const std::vector<double> v =
+      parse_numbers(text, commas == 3 ? 4 : 3, "--noise",
+                    "S0,S1,S2 or S0,S1,S2,C, such as 0.0012,0,0.0019 for 1.2 mm + 1.9 mm z^2");
+  NoiseModel model;
+  std::copy_n(v.begin(), 3, model.coefficients.begin());
+  if (v.size() == 4) model.correlation = v[3];
+  if (model.correlation < 1) {
+    throw UsageError(fmt::format("--noise: a correlation of {}; it is 1 or more", v[3]));
+  }
+  return model;
+}
+
+Eigen::Isometry3d pose_of(const std::vector<double>& v, const std::string& what) {
+  const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+  if (std::abs(rotation.norm() - 1) > 0.01) {
+    throw UsageError(fmt::format(
+        "{}: the quaternion's length is {:.4g}; it must be 1 (the order is qx,qy,qz,qw)", what,
+        rotation.norm()));
+  }
+  return Eigen::Translation3d(v[0], v[1], v[2]) * rotation.normalized();
+}
+
+PoseArgument parse_pose(const std::string& text) {
+  const std::string form = "NAME=x,y,z,qx,qy,qz,qw in metres and as a unit quaternion";
+  const std::size_t place = text.find('=');
+  if (place == std::string::npos || place == 0) {
+    throw UsageError(fmt::format("--pose: '{}' names no source; write {}", text, form));
+  }
+  const std::vector<double> v = parse_numbers(text.substr(place + 1), 7, "--pose", form);
+  const std::string name = text.substr(0, place);
+  return {name, pose_of(v, "--pose " + name)};
+}
+
+bool is_name(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+  });
+}
+
+CloudArgument split_argument(const std::string& text) {
+  std::error_code ignored;
+  const std::size_t place = text.find('=');
+  const bool named = place != std::string::npos && !std::filesystem::exists(text, ignored) &&
+                     is_name(std::string_view(text).substr(0, place));
+  return named ? CloudArgument{text.substr(0, place), text.substr(place + 1)}
+               : CloudArgument{"", text};
+}
+
+bool lives(const std::string& path) {
+  return path.starts_with(kCamera) || path.starts_with(kSequence) || path.ends_with(".oni");
+}
+
+bool names_something(const std::string& path) {
+  return !path.empty() && path != kCamera && path != kSequence && path != kSynthetic;
+}
+
+void name_all(std::vector<CloudArgument>& sources) {
+  for (const CloudArgument& source : sources) {
+    if (names_something(source.path)) continue;
+    throw UsageError(
+        fmt::format("'{}' names nothing; write a file's path, camera:NAME, sequence:FOLDER or "
+                    "synthetic:NAME",
+                    source.path));
+  }
+  std::set<std::string> taken;
+  for (const CloudArgument& source : sources) {
+    if (source.name.empty() || taken.insert(source.name).second) continue;
+    throw UsageError(
+        fmt::format("two sources are named '{}'; give each its own name", source.name));
+  }
+  for (CloudArgument& source : sources) {
+    if (!source.name.empty()) continue;
+    source.name = free_name(name_of_path(source.path), taken);
+    taken.insert(source.name);
+  }
+  const auto standard_input = [](const CloudArgument& source) { return source.path == "-"; };
+  if (std::ranges::count_if(sources, standard_input) > 1) {
+    throw UsageError("standard input (-) can be read only once");
+  }
+}
+
+std::vector<CloudArgument> parse_clouds(const std::vector<std::string>& arguments) {
+  std::vector<CloudArgument> clouds(arguments.size());
+  std::ranges::transform(arguments, clouds.begin(), split_argument);
+  name_all(clouds);
+  return clouds;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,128 @@
+#include "apps/palpate/cli/output.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool as_it_is(const std::string& path) {
+  std::error_code ignored;
+  return path == "-" || (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored));
+}
+
+std::string where_links_lead(const std::string& path) {
+  std::error_code failed;
+  const fs::path place = fs::weakly_canonical(fs::absolute(path), failed);
+  return failed ? path : place.string();
+}
+
+// A file that may not be written must not be replaced either.
+bool protects_itself(const std::string& place) {
+  return access(place.c_str(), F_OK) == 0 && access(place.c_str(), W_OK) != 0;
+}
+
+}  // namespace
+
+void OutputFile::Closer::operator()(std::FILE* file) const {
+  if (file != stdout) std::fclose(file);
+}
+
+OutputFile::OutputFile(const std::string& path)
+    : path_(path == "-" ? "standard output" : path), place_(path), growing_(path) {
+  if (path == "-") {
+    file_.reset(stdout);
+    return;
+  }
+  if (!as_it_is(path)) {
+    place_ = where_links_lead(path);
+    if (protects_itself(place_)) fail("cannot be written");
+    growing_ = fmt::format("{}.part-{}", place_, getpid());
+  }
+  open();
+  if (growing_ == place_ || nameless_) return;
+  file_.reset();
+  std::remove(growing_.c_str());
+}
+
+OutputFile::~OutputFile() {
+  if (file_ && growing_ != place_ && !nameless_) std::remove(growing_.c_str());
+}
+
+void OutputFile::open() {
+  if (file_ || open_nameless()) return;
+  file_.reset(std::fopen(growing_.c_str(), growing_ == place_ ? "wb" : "wbx"));
+  if (!file_) fail("cannot be made");
+}
+
+// One that is never seen, however the program ends. Not every file system has such files.
+bool OutputFile::open_nameless() {
+  if (growing_ == place_ || access("/proc/self/fd", F_OK) != 0) return false;
+  const std::string folder = fs::path(place_).parent_path().string();
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor < 0) return false;
+  file_.reset(fdopen(descriptor, "wb"));
+  nameless_ = file_ != nullptr;
+  if (!nameless_) ::close(descriptor);
+  return nameless_;
+}
+
+// linkat() does not replace what is there, rename() does.
+bool OutputFile::name() {
+  const std::string itself = fmt::format("/proc/self/fd/{}", fileno(file_.get()));
+  return linkat(AT_FDCWD, itself.c_str(), AT_FDCWD, growing_.c_str(), AT_SYMLINK_FOLLOW) == 0;
+}
+
+std::string OutputFile::growing() {
+  open();
+  if (!nameless_) return growing_;
+  const int descriptor = fileno(file_.get());
+  fcntl(descriptor, F_SETFD, 0);  // the other program has it by the same number
+  return fmt::format("/dev/fd/{}", descriptor);
+}
+
+void OutputFile::write(std::string_view text) {
+  open();
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) {
+    fail("cannot be written");
+  }
+}
+
+void OutputFile::close() {
+  open();
+  if (std::fflush(file_.get()) != 0) fail("cannot be written");
+  if (file_.get() == stdout) return;
+  if (nameless_ && !name()) fail("cannot be written");
+  const bool closed = std::fclose(file_.release()) == 0;
+  if (growing_ == place_) {
+    if (!closed) fail("cannot be written");
+    return;
+  }
+  if (closed && std::rename(growing_.c_str(), place_.c_str()) == 0) return;
+  const int reason = errno;
+  std::remove(growing_.c_str());
+  errno = reason;
+  fail("cannot be written");
+}
+
+void OutputFile::fail(const char* what) const {
+  throw Error(fmt::format("{} {}: {}; choose another place", path_, what, std::strerror(errno)));
+}
+
+void write_whole(std::optional<OutputFile>& file, std::string_view text) {
+  if (!file) return;
+  file->write(text);
+  file->close();
+}
+
+}  // namespace palpate::app

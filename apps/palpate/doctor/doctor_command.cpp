@@ -1,0 +1,65 @@
+#include "apps/palpate/doctor/doctor_command.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/option_checks.hpp"
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/waiting.hpp"
+#include "apps/palpate/doctor/checks.hpp"
+#include "apps/palpate/doctor/report.hpp"
+#include "apps/palpate/doctor/this_system.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr int kWarnings = 3;
+constexpr double kLongest = 3600;  // s
+
+constexpr const char* kDoctorFooter =
+    R"(It changes nothing: it prints commands, and you decide whether to run them.
+
+Examples:
+  palpate doctor
+  palpate doctor --jitter 60
+  palpate doctor --jitter 0 --json -
+
+Exit codes: 0 nothing is wrong (notes tell what is absent), 1 a problem (something that is there does
+not work) or the list could not be written, 2 the command line is wrong, 3 warnings.)";
+
+void write_json(const doctor::Findings& findings, const std::string& path) {
+  OutputFile file(path);
+  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  file.write(doctor::as_json(findings).dump(2, ' ', false, replace));
+  file.write("\n");
+  file.close();
+}
+
+}  // namespace
+
+void add_doctor_options(CLI::App& command, DoctorOptions& options) {
+  command
+      .add_option("--jitter", options.jitter,
+                  wrapped("for how long to measure how late steps at 1 kHz are; 0: not at all"))
+      ->check(
+          number("from 0 to 3600 s", [](double value) { return value >= 0 && value <= kLongest; }))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  add_json_option(command, options.json)->group("Output");
+  command.footer(kDoctorFooter);
+}
+
+int examine(const DoctorOptions& options) {
+  const doctor::Findings findings = [&] {
+    const Waiting waiting("looking at this machine");
+    return doctor::check_all(doctor::this_system(), options.jitter);
+  }();
+  doctor::print(findings, options.json == "-" ? stderr : stdout);
+  if (!options.json.empty()) write_json(findings, options.json);
+  const doctor::Severity severity = doctor::worst(findings);
+  if (severity == doctor::Severity::problem) return kFailure;
+  return severity == doctor::Severity::warning ? kWarnings : kSuccess;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,124 @@
+#include "apps/palpate/plot/python_drawing.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "apps/palpate/cli/child_program.hpp"
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/plot/picture_script.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+// A folder of our own that vanishes with its contents.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "palpate-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) {
+      throw Error(
+          fmt::format("{} cannot be made for the picture's data; set TMPDIR to a folder with "
+                      "room",
+                      pattern));
+    }
+    path_ = pattern;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void write_file(const std::string& path, std::string_view bytes) {
+  OutputFile file(path);
+  file.write(bytes);
+  file.close();
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream stream(path);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// The last line that says something: Python's own error.
+std::string last_line(const std::string& text) {
+  std::istringstream stream(text);
+  std::string line;
+  std::string last;
+  while (std::getline(stream, line)) {
+    if (!line.empty()) last = line;
+  }
+  return last;
+}
+
+}  // namespace
+
+std::string drawing_python() {
+  const char* debian = "/usr/bin/python3";
+  return access(debian, X_OK) == 0 ? debian : "python3";
+}
+
+std::vector<std::string> drawing_trial() {
+  return {drawing_python(), "-c",
+          "import importlib.util, sys; sys.exit(importlib.util.find_spec('matplotlib') is None)"};
+}
+
+void check_picture(const std::string& path) {
+  if (path.empty()) return;
+  if (path == "-") {
+    throw UsageError("--picture cannot go to standard output; name a file such as a.png");
+  }
+  const std::filesystem::path file(path);
+  const std::string ending = file.extension().string();
+  if (!ending.empty() && ending != ".png" && ending != ".PNG") {
+    throw UsageError(fmt::format("--picture {}: pictures are PNG; name it {}", path,
+                                 std::filesystem::path(file).replace_extension(".png").string()));
+  }
+  if (run_program(drawing_trial(), "/dev/null") == 0) return;
+  throw Error(
+      fmt::format("{} cannot be drawn: Python 3 with matplotlib is missing; install it with "
+                  "'apt install python3-matplotlib', or leave --picture out",
+                  path));
+}
+
+std::string float_bytes(const std::vector<float>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+void draw_by_python(std::string_view script, const std::vector<DrawingData>& data,
+                    const std::string& path, OutputFile& picture) {
+  const TemporaryFolder folder;
+  for (const DrawingData& each : data) write_file(folder.file(each.name), each.bytes);
+  write_file(folder.file("drawing.py"), drawing_script());
+  write_file(folder.file("draw.py"), script);
+  const std::string complaints = folder.file("complaints.txt");
+  const int code = run_program(
+      {drawing_python(), "-B", folder.file("draw.py"), folder.file(""), picture.growing()},
+      complaints);
+  if (code == 0) return picture.close();
+  if (code == 127 || code == 3) {
+    throw Error(
+        fmt::format("{} was not drawn: Python 3 with matplotlib is missing; install it with "
+                    "'apt install python3-matplotlib' (everything else was written)",
+                    path));
+  }
+  throw Error(fmt::format("{} was not drawn: {} (everything else was written)", path,
+                          last_line(read_text(complaints))));
+}
+
+}  // namespace palpate::app

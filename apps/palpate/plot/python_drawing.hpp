@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/palpate/cli/output.hpp"
+
+namespace palpate::app {
+
+/// A file that a drawing script reads.
+struct DrawingData {
+  std::string name;
+  std::string bytes;
+};
+
+/// The Python that draws: Debian's own first, since that is the one python3-matplotlib belongs to.
+[[nodiscard]] std::string drawing_python();
+
+/// A command that succeeds where there is Python with matplotlib; imports nothing, so that it takes
+/// no time.
+[[nodiscard]] std::vector<std::string> drawing_trial();
+
+/// Of --picture, before any work; empty: none is wanted.
+/// @throws UsageError when its place is standard output or has another kind's ending than .png;
+/// Error when Python or matplotlib is missing, naming the package.
+void check_picture(const std::string& path);
+
+/// The bytes of numbers in single precision, as numpy.fromfile reads them.
+[[nodiscard]] std::string float_bytes(const std::vector<float>& values);
+
+/// Draws `picture` (`path` in messages) by a script for Python with matplotlib, which is given the
+/// folder with `data` and the picture's place; closes `picture`.
+/// @throws Error when Python or matplotlib is missing, naming the package, or drawing fails.
+void draw_by_python(std::string_view script, const std::vector<DrawingData>& data,
+                    const std::string& path, OutputFile& picture);
+
+}  // namespace palpate::app

@@ -1,0 +1,58 @@
+#include "apps/palpate/report/log.hpp"
+
+#include <iterator>
+#include <string_view>
+
+namespace palpate::app {
+
+namespace {
+
+constexpr std::size_t kFlush = 1 << 16;  // bytes
+
+}  // namespace
+
+TouchLog::TouchLog(const std::string& path) : file_(path) {
+  buffer_.reserve(kFlush + 1024);
+}
+
+// What a device tells it tells in every step.
+void TouchLog::begin(bool orientation, bool gripper) {
+  buffer_.append(std::string_view(
+      "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,fx,fy,fz,us,touching,sliding,nx,ny,nz,"
+      "stiffness,iterations,evaluations,patch_points,source,notes,field_notes"));
+  if (orientation) buffer_.append(std::string_view(",qx,qy,qz,qw"));
+  if (gripper) buffer_.append(std::string_view(",gripper"));
+  buffer_.push_back('\n');
+  begun_ = true;
+}
+
+void TouchLog::add(const TouchStep& step) {
+  if (!begun_) begin(step.orientation.has_value(), step.gripper.has_value());
+  const Contact& c = step.contact;
+  const Eigen::Vector3d& h = step.hip;
+  fmt::format_to(std::back_inserter(buffer_),
+                 "{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{},", step.time, h.x(), h.y(),
+                 h.z(), c.proxy.x(), c.proxy.y(), c.proxy.z(), c.force.x(), c.force.y(),
+                 c.force.z(), step.microseconds, c.touching ? 1 : 0, c.sliding ? 1 : 0,
+                 c.normal.x(), c.normal.y(), c.normal.z());
+  fmt::format_to(std::back_inserter(buffer_), "{},{},{},{},{},{},{}", c.stiffness, c.iterations,
+                 c.evaluations, step.patch_points, c.source, static_cast<unsigned>(c.notes),
+                 static_cast<unsigned>(step.notes));
+  if (const auto& q = step.orientation) {
+    fmt::format_to(std::back_inserter(buffer_), ",{},{},{},{}", q->x(), q->y(), q->z(), q->w());
+  }
+  if (step.gripper) fmt::format_to(std::back_inserter(buffer_), ",{}", *step.gripper);
+  buffer_.push_back('\n');
+  if (buffer_.size() < kFlush) return;
+  file_.write({buffer_.data(), buffer_.size()});
+  buffer_.clear();
+}
+
+void TouchLog::close() {
+  if (!begun_) begin(false, false);
+  file_.write({buffer_.data(), buffer_.size()});
+  buffer_.clear();
+  file_.close();
+}
+
+}  // namespace palpate::app

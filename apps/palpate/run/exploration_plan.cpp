@@ -1,0 +1,212 @@
+#include "apps/palpate/run/exploration_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "apps/palpate/options/touch_surface.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/device/exploration.hpp"
+#include "palpate/geometry/box.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr double kReach = 0.3;          // m across that a hand on a desk reaches
+constexpr double kPatch = 0.6;          // m across that a hand explores in some seconds ...
+constexpr double kPatchRadii = 20;      // ... or, where that is more, as many R
+constexpr double kDepth = 0.75;         // R under the surface
+constexpr double kLargestForce = 4;     // N
+constexpr double kPaperMultiple = 2.5;  // m = R / s where s is not known
+constexpr float kUpward = 0.7F;         // of a normal's z: it looks up, give or take 45 degrees
+constexpr double kClearance = 2e-3;     // m of the hand, from the surface to where a device stands
+
+// All sources' points, relative to one origin. A single source's are not copied: it may be large.
+struct Union {
+  std::vector<std::shared_ptr<const SurfacePoints>> sources;
+  Vector3d origin = Vector3d::Zero();
+  std::vector<Vector3f> points;
+  std::vector<Vector3f> normals;
+  Box box;
+  double radius = 0;   // of the source with most points
+  double spacing = 0;  // likewise; 0: not known
+
+  [[nodiscard]] ExploredSurface view() const {
+    if (sources.size() > 1) return {origin, points, normals};
+    return {origin, sources.front()->grid.points(), sources.front()->normals};
+  }
+};
+
+void append(Union& all, const SurfacePoints& source) {
+  const Vector3f shift = (source.origin - all.origin).cast<float>();
+  for (const Vector3f& p : source.grid.points()) all.points.push_back(p + shift);
+  if (source.normals.empty()) {
+    all.normals.resize(all.points.size(), Vector3f::Zero());
+  } else {
+    all.normals.insert(all.normals.end(), source.normals.begin(), source.normals.end());
+  }
+}
+
+Union unite(const Scene& scene) {
+  Union all;
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const std::shared_ptr<const SurfacePoints> source = scene.source(i).points();
+    if (!source || source->size() == 0) continue;
+    if (all.sources.empty()) all.origin = source->origin;
+    all.sources.push_back(source);
+    const CellGrid::Cell& root = source->grid.cells().front();
+    const Vector3d shift = source->origin - all.origin;
+    all.box.extend(root.lower.cast<double>() + shift);
+    all.box.extend(root.upper.cast<double>() + shift);
+    if (source->size() > most) {
+      all.radius = source->radius;
+      all.spacing = scene.source(i).report().spacing;
+    }
+    most = std::max(most, source->size());
+  }
+  if (all.sources.empty()) throw Error("there is nothing to explore: no cloud has a point");
+  if (all.sources.size() > 1) {
+    for (const auto& source : all.sources) append(all, *source);
+  }
+  return all;
+}
+
+// The sum of raw weights at a point of a plane: m^2 times the kernel's integral over the plane.
+double raw_weight(Kernel kernel, double multiple) {
+  const double integral = 2 * std::numbers::pi / (kernel == Kernel::wyvill ? 27. / 4 : 14.);
+  return multiple * multiple * integral;
+}
+
+// How far the felt surface lies above the points.
+double offset(const FieldOptions& field, const Union& all, double tool_radius) {
+  if (field.kind != FieldKind::metaball) return tool_radius;
+  double level = field.threshold;
+  if (field.raw_weights) {
+    level /= raw_weight(field.kernel, all.spacing > 0 ? all.radius / all.spacing : kPaperMultiple);
+  }
+  return plane_offset(field.kernel, level) * all.radius + tool_radius;
+}
+
+double choose_scale(double patch, double stiffness) {
+  const double scale = workspace_scale(patch);
+  if (stiffness == 0 || scale * stiffness <= kStiffest) return scale;
+  return std::min(scale, std::max(1.0, kStiffest / stiffness));
+}
+
+// What exploring and standing have in common.
+struct Extent {
+  double patch = 0;  // m across
+  double scale = 1;
+  double stiffness = 0;  // N/m in the world
+};
+
+Extent extent_of(const Union& all, const PlanOptions& options) {
+  const double widest = std::max(kPatch, kPatchRadii * all.radius);
+  Extent extent;
+  extent.patch = std::max(std::min(all.box.size().maxCoeff(), widest), all.radius);
+  extent.scale = options.scale.value_or(choose_scale(extent.patch, options.stiffness));
+  extent.stiffness = options.stiffness > 0 ? options.stiffness : kStiffness / extent.scale;
+  return extent;
+}
+
+// Upward where there is none.
+Vector3f normal_at(const ExploredSurface& surface, std::size_t point) {
+  const bool known = !surface.normals.empty() && !surface.normals[point].isZero();
+  return known ? surface.normals[point] : Vector3f::UnitZ();
+}
+
+// The place over which a hand that comes down meets the surface nearest to its middle; where
+// nothing looks up, the one that is nearest to it.
+std::size_t standing_place(const ExploredSurface& surface) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3f& p : surface.points) sum += p.cast<double>();
+  const Vector3f middle = (sum / static_cast<double>(surface.points.size())).cast<float>();
+  struct Nearest {
+    std::size_t point = 0;
+    float distance = std::numeric_limits<float>::infinity();  // squared
+    void take(std::size_t i, float d) {
+      if (d < distance) *this = {i, d};
+    }
+  };
+  Nearest across;
+  Nearest any;
+  for (std::size_t i = 0; i < surface.points.size(); ++i) {
+    const Vector3f way = surface.points[i] - middle;
+    any.take(i, way.squaredNorm());
+    if (normal_at(surface, i).z() >= kUpward) across.take(i, way.head<2>().squaredNorm());
+  }
+  return std::isfinite(across.distance) ? across.point : any.point;
+}
+
+}  // namespace
+
+double workspace_scale(double extent) {
+  const double wanted = extent / kReach;
+  if (wanted >= 0.2 && wanted <= 4) return 1;
+  const double decade = std::pow(10, std::floor(std::log10(wanted)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (wanted <= step * decade) return step * decade;
+  }
+  return 10 * decade;
+}
+
+ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
+                                 const PlanOptions& options) {
+  const Union all = unite(scene);
+  ExplorationPlan plan;
+  const Extent extent = extent_of(all, options);
+  const double scale = extent.scale;
+  plan.patch = extent.patch;
+  plan.workspace.scale = scale;
+  plan.stiffness = extent.stiffness;
+  plan.depth = std::min(kDepth * all.radius, kLargestForce / plan.stiffness);
+
+  ExplorationOptions explore_options;
+  explore_options.duration = options.duration;
+  explore_options.period = 1 / options.rate;
+  explore_options.radius = all.radius;
+  // Hand and surface are springs in a row: the hand has to want more than it gets.
+  const double felt = plan.workspace.felt_stiffness(plan.stiffness);
+  explore_options.depth = plan.depth * (1 + felt / options.hand.stiffness);
+  explore_options.offset = offset(field, all, options.tool_radius);
+  explore_options.patch = plan.patch;
+  explore_options.slide_speed = scale * std::clamp(0.5 * plan.patch / scale, 0.05, 0.2);
+  explore_options.travel_speed = scale * std::clamp(plan.patch / scale, 0.1, 0.3);
+  explore_options.seed = options.seed;
+  explore_options.progress = options.progress;
+  plan.target = explore(all.view(), explore_options);
+
+  Box way;
+  for (const TrajectoryRow& row : plan.target) way.extend(row.position);
+  plan.workspace.T_world_device.translation() = way.center();
+  for (TrajectoryRow& row : plan.target) {
+    row.position = plan.workspace.position_to_device(row.position);
+  }
+  return plan;
+}
+
+Stand plan_stand(const Scene& scene, const FieldOptions& field, const PlanOptions& options) {
+  const Union all = unite(scene);
+  const ExploredSurface surface = all.view();
+  const Extent extent = extent_of(all, options);
+  const std::size_t point = standing_place(surface);
+  const double height = offset(field, all, options.tool_radius) + kClearance * extent.scale;
+  Stand stand;
+  stand.stiffness = extent.stiffness;
+  stand.workspace.scale = extent.scale;
+  stand.workspace.T_world_device.translation() = surface.origin +
+                                                 surface.points[point].cast<double>() +
+                                                 height * normal_at(surface, point).cast<double>();
+  return stand;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,190 @@
+#include "apps/palpate/run/view_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "apps/palpate/cli/names.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr double kMillimetre = 1e-3;
+constexpr const char* kAutomatic = "automatic";
+
+Setting number(const char* key, const char* label, const char* unit, double least, double most,
+               double step, double value) {
+  Setting setting;
+  setting.key = key;
+  setting.label = label;
+  setting.unit = unit;
+  setting.least = least;
+  setting.most = most;
+  setting.step = step;
+  setting.value = value;
+  return setting;
+}
+
+Setting choice(const char* key, const char* label, std::vector<std::string> choices,
+               const char* value) {
+  Setting setting;
+  setting.key = key;
+  setting.label = label;
+  setting.kind = SettingKind::choice;
+  setting.choices = std::move(choices);
+  setting.value = std::string(value);
+  return setting;
+}
+
+std::vector<std::string> policies(const ViewScope& scope) {
+  std::vector<std::string> names = {kAutomatic};
+  for (const Named<Policy>& each : kPolicies) {
+    if (each.choice != Policy::morph || (scope.depth && !scope.clouds))
+      names.emplace_back(each.name);
+  }
+  return names;
+}
+
+void set_feel(Feel& feel, const std::string& key, double value) {
+  if (key == "stiffness") feel.stiffness = value;
+  if (key == "texture") feel.texture.amplitude = value * kMillimetre;
+  if (key != "friction") return;
+  feel.friction.dynamic_coefficient = value;
+  feel.friction.static_coefficient = value;
+}
+
+FieldOptions other_kind(FieldOptions field, FieldKind kind) {
+  if (field.raw_weights) return paper_field(kind);
+  field.kind = kind;
+  return field;
+}
+
+struct Preset {
+  const char* name;
+  void (*apply)(ViewSettings&);
+};
+
+constexpr std::array<Preset, 4> kPresets = {{
+    {"default", [](ViewSettings&) {}},
+    {"paper",
+     [](ViewSettings& settings) {
+       settings.field = paper_field();
+       settings.policy = Policy::average;
+       settings.feel.texture = {};
+     }},
+    {"soft",
+     [](ViewSettings& settings) {
+       settings.feel.stiffness *= 0.3;
+       set_feel(settings.feel, "friction", 0.4);
+     }},
+    {"glass",
+     [](ViewSettings& settings) {
+       settings.feel.stiffness *= 2.4;
+       set_feel(settings.feel, "friction", 0);
+     }},
+}};
+
+}  // namespace
+
+std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope& scope) {
+  std::vector<Setting> list;
+  list.push_back(
+      choice("field", "Surface", names_of(kFields), name_in(kFields, settings.field.kind)));
+  list.push_back(
+      number("stiffness", "Stiffness", "N/m", 0, scope.stiffest, 10, settings.feel.stiffness));
+  list.push_back(
+      number("friction", "Friction", "", 0, 1.5, 0.05, settings.feel.friction.dynamic_coefficient));
+  if (scope.deepest_texture > 0) {
+    list.push_back(number("texture", "Texture", "mm", 0, scope.deepest_texture / kMillimetre, 0.01,
+                          settings.feel.texture.amplitude / kMillimetre));
+  }
+  if (scope.lives || scope.clouds) {
+    list.push_back(number("smoothing", "Smoothing", "", 0.5, 3, 0.1, settings.smoothing));
+  }
+  if (scope.lives) {
+    const char* const policy = settings.policy ? name_in(kPolicies, *settings.policy) : kAutomatic;
+    list.push_back(choice("policy", "Time", policies(scope), policy));
+    list.push_back(number("history", "History", "clouds", 1, 7, 1, settings.history));
+  }
+  if (scope.clouds) {
+    list.push_back(number("voxel", "Voxel (0: by itself)", "mm", 0, 50, 0.5,
+                          settings.voxel.value_or(0) / kMillimetre));
+  }
+  return list;
+}
+
+bool prepares_alike(const ViewSettings& one, const ViewSettings& other) {
+  return one.smoothing == other.smoothing && one.policy == other.policy &&
+         one.history == other.history && one.voxel == other.voxel;
+}
+
+ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other) {
+  settings.smoothing = other.smoothing;
+  settings.policy = other.policy;
+  settings.history = other.history;
+  settings.voxel = other.voxel;
+  return settings;
+}
+
+void set(ViewSettings& settings, const std::string& key, const SettingValue& value) {
+  if (key == "field") {
+    settings.field = other_kind(settings.field, *choice_of(kFields, std::get<std::string>(value)));
+  } else if (key == "policy") {
+    settings.policy = choice_of(kPolicies, std::get<std::string>(value));
+  } else if (key == "history") {
+    settings.history = static_cast<int>(std::lround(std::get<double>(value)));
+  } else if (key == "smoothing") {
+    settings.smoothing = std::get<double>(value);
+  } else if (key == "voxel") {
+    const double voxel = std::get<double>(value) * kMillimetre;
+    settings.voxel = voxel > 0 ? std::optional<double>(voxel) : std::nullopt;
+  } else if (key == "stiffness" || key == "friction" || key == "texture") {
+    set_feel(settings.feel, key, std::get<double>(value));
+  } else {
+    throw Error(fmt::format("there is no setting '{}'", key));
+  }
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const Preset& each : kPresets) names.emplace_back(each.name);
+  return names;
+}
+
+ViewSettings preset(const ViewSettings& initial, const std::string& name, const ViewScope& scope) {
+  for (const Preset& each : kPresets) {
+    if (name != each.name) continue;
+    ViewSettings result = initial;
+    each.apply(result);
+    Feel& feel = result.feel;
+    feel.stiffness = std::min(feel.stiffness, scope.stiffest);
+    feel.texture.amplitude = std::min(feel.texture.amplitude, scope.deepest_texture);
+    return result;
+  }
+  throw Error(fmt::format("there is no preset '{}'", name));
+}
+
+SourceOptions prepared_by(const ViewSettings& settings, const ViewSettings& initial,
+                          const SourceOptions& own) {
+  constexpr double kRadiusMultiple = 2.5;
+  SourceOptions options = own;
+  if (settings.policy != initial.policy) options.policy.policy = settings.policy;
+  if (settings.history != initial.history) options.policy.history = settings.history;
+  if (settings.voxel != initial.voxel) options.prepare.voxel = settings.voxel;
+  if (settings.smoothing == initial.smoothing) return options;
+  const double wider = settings.smoothing / initial.smoothing;
+  options.depth.normal_error /= wider;
+  if (options.prepare.radius) {
+    *options.prepare.radius *= wider;
+  } else {
+    options.prepare.radius_multiple = own.prepare.radius_multiple.value_or(kRadiusMultiple) * wider;
+  }
+  return options;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,133 @@
+#include "apps/palpate/sources/cloud_facts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::app {
+
+namespace {
+
+constexpr std::size_t kSample = 20'000;
+constexpr std::size_t kNeighbors = 8;
+constexpr std::size_t kLookedAt = 200'000;  // points for the core
+constexpr std::size_t kFewest = 50;         // points of which some can be called stray
+constexpr std::ptrdiff_t kStrays = 1000;    // one in so many may be, at either end
+
+double at_share(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + place, values.end());
+  return values[static_cast<std::size_t>(place)];
+}
+
+bool is_survey(const Box& bounds) {
+  return std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff()) > 5e4 &&
+         bounds.size().maxCoeff() < 0.5 * bounds.upper.cwiseAbs().maxCoeff();
+}
+
+UnitsGuess survey_units(const Box& bounds) {
+  const Eigen::Vector3d middle = bounds.center();
+  const bool utm = middle.x() > 1e5 && middle.x() < 9e5 && middle.y() > 1.1e6 && middle.y() < 1e7;
+  const std::string where =
+      fmt::format("they lie around x = {:.0f}, y = {:.0f}", middle.x(), middle.y());
+  if (utm) return {"metres", where + ", which is what UTM coordinates look like", ""};
+  return {"metres or feet", where + ": survey coordinates, but not in UTM's range",
+          "if they are feet (state-plane data often is), give --scale 0.3048"};
+}
+
+}  // namespace
+
+UnitsGuess guess_units(const Box& bounds, const std::string& format) {
+  const double extent = bounds.size().maxCoeff();
+  const std::string size = fmt::format("the longest side is {:.4g}", extent);
+  if (is_survey(bounds)) return survey_units(bounds);
+  if (format.starts_with("LAS") || format.starts_with("LAZ")) {
+    return {"metres or feet", size + "; LAS files hold either",
+            "if they are feet, give --scale 0.3048"};
+  }
+  if (extent == 0) return {"unknown", "all points are at one place", ""};
+  if (extent > 400) {
+    return {"millimetres",
+            size + ": too long for a scanned room in metres, plausible in millimetres",
+            "give --scale 0.001, unless it really is that large"};
+  }
+  if (extent > 60) {
+    return {"metres or millimetres",
+            size + ": outdoors in metres, or a small object in millimetres",
+            "if it is an object, give --scale 0.001"};
+  }
+  if (extent < 0.004) {
+    return {"unknown", size + ": very small for metres",
+            "give --scale with the metres in a unit of the file"};
+  }
+  return {"metres", size + ", plausible for an object or a room in metres", ""};
+}
+
+SpacingFacts measure_spacing(const CellGrid& grid) {
+  const std::size_t stride = grid.size() / kSample + 1;
+  std::vector<CellGrid::Neighbor> found;
+  std::vector<double> three;
+  std::vector<double> area;
+  for (std::size_t i = 0; i < grid.size(); i += stride) {
+    found.clear();
+    grid.nearest(grid.points()[i], kNeighbors + 1, found);  // the point itself comes first
+    if (found.size() < 4) continue;
+    double sum = 0;
+    for (std::size_t k = 1; k <= 3; ++k)
+      sum += std::sqrt(static_cast<double>(found[k].squared_distance));
+    three.push_back(sum / 3);
+    if (found.size() <= kNeighbors) continue;
+    double squares = 0;
+    for (std::size_t k = 1; k <= kNeighbors; ++k)
+      squares += static_cast<double>(found[k].squared_distance);
+    area.push_back(std::sqrt(squares / kNeighbors / 1.5));  // exact on a square grid
+  }
+  return {at_share(three, 0.5), at_share(area, 0.5), at_share(area, 0.1), at_share(area, 0.9)};
+}
+
+double rim_share(const SurfacePoints& points) {
+  const CellGrid& grid = points.grid;
+  const std::size_t stride = grid.size() / kSample + 1;
+  std::vector<std::uint32_t> near;
+  std::size_t looked_at = 0;
+  std::size_t rim = 0;
+  for (std::size_t i = 0; i < grid.size(); i += stride) {
+    const float radius = points.radii.empty() ? static_cast<float>(points.radius) : points.radii[i];
+    near.clear();
+    grid.within(grid.points()[i], radius, near);
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const std::uint32_t k : near) mean += (grid.points()[k] - grid.points()[i]).cast<double>();
+    mean /= static_cast<double>(std::max<std::size_t>(near.size(), 1));
+    ++looked_at;
+    if (near.size() < 4 || mean.norm() > 0.25 * static_cast<double>(radius)) ++rim;
+  }
+  return looked_at == 0 ? 0 : static_cast<double>(rim) / static_cast<double>(looked_at);
+}
+
+Box bounds_of(const PointCloud& cloud) {
+  Box box;
+  for (std::size_t i = 0; i < cloud.size(); ++i) box.extend(cloud.point(i));
+  return box;
+}
+
+Box core_of(const PointCloud& cloud) {
+  const Box all = bounds_of(cloud);
+  if (cloud.size() < kFewest) return all;
+  const std::size_t stride = cloud.size() / kLookedAt + 1;
+  std::vector<double> values((cloud.size() - 1) / stride + 1);
+  const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
+  const std::ptrdiff_t strays = last / kStrays + 1;
+  Box core = all;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = cloud.point(i * stride)[axis];
+    std::nth_element(values.begin(), values.begin() + strays, values.end());
+    core.lower[axis] = values[static_cast<std::size_t>(strays)];
+    std::nth_element(values.begin() + strays, values.begin() + (last - strays), values.end());
+    core.upper[axis] = values[static_cast<std::size_t>(last - strays)];
+  }
+  return all.size().maxCoeff() > 2 * core.size().maxCoeff() ? core : all;
+}
+
+}  // namespace palpate::app

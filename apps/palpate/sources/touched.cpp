@@ -1,0 +1,262 @@
+#include "apps/palpate/sources/touched.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+
+#include "apps/palpate/cli/waiting.hpp"
+#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/options/depth_file.hpp"
+#include "apps/palpate/options/touch_surface.hpp"
+#include "apps/palpate/options/touch_usage.hpp"
+#include "apps/palpate/sources/frame_cloud.hpp"
+#include "apps/palpate/sources/load.hpp"
+#include "apps/palpate/sources/open_live.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/depth/organised.hpp"
+#include "palpate/geometry/spacing.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+double seconds_since(WallClock::time_point start) {
+  return std::chrono::duration<double>(WallClock::now() - start).count();
+}
+
+void check_intensities(const LoadedCloud& loaded) {
+  if (!loaded.file.cloud.intensities.empty()) return;
+  throw Error(fmt::format(
+      "--soft-stiffness and --soft-friction need a scalar for each point, but {} has no "
+      "intensity column; leave them out or give a file with one",
+      loaded.argument.path));
+}
+
+void refuse_material(const CloudArgument& source) {
+  throw Error(
+      fmt::format("--soft-stiffness and --soft-friction need a scalar for each point, and {} has "
+                  "depths alone; leave them out",
+                  source.path));
+}
+
+// The median of what was measured, m; 0: nothing was.
+double middle_depth(const DepthFrame& frame) {
+  std::vector<float> depths;
+  std::ranges::copy_if(frame.depth, std::back_inserter(depths),
+                       [](float z) { return z > 0 && std::isfinite(z); });
+  return median(depths);
+}
+
+// Refuses a frame that measured something, and nothing in range: its unit may be another one.
+void check_range(const DepthFrame& frame, const DepthFilterOptions& range) {
+  const auto out = [&](float z) {
+    return !(static_cast<double>(z) >= range.nearest && static_cast<double>(z) <= range.farthest);
+  };
+  if (!std::ranges::all_of(frame.depth, out)) return;
+  const double middle = middle_depth(frame);
+  if (middle == 0) return;
+  throw Error(
+      fmt::format("all depths are nearer than {} m or farther than {} m (median {:.4g} m); widen "
+                  "the range (--nearest, --farthest), or mend the unit (depth_unit_m of a "
+                  "recording, --depth-unit of an image)",
+                  range.nearest, range.farthest, middle));
+}
+
+// Farther away the proxy would fault in every step.
+void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
+  if (points.size() == 0) return;
+  const CellGrid::Cell& root = points.grid.cells().front();
+  const double far = std::max((points.origin + root.lower.cast<double>()).cwiseAbs().maxCoeff(),
+                              (points.origin + root.upper.cast<double>()).cwiseAbs().maxCoeff());
+  if (far <= Proxy::kLargestCoordinate) return;
+  throw Error(fmt::format(
+      "{} reaches {:.4g} m from the origin; beyond {:.0e} m no surface can be resolved: {} right?",
+      cloud.path, far, Proxy::kLargestCoordinate,
+      lives(cloud.path) ? "is --pose" : "are --scale and --pose"));
+}
+
+// Where R reaches over all of a cloud there is no surface any more, and preparing it takes long.
+void check_radius(const CloudArgument& cloud, const PrepareOptions& options, const CellGrid& grid) {
+  if (!options.radius || grid.size() == 0) return;
+  const CellGrid::Cell& root = grid.cells().front();
+  const auto across = static_cast<double>((root.upper - root.lower).norm());
+  if (*options.radius <= across) return;
+  constexpr double kFarBeyond = 100;  // spacings
+  const double spacing = mean_spacing(grid);
+  if (*options.radius <= kFarBeyond * spacing) return;
+  throw Error(
+      fmt::format("--radius {:.4g} is too large for {}, which is {} across: every point would "
+                  "reach over all of it; leave it out, or give some times the spacing ({})",
+                  *options.radius, cloud.path, length(across), length(spacing)));
+}
+
+void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& chosen,
+               TouchedSource& result) {
+  LoadedCloud loaded = load(chosen.argument, chosen.choices.reading);
+  if (wants_material(options)) check_intensities(loaded);
+  result.format = loaded.file.format;
+  result.declared = loaded.file.declared;
+  result.dropped = loaded.file.dropped;
+  result.read_seconds = loaded.seconds;
+  if (chosen.choices.reading.scale == 1) {
+    result.units = guess_units(core_of(loaded.file.cloud), loaded.file.format);
+  }
+  if (const PrepareOptions& prepare = result.options.prepare; prepare.radius) {
+    check_radius(loaded.argument, prepare, CellGrid(loaded.file.cloud.positions));
+  }
+  const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
+                                    grouped(loaded.file.cloud.size())));
+  const auto start = WallClock::now();
+  const Source& source = scene.add(loaded.argument.name, loaded.file.cloud, result.options);
+  result.prepare_seconds = seconds_since(start);
+  result.prepared = source.report();
+  result.state = source.state();
+  result.depth_image = result.state.depth > 0;
+  if (result.depth_image) result.lens = depth_frame_of(loaded.file.cloud).frame->camera;
+  check_place(loaded.argument, *source.points());
+  if (has_page(options)) {  // which may want it prepared anew
+    result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
+  }
+}
+
+void check_felt(const Source& source, TouchedSource& result) {
+  const std::shared_ptr<const SurfacePoints> points = source.points();
+  if (!points || points->size() == 0) {
+    throw Error(
+        fmt::format("{} shows no surface: there is nothing to touch", result.argument.path));
+  }
+  check_place(result.argument, *points);
+  check_radius(result.argument, result.options.prepare, points->grid);
+  result.state = source.state();
+}
+
+// Sensors that match patterns put false matches far behind everything; a true surface that far has
+// too few and too coarse points to be touched.
+void believe_no_farther(const DepthFrame& frame, DepthFilterOptions& options) {
+  constexpr double kFarBeyond = 10;  // times the median depth
+  const double farthest = kFarBeyond * middle_depth(frame);
+  if (farthest > options.nearest) options.farthest = std::min(options.farthest, farthest);
+}
+
+void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSource& chosen,
+                     TouchedSource& result) {
+  if (wants_material(options)) refuse_material(chosen.argument);
+  const auto begin = WallClock::now();
+  DepthFrame frame = load_depth_image(chosen.argument.path, chosen.choices.reading);
+  frame.stamp = 0;
+  result.read_seconds = seconds_since(begin);
+  result.format = fmt::format("depth image, {} x {}", frame.camera.width, frame.camera.height);
+  result.depth_image = true;
+  if (!chosen.choices.farthest) believe_no_farther(frame, result.options.depth);
+  const Waiting waiting(fmt::format("preparing {}", chosen.argument.name));
+  const auto start = WallClock::now();
+  Source& source = scene.add(chosen.argument.name, result.options);
+  check_range(frame, result.options.depth);
+  source.set(frame);
+  check_felt(source, result);
+  result.prepare_seconds = seconds_since(start);
+}
+
+// Makes it the first frame of the source. False: it shows no surface; `problem` gets the reason, if
+// one is told.
+bool shows(const DepthFrame& frame, const TouchedSource& result, Source& source,
+           std::string& problem) {
+  try {
+    push_frame(result, source, frame, [] { return 0.0; });  // in which no tool is known yet
+  } catch (const Error& error) {
+    problem = error.what();
+    return false;
+  }
+  return source.points() && source.points()->size() > 0;
+}
+
+bool take_next(DepthCamera& camera, double latest, DepthFrame& frame) {
+  try {
+    frame = first_frame(camera);
+  } catch (const Error&) {
+    return false;
+  }
+  return frame.stamp <= latest;
+}
+
+void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& chosen, bool explored,
+              const Clock* clock, TouchedSource& result) {
+  constexpr double kFirstLook = 1;  // s of frames, the first of which may be black
+  if (wants_material(options)) refuse_material(chosen.argument);
+  result.camera = open_live(chosen, clock);
+  DepthFrame first = first_frame(*result.camera);
+  const double latest = first.stamp + kFirstLook;
+  result.as_cloud = taken_as_cloud(options, chosen);
+  const DepthFilterOptions asked = result.options.depth;
+  Source& source = scene.add(chosen.argument.name, result.options);
+  std::string problem;
+  do {
+    result.lens = first.camera;
+    result.options.depth = asked;
+    if (!chosen.choices.farthest) believe_no_farther(first, result.options.depth);
+    source.change(result.options);  // forgets the frames before
+    if (first.T_world_sensor) source.set_pose(*first.T_world_sensor);
+    if (!explored) return;
+    if (shows(first, result, source, problem)) return check_felt(source, result);
+  } while (take_next(*result.camera, latest, first));
+  if (!problem.empty()) throw Error(problem);
+  check_felt(source, result);
+}
+
+}  // namespace
+
+std::string title_of(const Touched& touched) {
+  std::string title;
+  for (const TouchedSource& source : touched.sources) {
+    title += fmt::format("{}{}", title.empty() ? "" : " + ", source.argument.name);
+  }
+  return title;
+}
+
+Touched prepare_touched(const TouchOptions& options, bool explored, const Clock* clock) {
+  Touched touched;
+  for (const ChosenSource& chosen : choose_sources(options)) {
+    TouchedSource& source = touched.sources.emplace_back();
+    source.argument = chosen.argument;
+    source.options = source_options(options, chosen);
+    if (lives(chosen.argument.path)) {
+      add_live(touched.scene, options, chosen, explored, clock, source);
+    } else if (!taken_as_cloud(options, chosen) && is_depth_image(chosen.argument.path)) {
+      add_depth_image(touched.scene, options, chosen, source);
+    } else {
+      add_cloud(touched.scene, options, chosen, source);
+    }
+  }
+  return touched;
+}
+
+void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft) {
+  for (std::size_t i = 0; i < touched.sources.size(); ++i) {
+    const TouchedSource& source = touched.sources[i];
+    SourceOptions options = source.options;
+    options.soft = soft;
+    Source& felt = scene.add(source.argument.name, options);
+    if (source.camera) continue;
+    auto snapshot = std::make_unique<Snapshot>();
+    snapshot->layers.push_back({touched.scene.source(i).points(), 1, 1});
+    felt.publish(std::move(snapshot));
+  }
+}
+
+void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
+                const StartTime& start) {
+  if (!touched.as_cloud) {
+    check_range(frame, touched.options.depth);
+    felt.push(frame, start);
+    return;
+  }
+  if (frame.T_world_sensor) felt.set_pose(*frame.T_world_sensor);
+  felt.push(cloud_of(frame), frame.stamp, start);
+}
+
+}  // namespace palpate::app

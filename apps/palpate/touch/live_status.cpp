@@ -1,0 +1,110 @@
+#include "apps/palpate/touch/live_status.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace palpate::app {
+
+namespace {
+
+constexpr double kTerminalPeriod = 0.1;  // s
+constexpr double kLinePeriod = 1;        // s
+constexpr std::size_t kColumns = 80;     // of a terminal that does not tell
+
+std::size_t columns() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : kColumns;
+}
+
+std::string hand_words(const HandMoment& moment) {
+  if (!moment.silence.empty()) return moment.silence;
+  std::string words =
+      moment.ended ? "ended"
+                   : fmt::format("{:.2f} N  {:.0f} Hz, {:.0f} us (p99 {:.0f}), late p99 {:.2f} ms",
+                                 moment.force, moment.rate, 1e6 * moment.computing.quantile(0.5),
+                                 1e6 * moment.computing.quantile(0.99),
+                                 1e3 * moment.lateness.quantile(0.99));
+  const GuardState& guard = moment.servo.guard;
+  if (moment.servo.clutched) words += "  clutch held: the hand moves freely, the tool rests";
+  if (guard.fault != GuardFault::none) {
+    words += fmt::format("  FAULT: {}", in_words(guard.fault));
+  } else if (guard.notes != GuardNote::none) {
+    words += "  " + in_words(guard);
+  }
+  return words;
+}
+
+std::string stream_words(const StreamState& stream) {
+  std::string words = stream.source;
+  switch (stream.phase) {
+    case StreamPhase::starting:
+      return words + " waiting";
+    case StreamPhase::ended:
+      return words + " ended";
+    case StreamPhase::stalled:
+      words += " STALLED";
+      break;
+    case StreamPhase::failed:
+      words += " FAILED";
+      break;
+    case StreamPhase::running:
+      break;
+  }
+  words += fmt::format(" {:.1f} Hz, {:.0f} ms", stream.rate, 1e3 * stream.latency_mean);
+  if (stream.drops.total() > 0) words += fmt::format(", {} dropped", stream.drops.total());
+  return words;
+}
+
+}  // namespace
+
+std::string in_words(const LiveMoment& moment) {
+  std::string words = fmt::format("{:.1f} s", moment.time);
+  if (moment.hands.size() == 1) words += "  " + hand_words(moment.hands.front());
+  if (moment.hands.size() > 1) {
+    for (const HandMoment& hand : moment.hands) {
+      words += fmt::format(" | {}: {}", hand.name, hand_words(hand));
+    }
+  }
+  for (const StreamState& stream : moment.streams) words += " | " + stream_words(stream);
+  return words;
+}
+
+std::string fitted(const std::string& line, std::size_t columns) {
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool begins = (static_cast<unsigned char>(line[i]) & 0xC0) != 0x80;
+    if (begins && ++seen > columns) return line.substr(0, i);
+  }
+  return line;
+}
+
+LiveStatus::LiveStatus()
+    : terminal_(isatty(STDERR_FILENO) != 0), next_(terminal_ ? kTerminalPeriod : kLinePeriod) {}
+
+LiveStatus::~LiveStatus() {
+  if (terminal_ && shown_) fmt::print(stderr, "\r\033[K");
+}
+
+// Moments that were missed are not made up for.
+void LiveStatus::show(const LiveMoment& moment) {
+  next_ = std::max(next_, moment.time) + (terminal_ ? kTerminalPeriod : kLinePeriod);
+  const std::string words = in_words(moment);
+  if (terminal_) {
+    fmt::print(stderr, "\r{}\033[K", fitted(words, columns() - 1));
+  } else {
+    fmt::print(stderr, "{}\n", words);
+  }
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void LiveStatus::tell(const std::string& words) {
+  fmt::print(stderr, "{}{}\n", terminal_ && shown_ ? "\r\033[K" : "", words);
+}
+
+}  // namespace palpate::app

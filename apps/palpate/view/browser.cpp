@@ -1,0 +1,80 @@
+#include "apps/palpate/view/browser.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+
+namespace palpate::app {
+
+namespace {
+
+bool has_desktop() {
+  return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+}
+
+std::filesystem::path private_folder() {
+  const char* folder = std::getenv("XDG_RUNTIME_DIR");
+  if (folder != nullptr && *folder != '\0') return folder;
+  std::error_code none;
+  return std::filesystem::temp_directory_path(none);
+}
+
+bool write_all(int file, std::string_view text) {
+  return ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+}
+
+// A page that leads to `url`, of mode 0600; its name, or nothing.
+std::string write_redirection(const std::string& url) {
+  constexpr std::string_view kEnd = ".html";
+  std::string name = private_folder() / fmt::format("palpate-XXXXXX{}", kEnd);
+  const int file = ::mkostemps(name.data(), static_cast<int>(kEnd.size()), O_CLOEXEC);
+  if (file < 0) return {};
+  const bool written = write_all(
+      file, fmt::format("<!doctype html>\n<meta charset=\"utf-8\">\n<title>palpate</title>\n"
+                        "<meta http-equiv=\"refresh\" content=\"0; url={0}\">\n"
+                        "<a href=\"{0}\">palpate</a>\n",
+                        url));
+  ::close(file);
+  if (written) return name;
+  ::unlink(name.c_str());
+  return {};
+}
+
+// Between fork and exec: only what a signal's handler may do.
+[[noreturn]] void become_opener(const char* file) {
+  const int nothing = ::open("/dev/null", O_RDWR);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nothing, stream);
+  ::execlp("xdg-open", "xdg-open", file, nullptr);
+  ::_exit(127);
+}
+
+// In a session of its own, so that Ctrl-C does not reach it, and as no child of ours, so that
+// nobody has to wait for its end.
+void open_apart(const std::string& file) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::setsid();
+    if (::fork() == 0) become_opener(file.c_str());
+    ::_exit(0);
+  }
+  if (child > 0) ::waitpid(child, nullptr, 0);
+}
+
+}  // namespace
+
+Browser::Browser(const std::string& url) {
+  if (!has_desktop()) return;
+  file_ = write_redirection(url);
+  if (!file_.empty()) open_apart(file_);
+}
+
+Browser::~Browser() {
+  if (!file_.empty()) ::unlink(file_.c_str());
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,19 @@
+// In place of view.cpp where there is no viewer.
+#include "apps/palpate/view/view.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+
+struct View::Parts {};
+
+View::View(Run& run, std::vector<Servo*> /*servos*/, const LiveFeed& /*feed*/) {
+  if (!run.options.view.wanted) return;
+  throw Error(
+      "this palpate was built without its page; install libboost-dev and build it again, or leave "
+      "--view out");
+}
+View::~View() = default;
+void View::add(std::size_t /*hand*/, const TouchStep& /*step*/) {}
+void View::look() {}
+
+}  // namespace palpate::app

@@ -1,0 +1,189 @@
+#include "apps/palpate/view/view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "apps/palpate/options/touch_surface.hpp"
+#include "apps/palpate/report/recording.hpp"
+#include "apps/palpate/run/preparer.hpp"
+#include "apps/palpate/run/view_settings.hpp"
+#include "apps/palpate/view/browser.hpp"
+#include "apps/palpate/view/page_hold.hpp"
+#include "palpate/viewer/viewer.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr double kFar = 1.5;  // of a frustum as drawn, in medians of depth
+
+ViewSettings initial_settings(const Run& run) {
+  ViewSettings settings;
+  settings.field = run.field;
+  settings.feel = {run.proxy.stiffness, run.proxy.friction, run.proxy.texture};
+  const SourceOptions first = run.felt.source(0).options();
+  settings.policy = first.policy.policy;
+  settings.history = first.policy.history;
+  settings.voxel = first.prepare.voxel;
+  return settings;
+}
+
+// No stiffer than every hand's device bears.
+ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
+  ViewScope scope;
+  double scale = 0;
+  for (const Hand& hand : run.hands) scale = std::max(scale, hand.workspace.scale);
+  scope.stiffest = kStiffest / scale;
+  for (const Servo* servo : servos) {
+    scope.stiffest = std::min(scope.stiffest, servo->stiffness_limit());
+  }
+  const double deepest = deepest_texture(run.felt);
+  scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
+  for (const TouchedSource& source : run.touched.sources) {
+    scope.lives = scope.lives || source.camera;
+    scope.depth = scope.depth || (source.camera && !source.as_cloud);
+    scope.clouds = scope.clouds || source.cloud || source.as_cloud;
+  }
+  return scope;
+}
+
+std::optional<ViewerFrustum> frustum_of(const TouchedSource& source, const SourceState& state) {
+  if (!source.camera) return std::nullopt;
+  const CameraModel& lens = source.lens;
+  return ViewerFrustum{0.5 * lens.width / lens.pinhole.fx, 0.5 * lens.height / lens.pinhole.fy,
+                       kFar * state.depth};
+}
+
+std::vector<ViewerStream> streams_of(const Run& run, const LiveFeed& feed) {
+  std::vector<ViewerStream> streams;
+  for (StreamState& state : feed.states()) {
+    ViewerStream& stream = streams.emplace_back();
+    for (std::size_t i = 0; i < run.felt.size(); ++i) {
+      if (run.felt.source(i).name() != state.source) continue;
+      stream.frustum = frustum_of(run.touched.sources[i], run.felt.source(i).state());
+    }
+    stream.state = std::move(state);
+  }
+  return streams;
+}
+
+}  // namespace
+
+struct View::Parts {
+  Parts(Run& r, std::vector<Servo*> s, const LiveFeed& f)
+      : run(r),
+        servos(std::move(s)),
+        feed(f),
+        initial(initial_settings(r)),
+        settings(initial),
+        holds(r.hands.begin(), r.hands.end()),
+        recording(r.hands.size(), [this](const std::string& why) { recording_broke(why); }),
+        preparer(r, initial,
+                 [this](const std::string& why, const ViewSettings& held) { go_back(why, held); }),
+        viewer(r.felt, servos, viewer_options(), controls()) {}
+
+  ~Parts() { preparer.stop(); }  // what it tells, it tells the viewer
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
+  ViewerOptions viewer_options() {
+    ViewerOptions options;
+    const ViewOptions& view = run.options.view;
+    if (!view.listen.empty()) options.address = view.listen;
+    options.port = view.port;
+    options.scene = title_of(run.touched);
+    options.streams = [this] { return streams_of(run, feed); };
+    return options;
+  }
+
+  ViewerControls controls() {
+    ViewerControls controls;
+    controls.settings = [this] { return list_settings(present(), scope_of(run, servos)); };
+    controls.set = [this](const std::string& key, const SettingValue& value) {
+      ViewSettings wanted = present();
+      set(wanted, key, value);
+      apply(wanted);
+    };
+    controls.presets = preset_names();
+    controls.preset = [this](const std::string& name) {
+      apply(preset(initial, name, scope_of(run, servos)));
+    };
+    controls.record = [this](bool on) { return recording.record(on); };
+    controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };
+    controls.hand = [this](std::size_t hand, const Eigen::Vector3d& place, std::uint32_t buttons) {
+      holds[hand].move(place, buttons);
+    };
+    controls.release = [this](std::size_t hand) { holds[hand].release(); };
+    return controls;
+  }
+
+  [[nodiscard]] ViewSettings present() {
+    const std::lock_guard lock(settings_mutex);
+    return settings;
+  }
+
+  void apply(const ViewSettings& wanted) {
+    check(wanted.field);  // before anything changes
+    for (Servo* servo : servos) {
+      servo->set_feel(wanted.feel);
+      servo->set_field(wanted.field);
+    }
+    const std::lock_guard lock(settings_mutex);
+    const bool prepares = !prepares_alike(wanted, settings);
+    settings = wanted;
+    if (prepares) preparer.want(settings);
+  }
+
+  // The preparer's thread.
+  void go_back(const std::string& why, const ViewSettings& held) {
+    {
+      const std::lock_guard lock(settings_mutex);
+      settings = with_preparation(settings, held);
+    }
+    viewer.settings_changed();
+    viewer.notice(NoticeLevel::warning, why);
+  }
+
+  void recording_broke(const std::string& why) {
+    viewer.record_ended();
+    viewer.notice(NoticeLevel::warning, "the recording ended: " + why);
+  }
+
+  Run& run;
+  std::vector<Servo*> servos;
+  const LiveFeed& feed;
+  ViewSettings initial;
+  std::mutex settings_mutex;
+  ViewSettings settings;
+  std::deque<PageHold> holds;  // of each hand
+  Recording recording;
+  Preparer preparer;
+  std::optional<Browser> browser;
+  Viewer viewer;  // last: it uses all of the above
+};
+
+View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
+    : parts_(std::make_unique<Parts>(run, std::move(servos), feed)) {
+  fmt::print(stderr, "page: {}\n", parts_->viewer.url());
+  if (run.options.view.open_browser) parts_->browser.emplace(parts_->viewer.url());
+}
+
+View::~View() = default;
+
+void View::add(std::size_t hand, const TouchStep& step) {
+  parts_->recording.add(hand, step);
+}
+
+void View::look() {
+  for (PageHold& hold : parts_->holds) {
+    if (hold.possible()) hold.keep();
+  }
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,157 @@
+#include "apps/palpate/zwidth/wall_trial_run.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/interruption.hpp"
+#include "apps/palpate/cli/json.hpp"
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/words.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/base/latest.hpp"
+#include "palpate/device/open_device.hpp"
+#include "palpate/servo/deadlines.hpp"
+#include "palpate/servo/realtime.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr auto kLookAtTrial = std::chrono::milliseconds(100);
+
+// The trial beside a device, on a thread of its own.
+class TrialThread {
+ public:
+  TrialThread(Device& device, WaitingClock& clock, const WallTrialOptions& options)
+      : device_(device), clock_(clock), trial_(device.info(), options) {
+    shown_.set(trial_.state());
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+
+  [[nodiscard]] WallTrialState state() const { return shown_.get(); }
+  [[nodiscard]] bool runs() const { return runs_.load(); }
+  void stop() {
+    thread_.request_stop();
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  void run(const std::stop_token& stop) {
+    static_cast<void>(make_realtime({}));
+    Deadlines deadlines(clock_.now(), 1 / device_.info().rate);
+    // The force has gone when the guard had a tenth of a second for it.
+    int after = static_cast<int>(0.1 * device_.info().rate);
+    while (!stop.stop_requested() && after > 0) {
+      clock_.wait_until(deadlines.next());
+      const DeviceState hand = device_.read();
+      deadlines.begin(clock_.now());
+      device_.write(trial_.step(hand, clock_.now()));
+      shown_.set(trial_.state());
+      if (trial_.is_over()) --after;
+    }
+    device_.write(Eigen::Vector3d::Zero());
+    runs_.store(false);
+  }
+
+  Device& device_;
+  WaitingClock& clock_;
+  WallTrial trial_;
+  Latest<WallTrialState> shown_;
+  std::atomic<bool> runs_{true};
+  std::jthread thread_;
+};
+
+void ask(const WallTrialRunOptions& options) {
+  fmt::print(
+      stderr,
+      "This moves the device: you press on walls that are simulated under your hand, each "
+      "{:.0f} % stiffer\nthan the one before, until one makes the device shake. No force is "
+      "longer than {:.1f} N; the guard's\nbrake and its limit of stiffness are off. The force goes "
+      "away when the device shakes, moves faster\nthan {} m/s, or is not heard. Take the handle, "
+      "clear the table, keep the other hand at the switch.\n",
+      100 * (options.trial.factor - 1), options.trial.maximum_force, options.trial.fastest);
+  if (options.confirmed) return;
+  if (isatty(STDIN_FILENO) == 0) {
+    throw UsageError("nobody can be asked here: give --confirm when somebody holds the device");
+  }
+  fmt::print(stderr, "Type yes to begin: ");
+  std::string answer;
+  std::getline(std::cin, answer);
+  if (answer != "yes") throw UsageError("not confirmed with yes; nothing was moved");
+}
+
+// What the hand is to do, whenever that changes.
+WallTrialState lead(TrialThread& thread, const Interruption& interruption) {
+  std::string said;
+  while (thread.runs() && !interruption.asked()) {
+    const WallTrialState state = thread.state();
+    std::string words = fmt::format("{:4.0f} N/m: {}", state.wall, in_words(state.phase));
+    if (words != said) fmt::print(stderr, "{}\n", words);
+    said = std::move(words);
+    std::this_thread::sleep_for(kLookAtTrial);
+  }
+  thread.stop();
+  const WallTrialState state = thread.state();
+  fmt::print(stderr, "the end: {}\n", in_words(state.phase));
+  return state;
+}
+
+std::string found(const WallTrialRunOptions& options, const DeviceInfo& info,
+                  const WallTrialState& state) {
+  const Json facts = {{"device", info.name},
+                      {"rate_Hz", info.rate},
+                      {"wall_damping_Ns_per_m", options.trial.damping},
+                      {"stable_N_per_m", state.stable},
+                      {"shook_at_N_per_m", state.phase == WallTrialPhase::shook ? state.wall : 0},
+                      {"end", in_words(state.phase)}};
+  return facts.dump(2) + "\n";
+}
+
+void tell(const WallTrialState& state, double damping, std::FILE* out) {
+  const Style style(out);
+  fmt::print(out,
+             "{} walls up to {:.0f} N/m stood still in this hand, with a damper of {:.3g} N s/m\n",
+             style.heading("z-width"), state.stable, damping);
+  if (state.phase == WallTrialPhase::shook) {
+    fmt::print(out, "one of {:.0f} N/m shook by {:.2f} mm\n", state.wall, 1e3 * state.amplitude);
+  }
+}
+
+}  // namespace
+
+void run_wall_trial(const WallTrialRunOptions& options) {
+  if (!names_hardware(options.device)) {
+    throw UsageError(fmt::format(
+        "{}: no device that a hand presses. Give forcedimension, openhaptics or haply; without "
+        "--device walls are simulated",
+        options.device));
+  }
+  ask(options);
+  std::optional<OutputFile> json;
+  if (!options.json.empty()) json.emplace(options.json);
+  SteadyWaitingClock clock;
+  const Interruption interruption;
+  LinkedDeviceOptions link;
+  link.begin = [] { static_cast<void>(make_realtime({})); };
+  const std::unique_ptr<LinkedDevice> device = open_device(options.device, clock, link);
+  fmt::print(stderr, "holds {}\n", device->info().name);
+  TrialThread thread(*device, clock, options.trial);
+  const WallTrialState state = lead(thread, interruption);
+  if (json) write_whole(json, found(options, device->info(), state));
+  if (state.stable > 0)
+    return tell(state, options.trial.damping, options.json == "-" ? stderr : stdout);
+  const std::string reason = device->reason();
+  throw Error(
+      fmt::format("no wall was pressed: {}", reason.empty() ? in_words(state.phase) : reason));
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,130 @@
+#include "apps/palpate/zwidth/zwidth_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "apps/palpate/cli/distinct_files.hpp"
+#include "apps/palpate/cli/option_checks.hpp"
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/progress.hpp"
+#include "apps/palpate/cli/waiting.hpp"
+#include "apps/palpate/plot/picture_script.hpp"
+#include "apps/palpate/plot/python_drawing.hpp"
+#include "apps/palpate/zwidth/zwidth_report.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr const char* kZWidthFooter = R"(Examples:
+  palpate zwidth
+  palpate zwidth --device-profile omega --picture omega.png
+  palpate zwidth --device-profile my-arm --profiles arms.toml --csv arm.csv
+  palpate zwidth --device forcedimension
+
+A profile file is TOML, a table a device, with the keys that are known of it: title, source,
+maximum_force, peak_force (N), maximum_stiffness (N/m), damping (N s/m), coulomb (N), mass (kg),
+resolution, workspace_radius (m), rate (Hz), delay (s).
+
+Walls are simulated: a mass with friction behind encoders, a force that is held for a step and comes
+late. Nothing moves; but with --device a person presses on walls that the device renders, each stiffer
+than the one before, until one makes it shake. It says what comes and asks first.)";
+
+// Every file is made before the work: a place that does not exist is told at once.
+struct ZWidthOutputs {
+  std::optional<OutputFile> csv;
+  std::optional<OutputFile> json;
+  std::optional<OutputFile> picture;
+
+  explicit ZWidthOutputs(const ZWidthOptions& options) {
+    check_distinct(
+        {}, {{"--csv", options.csv}, {"--json", options.json}, {"--picture", options.picture}});
+    check_picture(options.picture);
+    if (!options.csv.empty()) csv.emplace(options.csv);
+    if (!options.json.empty()) json.emplace(options.json);
+    if (!options.picture.empty()) picture.emplace(options.picture);
+  }
+};
+
+}  // namespace
+
+void add_zwidth_options(CLI::App& command, ZWidthChoices& choices) {
+  ZWidthOptions& o = choices.map;
+  WallTrialRunOptions& trial = choices.trial;
+  command
+      .add_option("--device-profile", o.profile,
+                  wrapped("kind of device: simulated (default), unknown, touch, omega, falcon, ... "
+                          "or one of --profiles"))
+      ->type_name("NAME");
+  command.add_option("--profiles", o.profiles, "TOML file with profiles of your own")
+      ->type_name("FILE");
+  command.add_option("--rate", o.rates, "steps a second (500 to 4000, and the device's own)")
+      ->delimiter(',')
+      ->check(number("between 100 and 20000 Hz", [](double x) { return x >= 100 && x <= 2e4; }))
+      ->type_name("HZ,...");
+  command.add_option("--delay", o.delays, "steps from a place to its force (0,1,2)")
+      ->delimiter(',')
+      ->check(whole_number(0, 16))
+      ->type_name("N,...");
+  command
+      .add_option("--damping", o.dampings,
+                  wrapped("of the device by itself (what its profile says, else 0.1 to 2)"))
+      ->delimiter(',')
+      ->check(not_negative())
+      ->type_name("N S/M,...");
+  command.add_option("--wall-damping", o.wall_damping, "B of a damper in the wall (0)")
+      ->check(not_negative())
+      ->type_name("N S/M");
+  command.add_option("--csv", o.csv, "the map; - is standard output")->type_name("FILE");
+  add_json_option(command, o.json);
+  command.add_option("--picture", o.picture, "the map as PNG (needs python3-matplotlib)")
+      ->type_name("FILE.png");
+  CLI::Option* const device =
+      command
+          .add_option("--device", trial.device,
+                      wrapped("measure on this device (palpate devices); it asks first"))
+          ->type_name("NAME")
+          ->group("On hardware");
+  for (const char* simulated :
+       {"--device-profile", "--profiles", "--rate", "--delay", "--damping", "--csv", "--picture"}) {
+    device->excludes(command.get_option(simulated));
+  }
+  const auto on_hardware = [&](CLI::Option* option) {
+    return option->needs(device)->group("On hardware");
+  };
+  on_hardware(
+      command.add_flag("--confirm", trial.confirmed, "somebody holds the device: do not ask"));
+  on_hardware(
+      command.add_option("--maximum-force", trial.trial.maximum_force, "of a wall (2; 4 at most)"))
+      ->check(number("above 0.3, up to 4 N", [](double x) { return x > 0.3 && x <= 4; }))
+      ->type_name("N");
+  on_hardware(command.add_option("--patience", trial.trial.patience,
+                                 wrapped("time without progress after which it ends (30)")))
+      ->check(positive())
+      ->type_name("SECONDS");
+  command.footer(kZWidthFooter);
+}
+
+void zwidth(const ZWidthChoices& choices) {
+  const ZWidthOptions& options = choices.map;
+  if (!choices.trial.device.empty()) {
+    WallTrialRunOptions trial = choices.trial;
+    trial.trial.damping = options.wall_damping;
+    trial.json = options.json;
+    return run_wall_trial(trial);
+  }
+  ZWidthOutputs outputs(options);
+  const ZWidthMap map = [&] {
+    Progress progress("simulating walls");
+    return measure_zwidth(options, [&](double done) { progress.update(done); });
+  }();
+  print_zwidth(map, options.csv == "-" || options.json == "-" ? stderr : stdout);
+  write_whole(outputs.csv, csv(map));
+  write_whole(outputs.json, facts(map) + "\n");
+  if (!outputs.picture) return;
+  const Waiting waiting("drawing the picture");
+  draw_by_python(figures_script(), {{"facts.json", facts(map)}, {"table.csv", csv(map)}},
+                 options.picture, *outputs.picture);
+}
+
+}  // namespace palpate::app
