@@ -11,7 +11,6 @@
 #include "apps/palpate/devices/devices_command.hpp"
 #include "apps/palpate/doctor/doctor_command.hpp"
 #include "apps/palpate/info/info_command.hpp"
-#include "apps/palpate/options/setup_file.hpp"
 #include "apps/palpate/paper/paper_command.hpp"
 #include "apps/palpate/plot/picture_script.hpp"
 #include "apps/palpate/touch/demo_command.hpp"
@@ -37,10 +36,10 @@ int run(int argc, char** argv) {
   program.require_subcommand(0, 1);
   program.get_formatter()->column_width(34);
   program.footer("'palpate COMMAND --help' tells more, with examples.");
-  TouchOptions touch_options;
+  TouchChoices touch_choices;
   CLI::App* touch_command =
       program.add_subcommand("touch", "Touch clouds and what cameras see, and report the forces");
-  add_touch_options(*touch_command, touch_options);
+  add_touch_command(*touch_command, touch_choices);
   AlignOptions align_options;
   CLI::App* align_command =
       program.add_subcommand("align", "Find the poses of cameras and clouds from what they see");
@@ -88,17 +87,14 @@ int run(int argc, char** argv) {
         "zwidth; "
         "'palpate --help' tells more");
   }
-  if (touch_command->parsed()) {
-    apply_setup(*touch_command, touch_options);
-    touch(touch_options);
-  }
+  if (touch_command->parsed()) touch(plan_touch(*touch_command, touch_choices));
   if (align_command->parsed()) align_sources(*align_command, align_options);
   if (info_command->parsed()) info(info_options);
   if (cameras_command->parsed()) cameras(cameras_options);
   if (doctor_app->parsed()) return examine(doctor_options);
   if (devices_command->parsed()) devices(devices_options);
   if (paper_app->parsed()) paper(paper_command);
-  if (demo_app->parsed()) demo(demo_options);
+  if (demo_app->parsed()) demo(*demo_app, demo_options);
   if (zwidth_app->parsed()) zwidth(zwidth_options);
   return kSuccess;
 }

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/options/chosen_source.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 
@@ -34,16 +33,16 @@ TEST(AlignProgram, WritesASetupWhosePosesAreRight) {
   for (const char* word : {"before", "after", "sure to", "--pose right="}) {
     EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
   }
-  const TouchOptions options = parsed(shell, shell.read("aligned.toml"), "");
-  EXPECT_EQ(options.seed, 4U);
-  const std::vector<ChosenSource> sources = choose_sources(options);
-  ASSERT_EQ(sources.size(), 2U);
-  EXPECT_EQ(sources[0].choices.noise, "kinect1");
-  EXPECT_EQ(sources[1].argument.path, "camera:simulated:right");
-  for (const ChosenSource& source : sources) {
-    EXPECT_EQ(source.choices.nearest, 0.2) << "as the command line has it";
-    EXPECT_LT(source.pose.translation().norm(), 3e-3);
-    EXPECT_LT(Eigen::AngleAxisd(source.pose.linear()).angle(), 0.5 * 0.01745);
+  const TouchPlan plan = planned(shell, shell.read("aligned.toml"), "");
+  EXPECT_EQ(plan.motion.seed, 4U);
+  ASSERT_EQ(plan.sources.size(), 2U);
+  EXPECT_EQ(plan.sources[0].options.depth.noise->coefficients, parse_noise("kinect1").coefficients);
+  EXPECT_EQ(plan.sources[1].argument.path, "camera:simulated:right");
+  for (const SourcePlan& source : plan.sources) {
+    EXPECT_EQ(source.options.depth.nearest, 0.2) << "as the command line has it";
+    const Eigen::Isometry3d& pose = source.options.T_world_sensor;
+    EXPECT_LT(pose.translation().norm(), 3e-3);
+    EXPECT_LT(Eigen::AngleAxisd(pose.linear()).angle(), 0.5 * 0.01745);
   }
   const auto report = nlohmann::json::parse(shell.read("aligned.json"));
   EXPECT_LT(report[1]["after"]["residual_m"], 1e-3);

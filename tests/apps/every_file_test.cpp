@@ -7,10 +7,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/options/touch_surface.hpp"
+#include "apps/palpate/options/touch_options.hpp"
 #include "apps/palpate/run/exploration_plan.hpp"
 #include "apps/palpate/sources/touched.hpp"
-#include "apps/palpate/touch/touch_run.hpp"
+#include "apps/palpate/touch/simulated_run.hpp"
 #include "apps/program.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
@@ -49,17 +49,16 @@ std::vector<fs::path> files_in(const fs::path& folder, std::initializer_list<con
 }
 
 // What the program needs to know of a depth image: its folder's sequence.json tells.
-void describe_depth(const fs::path& file, ReadingOptions& reading) {
+void describe_depth(const fs::path& file, ReadOptions& reading) {
   if (file.filename() == "TUM_depth.png") {
-    reading.intrinsics = "525,525,319.5,239.5";
+    reading.intrinsics = Pinhole{525, 525, 319.5, 239.5};
     reading.depth_unit = 1. / 5000;
     return;
   }
   std::ifstream stream(file.parent_path().parent_path() / "sequence.json");
   const auto facts = nlohmann::json::parse(stream);
   const auto value = [&](const char* key) { return facts.at(key).get<double>(); };
-  reading.intrinsics =
-      fmt::format("{},{},{},{}", value("fx"), value("fy"), value("cx"), value("cy"));
+  reading.intrinsics = Pinhole{value("fx"), value("fy"), value("cx"), value("cy")};
   reading.depth_unit = value("depth_unit_m");
 }
 
@@ -69,15 +68,15 @@ bool is_quiet(const TouchStep& step) {
 }
 
 // As `palpate touch FILE --duration 10` does.
-TouchStatistics touch(const TouchOptions& options) {
-  Touched touched = prepare_touched(options, true);
+TouchStatistics touch(const TouchPlan& choice) {
+  Touched touched = prepare_touched(choice.sources, {.explored = true});
   Scene& scene = touched.scene;
-  const FieldOptions field_choice = field_options(options);
+  const FieldOptions& field_choice = choice.surface.field;
   const ExplorationPlan plan =
       plan_exploration(scene, field_choice, {.duration = 1e-3 * milliseconds()});
   SimulatedDevice device({}, plan.target);
   SceneField field(scene, field_choice);
-  Proxy proxy(proxy_options(options, plan.stiffness));
+  Proxy proxy(choice.surface.proxy_of(plan.stiffness));
   TouchStatistics statistics;
   std::size_t bad = 0;
   run_touch(device, plan.workspace, field, proxy, [&](const TouchStep& step) {
@@ -90,11 +89,11 @@ TouchStatistics touch(const TouchOptions& options) {
 
 void expect_touched(const fs::path& file) {
   SCOPED_TRACE(file.string());
-  TouchOptions options;
-  options.clouds = {file.string()};
-  if (file.extension() == ".png") describe_depth(file, options.choices.reading);
+  TouchChoices choices;
+  choices.sources = {file.string()};
+  if (file.extension() == ".png") describe_depth(file, choices.every_source.reading);
   try {
-    const TouchStatistics statistics = touch(options);
+    const TouchStatistics statistics = touch(plan_touch(CLI::App(), choices));
     EXPECT_GE(statistics.steps(), static_cast<std::size_t>(milliseconds()));
     EXPECT_GT(statistics.touching(), 0u);
   } catch (const Error& error) {

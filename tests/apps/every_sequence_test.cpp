@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "apps/palpate/options/touch_surface.hpp"
-#include "apps/palpate/run/run.hpp"
+#include "apps/palpate/touch/simulated_run.hpp"
+#include "apps/setup_parsed.hpp"
 #include "support/effort.hpp"
 
 namespace palpate::app {
@@ -31,13 +31,18 @@ struct Felt {
 };
 
 // The hand goes along `way` or, where that is empty, explores what `seen` shows.
-Felt play(const TouchOptions& options, const Trajectory& way, const Scene& seen, Touched& touched,
+Felt play(const TouchPlan& plan, const Trajectory& way, const Scene& seen, Touched& touched,
           Scene& felt) {
-  const FieldOptions field = field_options(options);
-  std::vector<Hand> hands = open_hands(options, nullptr);
-  place_hands(hands, options, way, seen, field);
+  std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, nullptr);
+  place_hands(hands, {plan.motion, plan.surface, plan.page}, way, seen);
   fill_felt(felt, touched, {});
-  Run run{options, touched, felt, hands, field, proxy_options(options, hands[0].stiffness)};
+  Run run{plan.time,
+          plan.page,
+          touched,
+          felt,
+          hands,
+          plan.surface.field,
+          plan.surface.proxy_of(hands[0].stiffness)};
   Felt result;
   run_simulated(run, [&](std::size_t, const TouchStep& step) {
     const Contact& contact = step.contact;
@@ -65,17 +70,16 @@ TEST(EverySequence, PlaysThroughAndIsTouchedWithoutAFault) {
   if (sequences().empty()) GTEST_SKIP() << "PALPATE_DATA names no folder with sequences";
   for (const fs::path& folder : sequences()) {
     SCOPED_TRACE(folder.string());
-    TouchOptions options;
-    options.clouds = {"sequence:" + folder.string()};
-    options.simulated_time = true;
-    options.duration = 1e-3 * test::effort(3000);
+    const double duration = 1e-3 * test::effort(3000);
+    const TouchPlan plan = planned(
+        fmt::format("sequence:{} --simulated-time --duration {}", folder.string(), duration));
     // The first run shows what there is to touch at the end, the second one touches it.
     Scene seen;
-    Touched watched = prepare_touched(options, false);
-    EXPECT_EQ(play(options, aside(*options.duration), watched.scene, watched, seen).bad, 0u);
-    Touched touched = prepare_touched(options, false);
+    Touched watched = prepare_touched(plan.sources, {});
+    EXPECT_EQ(play(plan, aside(duration), watched.scene, watched, seen).bad, 0u);
+    Touched touched = prepare_touched(plan.sources, {});
     Scene scene;
-    const Felt felt = play(options, {}, seen, touched, scene);
+    const Felt felt = play(plan, {}, seen, touched, scene);
     EXPECT_EQ(felt.bad, 0u) << "steps with a fault, or not finite";
     // A hand that has a tenth of the time is still on its way.
     if (test::effort(10) == 10) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/palpate/options/touch_surface.hpp"
+#include "apps/palpate/options/touch_plan.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/synthetic.hpp"
 

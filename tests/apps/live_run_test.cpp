@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "apps/palpate/options/touch_surface.hpp"
+#include "apps/setup_parsed.hpp"
 
 namespace palpate::app {
 namespace {
@@ -44,17 +44,16 @@ int left(const Hand& hand) {
 }
 
 TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
-  TouchOptions options;
-  options.clouds = {"synthetic:sheet"};
-  options.live.realtime = false;
-  options.live.lock_memory = false;
-  Touched touched = prepare_touched(options, false);
+  TouchPlan plan = planned("synthetic:sheet");
+  plan.time.realtime.realtime_priority = false;
+  plan.time.realtime.lock_memory = false;
+  Touched touched = prepare_touched(plan.sources, {});
   Scene felt;
   fill_felt(felt, touched, {});
   std::vector<Hand> hands;
   hands.push_back(hand_with("hand 1", 20, DeviceStatus::failed));
   hands.push_back(hand_with("hand 2", 200, DeviceStatus::finished));
-  app::Run run{options, touched, felt, hands, {}, proxy_options(options, kStiffness)};
+  app::Run run{plan.time, plan.page, touched, felt, hands, {}, plan.surface.proxy_of(kStiffness)};
   std::vector<std::size_t> steps(2);
   SteadyWaitingClock clock;
   const LiveOutcome outcome =

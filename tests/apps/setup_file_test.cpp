@@ -2,13 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iterator>
 
-#include "apps/palpate/options/chosen_source.hpp"
-#include "apps/palpate/options/setup_keys.hpp"
-#include "apps/palpate/options/touch_surface.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 #include "support/effort.hpp"
@@ -63,7 +59,7 @@ TEST(SetupFile, TheDocumentedOneRunsAsItIs) {
       shell.run("touch --setup desk.toml --simulated-time --duration 1 --no-view");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("camera:simulated:desk"), std::string::npos) << outcome.out;
-  const std::vector<ChosenSource> hardware = choose_sources(parsed(shell, documented(1), ""));
+  const std::vector<SourcePlan> hardware = planned(shell, documented(1), "").sources;
   ASSERT_EQ(hardware.size(), 2u);
   EXPECT_EQ(hardware[0].argument.path, "camera:openni2");
   EXPECT_EQ(hardware[1].argument.path, shell.path("scans/bench.ply"));
@@ -71,26 +67,31 @@ TEST(SetupFile, TheDocumentedOneRunsAsItIs) {
 
 TEST(SetupFile, FillsInWhatTheCommandLineDoesNotSay) {
   const Shell shell;
-  const TouchOptions options = parsed(shell, kDesk, "");
-  EXPECT_EQ(options.field, "pointset");
-  EXPECT_EQ(options.tool_radius, 0.002);
-  EXPECT_EQ(options.stiffness, 700);
-  EXPECT_EQ(options.seed, 9u);
-  EXPECT_TRUE(options.simulated_time);
-  EXPECT_EQ(options.trajectory, shell.path("hand.csv"));
+  const TouchPlan plan = planned(shell, kDesk, "");
+  EXPECT_EQ(plan.surface.field.kind, FieldKind::pointset);
+  EXPECT_EQ(plan.surface.field.tool_radius, 0.002);
+  EXPECT_EQ(plan.surface.stiffness, 700);
+  EXPECT_EQ(plan.motion.seed, 9u);
+  EXPECT_FALSE(plan.time.real_time);
+  EXPECT_EQ(plan.motion.trajectory, shell.path("hand.csv"));
 
-  const std::vector<ChosenSource> sources = choose_sources(options);
+  const std::vector<SourcePlan>& sources = plan.sources;
   ASSERT_EQ(sources.size(), 2u);
   EXPECT_EQ(sources[0].argument.name, "left");
   EXPECT_EQ(sources[0].argument.path, "camera:simulated:left");
-  EXPECT_EQ(sources[0].choices.policy, "crossfade");
-  EXPECT_EQ(sources[0].choices.noise, "0.001,0,0.002,1.5");
-  EXPECT_LT((sources[0].pose * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(-0.5, 0, 0.25)).norm(),
-            1e-12);
+  EXPECT_EQ(sources[0].kind, SourceKind::stream);
+  EXPECT_EQ(sources[0].options.policy.policy, Policy::crossfade);
+  ASSERT_TRUE(sources[0].options.depth.noise);
+  EXPECT_EQ(sources[0].options.depth.noise->coefficients, (std::array<double, 3>{0.001, 0, 0.002}));
+  EXPECT_EQ(sources[0].options.depth.noise->correlation, 1.5);
+  const Eigen::Isometry3d& pose = sources[0].options.T_world_sensor;
+  EXPECT_LT((pose * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(-0.5, 0, 0.25)).norm(), 1e-12);
   EXPECT_EQ(sources[1].argument.name, "mug");
   EXPECT_EQ(sources[1].argument.path, shell.path("scans/mug.ply"));
-  EXPECT_EQ(sources[1].choices.reading.scale, 0.001);
-  EXPECT_EQ(sources[1].choices.policy, "morph") << "of [stream], for sources that say nothing else";
+  EXPECT_EQ(sources[1].kind, SourceKind::cloud);
+  EXPECT_EQ(sources[1].reading.scale, 0.001);
+  EXPECT_EQ(sources[1].options.policy.policy, Policy::morph)
+      << "of [stream], for sources that say nothing else";
 }
 
 constexpr const char* kEverything = R"([[source]]
@@ -101,6 +102,10 @@ name = "other"
 from = "camera:simulated"
 fit_everywhere = false
 normal_error = 0.005
+[[source]]
+name = "points"
+from = "camera:simulated"
+unorganised = true
 
 [reading]
 viewpoint = [0, 0, 1.2]
@@ -137,21 +142,37 @@ lock_memory = false
 TEST(SetupFile, NamesOneDeviceOrOneForEachHand) {
   const Shell shell;
   const std::string from = "[[source]]\nfrom = \"synthetic:torus\"\n[hand]\n";
-  using Devices = std::vector<std::string>;
-  EXPECT_EQ(parsed(shell, from + "device = \"scripted\"\n", "").devices, Devices{"scripted"});
-  const std::string two = from + "device = [\"simulated\", \"remote:/tmp/hand\"]\n";
-  EXPECT_EQ(parsed(shell, two, "").devices, (Devices{"simulated", "remote:/tmp/hand"}));
-  EXPECT_EQ(parsed(shell, two, "--device scripted").devices, Devices{"scripted"});
-  const std::string stand = "haply:04EA,frame=left,scale=2,clutch=0";
-  EXPECT_EQ(parsed(shell, from + "device = \"" + stand + "\"\n", "").devices, Devices{stand});
+  const auto devices = [&](const std::string& hand, const std::string& arguments) {
+    return planned(shell, from + hand, arguments).devices;
+  };
+  EXPECT_EQ(devices("device = \"scripted\"\n", "").at(0).kind, DeviceKind::scripted);
+  const std::string both = "device = [\"simulated\", \"remote:/tmp/hand\"]\n";
+  const std::vector<DevicePlan> two = devices(both, "");
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(two[0].kind, DeviceKind::simulated);
+  EXPECT_EQ(two[1].path, "/tmp/hand");
+  const std::vector<DevicePlan> given = devices(both, "--device scripted");
+  ASSERT_EQ(given.size(), 1u);
+  EXPECT_EQ(given[0].kind, DeviceKind::scripted);
+  const DevicePlan placed =
+      planned(shell,
+              "[[source]]\nname = \"left\"\nfrom = \"camera:simulated\"\n[hand]\n"
+              "device = \"haply:04EA,frame=camera,scale=2,clutch=0\"\n",
+              "")
+          .devices.front();
+  EXPECT_EQ(placed.path, "haply:04EA");
+  EXPECT_EQ(placed.placement.frame, "left");
+  EXPECT_EQ(placed.placement.scale, 2);
 }
 
 TEST(SetupFile, EveryChoiceReachesTheLibrary) {
   const Shell shell;
-  const TouchOptions options = parsed(shell, kEverything, "");
-  const std::vector<ChosenSource> sources = choose_sources(options);
-  ASSERT_EQ(sources.size(), 2u);
-  const SourceOptions first = source_options(options, sources[0]);
+  const TouchPlan plan = planned(shell, kEverything, "");
+  ASSERT_EQ(plan.sources.size(), 3u);
+  EXPECT_FALSE(plan.sources[0].as_cloud);
+  EXPECT_TRUE(plan.sources[2].as_cloud);
+  EXPECT_FALSE(plan.sources[2].options.organised);
+  const SourceOptions& first = plan.sources[0].options;
   EXPECT_EQ(first.policy.silence, 0.7);
   EXPECT_EQ(first.policy.fade, 0.9);
   EXPECT_TRUE(first.policy.fit_everywhere);
@@ -163,19 +184,19 @@ TEST(SetupFile, EveryChoiceReachesTheLibrary) {
   EXPECT_EQ(first.prepare.normal_error, 0.01);
   ASSERT_TRUE(first.prepare.viewpoint);
   EXPECT_EQ(first.prepare.viewpoint->z(), 1.2);
-  const SourceOptions second = source_options(options, sources[1]);
+  const SourceOptions& second = plan.sources[1].options;
   EXPECT_EQ(second.depth.memory, 12) << "of [stream]";
   EXPECT_FALSE(second.policy.fit_everywhere);
   EXPECT_EQ(second.depth.normal_error, 0.005);
-  EXPECT_FALSE(field_options(options).sharp_edges);
-  const GuardOptions guard = guard_options(options.live);
+  EXPECT_FALSE(plan.surface.field.sharp_edges);
+  const GuardOptions& guard = plan.time.guard;
   EXPECT_EQ(guard.maximum_force, 2.5);
   EXPECT_EQ(guard.slew, 150);
   EXPECT_EQ(guard.silence, 0.02);
   EXPECT_EQ(guard.damping, 0.7);
   EXPECT_EQ(guard.soft_start, 0.1);
   EXPECT_FALSE(guard.passivity.on);
-  const RealtimeOptions realtime = realtime_options(options.live);
+  const RealtimeOptions& realtime = plan.time.realtime;
   EXPECT_EQ(realtime.processor, 1);
   EXPECT_FALSE(realtime.realtime_priority);
   EXPECT_EQ(realtime.priority, 60);
@@ -184,8 +205,8 @@ TEST(SetupFile, EveryChoiceReachesTheLibrary) {
 
 TEST(SetupFile, WhatIsNotSaidIsAsTheLibraryHasIt) {
   const Shell shell;
-  const TouchOptions options = parsed(shell, "[[source]]\nfrom = \"camera:simulated\"\n", "");
-  const SourceOptions source = source_options(options, choose_sources(options).front());
+  const TouchPlan plan = planned(shell, "[[source]]\nfrom = \"camera:simulated\"\n", "");
+  const SourceOptions& source = plan.sources.front().options;
   EXPECT_EQ(source.policy.silence, PolicyOptions{}.silence);
   EXPECT_FALSE(source.policy.fit_everywhere);
   EXPECT_FALSE(source.policy.clip_to_reach);
@@ -193,42 +214,51 @@ TEST(SetupFile, WhatIsNotSaidIsAsTheLibraryHasIt) {
   EXPECT_EQ(source.depth.farthest, DepthFilterOptions{}.farthest);
   EXPECT_EQ(source.depth.normal_error, DepthFilterOptions{}.normal_error);
   EXPECT_EQ(source.prepare.normal_error, PrepareOptions{}.normal_error);
-  EXPECT_TRUE(field_options(options).sharp_edges);
-  EXPECT_EQ(guard_options(options.live).slew, GuardOptions{}.slew);
-  EXPECT_EQ(guard_options(options.live).maximum_force, GuardOptions{}.maximum_force);
-  EXPECT_EQ(guard_options(options.live).silence, GuardOptions{}.silence);
-  EXPECT_EQ(guard_options(options.live).damping, GuardOptions{}.damping);
-  EXPECT_TRUE(guard_options(options.live).passivity.on);
-  EXPECT_TRUE(realtime_options(options.live).realtime_priority);
-  EXPECT_FALSE(realtime_options(options.live).processor);
+  EXPECT_TRUE(plan.surface.field.sharp_edges);
+  EXPECT_EQ(plan.time.guard.slew, GuardOptions{}.slew);
+  EXPECT_EQ(plan.time.guard.maximum_force, GuardOptions{}.maximum_force);
+  EXPECT_EQ(plan.time.guard.silence, GuardOptions{}.silence);
+  EXPECT_EQ(plan.time.guard.damping, GuardOptions{}.damping);
+  EXPECT_TRUE(plan.time.guard.passivity.on);
+  EXPECT_TRUE(plan.time.realtime.realtime_priority);
+  EXPECT_FALSE(plan.time.realtime.processor);
 }
 
-TEST(SetupFile, EveryPartAndKeyIsTaken) {
-  for (const char* section :
-       {"source", "reading", "stream", "surface", "material", "hand", "guard", "servo"}) {
-    ASSERT_FALSE(keys_of(section).empty()) << section;
-    TouchOptions options;
-    CLI::App taker;
-    add_touch_options(taker, options);
-    add_setup_options(taker, options);
-    for (const SetupKey& key : keys_of(section)) {
-      EXPECT_NE(taker.get_option_no_throw(option_of(key.key)), nullptr) << key.key;
-    }
+TEST(SetupFile, EveryPartAndKeyIsDocumented) {
+  std::ifstream file(PALPATE_DOCS "/setup.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  CLI::App app;
+  OptionTable table(app);
+  TouchChoices choices;
+  add_touch_options(table, choices);
+  std::set<std::string> sections;
+  for (const Registration& each : table.all()) {
+    if (each.section.empty()) continue;
+    sections.insert(each.section);
+    EXPECT_EQ(table.find(each.section, each.key()), &each);
+    EXPECT_NE(text.find("`[" + each.section + "]`"), std::string::npos) << each.section;
+    EXPECT_NE(text.find("`" + each.key() + "`"), std::string::npos) << each.key();
   }
+  const std::set<std::string> all = {"reading", "stream", "surface", "material",
+                                     "hand",    "guard",  "servo"};
+  EXPECT_EQ(sections, all);
 }
 
 TEST(SetupFile, CommandLineWins) {
   const Shell shell;
-  const TouchOptions options = parsed(
+  const TouchPlan plan = planned(
       shell, kDesk,
       "left=sequence:monday other.ply --policy average --field metaball --pose mug=1,0,0,0,0,0,1");
-  EXPECT_EQ(options.field, "metaball");
-  const std::vector<ChosenSource> sources = choose_sources(options);
+  EXPECT_EQ(plan.surface.field.kind, FieldKind::metaball);
+  const std::vector<SourcePlan>& sources = plan.sources;
   ASSERT_EQ(sources.size(), 3u);
+  const auto x = [](const SourcePlan& source) {
+    return source.options.T_world_sensor.translation().x();
+  };
   EXPECT_EQ(sources[0].argument.path, "sequence:monday");
-  EXPECT_EQ(sources[0].choices.policy, "average") << "in every source";
-  EXPECT_NEAR(sources[0].pose.translation().x(), 0.5, 1e-12) << "the pose stays";
-  EXPECT_NEAR(sources[1].pose.translation().x(), 1, 1e-12);
+  EXPECT_EQ(sources[0].options.policy.policy, Policy::average) << "in every source";
+  EXPECT_NEAR(x(sources[0]), 0.5, 1e-12) << "the pose stays";
+  EXPECT_NEAR(x(sources[1]), 1, 1e-12);
   EXPECT_EQ(sources[2].argument.name, "other");
 }
 

@@ -2,24 +2,27 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
 
-#include "apps/palpate/options/setup_file.hpp"
+#include "apps/palpate/options/touch_options.hpp"
 #include "apps/program.hpp"
 
 namespace palpate::app {
 
 /// As the program does with a command line after "palpate touch".
-inline TouchOptions parsed(const Shell& shell, const std::string& toml,
-                           const std::string& arguments) {
-  shell.write("desk.toml", toml);
-  TouchOptions options;
+inline TouchPlan planned(const std::string& arguments) {
+  TouchChoices choices;
   CLI::App command;
-  add_touch_options(command, options);
-  command.parse(fmt::format("--setup {} {}", shell.path("desk.toml"), arguments), false);
-  apply_setup(command, options);
-  return options;
+  add_touch_command(command, choices);
+  command.parse(arguments, false);
+  return plan_touch(command, choices);
+}
+
+/// The same with a set-up file, which holds `toml`.
+inline TouchPlan planned(const Shell& shell, const std::string& toml,
+                         const std::string& arguments) {
+  shell.write("desk.toml", toml);
+  return planned(fmt::format("--setup {} {}", shell.path("desk.toml"), arguments));
 }
 
 }  // namespace palpate::app

@@ -1,11 +1,10 @@
-#include "apps/palpate/run/unguarded.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "apps/palpate/run/touch_statistics.hpp"
 #include "apps/program.hpp"
 
 namespace palpate::app {
@@ -31,7 +30,7 @@ TouchStep pressed(int index, double depth) {
 TEST(Unguarded, CountsNothingThatTheHandDoesItself) {
   DeviceInfo device;
   device.maximum_force = 10;
-  Unguarded run({}, device, 1);
+  Unguarded run(GuardOptions{}, device, 1);
   for (int i = 0; i < 40; ++i) run.add(pressed(i, 1e-3 * (i < 20 ? i - 5 : 34 - i)));
   EXPECT_EQ(run.counts().slewed, 0u);
   EXPECT_EQ(run.limits().maximum_force, 8);
@@ -40,7 +39,7 @@ TEST(Unguarded, CountsNothingThatTheHandDoesItself) {
 
 TEST(Unguarded, CountsTheStepsInWhichASlewWouldHaveFollowedAForceThatVanishes) {
   for (const double scale : {1., 10.}) {
-    Unguarded run({}, {}, scale);
+    Unguarded run(GuardOptions{}, {}, scale);
     for (int i = 0; i < 20; ++i) run.add(pressed(i, 4e-4 * i));
     TouchStep fallen = pressed(20, 0);
     fallen.hip = {0, 0, -4e-4 * 19};
@@ -54,10 +53,10 @@ TEST(Unguarded, CountsTheStepsInWhichASlewWouldHaveFollowedAForceThatVanishes) {
 }
 
 TEST(Unguarded, TakesTheLimitsOfASetUpAndCountsWhatIsAboveTheMaximum) {
-  LiveOptions options;
-  options.maximum_force = 2;
-  options.slew = 1e6;
-  Unguarded run(options, {}, 1);
+  GuardOptions guard;
+  guard.maximum_force = 2;
+  guard.slew = 1e6;
+  Unguarded run(guard, {}, 1);
   for (int i = 0; i <= 10; ++i) run.add(pressed(i, 1e-3 * i));
   EXPECT_EQ(run.counts().clamped, 6u);
   EXPECT_EQ(run.counts().slewed, 0u);

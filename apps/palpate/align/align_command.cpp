@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -13,14 +12,9 @@
 #include "apps/palpate/align/align_picture.hpp"
 #include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/waiting.hpp"
 #include "apps/palpate/cli/words.hpp"
-#include "apps/palpate/options/chosen_source.hpp"
-#include "apps/palpate/options/setup_file.hpp"
-#include "apps/palpate/options/setup_keys.hpp"
-#include "apps/palpate/options/touch_usage.hpp"
 #include "apps/palpate/sources/touched.hpp"
 #include "palpate/align/align.hpp"
 
@@ -58,31 +52,34 @@ toml::array list_of(const std::string& text) {
   return list;
 }
 
-void insert(toml::table& part, const SetupKey& key, const std::string& text) {
+void insert(toml::table& part, const Registration& option, const std::string& text) {
   const bool is_list = text.find(',') != std::string::npos;
-  if (key.kind == KeyKind::number) {
-    part.insert_or_assign(key.key, std::stod(text));
-  } else if (key.kind == KeyKind::integer) {
-    part.insert_or_assign(key.key, std::stoll(text));
-  } else if (key.kind == KeyKind::flag) {
-    part.insert_or_assign(key.key, true);
-  } else if (key.kind == KeyKind::numbers || (key.kind == KeyKind::numbers_or_text && is_list)) {
-    part.insert_or_assign(key.key, list_of(text));
+  if (option.kind == KeyKind::number) {
+    part.insert_or_assign(option.key(), std::stod(text));
+  } else if (option.kind == KeyKind::integer) {
+    part.insert_or_assign(option.key(), std::stoll(text));
+  } else if (option.kind == KeyKind::flag) {
+    part.insert_or_assign(option.key(), true);
+  } else if (option.kind == KeyKind::numbers ||
+             (option.kind == KeyKind::numbers_or_text && is_list)) {
+    part.insert_or_assign(option.key(), list_of(text));
   } else {
-    part.insert_or_assign(key.key, text);
+    part.insert_or_assign(option.key(), text);
   }
 }
 
 // What the command line says of sources stands above all that the file does.
 void insert_given(toml::table& file, toml::array& sources, const CLI::App& command) {
-  for (const char* section : {"reading", "surface", "stream"}) {
-    for (const SetupKey& key : keys_of(section)) {
-      const CLI::Option* option = command.get_option_no_throw(option_of(key.key));
-      if (option == nullptr || option->count() == 0) continue;
-      toml::table& part = *file.insert(section, toml::table{}).first->second.as_table();
-      insert(part, key, option->results().back());
-      for (toml::node& source : sources) source.as_table()->erase(key.key);
-    }
+  CLI::App unused;
+  OptionTable table(unused);
+  SourcePlan any;
+  add_source_options(table, any);
+  for (const Registration& each : table.all()) {
+    const CLI::Option* option = command.get_option_no_throw(each.name);
+    if (option == nullptr || option->count() == 0) continue;
+    toml::table& part = *file.insert(each.section, toml::table{}).first->second.as_table();
+    insert(part, each, option->results().back());
+    for (toml::node& source : sources) source.as_table()->erase(each.key());
   }
 }
 
@@ -100,7 +97,7 @@ std::string path_from(const std::string& output, const std::string& path) {
 
 // The set-up file that was read, if any, with these sources and their poses.
 std::string setup_text(const CLI::App& command, const AlignOptions& options,
-                       const std::vector<ChosenSource>& chosen) {
+                       const std::vector<SourcePlan>& chosen) {
   const std::string& setup = options.touch.setup;
   toml::table file = setup.empty() ? toml::table{} : toml::parse_file(setup);
   toml::array sources;
@@ -111,7 +108,7 @@ std::string setup_text(const CLI::App& command, const AlignOptions& options,
     source.insert_or_assign("name", chosen[i].argument.name);
     source.insert_or_assign("from", path_from(options.output, chosen[i].argument.path));
     toml::array pose;
-    for (const double number : numbers_of(chosen[i].pose)) pose.push_back(number);
+    for (const double number : numbers_of(chosen[i].options.T_world_sensor)) pose.push_back(number);
     source.insert_or_assign("pose", pose);
   }
   insert_given(file, sources, command);
@@ -126,7 +123,7 @@ std::string fit_in_words(const Fit& fit) {
                      100 * fit.overlap);
 }
 
-void print_source(const ChosenSource& source, const AlignedSource& aligned, std::FILE* out) {
+void print_source(const SourcePlan& source, const AlignedSource& aligned, std::FILE* out) {
   const Style style(out);
   const Eigen::Isometry3d& moved = aligned.T_aligned_rough;
   fmt::print(out, "{} {}\n", style.heading(source.argument.name), source.argument.path);
@@ -138,38 +135,36 @@ void print_source(const ChosenSource& source, const AlignedSource& aligned, std:
                length(aligned.place_deviation), kDegrees * aligned.turn_deviation);
   }
   fmt::print(out, "  pose       --pose {}={:.6g}\n", source.argument.name,
-             fmt::join(numbers_of(source.pose), ","));
+             fmt::join(numbers_of(source.options.T_world_sensor), ","));
 }
 
-nlohmann::ordered_json json_of(const ChosenSource& source, const AlignedSource& aligned) {
+nlohmann::ordered_json json_of(const SourcePlan& source, const AlignedSource& aligned) {
   const auto fit = [](const Fit& f) {
     return nlohmann::ordered_json{{"residual_m", f.residual}, {"overlap", f.overlap}};
   };
   return {{"name", source.argument.name},
           {"source", source.argument.path},
-          {"pose", numbers_of(source.pose)},
+          {"pose", numbers_of(source.options.T_world_sensor)},
           {"before", fit(aligned.before)},
           {"after", fit(aligned.after)},
           {"sigma", {{"place_m", aligned.place_deviation}, {"turn_rad", aligned.turn_deviation}}}};
 }
 
-void check_outputs(const AlignOptions& options) {
-  check_usage(options.touch);
-  if (options.output.empty()) return;
-  check_distinct({}, {{"--output", options.output},
-                      {"--json", options.touch.json},
-                      {"--picture", options.touch.picture}});
-  if (options.output == "-" || !fs::exists(options.output)) return;
+void check_outputs(const std::string& output, const OutputPlan& others) {
+  if (output.empty()) return;
+  check_distinct({},
+                 {{"--output", output}, {"--json", others.json}, {"--picture", others.picture}});
+  if (output == "-" || !fs::exists(output)) return;
   throw UsageError(
-      fmt::format("--output {} is there already and is not overwritten; name another "
-                  "file or remove it",
-                  options.output));
+      fmt::format("--output {} is there already and is not overwritten; name another file or "
+                  "remove it",
+                  output));
 }
 
 std::vector<AlignedSource> solve(const Touched& touched) {
   std::vector<RoughSource> rough;
   for (std::size_t i = 0; i < touched.sources.size(); ++i) {
-    rough.push_back({touched.sources[i].argument.name, touched.scene.source(i).points()});
+    rough.push_back({touched.sources[i].plan.argument.name, touched.scene.source(i).points()});
   }
   const Waiting waiting("aligning");
   return align(rough);
@@ -178,43 +173,42 @@ std::vector<AlignedSource> solve(const Touched& touched) {
 }  // namespace
 
 void add_align_options(CLI::App& command, AlignOptions& options) {
-  add_placed_sources(command, options.touch);
-  const auto add = [&](const std::string& name, std::string& value, const std::string& help) {
-    return command.add_option(name, value, wrapped(help))->group("Output");
-  };
-  add("--output", options.output,
-      "the poses as a set-up file for 'palpate touch --setup', with all else that --setup and the "
-      "command line say; never overwrites one")
-      ->type_name("FILE.toml");
-  add_json_option(command, options.touch.json)->group("Output");
-  add("--picture", options.touch.picture,
-      "the sources before and after as PNG (needs python3-matplotlib)")
-      ->type_name("FILE.png");
+  OptionTable table(command);
+  OutputPlan& outputs = options.touch.plan.outputs;
+  add_placed_sources(table, options.touch);
+  table.under("Output");
+  table.add("--output", options.output, "FILE.toml",
+            "the poses as a set-up file for 'palpate touch --setup', with all else that --setup "
+            "and the command line say; never overwrites one");
+  add_json_option(command, outputs.json)->group("Output");
+  table.add("--picture", outputs.picture, "FILE.png",
+            "the sources before and after as PNG (needs python3-matplotlib)");
   command.footer(kAlignFooter);
-  options.touch.choices.fit_everywhere = true;
+  options.touch.every_source.options.policy.fit_everywhere = true;
 }
 
-void align_sources(const CLI::App& command, AlignOptions& options) {
-  apply_setup(command, options.touch);
-  check_outputs(options);
+void align_sources(const CLI::App& command, const AlignOptions& options) {
+  const TouchPlan plan = plan_touch(command, options.touch);
+  check_outputs(options.output, plan.outputs);
   std::optional<OutputFile> output, json;
   if (!options.output.empty()) output.emplace(options.output);
-  if (!options.touch.json.empty()) json.emplace(options.touch.json);
+  if (!plan.outputs.json.empty()) json.emplace(plan.outputs.json);
   std::optional<AlignPicture> picture;
-  if (!options.touch.picture.empty()) picture.emplace(options.touch.picture);
-  std::vector<ChosenSource> chosen = choose_sources(options.touch);
-  require(chosen.size() > 1, "aligning takes two sources or more; name another");
-  const Touched touched = prepare_touched(options.touch, true);
+  if (!plan.outputs.picture.empty()) picture.emplace(plan.outputs.picture);
+  std::vector<SourcePlan> sources = plan.sources;
+  require(sources.size() > 1, "aligning takes two sources or more; name another");
+  const Touched touched = prepare_touched(sources, {.explored = true});
   const std::vector<AlignedSource> aligned = solve(touched);
   nlohmann::ordered_json report = nlohmann::ordered_json::array();
-  std::FILE* out = options.output == "-" || options.touch.json == "-" ? stderr : stdout;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    chosen[i].pose = aligned[i].T_aligned_rough * chosen[i].pose;
-    print_source(chosen[i], aligned[i], out);
-    report.push_back(json_of(chosen[i], aligned[i]));
+  std::FILE* out = options.output == "-" || plan.outputs.json == "-" ? stderr : stdout;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    Eigen::Isometry3d& pose = sources[i].options.T_world_sensor;
+    pose = aligned[i].T_aligned_rough * pose;
+    print_source(sources[i], aligned[i], out);
+    report.push_back(json_of(sources[i], aligned[i]));
   }
   write_whole(json, report.dump(2) + "\n");
-  write_whole(output, setup_text(command, options, chosen));
+  write_whole(output, setup_text(command, options, sources));
   if (picture) picture->draw(touched, aligned);
 }
 

@@ -24,7 +24,7 @@ void AlignPicture::draw(const Touched& touched, const std::vector<AlignedSource>
       rows.insert(rows.end(), {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), n.x(), n.y(), n.z(),
                                static_cast<float>(s)});
     }
-    facts["sources"].push_back({{"name", touched.sources[s].argument.name},
+    facts["sources"].push_back({{"name", touched.sources[s].plan.argument.name},
                                 {"before_m", aligned[s].before.residual},
                                 {"after_m", aligned[s].after.residual},
                                 {"radius_m", points.radius}});

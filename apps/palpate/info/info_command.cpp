@@ -2,18 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/numbered_path.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/waiting.hpp"
 #include "apps/palpate/info/info_report.hpp"
 #include "apps/palpate/info/live_facts.hpp"
 #include "apps/palpate/info/trust_picture.hpp"
+#include "apps/palpate/options/option_table.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/scene/source.hpp"
@@ -33,8 +32,7 @@ docs/touch.md says what each line of the report means.
 
 Exit codes: 0 done, 1 the input is at fault, 2 the command line is wrong.)";
 
-InfoReport study(const CloudArgument& argument, const ReadingOptions& options,
-                 TrustPicture* picture) {
+InfoReport study(const CloudArgument& argument, const ReadOptions& options, TrustPicture* picture) {
   InfoReport report;
   report.loaded = load(argument, options);
   const PointCloud& cloud = report.loaded.file.cloud;
@@ -86,7 +84,8 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
                   wrapped(cloud_help() + "; or a camera or sequence as for touch"))
       ->required()
       ->type_name("CLOUD");
-  add_reading_options(command, options.reading);
+  OptionTable table(command);
+  add_reading_options(table, options.reading);
   add_json_option(command, options.json)->group("Output");
   command
       .add_option("--picture", options.picture,
@@ -98,7 +97,6 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
 }
 
 void info(const InfoOptions& options) {
-  if (!options.reading.intrinsics.empty()) (void)parse_intrinsics(options.reading.intrinsics);
   nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
   const std::vector<CloudArgument> arguments = parse_clouds(options.clouds);
   std::vector<TrustPicture> pictures = pictures_of(arguments, options);

@@ -5,12 +5,16 @@
 
 #include "apps/palpate/options/source_options.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace palpate::app {
 
 /// The command line of `palpate info`.
 struct InfoOptions {
   std::vector<std::string> clouds;
-  ReadingOptions reading;
+  ReadOptions reading;
   std::string json;
   std::string picture;  ///< of several clouds the first one's: numbered_path()
 };

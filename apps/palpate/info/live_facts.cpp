@@ -9,7 +9,7 @@
 #include "apps/palpate/cli/quantile.hpp"
 #include "apps/palpate/cli/waiting.hpp"
 #include "apps/palpate/cli/words.hpp"
-#include "apps/palpate/sources/open_live.hpp"
+#include "apps/palpate/sources/load.hpp"
 #include "palpate/depth/depth_filter.hpp"
 
 namespace palpate::app {
@@ -37,9 +37,9 @@ void look_at_depths(const DepthFrame& frame, LiveFacts& facts) {
 
 LiveFacts study_live(const CloudArgument& argument) {
   const Waiting waiting("studying " + argument.name);
-  ChosenSource source;
+  SourcePlan source;
   source.argument = argument;
-  const std::unique_ptr<DepthCamera> camera = open_live_at_any_pace(source);
+  const std::unique_ptr<DepthCamera> camera = open_stream_at_any_pace(source);
   LiveFacts facts;
   facts.argument = argument;
   DepthFrame frame = first_frame(*camera);

@@ -10,8 +10,6 @@
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
-#include "apps/palpate/options/setup_keys.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
@@ -29,29 +27,16 @@ const char* type_name(const toml::node& node) {
   return node.is_table() ? "a table" : "a date or time";
 }
 
-// The options that the command line has.
-GivenOptions given_options(const CLI::App& command) {
-  GivenOptions names;
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->count() > 0) names.insert(option->get_name());
-  }
-  return names;
-}
-
-const SetupKey* find(std::string_view section, std::string_view key) {
-  const std::span<const SetupKey> keys = keys_of(section);
-  const auto place = std::ranges::find(keys, key, &SetupKey::key);
-  return place == keys.end() ? nullptr : &*place;
-}
-
 // One file on its way into options.
 class SetupFile {
  public:
-  explicit SetupFile(std::string path) : path_(std::move(path)), folder_(fs::path(path_)) {
-    folder_ = folder_.parent_path();
-  }
+  SetupFile(std::string path, const OptionTable& table, const GivenOptions& given)
+      : path_(std::move(path)),
+        folder_(fs::path(path_).parent_path()),
+        table_(table),
+        given_(given) {}
 
-  void apply(TouchOptions& options) const;
+  void read(TouchChoices& choices, DescribedOptions& described) const;
 
  private:
   [[nodiscard]] toml::table parse() const;
@@ -59,22 +44,25 @@ class SetupFile {
                                      const std::string& what) const;
   [[noreturn]] void fail(const toml::source_region& place, const std::string& what) const;
   void check_sections(const toml::table& file) const;
-  [[nodiscard]] std::vector<SourceSetup> sources(const TouchOptions& options,
-                                                 const toml::node& node) const;
-  [[nodiscard]] SourceSetup source(const TouchOptions& options, const toml::table& table) const;
+  [[nodiscard]] std::vector<DescribedSource> sources(const SourcePlan& base,
+                                                     const toml::node& node) const;
+  [[nodiscard]] DescribedSource source(const SourcePlan& base, const toml::table& table) const;
   [[nodiscard]] std::string name(const toml::node& node) const;
   [[nodiscard]] std::string from(const toml::node& node) const;
   [[nodiscard]] Eigen::Isometry3d pose(const toml::node& node) const;
-  void take(CLI::App& taker, const TouchOptions& options, std::string_view section,
-            const toml::key& key, const toml::node& node, DescribedOptions& described) const;
-  [[nodiscard]] std::string text_of(const SetupKey& key, const toml::node& node) const;
-  [[nodiscard]] std::vector<std::string> texts_of(const SetupKey& key,
+  void take(const OptionTable& table, std::string_view section, const toml::key& key,
+            const toml::node& node, DescribedOptions& described) const;
+  [[nodiscard]] std::string text_of(std::string_view key, KeyKind kind,
+                                    const toml::node& node) const;
+  [[nodiscard]] std::vector<std::string> texts_of(std::string_view key, KeyKind kind,
                                                   const toml::node& node) const;
   [[nodiscard]] std::string numbers(std::string_view key, const toml::node& node) const;
   [[nodiscard]] std::string resolved(const std::string& path) const;
 
   std::string path_;
   fs::path folder_;
+  const OptionTable& table_;
+  const GivenOptions& given_;
 };
 
 std::string SetupFile::in_words(const toml::source_region& place, const std::string& what) const {
@@ -121,15 +109,15 @@ std::string SetupFile::numbers(std::string_view key, const toml::node& node) con
   return joined;
 }
 
-std::string SetupFile::text_of(const SetupKey& key, const toml::node& node) const {
+std::string SetupFile::text_of(std::string_view key, KeyKind kind, const toml::node& node) const {
   const auto wrong = [&](const char* wanted) {
-    fail(node.source(), fmt::format("'{}' is {}; give {}", key.key, type_name(node), wanted));
+    fail(node.source(), fmt::format("'{}' is {}; give {}", key, type_name(node), wanted));
   };
-  switch (key.kind) {
+  switch (kind) {
     case KeyKind::numbers:
-      return numbers(key.key, node);
+      return numbers(key, node);
     case KeyKind::numbers_or_text:
-      if (node.is_array()) return numbers(key.key, node);
+      if (node.is_array()) return numbers(key, node);
       break;
     case KeyKind::number:
       if (!node.is_number()) wrong("a number");
@@ -149,36 +137,35 @@ std::string SetupFile::text_of(const SetupKey& key, const toml::node& node) cons
   }
   if (!node.is_string()) wrong("text in quotes");
   const std::string text = *node.value<std::string>();
-  if (text.empty()) fail(node.source(), fmt::format("'{}' is empty; leave it out", key.key));
-  return key.kind == KeyKind::path ? resolved(text) : text;
+  if (text.empty()) fail(node.source(), fmt::format("'{}' is empty; leave it out", key));
+  return kind == KeyKind::path ? resolved(text) : text;
 }
 
 // What the option of that key would be given, one after the other.
-std::vector<std::string> SetupFile::texts_of(const SetupKey& key, const toml::node& node) const {
+std::vector<std::string> SetupFile::texts_of(std::string_view key, KeyKind kind,
+                                             const toml::node& node) const {
   const toml::array* list = node.as_array();
-  if (key.kind != KeyKind::texts || list == nullptr) return {text_of(key, node)};
-  if (list->empty()) fail(node.source(), fmt::format("'{}' is empty; leave it out", key.key));
+  if (kind != KeyKind::texts || list == nullptr) return {text_of(key, kind, node)};
+  if (list->empty()) fail(node.source(), fmt::format("'{}' is empty; leave it out", key));
   std::vector<std::string> texts;
-  for (const toml::node& each : *list) texts.push_back(text_of({key.key, KeyKind::text}, each));
+  for (const toml::node& each : *list) texts.push_back(text_of(key, KeyKind::text, each));
   return texts;
 }
 
 // Gives a key's value to the option of its name, unless the command line has that; its type has to
 // be right all the same.
-void SetupFile::take(CLI::App& taker, const TouchOptions& options, std::string_view section,
-                     const toml::key& key, const toml::node& node,
-                     DescribedOptions& described) const {
-  const SetupKey* known = find(section, key.str());
-  if (known == nullptr) fail(key.source(), unknown_key(section, key.str()));
-  const std::vector<std::string> texts = texts_of(*known, node);
-  described[option_of(known->key)] = in_words(key.source(), fmt::format("'{}'", known->key));
-  if (options.given.contains(option_of(known->key))) return;
-  CLI::Option* option = taker.get_option(option_of(known->key));
+void SetupFile::take(const OptionTable& table, std::string_view section, const toml::key& key,
+                     const toml::node& node, DescribedOptions& described) const {
+  const Registration* const known = table.find(section, key.str());
+  if (known == nullptr) fail(key.source(), table_.unknown_key(section, key.str()));
+  const std::vector<std::string> texts = texts_of(key.str(), known->kind, node);
+  described[known->name] = in_words(key.source(), fmt::format("'{}'", key.str()));
+  if (given_.contains(known->name)) return;
   try {
-    for (const std::string& text : texts) option->add_result(text);
-    option->run_callback();
+    for (const std::string& text : texts) known->option->add_result(text);
+    known->option->run_callback();
   } catch (const CLI::Error& error) {
-    fail(node.source(), fmt::format("'{}' of {}: {}", known->key, in_brackets(section),
+    fail(node.source(), fmt::format("'{}' of {}: {}", key.str(), in_brackets(section),
                                     without_option(error.what())));
   }
 }
@@ -196,7 +183,7 @@ Eigen::Isometry3d SetupFile::pose(const toml::node& node) const {
 }
 
 std::string SetupFile::name(const toml::node& node) const {
-  std::string name = text_of({"name", KeyKind::text}, node);
+  std::string name = text_of("name", KeyKind::text, node);
   if (!is_name(name)) {
     fail(node.source(),
          fmt::format("'name' is '{}'; give letters, digits, '-', '_' and '.' alone", name));
@@ -205,7 +192,7 @@ std::string SetupFile::name(const toml::node& node) const {
 }
 
 std::string SetupFile::from(const toml::node& node) const {
-  const std::string from = text_of({"from", KeyKind::text}, node);
+  const std::string from = text_of("from", KeyKind::text, node);
   if (!names_something(from)) {
     fail(node.source(), fmt::format("'from' is '{}', which names nothing; write more behind the "
                                     "colon",
@@ -214,40 +201,40 @@ std::string SetupFile::from(const toml::node& node) const {
   return resolved(from);
 }
 
-SourceSetup SetupFile::source(const TouchOptions& options, const toml::table& table) const {
-  SourceSetup result{
-      .name = "", .from = "", .pose = {}, .choices = options.choices, .described = {}};
-  CLI::App taker;
-  add_source_options(taker, result.choices);
-  add_source_setup_options(taker, result.choices);
-  for (const auto& [key, node] : table) {
+DescribedSource SetupFile::source(const SourcePlan& base, const toml::table& part) const {
+  DescribedSource result{.plan = base};
+  SourcePlan& plan = result.plan;
+  CLI::App app;
+  OptionTable table(app);
+  add_source_options(table, plan);
+  for (const auto& [key, node] : part) {
     if (key.str() == "name") {
-      result.name = name(node);
+      plan.argument.name = name(node);
     } else if (key.str() == "from") {
-      result.from = from(node);
+      plan.argument.path = from(node);
     } else if (key.str() == "pose") {
-      result.pose = pose(node);
+      plan.options.T_world_sensor = pose(node);
     } else {
-      take(taker, options, "source", key, node, result.described);
+      take(table, "source", key, node, result.described);
     }
   }
-  if (result.from.empty()) {
-    fail(table.source(), "this [[source]] has no 'from', which names a file, camera or sequence");
+  if (plan.argument.path.empty()) {
+    fail(part.source(), "this [[source]] has no 'from', which names a file, camera or sequence");
   }
   return result;
 }
 
-std::vector<SourceSetup> SetupFile::sources(const TouchOptions& options,
-                                            const toml::node& node) const {
+std::vector<DescribedSource> SetupFile::sources(const SourcePlan& base,
+                                                const toml::node& node) const {
   const toml::array* list = node.as_array();
   if (list == nullptr || !list->is_homogeneous(toml::node_type::table)) {
     fail(node.source(), "'source' is not written as [[source]], once for each source");
   }
-  std::vector<SourceSetup> result;
+  std::vector<DescribedSource> result;
   std::set<std::string> names;
   for (const toml::node& each : *list) {
-    result.push_back(source(options, *each.as_table()));
-    const std::string& name = result.back().name;
+    result.push_back(source(base, *each.as_table()));
+    const std::string& name = result.back().plan.argument.name;
     if (name.empty() || names.insert(name).second) continue;
     fail(each.source(), fmt::format("two sources are named '{}'; give each its own name", name));
   }
@@ -256,7 +243,7 @@ std::vector<SourceSetup> SetupFile::sources(const TouchOptions& options,
 
 void SetupFile::check_sections(const toml::table& file) const {
   for (const auto& [key, node] : file) {
-    if (keys_of(key.str()).empty()) fail(key.source(), unknown_section(key.str()));
+    if (!table_.has_section(key.str())) fail(key.source(), table_.unknown_section(key.str()));
     if (key.str() != "source" && !node.is_table()) {
       fail(node.source(), fmt::format("'{0}' is {1}; write [{0}] and its keys in lines below",
                                       key.str(), type_name(node)));
@@ -264,26 +251,25 @@ void SetupFile::check_sections(const toml::table& file) const {
   }
 }
 
-void SetupFile::apply(TouchOptions& options) const {
+void SetupFile::read(TouchChoices& choices, DescribedOptions& described) const {
   const toml::table file = parse();
   check_sections(file);
-  CLI::App taker;
-  add_touch_options(taker, options);
-  add_setup_options(taker, options);
   for (const auto& [section, node] : file) {
     if (section.str() == "source") continue;
     for (const auto& [key, value] : *node.as_table()) {
-      take(taker, options, section.str(), key, value, options.described);
+      take(table_, section.str(), key, value, described);
     }
   }
-  if (const toml::node* list = file.get("source")) options.setup_sources = sources(options, *list);
+  if (const toml::node* list = file.get("source")) {
+    choices.described_sources = sources(choices.every_source, *list);
+  }
 }
 
 }  // namespace
 
-void apply_setup(const CLI::App& command, TouchOptions& options) {
-  options.given = given_options(command);
-  if (!options.setup.empty()) SetupFile(options.setup).apply(options);
+void read_setup(const std::string& path, const OptionTable& table, const GivenOptions& given,
+                TouchChoices& choices, DescribedOptions& described) {
+  SetupFile(path, table, given).read(choices, described);
 }
 
 }  // namespace palpate::app

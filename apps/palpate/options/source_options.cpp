@@ -2,128 +2,159 @@
 
 #include <fmt/format.h>
 
-#include "apps/palpate/cli/arguments.hpp"
-#include "apps/palpate/cli/names.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
+#include "apps/palpate/options/option_table.hpp"
 #include "palpate/io/synthetic.hpp"
 
 namespace palpate::app {
 
 namespace {
 
-std::string synthetic_list() {
-  std::string list;
-  for (const SyntheticName& each : synthetic_names()) {
-    list += fmt::format("{}{}", list.empty() ? "" : ", ", each.name);
-  }
-  return list;
+constexpr Scope kStream{&RunFacts::stream,
+                        "applies only to cameras and sequences; no source is one"};
+constexpr Scope kImage{
+    &RunFacts::image,
+    "applies only to depth images; clouds need none, a camera knows its own, and "
+    "a sequence has it in its sequence.json"};
+constexpr Scope kFiltered{&RunFacts::filtered,
+                          "applies only to the depth filter; no source goes through it"};
+constexpr Scope kFilteredFrames{&RunFacts::filtered_frames,
+                                "applies only to frames that go through the depth filter; none do"};
+constexpr Scope kCloud{&RunFacts::cloud,
+                       "applies only to clouds; the depth filter chooses by itself what pixels and "
+                       "noise allow: remove it, or add --unorganised"};
+
+void add_surface_of_source(OptionTable& table, SourcePlan& s) {
+  table.under("Surface (chosen from the data unless given)", "surface", true);
+  table.add("--radius", s.options.prepare.radius, "METRES", positive(),
+            "support radius R of every point, of depth images and streams the smallest: larger is "
+            "smoother");
+  table
+      .add("--voxel", s.options.prepare.voxel, "METRES", not_negative(),
+           "edge of the voxel filter of clouds; 0: none")
+      .only_for(kCloud);
+  table.add_key(
+      "--normal-error",
+      [&s](const double& angle) {
+        s.options.prepare.normal_error = angle;
+        s.options.depth.normal_error = angle;
+      },
+      number("an angle from 0.0005 to 0.2 rad", [](double x) { return x >= 5e-4 && x <= 0.2; }));
 }
 
-void add_surface_of_source(CLI::App& command, SourceChoices& o) {
-  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
-    return command.add_option(name, value, wrapped(help))
-        ->group("Surface (chosen from the data unless given)");
-  };
-  add("--radius", o.radius,
-      "support radius R of every point, of depth images and streams the smallest: larger is "
-      "smoother")
-      ->check(positive())
-      ->type_name("METRES");
-  add("--voxel", o.voxel, "edge of the voxel filter of clouds; 0: none")
-      ->check(not_negative())
-      ->type_name("METRES");
+void add_time_of_source(OptionTable& table, PolicyOptions& policy) {
+  table
+      .add_choice("--policy", policy.policy, kPolicies,
+                  "how frames become one surface in time: replace (hard swap), average (of N, the "
+                  "paper), crossfade, fusion or morph (default of depth cameras)")
+      .only_for(kStream);
+  table
+      .add("--history", policy.history, "N", whole_number(1, 7),
+           "N of average and crossfade, 1 to 7 (4)")
+      .only_for(kStream)
+      .only_for({&RunFacts::history,
+                 "applies only to the policies average and crossfade; add --policy average"});
+  table
+      .add("--silence", policy.silence, "SECONDS", positive(),
+           "a surface that no frame has confirmed for this long begins to fade (0.3)")
+      .only_for(kStream);
+  table.add("--fade", policy.fade, "SECONDS", positive(), "time that it takes to fade away (0.5)")
+      .only_for(kStream);
 }
 
-void add_stream_options(CLI::App& command, SourceChoices& o) {
-  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
-    return command.add_option(name, value, wrapped(help))->group("Streams");
-  };
-  add("--policy", o.policy,
-      "how frames become one surface in time: replace (hard swap), average (of N, the paper), "
-      "crossfade, fusion or morph (default of depth cameras)")
-      ->check(one_of(names_of(kPolicies)))
-      ->type_name("NAME");
-  add("--history", o.history, "N of average and crossfade, 1 to 7 (4)")
-      ->check(whole_number(1, 7))
-      ->type_name("N");
-  add("--silence", o.silence,
-      "a surface that no frame has confirmed for this long begins to fade (0.3)")
-      ->check(positive())
-      ->type_name("SECONDS");
-  add("--fade", o.fade, "time that it takes to fade away (0.5)")
-      ->check(positive())
-      ->type_name("SECONDS");
-  add("--noise", o.noise,
-      "standard deviation of a depth pixel, S0 + S1 z + S2 z^2 at z metres, and how much "
-      "neighbours err together "
-      "(C >= 1); or a sensor: kinect1, xtion, realsense, tof. Measured from the frames unless "
-      "given")
-      ->check(parsed_by([](const std::string& text) { (void)parse_noise(text); }))
-      ->type_name("S0,S1,S2[,C]");
-  add("--nearest", o.nearest, "the depth filter takes no depth nearer than this (0.1)")
-      ->check(number("a depth of 0.001 m or more", [](double x) { return x >= 1e-3; }))
-      ->type_name("METRES");
-  add("--farthest", o.farthest,
-      "the depth filter takes no depth beyond this (20, or ten times the first frame's median "
-      "where that is less)")
-      ->check(positive())
-      ->type_name("METRES");
-  command
-      .add_flag("--clip-to-reach", o.clip_to_reach,
-                wrapped("of frames taken as clouds, prepare only what the tool can reach before "
-                        "the next one, as the paper does"))
-      ->group("Streams");
-  command.add_flag("--loop", o.loop, "sequences start again at their end")->group("Streams");
+void add_depth_filter(OptionTable& table, SourcePlan& s) {
+  DepthFilterOptions& depth = s.options.depth;
+  table
+      .add_text(
+          "--noise", KeyKind::numbers_or_text, "S0,S1,S2[,C]",
+          [&depth](const std::string& text) { depth.noise = parse_noise(text); },
+          "standard deviation of a depth pixel, S0 + S1 z + S2 z^2 at z metres, and how much "
+          "neighbours err together (C >= 1); or a sensor: kinect1, xtion, realsense, tof. Measured "
+          "from the frames unless given")
+      .only_for({&RunFacts::depth,
+                 "applies only to depth images, organised clouds and streams; no source is one"});
+  table
+      .add("--nearest", depth.nearest, "METRES",
+           number("a depth of 0.001 m or more", [](double x) { return x >= 1e-3; }),
+           "the depth filter takes no depth nearer than this (0.1)")
+      .only_for(kFiltered);
+  table
+      .add("--farthest", s.farthest, "METRES", positive(),
+           "the depth filter takes no depth beyond this (20, or ten times the first frame's median "
+           "where that is less)")
+      .only_for(kFiltered);
+  table.add_key("--memory", depth.memory, whole_number(1, 255)).only_for(kFilteredFrames);
+  table.add_key("--fit-everywhere", s.options.policy.fit_everywhere).only_for(kFilteredFrames);
+}
+
+void add_stream_options(OptionTable& table, SourcePlan& s) {
+  table.under("Streams", "stream", true);
+  add_time_of_source(table, s.options.policy);
+  add_depth_filter(table, s);
+  table
+      .add_flag("--clip-to-reach", s.options.policy.clip_to_reach,
+                "of frames taken as clouds, prepare only what the tool can reach before the next "
+                "one, as the paper does")
+      .only_for(
+          {&RunFacts::cloud_frames,
+           "applies only to frames that are taken as clouds; add --unorganised, or remove it: "
+           "the depth filter does its costly part within reach alone by itself"});
+  table.add_flag("--loop", s.loop, "sequences start again at their end")
+      .only_for({&RunFacts::recorded, "applies only to sequences; no source is one"});
 }
 
 }  // namespace
 
 std::string cloud_help() {
+  std::string names;
+  for (const SyntheticName& each : synthetic_names()) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", each.name);
+  }
   return fmt::format(
       "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, depth PNG or PGM, any of them "
       "gzipped; - for standard input; or synthetic:NAME with NAME one of {}",
-      synthetic_list());
+      names);
 }
 
-void add_reading_options(CLI::App& command, ReadingOptions& o) {
-  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
-    return command.add_option(name, value, wrapped(help))->group("Reading");
-  };
-  add("--scale", o.scale, "metres per unit of the file: 0.001 for millimetres, 0.3048 for feet (1)")
-      ->check(positive())
-      ->type_name("FACTOR");
-  add("--intrinsics", o.intrinsics,
-      "focal lengths and centre of a depth image, in pixels; a depth image needs them")
-      ->check(parsed_by([](const std::string& text) { (void)parse_intrinsics(text); }))
-      ->type_name("FX,FY,CX,CY");
-  add("--depth-unit", o.depth_unit, "metres per step of a depth image's values (0.001)")
-      ->check(positive())
-      ->type_name("METRES");
+void add_reading_options(OptionTable& table, ReadOptions& o) {
+  table.under("Reading", "reading", true);
+  table
+      .add("--scale", o.scale, "FACTOR", positive(),
+           "metres per unit of the file: 0.001 for millimetres, 0.3048 for feet (1)")
+      .only_for({&RunFacts::is_static,
+                 "applies only to files; a camera knows its own, and a sequence has it in its "
+                 "sequence.json"});
+  table
+      .add_text(
+          "--intrinsics", KeyKind::numbers, "FX,FY,CX,CY",
+          [&o](const std::string& text) { o.intrinsics = parse_intrinsics(text); },
+          "focal lengths and centre of a depth image, in pixels; a depth image needs them")
+      .only_for(kImage);
+  table
+      .add("--depth-unit", o.depth_unit, "METRES", positive(),
+           "metres per step of a depth image's values (0.001)")
+      .only_for(kImage);
 }
 
-void add_source_options(CLI::App& command, SourceChoices& o) {
-  add_reading_options(command, o.reading);
-  command
-      .add_option("--viewpoint", o.viewpoint,
-                  "where the sensor stood, in the cloud's frame: orients normals")
-      ->check(parsed_by([](const std::string& text) { (void)parse_point(text, "--viewpoint"); }))
-      ->type_name("X,Y,Z")
-      ->group("Reading");
-  command
-      .add_flag("--unorganised", o.unorganised,
-                wrapped("take depth images and organised clouds as loose points: voxel filter and "
-                        "fitted normals in place of the depth filter"))
-      ->group("Reading");
-  add_surface_of_source(command, o);
-  add_stream_options(command, o);
-}
-
-void add_source_setup_options(CLI::App& file, SourceChoices& o) {
-  file.add_option("--memory", o.memory)->check(whole_number(1, 255));
-  file.add_option("--normal-error", o.normal_error)
-      ->check(number("an angle from 0.0005 to 0.2 rad",
-                     [](double x) { return x >= 5e-4 && x <= 0.2; }));
-  file.add_flag("--fit-everywhere", o.fit_everywhere);
+void add_source_options(OptionTable& table, SourcePlan& s) {
+  add_reading_options(table, s.reading);
+  PrepareOptions& prepare = s.options.prepare;
+  table
+      .add_text(
+          "--viewpoint", KeyKind::numbers, "X,Y,Z",
+          [&prepare](const std::string& text) {
+            prepare.viewpoint = parse_point(text, "--viewpoint");
+            prepare.orientation = Orientation::viewpoint;
+          },
+          "where the sensor stood, in the cloud's frame: orients normals")
+      .only_for(kCloud);
+  table
+      .add_flag("--unorganised", s.as_cloud,
+                "take depth images and organised clouds as loose points: voxel filter and fitted "
+                "normals in place of the depth filter")
+      .only_for({&RunFacts::depth,
+                 "applies only to depth images, organised clouds and streams; no source is one"});
+  add_surface_of_source(table, s);
+  add_stream_options(table, s);
 }
 
 }  // namespace palpate::app

@@ -1,10 +1,9 @@
 #include "apps/palpate/options/touch_options.hpp"
 
-#include <CLI/CLI.hpp>
+#include <arpa/inet.h>
+#include <fmt/format.h>
 
-#include "apps/palpate/cli/names.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
-#include "apps/palpate/options/device_choice.hpp"
+#include "apps/palpate/cli/errors.hpp"
 
 namespace palpate::app {
 
@@ -12,121 +11,140 @@ namespace {
 
 constexpr std::int64_t kLargestSeed = 1'000'000'000'000'000;
 
-void add_surface_options(CLI::App& command, TouchOptions& o) {
-  const std::string group = "Surface (chosen from the data unless given)";
-  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
-    return command.add_option(name, value, wrapped(help))->group(group);
-  };
-  add("--field", o.field, "how points become a surface: balanced (default), pointset or metaball")
-      ->check(one_of(names_of(kFields)))
-      ->type_name("NAME");
-  add("--preset", o.preset,
-      "default, or paper: the method of Leeper, Chan and Salisbury 2012 as they ran it")
-      ->check(one_of({"default", "paper"}))
-      ->type_name("NAME");
-  add("--kernel", o.kernel, "wyvill (default) or wendland")
-      ->check(one_of(names_of(kKernels)))
-      ->type_name("NAME");
-  add("--gradient", o.gradient,
+constexpr std::array<Named<bool>, 2> kPresets = {{{"default", false}, {"paper", true}}};
+
+constexpr Scope kGuarded{&RunFacts::guarded,
+                         "applies only to runs in real time; static sources and --simulated-time "
+                         "have neither a guard nor a servo thread"};
+constexpr Scope kPage{&RunFacts::page, "applies only to the page, and there is none; add --view"};
+
+void check_address(const std::string& text) {
+  in6_addr parsed;  // has room for either kind
+  for (const int kind : {AF_INET, AF_INET6}) {
+    if (inet_pton(kind, text.c_str(), &parsed) == 1) return;
+  }
+  throw UsageError(fmt::format(
+      "'{}' is no address; give one like 127.0.0.1, ::1 or 0.0.0.0 (everywhere)", text));
+}
+
+void add_field_options(OptionTable& table, TouchChoices& o) {
+  FieldOptions& field = o.plan.surface.field;
+  table.under("Surface (chosen from the data unless given)", "surface");
+  table.add_choice("--field", o.field, kFields,
+                   "how points become a surface: balanced (default), pointset or metaball");
+  table.add_choice(
+      "--preset", o.plan.surface.paper, kPresets,
+      "default, or paper: the method of Leeper, Chan and Salisbury 2012 as they ran it");
+  table.add_choice("--kernel", field.kernel, kKernels, "wyvill (default) or wendland");
+  table.add_choice(
+      "--gradient", o.gradient, kGradients,
       "of the metaball: exact (default), or as in the paper: normal (eq. 8) or printed (eq. 4 as "
-      "printed, which points inward)")
-      ->check(one_of(names_of(kGradients)))
-      ->type_name("NAME");
-  add("--threshold", o.threshold,
-      "level of the metaball, 0 to 1; lower is farther out (0.4). Other fields become a "
-      "metaball where normals cannot be trusted")
-      ->check(number("between 0 and 1", [](double x) { return x > 0 && x < 1; }))
-      ->type_name("LEVEL");
-  add("--tool-radius", o.tool_radius, "radius of the ball that touches; 0: a point")
-      ->check(not_negative())
-      ->type_name("METRES");
+      "printed, which points inward)");
+  table.add("--threshold", o.threshold, "LEVEL",
+            number("between 0 and 1", [](double x) { return x > 0 && x < 1; }),
+            "level of the metaball, 0 to 1; lower is farther out (0.4). Other fields become a "
+            "metaball where normals cannot be trusted");
+  table.add("--tool-radius", field.tool_radius, "METRES", not_negative(),
+            "radius of the ball that touches; 0: a point");
+  table.add_key("--sharp-edges", field.sharp_edges);
 }
 
-void add_feel_options(CLI::App& command, TouchOptions& o) {
-  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
-    return command.add_option(name, value, wrapped(help))->group("Feel");
-  };
-  add("--stiffness", o.stiffness,
-      "K of the surface, in the cloud's metres (500; less where a large cloud is explored)")
-      ->check(number("above 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }))
-      ->type_name("N/M");
-  add("--soft-stiffness", o.soft_stiffness,
-      "K where the cloud's intensity is lowest; it grows to --stiffness where that is highest")
-      ->check(not_negative())
-      ->type_name("N/M");
-  add("--friction-static", o.friction_static,
-      "coefficient while the proxy sticks (--friction-dynamic)")
-      ->check(not_negative())
-      ->type_name("MU");
-  add("--friction-dynamic", o.friction_dynamic, "coefficient while it slides (0)")
-      ->check(not_negative())
-      ->type_name("MU");
-  add("--friction-viscous", o.friction_viscous, "friction that grows with the speed of sliding (0)")
-      ->check(not_negative())
-      ->type_name("N S/M");
-  add("--soft-friction", o.soft_friction,
-      "share of the friction, 0 to 1, where the cloud's intensity is lowest; it grows to all of it "
-      "where that is highest")
-      ->check(number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }))
-      ->type_name("SHARE");
-  add("--texture-amplitude", o.texture_amplitude,
-      "amplitude of a fine relief on the surface (0: none)")
-      ->check(not_negative())
-      ->type_name("METRES");
-  add("--texture-wavelength", o.texture_wavelength, "wavelength of that relief (0.004)")
-      ->check(positive())
-      ->type_name("METRES");
+void add_material_options(OptionTable& table, TouchChoices& o) {
+  SurfacePlan& surface = o.plan.surface;
+  Friction& friction = surface.proxy.friction;
+  Texture& texture = surface.proxy.texture;
+  table.under("Feel", "material");
+  table.add("--stiffness", surface.stiffness, "N/M",
+            number("above 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }),
+            "K of the surface, in the cloud's metres (500; less where a large cloud is explored)");
+  table.add("--soft-stiffness", surface.soft_stiffness, "N/M", not_negative(),
+            "K where the cloud's intensity is lowest; it grows to --stiffness where that is "
+            "highest");
+  table.add("--friction-static", o.friction_static, "MU", not_negative(),
+            "coefficient while the proxy sticks (--friction-dynamic)");
+  table.add("--friction-dynamic", friction.dynamic_coefficient, "MU", not_negative(),
+            "coefficient while it slides (0)");
+  table.add("--friction-viscous", friction.viscous, "N S/M", not_negative(),
+            "friction that grows with the speed of sliding (0)");
+  table.add("--soft-friction", surface.soft_friction, "SHARE",
+            number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }),
+            "share of the friction, 0 to 1, where the cloud's intensity is lowest; it grows to all "
+            "of it where that is highest");
+  table.add("--texture-amplitude", texture.amplitude, "METRES", not_negative(),
+            "amplitude of a fine relief on the surface (0: none)");
+  table.add("--texture-wavelength", texture.wavelength, "METRES", positive(),
+            "wavelength of that relief (0.004)");
 }
 
-void add_hand_options(CLI::App& command, TouchOptions& o) {
-  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
-    return command.add_option(name, value, wrapped(help))->group("Hand");
-  };
-  add("--trajectory", o.trajectory,
-      "CSV with columns t,hip_x,hip_y,hip_z (s, m): one servo step a row; a log will do")
-      ->type_name("FILE");
-  add_device_option(command, o.devices, "Hand");
-  add("--duration", o.duration,
-      "how long the built-in exploration goes on (10); where it is given, a run with a remote "
-      "device "
-      "or a page ends then, too (without it by Ctrl-C)")
-      ->check(number("between 0.01 and 3600 s", [](double x) { return x >= 0.01 && x <= 3600; }))
-      ->type_name("SECONDS");
-  add("--seed", o.seed,
-      "which places the exploration touches: another number, other places (1; each further hand "
-      "has the next number)")
-      ->check(whole_number(0, kLargestSeed))
-      ->type_name("N");
-  add("--rate", o.rate,
-      "steps a second of the exploration and of simulated and remote devices (1000)")
-      ->check(number("between 500 and 10000 Hz", [](double x) { return x >= 500 && x <= 1e4; }))
-      ->type_name("HZ");
+void add_hand_options(OptionTable& table, TouchPlan& plan) {
+  MotionPlan& motion = plan.motion;
+  table.under("Hand", "hand");
+  table
+      .add("--trajectory", motion.trajectory, "FILE",
+           "CSV with columns t,hip_x,hip_y,hip_z (s, m): one servo step a row; a log will do")
+      .only_for({&RunFacts::follows,
+                 "applies only to scripted and simulated devices; a remote one goes where its "
+                 "program says, hardware where its hand does"});
+  add_device_option(table, plan.devices);
+  table
+      .add("--duration", motion.duration, "SECONDS",
+           number("between 0.01 and 3600 s", [](double x) { return x >= 0.01 && x <= 3600; }),
+           "how long the built-in exploration goes on (10); where it is given, a run with a remote "
+           "device or a page ends then, too (without it by Ctrl-C)")
+      .only_for(
+          {&RunFacts::has_duration, "applies only to the exploration; a --trajectory has its own"});
+  table
+      .add("--seed", motion.seed, "N", whole_number(0, kLargestSeed),
+           "which places the exploration touches: another number, other places (1; each further "
+           "hand has the next number)")
+      .only_for({&RunFacts::explores,
+                 "applies only to the exploration; a --trajectory is played as it is, and a remote "
+                 "hand goes where its program says"});
+  table
+      .add("--rate", motion.rate, "HZ",
+           number("between 500 and 10000 Hz", [](double x) { return x >= 500 && x <= 1e4; }),
+           "steps a second of the exploration and of simulated and remote devices (1000)")
+      .only_for({&RunFacts::has_rate,
+                 "applies only to the exploration and to --device simulated or remote; a "
+                 "--trajectory has its own"});
 }
 
-void add_time_options(CLI::App& command, TouchOptions& o) {
-  command
-      .add_flag("--simulated-time", o.simulated_time,
-                wrapped("cameras, preparation and servo on one simulated clock, as fast as they "
-                        "go: the same command gives the same log. Files without a page do so "
-                        "anyway"))
-      ->group("Streams");
-  command
-      .add_option("--latency", o.latency,
-                  wrapped("time from a frame's stamp until its surface is felt, in simulated time "
-                          "(0.01)"))
-      ->check(number("between 0 and 10 s", [](double x) { return x >= 0 && x <= 10; }))
-      ->type_name("SECONDS")
-      ->group("Streams");
+void add_time_options(OptionTable& table, TouchChoices& o) {
+  table.under("Streams", "stream");
+  table.add_flag("--simulated-time", o.simulated_time,
+                 "cameras, preparation and servo on one simulated clock, as fast as they go: the "
+                 "same command gives the same log. Files without a page do so anyway");
+  table
+      .add("--latency", o.plan.time.latency, "SECONDS",
+           number("between 0 and 10 s", [](double x) { return x >= 0 && x <= 10; }),
+           "time from a frame's stamp until its surface is felt, in simulated time (0.01)")
+      .only_for({&RunFacts::stream,
+                 "applies only to cameras and sequences; a static source is there from the start"})
+      .only_for(
+          {&RunFacts::simulated_time, "applies only to simulated time; add --simulated-time"});
 }
 
-void add_output_options(CLI::App& command, TouchOptions& o) {
-  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
-    return command.add_option(name, value, wrapped(help))->group("Output");
-  };
-  add("--log", o.log, "every servo step as a row of CSV; - is standard output")->type_name("FILE");
-  add("--json", o.json, "the report as data; - is standard output")->type_name("FILE");
-  add("--picture", o.picture, "cloud, path, proxy and force as PNG (needs python3-matplotlib)")
-      ->type_name("FILE.png");
+void add_view_options(OptionTable& table, TouchChoices& o) {
+  table.under("Page");
+  table
+      .add_flag("--view", o.plan.page.wanted,
+                "shows the run on a page in a browser, where the tool can be taken with a mouse; "
+                "it then goes on in real time until --duration or Ctrl-C")
+      .only_for({&RunFacts::any_time, "shows a run in real time; remove it or --simulated-time"});
+  table
+      .add_flag("--no-view", o.no_view,
+                "no page; without this, runs of cameras and sequences in real time have one where "
+                "they are started at a terminal")
+      .only_for({&RunFacts::page_unasked, "contradicts --view; remove one of them"});
+  add_page_options(table, o.plan.page);
+}
+
+void add_output_options(OptionTable& table, OutputPlan& outputs) {
+  table.under("Output");
+  table.add("--log", outputs.log, "FILE", "every servo step as a row of CSV; - is standard output");
+  table.add("--json", outputs.json, "FILE", "the report as data; - is standard output");
+  table.add("--picture", outputs.picture, "FILE.png",
+            "cloud, path, proxy and force as PNG (needs python3-matplotlib)");
 }
 
 constexpr const char* kTouchFooter = R"(Examples:
@@ -151,46 +169,80 @@ Exit codes: 0 done, 1 the input or the run failed, 2 the command line is wrong.)
 
 }  // namespace
 
-void add_placed_sources(CLI::App& command, TouchOptions& o) {
-  command
-      .add_option("sources", o.clouds,
-                  wrapped(cloud_help() +
-                          "; or a live source: camera:simulated[:SCENE], camera:openni2, "
-                          "camera:freenect, sequence:FOLDER, or an .oni file ('palpate cameras' "
-                          "lists what is there)"))
-      ->type_name("SOURCE");
-  command
-      .add_option("--setup", o.setup,
-                  wrapped("TOML file with sources, poses, surface, material, hand; the command "
-                          "line overrides it (docs/setup.md)"))
-      ->type_name("FILE")
-      ->group("Reading");
-  add_source_options(command, o.choices);
-  command
-      .add_option("--pose", o.poses,
-                  wrapped("where a source's frame is in the world; once for each source that is "
-                          "not at the world's origin"))
-      ->type_name("NAME=X,Y,Z,QX,QY,QZ,QW")
-      ->allow_extra_args(false)
-      ->group("Reading");
+void add_placed_sources(OptionTable& table, TouchChoices& o) {
+  table.add_positional("sources", o.sources, "SOURCE",
+                       cloud_help() +
+                           "; or a live source: camera:simulated[:SCENE], camera:openni2, "
+                           "camera:freenect, sequence:FOLDER, or an .oni file ('palpate cameras' "
+                           "lists what is there)");
+  table.under("Reading");
+  table.add("--setup", o.setup, "FILE",
+            "TOML file with sources, poses, surface, material, hand; the command line overrides it "
+            "(docs/setup.md)");
+  add_source_options(table, o.every_source);
+  table.under("Reading");
+  table.add_texts(
+      "--pose", KeyKind::numbers, "NAME=X,Y,Z,QX,QY,QZ,QW",
+      [&o](const std::string& text) { o.poses.push_back(parse_pose(text)); },
+      "where a source's frame is in the world; once for each source that is not at the world's "
+      "origin");
 }
 
-void add_touch_options(CLI::App& command, TouchOptions& o) {
-  add_placed_sources(command, o);
-  add_surface_options(command, o);
-  add_feel_options(command, o);
-  add_hand_options(command, o);
-  add_time_options(command, o);
-  add_live_options(command, o.live);
-  add_view_options(command, o.view);
-  add_output_options(command, o);
+void add_live_options(OptionTable& table, TimePlan& time) {
+  GuardOptions& guard = time.guard;
+  RealtimeOptions& realtime = time.realtime;
+  table.under("Real time", "guard");
+  table
+      .add("--maximum-force", guard.maximum_force, "N", positive(),
+           "largest force that goes to the device, never more than it can hold (what the device "
+           "can hold)")
+      .only_for(kGuarded);
+  table.add_key("--slew", guard.slew, positive());
+  table.add_key("--watchdog", guard.silence,
+                number("a time from 0.001 to 1 s", [](double x) { return x >= 1e-3 && x <= 1; }));
+  table.add_key("--damping", guard.damping, not_negative());
+  table.add_key("--soft-start", guard.soft_start,
+                number("a time from 0 to 60 s", [](double x) { return x >= 0 && x <= 60; }));
+  table.add_key("--passivity", guard.passivity.on);
+  table.under("Real time", "servo");
+  table
+      .add("--processor", realtime.processor, "N", whole_number(0, 1023),
+           "the servo's thread runs on this processor alone, counted from 0; best one that is kept "
+           "free (isolcpus=N)")
+      .only_for(kGuarded);
+  table.add_key("--priority", realtime.priority, whole_number(1, 99));
+  table.add_key("--realtime", realtime.realtime_priority);
+  table.add_key("--lock-memory", realtime.lock_memory);
+}
+
+void add_page_options(OptionTable& table, PagePlan& page) {
+  table.under("Page");
+  table
+      .add("--listen", page.address, "ADDRESS", parsed_by(check_address),
+           "address that the page is served on (127.0.0.1: this machine alone); whoever knows the "
+           "page's address may move the hand")
+      .only_for(kPage);
+  table
+      .add("--port", page.port, "N", whole_number(0, 65535),
+           "port of the page; 0: any (the first free one from 8420)")
+      .only_for(kPage);
+}
+
+void add_touch_options(OptionTable& table, TouchChoices& o) {
+  add_placed_sources(table, o);
+  add_field_options(table, o);
+  add_material_options(table, o);
+  add_hand_options(table, o.plan);
+  add_time_options(table, o);
+  add_live_options(table, o.plan.time);
+  add_view_options(table, o);
+  add_output_options(table, o.plan.outputs);
+}
+
+void add_touch_command(CLI::App& command, TouchChoices& choices) {
+  OptionTable table(command);
+  add_touch_options(table, choices);
   command.footer(kTouchFooter);
-}
-
-void add_setup_options(CLI::App& file, TouchOptions& o) {
-  add_source_setup_options(file, o.choices);
-  file.add_flag("--sharp-edges", o.sharp_edges);
-  add_live_setup_options(file, o.live);
 }
 
 }  // namespace palpate::app

@@ -1,70 +1,50 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "apps/palpate/options/live_options.hpp"
-#include "apps/palpate/options/source_options.hpp"
-#include "apps/palpate/options/view_options.hpp"
+#include "apps/palpate/cli/arguments.hpp"
+#include "apps/palpate/options/option_table.hpp"
+#include "apps/palpate/options/touch_plan.hpp"
 
 namespace palpate::app {
 
-/// Options that a command line has, as "--rate".
-using GivenOptions = std::set<std::string, std::less<>>;
-
-/// The command line of `palpate touch`. Lengths in metres; what is not set is chosen from the data.
-struct TouchOptions {
-  GivenOptions given;               ///< that the command line itself has
-  DescribedOptions described;       ///< that the set-up file has for every source
-  std::vector<std::string> clouds;  ///< sources of the command line
-  std::string setup;                ///< file that describes a set-up
-  std::vector<SourceSetup> setup_sources;
-  std::vector<std::string> poses;
-  SourceChoices choices;  ///< of every source that the set-up file says nothing else of
-
-  std::string preset = "default";
-  std::string field;
-  std::string kernel;
-  std::string gradient;
-  std::optional<double> threshold;
-  double tool_radius = 0;
-  bool sharp_edges = true;
-
-  std::optional<double> stiffness;        ///< N/m
-  std::optional<double> friction_static;  ///< the dynamic one unless given
-  double friction_dynamic = 0;
-  double friction_viscous = 0;           ///< N s/m
-  double texture_amplitude = 0;          ///< m
-  double texture_wavelength = 4e-3;      ///< m
-  std::optional<double> soft_stiffness;  ///< N/m
-  std::optional<double> soft_friction;   ///< share, 0 to 1
-
-  std::string trajectory;
-  std::vector<std::string> devices;  ///< one a hand, as parse_device() takes them
-  std::optional<double> duration;    ///< s
-  std::optional<std::uint64_t> seed;
-  std::optional<double> rate;  ///< steps a second, Hz
-
-  bool simulated_time = false;
-  std::optional<double> latency;  ///< from stamp to touchable in simulated time, s
-  LiveOptions live;
-  ViewOptions view;
-
-  std::string log;
-  std::string json;
-  std::string picture;
+/// A source, and the keys that its own part of a set-up file has.
+struct DescribedSource {
+  SourcePlan plan;
+  DescribedOptions described = {};
 };
 
-/// Adds those that say which sources there are, how they are read and where they stand.
-void add_placed_sources(CLI::App& command, TouchOptions& options);
+/// What the options of `palpate touch` set: the plan, and what it is completed by.
+struct TouchChoices {
+  std::vector<std::string> sources = {};  ///< of the command line: [NAME=]PATH
+  std::string setup = {};                 ///< file that describes a set-up
+  std::vector<PoseArgument> poses = {};
+  std::vector<DescribedSource> described_sources = {};  ///< of the set-up file
+  SourcePlan every_source = {};  ///< what holds for sources that the set-up file says no more of
+  std::optional<FieldKind> field = {};
+  std::optional<GradientKind> gradient = {};
+  std::optional<double> threshold = {};        ///< of the metaball
+  std::optional<double> friction_static = {};  ///< the dynamic one unless given
+  bool simulated_time = false;
+  bool no_view = false;
+  TouchPlan plan = {};  ///< without its sources
+};
 
-/// Adds every option of `palpate touch`.
-void add_touch_options(CLI::App& command, TouchOptions& options);
+/// Registers those that say which sources there are, how they are read and where they stand.
+void add_placed_sources(OptionTable& table, TouchChoices& choices);
 
-/// Adds those that a set-up file alone has.
-void add_setup_options(CLI::App& file, TouchOptions& options);
+/// Registers what runs in real time are held to.
+void add_live_options(OptionTable& table, TimePlan& time);
+
+/// Registers where the page is.
+void add_page_options(OptionTable& table, PagePlan& page);
+
+/// Registers every option of `palpate touch` and every key of a set-up file.
+void add_touch_options(OptionTable& table, TouchChoices& choices);
+
+/// All of them on the command line of `palpate touch`, with its help.
+void add_touch_command(CLI::App& command, TouchChoices& choices);
 
 }  // namespace palpate::app

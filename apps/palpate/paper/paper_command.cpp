@@ -10,7 +10,7 @@
 #include "apps/palpate/paper/paper_report.hpp"
 #include "apps/palpate/plot/picture_script.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
-#include "apps/palpate/sources/open_live.hpp"
+#include "apps/palpate/sources/load.hpp"
 
 namespace palpate::app {
 

@@ -8,8 +8,7 @@
 
 #include "apps/palpate/cli/progress.hpp"
 #include "apps/palpate/paper/paper_frames.hpp"
-#include "apps/palpate/sources/frame_cloud.hpp"
-#include "apps/palpate/sources/open_live.hpp"
+#include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/voxel_grid.hpp"
 #include "palpate/scene/scene.hpp"

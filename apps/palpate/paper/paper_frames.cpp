@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/sources/open_live.hpp"
+#include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
@@ -22,9 +22,9 @@ std::unique_ptr<DepthCamera> open_paper_source(const std::string& source) {
     throw UsageError(fmt::format(
         "{} is neither a camera nor a sequence; name one such as sequence:FOLDER", source));
   }
-  ChosenSource chosen;
+  SourcePlan chosen;
   chosen.argument = {"source", source};
-  return open_live(chosen, nullptr);
+  return open_stream(chosen, nullptr);
 }
 
 double depth_in_the_middle(const DepthFrame& frame) {

@@ -11,7 +11,7 @@
 #include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/cli/quantile.hpp"
-#include "apps/palpate/options/touch_surface.hpp"
+#include "apps/palpate/options/source_choice.hpp"
 
 namespace palpate::app {
 
@@ -116,8 +116,8 @@ void print_camera(const TouchedSource& source, const Style& style, std::FILE* ou
   const FeedReport& feed = source.feed;
   const StreamState& state = feed.state;
   const PrepareQuantiles times = prepare_times(feed.prepare_ms);
-  fmt::print(out, "{} {} ({} x {} pixels), {}\n", style.heading(source.argument.name),
-             source.argument.path, feed.width, feed.height, in_words(state.phase));
+  fmt::print(out, "{} {} ({} x {} pixels), {}\n", style.heading(source.plan.argument.name),
+             source.plan.argument.path, feed.width, feed.height, in_words(state.phase));
   fmt::print(out, "  frames     {} touchable of {}, {:.1f} a second; {} dropped\n",
              grouped(state.touchable), grouped(state.frames), state.rate, in_words(state.drops));
   fmt::print(
@@ -125,9 +125,9 @@ void print_camera(const TouchedSource& source, const Style& style, std::FILE* ou
       duration(state.latency_mean), duration(state.latency_worst), duration(1e-3 * times.p50),
       duration(1e-3 * times.longest));
   print_too_fast(feed, times, style, out);
-  const Policy policy = policy_of(source.options, source.as_cloud);
+  const Policy policy = policy_of(source.plan);
   fmt::print(out, "  policy     {}", name_in(kPolicies, policy));
-  if (keeps_history(policy)) fmt::print(out, " of {}", source.options.policy.history);
+  if (keeps_history(policy)) fmt::print(out, " of {}", source.plan.options.policy.history);
   fmt::print(out, "\n");
   print_seen(source.state, out);
   if (state.problem.empty()) return;
@@ -140,11 +140,11 @@ Json json_camera(const TouchedSource& source) {
   const FeedReport& feed = source.feed;
   const StreamState& state = feed.state;
   const PrepareQuantiles times = prepare_times(feed.prepare_ms);
-  const Policy chosen = policy_of(source.options, source.as_cloud);
+  const Policy chosen = policy_of(source.plan);
   Json policy = {{"name", name_in(kPolicies, chosen)}};
-  if (keeps_history(chosen)) policy["history"] = source.options.policy.history;
-  Json json = {{"name", source.argument.name},
-               {"camera", source.argument.path},
+  if (keeps_history(chosen)) policy["history"] = source.plan.options.policy.history;
+  Json json = {{"name", source.plan.argument.name},
+               {"camera", source.plan.argument.path},
                {"width", feed.width},
                {"height", feed.height},
                {"phase", name_of(state.phase)},
@@ -177,8 +177,8 @@ Json json_of(const CameraModel& camera) {
 }
 
 void print_depth_image(const TouchedSource& source, const Style& style, std::FILE* out) {
-  fmt::print(out, "{} {} ({})\n", style.heading(source.argument.name), source.argument.path,
-             source.format);
+  fmt::print(out, "{} {} ({})\n", style.heading(source.plan.argument.name),
+             source.plan.argument.path, source.format);
   if (source.lens.width > 0) {
     fmt::print(out, "  organised  {}, felt as a depth frame\n", in_words(source.lens));
   }
@@ -188,8 +188,8 @@ void print_depth_image(const TouchedSource& source, const Style& style, std::FIL
 }
 
 Json json_depth_image(const TouchedSource& source) {
-  Json json = {{"name", source.argument.name},
-               {"file", source.argument.path},
+  Json json = {{"name", source.plan.argument.name},
+               {"file", source.plan.argument.path},
                {"format", source.format},
                {"seconds", {{"read", source.read_seconds}, {"prepare", source.prepare_seconds}}}};
   if (source.lens.width > 0) json["organised"] = json_of(source.lens);

@@ -21,9 +21,9 @@ std::string subtitle(const HandReport& report) {
 
 }  // namespace
 
-HandOutputs::HandOutputs(const TouchOptions& options, std::size_t hand) {
-  if (!options.log.empty()) log_.emplace(numbered_path(options.log, hand));
-  if (!options.picture.empty()) picture_.emplace(numbered_path(options.picture, hand));
+HandOutputs::HandOutputs(const OutputPlan& outputs, std::size_t hand) {
+  if (!outputs.log.empty()) log_.emplace(numbered_path(outputs.log, hand));
+  if (!outputs.picture.empty()) picture_.emplace(numbered_path(outputs.picture, hand));
 }
 
 void HandOutputs::add(const TouchStep& step) {

@@ -12,9 +12,9 @@ namespace palpate::app {
 /// What is kept of one hand's steps.
 class HandOutputs {
  public:
-  /// The files that `options` name for the hand of that index, made at once.
+  /// The files that `outputs` names for the hand of that index, made at once.
   /// @throws Error when they cannot be.
-  HandOutputs(const TouchOptions& options, std::size_t hand);
+  HandOutputs(const OutputPlan& outputs, std::size_t hand);
 
   void add(const TouchStep& step);
   void close_log();

@@ -93,27 +93,30 @@ void print_socket(const RemoteDevice& socket, std::FILE* out) {
 // Where a device stands that nobody leads.
 void print_stand(const Hand& hand, std::FILE* out) {
   const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
-  fmt::print(out, "  stands     its origin at {:.4g}, {:.4g}, {:.4g} m, axes as {}\n", origin.x(),
-             origin.y(), origin.z(), hand.camera.empty() ? "the world's" : hand.camera + " looks");
+  fmt::print(
+      out, "  stands     its origin at {:.4g}, {:.4g}, {:.4g} m, axes as {}\n", origin.x(),
+      origin.y(), origin.z(),
+      hand.chosen.placement.frame.empty() ? "the world's" : hand.chosen.placement.frame + " looks");
   print_scale(hand, out);
-  if (hand.clutch) fmt::print(out, "  clutch     button {}\n", *hand.clutch);
+  if (hand.chosen.placement.clutch)
+    fmt::print(out, "  clutch     button {}\n", *hand.chosen.placement.clutch);
 }
 
 Json json_device(const HandReport& report) {
   const Hand& hand = report.hand;
   Json device = {{"name", hand.device->info().name}};
-  if (!hand.plan && hand.led) return device;
+  if (!hand.plan && hand.chosen.follows_trajectory()) return device;
   device["scale"] = hand.workspace.scale;
   device["felt_stiffness_N_per_m"] = hand.workspace.felt_stiffness(hand.stiffness);
   if (hand.plan) {
     device["explored_m"] = hand.plan->patch;
     device["depth_m"] = hand.plan->depth;
   }
-  if (hand.led) return device;
+  if (hand.chosen.follows_trajectory()) return device;
   const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
   device["origin_m"] = {origin.x(), origin.y(), origin.z()};
-  if (!hand.camera.empty()) device["frame"] = hand.camera;
-  if (hand.clutch) device["clutch_button"] = *hand.clutch;
+  if (!hand.chosen.placement.frame.empty()) device["frame"] = hand.chosen.placement.frame;
+  if (hand.chosen.placement.clutch) device["clutch_button"] = *hand.chosen.placement.clutch;
   if (hand.socket == nullptr) return device;
   const RemoteCounts counts = hand.socket->counts();
   device["socket"] = hand.socket->path();
@@ -126,7 +129,7 @@ Json json_device(const HandReport& report) {
 std::string way_to_surface(const HandReport& report) {
   const Hand& hand = report.hand;
   if (hand.plan) return "give it more time (--duration)";
-  if (hand.led) {
+  if (hand.chosen.follows_trajectory()) {
     return fmt::format("is the trajectory in metres and in the {}?",
                        report.scales ? "cloud's frame, and --scale right" : "world's frame");
   }
@@ -171,7 +174,7 @@ void print_hand(const HandReport& report, const std::string& title, std::FILE* o
              name_in(kFields, report.field.kind), report.stiffness, hand.device->info().name);
   if (hand.plan) print_plan(hand, out);
   if (hand.socket != nullptr) print_socket(*hand.socket, out);
-  if (!hand.led) print_stand(hand, out);
+  if (!hand.chosen.follows_trajectory()) print_stand(hand, out);
   fmt::print(out, "  steps      {} in {:.4g} s of {} time\n", grouped(s.steps()), s.duration(),
              report.live == nullptr ? "simulated" : "real");
   if (report.interrupted) fmt::print(out, "  ended      by Ctrl-C\n");

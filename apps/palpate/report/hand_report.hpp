@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "apps/palpate/report/live_report.hpp"
-#include "apps/palpate/run/hand.hpp"
-#include "apps/palpate/run/touch_statistics.hpp"
-#include "apps/palpate/run/unguarded.hpp"
+#include "apps/palpate/run/run.hpp"
 
 namespace palpate::app {
 

@@ -17,7 +17,7 @@ std::string range(double smallest, double middle, double largest) {
 
 void print_cloud(const TouchedSource& cloud, const Style& style, std::FILE* out) {
   const PrepareReport& r = cloud.prepared;
-  fmt::print(out, "{} {} ({})\n", style.heading(cloud.argument.name), cloud.argument.path,
+  fmt::print(out, "{} {} ({})\n", style.heading(cloud.plan.argument.name), cloud.plan.argument.path,
              cloud.format);
   fmt::print(out, "  points     {} read, {} felt", grouped(r.points_in), grouped(r.points_out));
   if (r.duplicates > 0) fmt::print(out, ", {} at the place of another", grouped(r.duplicates));
@@ -42,8 +42,8 @@ void print_cloud(const TouchedSource& cloud, const Style& style, std::FILE* out)
 
 Json json_cloud(const TouchedSource& cloud) {
   const PrepareReport& r = cloud.prepared;
-  return {{"name", cloud.argument.name},
-          {"file", cloud.argument.path},
+  return {{"name", cloud.plan.argument.name},
+          {"file", cloud.plan.argument.path},
           {"format", cloud.format},
           {"points_declared", cloud.declared},
           {"points_invalid", cloud.dropped},

@@ -25,7 +25,7 @@ Json json_report(const TouchReport& report) {
   }
   Json json = {{"palpate", std::string(version())},
                {"sources", sources},
-               {"preset", report.options.preset},
+               {"preset", report.paper ? "paper" : "default"},
                {"field", name_in(kFields, report.field.kind)},
                {"stiffness_N_per_m", report.proxy.stiffness}};
   if (report.hands.size() == 1) {

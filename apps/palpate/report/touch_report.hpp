@@ -13,8 +13,8 @@ namespace palpate::app {
 /// Everything that a run's report tells.
 struct TouchReport {
   const Touched& touched;
-  const Scene& felt;  ///< as the run left it
-  const TouchOptions& options;
+  const Scene& felt;   ///< as the run left it
+  bool paper = false;  ///< the preset paper
   FieldOptions field;
   ProxyOptions proxy;
   std::vector<HandReport> hands;

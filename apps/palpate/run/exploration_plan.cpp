@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "apps/palpate/options/touch_surface.hpp"
+#include "apps/palpate/options/touch_plan.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/exploration.hpp"
 #include "palpate/geometry/box.hpp"

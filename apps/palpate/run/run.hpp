@@ -1,18 +1,42 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <vector>
 
-#include "apps/palpate/run/hand.hpp"
+#include "apps/palpate/options/touch_plan.hpp"
+#include "apps/palpate/run/exploration_plan.hpp"
 #include "apps/palpate/run/touch_statistics.hpp"
 #include "apps/palpate/sources/touched.hpp"
-#include "palpate/contact/proxy.hpp"
+#include "palpate/base/waiting_clock.hpp"
+#include "palpate/device/device.hpp"
+#include "palpate/device/guided_hand.hpp"
+#include "palpate/device/remote.hpp"
+#include "palpate/device/remote_hand.hpp"
+#include "palpate/device/workspace.hpp"
 
 namespace palpate::app {
 
-/// All that a run is made of: what is touched, and who touches.
+/// Who touches: a device, where it stands, and the surface's stiffness that goes with it.
+struct Hand {
+  std::string name;                    ///< for messages
+  DevicePlan chosen;                   ///< what is to be at the hand
+  std::unique_ptr<RemoteHand> remote;  ///< takes the tool from its way; null: nobody can
+  std::unique_ptr<GuidedHand> guide;   ///< what `remote` speaks to
+  std::unique_ptr<Device> device;
+  const RemoteDevice* socket = nullptr;  ///< the device, where it is another program's
+  Workspace workspace;
+  double stiffness = 0;                 ///< of the surface, N/m in the world; of all hands the same
+  std::size_t steps = 0;                ///< that its way takes
+  std::optional<double> duration = {};  ///< s, of a device that never ends by itself
+  std::optional<ExplorationPlan> plan = {};  ///< of the built-in exploration, if it is that
+};
+
+/// All that a run is made of: what is touched, who touches, and by which clock.
 struct Run {
-  const TouchOptions& options;
+  const TimePlan& time;
+  const PagePlan& page;
   Touched& touched;
   Scene& felt;  ///< what the run feels of it: fill_felt()
   std::vector<Hand>& hands;
@@ -23,9 +47,34 @@ struct Run {
 /// Is handed every step of every hand, by its index, as soon as it is done.
 using EachStep = std::function<void(std::size_t hand, const TouchStep&)>;
 
-/// Cameras, preparation and servo on one simulated clock, one thread, as fast as they go. The same
-/// run gives the same steps, bit for bit. One hand. Fills in what `touched` tells of its cameras.
-/// False: it was ended by Ctrl-C. @throws Error when the device fails.
-bool run_simulated(Run& run, const EachStep& each);
+/// Reads the trajectory of `motion`; empty: none is named, or no device follows one.
+/// @throws Error as reading does, and when a place is farther from the origin than surfaces can be
+/// felt; UsageError when it lasts longer than a day and is to be simulated.
+[[nodiscard]] Trajectory read_way(const MotionPlan& motion, const std::vector<DevicePlan>& devices);
+
+/// A hand for each of `devices`. Those of other programs and those that hold hardware have their
+/// device: it is opened before anything is read. `clock` is the run's and outlives them; null:
+/// simulated time. Says on standard error where devices listen, and what was opened.
+/// @throws Error when a socket or hardware cannot be had.
+[[nodiscard]] std::vector<Hand> open_hands(const std::vector<DevicePlan>& devices,
+                                           const MotionPlan& motion, const TimePlan& time,
+                                           WaitingClock* clock);
+
+/// How hands are to move, on what, and whether a page may take their tools.
+struct HandTask {
+  const MotionPlan& motion;
+  const SurfacePlan& surface;
+  const PagePlan& page;
+};
+
+/// Puts the hands into what `scene` shows. Those that no person or program leads get their device
+/// and go along `way` or, where that is empty, explore.
+/// @throws Error when there is nothing to explore.
+void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajectory& way,
+                 const Scene& scene);
+
+/// Turns and moves `workspace`, whose axes are the world's, as `placement` wants it. Its frame is
+/// the name of a source in `scene`.
+void place(Workspace& workspace, const PlacementOptions& placement, const Scene& scene);
 
 }  // namespace palpate::app

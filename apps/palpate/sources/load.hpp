@@ -1,11 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <string>
-#include <vector>
 
-#include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/options/source_options.hpp"
-#include "palpate/io/read_cloud.hpp"
+#include "palpate/base/clock.hpp"
+#include "palpate/depth/depth_frame.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 
 namespace palpate::app {
 
@@ -17,7 +19,29 @@ struct LoadedCloud {
 };
 
 /// Reads one cloud, file, standard input or synthetic, with progress on standard error.
-/// @throws Error as read_cloud_file() does, UsageError when options make no sense.
-[[nodiscard]] LoadedCloud load(const CloudArgument& argument, const ReadingOptions& options);
+/// @throws Error as read_cloud_file() does, and when it holds no point.
+[[nodiscard]] LoadedCloud load(const CloudArgument& argument, const ReadOptions& options);
+
+/// Reads a depth image as one frame of a camera.
+/// @throws Error as read_depth_frame() does, and when no intrinsics are given.
+[[nodiscard]] DepthFrame load_depth_image(const std::string& path, const ReadOptions& options);
+
+/// Opens the camera or recording that `source` names. Its frames come as they happen on `clock`,
+/// which outlives it, or as fast as they are asked for without one; its poses, where it tells any,
+/// are put where the user wants them.
+/// @throws Error when it is not there or, without a clock, cannot do but keep its own time.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_stream(const SourcePlan& source,
+                                                       const Clock* clock);
+
+/// The same at its own pace where it has one, else as fast as it is asked.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_stream_at_any_pace(const SourcePlan& source);
+
+/// The next frame of use, waiting for some seconds at most.
+/// @throws Error that names the camera and what it complained of.
+[[nodiscard]] DepthFrame first_frame(DepthCamera& camera);
+
+/// The points of a frame's pixels in the camera's frame, as a driver would hand them to the paper's
+/// program. The lens is taken to be without distortion.
+[[nodiscard]] PointCloud cloud_of(const DepthFrame& frame);
 
 }  // namespace palpate::app

@@ -9,13 +9,9 @@
 
 #include "apps/palpate/cli/waiting.hpp"
 #include "apps/palpate/cli/words.hpp"
-#include "apps/palpate/options/depth_file.hpp"
-#include "apps/palpate/options/touch_surface.hpp"
-#include "apps/palpate/options/touch_usage.hpp"
-#include "apps/palpate/sources/frame_cloud.hpp"
 #include "apps/palpate/sources/load.hpp"
-#include "apps/palpate/sources/open_live.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/contact/proxy.hpp"
 #include "palpate/depth/organised.hpp"
 #include "palpate/geometry/spacing.hpp"
 
@@ -95,68 +91,67 @@ void check_radius(const CloudArgument& cloud, const PrepareOptions& options, con
                   *options.radius, cloud.path, length(across), length(spacing)));
 }
 
-void add_cloud(Scene& scene, const TouchOptions& options, const ChosenSource& chosen,
-               TouchedSource& result) {
-  LoadedCloud loaded = load(chosen.argument, chosen.choices.reading);
-  if (wants_material(options)) check_intensities(loaded);
+void add_cloud(Scene& scene, bool keep, TouchedSource& result) {
+  const SourcePlan& plan = result.plan;
+  LoadedCloud loaded = load(plan.argument, plan.reading);
+  if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
   result.format = loaded.file.format;
   result.declared = loaded.file.declared;
   result.dropped = loaded.file.dropped;
   result.read_seconds = loaded.seconds;
-  if (chosen.choices.reading.scale == 1) {
+  if (plan.reading.scale == 1) {
     result.units = guess_units(core_of(loaded.file.cloud), loaded.file.format);
   }
-  if (const PrepareOptions& prepare = result.options.prepare; prepare.radius) {
+  if (const PrepareOptions& prepare = plan.options.prepare; prepare.radius) {
     check_radius(loaded.argument, prepare, CellGrid(loaded.file.cloud.positions));
   }
   const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
                                     grouped(loaded.file.cloud.size())));
   const auto start = WallClock::now();
-  const Source& source = scene.add(loaded.argument.name, loaded.file.cloud, result.options);
+  const Source& source = scene.add(loaded.argument.name, loaded.file.cloud, plan.options);
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();
   result.state = source.state();
   result.depth_image = result.state.depth > 0;
   if (result.depth_image) result.lens = depth_frame_of(loaded.file.cloud).frame->camera;
   check_place(loaded.argument, *source.points());
-  if (has_page(options)) {  // which may want it prepared anew
-    result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
-  }
+  if (keep) result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
 }
 
 void check_felt(const Source& source, TouchedSource& result) {
   const std::shared_ptr<const SurfacePoints> points = source.points();
   if (!points || points->size() == 0) {
     throw Error(
-        fmt::format("{} shows no surface: there is nothing to touch", result.argument.path));
+        fmt::format("{} shows no surface: there is nothing to touch", result.plan.argument.path));
   }
-  check_place(result.argument, *points);
-  check_radius(result.argument, result.options.prepare, points->grid);
+  check_place(result.plan.argument, *points);
+  check_radius(result.plan.argument, result.plan.options.prepare, points->grid);
   result.state = source.state();
 }
 
 // Sensors that match patterns put false matches far behind everything; a true surface that far has
 // too few and too coarse points to be touched.
-void believe_no_farther(const DepthFrame& frame, DepthFilterOptions& options) {
+void believe_no_farther(const DepthFrame& frame, SourcePlan& plan) {
   constexpr double kFarBeyond = 10;  // times the median depth
+  if (plan.farthest) return;
+  DepthFilterOptions& options = plan.options.depth;
   const double farthest = kFarBeyond * middle_depth(frame);
   if (farthest > options.nearest) options.farthest = std::min(options.farthest, farthest);
 }
 
-void add_depth_image(Scene& scene, const TouchOptions& options, const ChosenSource& chosen,
-                     TouchedSource& result) {
-  if (wants_material(options)) refuse_material(chosen.argument);
+void add_depth_image(Scene& scene, TouchedSource& result) {
+  SourcePlan& plan = result.plan;
   const auto begin = WallClock::now();
-  DepthFrame frame = load_depth_image(chosen.argument.path, chosen.choices.reading);
+  DepthFrame frame = load_depth_image(plan.argument.path, plan.reading);
   frame.stamp = 0;
   result.read_seconds = seconds_since(begin);
   result.format = fmt::format("depth image, {} x {}", frame.camera.width, frame.camera.height);
   result.depth_image = true;
-  if (!chosen.choices.farthest) believe_no_farther(frame, result.options.depth);
-  const Waiting waiting(fmt::format("preparing {}", chosen.argument.name));
+  believe_no_farther(frame, plan);
+  const Waiting waiting(fmt::format("preparing {}", plan.argument.name));
   const auto start = WallClock::now();
-  Source& source = scene.add(chosen.argument.name, result.options);
-  check_range(frame, result.options.depth);
+  Source& source = scene.add(plan.argument.name, plan.options);
+  check_range(frame, plan.options.depth);
   source.set(frame);
   check_felt(source, result);
   result.prepare_seconds = seconds_since(start);
@@ -184,28 +179,30 @@ bool take_next(DepthCamera& camera, double latest, DepthFrame& frame) {
   return frame.stamp <= latest;
 }
 
-void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& chosen, bool explored,
-              const Clock* clock, TouchedSource& result) {
+void add_stream(Scene& scene, const LoadOptions& options, TouchedSource& result) {
   constexpr double kFirstLook = 1;  // s of frames, the first of which may be black
-  if (wants_material(options)) refuse_material(chosen.argument);
-  result.camera = open_live(chosen, clock);
+  SourcePlan& plan = result.plan;
+  result.camera = open_stream(plan, options.clock);
   DepthFrame first = first_frame(*result.camera);
   const double latest = first.stamp + kFirstLook;
-  result.as_cloud = taken_as_cloud(options, chosen);
-  const DepthFilterOptions asked = result.options.depth;
-  Source& source = scene.add(chosen.argument.name, result.options);
+  const DepthFilterOptions asked = plan.options.depth;
+  Source& source = scene.add(plan.argument.name, plan.options);
   std::string problem;
   do {
     result.lens = first.camera;
-    result.options.depth = asked;
-    if (!chosen.choices.farthest) believe_no_farther(first, result.options.depth);
-    source.change(result.options);  // forgets the frames before
+    plan.options.depth = asked;
+    believe_no_farther(first, plan);
+    source.change(plan.options);  // forgets the frames before
     if (first.T_world_sensor) source.set_pose(*first.T_world_sensor);
-    if (!explored) return;
+    if (!options.explored) return;
     if (shows(first, result, source, problem)) return check_felt(source, result);
   } while (take_next(*result.camera, latest, first));
   if (!problem.empty()) throw Error(problem);
   check_felt(source, result);
+}
+
+bool is_filtered_image(const SourcePlan& plan) {
+  return plan.kind == SourceKind::depth_image && !plan.as_cloud;
 }
 
 }  // namespace
@@ -213,23 +210,24 @@ void add_live(Scene& scene, const TouchOptions& options, const ChosenSource& cho
 std::string title_of(const Touched& touched) {
   std::string title;
   for (const TouchedSource& source : touched.sources) {
-    title += fmt::format("{}{}", title.empty() ? "" : " + ", source.argument.name);
+    title += fmt::format("{}{}", title.empty() ? "" : " + ", source.plan.argument.name);
   }
   return title;
 }
 
-Touched prepare_touched(const TouchOptions& options, bool explored, const Clock* clock) {
+Touched prepare_touched(const std::vector<SourcePlan>& sources, const LoadOptions& options) {
   Touched touched;
-  for (const ChosenSource& chosen : choose_sources(options)) {
+  for (const SourcePlan& plan : sources) {
     TouchedSource& source = touched.sources.emplace_back();
-    source.argument = chosen.argument;
-    source.options = source_options(options, chosen);
-    if (lives(chosen.argument.path)) {
-      add_live(touched.scene, options, chosen, explored, clock, source);
-    } else if (!taken_as_cloud(options, chosen) && is_depth_image(chosen.argument.path)) {
-      add_depth_image(touched.scene, options, chosen, source);
+    source.plan = plan;
+    const bool depths = plan.kind == SourceKind::stream || is_filtered_image(plan);
+    if (depths && plan.options.prepare.material_from_intensity) refuse_material(plan.argument);
+    if (plan.kind == SourceKind::stream) {
+      add_stream(touched.scene, options, source);
+    } else if (is_filtered_image(plan)) {
+      add_depth_image(touched.scene, source);
     } else {
-      add_cloud(touched.scene, options, chosen, source);
+      add_cloud(touched.scene, options.keep_clouds, source);
     }
   }
   return touched;
@@ -238,9 +236,9 @@ Touched prepare_touched(const TouchOptions& options, bool explored, const Clock*
 void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft) {
   for (std::size_t i = 0; i < touched.sources.size(); ++i) {
     const TouchedSource& source = touched.sources[i];
-    SourceOptions options = source.options;
+    SourceOptions options = source.plan.options;
     options.soft = soft;
-    Source& felt = scene.add(source.argument.name, options);
+    Source& felt = scene.add(source.plan.argument.name, options);
     if (source.camera) continue;
     auto snapshot = std::make_unique<Snapshot>();
     snapshot->layers.push_back({touched.scene.source(i).points(), 1, 1});
@@ -250,8 +248,8 @@ void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft) {
 
 void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
                 const StartTime& start) {
-  if (!touched.as_cloud) {
-    check_range(frame, touched.options.depth);
+  if (!touched.plan.as_cloud) {
+    check_range(frame, touched.plan.options.depth);
     felt.push(frame, start);
     return;
   }

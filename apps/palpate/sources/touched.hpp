@@ -4,21 +4,29 @@
 #include <string>
 #include <vector>
 
-#include "apps/palpate/options/chosen_source.hpp"
+#include "apps/palpate/options/source_options.hpp"
 #include "apps/palpate/sources/cloud_facts.hpp"
-#include "apps/palpate/sources/feed_report.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/depth/camera_model.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/stream_state.hpp"
 
 namespace palpate::app {
 
+/// What a camera's run looked like.
+struct FeedReport {
+  StreamState state;
+  int width = 0;  ///< of the last frame, pixels
+  int height = 0;
+  bool simulated = false;          ///< in simulated time, where no frame is overtaken
+  std::vector<double> prepare_ms;  ///< computing time of each frame's preparation, ms
+};
+
 /// One source of a run. Points themselves live in the scene.
 struct TouchedSource {
-  CloudArgument argument;
-  SourceOptions options;
+  SourcePlan plan;         ///< of a camera with the range of depths that its first frame asks for
   PrepareReport prepared;  ///< of a cloud
   SourceState state;       ///< of a depth image; of what lives, after the run
 
@@ -34,7 +42,6 @@ struct TouchedSource {
 
   // Of what lives:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
-  bool as_cloud = false;                ///< its frames are taken as clouds
   CameraModel lens;                     ///< of its first frame; of an organised cloud, too
   FeedReport feed;                      ///< after the run
 };
@@ -50,13 +57,18 @@ struct Touched {
 /// The names of all sources, for pictures and pages.
 [[nodiscard]] std::string title_of(const Touched& touched);
 
+struct LoadOptions {
+  bool explored = false;         ///< the surface has to be there before the run
+  bool keep_clouds = false;      ///< somebody may want them prepared anew
+  const Clock* clock = nullptr;  ///< of cameras, which it outlives; null: simulated time
+};
+
 /// Reads every cloud, prepares it and puts it into the scene; opens every camera and waits for its
-/// first frame or, if the surface is to be `explored` before the run, prepares frames until one of
-/// the first second shows a surface. Cameras keep the time of `clock`, which outlives them; null:
-/// simulated time.
-/// @throws UsageError when a pose names no source; Error as reading, opening and preparing do.
-[[nodiscard]] Touched prepare_touched(const TouchOptions& options, bool explored,
-                                      const Clock* clock = nullptr);
+/// first frame or, if the surface is to be explored before the run, prepares frames until one of
+/// the first second shows a surface.
+/// @throws Error as reading, opening and preparing do.
+[[nodiscard]] Touched prepare_touched(const std::vector<SourcePlan>& sources,
+                                      const LoadOptions& options);
 
 /// Puts into `scene` what is felt in the run: clouds as they were prepared, shared, with another
 /// soft material (how hard the hardest points are may be known after preparation only); cameras

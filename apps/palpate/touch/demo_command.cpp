@@ -1,12 +1,8 @@
 #include "apps/palpate/touch/demo_command.hpp"
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <vector>
 
-#include "apps/palpate/cli/option_checks.hpp"
-#include "apps/palpate/options/device_choice.hpp"
-#include "apps/palpate/options/touch_options.hpp"
 #include "apps/palpate/touch/touch_command.hpp"
 
 namespace palpate::app {
@@ -62,28 +58,25 @@ std::vector<std::string> sources_of(const std::string& name) {
 }  // namespace
 
 void add_demo_options(CLI::App& command, DemoOptions& o) {
+  TouchPlan& plan = o.touch.plan;
   command.add_option("scene", o.scene, list())->check(one_of(names()))->type_name("SCENE");
-  command
-      .add_option("--duration", o.duration,
-                  wrapped("ends after this time (without it: when Ctrl-C is pressed)"))
-      ->check(number("from 0.1 to 86400 s", [](double x) { return x >= 0.1 && x <= 86'400; }))
-      ->type_name("SECONDS");
-  command.add_flag("--headless", o.headless, wrapped("opens no browser"));
-  add_device_option(command, o.devices, "OPTIONS");
-  add_live_options(command, o.live);
-  add_page_options(command, o.view);
+  OptionTable table(command);
+  table.under("Options");
+  table.add("--duration", plan.motion.duration, "SECONDS",
+            number("from 0.1 to 86400 s", [](double x) { return x >= 0.1 && x <= 86'400; }),
+            "ends after this time (without it: when Ctrl-C is pressed)");
+  table.add_flag("--headless", o.headless, "opens no browser");
+  table.under("OPTIONS");
+  add_device_option(table, plan.devices);
+  add_live_options(table, plan.time);
+  add_page_options(table, plan.page);
 }
 
-void demo(const DemoOptions& options) {
-  TouchOptions touched;
-  touched.clouds = sources_of(options.scene);
-  touched.devices = options.devices;
-  touched.duration = options.duration;
-  touched.live = options.live;
-  touched.view = options.view;
-  touched.view.wanted = true;
-  touched.view.open_browser = !options.headless;
-  touch(touched);
+void demo(const CLI::App& command, DemoOptions options) {
+  options.touch.sources = sources_of(options.scene);
+  options.touch.plan.page.wanted = true;
+  options.touch.plan.page.open_browser = !options.headless;
+  touch(plan_touch(command, options.touch));
 }
 
 }  // namespace palpate::app

@@ -1,23 +1,174 @@
 #include "apps/palpate/touch/live_run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <deque>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "apps/palpate/cli/interruption.hpp"
-#include "apps/palpate/options/touch_usage.hpp"
-#include "apps/palpate/run/live_feed.hpp"
-#include "apps/palpate/touch/live_hand.hpp"
+#include "apps/palpate/run/feed.hpp"
 #include "apps/palpate/touch/live_status.hpp"
 #include "apps/palpate/view/view.hpp"
+#include "palpate/device/paced.hpp"
+#include "palpate/servo/servo.hpp"
+#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {
 
 namespace {
 
 constexpr std::chrono::milliseconds kLook{20};
+
+constexpr double kQueue = 4;  // s of steps that writing them down may fall behind
+
+// A trajectory may have few rows or many; the clock has its own.
+double rate_of(const Hand& hand) {
+  return std::clamp(hand.device->info().rate, ServoThread::kLeastRate, ServoThread::kMostRate);
+}
+
+Device& paced_by(std::optional<PacedDevice>& paced, Device& device, const Clock& clock) {
+  if (!device.info().keeps_time) return device;
+  return paced.emplace(device, clock);
+}
+
+ServoOptions servo_options(const Run& run, const Hand& hand, StepQueue& steps) {
+  ServoOptions options;
+  options.field = run.field;
+  options.proxy = run.proxy;
+  options.guard = run.time.guard;
+  options.workspace = hand.workspace;
+  options.clutch_button = hand.chosen.placement.clutch;
+  options.steps = &steps;
+  return options;
+}
+
+// With the force that was felt, which the guard may have changed.
+TouchStep step_of(const ServoState& state, const DeviceInfo& device, double start) {
+  TouchStep step;
+  step.time = state.time - start;
+  step.hip = state.hip;
+  step.shift = state.shift;
+  step.contact = state.contact;
+  step.contact.force = state.force;
+  step.microseconds = 1e6 * state.timing.computing;
+  step.patch_points = state.patch_points;
+  step.notes = state.field_notes;
+  if (device.tells_orientation) step.orientation = state.orientation;
+  if (device.has_gripper) step.gripper = state.gripper;
+  return step;
+}
+
+// One hand of a run in real time: its servo, on a thread of its own from construction on. The
+// thread that made it calls all the rest.
+class LiveHand {
+ public:
+  // Run and clock outlive it. @throws Error when there is no thread to be had.
+  LiveHand(Run& run, std::size_t index, WaitingClock& clock);
+  LiveHand(const LiveHand&) = delete;
+  LiveHand& operator=(const LiveHand&) = delete;
+
+  // The run's time 0, s on the clock. What came before is left out.
+  void begin(double start);
+
+  // Hands its new steps to `each`, with the force that was felt and times from 0.
+  void take_steps(const EachStep& each);
+
+  // Has it come to its end, whatever ended it?
+  [[nodiscard]] bool over(double now) const;
+
+  // Why its device failed; empty: it did not.
+  [[nodiscard]] std::string failure() const;
+
+  // How it goes since the moment before.
+  [[nodiscard]] HandMoment moment(double now);
+
+  // Ends the thread: zero force. Its last steps can be taken then.
+  void stop() { thread_.stop(); }
+  [[nodiscard]] LiveReport report() const;
+
+  [[nodiscard]] Servo& servo() { return servo_; }
+
+ private:
+  Hand& hand_;
+  std::size_t index_;
+  double rate_;
+  std::optional<PacedDevice> paced_;  // of a device that defines its own time
+  StepQueue steps_;
+  Servo servo_;
+  double start_ = 0;
+  double looked_ = 0;
+  double force_ = 0;  // the longest since then, N
+  Durations lateness_;
+  Durations computing_;
+  ServoThread thread_;  // last: it uses all of the above
+};
+
+LiveHand::LiveHand(Run& run, std::size_t index, WaitingClock& clock)
+    : hand_(run.hands[index]),
+      index_(index),
+      rate_(rate_of(hand_)),
+      steps_(static_cast<std::size_t>(kQueue * rate_)),
+      servo_(paced_by(paced_, *hand_.device, clock), run.felt, servo_options(run, hand_, steps_)),
+      thread_(servo_, clock, {.rate = rate_, .realtime = run.time.realtime}) {}
+
+void LiveHand::begin(double start) {
+  start_ = start;
+  looked_ = start;
+}
+
+void LiveHand::take_steps(const EachStep& each) {
+  while (const std::optional<ServoState> state = steps_.pop()) {
+    if (state->time < start_) continue;
+    const TouchStep step = step_of(*state, hand_.device->info(), start_);
+    force_ = std::max(force_, step.contact.force.norm());
+    each(index_, step);
+  }
+}
+
+bool LiveHand::over(double now) const {
+  return !thread_.running() || (hand_.duration && now - start_ >= *hand_.duration);
+}
+
+std::string LiveHand::failure() const {
+  if (thread_.running() || servo_.state().device != DeviceStatus::failed) return {};
+  return fmt::format("{}: device '{}' failed: {}", hand_.name, hand_.device->info().name,
+                     hand_.device->reason());
+}
+
+HandMoment LiveHand::moment(double now) {
+  HandMoment moment;
+  moment.name = hand_.name;
+  moment.servo = servo_.state();
+  moment.force = std::exchange(force_, 0);
+  const Durations lateness = servo_.lateness();
+  const Durations computing = servo_.computing();
+  moment.lateness = lateness.since(lateness_);
+  moment.computing = computing.since(computing_);
+  const double span = now - std::exchange(looked_, now);
+  moment.rate = span > 0 ? static_cast<double>(moment.computing.count) / span : 0;
+  lateness_ = lateness;
+  computing_ = computing;
+  if (moment.servo.device == DeviceStatus::silent) moment.silence = hand_.device->reason();
+  moment.ended = !thread_.running();
+  return moment;
+}
+
+LiveReport LiveHand::report() const {
+  LiveReport report;
+  report.realtime = thread_.realtime();
+  report.rate = rate_;
+  report.lateness = servo_.lateness();
+  report.skipped = thread_.skipped();
+  report.unwritten = steps_.dropped();
+  report.limits = servo_.options().guard;
+  report.guard = servo_.state().guard;
+  report.failure = failure();
+  return report;
+}
 
 using LiveHands = std::deque<LiveHand>;
 
@@ -83,7 +234,7 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   const double start = start_hands(run, clock, hands);
   LiveFeed feed(run.touched, run.felt, clock, start);
   std::optional<View> view;
-  if (has_page(run.options)) view.emplace(run, servos_of(hands), feed);
+  if (run.page.served) view.emplace(run, servos_of(hands), feed);
   const EachStep keep = [&](std::size_t hand, const TouchStep& step) {
     each(hand, step);
     if (view) view->add(hand, step);

@@ -1,9 +1,12 @@
+#include "apps/palpate/touch/simulated_run.hpp"
+
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "apps/palpate/cli/interruption.hpp"
-#include "apps/palpate/run/feeding.hpp"
-#include "apps/palpate/run/run.hpp"
-#include "apps/palpate/touch/touch_run.hpp"
+#include "apps/palpate/run/feed.hpp"
+#include "palpate/base/error.hpp"
 #include "palpate/base/thread_clock.hpp"
 #include "palpate/sensor/simulated_stream.hpp"
 
@@ -13,7 +16,7 @@ namespace {
 
 std::vector<SimulatedStream> make_streams(Run& run) {
   SimulatedStreamOptions options;
-  options.latency = run.options.latency.value_or(options.latency);
+  options.latency = run.time.latency.value_or(options.latency);
   std::vector<SimulatedStream> streams;
   for (std::size_t i = 0; i < run.felt.size(); ++i) {
     TouchedSource& touched = run.touched.sources[i];
@@ -44,6 +47,41 @@ bool run_simulated(Run& run, const EachStep& each) {
   for (const SimulatedStream& stream : streams) states.push_back(stream.state());
   keep_states(run.touched, run.felt, states);
   return !interruption.asked();
+}
+
+void run_touch(Device& device, const Workspace& workspace, SceneField& field, Proxy& proxy,
+               const std::function<bool(double)>& before,
+               const std::function<void(const TouchStep&)>& each) {
+  double previous = 0;
+  bool first = true;
+  while (true) {
+    const DeviceState state = device.read();
+    if (state.status == DeviceStatus::finished) return;
+    if (state.status == DeviceStatus::failed) {
+      throw Error(fmt::format("device '{}' failed: {}", device.info().name, device.reason()));
+    }
+    if (!before(state.time)) return;
+    const double dt = first ? 1 / device.info().rate : state.time - previous;
+    TouchStep step;
+    step.time = state.time;
+    step.hip = workspace.position_to_world(state.position);
+    const double start = thread_cpu_seconds();
+    field.update(state.time, step.hip, first ? step.hip : proxy.position());
+    step.contact = proxy.step(field, step.hip, dt);
+    step.microseconds = 1e6 * (thread_cpu_seconds() - start);
+    step.patch_points = field.patch_points();
+    step.notes = field.notes();
+    device.write(workspace.force_to_device(step.contact.force));
+    each(step);
+    previous = state.time;
+    first = false;
+  }
+}
+
+void run_touch(Device& device, const Workspace& workspace, SceneField& field, Proxy& proxy,
+               const std::function<void(const TouchStep&)>& each) {
+  run_touch(
+      device, workspace, field, proxy, [](double) { return true; }, each);
 }
 
 }  // namespace palpate::app

@@ -7,14 +7,15 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/progress.hpp"
-#include "apps/palpate/options/touch_surface.hpp"
-#include "apps/palpate/options/touch_usage.hpp"
 #include "apps/palpate/report/hand_outputs.hpp"
 #include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/run.hpp"
+#include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/touch/live_run.hpp"
+#include "apps/palpate/touch/simulated_run.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/servo/realtime.hpp"
 
@@ -28,17 +29,16 @@ struct TouchOutputs {
   std::optional<OutputFile> json;
   std::optional<Unguarded> unguarded;  // of a run in simulated time
 
-  explicit TouchOutputs(const TouchOptions& options) {
-    const std::size_t count = choose_devices(options).size();
-    for (std::size_t i = 0; i < count; ++i) hands.emplace_back(options, i);
-    if (!options.json.empty()) json.emplace(options.json);
+  TouchOutputs(const OutputPlan& plan, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) hands.emplace_back(plan, i);
+    if (!plan.json.empty()) json.emplace(plan.json);
   }
 };
 
 bool play_simulated(Run& run, TouchOutputs& outputs) {
   const Hand& hand = run.hands.front();
   Unguarded& unguarded =
-      outputs.unguarded.emplace(run.options.live, hand.device->info(), hand.workspace.scale);
+      outputs.unguarded.emplace(run.time.guard, hand.device->info(), hand.workspace.scale);
   HandOutputs& kept = outputs.hands.front();
   Progress progress("touching");
   const auto whole = static_cast<double>(hand.steps);
@@ -66,9 +66,19 @@ LiveOutcome play(Run& run, WaitingClock* clock, TouchOutputs& outputs) {
 }
 
 // Cameras and preparation, whose threads are started later, stay off the servo's processor.
-std::optional<RealtimeRequest> leave_to_servo(const TouchOptions& options, bool real_time) {
-  if (!real_time || !options.live.processor) return {};
-  return leave_processor(*options.live.processor);
+std::optional<RealtimeRequest> leave_to_servo(const TimePlan& time) {
+  if (!time.real_time || !time.realtime.processor) return {};
+  return leave_processor(*time.realtime.processor);
+}
+
+// A texture that is carved deeper than the thinnest surface reaches no hand could meet.
+void check_texture(double amplitude, const Scene& scene) {
+  const double largest = deepest_texture(scene);
+  if (amplitude <= largest) return;
+  throw UsageError(
+      fmt::format("--texture-amplitude {} is carved deeper than the surface reaches with its R; "
+                  "give {:.2g} at most",
+                  amplitude, largest));
 }
 
 std::vector<HandReport> hand_reports(const Run& run, const TouchOutputs& outputs,
@@ -100,10 +110,8 @@ void check_hands(const std::vector<HandReport>& hands) {
 }
 
 // The pictures come last: everything else is there if they cannot be drawn.
-void tell(const TouchReport& report, TouchOutputs& outputs) {
-  const TouchOptions& options = report.options;
-  const bool stdout_taken = options.log == "-" || options.json == "-";
-  print_report(report, stdout_taken ? stderr : stdout);
+void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
+  print_report(report, stream);
   if (outputs.json) write_whole(outputs.json, json_report(report).dump(2) + "\n");
   for (std::size_t i = 0; i < report.hands.size(); ++i) {
     outputs.hands[i].draw(report.felt, title_of(report.touched), report.hands[i]);
@@ -113,28 +121,30 @@ void tell(const TouchReport& report, TouchOutputs& outputs) {
 
 }  // namespace
 
-void touch(const TouchOptions& options) {
-  check_usage(options);
-  const Trajectory way = read_way(options);
-  TouchOutputs outputs(options);
+void touch(const TouchPlan& plan) {
+  const Trajectory way = read_way(plan.motion, plan.devices);
+  TouchOutputs outputs(plan.outputs, plan.devices.size());
   SteadyWaitingClock steady;
-  WaitingClock* clock = in_real_time(options) ? &steady : nullptr;
-  std::vector<Hand> hands = open_hands(options, clock);
-  const bool explored = way.empty() || hands.size() > 1 || options.texture_amplitude > 0;
-  const std::optional<RealtimeRequest> left = leave_to_servo(options, clock != nullptr);
-  Touched touched = prepare_touched(options, explored, clock);
-  check_texture(options, touched.scene);
-  const FieldOptions field = field_options(options);
-  place_hands(hands, options, way, touched.scene, field);
+  WaitingClock* clock = plan.time.real_time ? &steady : nullptr;
+  std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, clock);
+  const SurfacePlan& surface = plan.surface;
+  const double texture = surface.proxy.texture.amplitude;
+  const bool explored = way.empty() || hands.size() > 1 || texture > 0;
+  const std::optional<RealtimeRequest> left = leave_to_servo(plan.time);
+  Touched touched = prepare_touched(plan.sources, {explored, plan.page.served, clock});
+  check_texture(texture, touched.scene);
+  place_hands(hands, {plan.motion, surface, plan.page}, way, touched.scene);
   const double stiffness = hands.front().stiffness;
   Scene felt;
-  fill_felt(felt, touched, soft_material(options, stiffness));
-  Run run{options, touched, felt, hands, field, proxy_options(options, stiffness)};
+  fill_felt(felt, touched, surface.soft_material(stiffness));
+  Run run{plan.time, plan.page, touched, felt, hands, surface.field, surface.proxy_of(stiffness)};
   LiveOutcome outcome = play(run, clock, outputs);
   for (LiveReport& each : outcome.hands) {
     if (left) each.realtime.requests.push_back(*left);
   }
-  tell({touched, felt, options, field, run.proxy, hand_reports(run, outputs, outcome)}, outputs);
+  tell(
+      {touched, felt, surface.paper, surface.field, run.proxy, hand_reports(run, outputs, outcome)},
+      plan.outputs.takes_stdout() ? stderr : stdout, outputs);
 }
 
 }  // namespace palpate::app

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "apps/palpate/options/touch_options.hpp"
+#include "apps/palpate/options/touch_plan.hpp"
 
 namespace palpate::app {
 
 /// `palpate touch`. @throws UsageError, Error.
-void touch(const TouchOptions& options);
+void touch(const TouchPlan& plan);
 
 }  // namespace palpate::app

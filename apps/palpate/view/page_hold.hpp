@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-#include "apps/palpate/run/hand.hpp"
+#include "apps/palpate/run/run.hpp"
 #include "palpate/base/clock.hpp"
 
 namespace palpate::app {

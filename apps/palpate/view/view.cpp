@@ -9,9 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "apps/palpate/options/touch_surface.hpp"
 #include "apps/palpate/report/recording.hpp"
-#include "apps/palpate/run/preparer.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/view/browser.hpp"
 #include "apps/palpate/view/page_hold.hpp"
@@ -47,8 +45,8 @@ ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
   scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
   for (const TouchedSource& source : run.touched.sources) {
     scope.lives = scope.lives || source.camera;
-    scope.depth = scope.depth || (source.camera && !source.as_cloud);
-    scope.clouds = scope.clouds || source.cloud || source.as_cloud;
+    scope.depth = scope.depth || (source.camera && !source.plan.as_cloud);
+    scope.clouds = scope.clouds || source.cloud || source.plan.as_cloud;
   }
   return scope;
 }
@@ -94,9 +92,9 @@ struct View::Parts {
 
   ViewerOptions viewer_options() {
     ViewerOptions options;
-    const ViewOptions& view = run.options.view;
-    if (!view.listen.empty()) options.address = view.listen;
-    options.port = view.port;
+    const PagePlan& page = run.page;
+    if (!page.address.empty()) options.address = page.address;
+    options.port = page.port;
     options.scene = title_of(run.touched);
     options.streams = [this] { return streams_of(run, feed); };
     return options;
@@ -171,7 +169,7 @@ struct View::Parts {
 View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
     : parts_(std::make_unique<Parts>(run, std::move(servos), feed)) {
   fmt::print(stderr, "page: {}\n", parts_->viewer.url());
-  if (run.options.view.open_browser) parts_->browser.emplace(parts_->viewer.url());
+  if (run.page.open_browser) parts_->browser.emplace(parts_->viewer.url());
 }
 
 View::~View() = default;

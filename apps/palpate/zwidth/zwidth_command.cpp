@@ -1,5 +1,7 @@
 #include "apps/palpate/zwidth/zwidth_command.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <optional>
 
@@ -83,12 +85,14 @@ void add_zwidth_options(CLI::App& command, ZWidthChoices& choices) {
       command
           .add_option("--device", trial.device,
                       wrapped("measure on this device (palpate devices); it asks first"))
-          ->type_name("NAME")
           ->group("On hardware");
+  std::string text = "NAME Excludes:";  // of its own, CLI11 would list them by their addresses
   for (const char* simulated :
        {"--device-profile", "--profiles", "--rate", "--delay", "--damping", "--csv", "--picture"}) {
     device->excludes(command.get_option(simulated));
+    text += fmt::format(" {}", simulated);
   }
+  device->option_text(text);
   const auto on_hardware = [&](CLI::Option* option) {
     return option->needs(device)->group("On hardware");
   };

@@ -1,0 +1,206 @@
+#include "apps/palpate/options/device_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/suggestion.hpp"
+#include "apps/palpate/options/option_table.hpp"
+#include "palpate/device/open_device.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr std::size_t kMostHands = 4;
+constexpr double kLargestScale = 1e6;
+constexpr int kLastButton = 31;
+constexpr const char* kTheCamera = "camera";
+
+double scale_of(const std::string& text) {
+  const double scale = parse_numbers(text, 1, "scale", "a number above 0").front();
+  if (scale > 0 && scale <= kLargestScale) return scale;
+  throw UsageError(
+      fmt::format("scale: {} is out of range; write a number above 0, to {}", text, kLargestScale));
+}
+
+Eigen::Vector3d offset_of(std::string text) {
+  std::ranges::replace(text, '/', ',');
+  const std::vector<double> v =
+      parse_numbers(text, 3, "offset", "X/Y/Z in metres, such as 0/-0.1/0.05");
+  return {v[0], v[1], v[2]};
+}
+
+int button_of(const std::string& text) {
+  const double button = parse_numbers(text, 1, "clutch", "a button's number, from 0").front();
+  if (button >= 0 && button <= kLastButton && std::floor(button) == button) {
+    return static_cast<int>(button);
+  }
+  throw UsageError(
+      fmt::format("clutch: {} is no button; write its number, 0 to {}", text, kLastButton));
+}
+
+std::string frame_of(const std::string& text) {
+  if (is_name(text)) return text;
+  throw UsageError(
+      fmt::format("frame: '{}' is no source's name; write that of a camera, or frame=camera where "
+                  "there is one",
+                  text));
+}
+
+// False: it is no option of a placement.
+bool take_one(PlacementOptions& placement, const std::string& key, const std::string& value) {
+  if (key == "scale") {
+    placement.scale = scale_of(value);
+  } else if (key == "offset") {
+    placement.offset = offset_of(value);
+  } else if (key == "frame") {
+    placement.frame = frame_of(value);
+  } else if (key == "clutch") {
+    placement.clutch = button_of(value);
+  } else {
+    return false;
+  }
+  if (std::ranges::find(placement.keys, key) != placement.keys.end()) {
+    throw UsageError(fmt::format("'{}' is given twice; give it once", key));
+  }
+  placement.keys.push_back(key);
+  return true;
+}
+
+// Takes those options off a device's name and leaves the others.
+PlacementOptions parse_placement(std::string& device) {
+  PlacementOptions placement;
+  std::string rest = device.substr(0, device.find(','));
+  for (std::size_t comma = rest.size(); comma < device.size();) {
+    const std::size_t end = std::min(device.find(',', comma + 1), device.size());
+    const std::string option = device.substr(comma + 1, end - comma - 1);
+    const std::size_t equals = std::min(option.find('='), option.size());
+    const std::string value = option.substr(std::min(equals + 1, option.size()));
+    if (!take_one(placement, option.substr(0, equals), value)) rest += "," + option;
+    comma = end;
+  }
+  device = rest;
+  return placement;
+}
+
+constexpr std::string_view kRemotePath = "remote:";
+constexpr const char* kPlacementOptions = "scale=S, offset=X/Y/Z, frame=CAMERA and clutch=BUTTON";
+
+constexpr std::array<Named<DeviceKind>, 3> kDevices = {{{"scripted", DeviceKind::scripted},
+                                                        {"simulated", DeviceKind::simulated},
+                                                        {"remote", DeviceKind::remote}}};
+
+std::string device_meant_by(const std::string& text) {
+  return did_you_mean(
+      text.substr(0, text.find_first_of(":,")),
+      {"scripted", "simulated", "remote", "forcedimension", "openhaptics", "haply"});
+}
+
+// The device without its placement. Drivers say themselves which other options there are.
+DevicePlan kind_of(const std::string& text) {
+  if (names_hardware(text)) return {DeviceKind::hardware, text};
+  const std::size_t comma = text.find(',');
+  if (comma < text.find('=') && text.find('=') != std::string::npos) {
+    throw UsageError(fmt::format("'{}' is no option of {}; there are {}", text.substr(comma + 1),
+                                 text.substr(0, comma), kPlacementOptions));
+  }
+  if (const std::optional<DeviceKind> kind = choice_of(kDevices, text)) return {*kind};
+  if (text.starts_with(kRemotePath) && text.size() > kRemotePath.size()) {
+    return {DeviceKind::remote, text.substr(kRemotePath.size())};
+  }
+  throw UsageError(
+      fmt::format("'{}' is no device; give scripted, simulated, remote, remote:PATH of a socket, "
+                  "or hardware: forcedimension, openhaptics or haply ('palpate devices' looks){}",
+                  text, device_meant_by(text)));
+}
+
+// A trajectory is in the world, wherever the device is.
+void check_placement(const DevicePlan& device) {
+  if (!device.follows_trajectory()) return;
+  for (const std::string& key : device.placement.keys) {
+    if (key == "scale" && device.kind == DeviceKind::simulated) continue;
+    throw UsageError(fmt::format("'{}' works only with {}remote and hardware devices; remove it",
+                                 key, key == "scale" ? "simulated, " : ""));
+  }
+}
+
+bool has_camera(const SourcePlan& source) {
+  return source.kind != SourceKind::cloud;
+}
+
+}  // namespace
+
+DevicePlan parse_device(const std::string& text) {
+  std::string device = text;
+  PlacementOptions placement = parse_placement(device);
+  DevicePlan plan = kind_of(device);
+  plan.placement = std::move(placement);
+  check_placement(plan);
+  return plan;
+}
+
+void add_device_option(OptionTable& table, std::vector<DevicePlan>& devices) {
+  table.add_texts(
+      "--device", KeyKind::texts, "NAME[:PATH][,KEY=VALUE]",
+      [&devices](const std::string& text) { devices.push_back(parse_device(text)); },
+      "scripted: the hand is where the trajectory or exploration says, whatever "
+      "the force; simulated: a hand pulls a device with mass and friction "
+      "there; remote: the hand of another program, which speaks to a socket "
+      "(docs/remote_device.md); forcedimension[:N], openhaptics[:NAME], haply[:ID]: "
+      "hardware "
+      "('palpate devices' lists it; docs/devices.md). Behind the name: ,scale=S "
+      "magnifies its motion; ,offset=X/Y/Z (m) moves its origin; ,frame=CAMERA turns "
+      "its axes as that source's camera looks; ,clutch=BUTTON lets the hand move "
+      "without the tool while it is held. Once for each hand, four at most; with "
+      "several the run is in real time. Default: scripted with --trajectory, else "
+      "simulated");
+}
+
+bool need_real_time(const std::vector<DevicePlan>& devices) {
+  return devices.size() > 1 || !devices.front().follows_trajectory();
+}
+
+void check_devices(const std::vector<DevicePlan>& devices) {
+  require(devices.size() <= kMostHands, "more than four --device; four hands can touch at once");
+  std::set<std::string> paths;
+  for (const DevicePlan& device : devices) {
+    if (device.follows_trajectory() || paths.insert(device.path).second) continue;
+    if (device.kind == DeviceKind::hardware) {
+      throw UsageError(fmt::format(
+          "two hands cannot hold {}; name another device for each ('palpate devices' lists them)",
+          device.path));
+    }
+    throw UsageError(
+        fmt::format("two remote devices cannot share {}; give each a path of its own, as in "
+                    "--device remote:/tmp/hand",
+                    device.path.empty() ? "the usual path" : "'" + device.path + "'"));
+  }
+}
+
+std::string camera_named(const std::string& frame, const std::vector<SourcePlan>& sources) {
+  std::vector<std::string> cameras;
+  for (const SourcePlan& source : sources) {
+    if (has_camera(source)) cameras.push_back(source.argument.name);
+    if (source.argument.name != frame) continue;
+    if (has_camera(source)) return frame;
+    throw UsageError(
+        fmt::format("--device: frame={}: it is a cloud, which no camera looks at; leave it out for "
+                    "the world's axes",
+                    frame));
+  }
+  if (frame == kTheCamera && cameras.size() == 1) return cameras.front();
+  if (cameras.empty()) {
+    throw UsageError(fmt::format(
+        "--device: frame={}: there is no camera; leave it out for the world's axes", frame));
+  }
+  throw UsageError(fmt::format("--device: frame={}: name one of the cameras: {}", frame,
+                               fmt::join(cameras, ", ")));
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,195 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/palpate/cli/names.hpp"
+#include "apps/palpate/cli/option_checks.hpp"
+
+namespace palpate::app {
+
+/// Options that a command line has, as "--rate".
+using GivenOptions = std::set<std::string, std::less<>>;
+
+/// Options that a set-up file has, as "--noise", each with where: "desk.toml, line 3: 'noise'".
+using DescribedOptions = std::map<std::string, std::string, std::less<>>;
+
+/// What a run consists of, as far as options depend on it.
+struct RunFacts {
+  // One source at least ...
+  bool stream = false;           ///< is a camera or sequence
+  bool is_static = false;        ///< is a file, or made by the program
+  bool recorded = false;         ///< is a sequence, which may begin anew
+  bool image = false;            ///< is a depth image in a file
+  bool depth = false;            ///< has depths, whatever becomes of them
+  bool filtered = false;         ///< goes through the depth filter ...
+  bool filtered_frames = false;  ///< ... frame by frame
+  bool cloud = false;            ///< is taken as points alone ...
+  bool cloud_frames = false;     ///< ... frame by frame
+  bool history = false;          ///< has a policy that keeps several clouds
+
+  bool simulated_time = false;  ///< was asked for ...
+  bool any_time = false;        ///< ... or not
+  bool guarded = false;         ///< in real time, with a guard and a servo's thread
+  bool page = false;            ///< has a page
+  bool page_unasked = false;    ///< --view does not ask for one
+  bool follows = false;         ///< a hand follows a trajectory or an exploration ...
+  bool explores = false;        ///< ... an exploration
+  bool has_duration = false;    ///< a hand explores, or has no end of its own
+  bool has_rate = false;        ///< a hand's steps a second can be chosen
+};
+
+/// What an option applies to: it is refused where a run has nothing of it.
+struct Scope {
+  bool RunFacts::*applies;
+  const char* words;  ///< behind the option's name: what it applies to, and what to do
+};
+
+/// What a key of a set-up file holds.
+enum class KeyKind { text, texts, path, number, integer, flag, numbers, numbers_or_text };
+
+/// One option, and the key of a set-up file that means the same.
+struct Registration {
+  std::string name;          ///< "--tool-radius"; its key is tool_radius
+  std::string section;       ///< of a set-up file; empty: it is on command lines alone
+  bool each_source = false;  ///< it may stand in every [[source]], too
+  KeyKind kind = KeyKind::text;
+  CLI::Option* option = nullptr;  ///< takes and checks its text
+  std::vector<Scope> scopes = {};
+
+  /// Refuses it where `scope` does not apply.
+  Registration& only_for(const Scope& scope) {
+    scopes.push_back(scope);
+    return *this;
+  }
+  /// As a set-up file has it: "tool_radius".
+  [[nodiscard]] std::string key() const;
+};
+
+/// The options of a command line and the keys of a set-up file, each registered once: name, where
+/// it stands, type, check, help, scope, and the variable that it sets. Variables outlive the
+/// table. docs/architecture.md and CONTRIBUTING.md tell how to add one.
+class OptionTable {
+ public:
+  /// Command line options are added to `command`, which outlives the table.
+  explicit OptionTable(CLI::App& command) : command_(command) {}
+
+  /// What is added next stands under `heading` in the help, and in [section] of set-up files; with
+  /// `each_source` in every [[source]] as well.
+  void under(std::string heading, std::string section = {}, bool each_source = false);
+
+  /// What a command line names without an option.
+  void add_positional(const std::string& name, std::vector<std::string>& values,
+                      const std::string& type, const std::string& help) {
+    command_.add_option(name, values, wrapped(help))->type_name(type);
+  }
+
+  /// An option with a value: a number, or text that stays text, such as a path.
+  template <class Value>
+  Registration& add(const std::string& name, Value& value, const std::string& type,
+                    const CLI::Validator& check, const std::string& help) {
+    CLI::Option* const option = command_.add_option(name, value, wrapped(help));
+    return shown(name, kind_of<Value>(), option->check(check), type);
+  }
+  template <class Value>
+  Registration& add(const std::string& name, Value& value, const std::string& type,
+                    const std::string& help) {
+    return add(name, value, type, CLI::Validator(), help);
+  }
+
+  /// One without a value.
+  Registration& add_flag(const std::string& name, bool& value, const std::string& help);
+
+  /// One of the names of `table`.
+  template <class Value, class Table>
+  Registration& add_choice(const std::string& name, Value& value, const Table& table,
+                           const std::string& help) {
+    const auto take = [&value, &table](const std::string& text) {
+      value = *choice_of(table, text);
+    };
+    CLI::Option* const option =
+        command_.add_option_function<std::string>(name, take, wrapped(help));
+    return shown(name, KeyKind::text, option->check(one_of(names_of(table))), "NAME");
+  }
+
+  /// Text that `take` makes something of. It throws UsageError where it cannot.
+  Registration& add_text(const std::string& name, KeyKind kind, const std::string& type,
+                         std::function<void(const std::string&)> take, const std::string& help);
+
+  /// One that may be repeated: `take` is called with each.
+  Registration& add_texts(const std::string& name, KeyKind kind, const std::string& type,
+                          std::function<void(const std::string&)> take, const std::string& help);
+
+  /// A key that set-up files alone have.
+  template <class Value>
+  Registration& add_key(const std::string& name, Value& value, const CLI::Validator& check) {
+    return registered(name, kind_of<Value>(), keys_.add_option(name, value)->check(check));
+  }
+  Registration& add_key(const std::string& name, const std::function<void(const double&)>& take,
+                        const CLI::Validator& check) {
+    return registered(name, KeyKind::number,
+                      keys_.add_option_function<double>(name, take)->check(check));
+  }
+  Registration& add_key(const std::string& name, bool& value) {
+    return registered(name, KeyKind::flag, keys_.add_flag(name, value));
+  }
+
+  /// The key of that part of a set-up file, "source" for a [[source]]; null: there is none.
+  [[nodiscard]] const Registration* find(std::string_view section, std::string_view key) const;
+
+  [[nodiscard]] const std::deque<Registration>& all() const { return all_; }
+  [[nodiscard]] bool has_section(std::string_view section) const;
+
+  /// What is wrong with a part that no set-up has, and which it has.
+  [[nodiscard]] std::string unknown_section(std::string_view section) const;
+
+  /// What is wrong with a key that `section` does not have: where it belongs or what may be meant,
+  /// and which keys there are.
+  [[nodiscard]] std::string unknown_key(std::string_view section, std::string_view key) const;
+
+  /// @throws UsageError when an option of the command line applies to nothing of the run.
+  void check_scopes(const GivenOptions& given, const RunFacts& run) const;
+
+  /// The same of keys that tell of sources. Others may be there for other runs.
+  /// @throws Error that says where the key stands.
+  void check_scopes(const DescribedOptions& described, const RunFacts& sources) const;
+
+ private:
+  template <class Value>
+  static constexpr KeyKind kind_of() {
+    if constexpr (requires { typename Value::value_type; } && !std::is_same_v<Value, std::string>) {
+      return kind_of<typename Value::value_type>();  // of an optional
+    } else if constexpr (std::is_floating_point_v<Value>) {
+      return KeyKind::number;
+    } else {
+      return std::is_integral_v<Value> ? KeyKind::integer : KeyKind::path;
+    }
+  }
+  Registration& registered(const std::string& name, KeyKind kind, CLI::Option* option);
+  Registration& shown(const std::string& name, KeyKind kind, CLI::Option* option,
+                      const std::string& type);
+  [[nodiscard]] std::vector<std::string> sections() const;
+  [[nodiscard]] std::vector<std::string> keys(std::string_view section) const;
+
+  CLI::App& command_;
+  CLI::App keys_;  // of set-up files alone
+  std::string heading_;
+  std::string section_;
+  bool each_source_ = false;
+  std::deque<Registration> all_;
+};
+
+/// The options that a command line has, which was parsed by `command`.
+[[nodiscard]] GivenOptions given_options(const CLI::App& command);
+
+/// "[surface]" or "[[source]]", as it is written.
+[[nodiscard]] std::string in_brackets(std::string_view section);
+
+}  // namespace palpate::app

@@ -1,0 +1,189 @@
+#include "apps/palpate/options/source_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+
+#include "apps/palpate/cli/errors.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lower(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return name;
+}
+
+bool begins_like_an_image(const std::string& path) {
+  std::array<char, 4> bytes{};
+  std::ifstream(path, std::ios::binary).read(bytes.data(), bytes.size());
+  const std::string_view text(bytes.data(), bytes.size());
+  return text == "\x89PNG" || (text.starts_with("P5") && std::isspace(bytes[2]) != 0);
+}
+
+// By its name or its first bytes.
+bool is_depth_image(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return false;
+  std::string name = lower(path);
+  if (name.ends_with(".gz")) name.resize(name.size() - 3);
+  return name.ends_with(".png") || name.ends_with(".pgm") || begins_like_an_image(path);
+}
+
+// One that is not there, or a pipe, may be one.
+bool may_be_image(const std::string& path) {
+  std::error_code ignored;
+  return !path.starts_with(kSynthetic) &&
+         (!fs::is_regular_file(path, ignored) || is_depth_image(path));
+}
+
+// So may one whose header cannot be seen before it is read.
+bool may_be_organised(const std::string& path) {
+  std::error_code ignored;
+  if (path.starts_with(kSynthetic)) return false;
+  if (!fs::is_regular_file(path, ignored) || lower(path).ends_with(".pcd.gz")) return true;
+  std::array<char, 2048> bytes{};
+  std::ifstream(path, std::ios::binary).read(bytes.data(), bytes.size());
+  const std::string_view head(bytes.data(), bytes.size());
+  const std::size_t height = head.find("\nHEIGHT ");
+  return height < head.find("\nDATA ") && !head.substr(height).starts_with("\nHEIGHT 1\n");
+}
+
+SourceKind kind_of(const std::string& path) {
+  if (lives(path)) return SourceKind::stream;
+  return is_depth_image(path) ? SourceKind::depth_image : SourceKind::cloud;
+}
+
+void name(std::vector<DescribedSource>& sources) {
+  std::vector<CloudArgument> arguments;
+  for (const DescribedSource& source : sources) arguments.push_back(source.plan.argument);
+  name_all(arguments);
+  for (std::size_t i = 0; i < sources.size(); ++i) sources[i].plan.argument = arguments[i];
+}
+
+// Those of the file that have no name there are called after what they come from before the
+// command line is looked at.
+void add_command_line(std::vector<DescribedSource>& sources, const TouchChoices& choices) {
+  const auto of_file = static_cast<std::ptrdiff_t>(sources.size());
+  std::set<std::string> replaced;
+  for (const std::string& text : choices.sources) {
+    const CloudArgument argument = split_argument(text);
+    const auto end = sources.begin() + of_file;
+    const auto same = std::find_if(sources.begin(), end, [&](const DescribedSource& source) {
+      return source.plan.argument.name == argument.name;
+    });
+    if (same != end && replaced.insert(argument.name).second) {
+      same->plan.argument.path = argument.path;
+      same->described.clear();  // keys of what it was for need not fit
+    } else {
+      sources.push_back({.plan = choices.every_source});
+      sources.back().plan.argument = argument;
+    }
+  }
+}
+
+void place(std::vector<DescribedSource>& sources, const std::vector<PoseArgument>& poses) {
+  std::set<std::string> placed;
+  for (const PoseArgument& pose : poses) {
+    const auto source = std::ranges::find_if(
+        sources, [&](const DescribedSource& each) { return each.plan.argument.name == pose.name; });
+    if (source == sources.end()) {
+      std::string names;
+      for (const DescribedSource& each : sources) names += " " + each.plan.argument.name;
+      throw UsageError(
+          fmt::format("--pose: no source is named '{}'; the names are{}", pose.name, names));
+    }
+    if (!placed.insert(pose.name).second) {
+      throw UsageError(fmt::format("--pose: '{}' has two poses; give one", pose.name));
+    }
+    source->plan.options.T_world_sensor = pose.pose;
+  }
+}
+
+// A tool of that size can be felt with no smaller R, m.
+void check_radius(const PrepareOptions& prepare, double tool_radius) {
+  if (!prepare.radius || *prepare.radius >= prepare.minimum_radius) return;
+  throw UsageError(
+      fmt::format("--radius {} is too small for --tool-radius {}; it must be {:.4g} at least",
+                  *prepare.radius, tool_radius, prepare.minimum_radius));
+}
+
+void check_range(const DepthFilterOptions& depth) {
+  if (depth.nearest < depth.farthest) return;
+  throw UsageError(fmt::format("--nearest {} is not below --farthest {}; no depth is between them",
+                               depth.nearest, depth.farthest));
+}
+
+// What the kind of a source and the surface of all say of it.
+void complete(SourcePlan& source, const SurfacePlan& surface) {
+  constexpr double kToolInR = 0.3;  // a tool's radius in the smallest R that it can feel
+  source.kind = kind_of(source.argument.path);
+  PrepareOptions& prepare = source.options.prepare;
+  prepare.minimum_radius = surface.field.tool_radius / kToolInR;
+  prepare.kernel = surface.field.kernel;
+  prepare.paper = surface.paper;
+  prepare.material_from_intensity = surface.soft_stiffness || surface.soft_friction;
+  check_radius(prepare, surface.field.tool_radius);
+  DepthFilterOptions& depth = source.options.depth;
+  depth.farthest = source.farthest.value_or(depth.farthest);
+  check_range(depth);
+  source.as_cloud = source.as_cloud || surface.paper;
+  std::optional<Policy>& policy = source.options.policy.policy;
+  require(policy != Policy::morph || !source.as_cloud,
+          "--policy morph is for depth images with rows and columns; leave --unorganised and "
+          "--preset paper out or choose another policy");
+  source.as_cloud = source.as_cloud || policy == Policy::fusion;
+  source.options.organised = !source.as_cloud;
+  if (!policy && surface.paper) policy = Policy::average;
+}
+
+}  // namespace
+
+std::vector<DescribedSource> choose_sources(const TouchChoices& choices,
+                                            const SurfacePlan& surface) {
+  std::vector<DescribedSource> sources = choices.described_sources;
+  name(sources);
+  add_command_line(sources, choices);
+  name(sources);
+  require(!sources.empty(),
+          "no sources: name a file, a camera or a sequence; 'palpate touch --help' tells which "
+          "there are");
+  place(sources, choices.poses);
+  for (DescribedSource& source : sources) complete(source.plan, surface);
+  return sources;
+}
+
+Policy policy_of(const SourcePlan& source) {
+  return source.options.policy.policy.value_or(source.as_cloud ? kCloudPolicy : kDepthPolicy);
+}
+
+bool keeps_history(Policy policy) {
+  return policy == Policy::average || policy == Policy::crossfade;
+}
+
+void add_facts(RunFacts& facts, const SourcePlan& source) {
+  const std::string& path = source.argument.path;
+  const bool stream = source.kind == SourceKind::stream;
+  const bool organised = source.kind == SourceKind::cloud && may_be_organised(path);
+  const bool depth = source.kind != SourceKind::cloud || organised;
+  const bool cloud = !depth || organised || source.as_cloud;
+  facts.stream |= stream;
+  facts.is_static |= !stream;
+  facts.recorded |= stream && (!path.starts_with(kCamera) || path.ends_with(".oni"));
+  facts.image |= !stream && may_be_image(path);
+  facts.depth |= depth;
+  facts.filtered |= depth && !source.as_cloud;
+  facts.filtered_frames |= stream && !cloud;
+  facts.cloud |= cloud;
+  facts.cloud_frames |= stream && cloud;
+  facts.history |= stream && keeps_history(policy_of(source));
+}
+
+}  // namespace palpate::app

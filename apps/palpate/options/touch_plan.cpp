@@ -1,0 +1,200 @@
+#include "apps/palpate/options/touch_plan.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "apps/palpate/cli/distinct_files.hpp"
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/numbered_path.hpp"
+#include "apps/palpate/options/setup_file.hpp"
+#include "apps/palpate/options/source_choice.hpp"
+#include "apps/palpate/plot/python_drawing.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+FieldOptions field_of(const TouchChoices& choices) {
+  const SurfacePlan& surface = choices.plan.surface;
+  FieldOptions field = surface.field;
+  if (surface.paper) {
+    field = paper_field(choices.field.value_or(FieldKind::metaball));
+    field.kernel = surface.field.kernel;
+    field.tool_radius = surface.field.tool_radius;
+  }
+  field.kind = choices.field.value_or(field.kind);
+  field.gradient = choices.gradient.value_or(field.gradient);
+  field.threshold = choices.threshold.value_or(field.threshold);
+  return field;
+}
+
+SurfacePlan surface_of(const TouchChoices& choices) {
+  SurfacePlan surface = choices.plan.surface;
+  surface.field = field_of(choices);
+  Friction& friction = surface.proxy.friction;
+  friction.static_coefficient = choices.friction_static.value_or(friction.dynamic_coefficient);
+  if (surface.paper) surface.proxy.method = ProxyMethod::single_step;
+  return surface;
+}
+
+void check_surface(const TouchChoices& choices, const SurfacePlan& surface) {
+  const bool metaball = surface.field.kind == FieldKind::metaball;
+  require(metaball || choices.gradient != GradientKind::printed,
+          "--gradient printed is eq. (4) of the metaball; add --field metaball");
+  require(
+      !metaball || choices.gradient != GradientKind::normal,
+      "--gradient normal needs normals, which a metaball does without; give --field pointset or "
+      "balanced");
+  require(!surface.paper || surface.field.tool_radius == 0,
+          "--preset paper touches with a point; leave --tool-radius out");
+}
+
+// Where a cloud is explored, K is known later, and checked again.
+void check_material(const SurfacePlan& surface, bool explored) {
+  if (surface.stiffness || !explored) {
+    (void)surface.soft_material(surface.stiffness.value_or(kStiffness));
+  }
+  const Friction& friction = surface.proxy.friction;
+  if (friction.static_coefficient >= friction.dynamic_coefficient) return;
+  throw UsageError(
+      fmt::format("--friction-static {} is below --friction-dynamic {}; it must not be",
+                  friction.static_coefficient, friction.dynamic_coefficient));
+}
+
+// Which devices there are, one a hand, and that they can be led and logged as they are to be.
+std::vector<DevicePlan> devices_of(const TouchChoices& choices) {
+  const MotionPlan& motion = choices.plan.motion;
+  std::vector<DevicePlan> devices = choices.plan.devices;
+  if (devices.empty()) {
+    devices.push_back({motion.trajectory.empty() ? DeviceKind::simulated : DeviceKind::scripted});
+  }
+  const auto led = std::ranges::count_if(devices, &DevicePlan::follows_trajectory);
+  require(!choices.simulated_time || !need_real_time(devices),
+          "hardware, --device remote and several hands are of real time; leave --simulated-time "
+          "out, or give one scripted or simulated device");
+  require(motion.trajectory.empty() || led <= 1,
+          "a --trajectory leads one hand, and several devices would follow it; leave it out, so "
+          "that they explore, or give one scripted or simulated device");
+  require(devices.size() == 1 || choices.plan.outputs.log != "-",
+          "each of several hands has a log of its own; --log cannot go to standard output: name a "
+          "file");
+  check_devices(devices);
+  return devices;
+}
+
+void check_files(const TouchPlan& plan, const std::string& setup) {
+  const OutputPlan& outputs = plan.outputs;
+  std::vector<CloudArgument> clouds;
+  for (const SourcePlan& source : plan.sources) clouds.push_back(source.argument);
+  for (const CloudArgument& cloud : clouds) {
+    require(cloud.path != "-" || plan.motion.trajectory != "-",
+            "standard input (-) can be read only once");
+  }
+  require(outputs.log != "-" || outputs.json != "-",
+          "--log and --json cannot both go to standard output");
+  std::vector<NamedFile> read = inputs(clouds);
+  read.push_back({"--trajectory", plan.motion.trajectory});
+  read.push_back({"--setup", setup});
+  std::vector<NamedFile> written = {{"--json", outputs.json}};
+  for (std::size_t hand = 0; hand < plan.devices.size(); ++hand) {
+    written.push_back({"--log", numbered_path(outputs.log, hand)});
+    written.push_back({"--picture", numbered_path(outputs.picture, hand)});
+  }
+  check_distinct(read, written);
+}
+
+// Static sources have no need of real time.
+bool in_real_time(const TouchPlan& plan, bool simulated_time) {
+  if (plan.page.wanted || need_real_time(plan.devices)) return true;
+  return !simulated_time && std::ranges::any_of(plan.sources, [](const SourcePlan& source) {
+    return source.kind == SourceKind::stream;
+  });
+}
+
+// A page that was not asked for is where a person is at the terminal.
+bool is_watched(const TouchChoices& choices) {
+  const bool person = isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0;
+  return choices.plan.page.wanted || (person && !choices.no_view);
+}
+
+RunFacts facts_of(const TouchPlan& plan, const TouchChoices& choices) {
+  const auto any = [&](DeviceKind kind) {
+    return std::ranges::any_of(plan.devices,
+                               [kind](const auto& each) { return each.kind == kind; });
+  };
+  RunFacts facts;
+  for (const SourcePlan& source : plan.sources) add_facts(facts, source);
+  facts.simulated_time = choices.simulated_time;
+  facts.any_time = !choices.simulated_time;
+  facts.guarded = plan.time.real_time && !choices.simulated_time;
+  facts.page = plan.page.served;
+  facts.page_unasked = !plan.page.wanted;
+  facts.follows = std::ranges::any_of(plan.devices, &DevicePlan::follows_trajectory);
+  facts.explores = facts.follows && plan.motion.trajectory.empty();
+  facts.has_duration = facts.explores || any(DeviceKind::remote) || any(DeviceKind::hardware);
+  facts.has_rate = facts.explores || any(DeviceKind::remote) || any(DeviceKind::simulated);
+  return facts;
+}
+
+void name_frames(TouchPlan& plan) {
+  for (DevicePlan& device : plan.devices) {
+    std::string& frame = device.placement.frame;
+    if (!frame.empty()) frame = camera_named(frame, plan.sources);
+  }
+}
+
+}  // namespace
+
+ProxyOptions SurfacePlan::proxy_of(double hardest) const {
+  ProxyOptions result = proxy;
+  result.stiffness = hardest;
+  return result;
+}
+
+SoftMaterial SurfacePlan::soft_material(double hardest) const {
+  SoftMaterial soft;
+  soft.friction_factor = soft_friction.value_or(1);
+  if (!soft_stiffness) return soft;
+  if (*soft_stiffness > hardest) {
+    throw UsageError(
+        fmt::format("--soft-stiffness {} is above the {:.4g} N/m of the hardest points; give less, "
+                    "or a larger --stiffness",
+                    *soft_stiffness, hardest));
+  }
+  soft.stiffness_factor = *soft_stiffness / hardest;
+  return soft;
+}
+
+TouchPlan plan_touch(const CLI::App& command, TouchChoices choices) {
+  const GivenOptions given = given_options(command);
+  DescribedOptions described;
+  CLI::App keys;
+  OptionTable table(keys);
+  add_touch_options(table, choices);
+  if (!choices.setup.empty()) read_setup(choices.setup, table, given, choices, described);
+  TouchPlan plan = choices.plan;
+  plan.devices = devices_of(choices);
+  plan.surface = surface_of(choices);
+  const std::vector<DescribedSource> sources = choose_sources(choices, plan.surface);
+  for (const DescribedSource& source : sources) plan.sources.push_back(source.plan);
+  name_frames(plan);
+  check_files(plan, choices.setup);
+  check_surface(choices, plan.surface);
+  check_material(plan.surface, plan.motion.trajectory.empty());
+  plan.time.real_time = in_real_time(plan, choices.simulated_time);
+  plan.page.served = plan.time.real_time && is_watched(choices);
+  const RunFacts facts = facts_of(plan, choices);
+  table.check_scopes(given, facts);
+  table.check_scopes(described, facts);
+  for (const DescribedSource& source : sources) {
+    RunFacts its;
+    add_facts(its, source.plan);
+    table.check_scopes(source.described, its);
+  }
+  check_picture(plan.outputs.picture);
+  return plan;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/palpate/options/device_options.hpp"
+#include "apps/palpate/options/source_options.hpp"
+#include "palpate/contact/proxy.hpp"
+#include "palpate/field/field_options.hpp"
+#include "palpate/servo/guard.hpp"
+#include "palpate/servo/realtime.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace palpate::app {
+
+struct TouchChoices;
+
+/// The paper's K and ours, N/m.
+inline constexpr double kStiffness = 500;
+
+/// What surfaces feel like, all of them alike.
+struct SurfacePlan {
+  bool paper = false;  ///< the method of Leeper, Chan and Salisbury 2012
+  FieldOptions field = {};
+  ProxyOptions proxy = {};                    ///< but for its stiffness:
+  std::optional<double> stiffness = {};       ///< N/m in the world; unset: fits the workspace
+  std::optional<double> soft_stiffness = {};  ///< where the intensity is lowest, N/m
+  std::optional<double> soft_friction = {};   ///< share of it, 0 to 1, there
+
+  /// The proxy of a surface of `hardest` N/m.
+  [[nodiscard]] ProxyOptions proxy_of(double hardest) const;
+
+  /// What the softest points feel like, where the hardest ones have `hardest` N/m.
+  /// @throws UsageError when they would be harder than these.
+  [[nodiscard]] SoftMaterial soft_material(double hardest) const;
+};
+
+/// How hands move that nobody leads.
+struct MotionPlan {
+  std::string trajectory = {};          ///< file; empty: they explore
+  std::optional<double> duration = {};  ///< s
+  std::uint64_t seed = 1;               ///< of the first hand's exploration
+  std::optional<double> rate = {};      ///< steps a second, Hz
+};
+
+/// Which clock a run goes by, and what holds in real time.
+struct TimePlan {
+  bool real_time = false;              ///< false: in simulated time
+  std::optional<double> latency = {};  ///< from stamp to touchable in simulated time, s
+  GuardOptions guard = {};
+  RealtimeOptions realtime = {};
+};
+
+/// The page on which a run is seen, touched and set.
+struct PagePlan {
+  bool wanted = false;  ///< the run goes on in real time until it is ended
+  bool served = false;  ///< it is there
+  bool open_browser = false;
+  std::string address = {};                ///< empty: this machine alone
+  std::optional<std::uint16_t> port = {};  ///< unset: the first free one from 8420 on
+};
+
+/// Files that a run writes; empty: it does not; "-": standard output.
+struct OutputPlan {
+  std::string log = {};
+  std::string json = {};
+  std::string picture = {};
+
+  [[nodiscard]] bool takes_stdout() const { return log == "-" || json == "-"; }
+};
+
+/// All that a command line and a set-up file say of a run, read and checked.
+struct TouchPlan {
+  std::vector<SourcePlan> sources = {};
+  std::vector<DevicePlan> devices = {};  ///< one a hand
+  SurfacePlan surface = {};
+  MotionPlan motion = {};
+  TimePlan time = {};
+  PagePlan page = {};
+  OutputPlan outputs = {};
+};
+
+/// The plan of what `command` was given, which was parsed into `choices`, and of the set-up file
+/// that it names.
+/// @throws UsageError when options contradict each other or would change nothing; Error when the
+/// set-up file cannot be taken.
+[[nodiscard]] TouchPlan plan_touch(const CLI::App& command, TouchChoices choices);
+
+}  // namespace palpate::app

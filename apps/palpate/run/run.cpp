@@ -1,0 +1,211 @@
+#include "apps/palpate/run/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/progress.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/contact/proxy.hpp"
+#include "palpate/device/open_device.hpp"
+#include "palpate/device/scripted.hpp"
+#include "palpate/device/simulated.hpp"
+#include "palpate/io/trajectory.hpp"
+#include "palpate/servo/servo.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+// A day: longer ones are times in another unit, or broken.
+constexpr double kLongestRun = 86'400;  // s
+
+std::string socket_path(const DevicePlan& plan) {
+  if (!plan.path.empty()) return plan.path;
+  try {
+    return default_remote_path();
+  } catch (const Error&) {
+    throw Error(
+        "--device remote: XDG_RUNTIME_DIR is not set, so there is no usual place for the socket; "
+        "give one, as in --device remote:/tmp/hand");
+  }
+}
+
+void open_socket(Hand& hand, const MotionPlan& motion, const GuardOptions& guard,
+                 const Clock& clock) {
+  RemoteDeviceOptions device;
+  device.path = socket_path(hand.chosen);
+  device.rate = motion.rate.value_or(device.rate);
+  if (std::isfinite(guard.maximum_force)) {
+    device.maximum_force = guard.maximum_force / Servo::kForceShare;
+  }
+  auto opened = std::make_unique<RemoteDevice>(clock, device);
+  hand.socket = opened.get();
+  hand.duration = motion.duration;
+  hand.device = std::move(opened);
+  fmt::print(stderr, "{}: listens on {}\n", hand.name, hand.socket->path());
+}
+
+void open_hardware(Hand& hand, const MotionPlan& motion, RealtimeOptions asked,
+                   WaitingClock& clock) {
+  // The processor of the servo is the servo's alone.
+  asked.processor.reset();
+  LinkedDeviceOptions device;
+  device.begin = [asked] { (void)make_realtime(asked); };
+  hand.device = open_device(hand.chosen.path, clock, device);
+  hand.duration = motion.duration;
+  fmt::print(stderr, "{}: holds {}\n", hand.name, hand.device->info().name);
+}
+
+// The hand is where `way` says, whatever the force.
+void play_back(Hand& hand, Trajectory way) {
+  hand.steps = way.size();
+  hand.device = std::make_unique<ScriptedDevice>(std::move(way));
+}
+
+// The hand is pulled along `target` again and again, unless somebody takes the tool. Who did not
+// ask for the page has a run that ends with its way.
+void guide(Hand& hand, const HandTask& task, SimulatedDeviceOptions device, Trajectory target) {
+  device.duration = task.motion.duration;
+  if (!device.duration && !task.page.wanted) device.duration = target.back().time;
+  hand.remote = std::make_unique<RemoteHand>();
+  hand.guide = std::make_unique<GuidedHand>(*hand.remote, std::move(target));
+  hand.device = std::make_unique<SimulatedDevice>(device, *hand.guide);
+}
+
+// The hand is pulled along `target`, whose times begin at 0.
+void simulate(Hand& hand, const HandTask& task, Trajectory target) {
+  SimulatedDeviceOptions device;
+  device.rate = task.motion.rate.value_or(device.rate);
+  if (task.page.served) return guide(hand, task, device, std::move(target));
+  hand.steps = static_cast<std::size_t>(target.back().time * device.rate) + 2;
+  hand.device = std::make_unique<SimulatedDevice>(device, std::move(target));
+}
+
+void follow(Hand& hand, const HandTask& task, Trajectory way) {
+  hand.stiffness = task.surface.stiffness.value_or(kStiffness);
+  if (hand.chosen.kind == DeviceKind::scripted) return play_back(hand, std::move(way));
+  hand.workspace.scale = hand.chosen.placement.scale.value_or(1);
+  const double start = way.front().time;
+  for (TrajectoryRow& row : way) row.time -= start;
+  // Encoders count from where the hand begins, so that far from the origin nothing is lost.
+  hand.workspace.T_world_device.translation() = way.front().position;
+  for (TrajectoryRow& row : way) row.position = hand.workspace.position_to_device(row.position);
+  simulate(hand, task, std::move(way));
+}
+
+void explore(Hand& hand, const HandTask& task, const Scene& scene, PlanOptions plan) {
+  const bool pulled = hand.chosen.kind == DeviceKind::simulated;
+  if (!pulled) plan.hand.stiffness = std::numeric_limits<double>::infinity();
+  Progress progress("planning the exploration");
+  plan.progress = [&](double done) { progress.update(done); };
+  hand.plan = plan_exploration(scene, task.surface.field, plan);
+  hand.workspace = hand.plan->workspace;
+  hand.stiffness = hand.plan->stiffness;
+  if (pulled) {
+    simulate(hand, task, hand.plan->target);
+  } else {
+    play_back(hand, hand.plan->target);
+  }
+}
+
+// A device's x goes to the right, y away and z up; a picture's to the right, down and away.
+Eigen::Matrix3d behind(const Eigen::Isometry3d& T_world_camera) {
+  const Eigen::Matrix3d picture = T_world_camera.linear();
+  Eigen::Matrix3d axes;
+  axes << picture.col(0), picture.col(2), -picture.col(1);
+  return axes;
+}
+
+void stand(Hand& hand, const FieldOptions& field, const Scene& scene, const PlanOptions& plan) {
+  const Stand stand = plan_stand(scene, field, plan);
+  hand.workspace = stand.workspace;
+  hand.stiffness = stand.stiffness;
+  place(hand.workspace, hand.chosen.placement, scene);
+}
+
+PlanOptions plan_options(const HandTask& task, const Trajectory& way) {
+  PlanOptions plan;
+  plan.duration = task.motion.duration.value_or(plan.duration);
+  plan.stiffness = task.surface.stiffness.value_or(way.empty() ? 0 : kStiffness);
+  plan.tool_radius = task.surface.field.tool_radius;
+  plan.seed = task.motion.seed;
+  plan.rate = task.motion.rate.value_or(plan.rate);
+  return plan;
+}
+
+void check(const Trajectory& way, const std::string& file, bool simulated) {
+  if (way.empty()) return;
+  const double duration = way.back().time - way.front().time;
+  if (simulated && duration > kLongestRun) {
+    throw UsageError(
+        fmt::format("--trajectory lasts {:.6g} s; --device simulated plays {:.0f} s at most: are "
+                    "its times in seconds?",
+                    duration, kLongestRun));
+  }
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const double far = way[i].position.cwiseAbs().maxCoeff();
+    if (far <= Proxy::kLargestCoordinate) continue;
+    throw Error(
+        fmt::format("row {} of {} is {:.4g} m from the origin; beyond {:.0e} m no surface can be "
+                    "resolved: are its places in metres?",
+                    i, file, far, Proxy::kLargestCoordinate));
+  }
+}
+
+}  // namespace
+
+Trajectory read_way(const MotionPlan& motion, const std::vector<DevicePlan>& devices) {
+  const bool follows = std::ranges::any_of(devices, &DevicePlan::follows_trajectory);
+  if (motion.trajectory.empty() || !follows) return {};
+  Trajectory way = read_trajectory(motion.trajectory);
+  const bool simulated = std::ranges::any_of(
+      devices, [](const DevicePlan& each) { return each.kind == DeviceKind::simulated; });
+  check(way, motion.trajectory, simulated);
+  return way;
+}
+
+std::vector<Hand> open_hands(const std::vector<DevicePlan>& devices, const MotionPlan& motion,
+                             const TimePlan& time, WaitingClock* clock) {
+  std::vector<Hand> hands;
+  for (const DevicePlan& device : devices) {
+    Hand& hand = hands.emplace_back();
+    hand.name = fmt::format("hand {}", hands.size());
+    hand.chosen = device;
+    if (device.kind == DeviceKind::remote) open_socket(hand, motion, time.guard, *clock);
+    if (device.kind == DeviceKind::hardware) open_hardware(hand, motion, time.realtime, *clock);
+  }
+  return hands;
+}
+
+void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajectory& way,
+                 const Scene& scene) {
+  PlanOptions plan = plan_options(task, way);
+  for (Hand& hand : hands) {
+    plan.scale = hand.chosen.placement.scale;
+    if (!hand.chosen.follows_trajectory()) {
+      stand(hand, task.surface.field, scene, plan);
+    } else if (way.empty()) {
+      explore(hand, task, scene, plan);
+    } else {
+      follow(hand, task, way);
+    }
+    ++plan.seed;
+  }
+}
+
+void place(Workspace& workspace, const PlacementOptions& placement, const Scene& scene) {
+  Eigen::Isometry3d& pose = workspace.T_world_device;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const Source& source = scene.source(i);
+    if (!placement.frame.empty() && source.name() == placement.frame) {
+      pose.linear() = behind(source.pose());
+    }
+  }
+  pose.translation() += pose.linear() * placement.offset;
+}
+
+}  // namespace palpate::app
