@@ -7,7 +7,6 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/suggestion.hpp"
 #include "apps/palpate/cli/words.hpp"
-#include "apps/palpate/devices/cameras_command.hpp"
 #include "apps/palpate/devices/devices_command.hpp"
 #include "apps/palpate/doctor/doctor_command.hpp"
 #include "apps/palpate/info/info_command.hpp"

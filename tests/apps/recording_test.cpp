@@ -1,9 +1,8 @@
-#include "apps/palpate/report/recording.hpp"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "apps/palpate/report/log.hpp"
 #include "apps/program.hpp"
 #include "support/folder.hpp"
 

@@ -111,11 +111,23 @@ TEST(TouchStatistics, CountsEveryNoteUnderItsOwnName) {
   each.notes = FieldNote::thinned;
   statistics.add(each);
   std::string names;
-  for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
-    if (statistics.notes()[i] > 0) names += std::string(note_text(i).name) + " ";
+  for (const CountedNote& note : statistics.notes()) {
+    EXPECT_EQ(note.steps, 1u);
+    names += std::string(note.name) + " ";
   }
   EXPECT_EQ(names, "lost fault fell thinned ");
   EXPECT_EQ(statistics.faults(), 1u);
+}
+
+TEST(TouchStatistics, CountsEveryBitOfContactsAndFields) {
+  TouchStatistics statistics;
+  TouchStep each;
+  for (int bit = 0; bit < 7; ++bit) {
+    each.contact.notes |= static_cast<ContactNote>(1u << bit);
+    each.notes = each.notes | static_cast<FieldNote>(1u << bit);
+  }
+  statistics.add(each);
+  EXPECT_EQ(statistics.notes().size(), 14u);
 }
 
 }  // namespace

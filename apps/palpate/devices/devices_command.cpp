@@ -1,15 +1,83 @@
 #include "apps/palpate/devices/devices_command.hpp"
 
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <string_view>
+
+#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/option_checks.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/devices/driver_list.hpp"
+#include "apps/palpate/cli/words.hpp"
+#include "palpate/base/driver_info.hpp"
 #include "palpate/device/open_device.hpp"
+#include "palpate/sensor/open_camera.hpp"
 
 namespace palpate::app {
 
 namespace {
+
+// Drivers with their devices, or what they miss; one that is available is followed by what
+// `state_of` says of it.
+void print_drivers(const std::vector<DriverInfo>& drivers, std::FILE* stream,
+                   const std::function<std::string(const DriverInfo&)>& state_of) {
+  const Style style(stream);
+  std::size_t width = 0;
+  for (const DriverInfo& driver : drivers) {
+    for (const FoundDevice& device : driver.devices) width = std::max(width, device.name.size());
+  }
+  for (const DriverInfo& driver : drivers) {
+    fmt::print(stream, "{}  {}\n", style.heading(driver.name), driver.description);
+    if (driver.available) {
+      fmt::print(stream, "  {}\n", state_of(driver));
+    } else {
+      fmt::print(stream, "  {}\n", style.warning("not available: " + driver.missing));
+    }
+    for (const FoundDevice& device : driver.devices) {
+      fmt::print(stream, "  {:<{}}  {}\n", device.name, width, device.description);
+    }
+  }
+}
+
+// How many devices a driver has found; `word`: what they are.
+std::string found_by(const DriverInfo& driver, std::string_view word) {
+  if (driver.devices.empty()) return fmt::format("available; no {} found", word);
+  return fmt::format("available; {} found", driver.devices.size());
+}
+
+// The same as data.
+void write_drivers(const std::vector<DriverInfo>& drivers, const std::string& path) {
+  Json list = Json::array();
+  for (const DriverInfo& driver : drivers) {
+    Json devices = Json::array();
+    for (const FoundDevice& device : driver.devices) {
+      devices.push_back({{"name", device.name}, {"description", device.description}});
+    }
+    list.push_back({{"name", driver.name},
+                    {"description", driver.description},
+                    {"available", driver.available},
+                    {"missing", driver.missing},
+                    {"devices", devices}});
+  }
+  OutputFile file(path);
+  file.write(list.dump(2));
+  file.write("\n");
+  file.close();
+}
+
+constexpr const char* kCamerasFooter = R"(Examples:
+  palpate cameras
+  palpate cameras --json -
+  palpate touch camera:simulated:table
+
+Exit codes: 0 done, 1 the list could not be written, 2 the command line is wrong.)";
+
+std::string state_of(const DriverInfo& driver) {
+  return driver.name == "sequence" ? "available" : found_by(driver, "camera");
+}
 
 constexpr const char* kDevicesFooter = R"(Examples:
   palpate devices
@@ -35,6 +103,20 @@ std::vector<DriverInfo> built_in() {
 }
 
 }  // namespace
+
+void add_cameras_options(CLI::App& command, CamerasOptions& options) {
+  add_json_option(command, options.json)->group("Output");
+  command.footer(kCamerasFooter);
+}
+
+void cameras(const CamerasOptions& options) {
+  const std::vector<DriverInfo> drivers = [] {
+    const Waiting waiting("looking for cameras");
+    return list_cameras();
+  }();
+  print_drivers(drivers, options.json == "-" ? stderr : stdout, state_of);
+  if (!options.json.empty()) write_drivers(drivers, options.json);
+}
 
 void add_devices_options(CLI::App& command, DevicesOptions& options) {
   add_json_option(command, options.json)->group("Output");

@@ -18,4 +18,14 @@ void add_devices_options(CLI::App& command, DevicesOptions& options);
 /// `palpate devices`. @throws Error.
 void devices(const DevicesOptions& options);
 
+/// The command line of `palpate cameras`.
+struct CamerasOptions {
+  std::string json;
+};
+
+void add_cameras_options(CLI::App& command, CamerasOptions& options);
+
+/// `palpate cameras`. @throws Error.
+void cameras(const CamerasOptions& options);
+
 }  // namespace palpate::app

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "apps/palpate/cli/distinct_files.hpp"
@@ -9,10 +10,11 @@
 #include "apps/palpate/cli/numbered_path.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/waiting.hpp"
+#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/info/density_map.hpp"
 #include "apps/palpate/info/info_report.hpp"
-#include "apps/palpate/info/live_facts.hpp"
-#include "apps/palpate/info/trust_picture.hpp"
 #include "apps/palpate/options/option_table.hpp"
+#include "apps/palpate/plot/picture_script.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/scene/source.hpp"
@@ -31,6 +33,66 @@ constexpr const char* kInfoFooter = R"(Examples:
 docs/touch.md says what each line of the report means.
 
 Exit codes: 0 done, 1 the input is at fault, 2 the command line is wrong.)";
+
+constexpr std::size_t kShownPoints = 100'000;
+
+// Draws where a cloud is trusted, by a script for Python with matplotlib that travels inside the
+// program.
+class TrustPicture {
+ public:
+  // @throws Error when the file cannot be made.
+  explicit TrustPicture(const std::string& path) : path_(path), file_(path) {}
+
+  // Keeps what the picture shows: what is felt inside `box` (m, world), thinned evenly.
+  void take(const std::string& name, const Prepared& prepared, const Box& box);
+
+  // @throws Error when Python or matplotlib is missing, naming the package, or drawing fails.
+  void draw();
+
+ private:
+  std::string path_;
+  OutputFile file_;
+  std::vector<float> rows_;  // place from the box's middle, normal, trust
+  std::string facts_;
+};
+
+void TrustPicture::take(const std::string& name, const Prepared& prepared, const Box& box) {
+  const SurfacePoints& points = prepared.points;
+  const std::size_t kept = std::min(points.size(), kShownPoints);
+  for (std::size_t k = 0; k < kept; ++k) {
+    const std::size_t i = k * points.size() / kept;
+    const Eigen::Vector3d world = points.origin + points.grid.points()[i].cast<double>();
+    if (points.density_weights[i] <= 0 || !box.contains(world)) continue;
+    const Eigen::Vector3f p = (world - box.center()).cast<float>();
+    const Eigen::Vector3f& n = points.normals[i];
+    rows_.insert(rows_.end(), {p.x(), p.y(), p.z(), n.x(), n.y(), n.z(), points.confidences[i]});
+  }
+  const Eigen::Vector3d middle = box.center();
+  const double share = 100 * prepared.report.untrusted;
+  const std::string thinned =
+      kept < points.size() ? fmt::format("; thinned to {} points", grouped(kept)) : "";
+  const nlohmann::json facts = {
+      {"title", fmt::format("{:.3g} % of {} is not trusted", share, name)},
+      {"subtitle", "felt as metaball where trust is below 0.5" + thinned},
+      {"middle", {middle.x(), middle.y(), middle.z()}}};
+  facts_ = facts.dump();
+}
+
+void TrustPicture::draw() {
+  const Waiting waiting("drawing the picture");
+  draw_by_python(trust_script(), {{"cloud.f32", float_bytes(rows_)}, {"facts.json", facts_}}, path_,
+                 file_);
+}
+
+void print_map(const PointCloud& cloud, std::FILE* out) {
+  constexpr int kColumns = 72;
+  const Style style(out);
+  const DensityMap map = map_density(cloud, kColumns);
+  const std::size_t largest = *std::max_element(map.counts.begin(), map.counts.end());
+  fmt::print(out, "{} {} to the right, {} up; a letter is {} wide, the densest holds {} points\n{}",
+             style.heading("density"), "xyz"[map.horizontal], "xyz"[map.vertical], length(map.cell),
+             grouped(largest), draw(map, style.colored()));
+}
 
 InfoReport study(const CloudArgument& argument, const ReadOptions& options, TrustPicture* picture) {
   InfoReport report;
@@ -104,15 +166,18 @@ void info(const InfoOptions& options) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const CloudArgument& argument = arguments[i];
     if (lives(argument.path)) {
-      const LiveFacts facts = study_live(argument);
-      print_facts(facts, out);
-      clouds.push_back(json_facts(facts));
+      const Report report = report_of(study_live(argument));
+      report.print(out);
+      clouds.push_back(report.data);
       continue;
     }
-    const InfoReport report =
+    const InfoReport info =
         study(argument, options.reading, pictures.empty() ? nullptr : &pictures[i]);
-    print_report(report, out);
-    clouds.push_back(json_report(report));
+    const Report report = report_of(info);
+    report.print(out);
+    advice_of(info).print(out);
+    print_map(info.loaded.file.cloud, out);
+    clouds.push_back(report.data);
   }
   if (!options.json.empty()) {
     OutputFile file(options.json);

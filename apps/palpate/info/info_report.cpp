@@ -3,18 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
-#include "apps/palpate/cli/json.hpp"
+#include "apps/palpate/cli/quantile.hpp"
+#include "apps/palpate/cli/waiting.hpp"
 #include "apps/palpate/cli/words.hpp"
-#include "apps/palpate/info/density_map.hpp"
-#include "apps/palpate/report/depth_report.hpp"
 #include "apps/palpate/report/source_report.hpp"
+#include "palpate/depth/depth_filter.hpp"
 
 namespace palpate::app {
 
 namespace {
 
-constexpr int kMapColumns = 72;
+Json list(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 std::string columns_of(const PointCloud& cloud) {
   std::string text = "positions";
@@ -40,138 +43,214 @@ std::string organised_as(const InfoReport& report) {
                                    "than 20 m; is --scale right?");
 }
 
-void print_points(const InfoReport& report, std::FILE* out) {
-  const CloudFile& file = report.loaded.file;
-  fmt::print(out, "  points     {}", grouped(file.cloud.size()));
-  if (file.dropped > 0) {
-    fmt::print(out, ", {} of {} announced dropped as invalid", grouped(file.dropped),
-               grouped(file.declared));
-  }
-  fmt::print(out, "\n");
-  if (file.cloud.width > 0) fmt::print(out, "  organised  {}\n", organised_as(report));
-  fmt::print(out, "  holds      {}\n", columns_of(file.cloud));
+void add_points(Report& report, const InfoReport& info) {
+  const CloudFile& file = info.loaded.file;
+  report.line("points",
+              grouped(file.cloud.size()) +
+                  (file.dropped > 0 ? fmt::format(", {} of {} announced dropped as invalid",
+                                                  grouped(file.dropped), grouped(file.declared))
+                                    : ""));
+  if (file.cloud.width > 0) report.line("organised", organised_as(info));
+  report.line("holds", columns_of(file.cloud));
   if (file.cloud.viewpoint) {
     const Eigen::Vector3d& v = *file.cloud.viewpoint;
-    fmt::print(out, "  viewpoint  {:.4g}, {:.4g}, {:.4g}\n", v.x(), v.y(), v.z());
+    report.line("viewpoint", fmt::format("{:.4g}, {:.4g}, {:.4g}", v.x(), v.y(), v.z()));
   }
+  Json organised;
+  if (info.organised.frame) {
+    organised = json_of(info.organised.frame->camera);
+    organised.update({{"residual_px", info.organised.residual},
+                      {"felt_as_frame", info.image.depth > 0},
+                      {"points_felt", info.image.points},
+                      {"radius_m", info.image_radius}});
+  }
+  report.data.update({{"points", file.cloud.size()},
+                      {"points_declared", file.declared},
+                      {"points_invalid", file.dropped},
+                      {"width", file.cloud.width},
+                      {"height", file.cloud.height},
+                      {"organised", organised},
+                      {"normals", !file.cloud.normals.empty()},
+                      {"colors", !file.cloud.colors.empty()},
+                      {"intensities", !file.cloud.intensities.empty()}});
 }
 
-void print_bounds(const InfoReport& report, std::FILE* out) {
-  const Eigen::Vector3d size = report.bounds.size();
+void add_bounds(Report& report, const InfoReport& info) {
+  const Box& box = info.bounds;
+  const Eigen::Vector3d size = box.size();
   for (int axis = 0; axis < 3; ++axis) {
-    fmt::print(out, "  {}          {:.6g} to {:.6g}, {} long\n", "xyz"[axis],
-               report.bounds.lower[axis], report.bounds.upper[axis], length(size[axis]));
+    report.line(std::string(1, "xyz"[axis]),
+                fmt::format("{:.6g} to {:.6g}, {} long", box.lower[axis], box.upper[axis],
+                            length(size[axis])));
   }
-  const Eigen::Vector3d core = report.core.size();
+  const Eigen::Vector3d core = info.core.size();
   if (core != size) {
-    fmt::print(out, "  core       {} x {} x {} but for some stray points\n", length(core.x()),
-               length(core.y()), length(core.z()));
+    report.line("core", fmt::format("{} x {} x {} but for some stray points", length(core.x()),
+                                    length(core.y()), length(core.z())));
   }
-  fmt::print(out, "  units      {}: {}\n", report.units.units, report.units.reason);
-  if (!report.units.advice.empty()) fmt::print(out, "             {}\n", report.units.advice);
+  const UnitsGuess& units = info.units;
+  report.line("units", fmt::format("{}: {}", units.units, units.reason));
+  if (!units.advice.empty()) report.line("", units.advice);
+  report.data["bounds_m"] = {{"lower", list(box.lower)}, {"upper", list(box.upper)}};
+  report.data["units"] = {
+      {"guess", units.units}, {"reason", units.reason}, {"advice", units.advice}};
 }
 
-void print_surface(const InfoReport& report, std::FILE* out) {
-  const SpacingFacts& s = report.spacing;
-  fmt::print(out,
-             "  spacing    {} to the three nearest, {} from area ({} to {} in the middle 80 %)\n",
-             length(s.nearest_three), length(s.from_area), length(s.tenth), length(s.nine_tenths));
-  fmt::print(out, "  noise      {} from the local plane\n", length(report.prepared.noise));
-  fmt::print(out, "  holes      {:.1f} % of the points lie at a border or a hole\n",
-             100 * report.rim);
-  print_trust(report.prepared, out);
+void add_surface(Report& report, const InfoReport& info) {
+  const SpacingFacts& s = info.spacing;
+  report.line("spacing",
+              fmt::format("{} to the three nearest, {} from area ({} to {} in the middle 80 %)",
+                          length(s.nearest_three), length(s.from_area), length(s.tenth),
+                          length(s.nine_tenths)));
+  report.line("noise", fmt::format("{} from the local plane", length(info.prepared.noise)));
+  report.line("holes",
+              fmt::format("{:.1f} % of the points lie at a border or a hole", 100 * info.rim));
+  report.data.update({{"spacing_m",
+                       {{"nearest_three", s.nearest_three},
+                        {"from_area", s.from_area},
+                        {"tenth", s.tenth},
+                        {"nine_tenths", s.nine_tenths}}},
+                      {"noise_m", info.prepared.noise},
+                      {"rim_share", info.rim}});
+  add_trust(report, info.prepared);
 }
 
-// What touch will do unless told otherwise, in the words of its options.
-void print_advice(const InfoReport& report, const Style& style, std::FILE* out) {
-  const PrepareReport& r = report.prepared;
-  fmt::print(out, "{}\n", style.heading("touch would use"));
-  if (report.image.depth > 0) {
-    fmt::print(out, "  the depth filter ({} points, R {}); with --unorganised\n",
-               grouped(report.image.points), length(report.image_radius));
-  }
-  fmt::print(out, "  --voxel    {:.3g} ({} points are left{}{})\n", r.voxel, grouped(r.points_out),
-             r.duplicates > 0
-                 ? fmt::format(", {} were at the place of another", grouped(r.duplicates))
-                 : "",
-             r.speckle > 0 ? fmt::format(", {} dropped as speckle", grouped(r.speckle)) : "");
-  fmt::print(out, "  --radius   {:.3g} ({:.1f} times the spacing", r.radius,
-             r.spacing > 0 ? r.radius / r.spacing : 0);
-  if (r.radius_largest > 1.01 * r.radius_smallest) {
-    fmt::print(out, "; it follows the density, {} to {}", length(r.radius_smallest),
-               length(r.radius_largest));
-  }
-  fmt::print(out, ")\n");
-}
+constexpr std::size_t kFrames = 30;
+constexpr int kTries = 200;    // answers of any kind
+constexpr double kWait = 0.1;  // s
 
-void print_map(const InfoReport& report, const Style& style, std::FILE* out) {
-  const DensityMap map = map_density(report.loaded.file.cloud, kMapColumns);
-  const std::size_t largest = *std::max_element(map.counts.begin(), map.counts.end());
-  fmt::print(out, "{} {} to the right, {} up; a letter is {} wide, the densest holds {} points\n{}",
-             style.heading("density"), "xyz"[map.horizontal], "xyz"[map.vertical], length(map.cell),
-             grouped(largest), draw(map, style.colored()));
+void look_at_depths(const DepthFrame& frame, LiveFacts& facts) {
+  std::vector<float> depths;
+  for (const float z : frame.depth) {
+    if (z > 0) depths.push_back(z);
+  }
+  facts.valid = static_cast<double>(depths.size()) / static_cast<double>(frame.depth.size());
+  if (depths.empty()) return;
+  std::sort(depths.begin(), depths.end());
+  facts.nearest = quantile(depths, 0.01);
+  facts.depth = quantile(depths, 0.5);
+  facts.farthest = quantile(depths, 0.99);
 }
 
 }  // namespace
 
-void print_report(const InfoReport& report, std::FILE* out) {
-  const Style style(out);
-  const CloudArgument& argument = report.loaded.argument;
-  fmt::print(out, "{} {} ({}), read in {}\n", style.heading(argument.name), argument.path,
-             report.loaded.file.format, duration(report.loaded.seconds));
-  print_points(report, out);
-  print_bounds(report, out);
-  print_surface(report, out);
-  print_advice(report, style, out);
-  print_map(report, style, out);
+Report report_of(const InfoReport& info) {
+  const CloudArgument& argument = info.loaded.argument;
+  const std::string& format = info.loaded.file.format;
+  const PrepareReport& r = info.prepared;
+  Report report(argument.name, fmt::format("{} ({}), read in {}", argument.path, format,
+                                           duration(info.loaded.seconds)));
+  report.data = {{"name", argument.name}, {"file", argument.path}, {"format", format}};
+  add_points(report, info);
+  add_bounds(report, info);
+  add_surface(report, info);
+  report.data["advice"] = {{"voxel_m", r.voxel},
+                           {"radius_m", r.radius},
+                           {"radius_smallest_m", r.radius_smallest},
+                           {"radius_largest_m", r.radius_largest},
+                           {"points_felt", r.points_out}};
+  return report;
 }
 
-Json json_organised(const InfoReport& report) {
-  if (!report.organised.frame) return nullptr;
-  Json json = json_of(report.organised.frame->camera);
-  json["residual_px"] = report.organised.residual;
-  json["felt_as_frame"] = report.image.depth > 0;
-  json["points_felt"] = report.image.points;
-  json["radius_m"] = report.image_radius;
-  return json;
+Report advice_of(const InfoReport& info) {
+  const PrepareReport& r = info.prepared;
+  Report report("touch would use", "");
+  if (info.image.depth > 0) {
+    report.line("the depth filter",
+                fmt::format("({} points, R {}); with --unorganised", grouped(info.image.points),
+                            length(info.image_radius)));
+  }
+  report.line("--voxel",
+              fmt::format("{:.3g} ({} points are left{}{})", r.voxel, grouped(r.points_out),
+                          and_some(r.duplicates, "were at the place of another"),
+                          and_some(r.speckle, "dropped as speckle")));
+  const std::string varies = r.radius_largest > 1.01 * r.radius_smallest
+                                 ? fmt::format("; it follows the density, {} to {}",
+                                               length(r.radius_smallest), length(r.radius_largest))
+                                 : "";
+  report.line("--radius", fmt::format("{:.3g} ({:.1f} times the spacing{})", r.radius,
+                                      r.spacing > 0 ? r.radius / r.spacing : 0, varies));
+  return report;
 }
 
-Json json_report(const InfoReport& report) {
-  const CloudFile& file = report.loaded.file;
-  const PrepareReport& r = report.prepared;
-  const auto vector = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
-  return {{"name", report.loaded.argument.name},
-          {"file", report.loaded.argument.path},
-          {"format", file.format},
-          {"points", file.cloud.size()},
-          {"points_declared", file.declared},
-          {"points_invalid", file.dropped},
-          {"width", file.cloud.width},
-          {"height", file.cloud.height},
-          {"organised", json_organised(report)},
-          {"normals", !file.cloud.normals.empty()},
-          {"colors", !file.cloud.colors.empty()},
-          {"intensities", !file.cloud.intensities.empty()},
-          {"bounds_m",
-           {{"lower", vector(report.bounds.lower)}, {"upper", vector(report.bounds.upper)}}},
-          {"units",
-           {{"guess", report.units.units},
-            {"reason", report.units.reason},
-            {"advice", report.units.advice}}},
-          {"spacing_m",
-           {{"nearest_three", report.spacing.nearest_three},
-            {"from_area", report.spacing.from_area},
-            {"tenth", report.spacing.tenth},
-            {"nine_tenths", report.spacing.nine_tenths}}},
-          {"noise_m", r.noise},
-          {"rim_share", report.rim},
-          {"trust", {{"low", r.trust_low}, {"untrusted_share", r.untrusted}}},
-          {"advice",
-           {{"voxel_m", r.voxel},
-            {"radius_m", r.radius},
-            {"radius_smallest_m", r.radius_smallest},
-            {"radius_largest_m", r.radius_largest},
-            {"points_felt", r.points_out}}}};
+LiveFacts study_live(const CloudArgument& argument) {
+  const Waiting waiting("studying " + argument.name);
+  SourcePlan source;
+  source.argument = argument;
+  const std::unique_ptr<DepthCamera> camera = open_stream_at_any_pace(source);
+  LiveFacts facts;
+  facts.argument = argument;
+  DepthFrame frame = first_frame(*camera);
+  const double start = frame.stamp;
+  double last = start;
+  facts.width = frame.camera.width;
+  facts.height = frame.camera.height;
+  facts.pinhole = frame.camera.pinhole;
+  facts.distorted = !frame.camera.distortion.none();
+  facts.posed = frame.T_world_sensor.has_value();
+  look_at_depths(frame, facts);
+  DepthFilter filter;
+  CameraStatus status = CameraStatus::frame;
+  for (int i = 0; i < kTries && facts.frames < kFrames && status != CameraStatus::ended; ++i) {
+    if (status == CameraStatus::frame) {
+      const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());
+      const FilteredDepth& depth = filter.filter(frame, pose, {});
+      facts.noise = depth.noise;
+      facts.repeated += depth.duplicate ? 1 : 0;
+      ++facts.frames;
+      last = frame.stamp;
+    }
+    status = camera->read(frame, kWait);
+    const bool failed = status == CameraStatus::damaged || status == CameraStatus::failed;
+    facts.failures += failed ? 1 : 0;
+    facts.unposed += status == CameraStatus::unposed ? 1 : 0;
+  }
+  if (last > start) facts.rate = static_cast<double>(facts.frames - 1) / (last - start);
+  return facts;
+}
+
+Report report_of(const LiveFacts& facts) {
+  const Pinhole& p = facts.pinhole;
+  const auto& c = facts.noise.coefficients;
+  const double noise = facts.noise.sigma(facts.depth);
+  Report report(facts.argument.name,
+                fmt::format("{} ({} x {} pixels)", facts.argument.path, facts.width, facts.height));
+  report.line("intrinsics", fmt::format("{:.6g}, {:.6g}, {:.6g}, {:.6g}{}", p.fx, p.fy, p.cx, p.cy,
+                                        facts.distorted ? ", with distortion" : ""));
+  report.line("frames", fmt::format("{:.1f} a second; of the first {} {} repeated, {} failed",
+                                    facts.rate, facts.frames, facts.repeated, facts.failures));
+  report.line(
+      "poses",
+      fmt::format(
+          "{}{}",
+          facts.posed ? "frames tell where they were taken" : "none; --pose says where it stands",
+          facts.unposed > 0 ? fmt::format("; {} without one left out", facts.unposed) : ""));
+  report.line("depth",
+              fmt::format("{:.0f} % of the pixels have one, {} to {}, median {}", 100 * facts.valid,
+                          length(facts.nearest), length(facts.farthest), length(facts.depth)));
+  report.line("noise", fmt::format("{} a pixel at the median; --noise {:.4g},{:.4g},{:.4g},{:.3g}",
+                                   length(noise), c[0], c[1], c[2], facts.noise.correlation));
+  report.data = {
+      {"name", facts.argument.name},
+      {"camera", facts.argument.path},
+      {"width", facts.width},
+      {"height", facts.height},
+      {"intrinsics", {p.fx, p.fy, p.cx, p.cy}},
+      {"distorted", facts.distorted},
+      {"posed", facts.posed},
+      {"frames_unposed", facts.unposed},
+      {"rate_Hz", facts.rate},
+      {"frames", facts.frames},
+      {"frames_repeated", facts.repeated},
+      {"failures", facts.failures},
+      {"valid_share", facts.valid},
+      {"depth_m",
+       {{"hundredth", facts.nearest}, {"median", facts.depth}, {"last_hundredth", facts.farthest}}},
+      {"noise",
+       {{"coefficients", facts.noise.coefficients},
+        {"correlation", facts.noise.correlation},
+        {"at_median_m", noise}}}};
+  return report;
 }
 
 }  // namespace palpate::app

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <cstdio>
-#include <nlohmann/json_fwd.hpp>
+#include <string>
 
+#include "apps/palpate/cli/arguments.hpp"
+#include "apps/palpate/report/report.hpp"
 #include "apps/palpate/sources/cloud_facts.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/depth/organised.hpp"
@@ -25,7 +26,34 @@ struct InfoReport {
   double image_radius = 0;   ///< R then, median, m
 };
 
-void print_report(const InfoReport& report, std::FILE* stream);
-[[nodiscard]] nlohmann::ordered_json json_report(const InfoReport& report);
+[[nodiscard]] Report report_of(const InfoReport& report);
+
+/// What touch() would do unless told otherwise, in the words of its options.
+[[nodiscard]] Report advice_of(const InfoReport& report);
+
+/// What some frames of a camera or sequence show of it.
+struct LiveFacts {
+  CloudArgument argument;
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+  Pinhole pinhole;
+  bool distorted = false;
+  bool posed = false;        ///< frames tell where they were taken
+  std::size_t frames = 0;    ///< that were looked at
+  std::size_t repeated = 0;  ///< of them bit for bit like the one before
+  std::size_t failures = 0;  ///< reads that failed
+  std::size_t unposed = 0;   ///< frames without a pose among those with one
+  double rate = 0;           ///< frames a second by their stamps, Hz
+  double valid = 0;          ///< share of pixels with a depth
+  double depth = 0;          ///< median, m
+  double nearest = 0;        ///< a hundredth of the depths is nearer, m
+  double farthest = 0;       ///< a hundredth is farther, m
+  NoiseModel noise;          ///< as measured
+};
+
+/// Looks at the first 30 frames, or as many as there are. @throws Error when there is none.
+[[nodiscard]] LiveFacts study_live(const CloudArgument& argument);
+
+[[nodiscard]] Report report_of(const LiveFacts& facts);
 
 }  // namespace palpate::app

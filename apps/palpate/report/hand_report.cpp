@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
-#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/cli/words.hpp"
 
@@ -16,50 +16,91 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-void print_scale(const Hand& hand, std::FILE* out) {
-  const double scale = hand.workspace.scale;
-  if (scale == 1) return;
-  fmt::print(out,
-             "  scale      1 m of the hand is {} m of the cloud; {:.4g} N/m there is {:.4g} N/m to "
-             "the hand\n",
-             scale, hand.stiffness, hand.workspace.felt_stiffness(hand.stiffness));
+// "slowed 12 steps, shortened 3"; empty: it let everything pass.
+std::string guard_words(const GuardCounts& counts) {
+  std::string words;
+  const auto add = [&words](std::uint64_t count, std::string_view text) {
+    if (count == 0) return;
+    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", grouped(count), text);
+  };
+  add(counts.slewed, "steps slowed that the hand did not cause");
+  add(counts.clamped, "steps shortened");
+  add(counts.braked, "braked, for the hand had been given energy");
+  add(counts.starting, "within a soft start");
+  add(counts.softened, "softer than asked for, as the device bears no more");
+  add(counts.silences, "silences ended by zero force");
+  add(counts.faults, "faults");
+  return words;
 }
 
-void print_plan(const Hand& hand, std::FILE* out) {
-  fmt::print(out, "  explored   up to {} across, pressing about {} deep\n",
-             length(hand.plan->patch), length(hand.plan->depth));
-  print_scale(hand, out);
+Json add_guard(Report& report, const GuardOptions& limits, const GuardState& guard) {
+  const GuardCounts& counts = guard.counts;
+  const std::string words = guard_words(counts);
+  const std::string most = std::isfinite(limits.maximum_force)
+                               ? fmt::format("{:.3g} N at most", limits.maximum_force)
+                               : "any force";
+  report.line("guard", fmt::format("{}, {:.3g} N/s, watchdog {}: {}", most, limits.slew,
+                                   duration(limits.silence),
+                                   words.empty() ? "let every force pass" : words));
+  const std::string fault(in_words(guard.fault));
+  if (guard.fault != GuardFault::none) report.line("fault", fault, Mark::warning);
+  return {{"maximum_force_N", limit(limits.maximum_force)},
+          {"slew_N_per_s", limits.slew},
+          {"watchdog_s", limits.silence},
+          {"damping_Ns_per_m", limits.damping},
+          {"soft_start_s", limits.soft_start},
+          {"passivity", limits.passivity.on},
+          {"slewed", counts.slewed},
+          {"clamped", counts.clamped},
+          {"braked", counts.braked},
+          {"starting", counts.starting},
+          {"softened", counts.softened},
+          {"silences", counts.silences},
+          {"faults", counts.faults},
+          {"fault", fault}};
 }
 
-// The second number is the surface's alone, without what holding a force for a step adds.
-void print_energy(const HandEnergy& hand, std::FILE* out) {
-  fmt::print(out, "  energy     {} given to the hand{}, {} along the path\n", energy(hand.given),
-             hand.given < 0 ? " (negative: taken from it)" : "", energy(hand.path));
-}
-
-void print_notes(const TouchStatistics& s, const Style& style, std::FILE* out) {
-  bool any = false;
-  for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
-    if (s.notes()[i] == 0) continue;
-    fmt::print(out, "  {} {} ({:.3g} % of steps): {}\n",
-               style.warning(any ? "          " : "notes     "), grouped(s.notes()[i]),
-               100 * share(s.notes()[i], s.steps()), note_text(i).text);
-    any = true;
+Json add_requests(Report& report, const std::vector<RealtimeRequest>& requests) {
+  Json data = Json::array();
+  for (const RealtimeRequest& each : requests) {
+    data.push_back({{"what", each.what}, {"granted", each.granted}, {"remedy", each.remedy}});
+    if (each.granted) {
+      report.line("real time", fmt::format("{}: granted", each.what));
+    } else {
+      report.line("real time", fmt::format("{}: not granted: {}", each.what, each.remedy),
+                  Mark::warning);
+    }
   }
-  if (!any) fmt::print(out, "  notes      none\n");
+  return data;
 }
 
-Json json_notes(const TouchStatistics& s) {
-  Json notes = Json::array();
-  for (std::size_t i = 0; i < TouchStatistics::kNotes; ++i) {
-    if (s.notes()[i] == 0) continue;
-    notes.push_back(
-        {{"note", note_text(i).name}, {"steps", s.notes()[i]}, {"text", note_text(i).text}});
+// How well time was kept, what the guard did, what the system granted.
+Json add_live(Report& report, const LiveReport& live) {
+  const double p50 = live.lateness.quantile(0.5);
+  const double p99 = live.lateness.quantile(0.99);
+  const double longest = live.lateness.longest;
+  report.line("pace", fmt::format("{:.4g} Hz; late by {} (p50), {} (p99), {} (max); steps left "
+                                  "out: {}",
+                                  live.rate, duration(p50), duration(p99), duration(longest),
+                                  live.skipped == 0 ? "none" : grouped(live.skipped)));
+  if (live.unwritten > 0) {
+    report.line("unwritten",
+                fmt::format("{} steps came too fast to be written down; they are in no log",
+                            grouped(live.unwritten)),
+                Mark::warning);
   }
-  return notes;
+  Json data = {{"rate_Hz", live.rate},
+               {"late_s", {{"p50", p50}, {"p99", p99}, {"max", longest}}},
+               {"steps_left_out", live.skipped},
+               {"steps_unwritten", live.unwritten}};
+  data["guard"] = add_guard(report, live.limits, live.guard);
+  data["realtime"] = add_requests(report, live.realtime.requests);
+  data["failure"] = live.failure;
+  if (!live.failure.empty()) report.line("FAILED", live.failure, Mark::error);
+  return data;
 }
 
-void print_unguarded(const Unguarded& run, std::FILE* out) {
+Json add_unguarded(Report& report, const Unguarded& run) {
   const GuardCounts& counts = run.counts();
   std::string words;
   if (counts.slewed > 0) {
@@ -70,59 +111,104 @@ void print_unguarded(const Unguarded& run, std::FILE* out) {
     words += fmt::format("; {} steps one would have shortened to {:.3g} N", grouped(counts.clamped),
                          run.limits().maximum_force);
   }
-  fmt::print(out, "  guard      none in simulated time{}\n",
-             words.empty() ? "; one would have let every force pass" : words);
-}
-
-// JSON has no infinity: null is no limit.
-Json json_unguarded(const Unguarded& run) {
-  const double most = run.limits().maximum_force;
+  if (words.empty()) words = "; one would have let every force pass";
+  report.line("guard", "none in simulated time" + words);
   return {{"slew_N_per_s", run.limits().slew},
-          {"maximum_force_N", std::isfinite(most) ? Json(most) : Json()},
-          {"would_slow_steps", run.counts().slewed},
+          {"maximum_force_N", limit(run.limits().maximum_force)},
+          {"would_slow_steps", counts.slewed},
           {"largest_slowed_step_N", run.largest_change()},
-          {"would_shorten_steps", run.counts().clamped}};
+          {"would_shorten_steps", counts.clamped}};
 }
 
-void print_socket(const RemoteDevice& socket, std::FILE* out) {
-  const RemoteCounts counts = socket.counts();
-  fmt::print(out, "  socket     {}: {} packets taken of {}\n", socket.path(), grouped(counts.taken),
-             grouped(counts.received));
+void add_scale(Report& report, const Hand& hand) {
+  const double scale = hand.workspace.scale;
+  const double felt = hand.workspace.felt_stiffness(hand.stiffness);
+  report.data["device"].update({{"scale", scale}, {"felt_stiffness_N_per_m", felt}});
+  if (scale == 1) return;
+  report.line("scale",
+              fmt::format("1 m of the hand is {} m of the cloud; {:.4g} N/m there is {:.4g} N/m to "
+                          "the hand",
+                          scale, hand.stiffness, felt));
 }
 
-// Where a device stands that nobody leads.
-void print_stand(const Hand& hand, std::FILE* out) {
+// Where a device stands that a person or a program leads.
+void add_placement(Report& report, const Hand& hand) {
+  Json& device = report.data["device"];
   const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
-  fmt::print(
-      out, "  stands     its origin at {:.4g}, {:.4g}, {:.4g} m, axes as {}\n", origin.x(),
-      origin.y(), origin.z(),
-      hand.chosen.placement.frame.empty() ? "the world's" : hand.chosen.placement.frame + " looks");
-  print_scale(hand, out);
-  if (hand.chosen.placement.clutch)
-    fmt::print(out, "  clutch     button {}\n", *hand.chosen.placement.clutch);
-}
-
-Json json_device(const HandReport& report) {
-  const Hand& hand = report.hand;
-  Json device = {{"name", hand.device->info().name}};
-  if (!hand.plan && hand.chosen.follows_trajectory()) return device;
-  device["scale"] = hand.workspace.scale;
-  device["felt_stiffness_N_per_m"] = hand.workspace.felt_stiffness(hand.stiffness);
-  if (hand.plan) {
-    device["explored_m"] = hand.plan->patch;
-    device["depth_m"] = hand.plan->depth;
-  }
-  if (hand.chosen.follows_trajectory()) return device;
-  const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
+  const PlacementOptions& placement = hand.chosen.placement;
+  report.line("stands",
+              fmt::format("its origin at {:.4g}, {:.4g}, {:.4g} m, axes as {}", origin.x(),
+                          origin.y(), origin.z(),
+                          placement.frame.empty() ? "the world's" : placement.frame + " looks"));
+  add_scale(report, hand);
   device["origin_m"] = {origin.x(), origin.y(), origin.z()};
-  if (!hand.chosen.placement.frame.empty()) device["frame"] = hand.chosen.placement.frame;
-  if (hand.chosen.placement.clutch) device["clutch_button"] = *hand.chosen.placement.clutch;
-  if (hand.socket == nullptr) return device;
-  const RemoteCounts counts = hand.socket->counts();
+  if (!placement.frame.empty()) device["frame"] = placement.frame;
+  if (!placement.clutch) return;
+  report.line("clutch", fmt::format("button {}", *placement.clutch));
+  device["clutch_button"] = *placement.clutch;
+}
+
+void add_device(Report& report, const Hand& hand) {
+  Json& device = report.data["device"];
+  device = {{"name", hand.device->info().name}};
+  if (hand.plan) {
+    report.line("explored", fmt::format("up to {} across, pressing about {} deep",
+                                        length(hand.plan->patch), length(hand.plan->depth)));
+    add_scale(report, hand);
+    device.update({{"explored_m", hand.plan->patch}, {"depth_m", hand.plan->depth}});
+  }
+  RemoteCounts counts;
+  if (hand.socket != nullptr) {
+    counts = hand.socket->counts();
+    report.line("socket", fmt::format("{}: {} packets taken of {}", hand.socket->path(),
+                                      grouped(counts.taken), grouped(counts.received)));
+  }
+  if (!hand.chosen.follows_trajectory()) add_placement(report, hand);
+  if (hand.socket == nullptr) return;
   device["socket"] = hand.socket->path();
   device["packets_received"] = counts.received;
   device["packets_taken"] = counts.taken;
-  return device;
+}
+
+// The second energy is the surface's alone, without what holding a force for a step adds.
+void add_forces(Report& report, const HandReport& hand) {
+  const TouchStatistics& s = hand.statistics;
+  const StepTimes times = s.times();
+  const HandEnergy energies = energy_at_hand(hand);
+  const double touching = share(s.touching(), s.steps());
+  report.line("computing", fmt::format("p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} us a step",
+                                       times.p50, times.p99, times.p999, times.maximum));
+  report.line("contacts",
+              fmt::format("{}, {:.3g} % of the time", grouped(s.contacts()), 100 * touching));
+  report.line("force", fmt::format("{:.3g} N at most, changing by {:.2g} N a step at most",
+                                   s.largest_force(), s.largest_jump()));
+  report.line(
+      "energy",
+      fmt::format("{} given to the hand{}, {} along the path", energy(energies.given),
+                  energies.given < 0 ? " (negative: taken from it)" : "", energy(energies.path)));
+  report.data.update(
+      {{"computing_us",
+        {{"p50", times.p50}, {"p99", times.p99}, {"p99.9", times.p999}, {"max", times.maximum}}},
+       {"contacts", s.contacts()},
+       {"contact_share", touching},
+       {"largest_force_N", s.largest_force()},
+       {"largest_force_step_N", s.largest_jump()},
+       {"energy_given_to_hand_J", energies.given},
+       {"energy_along_path_J", energies.path},
+       {"energy_given_in_world_J", s.given_energy()},
+       {"energy_along_path_in_world_J", s.path_energy()}});
+}
+
+void add_notes(Report& report, const TouchStatistics& s) {
+  Json& data = report.data["notes"] = Json::array();
+  for (const CountedNote& each : s.notes()) {
+    report.line(data.empty() ? "notes" : "",
+                fmt::format("{} ({:.3g} % of steps): {}", grouped(each.steps),
+                            100 * share(each.steps, s.steps()), each.text),
+                Mark::warning);
+    data.push_back({{"note", each.name}, {"steps", each.steps}, {"text", each.text}});
+  }
+  if (data.empty()) report.line("notes", "none");
 }
 
 // Of a hand that felt nothing.
@@ -165,58 +251,29 @@ std::vector<std::string> advice(const HandReport& report) {
   return sentences;
 }
 
-void print_hand(const HandReport& report, const std::string& title, std::FILE* out) {
-  const Style style(out);
-  const Hand& hand = report.hand;
-  const TouchStatistics& s = report.statistics;
-  const StepTimes times = s.times();
-  fmt::print(out, "{} {} field, {:.4g} N/m, {} device\n", style.heading(title),
-             name_in(kFields, report.field.kind), report.stiffness, hand.device->info().name);
-  if (hand.plan) print_plan(hand, out);
-  if (hand.socket != nullptr) print_socket(*hand.socket, out);
-  if (!hand.chosen.follows_trajectory()) print_stand(hand, out);
-  fmt::print(out, "  steps      {} in {:.4g} s of {} time\n", grouped(s.steps()), s.duration(),
-             report.live == nullptr ? "simulated" : "real");
-  if (report.interrupted) fmt::print(out, "  ended      by Ctrl-C\n");
-  if (report.live != nullptr) print_live(*report.live, out);
-  if (report.unguarded != nullptr) print_unguarded(*report.unguarded, out);
-  fmt::print(out, "  computing  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} us a step\n",
-             times.p50, times.p99, times.p999, times.maximum);
-  fmt::print(out, "  contacts   {}, {:.3g} % of the time\n", grouped(s.contacts()),
-             100 * share(s.touching(), s.steps()));
-  fmt::print(out, "  force      {:.3g} N at most, changing by {:.2g} N a step at most\n",
-             s.largest_force(), s.largest_jump());
-  print_energy(energy_at_hand(report), out);
-  print_notes(s, style, out);
-  for (const std::string& sentence : advice(report)) {
-    fmt::print(out, "  {} {}\n", style.warning("advice    "), sentence);
-  }
-}
-
-Json json_hand(const HandReport& report) {
-  const TouchStatistics& s = report.statistics;
-  const StepTimes times = s.times();
-  const HandEnergy energies = energy_at_hand(report);
-  Json json = {
-      {"device", json_device(report)},
-      {"steps", s.steps()},
-      {report.live == nullptr ? "simulated_s" : "real_s", s.duration()},
-      {"interrupted", report.interrupted},
-      {"computing_us",
-       {{"p50", times.p50}, {"p99", times.p99}, {"p99.9", times.p999}, {"max", times.maximum}}},
-      {"contacts", s.contacts()},
-      {"contact_share", share(s.touching(), s.steps())},
-      {"largest_force_N", s.largest_force()},
-      {"largest_force_step_N", s.largest_jump()},
-      {"energy_given_to_hand_J", energies.given},
-      {"energy_along_path_J", energies.path},
-      {"energy_given_in_world_J", s.given_energy()},
-      {"energy_along_path_in_world_J", s.path_energy()},
-      {"notes", json_notes(s)},
-      {"advice", advice(report)}};
-  if (report.live != nullptr) json["live"] = json_live(*report.live);
-  if (report.unguarded != nullptr) json["unguarded"] = json_unguarded(*report.unguarded);
-  return json;
+Report report_of(const HandReport& hand, const std::string& title) {
+  const TouchStatistics& s = hand.statistics;
+  const bool real = hand.live != nullptr;
+  Report report(title,
+                fmt::format("{} field, {:.4g} N/m, {} device", name_in(kFields, hand.field.kind),
+                            hand.stiffness, hand.hand.device->info().name));
+  add_device(report, hand.hand);
+  report.line("steps", fmt::format("{} in {:.4g} s of {} time", grouped(s.steps()), s.duration(),
+                                   real ? "real" : "simulated"));
+  report.data.update({{"steps", s.steps()},
+                      {real ? "real_s" : "simulated_s", s.duration()},
+                      {"interrupted", hand.interrupted}});
+  if (hand.interrupted) report.line("ended", "by Ctrl-C");
+  const Json live = real ? add_live(report, *hand.live) : Json();
+  const bool unguarded = hand.unguarded != nullptr;
+  const Json other = unguarded ? add_unguarded(report, *hand.unguarded) : Json();
+  add_forces(report, hand);
+  add_notes(report, s);
+  report.data["advice"] = advice(hand);
+  for (const std::string& sentence : advice(hand)) report.line("advice", sentence, Mark::warning);
+  if (real) report.data["live"] = live;
+  if (unguarded) report.data["unguarded"] = other;
+  return report;
 }
 
 }  // namespace palpate::app

@@ -1,14 +1,28 @@
 #pragma once
 
-#include <cstdio>
-#include <nlohmann/json_fwd.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "apps/palpate/report/live_report.hpp"
+#include "apps/palpate/report/report.hpp"
 #include "apps/palpate/run/run.hpp"
+#include "palpate/servo/guard.hpp"
+#include "palpate/servo/histogram.hpp"
+#include "palpate/servo/realtime.hpp"
 
 namespace palpate::app {
+
+/// What a run in real time was like for one hand.
+struct LiveReport {
+  RealtimeReport realtime;
+  double rate = 0;  ///< steps a second that were wanted, Hz
+  Durations lateness;
+  std::uint64_t skipped = 0;    ///< steps left out because one before them was late
+  std::uint64_t unwritten = 0;  ///< steps that came faster than they could be written down
+  GuardOptions limits;          ///< of the guard, as they held
+  GuardState guard;             ///< at the end
+  std::string failure;          ///< of the device, in words; empty: none
+};
 
 /// Everything that a run's report tells of one hand.
 struct HandReport {
@@ -32,10 +46,7 @@ struct HandEnergy {
 /// What to do differently, in whole sentences; empty: nothing.
 [[nodiscard]] std::vector<std::string> advice(const HandReport& report);
 
-/// For a person, under `title`.
-void print_hand(const HandReport& report, const std::string& title, std::FILE* stream);
-
-/// The same as data: SI units, named in the keys.
-[[nodiscard]] nlohmann::ordered_json json_hand(const HandReport& report);
+/// A hand's part of the report, under `title`.
+[[nodiscard]] Report report_of(const HandReport& hand, const std::string& title);
 
 }  // namespace palpate::app

@@ -2,94 +2,264 @@
 
 #include <fmt/format.h>
 
-#include "apps/palpate/cli/json.hpp"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "apps/palpate/cli/names.hpp"
+#include "apps/palpate/cli/quantile.hpp"
 #include "apps/palpate/cli/words.hpp"
-#include "apps/palpate/report/depth_report.hpp"
+#include "apps/palpate/options/source_choice.hpp"
 
 namespace palpate::app {
 
 namespace {
+
+// What is said of a phase at the end of a run.
+std::string_view phase_words(StreamPhase phase) {
+  if (phase == StreamPhase::starting) return "no frame came";
+  if (phase == StreamPhase::ended) return "ended; its last surface stayed";
+  return name_of(phase);
+}
+
+// A cause for which frames are dropped: its name in data, and what is said of it.
+struct DropText {
+  std::uint64_t StreamDrops::*count;
+  const char* name;
+  const char* words;
+};
+
+constexpr std::array<DropText, 8> kDrops = {{{&StreamDrops::overtaken, "overtaken", "overtaken"},
+                                             {&StreamDrops::repeated, "repeated", "repeated"},
+                                             {&StreamDrops::late, "late", "late"},
+                                             {&StreamDrops::empty, "empty", "empty"},
+                                             {&StreamDrops::garbage, "garbage", "garbage"},
+                                             {&StreamDrops::unposed, "unposed", "without a pose"},
+                                             {&StreamDrops::resized, "resized", "of another size"},
+                                             {&StreamDrops::refused, "refused", "refused"}}};
+
+// "overtaken 3, late 1".
+std::string drop_words(const StreamDrops& drops) {
+  std::string words;
+  for (const DropText& each : kDrops) {
+    const std::uint64_t count = drops.*each.count;
+    if (count > 0) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, each.words);
+  }
+  return words.empty() ? "none" : words;
+}
+
+Json json_drops(const StreamDrops& drops) {
+  Json json;
+  for (const DropText& each : kDrops) json[each.name] = drops.*each.count;
+  return json;
+}
+
+// Of the preparation of a frame, ms.
+struct PrepareQuantiles {
+  double p50 = 0;
+  double longest = 0;
+};
+
+PrepareQuantiles prepare_times(std::vector<double> ms) {
+  std::ranges::sort(ms);
+  return {quantile(ms, 0.5), quantile(ms, 1)};
+}
+
+// The share of frames of a run in simulated time that live would have been overtaken while others
+// were prepared; 0 for a run that was live.
+double share_too_fast(const FeedReport& feed, const PrepareQuantiles& times) {
+  if (!feed.simulated || !(times.p50 > 0) || !(feed.state.rate > 0)) return 0;
+  return std::max(0.0, 1 - 1e3 / (times.p50 * feed.state.rate));
+}
 
 std::string range(double smallest, double middle, double largest) {
   if (largest <= 1.001 * smallest) return length(middle);
   return fmt::format("{} ({} to {})", length(middle), length(smallest), length(largest));
 }
 
-void print_cloud(const TouchedSource& cloud, const Style& style, std::FILE* out) {
-  const PrepareReport& r = cloud.prepared;
-  fmt::print(out, "{} {} ({})\n", style.heading(cloud.plan.argument.name), cloud.plan.argument.path,
-             cloud.format);
-  fmt::print(out, "  points     {} read, {} felt", grouped(r.points_in), grouped(r.points_out));
-  if (r.duplicates > 0) fmt::print(out, ", {} at the place of another", grouped(r.duplicates));
-  if (r.speckle > 0) fmt::print(out, ", {} dropped as speckle", grouped(r.speckle));
-  if (cloud.dropped > 0) fmt::print(out, ", {} invalid", grouped(cloud.dropped));
-  fmt::print(out, "\n");
-  if (!cloud.units.advice.empty()) {
-    fmt::print(out, "  {} {}? {}; {}\n", style.warning("units     "), cloud.units.units,
-               cloud.units.reason, cloud.units.advice);
-  }
-  fmt::print(out, "  spacing    {}, noise {}, voxel {}\n", length(r.spacing), length(r.noise),
-             r.voxel > 0 ? length(r.voxel) : "none");
-  fmt::print(out, "  R          {}\n", range(r.radius_smallest, r.radius, r.radius_largest));
-  print_trust(r, out);
-  fmt::print(out,
-             "  prepared   {} after {} of reading: filter {}, index {}, spacing {}, normals {}, "
-             "weights {}\n",
-             duration(cloud.prepare_seconds), duration(cloud.read_seconds),
-             duration(r.seconds_filter), duration(r.seconds_index), duration(r.seconds_spacing),
-             duration(r.seconds_normals), duration(r.seconds_weights));
+Report file_report(const TouchedSource& source) {
+  const CloudArgument& argument = source.plan.argument;
+  Report report(argument.name, fmt::format("{} ({})", argument.path, source.format));
+  report.data = {{"name", argument.name}, {"file", argument.path}, {"format", source.format}};
+  return report;
 }
 
-Json json_cloud(const TouchedSource& cloud) {
+Report cloud_report(const TouchedSource& cloud) {
   const PrepareReport& r = cloud.prepared;
-  return {{"name", cloud.plan.argument.name},
-          {"file", cloud.plan.argument.path},
-          {"format", cloud.format},
-          {"points_declared", cloud.declared},
-          {"points_invalid", cloud.dropped},
-          {"points_read", r.points_in},
-          {"points_felt", r.points_out},
-          {"points_duplicate", r.duplicates},
-          {"points_speckle", r.speckle},
-          {"spacing_m", r.spacing},
-          {"noise_m", r.noise},
-          {"voxel_m", r.voxel},
-          {"radius_m",
-           {{"median", r.radius}, {"smallest", r.radius_smallest}, {"largest", r.radius_largest}}},
-          {"trust", {{"low", r.trust_low}, {"untrusted_share", r.untrusted}}},
-          {"seconds",
-           {{"read", cloud.read_seconds},
-            {"prepare", cloud.prepare_seconds},
-            {"filter", r.seconds_filter},
-            {"index", r.seconds_index},
-            {"spacing", r.seconds_spacing},
-            {"normals", r.seconds_normals},
-            {"weights", r.seconds_weights}}}};
+  Report report = file_report(cloud);
+  report.line(
+      "points",
+      fmt::format("{} read, {} felt{}{}{}", grouped(r.points_in), grouped(r.points_out),
+                  and_some(r.duplicates, "at the place of another"),
+                  and_some(r.speckle, "dropped as speckle"), and_some(cloud.dropped, "invalid")));
+  report.data.update({{"points_declared", cloud.declared},
+                      {"points_invalid", cloud.dropped},
+                      {"points_read", r.points_in},
+                      {"points_felt", r.points_out},
+                      {"points_duplicate", r.duplicates},
+                      {"points_speckle", r.speckle}});
+  if (!cloud.units.advice.empty()) {
+    report.line(
+        "units",
+        fmt::format("{}? {}; {}", cloud.units.units, cloud.units.reason, cloud.units.advice),
+        Mark::warning);
+  }
+  report.line("spacing", fmt::format("{}, noise {}, voxel {}", length(r.spacing), length(r.noise),
+                                     r.voxel > 0 ? length(r.voxel) : "none"));
+  report.line("R", range(r.radius_smallest, r.radius, r.radius_largest));
+  report.data.update(
+      {{"spacing_m", r.spacing},
+       {"noise_m", r.noise},
+       {"voxel_m", r.voxel},
+       {"radius_m",
+        {{"median", r.radius}, {"smallest", r.radius_smallest}, {"largest", r.radius_largest}}}});
+  add_trust(report, r);
+  report.line("prepared",
+              fmt::format("{} after {} of reading: filter {}, index {}, spacing {}, normals {}, "
+                          "weights {}",
+                          duration(cloud.prepare_seconds), duration(cloud.read_seconds),
+                          duration(r.seconds_filter), duration(r.seconds_index),
+                          duration(r.seconds_spacing), duration(r.seconds_normals),
+                          duration(r.seconds_weights)));
+  report.data["seconds"] = {{"read", cloud.read_seconds},   {"prepare", cloud.prepare_seconds},
+                            {"filter", r.seconds_filter},   {"index", r.seconds_index},
+                            {"spacing", r.seconds_spacing}, {"normals", r.seconds_normals},
+                            {"weights", r.seconds_weights}};
+  return report;
+}
+
+void add_seen(Report& report, const SourceState& state) {
+  report.line("points", fmt::format("{} felt", grouped(state.points)) +
+                            (state.depth > 0 ? fmt::format(", the middle of the image {} away",
+                                                           length(state.depth))
+                                             : ""));
+  if (state.depth > 0) {
+    report.line("noise", fmt::format("{} a pixel there", length(state.noise)) +
+                             (state.correlation > 1.01
+                                  ? fmt::format(", {:.2f} times that in means of neighbours",
+                                                state.correlation)
+                                  : ""));
+  }
+  report.data.update({{"points_felt", state.points},
+                      {"depth_m", state.depth},
+                      {"noise_m", state.noise},
+                      {"noise_correlation", state.correlation}});
+  if (!state.disagreement) return;
+  report.line("disagrees", fmt::format("{} with the other sources where both see a surface",
+                                       length(*state.disagreement)));
+  report.data["disagreement_m"] = *state.disagreement;
+}
+
+Report image_report(const TouchedSource& source) {
+  Report report = file_report(source);
+  report.data["seconds"] = {{"read", source.read_seconds}, {"prepare", source.prepare_seconds}};
+  if (source.lens.width > 0) {
+    report.line("organised", fmt::format("{}, felt as a depth frame", in_words(source.lens)));
+    report.data["organised"] = json_of(source.lens);
+  }
+  add_seen(report, source.state);
+  report.line("prepared", fmt::format("{} after {} of reading", duration(source.prepare_seconds),
+                                      duration(source.read_seconds)));
+  return report;
+}
+
+void add_frames(Report& report, const FeedReport& feed) {
+  const StreamState& state = feed.state;
+  report.line("frames", fmt::format("{} touchable of {}, {:.1f} a second; {} dropped",
+                                    grouped(state.touchable), grouped(state.frames), state.rate,
+                                    drop_words(state.drops)));
+  report.data.update({{"width", feed.width},
+                      {"height", feed.height},
+                      {"phase", name_of(state.phase)},
+                      {"frames", state.frames},
+                      {"frames_touchable", state.touchable},
+                      {"rate_Hz", state.rate},
+                      {"drops", json_drops(state.drops)},
+                      {"failures", state.failures},
+                      {"stalls", state.stalls},
+                      {"problem", state.problem}});
+}
+
+void add_latency(Report& report, const FeedReport& feed) {
+  const StreamState& state = feed.state;
+  const PrepareQuantiles times = prepare_times(feed.prepare_ms);
+  const double dropped = share_too_fast(feed, times);
+  report.line("latency",
+              fmt::format("{} from frame to touchable, {} at worst; prepared in {} (p50), {} (max)",
+                          duration(state.latency_mean), duration(state.latency_worst),
+                          duration(1e-3 * times.p50), duration(1e-3 * times.longest)));
+  if (dropped > 0) {
+    report.line(
+        "too slow",
+        fmt::format("a frame takes {} to prepare and comes every {}: live, {:.0f} % of them "
+                    "would be dropped",
+                    duration(1e-3 * times.p50), duration(1 / state.rate),
+                    std::min(99.0, std::ceil(100 * dropped))),
+        Mark::warning);
+  }
+  report.data.update({{"latency_s", {{"mean", state.latency_mean}, {"worst", state.latency_worst}}},
+                      {"prepare_ms", {{"p50", times.p50}, {"max", times.longest}}},
+                      {"would_drop_live", dropped}});
+}
+
+void add_policy(Report& report, const SourcePlan& plan) {
+  const Policy policy = policy_of(plan);
+  std::string words = name_in(kPolicies, policy);
+  report.data["policy"] = {{"name", words}};
+  if (keeps_history(policy)) {
+    words += fmt::format(" of {}", plan.options.policy.history);
+    report.data["policy"]["history"] = plan.options.policy.history;
+  }
+  report.line("policy", words);
 }
 
 }  // namespace
 
-void print_trust(const PrepareReport& prepared, std::FILE* out) {
+Report camera_report(const TouchedSource& source) {
+  const CloudArgument& argument = source.plan.argument;
+  const FeedReport& feed = source.feed;
+  const StreamState& state = feed.state;
+  Report report(argument.name, fmt::format("{} ({} x {} pixels), {}", argument.path, feed.width,
+                                           feed.height, phase_words(state.phase)));
+  report.data = {{"name", argument.name}, {"camera", argument.path}};
+  add_frames(report, feed);
+  add_latency(report, feed);
+  add_policy(report, source.plan);
+  add_seen(report, source.state);
+  if (state.problem.empty()) return report;
+  report.line("problem",
+              fmt::format("{} (at {:.3f} s; {} failed reads, stalled {} times)", state.problem,
+                          state.problem_at, state.failures, state.stalls),
+              Mark::warning);
+  return report;
+}
+
+Report source_report(const TouchedSource& source) {
+  if (source.camera) return camera_report(source);
+  return source.depth_image ? image_report(source) : cloud_report(source);
+}
+
+void add_trust(Report& report, const PrepareReport& prepared) {
+  report.data["trust"] = {{"low", prepared.trust_low}, {"untrusted_share", prepared.untrusted}};
   if (prepared.untrusted < 0.01) return;
-  fmt::print(out,
-             "  trust      {:.0f} % of this cloud is not trusted; it is felt as metaball there\n",
-             100 * prepared.untrusted);
+  report.line("trust",
+              fmt::format("{:.0f} % of this cloud is not trusted; it is felt as metaball there",
+                          100 * prepared.untrusted));
 }
 
-void print_source(const TouchedSource& source, std::FILE* out) {
-  const Style style(out);
-  if (source.camera) {
-    print_camera(source, style, out);
-  } else if (source.depth_image) {
-    print_depth_image(source, style, out);
-  } else {
-    print_cloud(source, style, out);
-  }
+std::string in_words(const CameraModel& camera) {
+  const Pinhole& p = camera.pinhole;
+  return fmt::format("{} x {} pixels of a camera of {:.4g} px", camera.width, camera.height,
+                     0.5 * (p.fx + p.fy));
 }
 
-Json json_source(const TouchedSource& source) {
-  if (source.camera) return json_camera(source);
-  return source.depth_image ? json_depth_image(source) : json_cloud(source);
+Json json_of(const CameraModel& camera) {
+  const Pinhole& p = camera.pinhole;
+  return {{"width", camera.width},
+          {"height", camera.height},
+          {"pinhole_px", {{"fx", p.fx}, {"fy", p.fy}, {"cx", p.cx}, {"cy", p.cy}}}};
 }
 
 }  // namespace palpate::app

@@ -1,19 +1,26 @@
 #pragma once
 
-#include <cstdio>
-#include <nlohmann/json_fwd.hpp>
+#include <string>
 
+#include "apps/palpate/report/report.hpp"
 #include "apps/palpate/sources/touched.hpp"
 
 namespace palpate::app {
 
-/// How much of a cloud is no surface that its points agree on, where it is a hundredth or more.
-void print_trust(const PrepareReport& prepared, std::FILE* out);
+/// What a run knows of one of its sources and, of a camera, of what became of its frames.
+[[nodiscard]] Report source_report(const TouchedSource& source);
 
-/// What a run knows of one of its sources, for a person.
-void print_source(const TouchedSource& source, std::FILE* out);
+/// That of a camera.
+[[nodiscard]] Report camera_report(const TouchedSource& source);
 
-/// The same as data: SI units, named in the keys.
-[[nodiscard]] nlohmann::ordered_json json_source(const TouchedSource& source);
+/// Says how much of a cloud is no surface that its points agree on, where it is a hundredth or
+/// more.
+void add_trust(Report& report, const PrepareReport& prepared);
+
+/// "640 x 480 pixels of a camera of 525 px".
+[[nodiscard]] std::string in_words(const CameraModel& camera);
+
+/// The same as data.
+[[nodiscard]] Json json_of(const CameraModel& camera);
 
 }  // namespace palpate::app

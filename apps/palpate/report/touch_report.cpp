@@ -2,37 +2,69 @@
 
 #include <fmt/format.h>
 
-#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/names.hpp"
+#include "apps/palpate/cli/numbered_path.hpp"
+#include "apps/palpate/cli/words.hpp"
 #include "apps/palpate/plot/picture_script.hpp"
 #include "apps/palpate/report/source_report.hpp"
 
 namespace palpate::app {
 
-void print_report(const TouchReport& report, std::FILE* out) {
-  for (const TouchedSource& source : report.touched.sources) print_source(source, out);
-  const bool alone = report.hands.size() == 1;
-  for (const HandReport& each : report.hands) {
-    print_hand(each, alone ? "touched" : each.hand.name, out);
-  }
+namespace {
+
+std::string subtitle(const HandReport& report) {
+  const TouchStatistics& s = report.statistics;
+  return fmt::format(
+      "{} field, K = {:.4g} N/m, {} steps in {:.3g} s, {} contacts, energy given to the "
+      "hand {}",
+      name_in(kFields, report.field.kind), report.stiffness, grouped(s.steps()), s.duration(),
+      grouped(s.contacts()), energy(energy_at_hand(report).given));
+}
+
+}  // namespace
+
+HandOutputs::HandOutputs(const OutputPlan& outputs, std::size_t hand) {
+  if (!outputs.log.empty()) log_.emplace(numbered_path(outputs.log, hand));
+  if (!outputs.picture.empty()) picture_.emplace(numbered_path(outputs.picture, hand));
+}
+
+void HandOutputs::add(const TouchStep& step) {
+  statistics_.add(step);
+  if (log_) log_->add(step);
+  if (picture_) picture_->add(step);
+}
+
+void HandOutputs::close_log() {
+  if (log_) log_->close();
+}
+
+void HandOutputs::draw(const Scene& felt, const std::string& title, const HandReport& report) {
+  if (picture_) picture_->draw(felt, title, subtitle(report));
 }
 
 // What is of a hand stands beside what is of the run where there is one hand, else under "hands".
-Json json_report(const TouchReport& report) {
+Json report_on(const TouchReport& report, std::FILE* stream) {
   Json sources = Json::array();
   for (const TouchedSource& source : report.touched.sources) {
-    sources.push_back(json_source(source));
+    const Report part = source_report(source);
+    part.print(stream);
+    sources.push_back(part.data);
   }
   Json json = {{"palpate", std::string(version())},
                {"sources", sources},
                {"preset", report.paper ? "paper" : "default"},
                {"field", name_in(kFields, report.field.kind)},
                {"stiffness_N_per_m", report.proxy.stiffness}};
-  if (report.hands.size() == 1) {
-    json.update(json_hand(report.hands.front()));
-    return json;
+  const bool alone = report.hands.size() == 1;
+  for (const HandReport& each : report.hands) {
+    const Report part = report_of(each, alone ? "touched" : each.hand.name);
+    part.print(stream);
+    if (alone) {
+      json.update(part.data);
+    } else {
+      json["hands"].push_back(part.data);
+    }
   }
-  for (const HandReport& each : report.hands) json["hands"].push_back(json_hand(each));
   return json;
 }
 

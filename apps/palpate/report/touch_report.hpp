@@ -1,14 +1,38 @@
 #pragma once
 
 #include <cstdio>
-#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/palpate/report/hand_report.hpp"
+#include "apps/palpate/report/log.hpp"
+#include "apps/palpate/report/picture.hpp"
 #include "apps/palpate/sources/touched.hpp"
 #include "palpate/contact/proxy.hpp"
 
 namespace palpate::app {
+
+/// What is kept of one hand's steps.
+class HandOutputs {
+ public:
+  /// The files that `outputs` names for the hand of that index, made at once.
+  /// @throws Error when they cannot be.
+  HandOutputs(const OutputPlan& outputs, std::size_t hand);
+
+  void add(const TouchStep& step);
+  void close_log();
+
+  /// @throws Error as Picture::draw() does.
+  void draw(const Scene& felt, const std::string& title, const HandReport& report);
+
+  [[nodiscard]] const TouchStatistics& statistics() const { return statistics_; }
+
+ private:
+  TouchStatistics statistics_;
+  std::optional<TouchLog> log_;
+  std::optional<Picture> picture_;
+};
 
 /// Everything that a run's report tells.
 struct TouchReport {
@@ -20,11 +44,8 @@ struct TouchReport {
   std::vector<HandReport> hands;
 };
 
-/// For a person.
-void print_report(const TouchReport& report, std::FILE* stream);
-
-/// The same as data: SI units, named in the keys. What is of a hand is in `hands`, where there are
-/// several.
-[[nodiscard]] nlohmann::ordered_json json_report(const TouchReport& report);
+/// For a person, to `stream`; the same as data: SI units, named in the keys. What is of a hand is
+/// in `hands`, where there are several.
+Json report_on(const TouchReport& report, std::FILE* stream);
 
 }  // namespace palpate::app

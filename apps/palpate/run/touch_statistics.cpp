@@ -9,42 +9,67 @@ namespace palpate::app {
 
 namespace {
 
-constexpr std::array<ContactNote, 6> kContactNotes = {
-    ContactNote::sweep_truncated, ContactNote::lost,  ContactNote::not_converged,
-    ContactNote::reanchored,      ContactNote::fault, ContactNote::fell};
-constexpr std::array<FieldNote, 5> kFieldNotes = {FieldNote::thinned, FieldNote::no_surface,
-                                                  FieldNote::tool_too_large, FieldNote::work_spent,
-                                                  FieldNote::behind};
+// A note of a contact or of a field.
+struct Note {
+  const char* name;
+  const char* text;
+  ContactNote contact;
+  FieldNote field;
 
-constexpr std::array<NoteText, TouchStatistics::kNotes> kTexts = {{
+  [[nodiscard]] bool is_in(const TouchStep& step) const {
+    return has(step.contact.notes, contact) || has(step.notes, field);
+  }
+};
+
+constexpr std::array<Note, 14> kNotes = {{
     {"sweep_truncated",
      "the hand moved too far for one step, so the proxy caught up in the next ones; move slower or "
-     "give shorter steps"},
+     "give shorter steps",
+     ContactNote::sweep_truncated, FieldNote::none},
     {"lost",
      "no surface could be found near the proxy, so the force faded; a larger --radius closes "
-     "holes"},
+     "holes",
+     ContactNote::lost, FieldNote::none},
     {"not_converged",
-     "the proxy's iterations ran out before the closest point; it goes on in the next step"},
-    {"reanchored", "the surface had moved over the proxy, which was taken along"},
+     "the proxy's iterations ran out before the closest point; it goes on in the next step",
+     ContactNote::not_converged, FieldNote::none},
+    {"reanchored", "the surface had moved over the proxy, which was taken along",
+     ContactNote::reanchored, FieldNote::none},
     {"fault",
-     "the hand or the surface was nowhere (not finite, or beyond 1e9 m from the origin), so the "
-     "force "
-     "was zero from there on; repair the trajectory or --pose"},
+     "a hand or surface position was not finite or beyond 1e9 m, so the force was zero from there "
+     "on; repair the trajectory or --pose",
+     ContactNote::fault, FieldNote::none},
+    {"softer",
+     "the surface was softer than asked for: stiffness grows only as fast as the hand's motion "
+     "supplies the energy",
+     ContactNote::softer, FieldNote::none},
     {"fell",
      "the surface gave way: the hand came off an edge or through a gap (a larger --radius closes "
-     "gaps), or what it touched had gone"},
+     "gaps), or what it touched had gone",
+     ContactNote::fell, FieldNote::none},
     {"thinned",
      "more points than the patch holds lay near the tool, so some were left out; give a smaller "
-     "--radius or a larger --voxel"},
-    {"no_surface", "no source had a surface (yet)"},
+     "--radius or a larger --voxel",
+     ContactNote::none, FieldNote::thinned},
+    {"no_surface", "no source had a surface (yet)", ContactNote::none, FieldNote::no_surface},
+    {"time_not_finite",
+     "a time was not finite, so the surface stayed as it was; mend the device's or the recording's "
+     "clock",
+     ContactNote::none, FieldNote::time_not_finite},
+    {"other_kernel",
+     "points were prepared for another kernel than the field's; prepare them with the same",
+     ContactNote::none, FieldNote::other_kernel},
     {"tool_too_large",
      "the tool is too large for the surface's R, so it counted for less; give a smaller "
-     "--tool-radius"},
+     "--tool-radius",
+     ContactNote::none, FieldNote::tool_too_large},
     {"work_spent",
      "looking for points took all the work that a step may do, so the proxy stopped short; give a "
-     "larger --voxel, or clip the cloud"},
+     "larger --voxel, or clip the cloud",
+     ContactNote::none, FieldNote::work_spent},
     {"behind",
-     "the tool was behind what a camera sees, on the side that it never saw, which holds nothing"},
+     "the tool was behind what a camera sees, on the side that it never saw, which holds nothing",
+     ContactNote::none, FieldNote::behind},
 }};
 
 // Simulated steps may be as far apart as the rows of a trajectory: that is no silence.
@@ -73,30 +98,24 @@ void TouchStatistics::add(const TouchStep& step) {
     if (first || !last_.contact.touching) ++contacts_;
   }
   largest_force_ = std::max(largest_force_, contact.force.norm());
-  for (std::size_t i = 0; i < kContactNotes.size(); ++i) {
-    if (has(contact.notes, kContactNotes[i])) ++notes_[i];
-  }
-  for (std::size_t i = 0; i < kFieldNotes.size(); ++i) {
-    if (has(step.notes, kFieldNotes[i])) ++notes_[kContactNotes.size() + i];
-  }
+  for (std::size_t i = 0; i < kNotes.size(); ++i) notes_[i] += kNotes[i].is_in(step) ? 1 : 0;
+  if (has(contact.notes, ContactNote::fault)) ++faults_;
   times_.add(1e-6 * step.microseconds);
   ++steps_;
   last_ = step;
 }
 
-std::size_t TouchStatistics::faults() const {
-  constexpr std::size_t kFault = 4;
-  static_assert(kContactNotes[kFault] == ContactNote::fault);
-  return notes_[kFault];
+std::vector<CountedNote> TouchStatistics::notes() const {
+  std::vector<CountedNote> counted;
+  for (std::size_t i = 0; i < kNotes.size(); ++i) {
+    if (notes_[i] > 0) counted.push_back({kNotes[i].name, kNotes[i].text, notes_[i]});
+  }
+  return counted;
 }
 
 StepTimes TouchStatistics::times() const {
   const auto quantile = [this](double share) { return 1e6 * times_.quantile(share); };
   return {quantile(0.5), quantile(0.99), quantile(0.999), 1e6 * times_.longest};
-}
-
-const NoteText& note_text(std::size_t note) {
-  return kTexts[note];
 }
 
 Unguarded::Unguarded(const GuardOptions& guard, const DeviceInfo& device, double scale)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "palpate/contact/contact.hpp"
 #include "palpate/device/device.hpp"
@@ -34,11 +35,16 @@ struct StepTimes {
   double maximum = 0;
 };
 
+/// A note that some steps had.
+struct CountedNote {
+  const char* name;  ///< short, for data
+  const char* text;  ///< what it means and what to do, for people
+  std::size_t steps = 0;
+};
+
 /// Sums up a run, step by step.
 class TouchStatistics {
  public:
-  static constexpr std::size_t kNotes = 11;  ///< six of ContactNote, five of FieldNote
-
   void add(const TouchStep& step);
 
   [[nodiscard]] std::size_t steps() const { return steps_; }
@@ -59,10 +65,10 @@ class TouchStatistics {
   /// The integral of F . dh along the way by trapezoids, J, as if forces changed without steps. It
   /// shows whether the surface is passive, not whether a device is.
   [[nodiscard]] double path_energy() const { return path_energy_; }
-  /// Steps with each note, in the order of note_text().
-  [[nodiscard]] const std::array<std::size_t, kNotes>& notes() const { return notes_; }
+  /// What there was to note, of contacts and of the field.
+  [[nodiscard]] std::vector<CountedNote> notes() const;
   /// Steps that the proxy could not take.
-  [[nodiscard]] std::size_t faults() const;
+  [[nodiscard]] std::size_t faults() const { return faults_; }
   /// Of any number of steps in the same memory: to 5 %, and the maximum as it was. Zero without
   /// steps.
   [[nodiscard]] StepTimes times() const;
@@ -78,15 +84,9 @@ class TouchStatistics {
   double largest_jump_ = 0;
   double given_energy_ = 0;
   double path_energy_ = 0;
-  std::array<std::size_t, kNotes> notes_{};
+  std::size_t faults_ = 0;
+  std::array<std::size_t, 14> notes_{};  // steps with each
 };
-
-/// A note's short name, for data, and what it means and what to do, for people.
-struct NoteText {
-  const char* name;
-  const char* text;
-};
-[[nodiscard]] const NoteText& note_text(std::size_t note);
 
 /// What a guard would have made of a run that has none: its slew and its clamp, on the way that the
 /// hand went without them. Damper and soft start, which change every force a little, are left out.

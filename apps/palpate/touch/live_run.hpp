@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "apps/palpate/report/live_report.hpp"
+#include "apps/palpate/report/hand_report.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "palpate/base/waiting_clock.hpp"
 

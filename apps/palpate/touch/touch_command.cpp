@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <deque>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/progress.hpp"
-#include "apps/palpate/report/hand_outputs.hpp"
 #include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/run/view_settings.hpp"
@@ -111,8 +109,8 @@ void check_hands(const std::vector<HandReport>& hands) {
 
 // The pictures come last: everything else is there if they cannot be drawn.
 void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
-  print_report(report, stream);
-  if (outputs.json) write_whole(outputs.json, json_report(report).dump(2) + "\n");
+  const Json data = report_on(report, stream);
+  write_whole(outputs.json, data.dump(2) + "\n");
   for (std::size_t i = 0; i < report.hands.size(); ++i) {
     outputs.hands[i].draw(report.felt, title_of(report.touched), report.hands[i]);
   }

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "apps/palpate/report/recording.hpp"
+#include "apps/palpate/report/log.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/view/browser.hpp"
 #include "apps/palpate/view/page_hold.hpp"

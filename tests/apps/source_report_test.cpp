@@ -1,10 +1,8 @@
-#include "apps/palpate/report/depth_report.hpp"
+#include "apps/palpate/report/source_report.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
-
-#include "apps/palpate/cli/json.hpp"
 
 namespace palpate::app {
 namespace {
@@ -19,7 +17,7 @@ TouchedSource fed(double rate, double prepare_ms, bool simulated) {
 
 std::string printed(const TouchedSource& source) {
   std::FILE* file = std::tmpfile();
-  print_camera(source, Style(file), file);
+  camera_report(source).print(file);
   std::rewind(file);
   std::array<char, 4096> text{};
   const std::size_t size = std::fread(text.data(), 1, text.size(), file);
@@ -27,17 +25,18 @@ std::string printed(const TouchedSource& source) {
   return {text.data(), size};
 }
 
-TEST(DepthReport, SimulatedTimeSaysWhatLiveWouldBeDropped) {
+TEST(SourceReport, SimulatedTimeSaysWhatLiveWouldBeDropped) {
   const TouchedSource slow = fed(30, 570, true);
   const std::string text = printed(slow);
   EXPECT_NE(text.find("a frame takes 570 ms to prepare and comes every 33.3 ms: live, 95 % of them "
                       "would be dropped"),
             std::string::npos)
       << text;
-  EXPECT_NEAR(json_camera(slow)["would_drop_live"].get<double>(), 1 - 1 / (30 * 0.57), 1e-12);
+  EXPECT_NEAR(camera_report(slow).data["would_drop_live"].get<double>(), 1 - 1 / (30 * 0.57),
+              1e-12);
   const auto expect_silence = [](const TouchedSource& quick) {
     EXPECT_EQ(printed(quick).find("would be dropped"), std::string::npos);
-    EXPECT_EQ(json_camera(quick)["would_drop_live"], 0.0);
+    EXPECT_EQ(camera_report(quick).data["would_drop_live"], 0.0);
   };
   expect_silence(fed(30, 12, true));
   expect_silence(fed(30, 570, false));

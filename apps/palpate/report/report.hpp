@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "apps/palpate/cli/json.hpp"
+
+namespace palpate::app {
+
+enum class Mark { plain, warning, error };
+
+/// A part of a report: lines for a person, and the same facts as data.
+class Report {
+ public:
+  /// `title` stands out from `rest`.
+  Report(std::string title, std::string rest) : title_(std::move(title)), rest_(std::move(rest)) {}
+
+  /// One below the title. `label`: ten letters at most; empty: it goes on from the line before.
+  void line(const std::string& label, std::string text, Mark mark = Mark::plain) {
+    lines_.push_back({label, std::move(text), mark});
+  }
+
+  void print(std::FILE* out) const;
+
+  Json data = Json::object();  ///< SI units, named in the keys
+
+ private:
+  struct Line {
+    std::string label;
+    std::string text;
+    Mark mark;
+  };
+
+  std::string title_;
+  std::string rest_;
+  std::vector<Line> lines_;
+};
+
+/// ", 12 invalid"; empty where there are none.
+[[nodiscard]] std::string and_some(std::size_t count, const char* words);
+
+/// JSON has no infinity: null is no limit.
+[[nodiscard]] Json limit(double value);
+
+}  // namespace palpate::app
