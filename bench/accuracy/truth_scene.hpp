@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "palpate/depth/camera_model.hpp"
-#include "palpate/sensor/simulated_table.hpp"
+#include "palpate/depth/depth_frame.hpp"
+#include "palpate/sensor/simulated_scene.hpp"
 
 namespace palpate::accuracy {
 

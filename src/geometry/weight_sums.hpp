@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,5 +22,10 @@ using WeightSum = decltype(simd::JoinFunctions::wyvill_sums);
 /// @throws Error when there are not as many radii as points, or one is not positive and finite.
 [[nodiscard]] WeightSums weight_sums(const CellGrid& grid, std::span<const float> radii,
                                      WeightSum sum);
+
+/// speckle_mask() for those who have the weight sums of the same radii already.
+[[nodiscard]] std::vector<std::uint8_t> speckle_mask(const CellGrid& grid,
+                                                     std::span<const float> radii,
+                                                     const WeightSums& sums);
 
 }  // namespace palpate::detail

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "palpate/geometry/cell_grid.hpp"
+#include "prepare/sheets.hpp"
 
 namespace palpate {
 
@@ -19,5 +23,9 @@ struct Noise {
 /// noise and no shape: on the flattest of them the residuals no longer grow with the window
 /// (field_choice.md section 5; nss_fast.md section 2).
 [[nodiscard]] Noise measure_noise(const CellGrid& grid, double spacing);
+
+/// 1 for each point that is much farther from others than most and on no sheet with them.
+/// `typical`: the median spacing, m. In sorted order.
+[[nodiscard]] std::vector<std::uint8_t> find_strays(const SheetInput& input, double typical);
 
 }  // namespace palpate

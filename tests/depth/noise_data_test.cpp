@@ -10,7 +10,6 @@
 
 #include "depth/noise_tracker.hpp"
 #include "palpate/depth/depth_filter.hpp"
-#include "palpate/depth/sensor_profiles.hpp"
 #include "palpate/io/read_cloud.hpp"
 
 namespace palpate {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/servo/passive_stiffness.hpp"
 #include "palpate/servo/z_width.hpp"
 
 namespace palpate {

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "palpate/field/kernel.hpp"
+#include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
 
 namespace palpate::test {

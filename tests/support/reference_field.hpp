@@ -6,7 +6,6 @@
 
 #include "palpate/field/field.hpp"
 #include "palpate/field/field_options.hpp"
-#include "palpate/field/kernel.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "support/dual.hpp"
 #include "support/united_reference.hpp"

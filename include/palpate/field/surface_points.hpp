@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "palpate/field/kernel.hpp"
+#include "palpate/field/field_options.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 
 namespace palpate {

@@ -14,9 +14,7 @@
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/histogram.hpp"
-#include "palpate/servo/recent_forces.hpp"
 #include "palpate/servo/servo_state.hpp"
-#include "palpate/servo/step_queue.hpp"
 
 namespace palpate {
 
