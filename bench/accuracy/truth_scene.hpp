@@ -12,7 +12,7 @@ struct TruthCamera {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// The scene of evaluation.md: SimulatedTable, standing still, with the camera that sees it.
+/// The scene of table A: SimulatedTable, standing still, with the camera that sees it.
 struct TruthScene {
   std::array<Solid, kTableParts> solids;  ///< in the order of TablePart
   TruthCamera camera;

@@ -7,7 +7,7 @@
 namespace palpate {
 
 /// Friction in one step, as lengths of the spring between proxy and hand: what a force is, divided
-/// by K (algorithm.md section 6).
+/// by K (docs/method.md 4.1).
 struct FrictionLaw {
   double static_coefficient = 0;
   double dynamic_coefficient = 0;

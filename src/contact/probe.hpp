@@ -55,7 +55,7 @@ struct SurfacePoint {
 /// to speak of.
 [[nodiscard]] std::optional<double> first_order_distance(const Sample& sample) noexcept;
 
-/// Brings x onto the surface along the gradient (algorithm.md 2.3, newton): at most 11 samples. A
+/// Brings x onto the surface along the gradient (docs/method.md 3.2): at most 11 samples. A
 /// last step below 2e-4 R is taken without another sample: what it leaves is of the order of its
 /// square, about 4e-8 R, and the normal is that of the place before it.
 [[nodiscard]] std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x) noexcept;

@@ -33,14 +33,14 @@ struct Slide {
   double dissipated = 0;  ///< by friction, J
 };
 
-/// Moves the proxy from `start` on the surface to the place nearest to the hand (algorithm.md 2.3):
+/// Moves the proxy from `start` on the surface to the place nearest the hand (docs/method.md 3.3):
 /// sub-steps in the tangent plane, each brought back to the surface and accepted only if it comes
 /// nearer to the hand and the normal does not turn over; leaves the surface when the way to the
 /// hand is free.
 [[nodiscard]] Slide slide(Probe& probe, const SurfacePoint& start, const Eigen::Vector3d& hip,
                           bool sliding, const SlideOptions& options) noexcept;
 
-/// Has the surface moved over the proxy, or away from under it (algorithm.md 2.4)? `here`: the
+/// Has the surface moved over the proxy, or away from under it (docs/method.md 3.4)? `here`: the
 /// sample at the proxy; `normal`: of its last contact, zero if none; `changed`: the field's
 /// revision is another than in the last step.
 [[nodiscard]] bool surface_moved(const Probe& probe, const Sample& here,

@@ -138,7 +138,7 @@ void DepthFilter::reset() {
 
 namespace {
 
-// From recordings: nss_fast.md section 2. Structured light (the first Kinect, the Xtion) has a
+// From recordings: docs/method.md 6.2. Structured light (the first Kinect, the Xtion) has a
 // fixed pattern besides, which is why c stands above what differences of frames give.
 constexpr std::array<SensorProfile, 4> kProfiles{{
     {"kinect1", {{0.00039, 0, 0.00093}, 6}},

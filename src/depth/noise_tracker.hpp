@@ -25,7 +25,7 @@ struct DepthView {
   [[nodiscard]] bool valid(float z) const { return z >= nearest && z <= farthest; }
 };
 
-/// Follows a sensor's sigma(z) and c (nss_fast.md section 2) from frame to frame: the first frame
+/// Follows a sensor's sigma(z) and c (docs/method.md 6.2) from frame to frame: the first frame
 /// gives a start by what quadratic surfaces leave of its windows, differences of frames replace it
 /// where the scene stands still, and from then on every frame adds a bounded share. What they do
 /// not tell (too few pixels, all of one value) is taken from the prior. The model that is handed

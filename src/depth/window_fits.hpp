@@ -49,7 +49,7 @@ class FitRegion {
   std::vector<Ball> balls_;  // sensor frame
 };
 
-/// The noise-sized fit of nss_fast.md section 1: round each block the largest window in which the
+/// The noise-sized fit of docs/method.md 6.3: round each block the largest window in which the
 /// noise explains what a plane or a paraboloid leaves, beside the block where an edge is near.
 /// Several threads share the rows; results do not depend on how.
 class WindowFits {

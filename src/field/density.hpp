@@ -10,7 +10,7 @@
 namespace palpate {
 
 /// What each point counts, so that a sampled surface weighs about 1 however dense its points are
-/// (algorithm.md section 4):
+/// (docs/method.md 2.2):
 ///
 ///   S_i = sum_j w(|p_i - p_j| / R_j),  the point itself included
 ///   Sbar_i = sum_j w_ij S_j / sum_j w_ij

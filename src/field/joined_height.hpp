@@ -27,7 +27,7 @@ namespace palpate {
 /// each other, and below 0 in the plate between sheets that face away, which keeps its shape.
 [[nodiscard]] Value crease_closure(const FieldPlace& place) noexcept;
 
-/// Smooth maximum of two lengths over a width k, of R, that may vary: C1 (algorithm.md 1.4).
+/// Smooth maximum of two lengths over a width k, of R, that may vary: C1 (docs/method.md 1).
 [[nodiscard]] Value smooth_max(const Value& a, const Value& b, const Value& radius,
                                double width) noexcept;
 

@@ -1,4 +1,4 @@
-// Surfaces from normals. Notation as in docs/architecture.md: q_i = p_i - x, v_i = c_i w_i,
+// Surfaces from normals. Notation as in docs/method.md: q_i = p_i - x, v_i = c_i w_i,
 // V = sum v, A = sum v q / V, Nb = sum v n / V.
 #pragma once
 

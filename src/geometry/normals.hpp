@@ -16,7 +16,7 @@ struct Normals {
   /// undefined.
   std::vector<Eigen::Vector3f> normals;
 
-  /// 0-1: is there a surface that the normal belongs to? (algorithm.md section 1.5.) 0 for fewer
+  /// 0-1: is there a surface that the normal belongs to? (docs/method.md 5.5.) 0 for fewer
   /// than five points, for a line (middle / largest eigenvalue < 0.03, full from 0.07 on) and for a
   /// volume (smallest / middle > 0.6, full from 0.4 down). Ramps stand for the thresholds 0.05 and
   /// 0.5, so that noise on either side of one does not make the surface flicker.
@@ -48,11 +48,11 @@ struct SupportOptions {
   double finest_shape = std::numeric_limits<double>::infinity();  ///< likewise, m
 };
 
-/// m in R = m s: 2.5; 3 when the noise is above 0.15 s, 4 above 0.4 s (algorithm.md section 4).
+/// m in R = m s: 2.5; 3 when the noise is above 0.15 s, 4 above 0.4 s (docs/method.md 5.3).
 [[nodiscard]] double support_multiple(double noise, double spacing);
 
 /// The R at which noise tilts normals by theta and no more: sqrt(3.2 sigma_n delta / theta)
-/// (field_choice.md section 5), m.
+/// (docs/method.md 5.3), m.
 [[nodiscard]] double noise_radius(double noise, double footprint, double normal_error);
 
 /// R_i = max(m s_i, the noise's R, minimum) for each of `spacings` (smooth

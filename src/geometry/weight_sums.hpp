@@ -9,7 +9,7 @@
 
 namespace palpate::detail {
 
-/// S_i and Sbar_i of algorithm.md section 4, in sorted order.
+/// S_i and Sbar_i of docs/method.md 2.2, in sorted order.
 struct WeightSums {
   std::vector<float> own;     ///< S_i = sum_j w_ij, at least 1
   std::vector<float> around;  ///< Sbar_i = sum_j w_ij S_j / S_i

@@ -100,7 +100,7 @@ std::vector<float> NoiseMap::at(std::span<const Eigen::Vector3f> points) const {
 
 namespace {
 
-// Noise tilts normals by 3.2 sigma_n delta / R^2 (field_choice.md section 5).
+// Noise tilts normals by 3.2 sigma_n delta / R^2 (docs/method.md 5.3).
 constexpr double kNoiseToTilt = 3.2;
 
 // No R is above this many floors (2.5 spacings each): more smoothing would cost shape and time, and

@@ -44,7 +44,7 @@ class NoiseMap {
 
 /// Makes support radii smaller again, by a quarter at most, where the points within them bend away
 /// from a plane by more than noise explains: at edges, which a large R rounds off by about 0.35 R
-/// (field_choice.md section 5), a little noise is the smaller evil. Part of noisy_radii().
+/// (docs/method.md 5.3), a little noise is the smaller evil. Part of noisy_radii().
 void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
                      std::vector<float>& radii);
 

@@ -1,4 +1,4 @@
-// The noise of real sensors' frames, beside what nss_fast.md section 2 measured of such sensors,
+// The noise of real sensors' frames, beside what was measured of such sensors before,
 // and what the filters make of it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // What the guard's links are for: walls on simulated devices against theory and against themselves
-// without a link (algorithm.md section 8).
+// without a link (docs/method.md 8).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -12,7 +12,7 @@ namespace palpate {
 ///
 /// A spring of stiffness K stretched by d holds K d^2 / 2. When K rises by dK during contact,
 /// dK d^2 / 2 is created from nothing and the hand gets it back on its way out: a ramp of 30 ms was
-/// measured to turn a rebound of 1.05 into 1.49 (algorithm.md section 8). So a rise is paid for out
+/// measured to turn a rebound of 1.05 into 1.49 (docs/method.md 3.5). So a rise is paid for out
 /// of a tank, and only what a fall of K or sliding friction took away goes into it. A fall costs
 /// nothing; it takes kTime only to spare the hand a step of force. Rises take that time as well.
 ///
@@ -115,11 +115,11 @@ struct SurfacePoint;
 
 /// How the proxy follows the hand along the surface.
 enum class ProxyMethod {
-  converged,    ///< to the closest point in every step (algorithm.md section 2)
+  converged,    ///< to the closest point in every step (docs/method.md 3.3)
   single_step,  ///< one tangent-plane step a tick (Salisbury and Tarr 1997; the paper)
 };
 
-/// A cone on the proxy, with a viscous term that is implicit in time (algorithm.md section 6).
+/// A cone on the proxy, with a viscous term that is implicit in time (docs/method.md 4.1).
 struct Friction {
   double static_coefficient = 0;   ///< mu_s; at least mu_d
   double dynamic_coefficient = 0;  ///< mu_d
@@ -128,7 +128,7 @@ struct Friction {
 
 /// A smooth relief carved into the surface, 0 to 2 amplitudes deep: the sum of three sinusoids in
 /// world coordinates along oblique, mutually orthogonal directions. Conservative, because it
-/// changes the surface and not the force (algorithm.md section 6). Carved and never raised, so that
+/// changes the surface and not the force (docs/method.md 4.2). Carved and never raised, so that
 /// a ball that is free of the smooth surface is free of the relief.
 struct Texture {
   double amplitude = 0;      ///< m; smooth while amplitude <= wavelength^2 / (40 depth of the hand)
@@ -146,7 +146,7 @@ struct ProxyOptions {
 };
 
 /// The 3-DOF god-object: follows the hand through free space and stays on the surface when the
-/// hand goes in (algorithm.md section 2; paper section III, after Salisbury and Tarr).
+/// hand goes in (docs/method.md 3; paper section III, after Salisbury and Tarr).
 ///
 /// One proxy belongs to one thread. step(), change() and reset() never allocate, lock, throw or
 /// call the system. Non-finite input latches a fault: zero force until reset().

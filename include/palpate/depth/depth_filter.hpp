@@ -30,7 +30,7 @@ struct NoiseModel {
 /// What is known of a kind of sensor before its first frame.
 struct SensorProfile {
   std::string_view name;  ///< such as "xtion"
-  NoiseModel noise;       ///< measured on recordings (nss_fast.md section 2)
+  NoiseModel noise;       ///< measured on recordings (docs/method.md 6.2)
 };
 
 /// The sensors that there are profiles of: kinect1, xtion, realsense, tof.
@@ -81,8 +81,8 @@ struct DepthFilterOptions {
   double farthest = 20;
 };
 
-/// From raw depth to points that are as good as the noise allows: the noise-sized fit of
-/// nss_fast.md section 1, then the temporal filter of its section 3. One thread uses it. Once it
+/// From raw depth to points that are as good as the noise allows: the noise-sized fit, then
+/// the filter over time (docs/method.md 6.3 to 6.6). One thread uses it. Once it
 /// has seen frames of one size, it allocates nothing.
 class DepthFilter {
  public:

@@ -34,7 +34,7 @@ struct KernelValue {
 
 /// The level at which the density-normalised weight sum of a plane stands at a height of `eta`
 /// support radii, 1 at 0 and 0 from 1 on: the metaball's threshold for an offset of eta R
-/// (docs/architecture.md, Words).
+/// (docs/method.md 2.1).
 [[nodiscard]] double plane_threshold(Kernel kernel, double eta) noexcept;
 
 /// d plane_threshold / d eta.
@@ -45,7 +45,7 @@ struct KernelValue {
 
 /// The implicit surfaces that points can be turned into.
 enum class FieldKind {
-  balanced,  ///< mean of point-set surface and IMLS; our default (field_choice.md section 2)
+  balanced,  ///< mean of point-set surface and IMLS; our default (docs/method.md 2.4)
   pointset,  ///< the paper's point-set surface, eqs. (5)-(7)
   metaball,  ///< the paper's metaball surface, eq. (3), on density-normalised weights
 };

@@ -18,7 +18,7 @@ namespace palpate {
 [[nodiscard]] PointCloud clip(const PointCloud& cloud, const Box& box);
 
 /// 1 for each point, in sorted order, that noise has put where no surface is: fewer than three
-/// others within 2 R_i and 2 R_j of each other, or S_i < 0.35 Sbar_i (algorithm.md section 4; the
+/// others within 2 R_i and 2 R_j of each other, or S_i < 0.35 Sbar_i (docs/method.md 5.4; the
 /// sums of density_weights(), with Wyvill's kernel). radii: the R_i, m.
 /// @throws Error when there are not as many radii as points, or one is not positive and finite.
 [[nodiscard]] std::vector<std::uint8_t> speckle_mask(const CellGrid& grid,

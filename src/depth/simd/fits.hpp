@@ -1,4 +1,4 @@
-// The noise-sized fit of nss_fast.md section 1: the code that is compiled once for each level of
+// The noise-sized fit of docs/method.md 6.3: the code that is compiled once for each level of
 // the instruction set. Plain pointers and numbers alone cross this border.
 #pragma once
 

@@ -16,7 +16,7 @@
 
 namespace palpate {
 
-/// The policies that weigh whole clouds: replace, average and crossfade (algorithm.md section 5.2).
+/// The policies that weigh whole clouds: replace, average and crossfade (docs/method.md 7.2).
 /// Clouds are indexed once and shared by the snapshots that they count in.
 class LayerHistory {
  public:
@@ -42,8 +42,8 @@ class LayerHistory {
 };
 
 /// The policy for clouds of a scene that stands still: a running mean in each voxel, over about
-/// eight clouds, whose points go in straight lines from one mean to the next (algorithm.md section
-/// 5.2). A voxel that no cloud fills any more fades away.
+/// eight clouds, whose points go in straight lines from one mean to the next
+/// (docs/method.md 7.2). A voxel that no cloud fills any more fades away.
 class Fusion {
  public:
   explicit Fusion(const PrepareOptions& prepare) : prepare_(prepare) {}
