@@ -135,7 +135,7 @@ Value capped(const ImplicitSurface& surface, const FieldPlace& place, const Supp
 
 }  // namespace
 
-ImplicitSurface::ImplicitSurface(const FieldOptions& given) : sums(&simd::best()) {
+ImplicitSurface::ImplicitSurface(const FieldOptions& given) : sums(&simd::best_sums()) {
   check(given);
   change(given);
 }
