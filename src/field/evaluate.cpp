@@ -133,6 +133,13 @@ Value capped(const ImplicitSurface& surface, const FieldPlace& place, const Supp
           trust.f * cap.grad + (1 - trust.f) * blob.grad + (cap.f - blob.f) * trust.grad};
 }
 
+// The weight of points that have a normal.
+double with_normals(const simd::Sums& sums, int labels) noexcept {
+  double v = 0;
+  for (int k = 0; k < std::min(labels, simd::kHeights); ++k) v += sums.label[k].v;
+  return v;
+}
+
 }  // namespace
 
 ImplicitSurface::ImplicitSurface(const FieldOptions& given) : sums(&simd::best_sums()) {
@@ -168,10 +175,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   Sample sample;
   sample.support = support.w.f;
   sample.radius = support.radius.f;
-  double heights = 0;
-  for (int k = 0; !metaball && k < std::min(columns.labels, simd::kHeights); ++k) {
-    heights += sums.label[k].v;
-  }
+  const double heights = metaball ? 0 : with_normals(sums, columns.labels);
   const FieldPlace place{.functions = surface.sums,
                          .columns = &columns,
                          .kernel = options.kernel,
