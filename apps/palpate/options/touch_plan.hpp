@@ -10,7 +10,7 @@
 #include "palpate/contact/proxy.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/servo/guard.hpp"
-#include "palpate/servo/realtime.hpp"
+#include "palpate/servo/servo_thread.hpp"
 
 namespace CLI {
 class App;

@@ -10,7 +10,7 @@
 #include "apps/palpate/paper/paper_frames.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/voxel_grid.hpp"
+#include "palpate/geometry/filters.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::app {

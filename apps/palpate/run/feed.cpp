@@ -1,6 +1,6 @@
 #include "apps/palpate/run/feed.hpp"
 
-#include "palpate/base/thread_clock.hpp"
+#include "palpate/base/clock.hpp"
 
 namespace palpate::app {
 

@@ -9,7 +9,7 @@
 #include "apps/palpate/run/exploration_plan.hpp"
 #include "apps/palpate/run/touch_statistics.hpp"
 #include "apps/palpate/sources/touched.hpp"
-#include "palpate/base/waiting_clock.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/guided_hand.hpp"
 #include "palpate/device/remote.hpp"

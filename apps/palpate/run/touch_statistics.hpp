@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "palpate/contact/contact.hpp"
+#include "palpate/contact/proxy.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"

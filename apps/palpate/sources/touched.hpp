@@ -7,11 +7,11 @@
 #include "apps/palpate/options/source_options.hpp"
 #include "apps/palpate/sources/cloud_facts.hpp"
 #include "palpate/base/clock.hpp"
-#include "palpate/depth/camera_model.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/depth_camera.hpp"
-#include "palpate/sensor/stream_state.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate::app {
 

@@ -6,8 +6,8 @@
 
 #include "apps/palpate/cli/interruption.hpp"
 #include "apps/palpate/run/feed.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/thread_clock.hpp"
 #include "palpate/sensor/simulated_stream.hpp"
 
 namespace palpate::app {

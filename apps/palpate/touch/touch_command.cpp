@@ -15,7 +15,7 @@
 #include "apps/palpate/touch/live_run.hpp"
 #include "apps/palpate/touch/simulated_run.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/servo/realtime.hpp"
+#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {
 
