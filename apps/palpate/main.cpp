@@ -2,6 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <functional>
+#include <memory>
+#include <vector>
 
 #include "apps/palpate/align/align_command.hpp"
 #include "apps/palpate/cli/errors.hpp"
@@ -29,48 +32,79 @@ int complain(const std::string& what, int code) {
   return code;
 }
 
+struct Command {
+  CLI::App* app;
+  std::function<int()> run;
+};
+
+// Adds a command; its options live as long as it.
+template <class Options>
+Command command(CLI::App& program, const char* name, const char* help,
+                void (*add)(CLI::App&, Options&),
+                const std::function<int(const CLI::App&, const Options&)>& run) {
+  CLI::App* const app = program.add_subcommand(name, help);
+  const auto options = std::make_shared<Options>();
+  add(*app, *options);
+  return {app, [=] { return run(*app, *options); }};
+}
+
+// A command that succeeds unless it throws.
+template <class Options>
+Command command(CLI::App& program, const char* name, const char* help,
+                void (*add)(CLI::App&, Options&), void (*run)(const Options&)) {
+  return command<Options>(program, name, help, add, [run](const CLI::App&, const Options& options) {
+    run(options);
+    return kSuccess;
+  });
+}
+
+// The same of one that asks what it was given.
+template <class Options>
+Command command(CLI::App& program, const char* name, const char* help,
+                void (*add)(CLI::App&, Options&), void (*run)(const CLI::App&, const Options&)) {
+  return command<Options>(program, name, help, add,
+                          [run](const CLI::App& app, const Options& options) {
+                            run(app, options);
+                            return kSuccess;
+                          });
+}
+
+void touch_as_told(const CLI::App& app, const TouchChoices& choices) {
+  touch(plan_touch(app, choices));
+}
+
+std::vector<Command> add_commands(CLI::App& p) {
+  return {
+      command(p, "touch", "Touch clouds and what cameras see, and report the forces",
+              add_touch_command, touch_as_told),
+      command(p, "align", "Find the poses of cameras and clouds from what they see",
+              add_align_options, align_sources),
+      command(p, "info", "Say what is in a cloud or what a camera delivers", add_info_options,
+              info),
+      command(p, "cameras", "List cameras, and what is missing for others", add_cameras_options,
+              cameras),
+      command<DoctorOptions>(p, "doctor",
+                             "Say what keeps devices from working, or from being in time",
+                             add_doctor_options,
+                             [](const CLI::App&, const auto& options) { return examine(options); }),
+      command(p, "devices", "List haptic devices, and what is missing for others",
+              add_devices_options, devices),
+      command(p, "paper", "Repeat the experiments of Leeper, Chan and Salisbury 2012",
+              add_paper_options, paper),
+      command(p, "demo", "Show a made-up scene on a page, to be touched with a mouse",
+              add_demo_options, demo),
+      command(p, "zwidth", "Map how stiff a surface a device can hold, beside theory",
+              add_zwidth_options, zwidth),
+  };
+}
+
 int run(int argc, char** argv) {
   CLI::App program(kAbout, "palpate");
   program.set_version_flag("--version", fmt::format("palpate {}", version()));
   program.require_subcommand(0, 1);
   program.get_formatter()->column_width(34);
   program.footer("'palpate COMMAND --help' tells more, with examples.");
-  TouchChoices touch_choices;
-  CLI::App* touch_command =
-      program.add_subcommand("touch", "Touch clouds and what cameras see, and report the forces");
-  add_touch_command(*touch_command, touch_choices);
-  AlignOptions align_options;
-  CLI::App* align_command =
-      program.add_subcommand("align", "Find the poses of cameras and clouds from what they see");
-  add_align_options(*align_command, align_options);
-  InfoOptions info_options;
-  CLI::App* info_command =
-      program.add_subcommand("info", "Say what is in a cloud or what a camera delivers");
-  add_info_options(*info_command, info_options);
-  CamerasOptions cameras_options;
-  CLI::App* cameras_command =
-      program.add_subcommand("cameras", "List cameras, and what is missing for others");
-  add_cameras_options(*cameras_command, cameras_options);
-  DoctorOptions doctor_options;
-  CLI::App* doctor_app = program.add_subcommand(
-      "doctor", "Say what keeps devices from working, or from being in time");
-  add_doctor_options(*doctor_app, doctor_options);
-  DevicesOptions devices_options;
-  CLI::App* devices_command =
-      program.add_subcommand("devices", "List haptic devices, and what is missing for others");
-  add_devices_options(*devices_command, devices_options);
-  PaperCommand paper_command;
-  CLI::App* paper_app =
-      program.add_subcommand("paper", "Repeat the experiments of Leeper, Chan and Salisbury 2012");
-  add_paper_options(*paper_app, paper_command);
-  DemoOptions demo_options;
-  CLI::App* demo_app =
-      program.add_subcommand("demo", "Show a made-up scene on a page, to be touched with a mouse");
-  add_demo_options(*demo_app, demo_options);
-  ZWidthChoices zwidth_options;
-  CLI::App* zwidth_app =
-      program.add_subcommand("zwidth", "Map how stiff a surface a device can hold, beside theory");
-  add_zwidth_options(*zwidth_app, zwidth_options);
+  const std::vector<Command> commands = add_commands(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version
@@ -80,22 +114,12 @@ int run(int argc, char** argv) {
                                 error.what(), hint(program)),
                     kUsage);
   }
-  if (program.get_subcommands().empty()) {
-    throw UsageError(
-        "a command is missing: touch, align, info, cameras, devices, doctor, paper, demo or "
-        "zwidth; "
-        "'palpate --help' tells more");
+  for (const Command& each : commands) {
+    if (each.app->parsed()) return each.run();
   }
-  if (touch_command->parsed()) touch(plan_touch(*touch_command, touch_choices));
-  if (align_command->parsed()) align_sources(*align_command, align_options);
-  if (info_command->parsed()) info(info_options);
-  if (cameras_command->parsed()) cameras(cameras_options);
-  if (doctor_app->parsed()) return examine(doctor_options);
-  if (devices_command->parsed()) devices(devices_options);
-  if (paper_app->parsed()) paper(paper_command);
-  if (demo_app->parsed()) demo(*demo_app, demo_options);
-  if (zwidth_app->parsed()) zwidth(zwidth_options);
-  return kSuccess;
+  throw UsageError(
+      "a command is missing: touch, align, info, cameras, devices, doctor, paper, demo or zwidth; "
+      "'palpate --help' tells more");
 }
 
 }  // namespace

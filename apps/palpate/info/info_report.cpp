@@ -132,6 +132,30 @@ void look_at_depths(const DepthFrame& frame, LiveFacts& facts) {
   facts.farthest = quantile(depths, 0.99);
 }
 
+Json json_of(const LiveFacts& facts) {
+  const Pinhole& p = facts.pinhole;
+  return {
+      {"name", facts.argument.name},
+      {"camera", facts.argument.path},
+      {"width", facts.width},
+      {"height", facts.height},
+      {"intrinsics", {p.fx, p.fy, p.cx, p.cy}},
+      {"distorted", facts.distorted},
+      {"posed", facts.posed},
+      {"frames_unposed", facts.unposed},
+      {"rate_Hz", facts.rate},
+      {"frames", facts.frames},
+      {"frames_repeated", facts.repeated},
+      {"failures", facts.failures},
+      {"valid_share", facts.valid},
+      {"depth_m",
+       {{"hundredth", facts.nearest}, {"median", facts.depth}, {"last_hundredth", facts.farthest}}},
+      {"noise",
+       {{"coefficients", facts.noise.coefficients},
+        {"correlation", facts.noise.correlation},
+        {"at_median_m", facts.noise.sigma(facts.depth)}}}};
+}
+
 }  // namespace
 
 Report report_of(const InfoReport& info) {
@@ -230,26 +254,7 @@ Report report_of(const LiveFacts& facts) {
                           length(facts.nearest), length(facts.farthest), length(facts.depth)));
   report.line("noise", fmt::format("{} a pixel at the median; --noise {:.4g},{:.4g},{:.4g},{:.3g}",
                                    length(noise), c[0], c[1], c[2], facts.noise.correlation));
-  report.data = {
-      {"name", facts.argument.name},
-      {"camera", facts.argument.path},
-      {"width", facts.width},
-      {"height", facts.height},
-      {"intrinsics", {p.fx, p.fy, p.cx, p.cy}},
-      {"distorted", facts.distorted},
-      {"posed", facts.posed},
-      {"frames_unposed", facts.unposed},
-      {"rate_Hz", facts.rate},
-      {"frames", facts.frames},
-      {"frames_repeated", facts.repeated},
-      {"failures", facts.failures},
-      {"valid_share", facts.valid},
-      {"depth_m",
-       {{"hundredth", facts.nearest}, {"median", facts.depth}, {"last_hundredth", facts.farthest}}},
-      {"noise",
-       {{"coefficients", facts.noise.coefficients},
-        {"correlation", facts.noise.correlation},
-        {"at_median_m", noise}}}};
+  report.data = json_of(facts);
   return report;
 }
 

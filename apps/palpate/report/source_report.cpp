@@ -86,6 +86,21 @@ Report file_report(const TouchedSource& source) {
   return report;
 }
 
+void add_times(Report& report, const TouchedSource& cloud) {
+  const PrepareReport& r = cloud.prepared;
+  report.line("prepared",
+              fmt::format("{} after {} of reading: filter {}, index {}, spacing {}, normals {}, "
+                          "weights {}",
+                          duration(cloud.prepare_seconds), duration(cloud.read_seconds),
+                          duration(r.seconds_filter), duration(r.seconds_index),
+                          duration(r.seconds_spacing), duration(r.seconds_normals),
+                          duration(r.seconds_weights)));
+  report.data["seconds"] = {{"read", cloud.read_seconds},   {"prepare", cloud.prepare_seconds},
+                            {"filter", r.seconds_filter},   {"index", r.seconds_index},
+                            {"spacing", r.seconds_spacing}, {"normals", r.seconds_normals},
+                            {"weights", r.seconds_weights}};
+}
+
 Report cloud_report(const TouchedSource& cloud) {
   const PrepareReport& r = cloud.prepared;
   Report report = file_report(cloud);
@@ -116,17 +131,7 @@ Report cloud_report(const TouchedSource& cloud) {
        {"radius_m",
         {{"median", r.radius}, {"smallest", r.radius_smallest}, {"largest", r.radius_largest}}}});
   add_trust(report, r);
-  report.line("prepared",
-              fmt::format("{} after {} of reading: filter {}, index {}, spacing {}, normals {}, "
-                          "weights {}",
-                          duration(cloud.prepare_seconds), duration(cloud.read_seconds),
-                          duration(r.seconds_filter), duration(r.seconds_index),
-                          duration(r.seconds_spacing), duration(r.seconds_normals),
-                          duration(r.seconds_weights)));
-  report.data["seconds"] = {{"read", cloud.read_seconds},   {"prepare", cloud.prepare_seconds},
-                            {"filter", r.seconds_filter},   {"index", r.seconds_index},
-                            {"spacing", r.seconds_spacing}, {"normals", r.seconds_normals},
-                            {"weights", r.seconds_weights}};
+  add_times(report, cloud);
   return report;
 }
 

@@ -72,11 +72,12 @@ void add_demo_options(CLI::App& command, DemoOptions& o) {
   add_page_options(table, plan.page);
 }
 
-void demo(const CLI::App& command, DemoOptions options) {
-  options.touch.sources = sources_of(options.scene);
-  options.touch.plan.page.wanted = true;
-  options.touch.plan.page.open_browser = !options.headless;
-  touch(plan_touch(command, options.touch));
+void demo(const CLI::App& command, const DemoOptions& options) {
+  TouchChoices choices = options.touch;
+  choices.sources = sources_of(options.scene);
+  choices.plan.page.wanted = true;
+  choices.plan.page.open_browser = !options.headless;
+  touch(plan_touch(command, choices));
 }
 
 }  // namespace palpate::app

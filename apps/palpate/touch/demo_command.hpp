@@ -17,6 +17,6 @@ void add_demo_options(CLI::App& command, DemoOptions& options);
 /// Shows a scene that palpate makes itself on its page, explored by simulated hands, one unless
 /// told otherwise, until somebody takes the tool. `command` is what was parsed into `options`.
 /// @throws Error as touch() does.
-void demo(const CLI::App& command, DemoOptions options);
+void demo(const CLI::App& command, const DemoOptions& options);
 
 }  // namespace palpate::app
