@@ -14,7 +14,7 @@
 #include "apps/palpate/cli/words.hpp"
 #include "palpate/base/driver_info.hpp"
 #include "palpate/device/open_device.hpp"
-#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/open_camera.hpp"
 
 namespace palpate::app {
 

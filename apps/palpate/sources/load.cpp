@@ -10,7 +10,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/io/read_depth.hpp"
 #include "palpate/io/synthetic.hpp"
-#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/open_camera.hpp"
 
 namespace palpate::app {
 

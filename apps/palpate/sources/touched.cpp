@@ -12,7 +12,7 @@
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
-#include "palpate/depth/organised.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/spacing.hpp"
 
 namespace palpate::app {
