@@ -10,11 +10,9 @@
 #include <sstream>
 
 #include "apps/palpate/align/align_picture.hpp"
-#include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/sources/touched.hpp"
 #include "palpate/align/align.hpp"
 

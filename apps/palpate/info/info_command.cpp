@@ -5,16 +5,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/numbered_path.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/info/density_map.hpp"
 #include "apps/palpate/info/info_report.hpp"
 #include "apps/palpate/options/option_table.hpp"
-#include "apps/palpate/plot/picture_script.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/scene/source.hpp"

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "apps/palpate/cli/quantile.hpp"
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/source_report.hpp"
 #include "palpate/depth/depth_filter.hpp"
 

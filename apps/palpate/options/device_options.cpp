@@ -9,7 +9,6 @@
 #include <set>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/suggestion.hpp"
 #include "apps/palpate/options/option_table.hpp"
 #include "palpate/device/open_device.hpp"
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/suggestion.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {

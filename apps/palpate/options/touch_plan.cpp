@@ -5,9 +5,8 @@
 
 #include <algorithm>
 
-#include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/numbered_path.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/options/setup_file.hpp"
 #include "apps/palpate/options/source_choice.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"

@@ -2,13 +2,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/option_checks.hpp"
-#include "apps/palpate/cli/waiting.hpp"
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/paper/paper_frames.hpp"
 #include "apps/palpate/paper/paper_report.hpp"
-#include "apps/palpate/plot/picture_script.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/sources/load.hpp"
 

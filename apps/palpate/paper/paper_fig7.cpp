@@ -8,7 +8,7 @@
 #include <deque>
 #include <memory>
 
-#include "apps/palpate/cli/progress.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/paper/paper_frames.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"

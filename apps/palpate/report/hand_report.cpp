@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "apps/palpate/cli/names.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 
 namespace palpate::app {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/palpate/cli/numbered_path.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 
 namespace palpate::app {
 

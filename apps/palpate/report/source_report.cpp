@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "apps/palpate/cli/names.hpp"
-#include "apps/palpate/cli/quantile.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/source_choice.hpp"
 
 namespace palpate::app {

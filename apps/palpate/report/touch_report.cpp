@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "apps/palpate/cli/names.hpp"
-#include "apps/palpate/cli/numbered_path.hpp"
-#include "apps/palpate/cli/words.hpp"
-#include "apps/palpate/plot/picture_script.hpp"
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/report/source_report.hpp"
 
 namespace palpate::app {

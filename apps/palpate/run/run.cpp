@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/progress.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/device/open_device.hpp"
-#include "palpate/device/scripted.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "palpate/servo/servo.hpp"

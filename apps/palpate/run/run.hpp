@@ -11,9 +11,8 @@
 #include "apps/palpate/sources/touched.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/device/guided_hand.hpp"
 #include "palpate/device/remote.hpp"
-#include "palpate/device/remote_hand.hpp"
+#include "palpate/device/teleoperated_hand.hpp"
 #include "palpate/device/workspace.hpp"
 
 namespace palpate::app {

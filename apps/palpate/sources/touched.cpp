@@ -7,8 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"

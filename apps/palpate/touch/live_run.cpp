@@ -9,11 +9,11 @@
 #include <thread>
 #include <utility>
 
-#include "apps/palpate/cli/interruption.hpp"
+#include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/run/feed.hpp"
 #include "apps/palpate/touch/live_status.hpp"
 #include "apps/palpate/view/view.hpp"
-#include "palpate/device/paced.hpp"
+#include "palpate/device/simulated.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/servo/servo_thread.hpp"
 

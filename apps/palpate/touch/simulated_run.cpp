@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "apps/palpate/cli/interruption.hpp"
+#include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/run/feed.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"

@@ -8,7 +8,7 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/progress.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/run/view_settings.hpp"

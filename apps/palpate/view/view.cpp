@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/report/log.hpp"
 #include "apps/palpate/run/view_settings.hpp"
-#include "apps/palpate/view/browser.hpp"
 #include "apps/palpate/view/page_hold.hpp"
 #include "palpate/viewer/viewer.hpp"
 

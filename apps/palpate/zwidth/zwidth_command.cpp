@@ -5,12 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/progress.hpp"
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/plot/picture_script.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/zwidth/zwidth_report.hpp"
 
