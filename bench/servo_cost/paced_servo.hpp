@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "palpate/base/waiting_clock.hpp"
-#include "palpate/device/paced.hpp"
-#include "palpate/device/scripted.hpp"
+#include "palpate/device/simulated.hpp"
 #include "palpate/geometry/trajectory.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/histogram.hpp"
