@@ -11,7 +11,7 @@
 #include "clouds.hpp"
 #include "field/evaluate.hpp"
 #include "field/patch.hpp"
-#include "palpate/field/kernel.hpp"
+#include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "palpate/geometry/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 
 // How a hand's target moves between the positions that are given: along a trajectory, or after
 // commands that come one by one. One thread uses each; real-time but for construction.

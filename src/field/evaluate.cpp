@@ -8,7 +8,7 @@
 #include "field/oriented.hpp"
 #include "field/smooth_step.hpp"
 
-// Notation as in docs/architecture.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
+// Notation as in docs/method.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
 // A = sum v q / sum v, Nb = sum v n / sum v, W the united support, R(x) = sum w R / sum w.
 
 namespace palpate {
@@ -117,7 +117,7 @@ Sample nothing_here(const Patch& patch) noexcept {
   return sample;
 }
 
-/// Cap, tool and blend around the normals' surface (algorithm.md 1.4, 1.5).
+/// Cap, tool and blend around the normals' surface (docs/method.md 2.5).
 Value capped(const ImplicitSurface& surface, const FieldPlace& place, const Support& support,
              const Value& height) noexcept {
   constexpr double kAtRims = 0.1;  // of R

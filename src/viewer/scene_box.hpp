@@ -1,6 +1,6 @@
 #pragma once
 
-#include "palpate/geometry/box.hpp"
+#include "palpate/geometry/shapes.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::viewer {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "palpate/device/device.hpp"
-#include "palpate/sensor/stream_state.hpp"
+#include "palpate/sensor/stream.hpp"
 #include "palpate/viewer/setting.hpp"
 #include "palpate/viewer/viewer_options.hpp"
 #include "viewer/notice.hpp"

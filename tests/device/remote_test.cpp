@@ -249,7 +249,8 @@ TEST_F(RemoteDeviceTest, RefusesPathsThatAreTakenOrNoSockets) {
   const RemoteDevice device(clock_, options());
   EXPECT_NE(complaint(clock_, options()).find("another program"), std::string::npos);
   std::ofstream(folder_ / "letter") << "do not lose me";
-  EXPECT_NE(complaint(clock_, {.path = folder_ / "letter"}).find("not a socket"), std::string::npos);
+  EXPECT_NE(complaint(clock_, {.path = folder_ / "letter"}).find("not a socket"),
+            std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "letter"));
   EXPECT_NE(complaint(clock_, {.path = folder_ / "absent/device"}).find("folder"),
             std::string::npos);

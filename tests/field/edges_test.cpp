@@ -1,12 +1,11 @@
 // Edges and creases of points that know what they meet, without a proxy.
-#include "field/edges.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "field/edged_shapes.hpp"
 #include "field/evaluate.hpp"
+#include "field/joined_height.hpp"
 #include "support/known_edges.hpp"
 
 namespace palpate::test {

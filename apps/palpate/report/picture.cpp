@@ -8,7 +8,7 @@
 #include "apps/palpate/plot/picture_script.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/box.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate::app {
 

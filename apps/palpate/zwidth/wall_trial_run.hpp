@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "palpate/servo/wall_trial.hpp"
+#include "palpate/servo/z_width.hpp"
 
 namespace palpate::app {
 

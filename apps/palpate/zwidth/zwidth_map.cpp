@@ -5,7 +5,6 @@
 
 #include "apps/palpate/cli/suggestion.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/servo/passive_stiffness.hpp"
 #include "palpate/servo/z_width.hpp"
 
 namespace palpate::app {

@@ -9,7 +9,7 @@
 
 #include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/geometry/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 
 // Devices without hardware: SimulatedDevice has mass and is held by a hand, ScriptedDevice plays a
 // trajectory. Both run in simulated time; PacedDevice runs them in real time.
@@ -40,7 +40,7 @@ class TargetSource {
 };
 
 /// A hand as a spring and a damper that pull the device towards the hand's target. The defaults are
-/// a light grip.
+/// a light grip (docs/method.md 8.1).
 struct SimulatedHand {
   double stiffness = 300;    ///< N/m; 0 and no damping: nobody holds the device
   double damping = 3;        ///< N s/m

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "palpate/base/waiting_clock.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
 
 namespace palpate {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/sensor/stream_state.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate {
 
