@@ -17,10 +17,10 @@ using test::FakeHardware;
 using test::MovedClock;
 using Fault = FakeHardware::Fault;
 
-constexpr double kServoStep = 1e-3;  // of the servo, s
-constexpr double kTurn = 0.5e-3;     // of the device's thread, s
+constexpr double kServoStep = 1e-3;         // of the servo, s
+constexpr double kExchangePeriod = 0.5e-3;  // of the device's thread, s
 constexpr double kReaction = 6e-3;   // within which the hardware has to be without a force, s
-const Vector3d kLinkForce(0, 0, 2);  // N
+const Vector3d kPushForce(0, 0, 2);  // N
 
 // A servo that pushes as soon as the hand is known, and a device's thread, in simulated time.
 class ThreadedDeviceTest : public testing::Test {
@@ -32,7 +32,7 @@ class ThreadedDeviceTest : public testing::Test {
 
   // Half a servo's step; the servo steps at every second one.
   void advance() {
-    const double next = clock_.now() + kTurn;
+    const double next = clock_.now() + kExchangePeriod;
     device_->service();
     if (servo_runs_ && ++half_ % 2 == 0) step();
     clock_.wait_until(next);
@@ -41,16 +41,15 @@ class ThreadedDeviceTest : public testing::Test {
   }
   void step() {
     state_ = device_->read();
-    device_->write(state_.status == DeviceStatus::ok ? kLinkForce : Vector3d::Zero().eval());
+    device_->write(state_.status == DeviceStatus::ok ? kPushForce : Vector3d::Zero().eval());
   }
   void run(double duration) {
     for (const double end = clock_.now() + duration; clock_.now() < end - 1e-9;) advance();
   }
-  // Runs until the force is there.
   void push() {
     run(0.02);
     ASSERT_EQ(state_.status, DeviceStatus::ok);
-    ASSERT_EQ(hardware_.force(), kLinkForce);
+    ASSERT_EQ(hardware_.force(), kPushForce);
     reasons_.clear();
   }
   // When the last force was there, from `start` on, s.
@@ -72,7 +71,7 @@ class ThreadedDeviceTest : public testing::Test {
     hardware_.set(Fault::none);
     run(1.1);
     EXPECT_EQ(state_.status, DeviceStatus::ok);
-    EXPECT_EQ(hardware_.force(), kLinkForce);
+    EXPECT_EQ(hardware_.force(), kPushForce);
     EXPECT_EQ(device_->reason(), "");
   }
 
@@ -107,7 +106,7 @@ TEST_F(ThreadedDeviceTest, TellsTheFirstPlaceAsSilentSoThatForcesBeginWhereTheHa
   const DeviceState first = device_->read();
   EXPECT_EQ(first.status, DeviceStatus::silent);
   EXPECT_EQ(first.position.x(), 0.03);
-  device_->write(kLinkForce);
+  device_->write(kPushForce);
   device_->service();
   EXPECT_EQ(hardware_.force().norm(), 0) << "nobody knew where the hand was";
   EXPECT_EQ(device_->read().status, DeviceStatus::ok);
@@ -158,8 +157,8 @@ TEST_F(ThreadedDeviceTest, PlaceThatIsNoNumberTakesTheForceAwayInTwoSteps) {
   }
 }
 
-// While a driver's call does not return nobody can speak to the hardware: its own watchdog ends the
-// force. The servo goes on meanwhile, and learns of it.
+// While a driver's call does not return, the hardware's own watchdog ends the force; the servo goes
+// on meanwhile, and learns of it.
 TEST_F(ThreadedDeviceTest, BlocksForAWhile) {
   open();
   push();
@@ -171,7 +170,7 @@ TEST_F(ThreadedDeviceTest, BlocksForAWhile) {
   EXPECT_EQ(hardware_.force().norm(), 0) << "its watchdog";
   EXPECT_EQ(hardware_.closed(), 0) << "it did answer";
   run(0.02);
-  EXPECT_EQ(hardware_.force(), kLinkForce);
+  EXPECT_EQ(hardware_.force(), kPushForce);
 }
 
 TEST_F(ThreadedDeviceTest, SilenceIsToldAndEndsSoftlyForWhoeverComputesForces) {
@@ -203,7 +202,7 @@ TEST_F(ThreadedDeviceTest, StuckServoIsNotFelt) {
   EXPECT_LE(pushed_for(start), kReaction);
   servo_runs_ = true;
   run(0.01);
-  EXPECT_EQ(hardware_.force(), kLinkForce);
+  EXPECT_EQ(hardware_.force(), kPushForce);
 }
 
 TEST_F(ThreadedDeviceTest, ForceOfBeforeALossIsNotAppliedAfterIt) {
@@ -215,7 +214,7 @@ TEST_F(ThreadedDeviceTest, ForceOfBeforeALossIsNotAppliedAfterIt) {
   hardware_.set(Fault::none);
   clock_.wait_until(clock_.now() + 1);
   device_->service();  // opened again
-  device_->write(kLinkForce);
+  device_->write(kPushForce);
   device_->service();
   EXPECT_EQ(hardware_.force().norm(), 0) << "it answers a place of before";
 }
@@ -242,7 +241,7 @@ TEST_F(ThreadedDeviceTest, ForceThatIsNotFiniteIsAFailure) {
   EXPECT_LE(pushed_for(start), 2 * kServoStep);
   EXPECT_EQ(state_.status, DeviceStatus::failed);
   EXPECT_NE(device_->reason().find("not finite"), std::string::npos);
-  device_->write(kLinkForce);
+  device_->write(kPushForce);
   run(0.05);
   EXPECT_EQ(hardware_.force().norm(), 0) << "latched";
 }
@@ -265,7 +264,7 @@ TEST_F(ThreadedDeviceTest, OptionsOutOfRangeAreRefused) {
   EXPECT_THROW(with({.retry_interval = std::nan(""), .threaded = false}), Error);
 }
 
-// A thread of its own: for the sanitizer, and that it works and ends at all.
+// For the thread sanitizer, and that it works and ends at all.
 TEST(ThreadedDeviceThread, FollowsFaultsAndEnds) {
   SteadyWaitingClock clock;
   FakeHardware hardware(clock);
@@ -277,7 +276,7 @@ TEST(ThreadedDeviceThread, FollowsFaultsAndEnds) {
       DeviceState state;
       do {
         state = device.read();
-        device.write(kLinkForce);
+        device.write(kPushForce);
         static_cast<void>(device.reason());
         clock.wait_until(clock.now() + 0.2e-3);
       } while (state.status != wanted);
