@@ -9,7 +9,7 @@
 namespace palpate::device {
 namespace {
 
-constexpr double kMillimetre = 1e-3;  // m
+constexpr double kLengthUnit = 1e-3;  // m
 constexpr const char* kBroughtBy =
     "OpenHaptics 3 for Linux and the Touch Device Driver bring it (3D Systems): run the installers "
     "of both; 'palpate doctor' says what is missing";
@@ -68,7 +68,7 @@ OpenHapticsFacts OpenHapticsLibrary::read_facts() const {
   get_numbers(hd::kMaximumStiffness, &facts.maximum_stiffness);
   get_integers(hd::kCalibrationStyle, &facts.calibration_styles);
   facts.continuous_force = known_or_zero(facts.continuous_force);
-  facts.maximum_stiffness = known_or_zero(facts.maximum_stiffness / kMillimetre);
+  facts.maximum_stiffness = known_or_zero(facts.maximum_stiffness / kLengthUnit);
   return facts;
 }
 

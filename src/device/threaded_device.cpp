@@ -73,22 +73,22 @@ std::string replaced_by(const std::string& found, const std::string& expected) {
 using Connection = std::uint32_t;
 constexpr Connection kNone = 0;
 
-struct Reading {
-  DeviceState state;  // without status and time
-  double begin = 0;   // s, of its exchange
-  double end = 0;
-  Connection connection = kNone;
-};
-
-struct Command {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  double time = 0;                // s, when it was written
-  Connection connection = kNone;  // whose position it answers
-};
-
 }  // namespace
 
 struct ThreadedDevice::Inside {
+  struct Reading {
+    DeviceState state;  // without status and time
+    double begin = 0;   // s, of its exchange
+    double end = 0;
+    Connection connection = kNone;
+  };
+
+  struct Command {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    double time = 0;                // s, when it was written
+    Connection connection = kNone;  // whose position it answers
+  };
+
   Inside(Open the_open, WaitingClock& the_clock, ThreadedDeviceOptions the_options)
       : open(std::move(the_open)),
         clock(the_clock),
@@ -243,7 +243,7 @@ DeviceState ThreadedDevice::read() noexcept {
   Inside& in = *inside_;
   if (in.state.status == DeviceStatus::failed) return in.state;
   const double now = in.clock.now();
-  if (const std::optional<Reading> reading = in.readings.look()) in.seen = *reading;
+  if (const std::optional<Inside::Reading> reading = in.readings.look()) in.seen = *reading;
   const bool known = in.seen.connection != kNone && now - in.seen.end <= in.options.state_timeout;
   if (known) {
     in.state = in.seen.state;

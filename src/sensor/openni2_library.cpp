@@ -10,7 +10,7 @@
 namespace palpate::sensor {
 namespace {
 
-SharedLibrary load() {
+SharedLibrary load_openni2() {
   try {
     // Its drivers leave threads behind.
     return {
@@ -22,7 +22,7 @@ SharedLibrary load() {
 
 }  // namespace
 
-OpenNi2Library::OpenNi2Library() : library_(load()) {
+OpenNi2Library::OpenNi2Library() : library_(load_openni2()) {
   find_all();
   if (initialize_(ONI_API_VERSION) == ONI_STATUS_OK) return;
   throw Error(
