@@ -34,7 +34,7 @@ std::optional<StateMessage> StateSource::next(double now, double radius, bool ta
   message.lateness = quantiles(servo_.lateness(), lateness_);
   message.interval = static_cast<float>(interval(state));
   message.forces = forces_until(state.step);
-  if (servo_.device().info().tells_orientation) {
+  if (servo_.device().info().has_orientation) {
     message.orientation = state.orientation.cast<float>();
   }
   return message;

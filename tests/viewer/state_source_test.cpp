@@ -63,7 +63,7 @@ TEST(StateSource, TellsTheOrientationOfDevicesThatKnowIt) {
   steps.device.state().orientation = Eigen::Quaterniond(0.6, 0, 0.8, 0);
   steps.step(1e-3);
   EXPECT_FALSE(steps.next().orientation);
-  steps.device.info().tells_orientation = true;
+  steps.device.info().has_orientation = true;
   EXPECT_EQ(steps.next().orientation.value().coeffs(), Eigen::Vector4f(0, 0.8F, 0, 0.6F));
 }
 

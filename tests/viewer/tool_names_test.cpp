@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "palpate/device/scripted.hpp"
 #include "palpate/device/simulated.hpp"
 
 namespace palpate::viewer {

@@ -11,7 +11,6 @@
 #include "apps/palpate/options/touch_usage.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/open_device.hpp"
-#include "palpate/device/scripted.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "palpate/servo/servo.hpp"
@@ -51,7 +50,7 @@ void open_hardware(Hand& hand, const DeviceChoice& choice, const TouchOptions& o
   // The processor of the servo is the servo's alone.
   RealtimeOptions asked = realtime_options(options.live);
   asked.processor.reset();
-  LinkedDeviceOptions device;
+  ThreadedDeviceOptions device;
   device.begin = [asked] { (void)make_realtime(asked); };
   hand.device = open_device(choice.path, clock, device);
   hand.duration = options.duration;
@@ -70,8 +69,8 @@ void guide(Hand& hand, const TouchOptions& options, SimulatedDeviceOptions devic
            Trajectory target) {
   device.duration = options.duration;
   if (!device.duration && !options.view.wanted) device.duration = target.back().time;
-  hand.remote = std::make_unique<RemoteHand>();
-  hand.guide = std::make_unique<GuidedHand>(*hand.remote, std::move(target));
+  hand.remote = std::make_unique<RemoteTarget>();
+  hand.guide = std::make_unique<TeleoperatedHand>(*hand.remote, std::move(target));
   hand.device = std::make_unique<SimulatedDevice>(device, *hand.guide);
 }
 

@@ -9,18 +9,17 @@
 #include "apps/palpate/run/exploration_plan.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/device/guided_hand.hpp"
 #include "palpate/device/remote.hpp"
-#include "palpate/device/remote_hand.hpp"
+#include "palpate/device/teleoperated_hand.hpp"
 #include "palpate/device/workspace.hpp"
 
 namespace palpate::app {
 
 /// Who touches: a device, where it stands, and the surface's stiffness that goes with it.
 struct Hand {
-  std::string name;                    ///< for messages
-  std::unique_ptr<RemoteHand> remote;  ///< takes the tool from its way; null: nobody can
-  std::unique_ptr<GuidedHand> guide;   ///< what `remote` speaks to
+  std::string name;                         ///< for messages
+  std::unique_ptr<RemoteTarget> remote;     ///< takes the tool from its way; null: nobody can
+  std::unique_ptr<TeleoperatedHand> guide;  ///< what `remote` speaks to
   std::unique_ptr<Device> device;
   const RemoteDevice* socket = nullptr;  ///< the device, where it is another program's
   bool led = true;                       ///< false: it goes where a person or a program says

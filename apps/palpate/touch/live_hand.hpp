@@ -5,7 +5,7 @@
 #include "apps/palpate/report/live_report.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/touch/live_status.hpp"
-#include "palpate/device/paced.hpp"
+#include "palpate/device/simulated.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/servo/servo_thread.hpp"
 

@@ -139,9 +139,9 @@ void run_wall_trial(const WallTrialRunOptions& options) {
   if (!options.json.empty()) json.emplace(options.json);
   SteadyWaitingClock clock;
   const Interruption interruption;
-  LinkedDeviceOptions link;
+  ThreadedDeviceOptions link;
   link.begin = [] { static_cast<void>(make_realtime({})); };
-  const std::unique_ptr<LinkedDevice> device = open_device(options.device, clock, link);
+  const std::unique_ptr<ThreadedDevice> device = open_device(options.device, clock, link);
   fmt::print(stderr, "holds {}\n", device->info().name);
   TrialThread thread(*device, clock, options.trial);
   const WallTrialState state = lead(thread, interruption);

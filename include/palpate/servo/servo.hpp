@@ -8,9 +8,8 @@
 
 #include "palpate/base/latest.hpp"
 #include "palpate/contact/proxy.hpp"
-#include "palpate/device/clutch.hpp"
-#include "palpate/device/device.hpp"
 #include "palpate/device/workspace.hpp"
+#include "palpate/device/device.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/histogram.hpp"
