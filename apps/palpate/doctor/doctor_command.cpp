@@ -7,8 +7,6 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/waiting.hpp"
 #include "apps/palpate/doctor/checks.hpp"
-#include "apps/palpate/doctor/report.hpp"
-#include "apps/palpate/doctor/this_system.hpp"
 
 namespace palpate::app {
 

@@ -1,4 +1,4 @@
-#include "apps/palpate/doctor/this_system.hpp"
+#include "apps/palpate/doctor/system.hpp"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
