@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "palpate/base/error.hpp"
-#include "viewer/lobby.hpp"
+#include "viewer/client_sessions.hpp"
 
 namespace palpate::viewer {
 
@@ -20,7 +20,7 @@ inline constexpr const char* kHello = R"({"type":"hello","token":"secret","point
 /// A lobby with one setting and two tools, the first of which a page may take.
 struct Room {
   Room() {
-    LobbyOptions options;
+    ClientSessionsOptions options;
     options.token = "secret";
     options.limits = limits;
     options.controls.settings = [this] { return std::vector{setting}; };
@@ -39,31 +39,31 @@ struct Room {
     options.devices = {{"one", true}, {"two", false}};
     options.origin = {100, 0, 0};
     options.welcome = [] { return Welcome{}; };
-    lobby.emplace(std::move(options));
+    sessions.emplace(std::move(options));
   }
 
-  Client& enter(bool hello = true) {
-    Client& client = clients.emplace_back(limits, now);
-    lobby->join(client);
+  Session& enter(bool hello = true) {
+    Session& session = clients.emplace_back(limits, now);
+    sessions->join(session);
     if (hello) {
-      lobby->take(client, kHello, now);
-      said(client);
+      sessions->receive(session, kHello, now);
+      said(session);
     }
-    return client;
+    return session;
   }
   /// What was said to the client since the last time.
-  static std::vector<nlohmann::json> said(Client& client) {
+  static std::vector<nlohmann::json> said(Session& session) {
     std::vector<nlohmann::json> messages;
-    while (const auto message = client.outbox.take())
+    while (const auto message = session.outbox.take())
       messages.push_back(nlohmann::json::parse(*message->bytes));
     return messages;
   }
-  std::vector<nlohmann::json> answers(Client& client, const std::string& text) {
-    lobby->take(client, text, now);
-    return said(client);
+  std::vector<nlohmann::json> answers(Session& session, const std::string& text) {
+    sessions->receive(session, text, now);
+    return said(session);
   }
-  void expect_refused(Client& client, const std::string& text) {
-    const auto answers_now = answers(client, text);
+  void expect_refused(Session& session, const std::string& text) {
+    const auto answers_now = answers(session, text);
     ASSERT_EQ(answers_now.size(), 1u) << text;
     EXPECT_EQ(answers_now[0]["type"], "refused") << text;
     EXPECT_FALSE(answers_now[0]["text"].get<std::string>().empty()) << text;
@@ -77,8 +77,8 @@ struct Room {
   int resets = 0;
   Eigen::Vector3d hand = Eigen::Vector3d::Zero();
   std::vector<std::size_t> released;
-  std::deque<Client> clients;
-  std::optional<Lobby> lobby;
+  std::deque<Session> clients;
+  std::optional<ClientSessions> sessions;
 };
 
 }  // namespace palpate::viewer
