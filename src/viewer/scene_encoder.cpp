@@ -7,6 +7,7 @@
 
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/scene/scene_field.hpp"
 #include "viewer/local_surface.hpp"
 #include "viewer/messages.hpp"
 #include "viewer/reports.hpp"
@@ -27,7 +28,7 @@ double least_support_of(const FieldOptions& options) {
 
 constexpr double kPeriod = 0.1;         // s between pictures
 constexpr double kSourcesPeriod = 0.5;  // s between reports of the sources
-constexpr double kRest = 3;             // times what the last encoded took
+constexpr double kRest = 3;             // times what the last picture took
 
 double host_time() {
   return SteadyClock().now();
@@ -35,55 +36,73 @@ double host_time() {
 
 }  // namespace
 
-SurfaceEncoder::SurfaceEncoder(Scene& scene, const Servo& servo, std::size_t device,
-                               const Eigen::Vector3d& origin)
-    : servo_(servo),
-      device_(static_cast<std::uint8_t>(device)),
-      origin_(origin),
-      options_(servo.field()),
-      field_(scene, options_, "the viewer") {}
+// Meshes the surface around a servo's proxy, by a field of its own. One thread uses it, and not the
+// servo's.
+class SurfaceEncoder {
+ public:
+  // @throws Error when the scene has no place for one more field.
+  SurfaceEncoder(Scene& scene, const Servo& servo, std::size_t device,
+                 const Eigen::Vector3d& origin)
+      : servo_(servo),
+        device_(static_cast<std::uint8_t>(device)),
+        origin_(origin),
+        options_(servo.field()),
+        field_(scene, options_, "the viewer") {}
 
-EncodedSurface SurfaceEncoder::encode() {
-  const ServoState state = servo_.state();
-  if (state.step == 0) return {};
-  const Eigen::Vector3d& proxy = state.contact.proxy;
-  follow();
-  field_.end_step(proxy, state.contact.normal);  // it is seen from where the servo's proxy is
-  field_.update(state.time, state.hip, proxy);
-  const double radius = field_.sample(proxy).radius;
-  if (!worth_it(state, radius)) return {radius, newest_};
-  const Mesh mesh = local_surface(field_, {proxy, radius, least_support_of(options_)});
-  const Eigen::Vector3f center = (proxy - origin_).cast<float>();
-  // An empty one takes away what a page had before.
-  newest_ = std::make_shared<const std::string>(encode_surface(device_, center, mesh));
-  return {radius, newest_};
-}
+  [[nodiscard]] EncodedSurface encode() {
+    const ServoState state = servo_.state();
+    if (state.step == 0) return {};
+    const Eigen::Vector3d& proxy = state.contact.proxy;
+    follow_options();
+    field_.end_step(proxy, state.contact.normal);  // it is seen from where the servo's proxy is
+    field_.update(state.time, state.hip, proxy);
+    const double radius = field_.sample(proxy).radius;
+    if (!is_new(proxy, radius)) return {radius, newest_};
+    const Mesh mesh = local_surface(field_, {proxy, radius, least_support_of(options_)});
+    const Eigen::Vector3f center = (proxy - origin_).cast<float>();
+    // An empty one takes away what a page had before.
+    newest_ = std::make_shared<const std::string>(encode_surface(device_, center, mesh));
+    return {radius, newest_};
+  }
 
-void SurfaceEncoder::follow() {
-  const FieldOptions options = servo_.field();
-  if (options == options_) return;
-  options_ = options;
-  field_.change(options_);
-  encoded_ = false;
-}
+ private:
+  void follow_options() {
+    const FieldOptions options = servo_.field();
+    if (options == options_) return;
+    options_ = options;
+    field_.change(options_);
+    encoded_ = false;
+  }
 
-bool SurfaceEncoder::worth_it(const ServoState& state, double radius) {
-  const Eigen::Vector3d& proxy = state.contact.proxy;
-  const std::uint64_t revision = field_.traits().revision;
-  const bool same =
-      encoded_ && revision == encoded_revision_ && (proxy - encoded_at_).norm() < kWorthIt * radius;
-  if (same) return false;
-  encoded_ = true;
-  encoded_revision_ = revision;
-  encoded_at_ = proxy;
-  return true;
-}
+  bool is_new(const Eigen::Vector3d& proxy, double radius) {
+    const std::uint64_t revision = field_.traits().revision;
+    const bool same = encoded_ && revision == encoded_revision_ &&
+                      (proxy - encoded_at_).norm() < kWorthIt * radius;
+    if (same) return false;
+    encoded_ = true;
+    encoded_revision_ = revision;
+    encoded_at_ = proxy;
+    return true;
+  }
+
+  const Servo& servo_;
+  std::uint8_t device_;
+  Eigen::Vector3d origin_;
+  FieldOptions options_;  // of the field
+  SceneField field_;
+  Eigen::Vector3d encoded_at_ = Eigen::Vector3d::Zero();
+  std::uint64_t encoded_revision_ = 0;
+  bool encoded_ = false;
+  SharedBytes newest_;
+};
 
 SceneEncoder::SceneEncoder(Scene& scene, SceneEncoderOptions options)
     : scene_(scene),
       options_(std::move(options)),
       clouds_(scene, options_.origin),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+SceneEncoder::~SceneEncoder() = default;
 
 void SceneEncoder::set_budgets(std::set<std::size_t> budgets) {
   {

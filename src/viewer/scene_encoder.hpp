@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "palpate/scene/scene.hpp"
-#include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/viewer/viewer.hpp"
 #include "viewer/cloud_encoder.hpp"
@@ -27,30 +26,7 @@ struct EncodedSurface {
   SharedBytes bytes;  ///< the newest; null: the servo made no step yet
 };
 
-/// Meshes the surface around a servo's proxy, by a field of its own. One thread uses it, and not
-/// the servo's.
-class SurfaceEncoder {
- public:
-  /// @throws Error when the scene has no place for one more field.
-  SurfaceEncoder(Scene& scene, const Servo& servo, std::size_t device,
-                 const Eigen::Vector3d& origin);
-
-  [[nodiscard]] EncodedSurface encode();
-
- private:
-  void follow();
-  [[nodiscard]] bool worth_it(const ServoState& state, double radius);
-
-  const Servo& servo_;
-  std::uint8_t device_;
-  Eigen::Vector3d origin_;
-  FieldOptions options_;  // of the field
-  SceneField field_;
-  Eigen::Vector3d encoded_at_ = Eigen::Vector3d::Zero();
-  std::uint64_t encoded_revision_ = 0;
-  bool encoded_ = false;
-  SharedBytes newest_;
-};
+class SurfaceEncoder;
 
 /// All that takes more than some microseconds to make.
 struct EncodedScene {
@@ -72,8 +48,8 @@ struct SceneEncoderOptions {
 class SceneEncoder {
  public:
   SceneEncoder(Scene& scene, SceneEncoderOptions options);
-  /// Waits for the encoded that is under way.
-  ~SceneEncoder() = default;
+  /// Waits for the picture that is under way.
+  ~SceneEncoder();
   SceneEncoder(const SceneEncoder&) = delete;
   SceneEncoder& operator=(const SceneEncoder&) = delete;
 

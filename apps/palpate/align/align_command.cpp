@@ -11,12 +11,10 @@
 #include <sstream>
 
 #include "apps/palpate/align/align_picture.hpp"
-#include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/chosen_source.hpp"
 #include "apps/palpate/options/setup_file.hpp"
 #include "apps/palpate/options/setup_keys.hpp"

@@ -2,8 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/plot/picture_script.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 
 namespace palpate::app {

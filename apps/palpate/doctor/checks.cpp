@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 
 namespace palpate::app::doctor {
 
@@ -42,22 +42,6 @@ std::string verdict(Severity severity) {
 }
 
 }  // namespace
-
-Answer good(std::string words) {
-  return {Severity::good, std::move(words)};
-}
-
-Answer note(std::string words, std::string remedy) {
-  return {Severity::note, std::move(words), std::move(remedy)};
-}
-
-Answer warning(std::string words, std::string remedy) {
-  return {Severity::warning, std::move(words), std::move(remedy)};
-}
-
-Answer problem(std::string words, std::string remedy) {
-  return {Severity::problem, std::move(words), std::move(remedy)};
-}
 
 void ask(std::span<const Check> checks, const Machine& machine, Findings& findings) {
   for (const Check& check : checks) {

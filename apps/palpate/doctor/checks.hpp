@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "apps/palpate/doctor/system.hpp"
@@ -28,10 +28,18 @@ struct Answer {
   std::vector<std::string> lines = {};  ///< more to look at, such as a histogram
 };
 
-[[nodiscard]] Answer good(std::string words);
-[[nodiscard]] Answer note(std::string words, std::string remedy);
-[[nodiscard]] Answer warning(std::string words, std::string remedy);
-[[nodiscard]] Answer problem(std::string words, std::string remedy);
+inline Answer good(std::string words) {
+  return {Severity::good, std::move(words)};
+}
+inline Answer note(std::string words, std::string remedy) {
+  return {Severity::note, std::move(words), std::move(remedy)};
+}
+inline Answer warning(std::string words, std::string remedy) {
+  return {Severity::warning, std::move(words), std::move(remedy)};
+}
+inline Answer problem(std::string words, std::string remedy) {
+  return {Severity::problem, std::move(words), std::move(remedy)};
+}
 
 struct Finding : Answer {
   std::string area;       ///< "kernel"

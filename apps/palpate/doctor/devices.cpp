@@ -171,7 +171,7 @@ void check_drivers(const Machine& machine, Findings& findings) {
 }
 
 void check_shared_buses(const Machine& machine, Findings& findings) {
-  std::map<int, int> cameras;
+  std::map<long, int> cameras;
   for (const auto& [device, model] : machine.devices) {
     if (model.kind == DeviceKind::camera) ++cameras[device.bus];
   }

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/doctor/checks.hpp"
 
 namespace palpate::app::doctor {

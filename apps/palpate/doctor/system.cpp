@@ -26,7 +26,7 @@
 #include <string_view>
 #include <thread>
 
-#include "apps/palpate/cli/child_program.hpp"
+#include "apps/palpate/cli/process.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/base/waiting_clock.hpp"
 #include "palpate/sensor/open_camera.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "apps/palpate/doctor/checks.hpp"
 
@@ -51,12 +50,6 @@ bool fits(const Sign& sign, const UsbDevice& device) {
          device.title.find(sign.word) != std::string::npos;
 }
 
-int number(const std::string& words) {
-  int result = 0;
-  std::from_chars(words.data(), words.data() + words.size(), result);
-  return result;
-}
-
 // ttyACM0 lies in a folder tty, ttyUSB0 in the interface itself.
 void add_terminals(const fs::path& folder, std::vector<std::string>& terminals) {
   for (const fs::path& entry : entries(folder)) {
@@ -84,8 +77,8 @@ UsbDevice read_device(const System& system, const fs::path& folder) {
   };
   UsbDevice device{.place = place, .vendor = told("idVendor"), .product = told("idProduct")};
   device.title = told("manufacturer") + " " + told("product");
-  device.bus = number(told("busnum"));
-  device.number = number(told("devnum"));
+  device.bus = whole_number(system, kDevices + place + "/busnum").value_or(0);
+  device.number = whole_number(system, kDevices + place + "/devnum").value_or(0);
   add_interfaces(folder, device);
   return device;
 }

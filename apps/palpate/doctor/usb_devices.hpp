@@ -14,8 +14,8 @@ struct UsbDevice {
   std::string vendor;      ///< "045e"
   std::string product;     ///< "02ae"
   std::string title = {};  ///< what the device calls its maker and itself: may be anything
-  int bus = 0;
-  int number = 0;                           ///< on the bus
+  long bus = 0;
+  long number = 0;                          ///< on the bus
   std::vector<std::string> drivers = {};    ///< the kernel's, of its interfaces
   std::vector<std::string> terminals = {};  ///< "ttyACM0"
 };

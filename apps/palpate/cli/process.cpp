@@ -1,7 +1,8 @@
-#include "apps/palpate/view/browser.hpp"
+#include "apps/palpate/cli/process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +13,13 @@
 namespace palpate::app {
 
 namespace {
+
+// A signal is the process's, so is what its handler can reach.
+volatile std::sig_atomic_t asked_to_end = 0;
+
+void ask(int) {
+  asked_to_end = 1;
+}
 
 bool has_desktop() {
   return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
@@ -66,6 +74,46 @@ void open_apart(const std::string& file) {
 }
 
 }  // namespace
+
+int run_program(const std::vector<std::string>& words, const std::string& output) {
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, output.c_str(),
+                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+  pid_t child = 0;
+  const int failed =
+      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) return 127;
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 126;
+}
+
+Interruption::Interruption() {
+  asked_to_end = 0;
+  struct sigaction action = {};
+  action.sa_handler = ask;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, &interrupt_before_);
+  sigaction(SIGTERM, &action, &terminate_before_);
+}
+
+Interruption::~Interruption() {
+  sigaction(SIGINT, &interrupt_before_, nullptr);
+  sigaction(SIGTERM, &terminate_before_, nullptr);
+}
+
+bool Interruption::asked() const noexcept {
+  return asked_to_end != 0;
+}
 
 Browser::Browser(const std::string& url) {
   if (!has_desktop()) return;

@@ -1,4 +1,4 @@
-#include "apps/palpate/cli/suggestion.hpp"
+#include "apps/palpate/cli/errors.hpp"
 
 #include <fmt/format.h>
 
