@@ -5,6 +5,7 @@
 #include <random>
 
 #include "viewer/bytes.hpp"
+#include "viewer/local_surface.hpp"
 #include "viewer/messages.hpp"
 
 namespace palpate::viewer {
