@@ -10,7 +10,7 @@
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_setup.hpp"
+#include "palpate/sensor/simulated_camera.hpp"
 #include "peers/depth_peers.hpp"
 
 namespace palpate::bench {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "clouds.hpp"
+#include "geometry/normals.hpp"
 #include "palpate/geometry/cell_grid.hpp"
-#include "palpate/geometry/normals.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "peers/peers.hpp"
 

@@ -13,7 +13,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
 endif()
 
 # -ffp-contract=off: no fused multiply-add behind our backs, so that the same input gives the same
-# forces bit for bit at every level of the instruction set (docs/architecture.md, contract 5).
+# forces bit for bit at every level of the instruction set (docs/architecture.md, contract 4).
 function(palpate_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE

@@ -11,14 +11,12 @@
 
 #include "device/haply_message.hpp"
 #include "io/depth_image.hpp"
-#include "io/gzip.hpp"
+#include "io/file_bytes.hpp"
 #include "io/input.hpp"
 #include "io/las.hpp"
 #include "io/obj.hpp"
 #include "io/pcd.hpp"
-#include "io/pgm.hpp"
 #include "io/ply.hpp"
-#include "io/png.hpp"
 #include "io/xyz.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/remote_packet.hpp"
@@ -26,7 +24,6 @@
 #include "palpate/io/read_depth.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "palpate/io/write_cloud.hpp"
-#include "sensor/frame_list.hpp"
 #include "sensor/pose_track.hpp"
 #include "sensor/sequence_description.hpp"
 

@@ -14,7 +14,7 @@ struct Row {
   std::vector<Path> paths;
 };
 
-/// The paths of evaluation.md, in this order: plane slide, light slide, sphere slide, box edge,
+/// The paths of table A, in this order: plane slide, light slide, sphere slide, box edge,
 /// fast tap, thin push, static press, crease 10 mm, and three at the edge of the cloud (off it,
 /// from behind, around).
 [[nodiscard]] std::vector<Row> make_rows(const TruthScene& scene);

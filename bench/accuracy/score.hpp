@@ -14,7 +14,7 @@ struct Trace {
   std::vector<Eigen::Vector3d> proxy;  ///< m
 };
 
-/// The metrics of evaluation.md, over the scored ticks in which the ideal proxy is in contact.
+/// The metrics of table A, over the scored ticks in which the ideal proxy is in contact.
 struct Score {
   double normal = 0;  ///< angle between rendered and ideal force, RMS, degrees; ticks without
                       ///< any rendered force have no angle and count as lost only

@@ -13,8 +13,8 @@ struct Limit {
   double worst = -1;
 };
 
-/// One line of table A: a metric of a row, its targets for one raw frame, and what evaluation.md
-/// quotes for the best of three tuned CHAI3D meshes.
+/// One line of table A: a metric of a row, its targets for one raw frame, and what is
+/// quoted for the best of three tuned CHAI3D meshes.
 struct Target {
   std::string row;
   std::string metric;  ///< for the reader, with its unit

@@ -44,7 +44,7 @@ constexpr Limit at_most(double median, double worst = -1) {
   return {median, worst};
 }
 
-// Table A of evaluation.md, and rows below it that carry no target.
+// Table A, and rows below it that carry no target.
 std::vector<Target> independent_targets() {
   return {
       {"plane slide", kNormal, normal, at_most(1.25), at_most(0.2, 0.4), "0.27"},

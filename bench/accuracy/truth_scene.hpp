@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "palpate/depth/camera_model.hpp"
-#include "palpate/sensor/simulated_table.hpp"
+#include "palpate/depth/depth_frame.hpp"
+#include "palpate/sensor/simulated_scene.hpp"
 
 namespace palpate::accuracy {
 
@@ -12,7 +12,7 @@ struct TruthCamera {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// The scene of evaluation.md: SimulatedTable, standing still, with the camera that sees it.
+/// The scene of table A: SimulatedTable, standing still, with the camera that sees it.
 struct TruthScene {
   std::array<Solid, kTableParts> solids;  ///< in the order of TablePart
   TruthCamera camera;

@@ -1,7 +1,7 @@
 #include "any_cloud/bench_run.hpp"
 
 #include "accuracy/path.hpp"
-#include "palpate/base/thread_clock.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"

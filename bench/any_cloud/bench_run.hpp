@@ -1,7 +1,7 @@
 #pragma once
 
 #include "any_cloud/hostile_scene.hpp"
-#include "palpate/contact/contact.hpp"
+#include "palpate/contact/proxy.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/prepare/prepare.hpp"
 

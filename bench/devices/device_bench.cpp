@@ -15,7 +15,6 @@
 #include "device/fake_haply_service.hpp"
 #include "device/fake_hd.hpp"
 #include "palpate/base/clock.hpp"
-#include "palpate/base/thread_clock.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/servo/servo.hpp"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "palpate/base/waiting_clock.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/simulated_camera.hpp"
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "four_cameras/camera_rig.hpp"
-#include "palpate/geometry/trajectory.hpp"
-#include "palpate/sensor/stream_state.hpp"
+#include "palpate/io/trajectory.hpp"
+#include "palpate/sensor/stream.hpp"
 #include "servo_cost/paced_servo.hpp"
 
 namespace palpate::four_cameras {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "palpate/geometry/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::servo_cost {

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 
-#include "palpate/servo/realtime.hpp"
+#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::servo_cost {
 

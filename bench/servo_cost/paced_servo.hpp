@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "palpate/base/waiting_clock.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/device/paced.hpp"
 #include "palpate/device/scripted.hpp"
-#include "palpate/geometry/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/histogram.hpp"
-#include "palpate/servo/realtime.hpp"
 #include "palpate/servo/servo.hpp"
+#include "palpate/servo/servo_thread.hpp"
 #include "servo_cost/counting_device.hpp"
 
 namespace palpate::servo_cost {

@@ -13,7 +13,7 @@ struct Target {
   std::string metric;  ///< for the reader, with its unit
   double (*of)(const Measures&) = nullptr;
   double limit = 0;    ///< not above, as an absolute value
-  std::string paper;   ///< what evaluation.md quotes for the paper's way; empty: nothing
+  std::string paper;   ///< quoted for the paper's way; empty: nothing
   std::string chai3d;  ///< likewise
 };
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "palpate/base/waiting_clock.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/viewer/viewer.hpp"
 #include "servo_cost/paced_servo.hpp"

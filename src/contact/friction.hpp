@@ -1,11 +1,13 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "palpate/contact/proxy.hpp"
 
 namespace palpate {
 
 /// Friction in one step, as lengths of the spring between proxy and hand: what a force is, divided
-/// by K (algorithm.md section 6).
+/// by K (docs/method.md 4.1).
 struct FrictionLaw {
   double static_coefficient = 0;
   double dynamic_coefficient = 0;
@@ -28,5 +30,14 @@ struct FrictionLaw {
 /// m, in [0, tangential]. `moved`: what it has slid in this step already, m.
 [[nodiscard]] double held_stretch(const FrictionLaw& law, double normal, double tangential,
                                   double moved) noexcept;
+
+/// The height that a texture adds to the surface and its gradient; the height is never above 0.
+struct Relief {
+  double height = 0;  ///< m, in [-2 amplitude, 0]
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+};
+
+/// The relief at x (m, world).
+[[nodiscard]] Relief relief_at(const Texture& texture, const Eigen::Vector3d& x) noexcept;
 
 }  // namespace palpate

@@ -1,6 +1,9 @@
 #include "contact/probe.hpp"
 
-#include "contact/texture.hpp"
+#include <algorithm>
+#include <cmath>
+
+#include "contact/friction.hpp"
 
 namespace palpate {
 
@@ -28,6 +31,48 @@ Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
 bool Probe::is_free(const Ball& ball) noexcept {
   ++evaluations_;
   return field_.is_free(ball);
+}
+
+namespace {
+
+constexpr int kSteps = 10;
+constexpr double kClamp = 0.3;       // of R
+constexpr double kTolerance = 1e-6;  // of R
+constexpr double kLastStep = 2e-4;  // of R: a step so short leaves its square, which needs no proof
+constexpr double kAccept = 1e-4;    // of R, when the steps have run out
+constexpr double kLeastGradient = 1e-8;
+constexpr double kLeastSupport = 1e-6;
+
+}  // namespace
+
+std::optional<double> first_order_distance(const Sample& sample) noexcept {
+  const double slope = sample.gradient.norm();
+  if (!(slope >= kLeastGradient) || !(sample.support >= kLeastSupport)) return std::nullopt;
+  return sample.value / slope;
+}
+
+std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x) noexcept {
+  return project(probe, x, probe.sample(x));
+}
+
+std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
+                                    const Sample& first) noexcept {
+  Eigen::Vector3d place = x;
+  Sample here = first;
+  for (int step = 0;; ++step) {
+    const std::optional<double> distance = first_order_distance(here);
+    if (!distance) return std::nullopt;
+    const double radius = probe.step_length();
+    const Eigen::Vector3d normal = here.gradient.normalized();
+    const double tolerance = (step < kSteps ? kTolerance : kAccept) * radius;
+    if (std::abs(*distance) < tolerance) return SurfacePoint{place, normal, radius};
+    if (step == kSteps) return std::nullopt;
+    if (std::abs(*distance) < kLastStep * radius) {
+      return SurfacePoint{place - *distance * normal, normal, radius};
+    }
+    place -= std::clamp(*distance, -kClamp * radius, kClamp * radius) * normal;
+    here = probe.sample(place);
+  }
 }
 
 }  // namespace palpate

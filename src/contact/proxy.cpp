@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "base/requirement.hpp"
-#include "contact/anchor.hpp"
-#include "contact/newton.hpp"
 #include "contact/probe.hpp"
 #include "contact/slide.hpp"
 #include "contact/sweep.hpp"

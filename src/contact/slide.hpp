@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "contact/friction.hpp"
-#include "contact/newton.hpp"
+#include "contact/probe.hpp"
 #include "palpate/contact/proxy.hpp"
 
 namespace palpate {
@@ -31,11 +33,27 @@ struct Slide {
   double dissipated = 0;  ///< by friction, J
 };
 
-/// Moves the proxy from `start` on the surface to the place nearest to the hand (algorithm.md 2.3):
+/// Moves the proxy from `start` on the surface to the place nearest the hand (docs/method.md 3.3):
 /// sub-steps in the tangent plane, each brought back to the surface and accepted only if it comes
 /// nearer to the hand and the normal does not turn over; leaves the surface when the way to the
 /// hand is free.
 [[nodiscard]] Slide slide(Probe& probe, const SurfacePoint& start, const Eigen::Vector3d& hip,
                           bool sliding, const SlideOptions& options) noexcept;
+
+/// Has the surface moved over the proxy, or away from under it (docs/method.md 3.4)? `here`: the
+/// sample at the proxy; `normal`: of its last contact, zero if none; `changed`: the field's
+/// revision is another than in the last step.
+[[nodiscard]] bool surface_moved(const Probe& probe, const Sample& here,
+                                 const Eigen::Vector3d& normal, bool changed) noexcept;
+
+/// Looks for the surface from above, along the last normal, within the field's re-anchor reach (at
+/// least R / 2). Empty when there is none that faces the same way.
+[[nodiscard]] std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& position,
+                                                   const Eigen::Vector3d& normal) noexcept;
+
+/// Looks for the surface after Newton has failed: from the first free place along the last normal,
+/// up to 2 R away.
+[[nodiscard]] std::optional<SurfacePoint> recover(Probe& probe, const Eigen::Vector3d& position,
+                                                  const Eigen::Vector3d& normal) noexcept;
 
 }  // namespace palpate

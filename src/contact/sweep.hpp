@@ -22,7 +22,7 @@ struct Sweep {
 [[nodiscard]] bool way_is_free(Probe& probe, const Eigen::Vector3d& from,
                                const Eigen::Vector3d& to) noexcept;
 
-/// The first contact on the way (algorithm.md 2.2): bisection into balls that are free for certain
+/// First contact on the way (docs/method.md 3.1): bisection into balls that are free for certain
 /// and leaves shorter than the field's resolution, whose ends are sampled. No solid chord longer
 /// than the resolution is missed. `from` is taken to be free.
 [[nodiscard]] Sweep sweep(Probe& probe, const Eigen::Vector3d& from,

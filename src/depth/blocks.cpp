@@ -1,6 +1,5 @@
 #include "depth/blocks.hpp"
 
-#include "depth/depth_gate.hpp"
 #include "depth/simd/plain.hpp"
 
 namespace palpate::depth {

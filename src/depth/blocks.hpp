@@ -1,14 +1,71 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "depth/block_grid.hpp"
 #include "depth/simd/fits.hpp"
+#include "depth/simd/plain.hpp"
+#include "geometry/parallel.hpp"
 #include "palpate/depth/depth_filter.hpp"
+#include "palpate/depth/depth_frame.hpp"
 
 namespace palpate::depth {
+
+/// Where the 2x2 blocks of an undistorted image look: the block (column, row) looks along
+/// (x(column), y(row), 1).
+struct BlockGrid {
+  int columns = 0;
+  int rows = 0;
+  double x0 = 0;  ///< of column 0
+  double y0 = 0;
+  double step_x = 0;  ///< from column to column
+  double step_y = 0;
+
+  [[nodiscard]] double x(double column) const { return x0 + column * step_x; }
+  [[nodiscard]] double y(double row) const { return y0 + row * step_y; }
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(columns) * rows; }
+  [[nodiscard]] std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * columns + column;
+  }
+
+  bool operator==(const BlockGrid&) const = default;
+};
+
+/// An odd last column or row of pixels belongs to no block.
+[[nodiscard]] inline BlockGrid block_grid(const CameraModel& camera) {
+  const Pinhole& p = camera.pinhole;
+  return {camera.width / 2,    camera.height / 2, (0.5 - p.cx) / p.fx,
+          (0.5 - p.cy) / p.fy, 2 / p.fx,          2 / p.fy};
+}
+
+/// Calls body(row) for each row, on several threads: see parallel_ranges().
+template <class Body>
+void for_rows(const BlockGrid& grid, const Body& body) {
+  constexpr std::size_t kRowsAtATime = 8;
+  detail::parallel_ranges(static_cast<std::size_t>(grid.rows), kRowsAtATime,
+                          [&](std::size_t row, std::size_t end) {
+                            for (; row < end; ++row) body(static_cast<int>(row));
+                          });
+}
+
+/// What depths of one surface may differ by: three deviations of a pixel, and what `pixels` between
+/// them make of a surface that is seen at an incidence of 72 degrees.
+[[nodiscard]] inline simd::DepthGate depth_gate(const BlockGrid& grid, float pixels,
+                                                const NoiseModel& noise,
+                                                const DepthFilterOptions& range) {
+  constexpr float kDeviations = 3;
+  constexpr float kSteepest = 3;  // tangent of the incidence
+  const auto& s = noise.coefficients;
+  const double pixel = std::max(std::abs(grid.step_x), std::abs(grid.step_y)) / 2;
+  return {static_cast<float>(range.nearest),
+          static_cast<float>(range.farthest),
+          {static_cast<float>(kDeviations * s[0]),
+           static_cast<float>(kDeviations * s[1] + kSteepest * pixels * pixel),
+           static_cast<float>(kDeviations * s[2])}};
+}
 
 /// The measured means of 2x2 blocks, in rows with a margin of empty blocks all around so that
 /// neighbours may be looked at without asking where the image ends.
@@ -57,5 +114,56 @@ void average_blocks(const float* image, int width, const NoiseModel& noise,
   const double pixel = s[2] + rho * (s[1] + rho * s[0]);  // sigma(z) / z^2
   return static_cast<float>(block_share(noise.correlation) * (pixel > 0 ? pixel : 0));
 }
+
+/// What is known of each block of one frame, in the sensor's frame, before it becomes points: what
+/// the fits write, the temporal filter changes and the output is made from. Row by row; all columns
+/// have grid.size() entries, those of empty blocks mean nothing.
+///
+/// Along the ray (x, y, 1) of a block its inverse depth is `rho`; near it, it is
+/// rho + slope_x (x' - x) + slope_y (y' - y). A plane is exactly that: its points p keep
+/// (slope_x, slope_y, rho - slope_x x - slope_y y) . p = 1.
+struct BlockFits {
+  BlockGrid grid;
+  std::vector<BlockState> states;
+  std::vector<float> rho;             ///< inverse depth, 1/m
+  std::vector<float> variance;        ///< of rho, 1/m^2, with the noise's correlation in it
+  std::vector<float> slope_x;         ///< d rho / d x, 1/m
+  std::vector<float> slope_y;         ///< d rho / d y, 1/m
+  std::vector<float> slope_variance;  ///< of either slope (the larger one), 1/m^2
+  std::vector<float> confidences;     ///< of the slopes, 0-1; 0: they are unknown and 0
+
+  // Of fitted blocks:
+  std::vector<std::uint8_t> flat;     ///< is it a plane over its window?
+  std::vector<std::uint8_t> reach_u;  ///< blocks to the side of the largest window; 0: no edge near
+  std::vector<std::uint8_t> reach_v;  ///< and to its top
+
+  [[nodiscard]] std::size_t size() const { return states.size(); }
+
+  /// Takes memory when the size is new, and no more.
+  void resize(const BlockGrid& new_grid) {
+    grid = new_grid;
+    const std::size_t size = new_grid.size();
+    states.resize(size, BlockState::empty);
+    for (auto* column : {&flat, &reach_u, &reach_v}) column->resize(size);
+    for (auto* column : {&rho, &variance, &slope_x, &slope_y, &slope_variance, &confidences}) {
+      column->resize(size);
+    }
+  }
+
+  /// Where a row begins in each of the columns.
+  [[nodiscard]] simd::FitRow row(int row) {
+    const std::size_t i = grid.index(0, row);
+    return {reinterpret_cast<std::uint8_t*>(&states[i]),
+            &rho[i],
+            &variance[i],
+            &slope_x[i],
+            &slope_y[i],
+            &slope_variance[i],
+            &confidences[i],
+            &flat[i],
+            &reach_u[i],
+            &reach_v[i]};
+  }
+};
 
 }  // namespace palpate::depth

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "depth/block_fits.hpp"
+#include "depth/blocks.hpp"
 #include "depth/clipped_fit.hpp"
 
 namespace palpate::depth {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "depth/block_fits.hpp"
 #include "depth/blocks.hpp"
+#include "depth/window_fits.hpp"
 
 namespace palpate::depth {
 
@@ -27,5 +27,13 @@ void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& 
 /// Plain fits: each block's own mean, its slopes by least squares over those of its eight
 /// neighbours that show the same surface.
 void fit_plain(const Blocks& blocks, const NoiseModel& noise, BlockFits& fits);
+
+inline constexpr int kLongestGap = 3;  ///< blocks
+
+/// Blocks of `range` without small holes: `filled` gets a copy in which gaps in rows, then in
+/// columns, of up to kLongestGap blocks between two ends that may be one surface are bridged.
+/// Filled blocks have a count of 0. One hole would otherwise cost all windows around it.
+void fill_gaps(const Blocks& blocks, const NoiseModel& noise, const BlockRange& range,
+               Blocks& filled);
 
 }  // namespace palpate::depth

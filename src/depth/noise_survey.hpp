@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "depth/noise_curve.hpp"
 #include "depth/noise_fit.hpp"
 
 namespace palpate::depth {

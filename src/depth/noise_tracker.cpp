@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "depth/noise_curve.hpp"
+#include "depth/noise_fit.hpp"
 #include "depth/noise_survey.hpp"
 
 namespace palpate::depth {

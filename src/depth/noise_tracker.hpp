@@ -1,13 +1,31 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <span>
 
-#include "depth/depth_view.hpp"
-#include "palpate/depth/noise_model.hpp"
+#include "palpate/depth/depth_filter.hpp"
 
 namespace palpate::depth {
 
-/// Follows a sensor's sigma(z) and c (nss_fast.md section 2) from frame to frame: the first frame
+/// A depth image that somebody else owns. Depths along the optical axis, m, row by row; whatever
+/// is not within nearest ... farthest (0, NaN, infinity too) counts as not measured.
+struct DepthView {
+  std::span<const float> depth;
+  int width = 0;      ///< pixels
+  int height = 0;     ///< pixels
+  double focal = 0;   ///< pixels
+  float nearest = 0;  ///< m
+  float farthest = 0;
+
+  [[nodiscard]] float at(int u, int v) const {
+    return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+                 static_cast<std::size_t>(u)];
+  }
+  [[nodiscard]] bool valid(float z) const { return z >= nearest && z <= farthest; }
+};
+
+/// Follows a sensor's sigma(z) and c (docs/method.md 6.2) from frame to frame: the first frame
 /// gives a start by what quadratic surfaces leave of its windows, differences of frames replace it
 /// where the scene stands still, and from then on every frame adds a bounded share. What they do
 /// not tell (too few pixels, all of one value) is taken from the prior. The model that is handed

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "depth/check_input.hpp"
+#include "depth/input.hpp"
 
 namespace palpate {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "depth/block_fits.hpp"
+#include "depth/blocks.hpp"
 
 namespace palpate::depth {
 

@@ -4,8 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "depth/block_fits.hpp"
-#include "depth/temporal_memory.hpp"
+#include "depth/blocks.hpp"
 #include "depth/temporal_warp.hpp"
 
 namespace palpate::depth {

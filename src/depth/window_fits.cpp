@@ -3,10 +3,115 @@
 #include <algorithm>
 #include <cmath>
 
-#include "depth/fill_gaps.hpp"
+#include "depth/neighbors.hpp"
 #include "geometry/parallel.hpp"
 
 namespace palpate::depth {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Interval {
+  double low;
+  double high;
+};
+
+// Ratios a / z of all points (a, z) of a disc of radius r that have z > 0: what lies between the
+// two tangents from the origin.
+Interval tangents(double a, double z, double r) {
+  const double distance = std::hypot(a, z);
+  if (distance <= r) return {-HUGE_VAL, HUGE_VAL};
+  const double middle = std::atan2(a, z);
+  const double half = std::asin(r / distance);
+  constexpr double kAside = 1.5;  // rad; beyond it the tangent grows without bound
+  return {middle - half < -kAside ? -HUGE_VAL : std::tan(middle - half),
+          middle + half > kAside ? HUGE_VAL : std::tan(middle + half)};
+}
+
+// Numbers 0 ... count - 1 of blocks at origin + number * step that are in the interval.
+std::pair<int, int> numbers(const Interval& in, double origin, double step, int count) {
+  const auto clamped = [&](double ratio) {
+    return std::clamp((ratio - origin) / step, -1.0, static_cast<double>(count));
+  };
+  const double first = std::ceil(clamped(in.low));
+  const double last = std::floor(clamped(in.high));
+  return {std::max(static_cast<int>(first), 0), std::min(static_cast<int>(last), count - 1)};
+}
+
+BlockRange range_of(const BlockGrid& grid, const Ball& ball) {
+  const Vector3d& c = ball.center;
+  if (c.z() + ball.radius <= 0) return {};
+  const auto [left, right] =
+      numbers(tangents(c.x(), c.z(), ball.radius), grid.x0, grid.step_x, grid.columns);
+  const auto [top, bottom] =
+      numbers(tangents(c.y(), c.z(), ball.radius), grid.y0, grid.step_y, grid.rows);
+  return {left, top, right - left + 1, bottom - top + 1};
+}
+
+BlockRange united(const BlockRange& a, const BlockRange& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  const int left = std::min(a.first_column, b.first_column);
+  const int top = std::min(a.first_row, b.first_row);
+  return {left, top, std::max(a.first_column + a.columns, b.first_column + b.columns) - left,
+          std::max(a.first_row + a.rows, b.first_row + b.rows) - top};
+}
+
+}  // namespace
+
+BlockRange BlockRange::grown(int border, const BlockGrid& grid) const {
+  const int left = std::max(first_column - border, 0);
+  const int top = std::max(first_row - border, 0);
+  return {left, top, std::min(first_column + columns + border, grid.columns) - left,
+          std::min(first_row + rows + border, grid.rows) - top};
+}
+
+void FitRegion::set(const BlockGrid& grid) {
+  everything_ = true;
+  range_ = {0, 0, grid.columns, grid.rows};
+}
+
+void FitRegion::set(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor,
+                    std::span<const Ball> balls) {
+  everything_ = false;
+  range_ = {};
+  balls_.clear();
+  const Eigen::Isometry3d T_sensor_world = T_world_sensor.inverse();
+  for (const Ball& ball : balls) {
+    const Ball local{T_sensor_world * ball.center, ball.radius};
+    if (!(local.center.allFinite() && local.radius > 0)) continue;
+    const BlockRange range = range_of(grid, local);
+    if (range.empty()) continue;
+    balls_.push_back(local);
+    range_ = united(range_, range);
+  }
+}
+
+bool FitRegion::operator==(const FitRegion& other) const {
+  const auto same = [](const Ball& a, const Ball& b) {
+    return a.center == b.center && a.radius == b.radius;
+  };
+  return everything_ == other.everything_ && range_ == other.range_ &&
+         std::equal(balls_.begin(), balls_.end(), other.balls_.begin(), other.balls_.end(), same);
+}
+
+bool FitRegion::contains(const Vector3d& point) const {
+  return std::any_of(balls_.begin(), balls_.end(), [&](const Ball& ball) {
+    return (point - ball.center).squaredNorm() <= ball.radius * ball.radius;
+  });
+}
+
+void FitRegion::columns(const Blocks& blocks, int row, std::vector<std::int32_t>& columns) const {
+  const double y = blocks.grid.y(row);
+  for (int column = range_.first_column; column < range_.first_column + range_.columns; ++column) {
+    const float rho = blocks.rho[blocks.at(column, row)];
+    if (!(rho > 0)) continue;
+    if (everything_ || contains(Vector3d(blocks.grid.x(column), y, 1) / double(rho))) {
+      columns.push_back(column);
+    }
+  }
+}
+
 namespace {
 
 constexpr std::size_t kRowsAtATime = 8;

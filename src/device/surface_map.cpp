@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "palpate/geometry/box.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate {
 

@@ -1,8 +1,6 @@
-#include "palpate/field/density.hpp"
+#include "field/density.hpp"
 
 #include <algorithm>
-
-#include "field/density_sums.hpp"
 
 namespace palpate {
 

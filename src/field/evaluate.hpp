@@ -33,7 +33,7 @@ struct ImplicitSurface {
 [[nodiscard]] bool is_free(const ImplicitSurface& surface, const Patch& patch,
                            const Ball& ball) noexcept;
 
-/// (sum w_s^4)^(1/4): how the weight sums of several sources unite (docs/architecture.md, Words).
+/// (sum w_s^4)^(1/4): how the weight sums of several sources unite (docs/method.md 2.9).
 [[nodiscard]] double united(const double* w, int sources) noexcept;
 
 }  // namespace palpate

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "palpate/field/kernel.hpp"
+#include "palpate/field/field_options.hpp"
 
 namespace palpate {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "field/agreement.hpp"
 #include "field/facing.hpp"
-#include "palpate/field/kernel.hpp"
+#include "palpate/field/field_options.hpp"
 
 // What Facing decides of sheets that come into view: the sides of their parts, and how they meet.
 

@@ -3,13 +3,58 @@
 #include <algorithm>
 #include <cmath>
 
-#include "field/acute_creases.hpp"
-#include "field/edges.hpp"
 #include "field/facing.hpp"
 #include "field/smooth_step.hpp"
 #include "field/united_height.hpp"
 
 namespace palpate {
+
+using Eigen::Vector3d;
+
+// f = B + (sum e h - B sum e) / V: e_i = v_i |share_i|, h_i the height above what both planes
+// leave, B the smooth surface, V = sum v.
+Value with_edges(const FieldPlace& place, const Value& smooth) noexcept {
+  simd::EdgeSums sums;
+  place.functions->edges(*place.columns, place.columns->begin_of(place.label),
+                         place.columns->begin_of(place.label + 1), place.kernel == Kernel::wendland,
+                         place.x, sums);
+  if (!(sums.v > 0)) return smooth;
+  const double inverse = 1 / place.sums().v;
+  const double gain = inverse * (sums.vh - smooth.f * sums.v);
+  const Vector3d grad_gain = vector(sums.grad_vh) - smooth.f * vector(sums.grad_v) -
+                             sums.v * smooth.grad - gain * vector(place.sums().grad_v);
+  return {smooth.f + gain, smooth.grad + inverse * grad_gain};
+}
+
+namespace {
+
+constexpr double kClosed = 0.2;   // of R; half of it closes a scan's creases, not all of two sheets
+constexpr double kFacing = 0.7;   // |Nb|^2 where two equal sheets meet at 114 degrees
+constexpr double kHollow = 0.01;  // h from which on a surface is concave beyond doubt
+
+}  // namespace
+
+Value crease_closure(const FieldPlace& place) noexcept {
+  const Oriented square = normal_square(place.sums());
+  const SmoothStep facing = smooth_step(kFacing - square.f, 0, kFacing);
+  if (facing.value <= 0) return {};
+  const Oriented bulge = convexity(place.sums());
+  const Value& radius = place.radius;
+  const double inverse = -1 / radius.f;
+  const double h = inverse * bulge.f;
+  const SmoothStep hollow = smooth_step(h, 0, kHollow);
+  if (hollow.value <= 0) return {};
+
+  const double by_h = facing.value * hollow.slope;
+  Oriented share;
+  add(share, -facing.slope * hollow.value, square);
+  add(share, by_h * inverse, bulge);
+  const double closed = facing.value * hollow.value;
+  return {kClosed * radius.f * closed,
+          kClosed * (radius.f * (share.base + place.gradient(share.b)) +
+                     (closed - by_h * h) * radius.grad)};
+}
+
 namespace {
 
 using Eigen::Vector3d;

@@ -22,4 +22,12 @@ struct PatchSurface {
                                         const Eigen::Vector3d& x,
                                         std::span<const double> presences = {}) noexcept;
 
+/// Does a ball that no patch covers certainly hold nothing? Walks through the index itself and
+/// gives up, with `false`, as soon as the weights could make a surface or when `visits`, of which
+/// every cell and point takes one, have run out. The same bound as is_free() for a patch
+/// (docs/method.md 2.10). `radius`: of all points, m; 0: each has its own.
+[[nodiscard]] bool is_free_space(const ImplicitSurface& surface,
+                                 std::span<const ActiveLayer> layers, int sources, const Ball& ball,
+                                 double radius, int& visits) noexcept;
+
 }  // namespace palpate

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "field/active_layer.hpp"
-#include "palpate/geometry/ball.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate {
 

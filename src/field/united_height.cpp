@@ -94,7 +94,6 @@ Value united_shift(const FieldPlace& place) noexcept {
   if (tau.value <= 0) return {};
   normal /= coherence;
   const double way = by_cover - by_weight;
-
   // Chain rule through f_s, V_s, the normals and R.
   Value result{tau.value * way, Vector3d::Zero()};
   double by_radius = 0;

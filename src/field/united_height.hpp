@@ -1,6 +1,6 @@
 #pragma once
 
-#include "field/field_place.hpp"
+#include "field/oriented.hpp"
 
 namespace palpate {
 

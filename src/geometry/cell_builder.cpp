@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "geometry/morton.hpp"
 #include "geometry/parallel.hpp"
+#include "geometry/sort_records.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::detail {

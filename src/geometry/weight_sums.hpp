@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -8,7 +9,7 @@
 
 namespace palpate::detail {
 
-/// S_i and Sbar_i of algorithm.md section 4, in sorted order.
+/// S_i and Sbar_i of docs/method.md 2.2, in sorted order.
 struct WeightSums {
   std::vector<float> own;     ///< S_i = sum_j w_ij, at least 1
   std::vector<float> around;  ///< Sbar_i = sum_j w_ij S_j / S_i
@@ -21,5 +22,10 @@ using WeightSum = decltype(simd::JoinFunctions::wyvill_sums);
 /// @throws Error when there are not as many radii as points, or one is not positive and finite.
 [[nodiscard]] WeightSums weight_sums(const CellGrid& grid, std::span<const float> radii,
                                      WeightSum sum);
+
+/// speckle_mask() for those who have the weight sums of the same radii already.
+[[nodiscard]] std::vector<std::uint8_t> speckle_mask(const CellGrid& grid,
+                                                     std::span<const float> radii,
+                                                     const WeightSums& sums);
 
 }  // namespace palpate::detail

@@ -6,10 +6,104 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-
-#include "io/origin.hpp"
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate::io {
+namespace {
+
+constexpr std::pair<std::string_view, Role> kRoleNames[] = {
+    {"x", Role::x},
+    {"y", Role::y},
+    {"z", Role::z},
+    {"nx", Role::normal_x},
+    {"ny", Role::normal_y},
+    {"nz", Role::normal_z},
+    {"normal_x", Role::normal_x},
+    {"normal_y", Role::normal_y},
+    {"normal_z", Role::normal_z},
+    {"normalx", Role::normal_x},
+    {"normaly", Role::normal_y},
+    {"normalz", Role::normal_z},
+    {"red", Role::red},
+    {"green", Role::green},
+    {"blue", Role::blue},
+    {"r", Role::red},
+    {"g", Role::green},
+    {"b", Role::blue},
+    {"diffuse_red", Role::red},
+    {"diffuse_green", Role::green},
+    {"diffuse_blue", Role::blue},
+    {"intensity", Role::intensity},
+    {"scalar_intensity", Role::intensity},
+    {"i", Role::intensity},
+    {"reflectance", Role::intensity},
+    {"reflectivity", Role::intensity},
+    {"quality", Role::intensity},
+    {"scalar", Role::intensity},
+};
+
+}  // namespace
+
+std::optional<Role> role_of(std::string_view name) {
+  std::string lower{name};
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  const auto* found = std::find_if(std::begin(kRoleNames), std::end(kRoleNames),
+                                   [&](const auto& entry) { return entry.first == lower; });
+  return found == std::end(kRoleNames) ? std::nullopt : std::optional{found->second};
+}
+
+Columns complete_columns(const std::array<bool, kRoleCount>& has) {
+  const auto all = [&](Role a, Role b, Role c) {
+    return has[index_of(a)] && has[index_of(b)] && has[index_of(c)];
+  };
+  return {.normals = all(Role::normal_x, Role::normal_y, Role::normal_z),
+          .colors = all(Role::red, Role::green, Role::blue),
+          .intensities = has[index_of(Role::intensity)]};
+}
+
+namespace {
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+Eigen::Vector3d choose_origin(std::size_t count,
+                              const std::function<Eigen::Vector3d(std::size_t)>& point_at) {
+  constexpr std::size_t kSample = 1000;
+  constexpr double kFarAway = 16;     // times the spread: four bits
+  constexpr double kTiniest = 1e-12;  // m; nothing is measured in less
+  std::vector<Eigen::Vector3d> sample;
+  for (std::size_t i = 0; i < count; i += count / kSample + 1) {
+    const Eigen::Vector3d point = point_at(i);
+    if (is_usable(point)) sample.push_back(point);
+  }
+  if (sample.empty()) return Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d center;
+  double spread = 0;
+  std::vector<double> values(sample.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(sample.begin(), sample.end(), values.begin(),
+                   [&](const Eigen::Vector3d& p) { return p[axis]; });
+    center[axis] = median(values);
+    for (double& v : values) v = std::abs(v - center[axis]);
+    spread = std::max(spread, median(values));
+  }
+  const double distance = center.cwiseAbs().maxCoeff();
+  if (distance <= std::max(kFarAway * spread, kTiniest)) return Eigen::Vector3d::Zero();
+  // A single point, or copies of it, has no spread.
+  const double size = std::max(spread, 1e-9 * distance);
+  const double step = std::pow(10.0, std::ceil(std::log10(size)));
+  return ((center / step).array().round() * step).matrix();
+}
+
 namespace {
 
 float finite_float(double v) {

@@ -2,15 +2,58 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <functional>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "io/input.hpp"
-#include "io/row.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/io/read_cloud.hpp"
 
 namespace palpate::io {
+
+/// What a column of a file means to us.
+enum class Role { x, y, z, normal_x, normal_y, normal_z, red, green, blue, intensity };
+inline constexpr std::size_t kRoleCount = 10;
+
+/// One point as read: a value for each role; what the file lacks stays 0.
+using Row = std::array<double, kRoleCount>;
+
+[[nodiscard]] constexpr std::size_t index_of(Role role) {
+  return static_cast<std::size_t>(role);
+}
+
+/// Which optional columns a file has.
+struct Columns {
+  bool normals = false;
+  bool colors = false;
+  bool intensities = false;
+};
+
+/// The role that a column's name stands for, in the spellings that programs write (any case):
+/// x, nx, normal_x, red, r, diffuse_red, intensity, scalar_intensity, quality, ...
+[[nodiscard]] std::optional<Role> role_of(std::string_view name);
+
+/// The optional columns that are complete among `has`, one flag a role.
+[[nodiscard]] Columns complete_columns(const std::array<bool, kRoleCount>& has);
+
+/// Coordinates beyond this many metres are no place on any survey, and their squares would leave
+/// the range of float; a point that has one is dropped like one that is not finite.
+inline constexpr double kLargestCoordinate = 1e12;
+
+[[nodiscard]] inline bool is_usable(const Eigen::Vector3d& point) {
+  return (point.array().abs() <= kLargestCoordinate).all();  // false for NaN as well
+}
+
+/// The origin for a cloud: zero where floats around zero lose at most four bits, otherwise a round
+/// point (1, 10, 100 ... metres, as the cloud's size is) near the median. Medians, of a sample of
+/// about a thousand points, because one stray point at zero must not cost a survey its digits.
+/// @param point_at the i-th of `count` points in metres; points that are not usable are left out.
+[[nodiscard]] Eigen::Vector3d choose_origin(
+    std::size_t count, const std::function<Eigen::Vector3d(std::size_t)>& point_at);
 
 /// In what measure colours are given.
 enum class ColorScale {

@@ -1,13 +1,18 @@
 #include "io/depth_image.hpp"
 
 #include <fmt/format.h>
+#include <spng.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <optional>
 
 #include "io/cloud_builder.hpp"
-#include "io/progress.hpp"
-#include "io/row.hpp"
+#include "io/input.hpp"
+#include "io/text_scanner.hpp"
 
 namespace palpate::io {
 namespace {
@@ -92,6 +97,153 @@ void check_image_size(const Input& input, std::uint64_t width, std::uint64_t hei
        fmt::format("{} x {} pixels announced, too many for {} bytes", width, height,
                    input.bytes.size()),
        "The file is cut or damaged: fetch it again");
+}
+
+namespace {
+
+constexpr std::size_t kEveryRow = 4;  // one row in four tells enough
+// Swapped images of real sensors are 20 to 100 times rougher than right ones.
+constexpr std::uint64_t kRougher = 4;
+constexpr std::uint64_t kFewest = 32;  // steps to judge by
+
+std::uint16_t exchanged(std::uint16_t v) {
+  return static_cast<std::uint16_t>((v >> 8U) | (v << 8U));
+}
+
+std::uint64_t step(std::uint16_t a, std::uint16_t b) {
+  return static_cast<std::uint64_t>(std::abs(static_cast<int>(a) - static_cast<int>(b)));
+}
+
+}  // namespace
+
+bool looks_swapped(const DepthImage& image) {
+  std::uint64_t steps = 0;
+  std::uint64_t fine = 0;  // samples that are more than a count of 256
+  std::uint64_t as_read = 0;
+  std::uint64_t as_exchanged = 0;
+  for (std::size_t row = 0; row < image.height; row += kEveryRow) {
+    const std::uint16_t* samples = image.samples.data() + row * image.width;
+    for (std::size_t i = 1; i < image.width; ++i) {
+      const std::uint16_t a = samples[i - 1];
+      const std::uint16_t b = samples[i];
+      if (a == 0 || b == 0 || a == 65535 || b == 65535) continue;
+      ++steps;
+      fine += (b & 0xffU) != 0 ? 1 : 0;
+      as_read += step(a, b);
+      as_exchanged += step(exchanged(a), exchanged(b));
+    }
+  }
+  // Whole counts of 256 are coarse, and look smooth either way.
+  return steps >= kFewest && 2 * fine > steps && as_read > kRougher * as_exchanged;
+}
+
+void swap_bytes(DepthImage& image) {
+  for (std::uint16_t& sample : image.samples) sample = exchanged(sample);
+}
+
+namespace {
+
+// The three numbers of the header are separated by white space and comments up to the line's end;
+// exactly one white-space character follows the last.
+class PgmHeaderParser {
+ public:
+  explicit PgmHeaderParser(const Input& input)
+      : input_(input), offset_(std::min<std::size_t>(2, input.bytes.size())) {}
+
+  std::size_t number(std::string_view what) {
+    const std::string_view text = input_.text();
+    while (offset_ < text.size() && (is_space(text[offset_]) || text[offset_] == '#')) {
+      if (text[offset_] == '#') offset_ = std::min(text.find('\n', offset_), text.size() - 1);
+      ++offset_;
+    }
+    const std::size_t begin = offset_;
+    while (offset_ < text.size() && text[offset_] >= '0' && text[offset_] <= '9') ++offset_;
+    const std::optional<std::size_t> value = parse_count(text.substr(begin, offset_ - begin));
+    if (!value) {
+      fail_at_byte(input_, begin, fmt::format("the PGM header lacks its {}", what),
+                   "Fetch or export the image again");
+    }
+    return *value;
+  }
+
+  [[nodiscard]] std::size_t data_offset() const { return offset_ + 1; }
+
+ private:
+  static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+  const Input& input_;
+  std::size_t offset_;  // at first behind "P5"
+};
+
+}  // namespace
+
+DepthImage read_pgm(const Input& input) {
+  PgmHeaderParser header(input);
+  DepthImage image;
+  image.width = header.number("width");
+  image.height = header.number("height");
+  const std::size_t largest = header.number("largest value");
+  if (largest < 256 || largest > 65535) {
+    fail(input, fmt::format("a PGM picture of values up to {}, not a 16-bit depth image", largest),
+         "Give the depth image of the camera, or a point cloud");
+  }
+  check_image_size(input, image.width, image.height);
+  image.largest = static_cast<std::uint16_t>(largest);
+  image.format = fmt::format("depth PGM, {} x {}", image.width, image.height);
+  const std::size_t begin = std::min(header.data_offset(), input.bytes.size());
+  const std::size_t pixels = image.width * image.height;
+  const std::size_t present = (input.bytes.size() - begin) / 2;
+  if (present < pixels) {
+    fail_at_byte(input, input.bytes.size(),
+                 fmt::format("the file ends after {} of {} pixels", present, pixels),
+                 "Fetch the image again");
+  }
+  image.samples.reserve(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    image.samples.push_back(
+        load_as<std::uint16_t>(input.bytes.data() + begin + 2 * i, std::endian::big));
+  }
+  return image;
+}
+
+namespace {
+
+struct FreeContext {
+  void operator()(spng_ctx* context) const { spng_ctx_free(context); }
+};
+
+constexpr std::size_t kLargestChunk = std::size_t{64} << 20U;  // bytes of text, profiles, ...
+
+void check(const Input& input, int status) {
+  if (status == SPNG_OK) return;
+  fail(input, fmt::format("the PNG data is damaged or cut ({})", spng_strerror(status)),
+       "Fetch or export the image again");
+}
+
+}  // namespace
+
+DepthImage read_png(const Input& input) {
+  const std::unique_ptr<spng_ctx, FreeContext> context(spng_ctx_new(0));
+  if (!context) fail(input, "libspng cannot start", "Free some memory");
+  spng_set_chunk_limits(context.get(), kLargestChunk, kLargestChunk);
+  check(input, spng_set_png_buffer(context.get(), input.bytes.data(), input.bytes.size()));
+  spng_ihdr header{};
+  check(input, spng_get_ihdr(context.get(), &header));
+  if (header.color_type != SPNG_COLOR_TYPE_GRAYSCALE || header.bit_depth != 16) {
+    fail(input,
+         fmt::format("a picture (PNG, {} bits), not a 16-bit grey depth image", header.bit_depth),
+         "Give the depth image of the camera, or a point cloud");
+  }
+  check_image_size(input, header.width, header.height);
+  DepthImage image{.width = header.width,
+                   .height = header.height,
+                   .samples = {},
+                   .format = fmt::format("depth PNG, {} x {}", header.width, header.height)};
+  image.samples.resize(image.width * image.height);
+  // SPNG_FMT_PNG gives 16-bit samples in the byte order of this machine; the file's is big endian.
+  check(input, spng_decode_image(context.get(), image.samples.data(),
+                                 image.samples.size() * sizeof(std::uint16_t), SPNG_FMT_PNG, 0));
+  return image;
 }
 
 }  // namespace palpate::io

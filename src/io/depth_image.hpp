@@ -37,4 +37,18 @@ struct DepthImage {
 /// @throws Error unless `pixels` 16-bit samples could come from `bytes` bytes that deflate packed.
 void check_image_size(const Input& input, std::uint64_t width, std::uint64_t height);
 
+/// Do the samples make a smoother picture with their bytes exchanged? Surfaces are smooth, and a
+/// swapped image jumps from pixel to pixel by what should be its fine steps.
+[[nodiscard]] bool looks_swapped(const DepthImage& image);
+
+/// Exchanges the bytes of every sample.
+void swap_bytes(DepthImage& image);
+
+/// A binary PGM ("P5") with a largest value above 255: two bytes a pixel, the more significant
+/// first, as its specification has it.
+[[nodiscard]] DepthImage read_pgm(const Input& input);
+
+/// A 16-bit grey PNG. @throws Error for any other PNG and for damaged ones.
+[[nodiscard]] DepthImage read_png(const Input& input);
+
 }  // namespace palpate::io

@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
+
+#include "io/input.hpp"
 
 namespace palpate::io {
 
@@ -30,5 +33,26 @@ class Bytes {
 /// another program cuts short meanwhile gives an error instead of a bus fault.
 /// @throws Error that names the path and the reason: absent, a folder, no permission, a device.
 [[nodiscard]] Bytes read_bytes(const std::filesystem::path& path);
+
+/// The bytes inside gzip (one member or several in a row). Refuses what grows beyond any honest
+/// cloud: more than 64 MiB and more than 250 times the packed size.
+/// @throws Error for broken, cut or oversized data.
+[[nodiscard]] Bytes gunzip(const Input& input);
+
+/// Bytes under a path, for libraries that read nothing but files: a file in memory (Linux memfd),
+/// gone with this object.
+class MemoryFile {
+ public:
+  /// @throws Error when the system grants no such file, or no room for it.
+  explicit MemoryFile(std::span<const std::byte> bytes);
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile();
+
+  [[nodiscard]] std::string path() const;
+
+ private:
+  int fd_;
+};
 
 }  // namespace palpate::io

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "io/text_scanner.hpp"
-#include "io/xyz_line.hpp"
+#include "io/xyz.hpp"
 
 namespace palpate::io {
 namespace {

@@ -1,14 +1,13 @@
-#include "io/laz.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "io/cloud_builder.hpp"
+#include "io/file_bytes.hpp"
+#include "io/input.hpp"
+#include "io/las.hpp"
 #include "io/laszip_library.hpp"
-#include "io/memory_file.hpp"
-#include "io/number.hpp"
-#include "io/progress.hpp"
+#include "io/text_scanner.hpp"
 
 namespace palpate::io {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "io/cloud_builder.hpp"
-#include "io/progress.hpp"
+#include "io/input.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {

@@ -9,11 +9,7 @@
 
 #include "io/cloud_builder.hpp"
 #include "io/file_bytes.hpp"
-#include "io/lzf.hpp"
-#include "io/origin.hpp"
-#include "io/pcd_header.hpp"
-#include "io/progress.hpp"
-#include "io/row.hpp"
+#include "io/input.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {

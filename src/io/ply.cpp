@@ -7,9 +7,7 @@
 #include <bit>
 
 #include "io/cloud_builder.hpp"
-#include "io/ply_header.hpp"
-#include "io/progress.hpp"
-#include "io/row.hpp"
+#include "io/input.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {

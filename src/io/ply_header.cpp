@@ -1,10 +1,9 @@
-#include "io/ply_header.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "io/ply.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {

@@ -8,12 +8,8 @@
 #include "io/depth_image.hpp"
 #include "io/file_bytes.hpp"
 #include "io/file_kind.hpp"
-#include "io/gzip.hpp"
 #include "io/input.hpp"
-#include "io/pgm.hpp"
-#include "io/png.hpp"
-#include "io/swapped.hpp"
-#include "palpate/depth/to_metres.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/io/read_cloud.hpp"
 
 namespace palpate {

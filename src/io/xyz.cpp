@@ -7,10 +7,8 @@
 #include <optional>
 
 #include "io/cloud_builder.hpp"
-#include "io/progress.hpp"
+#include "io/input.hpp"
 #include "io/text_scanner.hpp"
-#include "io/xyz_columns.hpp"
-#include "io/xyz_line.hpp"
 
 namespace palpate::io {
 namespace {

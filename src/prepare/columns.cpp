@@ -1,6 +1,11 @@
 #include "prepare/columns.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "geometry/parallel.hpp"
 
 namespace palpate {
 namespace {
@@ -58,6 +63,58 @@ PointCloud placed(PointCloud cloud, const Eigen::Isometry3d& T_world_sensor) {
   }
   if (cloud.viewpoint) cloud.viewpoint = T_world_sensor * *cloud.viewpoint;
   return cloud;
+}
+
+namespace {
+
+constexpr float kLeast = 0.2f;  // a lone point still holds the surface together
+constexpr float kMost = 3;
+
+}  // namespace
+
+void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts,
+                     std::span<const float> radii, std::vector<float>& weights) {
+  detail::parallel_ranges(weights.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      near.clear();
+      grid.within(grid.points()[i], radii[i], near);
+      float sum = 0;
+      for (const std::uint32_t k : near) sum += static_cast<float>(counts[k]);
+      const float mean = near.empty() ? 0 : sum / static_cast<float>(near.size());
+      if (!(mean > 0)) continue;
+      weights[i] *= std::clamp(static_cast<float>(counts[i]) / mean, kLeast, kMost);
+    }
+  });
+}
+
+void add_twins(std::span<const Twin> twins, SurfacePoints& points) {
+  if (twins.empty()) return;
+  PointSheets& sheets = points.sheets;
+  for (const Twin& twin : twins) points.density_weights[twin.point] *= 0.5f;
+  std::vector<Eigen::Vector3f> positions(points.grid.points().begin(), points.grid.points().end());
+  const auto append = [&](auto& column, std::uint32_t Twin::*from) {
+    if (column.empty()) return;
+    for (const Twin& twin : twins) column.push_back(column[twin.*from]);
+  };
+  append(positions, &Twin::point);
+  points.grid = CellGrid(positions);
+
+  // All of a twin is the point's but what its host knows of the sheet.
+  const auto add = [&](auto& column, std::uint32_t Twin::*from) {
+    append(column, from);
+    if (!column.empty()) column = in_grid_order(points.grid, column);
+  };
+  add(points.density_weights, &Twin::point);
+  add(points.radii, &Twin::point);
+  add(points.confidences, &Twin::point);
+  add(points.materials, &Twin::point);
+  add(points.colors, &Twin::point);
+  add(points.normals, &Twin::host);
+  add(sheets.sheet, &Twin::host);
+  add(sheets.residual, &Twin::host);
+  add(sheets.above, &Twin::host);
+  add(sheets.below, &Twin::host);
 }
 
 }  // namespace palpate

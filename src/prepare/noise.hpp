@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "palpate/geometry/cell_grid.hpp"
+#include "prepare/sheets.hpp"
 
 namespace palpate {
 
@@ -17,7 +21,11 @@ struct Noise {
 /// Noise that neighbours share (a depth camera's, mostly) is mistaken for shape in narrow windows
 /// and does not average out as fast as its variance says. Wide windows tell, as long as they see
 /// noise and no shape: on the flattest of them the residuals no longer grow with the window
-/// (field_choice.md section 5; nss_fast.md section 2).
+/// (docs/method.md 5.2).
 [[nodiscard]] Noise measure_noise(const CellGrid& grid, double spacing);
+
+/// 1 for each point that is much farther from others than most and on no sheet with them.
+/// `typical`: the median spacing, m. In sorted order.
+[[nodiscard]] std::vector<std::uint8_t> find_strays(const SheetInput& input, double typical);
 
 }  // namespace palpate

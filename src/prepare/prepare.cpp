@@ -10,27 +10,18 @@
 #include <utility>
 #include <vector>
 
-#include "field/density_sums.hpp"
-#include "geometry/speckle.hpp"
+#include "field/density.hpp"
+#include "geometry/normals.hpp"
+#include "geometry/weight_sums.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/filters.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "palpate/geometry/support.hpp"
-#include "palpate/geometry/voxel_grid.hpp"
-#include "prepare/check_options.hpp"
-#include "prepare/close_gaps.hpp"
+#include "prepare/check_input.hpp"
 #include "prepare/columns.hpp"
-#include "prepare/count_weights.hpp"
-#include "prepare/given_normals.hpp"
-#include "prepare/irregularity.hpp"
-#include "prepare/limit_growth.hpp"
+#include "prepare/growth.hpp"
 #include "prepare/noise.hpp"
-#include "prepare/noise_map.hpp"
-#include "prepare/noisy_radii.hpp"
-#include "prepare/own_sheets.hpp"
+#include "prepare/radii.hpp"
 #include "prepare/sheets.hpp"
-#include "prepare/strays.hpp"
-#include "prepare/twins.hpp"
 
 namespace palpate {
 namespace {

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "geometry/neighborhoods.hpp"
-#include "palpate/geometry/normals.hpp"
+#include "geometry/normals.hpp"
 
 namespace palpate {
 namespace {

@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "palpate/scene/source.hpp"
+#include "scene/frame_timing.hpp"
 #include "scene/policies/fusion.hpp"
-#include "scene/policies/layer_history.hpp"
 #include "scene/policies/morph.hpp"
 #include "scene/recycler.hpp"
-#include "scene/rhythm.hpp"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "field/free_space.hpp"
+#include "field/mean_surface.hpp"
 
 namespace palpate {
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "scene/disagreement.hpp"
 #include "scene/seams.hpp"
 
 namespace palpate {

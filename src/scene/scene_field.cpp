@@ -12,9 +12,7 @@
 
 #include "field/evaluate.hpp"
 #include "field/mean_surface.hpp"
-#include "scene/felt_surface.hpp"
 #include "scene/patches.hpp"
-#include "scene/reach_board.hpp"
 #include "scene/seams.hpp"
 #include "scene/source_view.hpp"
 #include "scene/tool_reach.hpp"

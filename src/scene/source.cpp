@@ -9,10 +9,11 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/depth/organised.hpp"
-#include "prepare/check_options.hpp"
+#include "palpate/scene/snapshot.hpp"
+#include "prepare/check_input.hpp"
 #include "scene/intake.hpp"
-#include "scene/reach_board.hpp"
 #include "scene/seams.hpp"
+#include "scene/tool_reach.hpp"
 
 namespace palpate {
 namespace {
@@ -266,6 +267,20 @@ std::shared_ptr<const SurfacePoints> Source::points() const {
 SourceState Source::state() const {
   const std::lock_guard lock(mutex_);
   return state_;
+}
+
+double progress(const Snapshot& snapshot, double time) noexcept {
+  const double duration = snapshot.end - snapshot.start;
+  if (!(duration > 0)) return time < snapshot.start ? 0 : 1;
+  return std::clamp((time - snapshot.start) / duration, 0.0, 1.0);
+}
+
+double presence(const Snapshot& snapshot, double time) noexcept {
+  const double own = snapshot.presence_start +
+                     progress(snapshot, time) * (snapshot.presence_end - snapshot.presence_start);
+  const double silence = time - snapshot.silent_from;
+  if (!(silence > 0)) return own;
+  return snapshot.fade > 0 ? own * std::clamp(1 - silence / snapshot.fade, 0.0, 1.0) : 0;
 }
 
 }  // namespace palpate

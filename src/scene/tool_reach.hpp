@@ -1,10 +1,48 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
-#include "palpate/scene/reach.hpp"
+#include "palpate/scene/handoff.hpp"
+#include "palpate/scene/snapshot.hpp"
+#include "palpate/scene/source.hpp"
 
 namespace palpate {
+
+/// Where fields write their reach, each in a place of its own, and preparation reads it. Without
+/// locks: a version that is odd while a place is being written tells who reads to look again.
+class ReachBoard {
+ public:
+  static constexpr std::size_t kPlaces = Handoff<Snapshot>::kReaders;
+
+  ReachBoard() {
+    for (std::size_t i = 0; i < kPlaces; ++i) clear(i);
+  }
+
+  /// One thread a place. Wait-free.
+  void write(std::size_t place, const Reach& reach) noexcept;
+
+  /// The place says nothing from now on.
+  void clear(std::size_t place) noexcept { write(place, {Eigen::Vector3d::Zero(), -1}); }
+
+  /// Replaces `found` by all that is known. Not real-time; allocates only to grow. A place that is
+  /// written faster than it can be read is left out.
+  void read(std::vector<Reach>& found) const;
+
+ private:
+  static constexpr std::size_t kCacheLine = 64;
+
+  struct alignas(kCacheLine) Place {
+    std::atomic<std::uint32_t> version{0};
+    std::array<std::atomic<double>, 4> values{};  // center, radius
+  };
+
+  std::array<Place, kPlaces> places_;
+};
 
 /// Foresees where a tool can be until the next frames have become a surface. Real-time.
 class ToolReach {

@@ -6,7 +6,7 @@
 
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/sensor/depth_camera.hpp"
-#include "palpate/sensor/stream_state.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate::sensor {
 

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "palpate/base/error.hpp"
-#include "palpate/depth/to_metres.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "sensor/drivers.hpp"
 #include "sensor/kinect_depth.hpp"
 #include "sensor/live_camera.hpp"

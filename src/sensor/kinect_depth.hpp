@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "palpate/geometry/pinhole.hpp"
+#include "palpate/depth/depth_frame.hpp"
 
 namespace palpate::sensor {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "palpate/depth/to_metres.hpp"
+#include "palpate/depth/depth_frame.hpp"
 
 namespace palpate::sensor {
 

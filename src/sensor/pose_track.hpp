@@ -10,6 +10,24 @@
 
 namespace palpate::sensor {
 
+/// A pose from numbers that people and programs wrote down: rounded, so that rotations are a little
+/// off; these are set right. Nothing when they are far off (1 %), or beyond 10^6 m.
+[[nodiscard]] std::optional<Eigen::Isometry3d> rigid(const Eigen::Vector3d& place,
+                                                     const Eigen::Quaterniond& rotation);
+[[nodiscard]] std::optional<Eigen::Isometry3d> rigid(const Eigen::Vector3d& place,
+                                                     const Eigen::Matrix3d& rotation);
+
+struct ListedFrame {
+  double stamp = 0;   // s
+  std::string image;  // path relative to the list's folder
+};
+
+/// Reads a depth.txt ("time file" a line) or an associations.txt ("time file time file" a line, one
+/// of them under depth/) of the TUM RGB-D benchmark.
+/// @throws Error that names the line, also when times do not grow from line to line.
+[[nodiscard]] std::vector<ListedFrame> parse_frame_list(std::string_view text,
+                                                        const std::string& name);
+
 /// A pose at a time.
 struct StampedPose {
   double stamp = 0;  // s

@@ -9,7 +9,6 @@
 #include "io/file_bytes.hpp"
 #include "io/input.hpp"
 #include "palpate/base/error.hpp"
-#include "sensor/frame_list.hpp"
 #include "sensor/pose_track.hpp"
 #include "sensor/sequence_description.hpp"
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "palpate/base/error.hpp"
-#include "sensor/rigid.hpp"
+#include "sensor/pose_track.hpp"
 
 namespace palpate::sensor {
 namespace {

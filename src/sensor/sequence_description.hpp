@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "palpate/depth/camera_model.hpp"
+#include "palpate/depth/depth_frame.hpp"
 
 namespace palpate::sensor {
 

@@ -1,5 +1,3 @@
-#include "palpate/sensor/simulated_setup.hpp"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -8,7 +6,8 @@
 
 #include "base/angle.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_table.hpp"
+#include "palpate/sensor/simulated_camera.hpp"
+#include "palpate/sensor/simulated_scene.hpp"
 #include "sensor/simulated_keys.hpp"
 
 namespace palpate {

@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "sensor/ask.hpp"
 #include "sensor/frame_check.hpp"
-#include "sensor/require_time.hpp"
 #include "sensor/stream_log.hpp"
 
 namespace palpate {

@@ -3,9 +3,45 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
+#include "palpate/sensor/stream.hpp"
+#include "sensor/frame_check.hpp"
+
+namespace palpate {
+
+std::string_view name_of(StreamPhase phase) noexcept {
+  switch (phase) {
+    case StreamPhase::starting:
+      return "starting";
+    case StreamPhase::running:
+      return "running";
+    case StreamPhase::stalled:
+      return "stalled";
+    case StreamPhase::failed:
+      return "failed";
+    case StreamPhase::ended:
+      break;
+  }
+  return "ended";
+}
+
+}  // namespace palpate
+
 namespace palpate::sensor {
+
+CameraStatus ask(DepthCamera& camera, DepthFrame& frame, double timeout, std::string& reason) {
+  try {
+    const CameraStatus status = camera.read(frame, timeout);
+    if (left_out(status) || status == CameraStatus::failed) reason = camera.reason();
+    return status;
+  } catch (const std::exception& error) {
+    reason = error.what();
+  }
+  return CameraStatus::failed;
+}
+
 namespace {
 
 constexpr std::uint64_t kMean = 8;  // intervals that the rate is a mean of, about

@@ -1,12 +1,29 @@
 #pragma once
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <mutex>
 #include <string>
 
-#include "palpate/sensor/stream_state.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/stream.hpp"
 #include "sensor/frame_check.hpp"
 
 namespace palpate::sensor {
+
+/// @throws Error unless an option's time is finite and `good`; `name` is whom the stream feeds.
+inline void require_time(bool good, double seconds, const char* what, const std::string& name) {
+  if (good && std::isfinite(seconds)) return;
+  throw Error(
+      fmt::format("stream to {}: {} cannot be {} s. Give a time in seconds.", name, what, seconds));
+}
+
+/// DepthCamera::read() of a camera that may also throw: it has failed then. `reason` says why where
+/// no whole frame came, and is left as it is otherwise.
+[[nodiscard]] CameraStatus ask(DepthCamera& camera, DepthFrame& frame, double timeout,
+                               std::string& reason);
 
 /// Keeps a stream's books. Any thread; times are s on the stream's clock.
 class StreamLog {

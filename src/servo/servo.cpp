@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "base/requirement.hpp"
-#include "palpate/servo/passive_stiffness.hpp"
+#include "palpate/servo/z_width.hpp"
 
 namespace palpate {
 namespace {

@@ -1,15 +1,186 @@
 #include "palpate/servo/servo_thread.hpp"
 
 #include <fmt/core.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstddef>
 #include <future>
 #include <system_error>
 #include <utility>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/thread_clock.hpp"
 
 namespace palpate {
+namespace {
+
+constexpr std::size_t kStack = 256 * 1024;  // bytes that a step may use
+constexpr std::size_t kPage = 4096;
+constexpr unsigned long kTimerSlack = 1;  // ns; 50000 for threads without real-time priority
+
+std::string reason(int error) {
+  return std::generic_category().message(error);
+}
+
+RealtimeRequest ask_for_priority(int priority) {
+  RealtimeRequest request;
+  request.what = fmt::format("real-time priority {} (SCHED_FIFO)", priority);
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+  request.granted = error == 0;
+  if (error == EINVAL) {
+    request.remedy = "there is no such priority; give 1 to 99";
+  } else if (!request.granted) {
+    request.remedy = fmt::format(
+        "{}; permit it with a line '@realtime - rtprio {}' in /etc/security/limits.d, "
+        "the user in the group 'realtime', and a new login",
+        reason(error), std::max(priority, 95));
+  }
+  return request;
+}
+
+// Locking what is to come, too, would make allocations fail once the limit is reached.
+bool may_lock_all() {
+  rlimit limit{};
+  getrlimit(RLIMIT_MEMLOCK, &limit);
+  return limit.rlim_cur == RLIM_INFINITY || geteuid() == 0;
+}
+
+RealtimeRequest ask_for_memory() {
+  RealtimeRequest request;
+  request.what = "memory locked (mlockall)";
+  int error = EPERM;
+  if (may_lock_all()) error = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+  request.granted = error == 0;
+  if (!request.granted) {
+    request.remedy = fmt::format(
+        "{}; permit it with a line '@realtime - memlock unlimited' in /etc/security/limits.d, "
+        "the user in the group 'realtime', and a new login",
+        reason(error));
+  }
+  return request;
+}
+
+bool is_processor(int processor) {
+  return processor >= 0 && processor < CPU_SETSIZE;
+}
+
+// Those that the calling thread may run on: "0-3, 6".
+std::string allowed_processors() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (pthread_getaffinity_np(pthread_self(), sizeof set, &set) != 0) return "unknown ones";
+  const auto allowed = [&set](int i) {
+    return is_processor(i) && CPU_ISSET(static_cast<std::size_t>(i), &set);
+  };
+  std::string list;
+  for (int first = 0; first < CPU_SETSIZE; ++first) {
+    if (!allowed(first)) continue;
+    int last = first;
+    while (allowed(last + 1)) ++last;
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", first);
+    if (last > first) list += fmt::format("-{}", last);
+    first = last;
+  }
+  return list;
+}
+
+RealtimeRequest answered(std::string what, int error) {
+  RealtimeRequest request{std::move(what), error == 0, {}};
+  if (!request.granted) {
+    request.remedy = fmt::format(
+        "{}; this thread may run on {}: give one of these, or permit others where the program is "
+        "started (systemd: AllowedCPUs=, containers: --cpuset-cpus, or without taskset)",
+        reason(error), allowed_processors());
+  }
+  return request;
+}
+
+RealtimeRequest ask_for_processor(int processor) {
+  int error = EINVAL;
+  if (is_processor(processor)) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    CPU_SET(static_cast<std::size_t>(processor), &set);
+    error = pthread_setaffinity_np(pthread_self(), sizeof set, &set);
+  }
+  return answered(fmt::format("pinned to processor {}", processor), error);
+}
+
+// Touches the stack once, so that no step is the first to do so.
+void warm_stack() {
+  std::array<volatile char, kStack> stack;
+  for (std::size_t i = 0; i < kStack; i += kPage) stack[i] = 0;
+}
+
+}  // namespace
+
+bool RealtimeReport::all_granted() const noexcept {
+  return std::ranges::all_of(requests, &RealtimeRequest::granted);
+}
+
+std::string in_words(const RealtimeReport& report) {
+  std::string words;
+  for (const RealtimeRequest& request : report.requests) {
+    words += request.granted ? fmt::format("{}: yes\n", request.what)
+                             : fmt::format("{}: not granted ({})\n", request.what, request.remedy);
+  }
+  return words;
+}
+
+RealtimeRequest leave_processor(int processor) {
+  std::string what = fmt::format("processor {} left to the servo", processor);
+  cpu_set_t set;
+  int error = pthread_getaffinity_np(pthread_self(), sizeof set, &set);
+  if (error != 0) return answered(std::move(what), error);
+  if (!is_processor(processor) || !CPU_ISSET(static_cast<std::size_t>(processor), &set)) {
+    return answered(std::move(what), EINVAL);
+  }
+  CPU_CLR(static_cast<std::size_t>(processor), &set);
+  if (CPU_COUNT(&set) == 0) {
+    return {std::move(what), false, "it is the only one that this process may use"};
+  }
+  error = pthread_setaffinity_np(pthread_self(), sizeof set, &set);
+  return answered(std::move(what), error);
+}
+
+RealtimeReport make_realtime(const RealtimeOptions& options) {
+  RealtimeReport report;
+  prctl(PR_SET_TIMERSLACK, kTimerSlack);
+  if (options.processor) report.requests.push_back(ask_for_processor(*options.processor));
+  if (options.realtime_priority) report.requests.push_back(ask_for_priority(options.priority));
+  if (options.lock_memory) report.requests.push_back(ask_for_memory());
+  warm_stack();
+  return report;
+}
+
+double Deadlines::begin(double now) noexcept {
+  const double late = std::max(now - next(), 0.0);
+  const auto missed = static_cast<std::uint64_t>(std::floor(late / period_));
+  index_ += missed + 1;
+  skipped_ += missed;
+  while (next() <= now) {  // rounding
+    ++index_;
+    ++skipped_;
+  }
+  return late;
+}
+
+void Deadlines::restart(double now) noexcept {
+  start_ = now;
+  index_ = 1;
+}
+
 namespace {
 
 double rate_for(const DeviceInfo& device, const std::optional<double>& wanted) {

@@ -1,12 +1,43 @@
-#include "palpate/servo/wall_trial.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/requirement.hpp"
 #include "palpate/servo/servo.hpp"
+#include "palpate/servo/z_width.hpp"
 
 namespace palpate {
+
+double passive_stiffness(const DeviceInfo& device, double damping) noexcept {
+  if (!(device.maximum_force > 0) || !(device.rate > 0)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const double period = 1 / device.rate;
+  return passive_stiffness(device.damping + damping, period, device.delay.value_or(period));
+}
+
+double Shaking::add(double place, double dt) noexcept {
+  if (!started_) turned_at_ = farthest_ = place;
+  started_ = true;
+  since_farthest_ += dt;
+  const double back = place - farthest_;
+  if (direction_ * back >= 0 && back != 0) {  // goes on, or begins
+    if (direction_ == 0) direction_ = back > 0 ? 1 : -1;
+    farthest_ = place;
+    since_turn_ += since_farthest_;
+    since_farthest_ = 0;
+  } else if (std::abs(back) > kSmallest) {  // has turned
+    swing_ = since_turn_ < kSlowest ? std::abs(farthest_ - turned_at_) : 0;
+    turned_at_ = farthest_;
+    farthest_ = place;
+    direction_ = -direction_;
+    since_turn_ = since_farthest_;
+    since_farthest_ = 0;
+  }
+  if (since_turn_ + since_farthest_ > 2 * kSlowest) swing_ = 0;
+  return swing_;
+}
+
 namespace {
 
 using Eigen::Vector3d;

@@ -16,7 +16,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/base/latest.hpp"
 #include "palpate/field/surface_points.hpp"
-#include "palpate/geometry/box.hpp"
+#include "palpate/geometry/shapes.hpp"
 #include "viewer/access.hpp"
 #include "viewer/client_sessions.hpp"
 #include "viewer/messages.hpp"

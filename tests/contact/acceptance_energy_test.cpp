@@ -1,4 +1,4 @@
-// algorithm.md section 10: closed paths of the hand on static scenes give it no energy.
+// docs/method.md 10: closed paths of the hand on static scenes give it no energy.
 #include <gtest/gtest.h>
 
 #include <numbers>

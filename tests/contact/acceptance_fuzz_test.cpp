@@ -1,4 +1,4 @@
-// algorithm.md section 10: a random hand on point surfaces: never NaN, inside, or on the wrong
+// docs/method.md 10: a random hand on point surfaces: never NaN, inside, or on the wrong
 // side.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// algorithm.md 2.4: a cloud that steps under or over a resting hand takes the proxy along.
+// docs/method.md 3.4: a cloud that steps under or over a resting hand takes the proxy along.
 #include <gtest/gtest.h>
 
 #include "palpate/contact/proxy.hpp"

@@ -1,4 +1,4 @@
-// algorithm.md section 10: plates that hold, edges that let go, offsets, curvature, friction.
+// docs/method.md 10: plates that hold, edges that let go, offsets, curvature, friction.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -67,7 +67,7 @@ TEST(AcceptancePlate, HoldsTenNewtonWhateverItsThickness) {
   for (const double thickness : {1e-3, 2e-3, 4e-3, 8e-3, 16e-3}) {
     PointField points(plate({}, 0.04, thickness));
     Rider rider(points, {0.001, 0.0005, 0.03});
-    // 20 mm through, as in field_choice.md section 3, and 1 mm more where the surface is at 0.
+    // 20 mm through, and 1 mm more where the surface is at 0.
     const Ride ride = rider.to({0.001, 0.0005, -0.021});
     EXPECT_TRUE(ride.last.touching) << thickness;
     EXPECT_GE(ride.last.force.z(), 10) << thickness;

@@ -1,4 +1,4 @@
-// algorithm.md section 10: sweeps against brute-force sampling, 0 missed contacts.
+// docs/method.md 10: sweeps against brute-force sampling, 0 missed contacts.
 #include <gtest/gtest.h>
 
 #include "contact/sweep.hpp"

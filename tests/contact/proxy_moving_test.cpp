@@ -1,4 +1,4 @@
-// Surfaces that step, vanish or cannot be found (algorithm.md 2.4).
+// Surfaces that step, vanish or cannot be found (docs/method.md 3.4).
 #include <gtest/gtest.h>
 
 #include "contact/drive.hpp"

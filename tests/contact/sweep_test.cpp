@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "contact/newton.hpp"
+#include "contact/probe.hpp"
 #include "contact/test_fields.hpp"
 
 namespace palpate::test {

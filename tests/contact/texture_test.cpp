@@ -1,10 +1,9 @@
-#include "contact/texture.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "contact/drive.hpp"
+#include "contact/friction.hpp"
 #include "palpate/field/analytic.hpp"
 
 namespace palpate::test {

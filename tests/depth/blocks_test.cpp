@@ -7,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "depth/fill_gaps.hpp"
 #include "depth/neighbors.hpp"
 #include "depth/small_frames.hpp"
 

@@ -1,8 +1,7 @@
-#include "depth/fit_region.hpp"
-
 #include <gtest/gtest.h>
 
 #include "base/random.hpp"
+#include "depth/window_fits.hpp"
 #include "support/effort.hpp"
 
 namespace palpate::test {

@@ -19,7 +19,7 @@ struct MetricFit {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-/// The noise-sized fit in its slow, first form (field_choice.md section 4), which needs neither
+/// The noise-sized fit in its slow, first form, which needs neither
 /// tables nor rectangles: all blocks within a metric radius, weighted by their noise, in a window
 /// that grows while a plane or a paraboloid explains it; past that only blocks that lie on it.
 class MetricFitter {

@@ -1,11 +1,10 @@
-#include "depth/noise_curve.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
 #include "base/random.hpp"
+#include "depth/noise_fit.hpp"
 
 namespace palpate::depth {
 namespace {

@@ -1,4 +1,4 @@
-// The noise of real sensors' frames, beside what nss_fast.md section 2 measured of such sensors,
+// The noise of real sensors' frames, beside what was measured of such sensors before,
 // and what the filters make of it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,6 @@
 
 #include "depth/noise_tracker.hpp"
 #include "palpate/depth/depth_filter.hpp"
-#include "palpate/depth/sensor_profiles.hpp"
 #include "palpate/io/read_cloud.hpp"
 
 namespace palpate {

@@ -6,7 +6,7 @@
 
 #include "depth/noise_tracker.hpp"
 #include "depth/noisy_frames.hpp"
-#include "palpate/depth/sensor_profiles.hpp"
+#include "palpate/depth/depth_filter.hpp"
 
 namespace palpate {
 namespace {

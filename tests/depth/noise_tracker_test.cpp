@@ -8,7 +8,7 @@
 
 #include "depth/noisy_frames.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/depth/sensor_profiles.hpp"
+#include "palpate/depth/depth_filter.hpp"
 
 namespace palpate {
 namespace {

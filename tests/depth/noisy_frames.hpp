@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "depth/depth_view.hpp"
+#include "depth/noise_tracker.hpp"
 #include "depth/shapes.hpp"
 #include "palpate/sensor/simulated_depth.hpp"
 #include "palpate/sensor/simulated_noise.hpp"

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "base/random.hpp"
+#include "depth/input.hpp"
 #include "depth/small_frames.hpp"
-#include "depth/undistort.hpp"
 
 namespace palpate::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "depth/block_fits.hpp"
+#include "depth/blocks.hpp"
 
 namespace palpate::test {
 

@@ -1,5 +1,3 @@
-#include "palpate/depth/to_metres.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "palpate/base/error.hpp"
+#include "palpate/depth/depth_frame.hpp"
 
 namespace palpate {
 namespace {

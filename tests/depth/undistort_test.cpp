@@ -1,8 +1,8 @@
-#include "depth/undistort.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "depth/input.hpp"
 
 namespace palpate::test {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/waiting_clock.hpp"
 #include "palpate/device/device_link.hpp"
 
 namespace palpate::test {

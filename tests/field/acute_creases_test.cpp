@@ -1,12 +1,11 @@
 // Creases that are narrower than a support can tell apart, without a proxy.
-#include "field/acute_creases.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "field/edged_shapes.hpp"
 #include "field/evaluate.hpp"
+#include "field/joined_height.hpp"
 
 namespace palpate::test {
 namespace {

@@ -1,6 +1,6 @@
-#include "palpate/field/kernel.hpp"
-
 #include <gtest/gtest.h>
+
+#include "palpate/field/field_options.hpp"
 
 namespace palpate {
 namespace {

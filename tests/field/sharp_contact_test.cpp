@@ -1,4 +1,4 @@
-// A proxy on surfaces with sharp edges (field_choice.md section 7).
+// A proxy on surfaces with sharp edges (docs/method.md 2.8).
 #include <gtest/gtest.h>
 
 #include <numbers>

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "geometry/clouds.hpp"
+#include "geometry/normals.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "palpate/geometry/support.hpp"
 
 namespace palpate {
 namespace {

@@ -9,11 +9,11 @@
 #include <cstring>
 
 #include "base/cpu.hpp"
+#include "field/density.hpp"
 #include "geometry/clouds.hpp"
 #include "geometry/neighborhoods.hpp"
 #include "geometry/weight_sums.hpp"
-#include "palpate/field/density.hpp"
-#include "palpate/field/kernel.hpp"
+#include "palpate/field/field_options.hpp"
 
 namespace palpate {
 namespace {

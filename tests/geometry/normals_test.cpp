@@ -1,4 +1,4 @@
-#include "palpate/geometry/normals.hpp"
+#include "geometry/normals.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,3 @@
-#include "palpate/geometry/voxel_grid.hpp"
-
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
@@ -10,6 +8,7 @@
 
 #include "geometry/clouds.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/geometry/filters.hpp"
 
 namespace palpate {
 namespace {

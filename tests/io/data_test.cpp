@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "io/reading.hpp"
-#include "palpate/geometry/box.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate {
 namespace {

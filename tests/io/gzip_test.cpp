@@ -1,9 +1,8 @@
-#include "io/gzip.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "io/file_bytes.hpp"
 #include "io/reading.hpp"
 
 namespace palpate {

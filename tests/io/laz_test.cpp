@@ -1,8 +1,7 @@
-#include "io/laz.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/las.hpp"
 #include "io/las_bytes.hpp"
 
 namespace palpate {

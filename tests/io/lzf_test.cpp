@@ -1,10 +1,10 @@
-#include "io/lzf.hpp"
-
 #include <gtest/gtest.h>
 
 #include <initializer_list>
 #include <string>
 #include <vector>
+
+#include "io/pcd.hpp"
 
 namespace palpate::io {
 namespace {

@@ -1,8 +1,8 @@
-#include "io/origin.hpp"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "io/cloud_builder.hpp"
 
 namespace palpate::io {
 namespace {

@@ -1,10 +1,9 @@
-#include "prepare/close_gaps.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "field/density_sums.hpp"
+#include "field/density.hpp"
+#include "prepare/growth.hpp"
 
 namespace palpate {
 namespace {

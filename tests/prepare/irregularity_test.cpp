@@ -1,11 +1,10 @@
-#include "prepare/irregularity.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
 #include <vector>
 
 #include "palpate/geometry/spacing.hpp"
+#include "prepare/radii.hpp"
 
 namespace palpate {
 namespace {

@@ -1,9 +1,9 @@
-#include "prepare/limit_growth.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
+
+#include "prepare/growth.hpp"
 
 namespace palpate {
 namespace {

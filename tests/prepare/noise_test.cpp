@@ -7,9 +7,8 @@
 #include <random>
 
 #include "palpate/geometry/spacing.hpp"
-#include "prepare/count_weights.hpp"
-#include "prepare/noise_map.hpp"
-#include "prepare/noisy_radii.hpp"
+#include "prepare/columns.hpp"
+#include "prepare/radii.hpp"
 #include "prepare/sheet_fit.hpp"
 
 namespace palpate {

@@ -34,6 +34,7 @@ ALLOWED = {("contact", "palpate/field/field.hpp")}
 PLATFORM_FILES = {"src/base/cpu.cpp"}
 
 SOURCE_FOLDERS = ("apps", "bench", "examples", "fuzz", "include", "src", "tests")
+TEXT_SUFFIXES = {".cpp", ".hpp", ".inl", ".in", ".cmake", ".md", ".mjs", ".py", ".sh", ".ts", ".txt"}
 LONGEST_FILE = 300  # lines
 
 
@@ -152,8 +153,35 @@ def links(root):
                 yield f"{path.relative_to(root)}: {target} does not exist"
 
 
+def documents(root):
+    """Comments and texts name documents that are there, and sections of docs/method.md that are."""
+    method = root / "docs" / "method.md"
+    text = method.read_text(encoding="utf-8") if method.exists() else ""
+    sections = set(re.findall(r"^(?:## |\*\*)(\d+(?:\.\d+)?)", text, re.MULTILINE))
+    for path, number, line in text_lines(root):
+        # What follows a $ is a path that a script makes up.
+        for name in re.findall(r"(?<![\w$./-])/?([\w.-][\w./-]*\.md)\b", line):
+            if not any((base / name).exists() for base in (root, root / "docs", path.parent)):
+                yield f"{path.relative_to(root)}:{number}: {name} does not exist"
+        for section in re.findall(r"docs/method\.md (\d+(?:\.\d+)?)", line):
+            if section not in sections:
+                yield f"{path.relative_to(root)}:{number}: docs/method.md has no section {section}"
+
+
+def text_lines(root):
+    """All lines of what is written by hand, but of the tests of these rules."""
+    for folder in (*SOURCE_FOLDERS, "cmake", "scripts", "web"):
+        for path in sorted((root / folder).rglob("*")):
+            if not path.is_file() or {"node_modules", "dist"} & set(path.parts):
+                continue
+            if path.suffix in TEXT_SUFFIXES and path.name != "rules_test.py":
+                for number, line in enumerate(lines(path), 1):
+                    yield path, number, line
+
+
 RULES = {rule.__name__: rule
-         for rule in (floors, rooms, public_headers, macros, marks, size, readme, links)}
+         for rule in (floors, rooms, public_headers, macros, marks, size, readme, links,
+                      documents)}
 
 
 def main():

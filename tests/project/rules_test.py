@@ -82,6 +82,17 @@ class Rules(unittest.TestCase):
         self.assertEqual(len(self.found(rules.links, {"docs/a.md": "[b](b.md)\n"})), 1)
         self.assertEqual(self.found(rules.links, {"docs/a.md": "[a](a.md#there)\n"}), [])
 
+    def test_a_document_that_is_absent_is_found(self):
+        files = {"docs/there.md": "", "docs/method.md": "## 2. Fields\n\n**2.1 Kernels.** W.\n"}
+        for line, count in (("// as gone.md says\n", 1), ('say("docs/gone.md");\n', 1),
+                            ("// docs/there.md, there.md, docs/method.md 2.1 and 2\n", 0),
+                            ('open(DOCS "/there.md");\n', 0), ('echo >"$scratch/gone.md"\n', 0),
+                            ("// (docs/method.md 2.1; docs/method.md 2.2)\n", 1)):
+            found = self.found(rules.documents, {**files, "scripts/a.sh": line})
+            self.assertEqual(len(found), count, line)
+            self.assertEqual(len(self.found(rules.documents, {**files, "src/io/a.hpp": line})),
+                             count, line)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "field/density.hpp"
 #include "palpate/depth/depth_filter.hpp"
-#include "palpate/field/density.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "support/depth_frames.hpp"
 

@@ -1,8 +1,7 @@
-#include "scene/disagreement.hpp"
-
 #include <gtest/gtest.h>
 
 #include "palpate/scene/scene.hpp"
+#include "scene/seams.hpp"
 #include "support/snapshots.hpp"
 
 namespace palpate {

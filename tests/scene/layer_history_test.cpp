@@ -1,5 +1,3 @@
-#include "scene/policies/layer_history.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <map>
 #include <random>
 
+#include "scene/policies/fusion.hpp"
 #include "support/rates.hpp"
 #include "support/snapshots.hpp"
 

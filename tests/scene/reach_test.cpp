@@ -5,7 +5,6 @@
 
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "scene/reach_board.hpp"
 #include "scene/tool_reach.hpp"
 #include "support/depth_frames.hpp"
 #include "support/effort.hpp"

@@ -1,8 +1,8 @@
-#include "scene/rhythm.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "scene/frame_timing.hpp"
 
 namespace palpate {
 namespace {

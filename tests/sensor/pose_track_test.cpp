@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "palpate/base/error.hpp"
-#include "sensor/frame_list.hpp"
 
 namespace palpate::sensor {
 namespace {

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_setup.hpp"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_table.hpp"
+#include "palpate/sensor/simulated_scene.hpp"
 #include "support/effort.hpp"
 
 namespace palpate {

@@ -1,5 +1,3 @@
-#include "palpate/sensor/simulated_setup.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +5,8 @@
 #include <numbers>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_table.hpp"
+#include "palpate/sensor/simulated_camera.hpp"
+#include "palpate/sensor/simulated_scene.hpp"
 
 // Keys of what sensors do besides noise, and the scenes that show it.
 

@@ -1,5 +1,3 @@
-#include "palpate/sensor/solid.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +5,8 @@
 
 #include "base/random.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_table.hpp"
+#include "palpate/sensor/simulated_depth.hpp"
+#include "palpate/sensor/simulated_scene.hpp"
 
 namespace palpate {
 namespace {

@@ -1,8 +1,8 @@
-#include "palpate/servo/deadlines.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate {
 namespace {

@@ -1,11 +1,11 @@
-#include "palpate/servo/realtime.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sched.h>
 
 #include <algorithm>
 #include <thread>
+
+#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate {
 namespace {

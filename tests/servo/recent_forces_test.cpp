@@ -1,10 +1,9 @@
-#include "palpate/servo/recent_forces.hpp"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <thread>
 
+#include "palpate/servo/servo_state.hpp"
 #include "support/effort.hpp"
 
 namespace palpate {

@@ -1,11 +1,10 @@
 // What the guard's links are for: walls on simulated devices against theory and against themselves
-// without a link (algorithm.md section 8).
+// without a link (docs/method.md 8).
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/servo/passive_stiffness.hpp"
 #include "palpate/servo/z_width.hpp"
 
 namespace palpate {

@@ -1,9 +1,8 @@
-#include "palpate/servo/step_queue.hpp"
-
 #include <gtest/gtest.h>
 
 #include <thread>
 
+#include "palpate/servo/servo_state.hpp"
 #include "support/effort.hpp"
 
 namespace palpate {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "palpate/servo/wall_trial.hpp"
+#include "palpate/servo/z_width.hpp"
 
 namespace palpate {
 namespace {

@@ -1,5 +1,3 @@
-#include "palpate/servo/wall_trial.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +6,7 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
-#include "palpate/servo/passive_stiffness.hpp"
+#include "palpate/servo/z_width.hpp"
 
 namespace palpate {
 namespace {

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "palpate/field/kernel.hpp"
+#include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
 
 namespace palpate::test {
@@ -17,7 +17,7 @@ struct TestPoint {
   double confidence = 1;
 };
 
-/// a_i of algorithm.md section 4 by brute force.
+/// a_i of docs/method.md 2.2 by brute force.
 inline std::vector<float> brute_density_weights(const std::vector<TestPoint>& points,
                                                 Kernel kernel = Kernel::wyvill) {
   const auto weight = [&](std::size_t i, std::size_t j) {

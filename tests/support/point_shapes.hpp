@@ -8,7 +8,7 @@
 
 namespace palpate::test {
 
-/// How a shape is sampled: like the prototypes' scenes of algorithm.md, s = 4 mm unless said.
+/// How a shape is sampled: s = 4 mm unless said.
 struct Sampling {
   double spacing = 4e-3;  ///< m
   double radius = 10e-3;  ///< R, m

@@ -6,7 +6,6 @@
 
 #include "palpate/field/field.hpp"
 #include "palpate/field/field_options.hpp"
-#include "palpate/field/kernel.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "support/dual.hpp"
 #include "support/united_reference.hpp"
@@ -23,7 +22,7 @@ struct ReferencePoint {
   EdgePlane edge;
 };
 
-/// The field of algorithm.md 1.2-1.5, field_choice.md 2 and architecture.md ("Words") over all
+/// The field of docs/method.md 2 over all
 /// points, in double, without an index: slow, obvious, and the judge of the fast one. Normal tools
 /// only (no tool radius for the metaball, none of the paper's variants).
 class ReferenceField final : public Field {
@@ -224,7 +223,7 @@ class ReferenceField final : public Field {
     return (0.35 / options_.minimum_support) * (radius * (constant(level) - support));
   }
 
-  /// By what acute creases are closed (architecture.md, "The surface").
+  /// By what acute creases are closed (docs/method.md 2.6).
   [[nodiscard]] Dual closure(const Sums& s, const Dual& radius) const {
     if (!options_.capped) return {};
     const DualVector a = s.q / s.trusted;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "palpate/field/kernel.hpp"
+#include "palpate/field/field_options.hpp"
 #include "support/dual.hpp"
 
 namespace palpate::test {

@@ -12,7 +12,7 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/depth/sensor_profiles.hpp"
+#include "palpate/depth/depth_filter.hpp"
 
 namespace palpate::app {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "palpate/depth/noise_model.hpp"
-#include "palpate/geometry/pinhole.hpp"
+#include "palpate/depth/depth_filter.hpp"
+#include "palpate/depth/depth_frame.hpp"
 
 namespace palpate::app {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "palpate/field/field_options.hpp"
-#include "palpate/scene/policy.hpp"
+#include "palpate/scene/source.hpp"
 
 namespace palpate::app {
 

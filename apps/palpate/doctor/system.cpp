@@ -27,10 +27,10 @@
 #include <thread>
 
 #include "apps/palpate/cli/process.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/waiting_clock.hpp"
-#include "palpate/sensor/open_camera.hpp"
-#include "palpate/servo/deadlines.hpp"
+#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app::doctor {
 

@@ -10,7 +10,7 @@
 
 #include "palpate/base/driver_info.hpp"
 #include "palpate/servo/histogram.hpp"
-#include "palpate/servo/realtime.hpp"
+#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app::doctor {
 

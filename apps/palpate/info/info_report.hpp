@@ -6,7 +6,7 @@
 #include "apps/palpate/sources/cloud_facts.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/depth/organised.hpp"
-#include "palpate/scene/source_state.hpp"
+#include "palpate/scene/source.hpp"
 
 namespace palpate::app {
 

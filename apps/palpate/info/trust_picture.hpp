@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/palpate/cli/output.hpp"
-#include "palpate/geometry/box.hpp"
+#include "palpate/geometry/shapes.hpp"
 #include "palpate/prepare/prepare.hpp"
 
 namespace palpate::app {

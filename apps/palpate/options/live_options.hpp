@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "palpate/servo/guard.hpp"
-#include "palpate/servo/realtime.hpp"
+#include "palpate/servo/servo_thread.hpp"
 
 namespace CLI {
 class App;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/palpate/options/touch_options.hpp"
-#include "palpate/geometry/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 
 namespace palpate::app {
 

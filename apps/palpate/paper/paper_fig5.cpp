@@ -9,7 +9,7 @@
 #include "apps/palpate/sources/frame_cloud.hpp"
 #include "apps/palpate/sources/open_live.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/voxel_grid.hpp"
+#include "palpate/geometry/filters.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::app {

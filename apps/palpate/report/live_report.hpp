@@ -6,7 +6,7 @@
 
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/histogram.hpp"
-#include "palpate/servo/realtime.hpp"
+#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {
 

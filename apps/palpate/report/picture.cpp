@@ -7,7 +7,7 @@
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/box.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate::app {
 

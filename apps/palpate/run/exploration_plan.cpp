@@ -11,7 +11,7 @@
 #include "apps/palpate/options/touch_surface.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/exploration.hpp"
-#include "palpate/geometry/box.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate::app {
 

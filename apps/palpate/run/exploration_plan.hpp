@@ -7,7 +7,7 @@
 #include "palpate/device/simulated.hpp"
 #include "palpate/device/workspace.hpp"
 #include "palpate/field/field_options.hpp"
-#include "palpate/geometry/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::app {

@@ -7,7 +7,7 @@
 #include "apps/palpate/options/device_choice.hpp"
 #include "apps/palpate/options/touch_options.hpp"
 #include "apps/palpate/run/exploration_plan.hpp"
-#include "palpate/base/waiting_clock.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/guided_hand.hpp"
 #include "palpate/device/remote.hpp"

@@ -1,7 +1,7 @@
 #include "apps/palpate/run/live_feed.hpp"
 
 #include "apps/palpate/run/feeding.hpp"
-#include "palpate/base/thread_clock.hpp"
+#include "palpate/base/clock.hpp"
 
 namespace palpate::app {
 

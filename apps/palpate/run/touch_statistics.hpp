@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "palpate/contact/contact.hpp"
+#include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/histogram.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/geometry/box.hpp"
+#include "palpate/geometry/shapes.hpp"
 #include "palpate/io/read_cloud.hpp"
 #include "palpate/prepare/prepare.hpp"
 

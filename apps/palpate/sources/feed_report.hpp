@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "palpate/sensor/stream_state.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate::app {
 

@@ -8,7 +8,7 @@
 #include "apps/palpate/sources/cloud_facts.hpp"
 #include "apps/palpate/sources/feed_report.hpp"
 #include "palpate/base/clock.hpp"
-#include "palpate/depth/camera_model.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/depth_camera.hpp"

@@ -4,7 +4,7 @@
 
 #include "apps/palpate/report/live_report.hpp"
 #include "apps/palpate/run/run.hpp"
-#include "palpate/base/waiting_clock.hpp"
+#include "palpate/base/clock.hpp"
 
 namespace palpate::app {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/sensor/stream_state.hpp"
+#include "palpate/sensor/stream.hpp"
 #include "palpate/servo/histogram.hpp"
 #include "palpate/servo/servo_state.hpp"
 

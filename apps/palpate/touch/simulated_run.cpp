@@ -4,7 +4,7 @@
 #include "apps/palpate/run/feeding.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/touch/touch_run.hpp"
-#include "palpate/base/thread_clock.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/sensor/simulated_stream.hpp"
 
 namespace palpate::app {

@@ -16,7 +16,7 @@
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/touch/live_run.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/servo/realtime.hpp"
+#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {
 

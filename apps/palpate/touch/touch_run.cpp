@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/thread_clock.hpp"
 
 namespace palpate::app {
 

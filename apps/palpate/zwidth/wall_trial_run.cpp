@@ -18,8 +18,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/base/latest.hpp"
 #include "palpate/device/open_device.hpp"
-#include "palpate/servo/deadlines.hpp"
-#include "palpate/servo/realtime.hpp"
+#include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {
 

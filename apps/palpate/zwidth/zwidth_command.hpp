@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/palpate/zwidth/zwidth_map.hpp"
-#include "palpate/servo/wall_trial.hpp"
+#include "palpate/servo/z_width.hpp"
 
 namespace CLI {
 class App;

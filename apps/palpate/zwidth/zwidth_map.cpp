@@ -9,7 +9,6 @@
 #include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/servo/passive_stiffness.hpp"
 #include "palpate/servo/z_width.hpp"
 
 namespace palpate::app {

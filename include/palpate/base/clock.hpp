@@ -22,4 +22,32 @@ class SteadyClock final : public Clock {
   [[nodiscard]] double now() const noexcept override;
 };
 
+/// A clock that can be waited for.
+class WaitingClock : public Clock {
+ public:
+  /// Returns at `time` (s, of now()) or later; at once when that has passed.
+  virtual void wait_until(double time) noexcept = 0;
+
+ protected:
+  WaitingClock() = default;
+  WaitingClock(const WaitingClock&) = default;
+  WaitingClock& operator=(const WaitingClock&) = default;
+};
+
+/// The host's monotonic clock, the same time as SteadyClock's. Waits for absolute times, so that
+/// what happens between reading the clock and going to sleep adds no lateness.
+class SteadyWaitingClock final : public WaitingClock {
+ public:
+  [[nodiscard]] double now() const noexcept override { return clock_.now(); }
+  void wait_until(double time) noexcept override;
+
+ private:
+  SteadyClock clock_;
+};
+
+/// Computing time that the calling thread has used, s: time in which other threads had the
+/// processor does not count. Resolution is the system's, some nanoseconds; one call costs some
+/// hundred. A system call: not for the inside of a servo step.
+[[nodiscard]] double thread_cpu_seconds() noexcept;
+
 }  // namespace palpate

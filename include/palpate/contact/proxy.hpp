@@ -4,11 +4,110 @@
 #include <cstdint>
 #include <optional>
 
-#include "palpate/contact/contact.hpp"
-#include "palpate/contact/energy_tank.hpp"
 #include "palpate/field/field.hpp"
 
 namespace palpate {
+
+/// Lets the stiffness of a contact change without ever giving energy to the hand.
+///
+/// A spring of stiffness K stretched by d holds K d^2 / 2. When K rises by dK during contact,
+/// dK d^2 / 2 is created from nothing and the hand gets it back on its way out: a ramp of 30 ms was
+/// measured to turn a rebound of 1.05 into 1.49 (docs/method.md 3.5). So a rise is paid for out
+/// of a tank, and only what a fall of K or sliding friction took away goes into it. A fall costs
+/// nothing; it takes kTime only to spare the hand a step of force. Rises take that time as well.
+///
+/// While the wanted stiffness stays what it is, the tank changes nothing, bit for bit.
+class EnergyTank {
+ public:
+  static constexpr double kCapacity = 0.02;  ///< J; what was dissipated long ago hides nothing
+  static constexpr double kTime = 0.02;      ///< s, in which K falls to 1/e, or rises by itself
+
+  /// A new contact begins with an empty tank and this stiffness (N/m).
+  void restart(double stiffness) noexcept;
+
+  /// A spring of this stiffness (N/m) takes over from one that ended: the tank stays as full.
+  void take_over(double stiffness) noexcept { stiffness_ = stiffness; }
+
+  /// Takes in what a FadingSpring gave up, J.
+  void fill(double energy) noexcept;
+
+  /// Moves the stiffness towards `wanted` (N/m) over a step of `dt` (s) in which the spring is
+  /// stretched by `stretch` (m) and friction took `dissipated` (J, >= 0). Returns the new
+  /// stiffness. Finite for finite arguments; never above max(wanted, what it was).
+  double follow(double wanted, double stretch, double dissipated, double dt) noexcept;
+
+  [[nodiscard]] double stiffness() const noexcept { return stiffness_; }  ///< N/m
+  [[nodiscard]] double energy() const noexcept { return energy_; }        ///< J in the tank
+
+ private:
+  void fall(double wanted, double half_square, double dt) noexcept;
+  void rise(double wanted, double half_square, double dt) noexcept;
+
+  double stiffness_ = 0;
+  double energy_ = 0;
+};
+
+/// What is left of springs that ended though no hand let them go: it stays where they were and
+/// loses its stiffness as a contact does, in EnergyTank::kTime. Rests at 0 N/m.
+class FadingSpring {
+ public:
+  /// Takes over a spring from `place` (m) of this stiffness (N/m). Two springs pull like one.
+  void take(const Eigen::Vector3d& place, double stiffness) noexcept;
+
+  /// A step of `dt` (s) with the hand at `hip` (m). Returns the energy that it gave up, J.
+  double fade(const Eigen::Vector3d& hip, double dt) noexcept;
+
+  [[nodiscard]] Eigen::Vector3d force(const Eigen::Vector3d& hip) const noexcept {
+    return stiffness_ * (place_ - hip);
+  }
+  [[nodiscard]] double stiffness() const noexcept { return stiffness_; }  ///< N/m
+
+ private:
+  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
+  double stiffness_ = 0;
+  double gone_ = 0;  // stiffness at which it ends
+};
+
+/// Things that a proxy reports of a step, as bits.
+enum class ContactNote : std::uint32_t {
+  none = 0,
+  sweep_truncated = 1u << 0,  ///< the hand moved too far for one step; the sweep goes on next step
+  lost = 1u << 1,             ///< no surface could be found near the proxy; the force fades
+  not_converged = 1u << 2,    ///< the step's iterations ran out before the closest point
+  reanchored = 1u << 3,       ///< the surface moved over the proxy and took it along
+  fault = 1u << 4,            ///< an input was not finite: zero force until reset()
+  softer = 1u << 5,           ///< stiffness is much below what is wanted: EnergyTank lets it grow
+                              ///< only as motion pays for it
+  fell = 1u << 6,  ///< what held the proxy gave way: it went, in contact or out of it, farther than
+                   ///< twice the hand's way and the surface's by half of |proxy - HIP| before
+};
+
+[[nodiscard]] constexpr ContactNote operator|(ContactNote a, ContactNote b) noexcept {
+  return static_cast<ContactNote>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+constexpr ContactNote& operator|=(ContactNote& a, ContactNote b) noexcept {
+  return a = a | b;
+}
+[[nodiscard]] constexpr bool has(ContactNote notes, ContactNote bit) noexcept {
+  return (static_cast<std::uint32_t>(notes) & static_cast<std::uint32_t>(bit)) != 0;
+}
+
+/// What one proxy step gives.
+struct Contact {
+  /// On the hand, N, world: K (proxy - HIP), and what is left of springs that a change of the
+  /// surface ended.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d proxy = Eigen::Vector3d::Zero();   ///< m, world
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< outward unit normal; 0 when not touching
+  Eigen::Vector3d drift = Eigen::Vector3d::Zero();   ///< velocity of the touched surface, m/s
+  double stiffness = 0;                              ///< of all springs in the force, N/m
+  bool touching = false;
+  bool sliding = false;  ///< friction gave way in this step
+  int iterations = 0;    ///< constrained sub-steps taken
+  int evaluations = 0;   ///< field samples and ball tests spent
+  int source = -1;       ///< index of the touched source; -1: none
+  ContactNote notes = ContactNote::none;
+};
 
 class Probe;
 struct Slide;
@@ -16,11 +115,11 @@ struct SurfacePoint;
 
 /// How the proxy follows the hand along the surface.
 enum class ProxyMethod {
-  converged,    ///< to the closest point in every step (algorithm.md section 2)
+  converged,    ///< to the closest point in every step (docs/method.md 3.3)
   single_step,  ///< one tangent-plane step a tick (Salisbury and Tarr 1997; the paper)
 };
 
-/// A cone on the proxy, with a viscous term that is implicit in time (algorithm.md section 6).
+/// A cone on the proxy, with a viscous term that is implicit in time (docs/method.md 4.1).
 struct Friction {
   double static_coefficient = 0;   ///< mu_s; at least mu_d
   double dynamic_coefficient = 0;  ///< mu_d
@@ -29,7 +128,7 @@ struct Friction {
 
 /// A smooth relief carved into the surface, 0 to 2 amplitudes deep: the sum of three sinusoids in
 /// world coordinates along oblique, mutually orthogonal directions. Conservative, because it
-/// changes the surface and not the force (algorithm.md section 6). Carved and never raised, so that
+/// changes the surface and not the force (docs/method.md 4.2). Carved and never raised, so that
 /// a ball that is free of the smooth surface is free of the relief.
 struct Texture {
   double amplitude = 0;      ///< m; smooth while amplitude <= wavelength^2 / (40 depth of the hand)
@@ -47,7 +146,7 @@ struct ProxyOptions {
 };
 
 /// The 3-DOF god-object: follows the hand through free space and stays on the surface when the
-/// hand goes in (algorithm.md section 2; paper section III, after Salisbury and Tarr).
+/// hand goes in (docs/method.md 3; paper section III, after Salisbury and Tarr).
 ///
 /// One proxy belongs to one thread. step(), change() and reset() never allocate, lock, throw or
 /// call the system. Non-finite input latches a fault: zero force until reset().

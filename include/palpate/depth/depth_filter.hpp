@@ -1,14 +1,76 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include "palpate/depth/depth_frame.hpp"
-#include "palpate/depth/filtered_depth.hpp"
-#include "palpate/geometry/ball.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate {
+
+/// How a depth camera errs: sigma(z) = s0 + s1 z + s2 z^2 along the optical axis for one pixel, and
+/// how much neighbouring pixels err together.
+struct NoiseModel {
+  std::array<double, 3> coefficients{};  ///< s0 (m), s1, s2 (1/m)
+  /// c: error of the mean of many neighbouring pixels over what independent pixels would have;
+  /// >= 1. Its square is the sum of the noise's autocorrelation, in pixels.
+  double correlation = 1;
+
+  [[nodiscard]] double sigma(double z) const {
+    return coefficients[0] + z * (coefficients[1] + z * coefficients[2]);
+  }
+};
+
+/// What is known of a kind of sensor before its first frame.
+struct SensorProfile {
+  std::string_view name;  ///< such as "xtion"
+  NoiseModel noise;       ///< measured on recordings (docs/method.md 6.2)
+};
+
+/// The sensors that there are profiles of: kinect1, xtion, realsense, tof.
+[[nodiscard]] std::span<const SensorProfile> sensor_profiles();
+
+/// @throws Error that lists the names when there is no such profile.
+[[nodiscard]] const SensorProfile& sensor_profile(std::string_view name);
+
+/// For a sensor of which nothing is known: as noisy as the worse of the common ones within a
+/// metre, so that a fit smooths too much rather than too little.
+[[nodiscard]] NoiseModel unknown_sensor_noise();
+
+/// What is known of one 2x2 block of pixels.
+enum class BlockState : std::uint8_t {
+  empty,   ///< nothing measured, or rejected (flying pixels)
+  plain,   ///< mean of its pixels, normal from its neighbours: outside the region to be fitted
+  fitted,  ///< place and normal from the noise-sized fit
+};
+
+/// A depth frame made into points, one a block of 2x2 pixels, row by row. A block's number is its
+/// points' identity from frame to frame as long as the camera stands still. All columns have
+/// columns * rows entries; those of empty blocks mean nothing.
+struct FilteredDepth {
+  double stamp = 0;                                                  ///< of the frame, s
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();  ///< at the stamp
+  int columns = 0;                                                   ///< of blocks
+  int rows = 0;
+  double pitch = 0;  ///< angle between blocks: metres between blocks for one metre of depth
+  std::vector<BlockState> states;
+  std::vector<Eigen::Vector3f> positions;  ///< sensor frame, m
+  std::vector<Eigen::Vector3f> normals;    ///< sensor frame, unit, towards the sensor; zero: none
+  std::vector<float> confidences;          ///< c_i of the normals, 0-1
+  std::vector<float> deviations;           ///< sd of the position along the ray, m
+  std::vector<float> spacings;  ///< s_i: largest distance to a neighbouring block's point
+                                ///< on the same surface, m (grazing rows are far apart)
+  NoiseModel noise;             ///< in use for this frame
+  bool duplicate = false;       ///< the frame repeats the one before, bit for bit
+
+  [[nodiscard]] std::size_t size() const { return states.size(); }
+};
 
 struct DepthFilterOptions {
   std::optional<NoiseModel> noise = {};  ///< unset: measured, and tracked from then on
@@ -19,8 +81,8 @@ struct DepthFilterOptions {
   double farthest = 20;
 };
 
-/// From raw depth to points that are as good as the noise allows: the noise-sized fit of
-/// nss_fast.md section 1, then the temporal filter of its section 3. One thread uses it. Once it
+/// From raw depth to points that are as good as the noise allows: the noise-sized fit, then
+/// the filter over time (docs/method.md 6.3 to 6.6). One thread uses it. Once it
 /// has seen frames of one size, it allocates nothing.
 class DepthFilter {
  public:

@@ -4,11 +4,40 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "palpate/depth/camera_model.hpp"
-
 namespace palpate {
+
+/// A pinhole camera without distortion: pixel (u, v) at depth z is the point
+/// ((u - cx) z / fx, (v - cy) z / fy, z), x right, y down, z forward.
+struct Pinhole {
+  double fx = 0;  ///< pixels
+  double fy = 0;
+  double cx = 0;
+  double cy = 0;
+};
+
+/// Lens distortion after Brown and Conrady, on normalised image coordinates x, y with
+/// r^2 = x^2 + y^2: x' = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), and y'
+/// alike with p1 and p2 exchanged.
+struct Distortion {
+  double k1 = 0;
+  double k2 = 0;
+  double p1 = 0;
+  double p2 = 0;
+  double k3 = 0;
+
+  [[nodiscard]] bool none() const { return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0; }
+};
+
+/// How a depth camera maps its frame (x right, y down, z forward) to pixels.
+struct CameraModel {
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+  Pinhole pinhole;
+  Distortion distortion;
+};
 
 /// One image of a depth camera. Depth in 16 bits is put into it by to_metres().
 struct DepthFrame {
@@ -19,5 +48,16 @@ struct DepthFrame {
   std::vector<float> depth;  ///< along the optical axis, m, row by row; 0: nothing measured
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< of the same pixels; may be empty
 };
+
+/// 16-bit depth, as cameras, drivers and files give it, in metres, as a DepthFrame holds it:
+///
+///   frame.depth.resize(samples.size());
+///   to_metres(samples, 1e-3, frame.depth);  // millimetres
+///
+/// `unit`: metres a step. 0 and 65535 become 0: nothing was measured there, or it was too far to
+/// tell. Other values that a sensor marks such pixels with are to be made 0 before. Takes no
+/// memory; any thread; a row at a time where rows do not follow one another in memory.
+/// @throws Error when the unit is not finite or not above 0, or the two differ in size.
+void to_metres(std::span<const std::uint16_t> samples, double unit, std::span<float> depth);
 
 }  // namespace palpate

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "palpate/geometry/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 
 namespace palpate {
 

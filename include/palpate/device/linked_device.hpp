@@ -8,8 +8,8 @@
 #include <string>
 #include <thread>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/base/latest.hpp"
-#include "palpate/base/waiting_clock.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/device_link.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/base/driver_info.hpp"
-#include "palpate/base/waiting_clock.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/linked_device.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "palpate/geometry/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "palpate/device/device.hpp"
-#include "palpate/geometry/trajectory.hpp"
+#include "palpate/io/trajectory.hpp"
 
 namespace palpate {
 

@@ -11,7 +11,7 @@
 namespace palpate {
 
 /// A hand as a spring and a damper that pull the device after the place where the hand wants to be.
-/// The defaults are a light grip (algorithm.md section 8).
+/// The defaults are a light grip (docs/method.md 8.1).
 struct SimulatedHand {
   double stiffness = 300;    ///< N/m; 0 and no damping: nobody holds the device
   double damping = 3;        ///< N s/m

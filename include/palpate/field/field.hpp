@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "palpate/geometry/ball.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "palpate/field/kernel.hpp"
+#include "palpate/field/field_options.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 
 namespace palpate {
@@ -53,7 +53,7 @@ struct SurfacePoints {
       Eigen::Vector3d::Zero();  ///< world frame; grid points are relative to it, m
   CellGrid grid;
   std::vector<Eigen::Vector3f> normals;  ///< unit, or zero; empty: none (metaball only)
-  std::vector<float> density_weights;    ///< a_i of algorithm.md section 4
+  std::vector<float> density_weights;    ///< a_i of docs/method.md 2.2
   std::vector<float> radii;              ///< R_i, m
   std::vector<float> confidences;        ///< c_i, 0-1
   PointSheets sheets;

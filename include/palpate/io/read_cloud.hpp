@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "palpate/geometry/pinhole.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 
 namespace palpate {

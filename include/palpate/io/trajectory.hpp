@@ -1,12 +1,21 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <istream>
 #include <string>
-
-#include "palpate/geometry/trajectory.hpp"
+#include <vector>
 
 namespace palpate {
+
+/// Where something was at one time. The frame is said by whoever hands it over.
+struct TrajectoryRow {
+  double time = 0;                                     ///< s
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
+};
+
+/// A path in time: times grow strictly from row to row, evenly or not.
+using Trajectory = std::vector<TrajectoryRow>;
 
 /// Reads a trajectory from CSV: a header line that names the columns `t`, `hip_x`, `hip_y`, `hip_z`
 /// in any order among any others, then one row a step; seconds and metres. Commas, semicolons or

@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <optional>
 
-#include "palpate/field/kernel.hpp"
+#include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
-#include "palpate/geometry/box.hpp"
 #include "palpate/geometry/point_cloud.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate {
 

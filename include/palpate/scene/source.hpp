@@ -1,21 +1,70 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "palpate/depth/depth_filter.hpp"
+#include "palpate/geometry/shapes.hpp"
 #include "palpate/prepare/prepare.hpp"
 #include "palpate/scene/handoff.hpp"
-#include "palpate/scene/policy.hpp"
-#include "palpate/scene/reach.hpp"
 #include "palpate/scene/snapshot.hpp"
-#include "palpate/scene/source_state.hpp"
 
 namespace palpate {
+
+/// How clouds that follow one another become one surface in time (docs/architecture.md).
+enum class Policy {
+  replace,    ///< the newest cloud, at once (hard swap)
+  average,    ///< the newest N clouds, 1/N each (the paper)
+  crossfade,  ///< N + 1 clouds; the newest fades in while the oldest fades out
+  fusion,     ///< a running mean in voxels that moves in straight lines
+  morph,      ///< blocks of a depth image, filtered in time and by the noise-sized fit
+};
+
+/// What stands for a policy that is not set.
+inline constexpr Policy kDepthPolicy = Policy::morph;      ///< of depth frames
+inline constexpr Policy kCloudPolicy = Policy::crossfade;  ///< of clouds
+
+struct PolicyOptions {
+  std::optional<Policy> policy = {};  ///< unset: kDepthPolicy or kCloudPolicy
+  int history = 4;       ///< N of `average` and `crossfade`, 1 to 7; unset by `replace`, `morph`
+  double silence = 0.3;  ///< a surface that nothing confirmed for so long begins to fade, s
+  double fade = 0.5;     ///< in which it fades away, s
+  bool fit_everywhere = false;  ///< run the depth filter's fit outside the fields' reach as well
+  bool clip_to_reach = false;   ///< leave out points of clouds that no tool can come to before the
+                                ///< next ones (the paper's section IV-B)
+};
+
+/// Where a tool can be before the next frames: around hand and proxy. World frame. Fields publish
+/// it, preparation clips to it and runs the costly fit in it.
+using Reach = Ball;
+
+/// How a source fares, for those who show or log it.
+struct SourceState {
+  std::uint64_t frames = 0;   ///< frames and clouds that became a surface
+  std::uint64_t dropped = 0;  ///< that did not, because fields that stand still held all snapshots
+  std::string slowest = {};   ///< name of such a field, when the last drop was; empty: never
+  double interval = 0;        ///< time between frames, smoothed, s; 0: none yet
+  double latency = 0;         ///< of the last one, from its stamp to the start of its surface, s
+  double stamp = 0;           ///< of the last one, s
+  std::size_t points = 0;     ///< of the newest surface's newest layer
+  double noise = 0;           ///< sigma of one pixel at `depth`, m; 0: no depth frame yet
+  double depth = 0;           ///< median depth of the last frame, m
+  double correlation = 0;     ///< c of NoiseModel
+  double silent_from = 0;     ///< when the surface begins to fade unless a frame comes, s
+  double fade = 0;            ///< in which it fades away then, s
+  /// Median distance along the normals between this source's surface and the others', where both
+  /// see it, m; the worst of the others. Scene::state() only.
+  std::optional<double> disagreement = {};
+
+  [[nodiscard]] double rate() const { return interval > 0 ? 1 / interval : 0; }  ///< Hz
+};
 
 class Intake;
 class ReachBoard;

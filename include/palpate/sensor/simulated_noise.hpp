@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "palpate/depth/noise_model.hpp"
+#include "palpate/depth/depth_filter.hpp"
 
 namespace palpate {
 

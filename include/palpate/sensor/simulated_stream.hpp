@@ -8,7 +8,6 @@
 #include "palpate/scene/source.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 #include "palpate/sensor/stream.hpp"
-#include "palpate/sensor/stream_state.hpp"
 
 namespace palpate {
 

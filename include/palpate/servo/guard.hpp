@@ -85,7 +85,7 @@ struct GuardState {
 };
 
 /// Everything between the proxy's force and the device: a chain of links, each of which lets a good
-/// force pass bit for bit (algorithm.md section 8).
+/// force pass bit for bit (docs/method.md 8).
 ///
 ///  1. Fault: what is not finite gives zero at once, and zero until reset().
 ///  2. Watchdog: after a silence the hand may be anywhere. Zero; the links below lead back softly.

@@ -15,7 +15,7 @@ struct PassivityOptions {
 };
 
 /// The ledger of what forces gave to the hand, and the brake that takes it back: passivity observer
-/// and controller (Hannaford and Ryu 2002, in the impedance form; algorithm.md section 8).
+/// and controller (Hannaford and Ryu 2002, in the impedance form; docs/method.md 8.5).
 ///
 ///   E += F . (dh - v_surface dt);   E > 0: F -= min(E / (|v|^2 dt), M / (2 n dt) - B) v
 ///

@@ -14,9 +14,7 @@
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/histogram.hpp"
-#include "palpate/servo/recent_forces.hpp"
 #include "palpate/servo/servo_state.hpp"
-#include "palpate/servo/step_queue.hpp"
 
 namespace palpate {
 
@@ -51,7 +49,7 @@ struct Feel {
 /// told of the hand's own way.
 class Servo {
  public:
-  /// Of a device's continuous maximum: what it is asked to hold (algorithm.md section 8).
+  /// Of a device's continuous maximum: what it is asked to hold (docs/method.md 8.6).
   static constexpr double kForceShare = 0.8;
 
   /// @throws Error when an option is out of its range or the scene has too many readers.
@@ -83,7 +81,7 @@ class Servo {
   [[nodiscard]] const ServoOptions& options() const noexcept { return options_; }
 
   /// The stiffest surface that this device can hold in this workspace, N/m in the world; what is
-  /// asked for beyond it is felt as this (algorithm.md section 8). Infinite where it renders none.
+  /// asked for beyond it is felt as this (docs/method.md 8.1). Infinite where it renders none.
   [[nodiscard]] double stiffness_limit() const noexcept { return stiffness_limit_; }
 
   /// The newest state. Any thread.

@@ -3,14 +3,77 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
-#include "palpate/base/waiting_clock.hpp"
-#include "palpate/servo/deadlines.hpp"
-#include "palpate/servo/realtime.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/servo/servo.hpp"
 
 namespace palpate {
+
+/// What a servo's thread asks the system for.
+struct RealtimeOptions {
+  bool realtime_priority = true;      ///< SCHED_FIFO: before everything that is not real-time
+  int priority = 80;                  ///< 1-99; above 50 it goes before most drivers' threads
+  bool lock_memory = true;            ///< no page of the program is ever fetched from disk
+  std::optional<int> processor = {};  ///< pin the thread to this one, from 0
+};
+
+/// One thing that was asked for.
+struct RealtimeRequest {
+  std::string what;  ///< "real-time priority 80 (SCHED_FIFO)"
+  bool granted = false;
+  std::string remedy;  ///< why it was not granted and how to permit it; empty when it was
+};
+
+/// What came of asking; nothing in it is needed for a servo to run, all of it is to run on time.
+struct RealtimeReport {
+  std::vector<RealtimeRequest> requests;
+
+  [[nodiscard]] bool all_granted() const noexcept;
+};
+
+/// A line for each request: what was granted, what was not, why and how to permit it.
+[[nodiscard]] std::string in_words(const RealtimeReport& report);
+
+/// Asks for the calling thread; locked memory is the whole process's. Not real-time, never throws
+/// for what is refused.
+[[nodiscard]] RealtimeReport make_realtime(const RealtimeOptions& options);
+
+/// Leaves a processor to the servo that is pinned there: the calling thread and those that it
+/// starts from now on run on the others, and never sweep out the caches of a step. Refused where
+/// there is no other.
+[[nodiscard]] RealtimeRequest leave_processor(int processor);
+
+/// When the steps of a clock-paced loop are due: on a grid of whole periods. A step that comes late
+/// does not move the grid, and those that it made impossible are left out: after a gap there is one
+/// step and no burst.
+class Deadlines {
+ public:
+  /// The first step is due at `start`, s; `period` > 0, s.
+  Deadlines(double start, double period) noexcept : start_(start), period_(period) {}
+
+  /// When the next step is due, s.
+  [[nodiscard]] double next() const noexcept {
+    return start_ + static_cast<double>(index_) * period_;
+  }
+
+  /// A step begins at `now`. Returns how late it is, s; next() is then after `now`.
+  double begin(double now) noexcept;
+
+  /// The next step is due a period after `now`: where something else paces the steps.
+  void restart(double now) noexcept;
+
+  /// Steps that were left out because one before them was late.
+  [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
+
+ private:
+  double start_;
+  double period_;
+  std::uint64_t index_ = 0;
+  std::uint64_t skipped_ = 0;
+};
 
 struct ServoThreadOptions {
   /// Steps a second, 500 to 10000 Hz; unset: what the device is made for. Devices that keep time

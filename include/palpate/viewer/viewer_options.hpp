@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "palpate/sensor/stream_state.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate {
 

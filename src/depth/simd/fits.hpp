@@ -1,14 +1,25 @@
+// The noise-sized fit of docs/method.md 6.3: the code that is compiled once for each level of
+// the instruction set. Plain pointers and numbers alone cross this border.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "depth/simd/fit_row.hpp"
-
-// The noise-sized fit of nss_fast.md section 1: the code that is compiled once for each level of
-// the instruction set. Plain pointers and numbers alone cross this border.
-
 namespace palpate::simd {
+
+// A row of the columns of BlockFits.
+struct FitRow {
+  std::uint8_t* states;
+  float* rho;
+  float* variance;
+  float* slope_x;
+  float* slope_y;
+  float* slope_variance;
+  float* confidences;
+  std::uint8_t* flat;
+  std::uint8_t* reach_u;
+  std::uint8_t* reach_v;
+};
 
 constexpr int kWindowSums = 8;         // doubles at each place of a table
 constexpr int kLargestWindow = 40;     // blocks from a window's middle to its border, at most

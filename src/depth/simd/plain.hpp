@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "depth/simd/fit_row.hpp"
+#include "depth/simd/fits.hpp"
 
 // What is done to every block of every frame: the code that is compiled once for each level of the
 // instruction set. Plain pointers and numbers alone cross this border. All functions do one row;

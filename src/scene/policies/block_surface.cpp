@@ -18,7 +18,7 @@ constexpr float kNowhere = 1e30f;  // 1 / R^2, 1/m^2
 constexpr float kSure = 0.157f;
 
 // Density-normalised weights of a surface that goes on on all sides sum to this times R^2 over the
-// area of a point (algorithm.md section 4).
+// area of a point (docs/method.md 6.7).
 float whole_sum(Kernel kernel) {
   constexpr double kTurn = 2 * std::numbers::pi;
   return static_cast<float>(kernel == Kernel::wyvill ? kTurn * 4 / 27 : kTurn / 14);

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "geometry/parallel.hpp"
-#include "palpate/depth/filtered_depth.hpp"
-#include "palpate/field/kernel.hpp"
-#include "palpate/geometry/ball.hpp"
+#include "palpate/depth/depth_filter.hpp"
+#include "palpate/field/field_options.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "palpate/depth/filtered_depth.hpp"
+#include "palpate/depth/depth_filter.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "scene/policies/block_surface.hpp"
 

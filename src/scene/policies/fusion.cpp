@@ -2,13 +2,72 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/filters.hpp"
-#include "prepare/count_weights.hpp"
+#include "prepare/columns.hpp"
 
 namespace palpate {
+namespace {
+
+constexpr double kNoWeight = 1e-9;
+
+}  // namespace
+
+void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const Moment& moment,
+                       std::vector<Layer>& layers) {
+  age(moment);
+  layers_.push_back({std::move(newest), 0, 0});
+  const auto most =
+      policy_ == Policy::crossfade ? Snapshot::kMaxLayers : static_cast<std::size_t>(history_);
+  if (layers_.size() > most) drop();
+  weigh();
+  last_ = moment;
+  layers.assign(layers_.begin(), layers_.end());
+}
+
+/// Weights as they are at the new start; what has faded away is dropped.
+void LayerHistory::age(const Moment& moment) {
+  const double u = progress(last_, moment.start);
+  for (Layer& layer : layers_) {
+    layer.weight_start += u * (layer.weight_end - layer.weight_start);
+  }
+  std::erase_if(layers_, [](const Layer& layer) {
+    return layer.weight_start <= kNoWeight && layer.weight_end <= kNoWeight;
+  });
+}
+
+/// Makes room: takes out what matters least. Clouds that come at three times their rate do that to
+/// a crossfade of four.
+void LayerHistory::drop() {
+  const auto least = policy_ == Policy::crossfade
+                         ? std::min_element(layers_.begin(), layers_.end() - 1,
+                                            [](const Layer& a, const Layer& b) {
+                                              return a.weight_start < b.weight_start;
+                                            })
+                         : layers_.begin();
+  layers_.erase(least);
+}
+
+void LayerHistory::weigh() {
+  const std::size_t counted = std::min(layers_.size(), static_cast<std::size_t>(history_));
+  const double share = 1 / static_cast<double>(counted);
+  for (std::size_t k = 0; k < layers_.size(); ++k) {
+    const bool counts = layers_.size() - k <= counted;
+    layers_[k].weight_end = counts ? share : 0;
+    if (policy_ != Policy::crossfade) layers_[k].weight_start = layers_[k].weight_end;
+  }
+  const double sum =
+      std::accumulate(layers_.begin(), layers_.end(), 0.0,
+                      [](double total, const Layer& layer) { return total + layer.weight_start; });
+  if (sum <= 0) layers_.back().weight_start = 1;
+  // One had to go early, or the sum is off by rounding.
+  for (Layer& layer : layers_) layer.weight_start /= sum > 0 ? sum : 1;
+}
+
 namespace {
 
 constexpr int kMemory = 8;           // clouds

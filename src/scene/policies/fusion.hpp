@@ -4,18 +4,46 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/prepare/prepare.hpp"
-#include "scene/policies/moment.hpp"
+#include "palpate/scene/snapshot.hpp"
+#include "palpate/scene/source.hpp"
+#include "scene/frame_timing.hpp"
 
 namespace palpate {
 
+/// The policies that weigh whole clouds: replace, average and crossfade (docs/method.md 7.2).
+/// Clouds are indexed once and shared by the snapshots that they count in.
+class LayerHistory {
+ public:
+  /// `policy`: one of the three. `history`: N.
+  LayerHistory(Policy policy, int history) : policy_(policy), history_(history) {}
+
+  /// Fills `layers` with the newest cloud and those before it. Weights sum to 1 at every time, and
+  /// under crossfade they go on from what they are at the moment's start.
+  void add(std::shared_ptr<const SurfacePoints> newest, const Moment& moment,
+           std::vector<Layer>& layers);
+
+  void forget() { layers_.clear(); }
+
+ private:
+  void age(const Moment& moment);
+  void drop();
+  void weigh();
+
+  Policy policy_;
+  int history_;
+  Moment last_;
+  std::vector<Layer> layers_;  // oldest first
+};
+
 /// The policy for clouds of a scene that stands still: a running mean in each voxel, over about
-/// eight clouds, whose points go in straight lines from one mean to the next (algorithm.md section
-/// 5.2). A voxel that no cloud fills any more fades away.
+/// eight clouds, whose points go in straight lines from one mean to the next
+/// (docs/method.md 7.2). A voxel that no cloud fills any more fades away.
 class Fusion {
  public:
   explicit Fusion(const PrepareOptions& prepare) : prepare_(prepare) {}

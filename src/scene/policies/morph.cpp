@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "field/active_layer.hpp"
-#include "geometry/morton.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/sort_records.hpp"
 

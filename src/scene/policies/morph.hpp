@@ -9,14 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "palpate/depth/filtered_depth.hpp"
-#include "palpate/geometry/ball.hpp"
-#include "palpate/geometry/pinhole.hpp"
+#include "palpate/depth/depth_filter.hpp"
+#include "palpate/depth/depth_frame.hpp"
+#include "palpate/geometry/shapes.hpp"
+#include "scene/frame_timing.hpp"
 #include "scene/policies/block_entries.hpp"
-#include "scene/policies/block_order.hpp"
 #include "scene/policies/block_surface.hpp"
 #include "scene/policies/edge_finder.hpp"
-#include "scene/policies/moment.hpp"
 #include "scene/policies/point_writer.hpp"
 
 namespace palpate {

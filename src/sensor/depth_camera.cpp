@@ -1,0 +1,59 @@
+#include "palpate/sensor/depth_camera.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "palpate/base/error.hpp"
+#include "palpate/sensor/sequence.hpp"
+#include "palpate/sensor/simulated_camera.hpp"
+#include "sensor/drivers.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace sensor;
+
+DriverInfo simulated_driver() {
+  DriverInfo driver{.name = "simulated",
+                    .description = "scenes made by formulas, seen with a sensor's noise",
+                    .missing = {},
+                    .devices = {}};
+  for (const SimulatedName& scene : simulated_names()) {
+    driver.devices.push_back({"simulated:" + scene.name, scene.description});
+  }
+  return driver;
+}
+
+DriverInfo sequence_driver() {
+  return {.name = "sequence",
+          .description = "folders of depth images: sequence:DIR (docs/sequences.md)",
+          .missing = {},
+          .devices = {}};
+}
+
+}  // namespace
+
+std::unique_ptr<DepthCamera> open_camera(const std::string& name, const CameraOptions& options) {
+  const std::size_t colon = name.find(':');
+  const std::string driver = name.substr(0, colon);
+  const std::string device = colon == std::string::npos ? "" : name.substr(colon + 1);
+  if (driver == "simulated") return open_simulated(device, options.clock);
+  if (driver == "sequence") {
+    return open_sequence(read_sequence(device), {.clock = options.clock, .loop = options.loop});
+  }
+  if (driver == "openni2") return open_openni2(device, options);
+  if (driver == "freenect") return open_freenect(device, options);
+  if (name.ends_with(".oni")) return open_openni2(name, options);
+  throw Error(
+      fmt::format("{}: no such camera. Cameras are simulated[:SCENE], sequence:DIR, "
+                  "openni2[:URI], FILE.oni and freenect[:NUMBER]; 'palpate cameras' lists "
+                  "those that are there.",
+                  name));
+}
+
+std::vector<DriverInfo> list_cameras() {
+  return {simulated_driver(), sequence_driver(), openni2_driver(), freenect_driver()};
+}
+
+}  // namespace palpate
