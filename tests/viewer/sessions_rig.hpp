@@ -17,9 +17,9 @@ namespace palpate::viewer {
 
 inline constexpr const char* kHello = R"({"type":"hello","token":"secret","points":1000})";
 
-/// A lobby with one setting and two tools, the first of which a page may take.
-struct Room {
-  Room() {
+/// Sessions with one setting and two tools, the first of which a page may take.
+struct SessionsRig {
+  SessionsRig() {
     ClientSessionsOptions options;
     options.token = "secret";
     options.limits = limits;
