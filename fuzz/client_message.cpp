@@ -1,5 +1,5 @@
 // What a viewer's page says: whatever comes is read or refused with words.
-#include "viewer/client_message.hpp"
+#include "viewer/messages.hpp"
 
 #include <cstddef>
 #include <cstdint>

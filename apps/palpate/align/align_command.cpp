@@ -10,13 +10,10 @@
 #include <optional>
 #include <sstream>
 
-#include "apps/palpate/align/align_picture.hpp"
-#include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/chosen_source.hpp"
 #include "apps/palpate/options/setup_file.hpp"
 #include "apps/palpate/options/setup_keys.hpp"
@@ -200,7 +197,7 @@ void align_sources(const CLI::App& command, AlignOptions& options) {
   std::optional<OutputFile> output, json;
   if (!options.output.empty()) output.emplace(options.output);
   if (!options.touch.json.empty()) json.emplace(options.touch.json);
-  std::optional<AlignPicture> picture;
+  std::optional<OutputFile> picture;
   if (!options.touch.picture.empty()) picture.emplace(options.touch.picture);
   std::vector<ChosenSource> chosen = choose_sources(options.touch);
   require(chosen.size() > 1, "aligning takes two sources or more; name another");
@@ -215,7 +212,7 @@ void align_sources(const CLI::App& command, AlignOptions& options) {
   }
   write_whole(json, report.dump(2) + "\n");
   write_whole(output, setup_text(command, options, chosen));
-  if (picture) picture->draw(touched, aligned);
+  if (picture) draw_alignment(touched, aligned, options.touch.picture, *picture);
 }
 
 }  // namespace palpate::app

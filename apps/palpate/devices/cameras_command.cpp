@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/palpate/cli/option_checks.hpp"
-#include "apps/palpate/cli/waiting.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/devices/driver_list.hpp"
 #include "palpate/sensor/open_camera.hpp"
 

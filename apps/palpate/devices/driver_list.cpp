@@ -6,7 +6,7 @@
 
 #include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 
 namespace palpate::app {
 

@@ -5,12 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/numbered_path.hpp"
 #include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/waiting.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/info/info_report.hpp"
 #include "apps/palpate/info/live_facts.hpp"
 #include "apps/palpate/info/trust_picture.hpp"

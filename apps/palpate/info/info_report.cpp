@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "apps/palpate/cli/json.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/info/density_map.hpp"
 #include "apps/palpate/report/depth_report.hpp"
 #include "apps/palpate/report/source_report.hpp"

@@ -6,9 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "apps/palpate/cli/quantile.hpp"
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/sources/open_live.hpp"
 #include "palpate/depth/depth_filter.hpp"
 

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/cli/words.hpp"
-#include "apps/palpate/plot/picture_script.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 
 namespace palpate::app {

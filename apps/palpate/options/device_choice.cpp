@@ -11,7 +11,6 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/cli/option_checks.hpp"
-#include "apps/palpate/cli/suggestion.hpp"
 #include "apps/palpate/options/touch_options.hpp"
 #include "palpate/device/open_device.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "apps/palpate/cli/suggestion.hpp"
+#include "apps/palpate/cli/errors.hpp"
 
 namespace palpate::app {
 

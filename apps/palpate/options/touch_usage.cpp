@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "apps/palpate/cli/distinct_files.hpp"
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/numbered_path.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/options/chosen_source.hpp"
 #include "apps/palpate/options/depth_file.hpp"
 #include "apps/palpate/options/device_choice.hpp"

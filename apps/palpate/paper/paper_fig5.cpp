@@ -1,13 +1,11 @@
-#include "apps/palpate/paper/paper_fig5.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 
-#include "apps/palpate/cli/progress.hpp"
-#include "apps/palpate/paper/paper_frames.hpp"
+#include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/paper/paper_figures.hpp"
 #include "apps/palpate/sources/frame_cloud.hpp"
 #include "apps/palpate/sources/open_live.hpp"
 #include "palpate/base/error.hpp"

@@ -10,7 +10,7 @@
 
 #include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/names.hpp"
-#include "apps/palpate/cli/quantile.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/touch_surface.hpp"
 
 namespace palpate::app {

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json_fwd.hpp>
 
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/sources/touched.hpp"
 
 namespace palpate::app {

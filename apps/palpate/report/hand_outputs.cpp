@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "apps/palpate/cli/names.hpp"
-#include "apps/palpate/cli/numbered_path.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 
 namespace palpate::app {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "apps/palpate/cli/json.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 
 namespace palpate::app {
 

@@ -6,7 +6,7 @@
 #include <ctime>
 #include <utility>
 
-#include "apps/palpate/cli/numbered_path.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/palpate/cli/json.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/depth_report.hpp"
 
 namespace palpate::app {

@@ -4,7 +4,7 @@
 
 #include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/names.hpp"
-#include "apps/palpate/plot/picture_script.hpp"
+#include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/report/source_report.hpp"
 
 namespace palpate::app {

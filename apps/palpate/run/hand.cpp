@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "apps/palpate/cli/progress.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/touch_surface.hpp"
 #include "apps/palpate/options/touch_usage.hpp"
 #include "palpate/base/error.hpp"

@@ -7,7 +7,7 @@
 #include "palpate/field/field_options.hpp"
 #include "palpate/scene/source.hpp"
 #include "palpate/servo/servo.hpp"
-#include "palpate/viewer/setting.hpp"
+#include "palpate/viewer/viewer_options.hpp"
 
 namespace palpate::app {
 

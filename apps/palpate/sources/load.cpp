@@ -4,8 +4,8 @@
 
 #include <chrono>
 
-#include "apps/palpate/cli/progress.hpp"
-#include "apps/palpate/cli/suggestion.hpp"
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/synthetic.hpp"
 

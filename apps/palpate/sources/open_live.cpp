@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/palpate/cli/waiting.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/sources/posed_camera.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/open_camera.hpp"

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/depth_file.hpp"
 #include "apps/palpate/options/touch_surface.hpp"
 #include "apps/palpate/options/touch_usage.hpp"

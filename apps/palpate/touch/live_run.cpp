@@ -6,7 +6,7 @@
 #include <optional>
 #include <thread>
 
-#include "apps/palpate/cli/interruption.hpp"
+#include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/options/touch_usage.hpp"
 #include "apps/palpate/run/live_feed.hpp"
 #include "apps/palpate/touch/live_hand.hpp"

@@ -1,6 +1,6 @@
 #include <vector>
 
-#include "apps/palpate/cli/interruption.hpp"
+#include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/run/feeding.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/touch/touch_run.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/progress.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/touch_surface.hpp"
 #include "apps/palpate/options/touch_usage.hpp"
 #include "apps/palpate/report/hand_outputs.hpp"

@@ -9,11 +9,11 @@
 #include <optional>
 #include <utility>
 
+#include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/options/touch_surface.hpp"
 #include "apps/palpate/report/recording.hpp"
 #include "apps/palpate/run/preparer.hpp"
 #include "apps/palpate/run/view_settings.hpp"
-#include "apps/palpate/view/browser.hpp"
 #include "apps/palpate/view/page_hold.hpp"
 #include "palpate/viewer/viewer.hpp"
 
