@@ -131,7 +131,7 @@ void palpate_sum(benchmark::State& state) {
     k = k + 1 < places.size() ? k + 1 : 0;
     const Patch& patch = walk.at(x);
     const Vector3d local = x - patch.center();
-    simd::best().weights(patch.columns(), false, local.data(), sums);
+    simd::best_sums().weights(patch.columns(), false, local.data(), sums);
     benchmark::DoNotOptimize(sums);
   }
   walk.report(state);

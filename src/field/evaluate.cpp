@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "field/formulas.hpp"
 #include "field/joined_height.hpp"
 #include "field/oriented.hpp"
-#include "field/smooth_step.hpp"
 
 // Notation as in docs/method.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
 // A = sum v q / sum v, Nb = sum v n / sum v, W the united support, R(x) = sum w R / sum w.
@@ -133,9 +133,16 @@ Value capped(const ImplicitSurface& surface, const FieldPlace& place, const Supp
           trust.f * cap.grad + (1 - trust.f) * blob.grad + (cap.f - blob.f) * trust.grad};
 }
 
+// The weight of points that have a normal.
+double with_normals(const simd::Sums& sums, int labels) noexcept {
+  double v = 0;
+  for (int k = 0; k < std::min(labels, simd::kHeights); ++k) v += sums.label[k].v;
+  return v;
+}
+
 }  // namespace
 
-ImplicitSurface::ImplicitSurface(const FieldOptions& given) : sums(&simd::best()) {
+ImplicitSurface::ImplicitSurface(const FieldOptions& given) : sums(&simd::best_sums()) {
   check(given);
   change(given);
 }
@@ -168,10 +175,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   Sample sample;
   sample.support = support.w.f;
   sample.radius = support.radius.f;
-  double heights = 0;
-  for (int k = 0; !metaball && k < std::min(columns.labels, simd::kHeights); ++k) {
-    heights += sums.label[k].v;
-  }
+  const double heights = metaball ? 0 : with_normals(sums, columns.labels);
   const FieldPlace place{.functions = surface.sums,
                          .columns = &columns,
                          .kernel = options.kernel,

@@ -1,10 +1,9 @@
-#include "field/united_height.hpp"
-
 #include <array>
 #include <cmath>
 #include <span>
 
-#include "field/smooth_step.hpp"
+#include "field/formulas.hpp"
+#include "field/joined_height.hpp"
 
 namespace palpate {
 namespace {
@@ -94,7 +93,6 @@ Value united_shift(const FieldPlace& place) noexcept {
   if (tau.value <= 0) return {};
   normal /= coherence;
   const double way = by_cover - by_weight;
-
   // Chain rule through f_s, V_s, the normals and R.
   Value result{tau.value * way, Vector3d::Zero()};
   double by_radius = 0;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "field/newest.hpp"
+#include "field/formulas.hpp"
 #include "viewer/thinned.hpp"
 
 namespace palpate::viewer {

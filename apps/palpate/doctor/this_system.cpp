@@ -20,7 +20,7 @@
 #include "apps/palpate/cli/child_program.hpp"
 #include "apps/palpate/doctor/library_trial.hpp"
 #include "palpate/base/clock.hpp"
-#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/open_camera.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app::doctor {

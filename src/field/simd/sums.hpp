@@ -104,10 +104,10 @@ struct Functions {
                 const double x[3], EdgeSums&) noexcept;
 };
 
-extern const Functions kBaseline;
-extern const Functions kV3;  // x86-64-v3; equals kBaseline elsewhere. The same numbers bit for bit.
+extern const Functions kSumsBaseline;
+extern const Functions kSumsV3;  // x86-64-v3; the same numbers bit for bit
 
 // The best that this processor has.
-const Functions& best() noexcept;
+const Functions& best_sums() noexcept;
 
 }  // namespace palpate::simd

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <experimental/simd>
 #include <limits>
 
 #include "geometry/simd/joins.hpp"
@@ -11,6 +12,9 @@
 
 namespace palpate::simd {
 namespace {
+
+// How many floats one instruction takes. Another number would give the same sums.
+constexpr std::size_t kNativeLanes = std::experimental::native_simd<float>::size();
 
 template <std::size_t kLanes>
 struct Joins {

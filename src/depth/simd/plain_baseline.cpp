@@ -1,7 +1,0 @@
-#include "depth/simd/plain.inl"
-
-namespace palpate::simd {
-
-const PlainFunctions kPlainBaseline{&average, &reject, &fit};
-
-}  // namespace palpate::simd
