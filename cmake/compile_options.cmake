@@ -20,3 +20,15 @@ function(palpate_target target)
     ${PALPATE_WARNINGS} ${PALPATE_BASELINE} -ffp-contract=off)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
 endfunction()
+
+# A library of ours. Where it is a shared one, it shows the names of palpate and nothing of what it is made with.
+function(palpate_library target name)
+  palpate_target(${target})
+  add_library(palpate::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name}
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  if(BUILD_SHARED_LIBS)
+    target_link_options(${target} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/exported.map)
+    set_target_properties(${target} PROPERTIES LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exported.map)
+  endif()
+endfunction()

@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include "field/newest.hpp"
+#include "field/formulas.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/spacing.hpp"

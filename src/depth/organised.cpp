@@ -1,5 +1,3 @@
-#include "palpate/depth/organised.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "depth/input.hpp"
+#include "palpate/depth/depth_frame.hpp"
 
 namespace palpate {
 namespace {

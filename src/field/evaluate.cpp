@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "field/formulas.hpp"
 #include "field/joined_height.hpp"
 #include "field/oriented.hpp"
-#include "field/smooth_step.hpp"
 
 // Notation as in docs/method.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
 // A = sum v q / sum v, Nb = sum v n / sum v, W the united support, R(x) = sum w R / sum w.

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <span>
 
-#include "field/agreement.hpp"
 #include "field/facing.hpp"
+#include "field/formulas.hpp"
 #include "palpate/field/field_options.hpp"
 
 // What Facing decides of sheets that come into view: the sides of their parts, and how they meet.

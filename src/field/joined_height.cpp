@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "field/facing.hpp"
-#include "field/smooth_step.hpp"
-#include "field/united_height.hpp"
+#include "field/formulas.hpp"
 
 namespace palpate {
 

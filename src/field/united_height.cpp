@@ -1,10 +1,9 @@
-#include "field/united_height.hpp"
-
 #include <array>
 #include <cmath>
 #include <span>
 
-#include "field/smooth_step.hpp"
+#include "field/formulas.hpp"
+#include "field/joined_height.hpp"
 
 namespace palpate {
 namespace {

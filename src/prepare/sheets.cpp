@@ -8,7 +8,6 @@
 #include "geometry/normals.hpp"
 #include "geometry/signed_sets.hpp"
 #include "prepare/grow_sheets.hpp"
-#include "prepare/outlook.hpp"
 #include "prepare/sheet_fit.hpp"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "field/newest.hpp"
+#include "field/formulas.hpp"
 #include "palpate/geometry/spacing.hpp"
 
 namespace palpate {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "palpate/depth/organised.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/scene/snapshot.hpp"
 #include "prepare/check_input.hpp"
 #include "scene/intake.hpp"

@@ -10,7 +10,6 @@
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_frame.hpp"
 #include "sensor/drivers.hpp"
-#include "sensor/kinect_depth.hpp"
 #include "sensor/live_camera.hpp"
 
 namespace palpate::sensor {

@@ -1,14 +1,24 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "palpate/base/clock.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 
 namespace palpate::sensor {
+
+/// The depth camera of a Kinect v1 (and its PrimeSense relatives) by its maker's nominal values;
+/// single devices differ from them by about a percent.
+[[nodiscard]] Pinhole kinect_pinhole(int width, int height);
+
+/// Metres of a raw 11-bit value, the disparity in eighths of a pixel against a reference plane at
+/// 1.2 m. 0 for 2047 and above ("nothing measured") and for what is beyond 15 m.
+[[nodiscard]] float kinect_metres(std::uint16_t raw);
 
 /// Brings the times of a device's own clock to the host's. A frame arrives no earlier than it was
 /// taken, so the smallest difference between arrival and the device's time is the best guess of how

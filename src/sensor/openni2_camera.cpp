@@ -14,7 +14,6 @@
 #include "base/listed.hpp"
 #include "palpate/base/error.hpp"
 #include "sensor/drivers.hpp"
-#include "sensor/kinect_depth.hpp"
 #include "sensor/live_camera.hpp"
 #include "sensor/openni2_frame.hpp"
 #include "sensor/openni2_library.hpp"

@@ -1,4 +1,3 @@
-// Apart, so that a stream into another sink needs no Source.
 #include "palpate/sensor/stream.hpp"
 
 #include <fmt/format.h>
@@ -12,37 +11,11 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
 #include "sensor/frame_check.hpp"
 #include "sensor/frame_exchange.hpp"
-#include "sensor/retry.hpp"
 #include "sensor/stream_log.hpp"
 
 namespace palpate {
-namespace {
-
-FrameSink sink_of(Source& source) {
-  return [&source](const DepthFrame& frame, const StartTime& start) {
-    if (source.push(frame, start)) return;
-    throw Error(
-        fmt::format("all snapshots are held by fields that stand still, such as that of {}. "
-                    "Update it, or close it",
-                    source.state().slowest));
-  };
-}
-
-}  // namespace
-
-Stream::Stream(DepthCamera& camera, Source& source, const Clock& clock,
-               const StreamOptions& options)
-    : Stream(camera, source.name(), sink_of(source), clock, options, [&source] { source.keep(); }) {
-}
-
-SimulatedStream::SimulatedStream(DepthCamera& camera, Source& source,
-                                 const SimulatedStreamOptions& options)
-    : SimulatedStream(camera, source.name(), sink_of(source), options,
-                      [&source] { source.keep(); }) {}
-
 namespace {
 
 using namespace sensor;
@@ -56,6 +29,32 @@ constexpr double kOtherClock = 30;  // s
 // share of the longest of them, frame by frame, and no more than a hiccup should cost.
 constexpr double kForget = 0.9;
 constexpr double kLongestTail = 0.02;  // s
+
+// How long to wait before a camera that failed is asked again: not at all after one failure, then
+// ever longer.
+class Retry {
+ public:
+  Retry(double first, double longest) : first_(first), longest_(longest) {}
+
+  void succeeded() { failures_ = 0; }
+
+  // Another failure; s to wait.
+  [[nodiscard]] double failed() {
+    ++failures_;
+    if (failures_ == 1) return 0;
+    wait_ = failures_ == 2 ? first_ : std::min(2 * wait_, longest_);
+    return wait_;
+  }
+
+  // More than one failure in a row.
+  [[nodiscard]] bool repeatedly() const { return failures_ > 1; }
+
+ private:
+  double first_;
+  double longest_;
+  double wait_ = 0;
+  int failures_ = 0;  // in a row
+};
 
 const StreamOptions& checked(const StreamOptions& options, const std::string& name) {
   const auto require = [&](bool good, double seconds, const char* what) {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "field/newest.hpp"
+#include "field/formulas.hpp"
 
 namespace palpate::viewer {
 

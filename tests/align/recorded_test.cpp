@@ -6,7 +6,7 @@
 
 #include "palpate/align/align.hpp"
 #include "palpate/scene/source.hpp"
-#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/open_camera.hpp"
 
 namespace palpate {
 namespace {

@@ -1,10 +1,9 @@
-#include "palpate/depth/organised.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "palpate/depth/depth_frame.hpp"
 #include "support/organised_clouds.hpp"
 
 namespace palpate {

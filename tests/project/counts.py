@@ -61,12 +61,10 @@ def functions(path):
             yield lines[first].strip(), first + 1, end - first + 1
 
 
-def public_types(root):
-    """Types that public headers define at namespace level."""
-    for path in code_of(root, ("include",)):
-        for name in re.findall(r"^(?:class|struct|enum class|enum|using) (\w+)[^;]*?(?:\{| =)",
-                               path.read_text(encoding="utf-8"), re.M):
-            yield name
+def types(path):
+    """Names of the types that a header defines at namespace level."""
+    return re.findall(r"^(?:class|struct|enum class|enum|using) (\w+)[^;]*?(?:\{| =)",
+                      path.read_text(encoding="utf-8"), re.M)
 
 
 def table(root):
@@ -76,7 +74,7 @@ def table(root):
     yield "files of the same", len(code)
     yield f"files of {TINY} lines or less", sum(count <= TINY for count in lines.values())
     yield "public headers", len(code_of(root, ("include",)))
-    yield "public types", len(list(public_types(root)))
+    yield "public types", sum(len(types(path)) for path in code_of(root, ("include",)))
     yield "files from a depth frame to a force", len(opened(root, *FRAME))
     yield "files from a cloud to a force", len(opened(root, *CLOUD))
     yield (f"functions above {LONGEST_FUNCTION} lines",

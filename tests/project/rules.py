@@ -5,6 +5,8 @@ import pathlib
 import re
 import sys
 
+import counts
+
 # What each floor may include besides itself: only what lies below it. docs/architecture.md draws it.
 FLOORS = {
     "base": set(),
@@ -36,6 +38,7 @@ PLATFORM_FILES = {"src/base/cpu.cpp"}
 SOURCE_FOLDERS = ("apps", "bench", "examples", "fuzz", "include", "src", "tests")
 TEXT_SUFFIXES = {".cpp", ".hpp", ".inl", ".in", ".cmake", ".md", ".mjs", ".py", ".sh", ".ts", ".txt"}
 LONGEST_FILE = 300  # lines
+LARGEST_MODULE = 250  # lines of a header and its sources, about
 
 
 def sources(root, folders=SOURCE_FOLDERS):
@@ -133,6 +136,49 @@ def size(root):
             yield f"{path.relative_to(root)}: {count} lines, more than {LONGEST_FILE}"
 
 
+def functions(root):
+    """Functions that one sees at once."""
+    for path in sources(root, ("include", "src", "apps")):
+        for head, number, length in counts.functions(path):
+            if length > counts.LONGEST_FUNCTION:
+                yield (f"{path.relative_to(root)}:{number}: {length} lines, more than "
+                       f"{counts.LONGEST_FUNCTION}: {head}")
+
+
+def readers(root):
+    """What one file alone reads belongs to that file, as long as both make one module."""
+    users = {}
+    for path in sources(root):
+        for name in counts.included(path):
+            users.setdefault(name, set()).add(path)
+    for path in sources(root, ("src", "apps")):
+        if path.suffix != ".hpp":
+            continue
+        name = path.relative_to(root).as_posix()
+        own = path.with_suffix(".cpp")
+        reading = users.get(name.removeprefix("src/"), set()) | users.get(name, set())
+        reading -= {own}
+        if len(reading) != 1:
+            continue
+        reader, = reading
+        if reader.relative_to(root).parts[0] not in {"src", "apps"} or reader.name == "main.cpp":
+            continue
+        together = sum(len(lines(file)) for file in (path, own, reader) if file.exists())
+        if reader.suffix == ".cpp" and together <= LARGEST_MODULE:
+            yield f"{name}: {reader.relative_to(root)} alone reads it, {together} lines together"
+
+
+def public_face(root):
+    """What users see changes on purpose: with the list in tests/project/public_face.txt."""
+    listed = root / "tests" / "project" / "public_face.txt"
+    wanted = lines(listed) if listed.exists() else []
+    there = [f"{path.relative_to(root / 'include')}: {' '.join(sorted(counts.types(path)))}".rstrip()
+             for path in sources(root, ("include",))]
+    for line in sorted(set(there) ^ set(wanted)):
+        change = "is new; list it" if line in there else "is gone; take it off the list"
+        yield f"{line}: {change} in tests/project/public_face.txt if that is wanted"
+
+
 def readme(root):
     """The README is short, its program is the one that is compiled, its links lead somewhere."""
     text = (root / "README.md").read_text(encoding="utf-8")
@@ -180,8 +226,8 @@ def text_lines(root):
 
 
 RULES = {rule.__name__: rule
-         for rule in (floors, rooms, public_headers, macros, marks, size, readme, links,
-                      documents)}
+         for rule in (floors, rooms, public_headers, macros, marks, size, functions, readers,
+                      public_face, readme, links, documents)}
 
 
 def main():

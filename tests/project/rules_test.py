@@ -71,6 +71,28 @@ class Rules(unittest.TestCase):
         self.assertEqual(len(self.found(rules.size, {"src/io/a.cpp": "int a;\n" * 301})), 1)
         self.assertEqual(self.found(rules.size, {"src/io/a.cpp": "int a;\n" * 300}), [])
 
+    def test_long_functions_are_found(self):
+        def function(inside):
+            return "int f(int a,\n      int b) {\n" + "  ++a;\n" * inside + "}\n"
+        self.assertEqual(len(self.found(rules.functions, {"src/io/a.cpp": function(38)})), 1)
+        self.assertEqual(self.found(rules.functions, {"src/io/a.cpp": function(37)}), [])
+
+    def test_a_header_that_one_file_reads_is_found(self):
+        files = {"src/io/a.hpp": "int a;\n", "src/io/a.cpp": '#include "io/a.hpp"\n',
+                 "src/io/b.cpp": '#include "io/a.hpp"\n'}
+        self.assertEqual(len(self.found(rules.readers, files)), 1)
+        long = {**files, "src/io/b.cpp": files["src/io/b.cpp"] + "int b;\n" * 250}
+        self.assertEqual(self.found(rules.readers, long), [])
+        tested = {**files, "tests/io/a_test.cpp": '#include "io/a.hpp"\n'}
+        self.assertEqual(self.found(rules.readers, tested), [])
+
+    def test_a_change_of_the_public_face_is_found(self):
+        files = {"include/palpate/io/a.hpp": "struct A {\n};\nenum class B { c };\n",
+                 "tests/project/public_face.txt": "palpate/io/a.hpp: A B\n"}
+        self.assertEqual(self.found(rules.public_face, files), [])
+        files["include/palpate/io/a.hpp"] += "class C {\n};\n"
+        self.assertEqual(len(self.found(rules.public_face, files)), 2)
+
     def test_a_readme_that_drifts_from_its_program_is_found(self):
         files = {"examples/ten_lines.cpp": "int main() {}\n",
                  "README.md": "```cpp\nint main() { }\n```\n"}

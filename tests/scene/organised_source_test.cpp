@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "palpate/contact/proxy.hpp"
-#include "palpate/depth/organised.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/io/read_cloud.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/open_camera.hpp"
 #include "sensor/fake_camera.hpp"
 #include "sensor/folder.hpp"
 

@@ -5,7 +5,6 @@
 
 #include "palpate/base/error.hpp"
 #include "sensor/fake_camera.hpp"
-#include "sensor/kinect_depth.hpp"
 
 namespace palpate::sensor {
 namespace {

@@ -1,8 +1,9 @@
+#include "palpate/sensor/open_camera.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/depth_camera.hpp"
 #include "sensor/folder.hpp"
 
 namespace palpate {

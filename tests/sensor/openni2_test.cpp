@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/open_camera.hpp"
 #include "sensor/fake_camera.hpp"
 #include "sensor/folder.hpp"
-#include "sensor/kinect_depth.hpp"
+#include "sensor/live_camera.hpp"
 #include "sensor/oni_file.hpp"
 #include "sensor/openni2_frame.hpp"
 

@@ -5,7 +5,7 @@
 #include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/devices/driver_list.hpp"
-#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/open_camera.hpp"
 
 namespace palpate::app {
 

@@ -5,7 +5,7 @@
 
 #include "apps/palpate/sources/cloud_facts.hpp"
 #include "apps/palpate/sources/load.hpp"
-#include "palpate/depth/organised.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/scene/source.hpp"
 
 namespace palpate::app {

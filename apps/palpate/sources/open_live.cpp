@@ -5,7 +5,7 @@
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/sources/posed_camera.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/open_camera.hpp"
 
 namespace palpate::app {
 

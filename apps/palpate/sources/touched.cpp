@@ -15,7 +15,7 @@
 #include "apps/palpate/sources/load.hpp"
 #include "apps/palpate/sources/open_live.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/depth/organised.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/spacing.hpp"
 
 namespace palpate::app {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
@@ -16,6 +18,25 @@ namespace palpate {
   const float squared = way.squaredNorm();
   const bool one_plane = std::abs(by_p) <= tolerance && std::abs(by_q) <= tolerance;
   return one_plane || !(squared > 0) ? straight : straight - 2 * by_p * by_q / squared;
+}
+
+/// How far a gate has opened, 0 to 1, with its derivative.
+struct SmoothStep {
+  double value = 0;
+  double slope = 0;
+};
+
+/// u^2 (3 - 2u) of u = clamp((x - from) / width, 0, 1): the gates between one surface and another.
+[[nodiscard]] inline SmoothStep smooth_step(double x, double from, double width) noexcept {
+  const double u = std::clamp((x - from) / width, 0.0, 1.0);
+  return {u * u * (3 - 2 * u), 6 * u * (1 - u) / width};
+}
+
+/// A column of surface points as it is at the end of their way: that of the start where it does not
+/// change.
+template <class Column>
+[[nodiscard]] const Column& newest(const Column& start, const Column& end) {
+  return end.empty() ? start : end;
 }
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "palpate/sensor/depth_camera.hpp"
+#include "palpate/sensor/open_camera.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,18 @@
+# Target docs: the public headers and the documents as HTML, in build/.../docs/html; a warning is an error.
+find_package(Doxygen 1.9)
+if(NOT DOXYGEN_FOUND)
+  return()
+endif()
+set(DOXYGEN_PROJECT_BRIEF "${PROJECT_DESCRIPTION}")
+set(DOXYGEN_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/docs)
+set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR})
+set(DOXYGEN_STRIP_FROM_INC_PATH ${PROJECT_SOURCE_DIR}/include)
+set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${PROJECT_SOURCE_DIR}/README.md)
+set(DOXYGEN_EXTRACT_ALL YES)
+set(DOXYGEN_JAVADOC_AUTOBRIEF YES)
+set(DOXYGEN_HAVE_DOT NO)
+set(DOXYGEN_QUIET YES)
+set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
+set(DOXYGEN_FILTER_PATTERNS *.md=${PROJECT_SOURCE_DIR}/cmake/doc_links.sed)
+doxygen_add_docs(docs ${PROJECT_SOURCE_DIR}/README.md CONTRIBUTING.md CHANGELOG.md include docs bench/README.md bench/RESULTS.md
+  web/README.md WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} COMMENT "Writing the documents as HTML")
