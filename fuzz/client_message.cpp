@@ -1,10 +1,10 @@
 // What a viewer's page says: whatever comes is read or refused with words.
-#include "viewer/client_message.hpp"
-
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string_view>
+
+#include "viewer/messages.hpp"
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "device/haply_message.hpp"
+#include "device/remote_protocol.hpp"
 #include "io/depth_image.hpp"
 #include "io/file_bytes.hpp"
 #include "io/input.hpp"
@@ -19,7 +20,6 @@
 #include "io/ply.hpp"
 #include "io/xyz.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/device/remote_packet.hpp"
 #include "palpate/io/read_cloud.hpp"
 #include "palpate/io/read_depth.hpp"
 #include "palpate/io/trajectory.hpp"
@@ -115,7 +115,7 @@ void check_remote_state(std::span<const std::byte> bytes) {
 void check_haply_frame(std::string_view text) {
   for (const device::HaplyDevice& each : device::parse_haply_frame(text)) {
     if (!each.reading) continue;
-    const LinkReading& told = *each.reading;
+    const DeviceState& told = *each.reading;
     expect(told.position.allFinite() && told.velocity.allFinite(), "a number that is none");
     expect(told.position.cwiseAbs().maxCoeff() <= device::kFarthestHaply, "a place");
     expect(told.velocity.cwiseAbs().maxCoeff() <= device::kFastestHaply, "a velocity");

@@ -22,9 +22,9 @@
 namespace palpate::bench {
 namespace {
 
-using Opened = std::unique_ptr<DeviceLink>;
+using Opened = std::unique_ptr<DeviceDriver>;
 
-void exchange_all(benchmark::State& state, DeviceLink& link) {
+void exchange_all(benchmark::State& state, DeviceDriver& link) {
   for ([[maybe_unused]] const auto& each : state) {
     benchmark::DoNotOptimize(link.exchange({0.1, 0, 0}));
   }

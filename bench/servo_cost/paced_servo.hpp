@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "palpate/base/clock.hpp"
-#include "palpate/device/paced.hpp"
-#include "palpate/device/scripted.hpp"
+#include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/histogram.hpp"

@@ -19,7 +19,7 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kFolder = "the folder has to be there and yours";
+constexpr const char* kFolder = "the folder must exist and belong to you";
 constexpr std::size_t kHead = offsetof(sockaddr_un, sun_path);
 
 struct Native {
@@ -92,7 +92,7 @@ bool left_over(const Native& address) noexcept {
 void make_room(const std::string& path, const Native& address) {
   struct stat file {};
   if (::lstat(path.c_str(), &file) != 0) return;
-  if (!S_ISSOCK(file.st_mode)) refuse(path, "it is a file that is no socket; give another path");
+  if (!S_ISSOCK(file.st_mode)) refuse(path, "it is a file, not a socket; give another path");
   if (!left_over(address)) {
     refuse(path, "another program listens there; end it or give another path");
   }

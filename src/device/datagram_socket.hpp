@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// The address of a UNIX socket, as the system tells it.
+/// The address of a UNIX socket.
 struct SocketAddress {
   std::array<char, 108> path{};  // sun_path
   std::size_t size = 0;          // of what counts in it; 0: the socket has no name
@@ -16,7 +16,7 @@ struct SocketAddress {
   bool operator==(const SocketAddress&) const = default;
 };
 
-/// What became of an attempt to receive.
+/// The result of an attempt to receive.
 struct Reception {
   bool any = false;      ///< a datagram came, of any size
   int error = 0;         ///< errno, if receiving failed and will go on failing
@@ -24,19 +24,19 @@ struct Reception {
   SocketAddress from;
 };
 
-/// A UNIX datagram socket that is bound to a path which only its owner may use (mode 0600).
-/// Neither receiving nor sending waits.
+/// A UNIX datagram socket bound to a path that only its owner may use (mode 0600). Neither
+/// receiving nor sending waits.
 class DatagramSocket {
  public:
-  /// Takes the place of a socket file that no program has open any more.
+  /// Replaces a socket file that no program has open any more.
   /// @throws Error when the path is too long, is in use or is no socket, or binding fails.
   explicit DatagramSocket(const std::string& path);
-  /// Removes the file, if it is still this socket's.
+  /// Removes the file, if it still belongs to this socket.
   ~DatagramSocket();
   DatagramSocket(const DatagramSocket&) = delete;
   DatagramSocket& operator=(const DatagramSocket&) = delete;
 
-  /// The oldest datagram that waits; what is longer than `bytes` is cut.
+  /// The oldest waiting datagram; cut to the size of `bytes`.
   [[nodiscard]] Reception receive(std::span<std::byte> bytes) noexcept;
 
   /// False: not sent; the receiver is gone, or does not read.

@@ -9,10 +9,30 @@
 #include <fstream>
 #include <iterator>
 
-#include "device/profiles_text.hpp"
+#include "device/drivers.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
+namespace device {
+
+// profiles.toml, as it was when this was built; CMake writes the source of this.
+std::string_view profiles_text();
+
+DeviceInfo info_of(const DeviceProfile& profile, const std::string& name) {
+  DeviceInfo info;
+  info.name = name;
+  info.maximum_force = profile.maximum_force.value_or(*device_profile("unknown").maximum_force);
+  info.maximum_stiffness = profile.maximum_stiffness.value_or(info.maximum_stiffness);
+  info.damping = profile.damping.value_or(info.damping);
+  info.mass = profile.mass.value_or(info.mass);
+  info.rate = profile.rate.value_or(info.rate);
+  info.delay = profile.delay;
+  info.workspace_radius = profile.workspace_radius.value_or(info.workspace_radius);
+  return info;
+}
+
+}  // namespace device
+
 namespace {
 
 // A number of a profile: its key, and the least that it may be.
@@ -46,7 +66,8 @@ class Reader {
       const toml::table* table = node.as_table();
       if (table == nullptr) {
         fail(key.source(),
-             fmt::format("'{}' is no table; write [NAME] and its keys in lines below", key.str()));
+             fmt::format("'{}' is not a table; write [NAME] and its keys in lines below",
+                         key.str()));
       }
       profiles.push_back(profile(std::string(key.str()), *table));
     }
@@ -84,7 +105,8 @@ class Reader {
   }
 
   [[nodiscard]] std::string text(const toml::key& key, const toml::node& node) const {
-    if (!node.is_string()) fail(node.source(), fmt::format("'{}' is no text in quotes", key.str()));
+    if (!node.is_string())
+      fail(node.source(), fmt::format("'{}' is not a text in quotes", key.str()));
     return *node.value<std::string>();
   }
 
@@ -93,7 +115,8 @@ class Reader {
     if (found != kNumbers.end()) return *found;
     std::string known = "title, source";
     for (const NumberKey& each : kNumbers) known += fmt::format(", {}", each.key);
-    fail(key.source(), fmt::format("'{}' is no key of a device; known are {}", key.str(), known));
+    fail(key.source(),
+         fmt::format("'{}' is not a key of a device; the keys are {}", key.str(), known));
   }
 
   [[nodiscard]] double number(const NumberKey& key, const toml::node& node) const {
@@ -101,8 +124,8 @@ class Reader {
     const bool good =
         node.is_number() && std::isfinite(*value) && (key.positive ? *value > 0 : *value >= 0);
     if (good) return *value;
-    fail(node.source(), fmt::format("'{}' is no number {}", key.key,
-                                    key.positive ? "above 0" : "that is 0 or more"));
+    fail(node.source(), fmt::format("'{}' is not a number {}", key.key,
+                                    key.positive ? "above 0" : "of 0 or more"));
   }
 
   const std::string& what_;
@@ -138,7 +161,7 @@ DeviceProfile device_profile(std::string_view name, const std::vector<DeviceProf
   if (found != among.end()) return *found;
   std::string known;
   for (const DeviceProfile& each : among) known += (known.empty() ? "" : ", ") + each.name;
-  throw Error(fmt::format("there is no profile of a device '{}'; known are {}", name, known));
+  throw Error(fmt::format("there is no device profile '{}'; the profiles are {}", name, known));
 }
 
 }  // namespace palpate

@@ -1,28 +1,54 @@
 #pragma once
 
+#include <initializer_list>
+#include <map>
 #include <memory>
+#include <string>
+#include <string_view>
 
-#include "device/device_name.hpp"
 #include "palpate/base/clock.hpp"
-#include "palpate/device/device_link.hpp"
-#include "palpate/device/open_device.hpp"
+#include "palpate/base/driver_info.hpp"
+#include "palpate/device/device_profile.hpp"
+#include "palpate/device/threaded_device.hpp"
 
-// The drivers of hardware. One that needs what a build may lack has two sources, of which the build
-// takes one: DRIVER_link.cpp, or DRIVER_absent.cpp. A link may read the clock, which outlives it.
 namespace palpate::device {
 
-[[nodiscard]] DriverInfo forcedimension_driver();
+/// "DRIVER[:DEVICE][,KEY=VALUE]...", parsed.
+struct DeviceName {
+  std::string driver;
+  std::string device;  ///< empty: the first one found
+  std::map<std::string, std::string> options = {};
+
+  /// The value of `key`, or `otherwise` if it is not given.
+  [[nodiscard]] std::string option(const std::string& key, const std::string& otherwise = "") const;
+};
+
+/// @throws Error when an option has no value or is given twice.
+[[nodiscard]] DeviceName parse_device_name(std::string_view name);
+
+/// @throws Error when `name` has options other than `known`, which the message lists.
+void check_options(const DeviceName& name, std::initializer_list<std::string_view> known);
+
+/// The numbers of a profile for a device that is called `name`. Where the profile does not know the
+/// force, that of an unknown device is taken.
+[[nodiscard]] DeviceInfo info_of(const DeviceProfile& profile, const std::string& name);
+
+// The drivers of hardware: what each finds, and how it opens a device. Drivers that need a library
+// at build time have a second source, DRIVER_absent.cpp, for builds without it. A driver may read
+// the clock, which outlives it.
+
+[[nodiscard]] DriverInfo list_forcedimension();
 /// Device: a number, from 0; options: library=PATH, profile=NAME.
-[[nodiscard]] std::unique_ptr<DeviceLink> open_forcedimension(const DeviceName& name,
-                                                              const Clock& clock);
+[[nodiscard]] std::unique_ptr<DeviceDriver> open_forcedimension(const DeviceName& name,
+                                                                const Clock& clock);
 
-[[nodiscard]] DriverInfo haply_driver();
+[[nodiscard]] DriverInfo list_haply();
 /// Device: its id; options: url=ws://HOST:PORT, profile=NAME.
-[[nodiscard]] std::unique_ptr<DeviceLink> open_haply(const DeviceName& name, const Clock& clock);
+[[nodiscard]] std::unique_ptr<DeviceDriver> open_haply(const DeviceName& name, const Clock& clock);
 
-[[nodiscard]] DriverInfo openhaptics_driver();
+[[nodiscard]] DriverInfo list_openhaptics();
 /// Device: its name in the maker's set-up; options: library=PATH, profile=NAME.
-[[nodiscard]] std::unique_ptr<DeviceLink> open_openhaptics(const DeviceName& name,
-                                                           const Clock& clock);
+[[nodiscard]] std::unique_ptr<DeviceDriver> open_openhaptics(const DeviceName& name,
+                                                             const Clock& clock);
 
 }  // namespace palpate::device

@@ -3,7 +3,7 @@
 
 namespace palpate::device {
 
-DriverInfo haply_driver() {
+DriverInfo list_haply() {
   return {.name = "haply",
           .description = "Haply Inverse3",
           .available = false,
@@ -13,8 +13,8 @@ DriverInfo haply_driver() {
           .devices = {}};
 }
 
-std::unique_ptr<DeviceLink> open_haply(const DeviceName& /*name*/, const Clock& /*clock*/) {
-  throw Error("haply: " + haply_driver().missing);
+std::unique_ptr<DeviceDriver> open_haply(const DeviceName& /*name*/, const Clock& /*clock*/) {
+  throw Error("haply: " + list_haply().missing);
 }
 
 }  // namespace palpate::device

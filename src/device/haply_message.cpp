@@ -82,11 +82,14 @@ HaplyDevice device_of(const Json& told, std::string id, const Grip& grip) {
   HaplyDevice device;
   device.id = std::move(id);
   const Json& state = child(told, "state");
-  const std::optional<Vector3d> place = vector(child(state, "cursor_position"), kFarthestHaply);
+  const std::optional<Vector3d> position = vector(child(state, "cursor_position"), kFarthestHaply);
   const std::optional<Vector3d> velocity = vector(child(state, "cursor_velocity"), kFastestHaply);
-  if (place && velocity) {
-    device.reading = LinkReading{*place, *velocity, grip.buttons,
-                                 grip.orientation.value_or(Eigen::Quaterniond::Identity())};
+  if (position && velocity) {
+    device.reading =
+        DeviceState{.position = *position,
+                    .velocity = *velocity,
+                    .buttons = grip.buttons,
+                    .orientation = grip.orientation.value_or(Eigen::Quaterniond::Identity())};
   }
   device.gripped = grip.orientation.has_value();
   device.calibrated = truth(child(child(told, "status"), "calibrated"));
@@ -103,7 +106,7 @@ std::string to_device(std::string_view id, const char* what, const Json& told) {
 
 std::vector<HaplyDevice> parse_haply_frame(std::string_view text) {
   const Json frame = Json::parse(text, nullptr, false);
-  if (!frame.is_object()) throw Error("what came is no frame of Haply's Inverse Service");
+  if (!frame.is_object()) throw Error("what came is not a frame of Haply's Inverse Service");
   std::vector<HaplyDevice> devices;
   const Json& told = child(frame, "inverse3");
   if (!told.is_array()) return devices;

@@ -6,33 +6,33 @@
 #include <string_view>
 #include <vector>
 
-#include "palpate/device/device_link.hpp"
+#include "palpate/device/device.hpp"
 
-// What is said between Haply's Inverse Service (3.1 and newer) and its clients: JSON, in metres,
-// metres a second and newtons.
+// Messages between Haply's Inverse Service (3.1 and newer) and its clients: JSON, in metres, metres
+// per second and newtons.
 namespace palpate::device {
 
-/// What a frame tells of one Inverse3.
+/// One Inverse3 in a frame.
 struct HaplyDevice {
   std::string id;                           ///< "04EA"
-  std::optional<LinkReading> reading = {};  ///< where place and velocity are told, and possible
-  std::optional<bool> calibrated = {};      ///< where it is told
-  std::optional<bool> powered = {};         ///< where it is told
-  bool gripped = false;                     ///< a grip tells how it is held
+  std::optional<DeviceState> reading = {};  ///< if position and velocity are given, and possible
+  std::optional<bool> calibrated = {};      ///< if it is given
+  std::optional<bool> powered = {};         ///< if it is given
+  bool gripped = false;                     ///< a grip gives its orientation
 };
 
-/// Larger numbers are none of a hand's: m along an axis, and m/s.
+/// Larger numbers are impossible for a hand: m along an axis, and m/s.
 inline constexpr double kFarthestHaply = 10;
 inline constexpr double kFastestHaply = 100;
 
 /// The devices of a frame; buttons and orientation of the first grip are in all readings.
-/// @throws Error when it is no frame at all.
+/// @throws Error when it is not a frame at all.
 [[nodiscard]] std::vector<HaplyDevice> parse_haply_frame(std::string_view text);
 
-/// Asks for a frame that tells all.
+/// Asks for a frame with everything in it.
 [[nodiscard]] std::string haply_greeting();
 
-/// Lets a device's places be counted from the middle of its reach, not from its base (the service's
+/// Moves the origin of a device's positions from its base to the middle of its reach (the service's
 /// preset arm_front_centered).
 [[nodiscard]] std::string haply_configuration(std::string_view id);
 

@@ -1,6 +1,7 @@
 #include "palpate/device/open_device.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,39 +10,80 @@
 #include "palpate/base/error.hpp"
 
 namespace palpate {
+namespace device {
 namespace {
 
-using namespace device;
-
-struct Driver {
-  std::string_view name;
-  std::unique_ptr<DeviceLink> (*open)(const DeviceName& name, const Clock& clock);
-  DriverInfo (*list)();
-};
-
-constexpr std::array<Driver, 3> kDrivers = {
-    {{"forcedimension", open_forcedimension, forcedimension_driver},
-     {"openhaptics", open_openhaptics, openhaptics_driver},
-     {"haply", open_haply, haply_driver}}};
-
-const Driver* driver_of(const DeviceName& name) {
-  const auto* found = std::ranges::find(kDrivers, name.driver, &Driver::name);
-  return found == kDrivers.end() ? nullptr : found;
+void add_option(DeviceName& name, std::string_view text) {
+  const std::size_t equals = text.find('=');
+  const std::string key(text.substr(0, equals));
+  const std::string value(equals < text.size() ? text.substr(equals + 1) : "");
+  if (key.empty() || value.empty()) {
+    throw Error(
+        fmt::format("device {}: '{}' is not an option; write KEY=VALUE", name.driver, text));
+  }
+  if (!name.options.emplace(key, value).second) {
+    throw Error(fmt::format("device {}: '{}' is given twice; give it once", name.driver, key));
+  }
 }
 
 }  // namespace
 
-std::unique_ptr<LinkedDevice> open_device(const std::string& name, WaitingClock& clock,
-                                          const LinkedDeviceOptions& options) {
-  const DeviceName parsed = parse_device_name(name);
-  const Driver* driver = driver_of(parsed);
-  if (driver == nullptr) {
+std::string DeviceName::option(const std::string& key, const std::string& otherwise) const {
+  const auto found = options.find(key);
+  return found == options.end() ? otherwise : found->second;
+}
+
+DeviceName parse_device_name(std::string_view text) {
+  DeviceName name;
+  std::size_t comma = std::min(text.find(','), text.size());
+  const std::string_view head = text.substr(0, comma);
+  const std::size_t colon = std::min(head.find(':'), head.size());
+  name.driver = head.substr(0, colon);
+  name.device = head.substr(std::min(colon + 1, head.size()));
+  while (comma < text.size()) {
+    const std::size_t end = std::min(text.find(',', comma + 1), text.size());
+    add_option(name, text.substr(comma + 1, end - comma - 1));
+    comma = end;
+  }
+  return name;
+}
+
+void check_options(const DeviceName& name, std::initializer_list<std::string_view> known) {
+  for (const auto& [key, value] : name.options) {
+    if (std::ranges::find(known, key) != known.end()) continue;
+    throw Error(fmt::format("device {}: there is no option '{}'; the options are {}", name.driver,
+                            key, fmt::join(known, ", ")));
+  }
+}
+
+}  // namespace device
+
+namespace {
+
+struct Driver {
+  std::string_view name;
+  std::unique_ptr<DeviceDriver> (*open)(const device::DeviceName& name, const Clock& clock);
+  DriverInfo (*list)();
+};
+
+constexpr std::array<Driver, 3> kDrivers = {
+    {{"forcedimension", device::open_forcedimension, device::list_forcedimension},
+     {"openhaptics", device::open_openhaptics, device::list_openhaptics},
+     {"haply", device::open_haply, device::list_haply}}};
+
+}  // namespace
+
+std::unique_ptr<ThreadedDevice> open_device(const std::string& name, WaitingClock& clock,
+                                            const ThreadedDeviceOptions& options) {
+  const device::DeviceName parsed = device::parse_device_name(name);
+  const auto* const driver = std::ranges::find(kDrivers, parsed.driver, &Driver::name);
+  if (driver == kDrivers.end()) {
     throw Error(
         fmt::format("{}: no such device. Devices are forcedimension[:N], openhaptics[:NAME] and "
                     "haply[:ID]; 'palpate devices' lists those that are there",
                     name));
   }
-  return std::make_unique<LinkedDevice>(
+  return std::make_unique<ThreadedDevice>(
       [driver, parsed, &clock] { return driver->open(parsed, clock); }, clock, options);
 }
 

@@ -2,24 +2,36 @@
 
 #include <fmt/format.h>
 
-#include "device/openhaptics_codes.hpp"
+#include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace palpate::device {
 namespace {
 
+constexpr double kLengthUnit = 1e-3;  // m
 constexpr const char* kBroughtBy =
     "OpenHaptics 3 for Linux and the Touch Device Driver bring it (3D Systems): run the installers "
-    "of both";
+    "of both; 'palpate doctor' says what is missing";
+
+// The most exact first.
+std::vector<std::string> names_of(const std::string& file) {
+  if (!file.empty()) return {file};
+  return {"libHD.so.3.4", "libHD.so.3", "libHD.so"};
+}
+
+double known_or_zero(double number) {
+  return std::isfinite(number) && number > 0 ? number : 0;
+}
+
+std::string text_or_empty(const char* text) {
+  return text == nullptr ? "" : text;
+}
 
 }  // namespace
 
-const std::vector<std::string>& OpenHapticsLibrary::names() {
-  static const std::vector<std::string> kNames = {"libHD.so.3.4", "libHD.so.3", "libHD.so"};
-  return kNames;
-}
-
 OpenHapticsLibrary::OpenHapticsLibrary(const std::string& file)
-    : library(file.empty() ? names() : std::vector{file}, kBroughtBy) {
+    : library(names_of(file), kBroughtBy, SharedLibrary::Unload::never) {
   library.find("hdInitDevice", init_device);
   library.find("hdDisableDevice", disable_device);
   library.find("hdMakeCurrentDevice", make_current);
@@ -38,6 +50,7 @@ OpenHapticsLibrary::OpenHapticsLibrary(const std::string& file)
   library.find("hdStartScheduler", start_scheduler);
   library.find("hdStopScheduler", stop_scheduler);
   library.find("hdScheduleAsynchronous", schedule);
+  library.find("hdUnschedule", unschedule);
 }
 
 unsigned OpenHapticsLibrary::take_errors() const noexcept {
@@ -47,10 +60,75 @@ unsigned OpenHapticsLibrary::take_errors() const noexcept {
   return newest;
 }
 
-std::string OpenHapticsLibrary::words(unsigned code) const {
+OpenHapticsFacts OpenHapticsLibrary::read_facts() const {
+  OpenHapticsFacts facts;
+  facts.model = text_or_empty(get_name(hd::kModel));
+  facts.serial_number = text_or_empty(get_name(hd::kSerialNumber));
+  get_numbers(hd::kContinuousForce, &facts.continuous_force);
+  get_numbers(hd::kMaximumStiffness, &facts.maximum_stiffness);
+  get_integers(hd::kCalibrationStyle, &facts.calibration_styles);
+  facts.continuous_force = known_or_zero(facts.continuous_force);
+  facts.maximum_stiffness = known_or_zero(facts.maximum_stiffness / kLengthUnit);
+  return facts;
+}
+
+std::string OpenHapticsLibrary::describe(unsigned code) const {
   const char* told = error_name(code);
   return fmt::format("{}, 0x{:04x}", told == nullptr || *told == '\0' ? "no reason given" : told,
                      code);
+}
+
+bool OpenHapticsErrors::open(OpenHapticsLibrary::Device device) noexcept {
+  Entry* entry = find(device);
+  if (entry == nullptr) entry = find_free();
+  if (entry == nullptr) return false;
+  entry->device = device;
+  entry->code = hd::kSuccess;
+  entry->is_open = true;
+  return true;
+}
+
+void OpenHapticsErrors::close(OpenHapticsLibrary::Device device) noexcept {
+  if (Entry* entry = find(device)) entry->is_open = false;
+}
+
+unsigned OpenHapticsErrors::take(const OpenHapticsLibrary& library,
+                                 OpenHapticsLibrary::Device asker) noexcept {
+  for (int i = 0; i < OpenHapticsLibrary::kMostErrors; ++i) {
+    const OpenHapticsLibrary::Failure failure = library.get_error();
+    if (failure.code == hd::kSuccess) break;
+    keep(failure, asker);
+  }
+  Entry* own = find(asker);
+  return own == nullptr ? hd::kSuccess : own->code.exchange(hd::kSuccess);
+}
+
+void OpenHapticsErrors::keep(const OpenHapticsLibrary::Failure& failure,
+                             OpenHapticsLibrary::Device asker) noexcept {
+  Entry* entry = find(failure.device);
+  if (entry == nullptr) entry = find(asker);
+  if (entry == nullptr || !entry->is_open) return;
+  unsigned none = hd::kSuccess;
+  entry->code.compare_exchange_strong(none, failure.code);
+}
+
+OpenHapticsErrors::Entry* OpenHapticsErrors::find(OpenHapticsLibrary::Device device) noexcept {
+  if (device == hd::kNoDevice) return nullptr;
+  auto* const found = std::ranges::find_if(
+      entries_, [device](const Entry& entry) { return entry.device == device; });
+  return found == entries_.end() ? nullptr : found;
+}
+
+// One that was never used, rather than one whose device is closed: late errors of that one are to
+// be dropped.
+OpenHapticsErrors::Entry* OpenHapticsErrors::find_free() noexcept {
+  for (Entry& entry : entries_) {
+    if (entry.device == hd::kNoDevice) return &entry;
+  }
+  for (Entry& entry : entries_) {
+    if (!entry.is_open) return &entry;
+  }
+  return nullptr;
 }
 
 }  // namespace palpate::device

@@ -1,18 +1,77 @@
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <string>
-#include <vector>
 
-#include "device/vendor_library.hpp"
+#include "base/shared_library.hpp"
 
 namespace palpate::device {
 
-/// The part of OpenHaptics' C interface to devices (HDAPI 3) that is used here; its numbers are in
-/// openhaptics_codes.hpp. Most functions speak of the current device, which a frame makes so.
+// Numbers of OpenHaptics' C interface to devices (HDAPI 3), as its header hdDefines.h gives them.
+namespace hd {
+
+// What can be asked for; positions in mm, forces in N.
+inline constexpr unsigned kCurrentButtons = 0x2000;
+inline constexpr unsigned kCurrentPosition = 0x2050;
+inline constexpr unsigned kCurrentVelocity = 0x2051;  // mm/s
+inline constexpr unsigned kModel = 0x2501;
+inline constexpr unsigned kSerialNumber = 0x2504;
+inline constexpr unsigned kCalibrationStyle = 0x2555;
+inline constexpr unsigned kMaximumStiffness = 0x2602;  // N/mm
+inline constexpr unsigned kContinuousForce = 0x2604;
+inline constexpr unsigned kMotorTemperature = 0x2605;  // of each motor; 1: as warm as allowed
+
+// What can be set, and what can be switched on.
+inline constexpr unsigned kCurrentForce = 0x2700;
+inline constexpr unsigned kForceOutput = 0x4000;
+
+// What a callback returns to be called in the next tick.
+inline constexpr unsigned kContinue = 1;
+inline constexpr unsigned short kDefaultPriority = 0x7fff;
+
+inline constexpr unsigned kNoDevice = 0xffffffff;
+
+// How a device is calibrated, as bits: by hand in a pose that it asks for; automatically; in its
+// inkwell.
+inline constexpr int kEncoderReset = 1;
+inline constexpr int kAutomatic = 2;
+inline constexpr int kInkwell = 4;
+// Whether it is calibrated.
+inline constexpr unsigned kCalibrated = 0x5000;
+inline constexpr unsigned kNeedsUpdate = 0x5001;
+inline constexpr unsigned kNeedsHand = 0x5002;
+
+// Errors.
+inline constexpr unsigned kSuccess = 0;
+inline constexpr unsigned kWarmMotors = 0x0200;
+inline constexpr unsigned kExceededForce = 0x0201;
+inline constexpr unsigned kExceededImpulse = 0x0202;
+inline constexpr unsigned kExceededVelocity = 0x0203;
+inline constexpr unsigned kForceError = 0x0204;
+inline constexpr unsigned kDeviceFault = 0x0300;
+inline constexpr unsigned kAlreadyOpen = 0x0301;
+inline constexpr unsigned kCommunication = 0x0302;
+inline constexpr unsigned kConfiguration = 0x0303;
+inline constexpr unsigned kTimer = 0x0304;
+
+}  // namespace hd
+
+/// What an open device reports about itself; 0 or empty: nothing.
+struct OpenHapticsFacts {
+  std::string model;
+  std::string serial_number;
+  double continuous_force = 0;   ///< N
+  double maximum_stiffness = 0;  ///< N/m
+  int calibration_styles = 0;    ///< hd::kEncoderReset, hd::kAutomatic, hd::kInkwell
+};
+
+/// The part of that interface that is used here. Most functions act on the current device.
 struct OpenHapticsLibrary {
   using Device = unsigned;
   using Callback = unsigned(void* data);
   using Name = const char*;
+  using Handle = unsigned long;
 
   static constexpr int kMostErrors = 16;  ///< that it may keep
 
@@ -23,27 +82,27 @@ struct OpenHapticsLibrary {
     Device device = 0;  // whose
   };
 
-  /// The names that it may have, the most exact first.
-  static const std::vector<std::string>& names();
-
-  /// `file`: a path, or empty for the first of names() that loads.
+  /// `file`: a path, or empty for the first of its usual names that loads.
   /// @throws Error that says what is missing.
   explicit OpenHapticsLibrary(const std::string& file = "");
 
-  /// The code of the newest error, whoever's it is, or hd::kSuccess; forgets all that it keeps.
-  /// Bounded work.
+  /// The code of the newest error, of whatever device, or hd::kSuccess; clears the list. Bounded
+  /// work.
   [[nodiscard]] unsigned take_errors() const noexcept;
 
-  /// What it calls an error, and the code.
-  [[nodiscard]] std::string words(unsigned code) const;
+  /// What the current device reports. Older libraries do not know all of it, and list errors then.
+  [[nodiscard]] OpenHapticsFacts read_facts() const;
 
-  VendorLibrary library;
+  /// The library's name for an error, and the code.
+  [[nodiscard]] std::string describe(unsigned code) const;
+
+  SharedLibrary library;
   Device (*init_device)(Name configuration) = nullptr;
   void (*disable_device)(Device device) = nullptr;
   void (*make_current)(Device device) = nullptr;
   void (*enable)(unsigned capability) = nullptr;
   void (*disable)(unsigned capability) = nullptr;
-  Failure (*get_error)() = nullptr;  // the newest, which is forgotten then
+  Failure (*get_error)() = nullptr;  // the newest, and removes it
   Name (*error_name)(unsigned code) = nullptr;
 
   void (*begin_frame)(Device device) = nullptr;
@@ -57,7 +116,39 @@ struct OpenHapticsLibrary {
 
   void (*start_scheduler)() = nullptr;
   void (*stop_scheduler)() = nullptr;
-  unsigned long (*schedule)(Callback* callback, void* data, unsigned short priority) = nullptr;
+  Handle (*schedule)(Callback* callback, void* data, unsigned short priority) = nullptr;
+  void (*unschedule)(Handle handle) = nullptr;
+};
+
+/// Sorts the library's one list of errors by device, so that each device fails for its own errors
+/// alone. An error that names a device that was never open counts for whoever asks; one of a closed
+/// device is dropped. For each device the first error is kept until it is taken. Any thread;
+/// lock-free, bounded work.
+class OpenHapticsErrors {
+ public:
+  static constexpr int kDevices = 16;  ///< at once
+
+  /// A device that was opened; nothing is kept for it yet. False: there are kDevices. One thread at
+  /// a time.
+  bool open(OpenHapticsLibrary::Device device) noexcept;
+  void close(OpenHapticsLibrary::Device device) noexcept;
+
+  /// Sorts what the library has listed, and takes the error kept for `asker`: a code, or
+  /// hd::kSuccess.
+  unsigned take(const OpenHapticsLibrary& library, OpenHapticsLibrary::Device asker) noexcept;
+
+ private:
+  struct Entry {
+    std::atomic<OpenHapticsLibrary::Device> device{hd::kNoDevice};
+    std::atomic<bool> is_open{false};
+    std::atomic<unsigned> code{0};
+  };
+
+  Entry* find(OpenHapticsLibrary::Device device) noexcept;
+  Entry* find_free() noexcept;
+  void keep(const OpenHapticsLibrary::Failure& failure, OpenHapticsLibrary::Device asker) noexcept;
+
+  std::array<Entry, kDevices> entries_;
 };
 
 }  // namespace palpate::device

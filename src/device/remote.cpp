@@ -9,7 +9,7 @@
 
 #include "base/requirement.hpp"
 #include "device/datagram_socket.hpp"
-#include "device/remote_link.hpp"
+#include "device/remote_protocol.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/base/latest.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// One byte more than a good packet has: longer ones are then seen to be too long.
+// One byte more than a valid packet has, so that longer ones are recognised.
 constexpr std::size_t kBuffer = kStatePacketSize + 1;
 
 RemoteDeviceOptions checked(RemoteDeviceOptions o) {
@@ -27,7 +27,7 @@ RemoteDeviceOptions checked(RemoteDeviceOptions o) {
   require.not_negative("maximum_stiffness", o.maximum_stiffness, "give 0 or more N/m");
   require.not_negative("workspace_radius", o.workspace_radius, "give 0 or more metres");
   require.positive("rate", o.rate, "give a positive number of steps a second");
-  require.positive("silence", o.silence, "give a positive time in seconds");
+  require.positive("client_timeout", o.client_timeout, "give a positive time in seconds");
   require.positive("fade", o.fade, "give a positive time in seconds");
   require.positive("soft_start", o.soft_start, "give a positive time in seconds");
   if (o.path.empty()) o.path = default_remote_path();
@@ -50,7 +50,7 @@ std::string default_remote_path() {
   const char* folder = std::getenv("XDG_RUNTIME_DIR");
   if (folder == nullptr || *folder == '\0') {
     throw Error(
-        "remote device: XDG_RUNTIME_DIR is not set, so there is no place for its socket; "
+        "remote device: XDG_RUNTIME_DIR is not set, so there is no default path for its socket; "
         "give a path");
   }
   return std::string(folder) + "/palpate-device";
@@ -60,6 +60,7 @@ struct RemoteDevice::Inside {
   // What others may know.
   struct Shown {
     RemoteCounts counts;
+    PacketFlaw refused = PacketFlaw::none;  // the newest one
     DeviceStatus status = DeviceStatus::silent;
     int error = 0;  // errno of a broken socket; 0: a force that was not finite, where it failed
   };
@@ -69,7 +70,7 @@ struct RemoteDevice::Inside {
         options(checked(the_options)),
         info(info_of(options)),
         socket(options.path),
-        link(options) {}
+        protocol(options) {}
 
   void receive(double now) noexcept;
   void send(const std::optional<ForcePacket>& packet) noexcept;
@@ -79,7 +80,7 @@ struct RemoteDevice::Inside {
   RemoteDeviceOptions options;
   DeviceInfo info;
   DatagramSocket socket;
-  RemoteLink link;
+  RemoteProtocol protocol;
   DeviceState state{.status = DeviceStatus::silent};
   Shown shown;
   Latest<Shown> for_others;
@@ -94,22 +95,21 @@ void RemoteDevice::Inside::receive(double now) noexcept {
     RemoteCounts& counts = shown.counts;
     ++counts.received;
     const auto used = std::span<const std::byte>(bytes).first(reception.size);
-    const PacketFlaw flaw = link.hear(used, reception.from, now);
+    const PacketFlaw flaw = protocol.receive(used, reception.from, now);
     if (flaw == PacketFlaw::none) {
       ++counts.taken;
     } else {
-      ++counts.refused[static_cast<std::size_t>(flaw)];
-      counts.last = flaw;
+      shown.refused = flaw;
     }
   }
 }
 
 void RemoteDevice::Inside::send(const std::optional<ForcePacket>& packet) noexcept {
-  if (packet && !socket.send(encode(*packet), link.client())) ++shown.counts.unsent;
+  if (packet && !socket.send(encode(*packet), protocol.client())) ++shown.counts.unsent;
 }
 
 void RemoteDevice::Inside::fail(int error) noexcept {
-  send(link.farewell());
+  send(protocol.farewell());
   state.status = DeviceStatus::failed;
   shown.error = error;
   shown.status = state.status;
@@ -120,7 +120,7 @@ RemoteDevice::RemoteDevice(const Clock& clock, const RemoteDeviceOptions& option
     : inside_(std::make_unique<Inside>(clock, options)) {}
 
 RemoteDevice::~RemoteDevice() {
-  if (inside_->state.status != DeviceStatus::failed) inside_->send(inside_->link.farewell());
+  if (inside_->state.status != DeviceStatus::failed) inside_->send(inside_->protocol.farewell());
 }
 
 const DeviceInfo& RemoteDevice::info() const noexcept {
@@ -133,7 +133,7 @@ DeviceState RemoteDevice::read() noexcept {
   const double now = in.clock.now();
   in.receive(now);
   if (in.state.status == DeviceStatus::failed) return in.state;
-  in.state = in.link.state(now);
+  in.state = in.protocol.state(now);
   in.shown.status = in.state.status;
   in.for_others.set(in.shown);
   return in.state;
@@ -143,7 +143,7 @@ void RemoteDevice::write(const Vector3d& force) noexcept {
   Inside& in = *inside_;
   if (in.state.status == DeviceStatus::failed) return;
   if (!force.allFinite()) return in.fail(0);
-  in.send(in.link.answer(force));
+  in.send(in.protocol.answer(force));
 }
 
 std::string RemoteDevice::reason() const {
@@ -156,9 +156,9 @@ std::string RemoteDevice::reason() const {
     }
     return "a force that was written was not finite; look for the fault in what computed it";
   }
-  std::string words = fmt::format("no client is heard on '{}'; start one", path());
-  if (shown.counts.last != PacketFlaw::none) {
-    words += fmt::format("; a packet was refused: {}", in_words(shown.counts.last));
+  std::string words = fmt::format("no client sends to '{}'; start one", path());
+  if (shown.refused != PacketFlaw::none) {
+    words += fmt::format("; a packet was refused: {}", explain(shown.refused));
   }
   return words;
 }

@@ -1,11 +1,11 @@
-#include "palpate/device/scripted.hpp"
-
+// Devices that play what is given: a trajectory, or another device at a clock's pace.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
 
 #include "palpate/base/error.hpp"
+#include "palpate/device/simulated.hpp"
 
 namespace palpate {
 
@@ -70,6 +70,32 @@ std::string ScriptedDevice::reason() const {
   return fmt::format(
       "the force written after t = {} s was not finite; look for the fault in what computed it",
       state_.time);
+}
+
+PacedDevice::PacedDevice(Device& device, const Clock& clock)
+    : device_(device), clock_(clock), info_(device.info()) {
+  info_.keeps_time = false;
+}
+
+// Half a step of slack: steps of clock and device may coincide but for rounding.
+DeviceState PacedDevice::read() noexcept {
+  const double period = 1 / info_.rate;
+  const double now = clock_.now();
+  if (!started_) {
+    started_ = true;
+    state_ = device_.read();
+    start_ = now - state_.time;
+    return state_;
+  }
+  int steps = 0;
+  while (!has_ended(state_.status) && state_.time + 0.5 * period <= now - start_) {
+    if (++steps > kMostSteps) {
+      start_ = now - state_.time;
+      break;
+    }
+    state_ = device_.read();
+  }
+  return state_;
 }
 
 }  // namespace palpate

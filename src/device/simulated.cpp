@@ -3,20 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "base/requirement.hpp"
-#include "palpate/device/scripted.hpp"
+#include "device/target_motion.hpp"
 
 namespace palpate {
-
 namespace {
 
 constexpr int kParts = 16;         // of a step, for the direction of dry friction
 constexpr int kEvents = 4;         // stops and starts followed in one part
 constexpr int kBisections = 48;    // of a part, to find when the device stops
 constexpr double kAtRest = 1e-12;  // m/s
+constexpr int kMostDelay = 16;     // steps
 
 // e^A by Taylor's series of A / 2^n, squared n times: exact to rounding for these small matrices.
 Eigen::Matrix4d exponential(const Eigen::Matrix4d& a) {
@@ -33,14 +34,13 @@ Eigen::Matrix4d exponential(const Eigen::Matrix4d& a) {
   return sum;
 }
 
-void check_options(const SimulatedDeviceOptions& o, std::size_t maximum_delay) {
+SimulatedDeviceOptions checked(const SimulatedDeviceOptions& o) {
   const Requirement require{"simulated device"};
   require.positive("mass", o.mass, "give a positive number of kilograms");
   require.not_negative("damping", o.damping, "give 0 or more N s/m");
   require.not_negative("coulomb", o.coulomb, "give 0 or more newtons");
   require.not_negative("resolution", o.resolution, "give 0 or more metres");
-  require(o.delay >= 0 && o.delay <= static_cast<int>(maximum_delay), "delay", o.delay,
-          "give 0 to 16 steps");
+  require(o.delay >= 0 && o.delay <= kMostDelay, "delay", o.delay, "give 0 to 16 steps");
   require.positive("rate", o.rate, "give a positive number of steps a second");
   require.positive("maximum_force", o.maximum_force, "give a positive force in newtons");
   require.not_negative("hand.stiffness", o.hand.stiffness, "give 0 or more N/m");
@@ -50,183 +50,250 @@ void check_options(const SimulatedDeviceOptions& o, std::size_t maximum_delay) {
   require.not_negative("duration", duration, "give 0 or more seconds");
   require(o.position.allFinite(), "position", o.position.norm(), "give finite coordinates");
   require(o.velocity.allFinite(), "velocity", o.velocity.norm(), "give a finite velocity");
+  return o;
+}
+
+DeviceInfo info_of(const SimulatedDeviceOptions& options) {
+  DeviceInfo info;
+  info.name = "simulated";
+  info.maximum_force = options.maximum_force;
+  info.damping = options.damping;
+  info.mass = options.mass;
+  info.rate = options.rate;
+  info.delay = options.delay / options.rate;
+  info.workspace_radius = options.workspace_radius;
+  info.keeps_time = true;
+  return info;
+}
+
+// Of (x, v, push, push rate).
+Eigen::Matrix4d generator_of(const SimulatedDeviceOptions& options) {
+  Eigen::Matrix4d generator = Eigen::Matrix4d::Zero();
+  generator(0, 1) = 1;
+  generator(1, 0) = -options.hand.stiffness / options.mass;
+  generator(1, 1) = -(options.damping + options.hand.damping) / options.mass;
+  generator(1, 2) = 1 / options.mass;
+  generator(2, 3) = 1;
+  return generator;
 }
 
 }  // namespace
 
+struct SimulatedDevice::Inside {
+  Inside(const SimulatedDeviceOptions& the_options, Trajectory rows)
+      : options(checked(the_options)),
+        info(info_of(options)),
+        generator(generator_of(options)),
+        whole_step(exponential(generator / options.rate)),
+        part_step(exponential(generator / (options.rate * kParts))),
+        position(options.position),
+        velocity(options.velocity) {
+    if (!rows.empty()) check(rows);
+    trajectory = Playback(std::move(rows));
+    if (!options.duration && !trajectory.empty()) options.duration = trajectory.end();
+    if (!trajectory.empty()) position = trajectory.front().position;
+    forces.fill(Eigen::Vector3d::Zero());
+  }
+
+  [[nodiscard]] HandTarget target_at(double time) noexcept;
+  [[nodiscard]] Eigen::Vector3d within_reach(const Eigen::Vector3d& goal) const noexcept;
+  [[nodiscard]] Eigen::Vector3d quantised() const noexcept;
+  void begin() noexcept;
+  void advance() noexcept;
+  void fail(const char* what) noexcept;
+  void advance_with_friction(const Eigen::Vector3d& push,
+                             const Eigen::Vector3d& push_rate) noexcept;
+  void slide(double duration, Eigen::Vector3d push, const Eigen::Vector3d& push_rate) noexcept;
+  void flow(const Eigen::Matrix4d& transition, const Eigen::Vector3d& push,
+            const Eigen::Vector3d& push_rate) noexcept;
+
+  SimulatedDeviceOptions options;
+  Playback trajectory;
+  TargetSource* source = nullptr;
+  HandTarget target;  // at the current time
+  DeviceInfo info;
+  Eigen::Matrix4d generator;
+  Eigen::Matrix4d whole_step;  // its exponential over one step
+  Eigen::Matrix4d part_step;   // ... and over 1/16 of one
+  Eigen::Vector3d position;
+  Eigen::Vector3d velocity;
+  std::array<Eigen::Vector3d, kMostDelay + 1> forces;  // ring of written forces
+  double work = 0;
+  std::uint64_t steps = 0;
+  DeviceState state;
+  bool started = false;
+  const char* wrong = nullptr;  // what was not finite, once the device has failed
+};
+
 SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, Trajectory target)
-    : options_(options) {
-  check_options(options_, kMaximumDelay);
-  if (!target.empty()) check(target);
-  target_ = Playback(std::move(target));
-  if (!options_.duration && !target_.empty()) options_.duration = target_.end();
-  info_.name = "simulated";
-  info_.maximum_force = options_.maximum_force;
-  info_.damping = options_.damping;
-  info_.mass = options_.mass;
-  info_.rate = options_.rate;
-  info_.delay = options_.delay / options_.rate;
-  info_.workspace_radius = options_.workspace_radius;
-  info_.keeps_time = true;
-  position_ = options_.position;
-  velocity_ = options_.velocity;
-  forces_.fill(Eigen::Vector3d::Zero());
-  generator_.setZero();
-  generator_(0, 1) = 1;
-  generator_(1, 0) = -options_.hand.stiffness / options_.mass;
-  generator_(1, 1) = -(options_.damping + options_.hand.damping) / options_.mass;
-  generator_(1, 2) = 1 / options_.mass;
-  generator_(2, 3) = 1;
-  whole_step_ = exponential(generator_ / options_.rate);
-  part_step_ = exponential(generator_ / (options_.rate * kParts));
-  if (!target_.empty()) position_ = target_.front().position;
+    : inside_(std::make_unique<Inside>(options, std::move(target))) {}
+
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, TargetSource& source)
+    : SimulatedDevice(options) {
+  inside_->source = &source;
 }
 
-SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, HandGuide& guide)
-    : SimulatedDevice(options) {
-  guide_ = &guide;
+SimulatedDevice::~SimulatedDevice() = default;
+
+const DeviceInfo& SimulatedDevice::info() const noexcept {
+  return inside_->info;
+}
+
+const Eigen::Vector3d& SimulatedDevice::true_position() const noexcept {
+  return inside_->position;
+}
+
+const Eigen::Vector3d& SimulatedDevice::true_velocity() const noexcept {
+  return inside_->velocity;
+}
+
+double SimulatedDevice::work() const noexcept {
+  return inside_->work;
 }
 
 DeviceState SimulatedDevice::read() noexcept {
-  if (wrong_ != nullptr || state_.status == DeviceStatus::finished) return state_;
-  if (started_) {
-    advance();
+  Inside& in = *inside_;
+  if (in.wrong != nullptr || in.state.status == DeviceStatus::finished) return in.state;
+  if (in.started) {
+    in.advance();
   } else {
-    begin();
+    in.begin();
   }
-  if (wrong_ != nullptr) return state_;
-  const Eigen::Vector3d shown = quantised();
-  if (started_) state_.velocity = (shown - state_.position) * options_.rate;
-  state_.position = shown;
-  state_.buttons = wish_.buttons;
-  state_.time = static_cast<double>(steps_) / options_.rate;
-  started_ = true;
-  // Half a step of slack: the end of a target need not be a whole number of steps.
-  if (options_.duration && state_.time > *options_.duration + 0.5 / options_.rate) {
-    state_.status = DeviceStatus::finished;
+  if (in.wrong != nullptr) return in.state;
+  const Eigen::Vector3d shown = in.quantised();
+  if (in.started) in.state.velocity = (shown - in.state.position) * in.options.rate;
+  in.state.position = shown;
+  in.state.buttons = in.target.buttons;
+  in.state.time = static_cast<double>(in.steps) / in.options.rate;
+  in.started = true;
+  // Half a step of slack: the end of a trajectory need not be a whole number of steps.
+  if (in.options.duration && in.state.time > *in.options.duration + 0.5 / in.options.rate) {
+    in.state.status = DeviceStatus::finished;
   }
-  return state_;
+  return in.state;
 }
 
 void SimulatedDevice::write(const Eigen::Vector3d& force) noexcept {
-  if (wrong_ != nullptr) return;
+  Inside& in = *inside_;
+  if (in.wrong != nullptr) return;
   if (!force.allFinite()) {
-    fail("the force written");
+    in.fail("the force written");
     return;
   }
   const double length = force.norm();
-  const double shorten = length > options_.maximum_force ? options_.maximum_force / length : 1;
-  forces_[steps_ % forces_.size()] = shorten * force;
+  const double shorten = length > in.options.maximum_force ? in.options.maximum_force / length : 1;
+  in.forces[in.steps % in.forces.size()] = shorten * force;
 }
 
 std::string SimulatedDevice::reason() const {
-  if (wrong_ == nullptr) return {};
+  const Inside& in = *inside_;
+  if (in.wrong == nullptr) return {};
   return fmt::format("{} at t = {} s was not finite; look for the fault in what computed it",
-                     wrong_, state_.time);
+                     in.wrong, in.state.time);
 }
 
-void SimulatedDevice::fail(const char* wrong) noexcept {
-  wrong_ = wrong;
-  state_.status = DeviceStatus::failed;
+void SimulatedDevice::Inside::fail(const char* what) noexcept {
+  wrong = what;
+  state.status = DeviceStatus::failed;
 }
 
 // Times are asked for once each, in growing order.
-HandWish SimulatedDevice::wanted(double time) noexcept {
-  if (guide_ != nullptr) return guide_->wanted(time, position_);
-  if (target_.empty()) return {options_.position, 0};
-  return {target_.at(time), 0};
+HandTarget SimulatedDevice::Inside::target_at(double time) noexcept {
+  if (source != nullptr) return source->target(time, position);
+  if (trajectory.empty()) return {options.position, 0};
+  return {trajectory.at(time), 0};
 }
 
 // The goal that pulls no harder than the hand does.
-Eigen::Vector3d SimulatedDevice::within_reach(const Eigen::Vector3d& goal) const noexcept {
-  const Eigen::Vector3d stretch = goal - position_;
-  const double pull = options_.hand.stiffness * stretch.norm();
-  if (pull <= options_.hand.maximum_force) return goal;
-  return position_ + options_.hand.maximum_force / pull * stretch;
+Eigen::Vector3d SimulatedDevice::Inside::within_reach(const Eigen::Vector3d& goal) const noexcept {
+  const Eigen::Vector3d stretch = goal - position;
+  const double pull = options.hand.stiffness * stretch.norm();
+  if (pull <= options.hand.maximum_force) return goal;
+  return position + options.hand.maximum_force / pull * stretch;
 }
 
-Eigen::Vector3d SimulatedDevice::quantised() const noexcept {
-  if (options_.resolution == 0) return position_;
-  return (position_ / options_.resolution).array().round().matrix() * options_.resolution;
+Eigen::Vector3d SimulatedDevice::Inside::quantised() const noexcept {
+  if (options.resolution == 0) return position;
+  return (position / options.resolution).array().round().matrix() * options.resolution;
 }
 
-void SimulatedDevice::begin() noexcept {
-  wish_ = wanted(0);
-  if (!wish_.position.allFinite()) return fail("the place that the hand wanted");
-  if (guide_ != nullptr) position_ = wish_.position;
+void SimulatedDevice::Inside::begin() noexcept {
+  target = target_at(0);
+  if (!target.position.allFinite()) return fail("the target of the hand");
+  if (source != nullptr) position = target.position;
 }
 
-void SimulatedDevice::advance() noexcept {
-  const double next = static_cast<double>(steps_ + 1) / options_.rate;
-  const Eigen::Vector3d place = wish_.position;
-  wish_ = wanted(next);
-  if (!wish_.position.allFinite()) return fail("the place that the hand wanted");
-  const Eigen::Vector3d goal_rate = (wish_.position - place) * options_.rate;
+void SimulatedDevice::Inside::advance() noexcept {
+  const double next = static_cast<double>(steps + 1) / options.rate;
+  const Eigen::Vector3d place = target.position;
+  target = target_at(next);
+  if (!target.position.allFinite()) return fail("the target of the hand");
+  const Eigen::Vector3d goal_rate = (target.position - place) * options.rate;
   const Eigen::Vector3d goal = within_reach(place);
-  const std::size_t size = forces_.size();
-  const auto delay = static_cast<std::size_t>(options_.delay);
-  const Eigen::Vector3d held = forces_[(steps_ + size - delay) % size];
+  const std::size_t size = forces.size();
+  const auto delay = static_cast<std::size_t>(options.delay);
+  const Eigen::Vector3d held = forces[(steps + size - delay) % size];
   const Eigen::Vector3d push =
-      held + options_.hand.stiffness * goal + options_.hand.damping * goal_rate;
-  const Eigen::Vector3d push_rate = options_.hand.stiffness * goal_rate;
-  const Eigen::Vector3d before = position_;
-  if (options_.coulomb > 0) {
+      held + options.hand.stiffness * goal + options.hand.damping * goal_rate;
+  const Eigen::Vector3d push_rate = options.hand.stiffness * goal_rate;
+  const Eigen::Vector3d before = position;
+  if (options.coulomb > 0) {
     advance_with_friction(push, push_rate);
   } else {
-    flow(whole_step_, push, push_rate);
+    flow(whole_step, push, push_rate);
   }
-  work_ += held.dot(position_ - before);
+  work += held.dot(position - before);
   // A step without a write() goes on with the force before it.
-  forces_[(steps_ + 1) % size] = forces_[steps_ % size];
-  ++steps_;
+  forces[(steps + 1) % size] = forces[steps % size];
+  ++steps;
 }
 
-void SimulatedDevice::advance_with_friction(const Eigen::Vector3d& push,
-                                            const Eigen::Vector3d& push_rate) noexcept {
-  const double part = 1 / (options_.rate * kParts);
+void SimulatedDevice::Inside::advance_with_friction(const Eigen::Vector3d& push,
+                                                    const Eigen::Vector3d& push_rate) noexcept {
+  const double part = 1 / (options.rate * kParts);
   for (int i = 0; i < kParts; ++i) slide(part, push + i * part * push_rate, push_rate);
 }
 
 // One part of a step. The device may stop in it, and start again.
-void SimulatedDevice::slide(double duration, Eigen::Vector3d push,
-                            const Eigen::Vector3d& push_rate) noexcept {
+void SimulatedDevice::Inside::slide(double duration, Eigen::Vector3d push,
+                                    const Eigen::Vector3d& push_rate) noexcept {
   const double whole = duration;
   for (int event = 0; event < kEvents && duration > 0; ++event) {
-    Eigen::Vector3d direction = velocity_;
-    if (velocity_.norm() <= kAtRest) {
-      velocity_.setZero();
-      direction = push - options_.hand.stiffness * position_;
-      if (direction.norm() <= options_.coulomb) return;  // held by dry friction
+    Eigen::Vector3d direction = velocity;
+    if (velocity.norm() <= kAtRest) {
+      velocity.setZero();
+      direction = push - options.hand.stiffness * position;
+      if (direction.norm() <= options.coulomb) return;  // held by dry friction
     }
     direction.normalize();
-    const Eigen::Vector3d sliding_push = push - options_.coulomb * direction;
-    const Eigen::Vector3d x = position_;
-    const Eigen::Vector3d v = velocity_;
-    flow(duration == whole ? part_step_ : exponential(generator_ * duration), sliding_push,
+    const Eigen::Vector3d sliding_push = push - options.coulomb * direction;
+    const Eigen::Vector3d x = position;
+    const Eigen::Vector3d v = velocity;
+    flow(duration == whole ? part_step : exponential(generator * duration), sliding_push,
          push_rate);
-    if (velocity_.dot(direction) > 0) return;
+    if (velocity.dot(direction) > 0) return;
     double moving = 0;
     double stopped = duration;
     for (int i = 0; i < kBisections; ++i) {
       const double middle = 0.5 * (moving + stopped);
-      position_ = x;
-      velocity_ = v;
-      flow(exponential(generator_ * middle), sliding_push, push_rate);
-      (velocity_.dot(direction) > 0 ? moving : stopped) = middle;
+      position = x;
+      velocity = v;
+      flow(exponential(generator * middle), sliding_push, push_rate);
+      (velocity.dot(direction) > 0 ? moving : stopped) = middle;
     }
-    velocity_ -= direction.dot(velocity_) * direction;
+    velocity -= direction.dot(velocity) * direction;
     push += stopped * push_rate;
     duration -= stopped;
   }
 }
 
-void SimulatedDevice::flow(const Eigen::Matrix4d& transition, const Eigen::Vector3d& push,
-                           const Eigen::Vector3d& push_rate) noexcept {
-  const Eigen::Vector3d x = transition(0, 0) * position_ + transition(0, 1) * velocity_ +
+void SimulatedDevice::Inside::flow(const Eigen::Matrix4d& transition, const Eigen::Vector3d& push,
+                                   const Eigen::Vector3d& push_rate) noexcept {
+  const Eigen::Vector3d x = transition(0, 0) * position + transition(0, 1) * velocity +
                             transition(0, 2) * push + transition(0, 3) * push_rate;
-  velocity_ = transition(1, 0) * position_ + transition(1, 1) * velocity_ +
-              transition(1, 2) * push + transition(1, 3) * push_rate;
-  position_ = x;
+  velocity = transition(1, 0) * position + transition(1, 1) * velocity + transition(1, 2) * push +
+             transition(1, 3) * push_rate;
+  position = x;
 }
 
 }  // namespace palpate

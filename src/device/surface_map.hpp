@@ -8,14 +8,14 @@
 
 namespace palpate {
 
-/// Where a surface is near some place, as a hand that feels its way needs to know it.
+/// The surface near some position, for planning an exploration.
 struct MapSample {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< on the points' mean plane
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< unit, or zero: nothing is near
 };
 
-/// The region of a surface that is explored, and as much again around it, which is only looked out
-/// for: points with normals, indexed. Coordinates are relative to the surface's origin.
+/// The region of a surface that is explored, and as much again around it, which is only an
+/// obstacle: points with normals, indexed. Coordinates are relative to the surface's origin.
 class SurfaceMap {
  public:
   /// What lies within patch / 2 of the median point, or everything if that is smaller.
@@ -23,9 +23,8 @@ class SurfaceMap {
 
   [[nodiscard]] std::size_t size() const { return grid_.size(); }
   [[nodiscard]] const Eigen::Vector3d& center() const { return center_; }
-  [[nodiscard]] double extent() const {
-    return extent_;
-  }  ///< of the region, along its longest axis, m
+  /// Of the region, along its longest axis, m.
+  [[nodiscard]] double extent() const { return extent_; }
   [[nodiscard]] bool inside(const Eigen::Vector3d& x) const {
     return (x - center_).squaredNorm() <= reach_ * reach_;
   }

@@ -42,8 +42,8 @@ Url parse_url(const std::string& url) {
   const std::string_view authority = rest.substr(0, slash);
   const std::size_t colon = authority.rfind(':');
   if (colon == std::string_view::npos || colon == 0 || colon + 1 == authority.size()) {
-    throw Error(
-        fmt::format("'{}' is no address; write ws://HOST:PORT, as in ws://localhost:10001", url));
+    throw Error(fmt::format(
+        "'{}' is not an address; write ws://HOST:PORT, as in ws://localhost:10001", url));
   }
   const std::string_view path = rest.substr(slash);
   return {std::string(authority.substr(0, colon)), std::string(authority.substr(colon + 1)),
@@ -153,7 +153,7 @@ TextSocket::~TextSocket() {
 void TextSocket::send(std::string text, double patience) {
   Inside& in = *inside_;
   const auto taken = [&in] { return in.sent || in.error; };
-  if (!in.run(patience, taken)) throw Error("the other side takes nothing any more");
+  if (!in.run(patience, taken)) throw Error("the other side has stopped reading");
   in.require();
   in.sending = std::move(text);
   in.sent = false;
@@ -162,7 +162,7 @@ void TextSocket::send(std::string text, double patience) {
                           if (failed) in.error = failed;
                           in.sent = true;
                         });
-  if (!in.run(patience, taken)) throw Error("the other side takes nothing any more");
+  if (!in.run(patience, taken)) throw Error("the other side has stopped reading");
   in.require();
 }
 

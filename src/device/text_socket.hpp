@@ -6,11 +6,11 @@
 
 namespace palpate::device {
 
-/// A client's end of a WebSocket that carries texts. Waits no longer than it is told. One thread.
+/// The client end of a WebSocket that carries text messages. Every wait has a limit. One thread.
 class TextSocket {
  public:
   /// Connects to "ws://HOST:PORT[/PATH]", `patience` s long at most.
-  /// @throws Error that says why nobody is there.
+  /// @throws Error that says why nobody answers.
   TextSocket(const std::string& url, double patience);
   ~TextSocket();
   TextSocket(const TextSocket&) = delete;
@@ -25,7 +25,7 @@ class TextSocket {
   /// @throws Error when the other side is gone.
   [[nodiscard]] bool wait(std::uint64_t count, double patience);
 
-  /// Texts that came, and the newest of them.
+  /// Texts received so far, and the newest of them.
   [[nodiscard]] std::uint64_t received() const;
   [[nodiscard]] const std::string& newest() const;
 

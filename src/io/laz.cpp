@@ -1,13 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
+#include "base/shared_library.hpp"
 #include "io/cloud_builder.hpp"
 #include "io/file_bytes.hpp"
 #include "io/input.hpp"
 #include "io/las.hpp"
-#include "io/laszip_library.hpp"
 #include "io/text_scanner.hpp"
+#include "palpate/base/error.hpp"
 
 namespace palpate::io {
 namespace {
@@ -17,6 +19,43 @@ constexpr std::size_t kIntensityAt = 12;
 constexpr std::size_t kFlagsAt = 15;          // withheld: bit 7
 constexpr std::size_t kExtendedFlagsAt = 22;  // withheld: bit 6
 constexpr std::size_t kColorAt = 40;
+
+// The functions of LASzip's C interface (laszip_api.h of LASzip 3) that are used here. All return 0
+// when they succeed.
+struct LaszipLibrary {
+  using Handle = void*;
+
+  // Throws Error when `name` cannot be loaded or lacks a function.
+  explicit LaszipLibrary(const std::string& name)
+      : library({name}, "", SharedLibrary::Unload::with_the_last_copy) {
+    library.find("laszip_create", create);
+    library.find("laszip_destroy", destroy);
+    library.find("laszip_open_reader", open_reader);
+    library.find("laszip_close_reader", close_reader);
+    library.find("laszip_get_point_pointer", get_point_pointer);
+    library.find("laszip_read_point", read_point);
+    library.find("laszip_get_error", get_error);
+  }
+
+  SharedLibrary library;
+  int (*create)(Handle*) = nullptr;
+  int (*destroy)(Handle) = nullptr;
+  int (*open_reader)(Handle, const char* file, int* is_compressed) = nullptr;
+  int (*close_reader)(Handle) = nullptr;
+  int (*get_point_pointer)(Handle, std::byte** point) = nullptr;
+  int (*read_point)(Handle) = nullptr;
+  int (*get_error)(Handle, char** message) = nullptr;
+};
+
+std::optional<LaszipLibrary> load_laszip(std::span<const std::string> names) {
+  for (const std::string& name : names) {
+    try {
+      return LaszipLibrary(name);
+    } catch (const Error&) {  // perhaps the next one loads
+    }
+  }
+  return std::nullopt;
+}
 
 class LazReader {
  public:
@@ -91,8 +130,8 @@ class LazReader {
 
 CloudFile read_laz(const Input& input, const LasHeader& header,
                    std::span<const std::string> libraries) {
-  const LaszipLibrary library(libraries);
-  if (!library.loaded()) {
+  const std::optional<LaszipLibrary> library = load_laszip(libraries);
+  if (!library) {
     fail(input,
          fmt::format("{} points compressed as LAZ, and LASzip (liblaszip.so.8) is not installed",
                      header.points),
@@ -100,7 +139,7 @@ CloudFile read_laz(const Input& input, const LasHeader& header,
          "OUT.las\" and read the .las, or install LASzip 3 where the loader finds it "
          "(LD_LIBRARY_PATH)");
   }
-  return LazReader(input, header, library).run();
+  return LazReader(input, header, *library).run();
 }
 
 }  // namespace palpate::io

@@ -1,7 +1,6 @@
 #include "sensor/openni2_library.hpp"
 
 #include <OniVersion.h>
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,21 +10,20 @@
 namespace palpate::sensor {
 namespace {
 
-template <class Function>
-bool find(void* library, const char* name, Function*& function) {
-  function = reinterpret_cast<Function*>(::dlsym(library, name));
-  return function != nullptr;
+SharedLibrary load_openni2() {
+  try {
+    // Its drivers leave threads behind.
+    return {
+        {"libOpenNI2.so.0", "libOpenNI2.so"}, "Install libopenni2-0", SharedLibrary::Unload::never};
+  } catch (const Error& error) {
+    throw Error(fmt::format("openni2: {}", error.what()));
+  }
 }
 
 }  // namespace
 
-OpenNi2Library::OpenNi2Library() {
-  // Never unloaded: its drivers leave threads behind.
-  void* library = ::dlopen("libOpenNI2.so.0", RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) library = ::dlopen("libOpenNI2.so", RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr || !find_all(library)) {
-    throw Error("openni2: the library libOpenNI2.so.0 cannot be loaded. Install libopenni2-0.");
-  }
+OpenNi2Library::OpenNi2Library() : library_(load_openni2()) {
+  find_all();
   if (initialize_(ONI_API_VERSION) == ONI_STATUS_OK) return;
   throw Error(
       fmt::format("openni2: the library does not start ({}). Install libopenni2-0 again; its "
@@ -46,23 +44,26 @@ std::string OpenNi2Library::last_words() const {
   return words.substr(begin, words.find_last_not_of(' ') - begin + 1);
 }
 
-bool OpenNi2Library::find_all(void* library) {
-  return find(library, "oniInitialize", initialize_) && find(library, "oniShutdown", shutdown_) &&
-         find(library, "oniGetExtendedError", get_extended_error_) &&
-         find(library, "oniGetDeviceList", get_device_list) &&
-         find(library, "oniReleaseDeviceList", release_device_list) &&
-         find(library, "oniDeviceOpen", open) && find(library, "oniDeviceClose", close) &&
-         find(library, "oniDeviceGetSensorInfo", get_sensor_info) &&
-         find(library, "oniDeviceSetProperty", set_device_property) &&
-         find(library, "oniDeviceIsPropertySupported", has_device_property) &&
-         find(library, "oniDeviceCreateStream", create_stream) &&
-         find(library, "oniStreamDestroy", destroy_stream) &&
-         find(library, "oniStreamStart", start) && find(library, "oniStreamStop", stop) &&
-         find(library, "oniStreamGetProperty", get_property) &&
-         find(library, "oniStreamSetProperty", set_property) &&
-         find(library, "oniWaitForAnyStream", wait) &&
-         find(library, "oniStreamReadFrame", read_frame) &&
-         find(library, "oniFrameRelease", release_frame);
+void OpenNi2Library::find_all() {
+  library_.find("oniInitialize", initialize_);
+  library_.find("oniShutdown", shutdown_);
+  library_.find("oniGetExtendedError", get_extended_error_);
+  library_.find("oniGetDeviceList", get_device_list);
+  library_.find("oniReleaseDeviceList", release_device_list);
+  library_.find("oniDeviceOpen", open);
+  library_.find("oniDeviceClose", close);
+  library_.find("oniDeviceGetSensorInfo", get_sensor_info);
+  library_.find("oniDeviceSetProperty", set_device_property);
+  library_.find("oniDeviceIsPropertySupported", has_device_property);
+  library_.find("oniDeviceCreateStream", create_stream);
+  library_.find("oniStreamDestroy", destroy_stream);
+  library_.find("oniStreamStart", start);
+  library_.find("oniStreamStop", stop);
+  library_.find("oniStreamGetProperty", get_property);
+  library_.find("oniStreamSetProperty", set_property);
+  library_.find("oniWaitForAnyStream", wait);
+  library_.find("oniStreamReadFrame", read_frame);
+  library_.find("oniFrameRelease", release_frame);
 }
 
 }  // namespace palpate::sensor

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "base/shared_library.hpp"
+
 namespace palpate::sensor {
 
 /// OpenNI2's C interface, found at run time: whoever opens none of its cameras does without the
@@ -37,8 +39,9 @@ class OpenNi2Library {
   decltype(&::oniFrameRelease) release_frame = nullptr;
 
  private:
-  [[nodiscard]] bool find_all(void* library);
+  void find_all();
 
+  SharedLibrary library_;
   decltype(&::oniInitialize) initialize_ = nullptr;
   decltype(&::oniShutdown) shutdown_ = nullptr;
   decltype(&::oniGetExtendedError) get_extended_error_ = nullptr;

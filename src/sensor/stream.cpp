@@ -16,19 +16,7 @@
 #include "sensor/stream_log.hpp"
 
 namespace palpate {
-namespace {
-
-using namespace sensor;
-
-// A camera's clock may run ahead of the host's by so much before a stamp is thought senseless.
-constexpr double kAhead = 1;  // s
-// No frame is on its way for so long: a first one that seems to be was stamped by another clock.
-constexpr double kOtherClock = 30;  // s
-
-// What preparation still does after it asked for a start is foreseen from the frames before: a
-// share of the longest of them, frame by frame, and no more than a hiccup should cost.
-constexpr double kForget = 0.9;
-constexpr double kLongestTail = 0.02;  // s
+namespace sensor {
 
 // How long to wait before a camera that failed is asked again: not at all after one failure, then
 // ever longer.
@@ -55,6 +43,21 @@ class Retry {
   double wait_ = 0;
   int failures_ = 0;  // in a row
 };
+
+}  // namespace sensor
+namespace {
+
+using namespace sensor;
+
+// A camera's clock may run ahead of the host's by so much before a stamp is thought senseless.
+constexpr double kAhead = 1;  // s
+// No frame is on its way for so long: a first one that seems to be was stamped by another clock.
+constexpr double kOtherClock = 30;  // s
+
+// What preparation still does after it asked for a start is foreseen from the frames before: a
+// share of the longest of them, frame by frame, and no more than a hiccup should cost.
+constexpr double kForget = 0.9;
+constexpr double kLongestTail = 0.02;  // s
 
 const StreamOptions& checked(const StreamOptions& options, const std::string& name) {
   const auto require = [&](bool good, double seconds, const char* what) {

@@ -3,15 +3,15 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 
-#include <chrono>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <deque>
 #include <exception>
 #include <utility>
-#include <vector>
 
 #include "palpate/base/error.hpp"
-#include "viewer/beast.hpp"
-#include "viewer/http_connection.hpp"
+#include "viewer/connections.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -22,13 +22,8 @@ constexpr double kAcceptAgain = 0.2;  // s, after the system would not give a so
 constexpr double kLastLook = 0.01;    // s between looks whether all have closed at the end
 constexpr int kLastLooks = 20;
 
-std::chrono::nanoseconds nanoseconds(double seconds) {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-      std::chrono::duration<double>(seconds));
-}
-
 net::ip::address address_of(const std::string& text) {
-  beast::error_code error;
+  ErrorCode error;
   const auto address = net::ip::make_address(text, error);
   if (!error) return address;
   throw Error(fmt::format(
@@ -41,14 +36,14 @@ void keep_to_ourselves(Socket& socket) {
   ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
 }
 
-beast::error_code listen(Tcp::acceptor& acceptor, const Tcp::endpoint& endpoint) {
-  beast::error_code error;
+ErrorCode listen(Tcp::acceptor& acceptor, const Tcp::endpoint& endpoint) {
+  ErrorCode error;
   acceptor.open(endpoint.protocol(), error);
   if (!error) keep_to_ourselves(acceptor);
   if (!error) acceptor.set_option(net::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
-  beast::error_code ignored;
+  ErrorCode ignored;
   if (error) acceptor.close(ignored);
   return error;
 }
@@ -57,7 +52,7 @@ Listening listen(Tcp::acceptor& acceptor, const ViewerOptions& options) {
   const net::ip::address address = address_of(options.address);
   const int tries = options.port ? 1 : kPortsTried;
   const std::uint16_t first = options.port.value_or(ViewerOptions::kFirstPort);
-  beast::error_code error;
+  ErrorCode error;
   for (int i = 0; i < tries; ++i) {
     error = listen(acceptor, {address, static_cast<std::uint16_t>(first + i)});
     if (error) continue;
@@ -78,8 +73,8 @@ struct Server::State {
     std::function<void()> act;
   };
 
-  State(const ViewerOptions& options, Lobby& lobby)
-      : acceptor(io), again(io), hub{options.limits, listen(acceptor, options), lobby} {}
+  State(const ViewerOptions& options, ClientSessions& sessions)
+      : acceptor(io), again(io), context{options.limits, listen(acceptor, options), sessions} {}
 
   void accept();
   void take(Tcp::socket socket);
@@ -91,13 +86,13 @@ struct Server::State {
   net::io_context io{1};
   Tcp::acceptor acceptor;
   net::steady_timer again;
-  Hub hub;
+  ServerContext context;
   std::deque<Repeated> repeated;
   bool ending = false;
 };
 
 void Server::State::accept() {
-  acceptor.async_accept([this](const beast::error_code& error, Tcp::socket socket) {
+  acceptor.async_accept([this](const ErrorCode& error, Tcp::socket socket) {
     if (ending) return;
     if (!error) {
       accept();  // first: what goes wrong with one socket keeps no other out
@@ -105,7 +100,7 @@ void Server::State::accept() {
       return;
     }
     again.expires_after(nanoseconds(kAcceptAgain));
-    again.async_wait([this](const beast::error_code&) {
+    again.async_wait([this](const ErrorCode&) {
       if (!ending) accept();
     });
   });
@@ -113,18 +108,18 @@ void Server::State::accept() {
 
 void Server::State::take(Tcp::socket socket) {
   keep_to_ourselves(socket);
-  ++hub.accepted;
-  if (hub.connections.size() >= hub.limits.connections) {
-    ++hub.turned_away;
+  ++context.accepted;
+  if (context.connections.size() >= context.limits.connections) {
+    ++context.turned_away;
     return;  // closes it
   }
-  std::make_shared<HttpConnection>(hub, std::move(socket))->run();
+  serve(context, std::move(socket));
 }
 
 // A time that passed is left out: no burst after a pause.
 void Server::State::repeat(Repeated& task) {
   task.timer.expires_after(nanoseconds(task.period));
-  task.timer.async_wait([this, &task](const beast::error_code& error) {
+  task.timer.async_wait([this, &task](const ErrorCode& error) {
     if (error || ending) return;
     repeat(task);
     task.act();
@@ -132,40 +127,40 @@ void Server::State::repeat(Repeated& task) {
 }
 
 void Server::State::check() {
-  const double now = Hub::now();
-  hub.lobby.check(now);
+  const double now = ServerContext::now();
+  context.sessions.check(now);
   // Those that are closed leave the set later, when their operations end.
-  for (Connection* connection : hub.connections) connection->check(now);
+  for (Connection* connection : context.connections) connection->check(now);
 }
 
 void Server::State::end() {
   ending = true;
-  beast::error_code ignored;
+  ErrorCode ignored;
   acceptor.close(ignored);
   for (Repeated& one : repeated) one.timer.cancel();
-  for (Connection* connection : hub.connections) connection->end();
+  for (Connection* connection : context.connections) connection->end();
   wait_for_last_words(kLastLooks);
 }
 
 void Server::State::wait_for_last_words(int looks) {
-  if (hub.connections.empty()) return;
+  if (context.connections.empty()) return;
   if (looks == 0) {
-    for (Connection* connection : hub.connections) connection->abort();
+    for (Connection* connection : context.connections) connection->abort();
     return;
   }
   again.expires_after(nanoseconds(kLastLook));
-  again.async_wait([this, looks](const beast::error_code&) { wait_for_last_words(looks - 1); });
+  again.async_wait([this, looks](const ErrorCode&) { wait_for_last_words(looks - 1); });
 }
 
-Server::Server(const ViewerOptions& options, Lobby& lobby)
-    : state_(std::make_unique<State>(options, lobby)) {
+Server::Server(const ViewerOptions& options, ClientSessions& sessions)
+    : state_(std::make_unique<State>(options, sessions)) {
   every(kCheck, [this] { state_->check(); });
 }
 
 Server::~Server() = default;
 
 const Listening& Server::listening() const {
-  return state_->hub.listening;
+  return state_->context.listening;
 }
 
 void Server::every(double period, std::function<void()> act) {
@@ -193,15 +188,15 @@ void Server::post(std::function<void()> act) {
 }
 
 ViewerCounts Server::counts() const {
-  const Hub& hub = state_->hub;
-  const Lobby& lobby = hub.lobby;
-  return {.connections = hub.connections.size(),
-          .clients = lobby.greeted().size(),
-          .accepted = hub.accepted,
-          .turned_away = hub.turned_away + lobby.turned_away(),
-          .forbidden = hub.forbidden + lobby.wrong_tokens(),
-          .refused = lobby.refused(),
-          .closed_silent = hub.closed_silent};
+  const ServerContext& context = state_->context;
+  const ClientSessions& sessions = context.sessions;
+  return {.connections = context.connections.size(),
+          .clients = sessions.greeted().size(),
+          .accepted = context.accepted,
+          .turned_away = context.turned_away + sessions.turned_away(),
+          .forbidden = context.forbidden + sessions.wrong_tokens(),
+          .refused = sessions.refused(),
+          .closed_silent = context.closed_silent};
 }
 
 }  // namespace palpate::viewer

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "palpate/viewer/viewer_options.hpp"
-#include "viewer/hub.hpp"
-#include "viewer/lobby.hpp"
+#include "palpate/viewer/viewer.hpp"
+#include "viewer/access.hpp"
+#include "viewer/client_sessions.hpp"
 
 namespace palpate::viewer {
 
@@ -14,9 +14,9 @@ namespace palpate::viewer {
 /// All of it on the one thread that calls run().
 class Server {
  public:
-  /// Listens. `lobby` outlives it.
+  /// Listens. `sessions` outlive it.
   /// @throws Error when the address or the port cannot be had.
-  Server(const ViewerOptions& options, Lobby& lobby);
+  Server(const ViewerOptions& options, ClientSessions& sessions);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

@@ -12,16 +12,17 @@
 #include <utility>
 #include <vector>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/base/latest.hpp"
-#include "viewer/client_message.hpp"
-#include "viewer/painter.hpp"
-#include "viewer/scene_box.hpp"
+#include "palpate/field/surface_points.hpp"
+#include "palpate/geometry/shapes.hpp"
+#include "viewer/access.hpp"
+#include "viewer/client_sessions.hpp"
+#include "viewer/messages.hpp"
+#include "viewer/reports.hpp"
+#include "viewer/scene_encoder.hpp"
 #include "viewer/server.hpp"
-#include "viewer/state_source.hpp"
-#include "viewer/token.hpp"
-#include "viewer/tool_names.hpp"
-#include "viewer/troubles.hpp"
 
 namespace palpate {
 namespace {
@@ -34,6 +35,19 @@ constexpr double kEmptyRadius = 1;         // m, shown where there is nothing ye
 
 Message binary(std::string bytes) {
   return {std::make_shared<const std::string>(std::move(bytes)), false};
+}
+
+// Around the points of every source's newest surface; empty where there are none.
+Box scene_box(const Scene& scene) {
+  Box box;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const std::shared_ptr<const SurfacePoints> points = scene.source(i).points();
+    if (!points || points->grid.cells().empty()) continue;
+    const CellGrid::Cell& root = points->grid.cells().front();
+    box.extend(points->origin + root.lower.cast<double>());
+    box.extend(points->origin + root.upper.cast<double>());
+  }
+  return box;
 }
 
 // Of all points; where there are none yet, of where the sensors stand.
@@ -96,19 +110,19 @@ struct Viewer::Parts {
         servos(moving),
         names(tool_names(servos)),
         options(complete(given, seen)),
-        lobby(lobby_options(complete(controls, servos))),
-        server(options, lobby),
+        sessions(sessions_options(complete(controls, servos))),
+        server(options, sessions),
         radii(servos.size(), 0.0),
-        painter(seen, {servos, *options.origin, options.streams,
-                       [this](Picture picture) { post(std::move(picture)); }}) {
+        encoder(seen, {servos, *options.origin, options.streams,
+                       [this](EncodedScene encoded) { post(std::move(encoded)); }}) {
     for (std::size_t i = 0; i < servos.size(); ++i) {
       states.emplace_back(*servos[i], i, *options.origin);
     }
     server.every(kStatePeriod, [this] { tick(); });
     server.every(kReportPeriod, [this] {
-      if (lobby.greeted().empty()) return;
-      look_for_trouble(streams());
-      tell_devices();
+      if (sessions.greeted().empty()) return;
+      check_faults(streams());
+      send_devices();
     });
     network = std::jthread([this] { server.run(); });
   }
@@ -119,7 +133,7 @@ struct Viewer::Parts {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  [[nodiscard]] LobbyOptions lobby_options(const ViewerControls& controls) {
+  [[nodiscard]] ClientSessionsOptions sessions_options(const ViewerControls& controls) {
     return {options.token,   options.limits,
             controls,        labels_of(servos, controls),
             *options.origin, [this] { return welcome(); }};
@@ -128,26 +142,26 @@ struct Viewer::Parts {
     return options.streams ? options.streams() : std::vector<ViewerStream>{};
   }
   [[nodiscard]] Welcome welcome();
-  void look_for_trouble(const std::vector<ViewerStream>& streams);
-  void tell_devices();
+  void check_faults(const std::vector<ViewerStream>& streams);
+  void send_devices();
   void tick();
-  void post(Picture picture) {
-    auto shared = std::make_shared<Picture>(std::move(picture));
+  void post(EncodedScene encoded) {
+    auto shared = std::make_shared<EncodedScene>(std::move(encoded));
     server.post([this, shared] { show(*shared); });
   }
-  void show(const Picture& picture);
+  void show(const EncodedScene& encoded);
 
   Scene& scene;
   std::vector<Servo*> servos;
   std::vector<std::string> names;  // of their tools
   ViewerOptions options;
-  Lobby lobby;
+  ClientSessions sessions;
   Server server;
-  std::vector<StateSource> states;
+  std::vector<StateReporter> states;
   std::vector<double> radii;  // R around each tool, m
-  Troubles troubles;
+  FaultNotices notices;
   Latest<ViewerCounts> counts;
-  Painter painter;
+  SceneEncoder encoder;
   std::jthread network;
 };
 
@@ -166,20 +180,20 @@ Welcome Viewer::Parts::welcome() {
     });
     welcome.sources.push_back({name, camera});
   }
-  look_for_trouble(seen);
-  welcome.notices = troubles.present();
+  check_faults(seen);
+  welcome.notices = notices.present();
   return welcome;
 }
 
-void Viewer::Parts::look_for_trouble(const std::vector<ViewerStream>& streams) {
+void Viewer::Parts::check_faults(const std::vector<ViewerStream>& streams) {
   std::vector<DeviceFault> faults;
   for (std::size_t i = 0; i < servos.size(); ++i) {
     faults.push_back({names[i], servos[i]->state().guard.fault});
   }
-  for (const Notice& notice : troubles.look(streams, faults)) lobby.tell(notice);
+  for (const Notice& notice : notices.update(streams, faults)) sessions.send(notice);
 }
 
-void Viewer::Parts::tell_devices() {
+void Viewer::Parts::send_devices() {
   std::vector<DeviceReport> reports;
   for (const Servo* servo : servos) {
     DeviceReport& report = reports.emplace_back();
@@ -188,38 +202,38 @@ void Viewer::Parts::tell_devices() {
         report.status == DeviceStatus::silent || report.status == DeviceStatus::failed;
     if (wrong) report.reason = servo->device().reason();
   }
-  lobby.tell_all({Topic::Kind::devices},
-                 {std::make_shared<const std::string>(devices_text(reports)), true});
+  sessions.send_to_all({Topic::Kind::devices},
+                       {std::make_shared<const std::string>(devices_text(reports)), true});
 }
 
 void Viewer::Parts::tick() {
   std::set<std::size_t> budgets;
-  for (const Client* client : lobby.greeted()) budgets.insert(client->points);
+  for (const Session* session : sessions.greeted()) budgets.insert(session->points);
   const bool seen = !budgets.empty();
-  painter.look(std::move(budgets));
+  encoder.set_budgets(std::move(budgets));
   for (std::size_t i = 0; seen && i < states.size(); ++i) {
-    if (const auto state = states[i].next(Hub::now(), radii[i], lobby.taken(i))) {
-      lobby.tell_all({Topic::Kind::state, i}, binary(encode(*state)));
+    if (const auto state = states[i].next(SteadyClock().now(), radii[i], sessions.taken(i))) {
+      sessions.send_to_all({Topic::Kind::state, i}, binary(encode(*state)));
     }
   }
   counts.set(server.counts());
 }
 
-void Viewer::Parts::show(const Picture& picture) {
-  for (std::size_t i = 0; i < picture.surfaces.size(); ++i) radii[i] = picture.surfaces[i].radius;
-  for (Client* client : lobby.greeted()) {
-    if (client->points == 0) continue;
-    for (const PaintedCloud& cloud : picture.clouds) {
-      if (client->points != cloud.budget) continue;
-      Lobby::show(*client, {Topic::Kind::cloud, cloud.source}, cloud.bytes);
+void Viewer::Parts::show(const EncodedScene& encoded) {
+  for (std::size_t i = 0; i < encoded.surfaces.size(); ++i) radii[i] = encoded.surfaces[i].radius;
+  for (Session* session : sessions.greeted()) {
+    if (session->points == 0) continue;
+    for (const EncodedCloud& cloud : encoded.clouds) {
+      if (session->points != cloud.budget) continue;
+      ClientSessions::show(*session, {Topic::Kind::cloud, cloud.source}, cloud.bytes);
     }
-    for (std::size_t i = 0; i < picture.surfaces.size(); ++i) {
-      if (picture.surfaces[i].bytes == nullptr) continue;
-      Lobby::show(*client, {Topic::Kind::surface, i}, picture.surfaces[i].bytes);
+    for (std::size_t i = 0; i < encoded.surfaces.size(); ++i) {
+      if (encoded.surfaces[i].bytes == nullptr) continue;
+      ClientSessions::show(*session, {Topic::Kind::surface, i}, encoded.surfaces[i].bytes);
     }
   }
-  if (picture.sources) lobby.tell_all({Topic::Kind::sources}, {picture.sources, true});
-  if (!picture.complaint.empty()) lobby.tell({NoticeLevel::warning, picture.complaint});
+  if (encoded.sources) sessions.send_to_all({Topic::Kind::sources}, {encoded.sources, true});
+  if (!encoded.complaint.empty()) sessions.send({NoticeLevel::warning, encoded.complaint});
 }
 
 Viewer::Viewer(Scene& scene, std::vector<Servo*> servos, const ViewerOptions& options,
@@ -245,17 +259,17 @@ ViewerCounts Viewer::counts() const {
 void Viewer::notice(NoticeLevel level, std::string text) {
   Parts& parts = *parts_;
   parts.server.post(
-      [&parts, notice = Notice{level, std::move(text)}] { parts.lobby.tell(notice); });
+      [&parts, notice = Notice{level, std::move(text)}] { parts.sessions.send(notice); });
 }
 
 void Viewer::settings_changed() {
   Parts& parts = *parts_;
-  parts.server.post([&parts] { parts.lobby.tell_settings(); });
+  parts.server.post([&parts] { parts.sessions.send_settings(); });
 }
 
 void Viewer::record_ended() {
   Parts& parts = *parts_;
-  parts.server.post([&parts] { parts.lobby.end_record(); });
+  parts.server.post([&parts] { parts.sessions.end_record(); });
 }
 
 }  // namespace palpate

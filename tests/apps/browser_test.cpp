@@ -1,5 +1,3 @@
-#include "apps/palpate/view/browser.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -14,6 +12,7 @@
 #include <optional>
 #include <thread>
 
+#include "apps/palpate/cli/process.hpp"
 #include "support/folder.hpp"
 
 namespace palpate::app {

@@ -123,8 +123,8 @@ TEST(HandsProgram, ASilentDeviceSaysWhyAndEndsWithTheDuration) {
   shell.write("plane.xyz", plane_xyz());
   const Outcome outcome = shell.run("touch plane.xyz --device remote:hand --duration 3");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, " s  no client is heard on 'hand'; start one")) << outcome.err;
-  EXPECT_TRUE(contains(outcome.out, "never met the surface: no client is heard")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.err, " s  no client sends to 'hand'; start one")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "never met the surface: no client sends")) << outcome.out;
   EXPECT_TRUE(contains(outcome.out, "remote device")) << outcome.out;
 }
 
@@ -133,7 +133,7 @@ TEST(HandsProgram, WhereASocketCannotBeIsSaidBeforeTheCloudIsRead) {
   shell.write("file", "");
   const Outcome file = shell.run("touch missing.ply --device remote:file");
   EXPECT_EQ(file.code, 1);
-  EXPECT_TRUE(contains(file.err, "no socket")) << file.err;
+  EXPECT_TRUE(contains(file.err, "not a socket")) << file.err;
   const SteadyClock clock;
   const RemoteDevice other(clock, {.path = shell.path("taken")});
   const Outcome taken = shell.run("touch missing.ply --device remote:taken");
@@ -187,7 +187,7 @@ TEST(HandsProgram, ADemoHasAsManyHandsAsItIsAskedFor) {
   const Outcome outcome = shell.run(
       "demo scan --headless --port 0 --duration 3 --device simulated --device remote:hand");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "| hand 2: no client is heard on 'hand'")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "| hand 2: no client sends to 'hand'")) << outcome.err;
   EXPECT_TRUE(contains(outcome.out, "hand 1 ")) << outcome.out;
 }
 

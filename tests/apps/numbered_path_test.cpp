@@ -1,6 +1,6 @@
-#include "apps/palpate/cli/numbered_path.hpp"
-
 #include <gtest/gtest.h>
+
+#include "apps/palpate/cli/output.hpp"
 
 namespace palpate::app {
 namespace {

@@ -1,8 +1,8 @@
-#include "apps/palpate/cli/suggestion.hpp"
-
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
+
+#include "apps/palpate/cli/errors.hpp"
 
 namespace palpate::app {
 namespace {

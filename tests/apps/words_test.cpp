@@ -1,6 +1,6 @@
-#include "apps/palpate/cli/words.hpp"
-
 #include <gtest/gtest.h>
+
+#include "apps/palpate/cli/terminal.hpp"
 
 namespace palpate::app {
 namespace {

@@ -61,14 +61,14 @@ TEST(DeviceProfile, ReadsAUsersOwn) {
 }
 
 TEST(DeviceProfile, SaysWhatIsWrongAndWhere) {
-  EXPECT_EQ(refusal("[arm]\nmass = 0\n"), "my.toml, line 2: 'mass' is no number above 0");
+  EXPECT_EQ(refusal("[arm]\nmass = 0\n"), "my.toml, line 2: 'mass' is not a number above 0");
   EXPECT_EQ(refusal("[arm]\ndelay = -1\n"),
-            "my.toml, line 2: 'delay' is no number that is 0 or more");
-  EXPECT_EQ(refusal("[arm]\nrate = nan\n"), "my.toml, line 2: 'rate' is no number above 0");
-  EXPECT_EQ(refusal("[arm]\nrate = \"fast\"\n"), "my.toml, line 2: 'rate' is no number above 0");
-  EXPECT_EQ(refusal("[arm]\ntitle = 3\n"), "my.toml, line 2: 'title' is no text in quotes");
-  EXPECT_NE(refusal("[arm]\nweight = 3\n").find("'weight' is no key"), std::string::npos);
-  EXPECT_NE(refusal("arm = 3\n").find("no table"), std::string::npos);
+            "my.toml, line 2: 'delay' is not a number of 0 or more");
+  EXPECT_EQ(refusal("[arm]\nrate = nan\n"), "my.toml, line 2: 'rate' is not a number above 0");
+  EXPECT_EQ(refusal("[arm]\nrate = \"fast\"\n"), "my.toml, line 2: 'rate' is not a number above 0");
+  EXPECT_EQ(refusal("[arm]\ntitle = 3\n"), "my.toml, line 2: 'title' is not a text in quotes");
+  EXPECT_NE(refusal("[arm]\nweight = 3\n").find("'weight' is not a key"), std::string::npos);
+  EXPECT_NE(refusal("arm = 3\n").find("not a table"), std::string::npos);
   EXPECT_NE(refusal("[arm\n").find("my.toml, line 1"), std::string::npos);
 }
 

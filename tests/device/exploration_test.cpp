@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "palpate/base/error.hpp"
-#include "palpate/device/scripted.hpp"
+#include "palpate/device/simulated.hpp"
 #include "palpate/io/synthetic.hpp"
 
 namespace palpate {

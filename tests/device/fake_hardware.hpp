@@ -12,7 +12,7 @@
 
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/device/device_link.hpp"
+#include "palpate/device/threaded_device.hpp"
 
 namespace palpate::test {
 
@@ -83,12 +83,12 @@ class FakeHardware {
     force_.setZero();
     ++closed_;
   }
-  LinkReading exchange(const Eigen::Vector3d& force) {
+  DeviceState exchange(const Eigen::Vector3d& force) {
     const double block = apply(force);
     if (block > 0) clock_.wait_until(clock_.now() + block);
     require();
     const std::lock_guard lock(mutex_);
-    LinkReading reading{.position = place_,
+    DeviceState reading{.position = place_,
                         .velocity = {0, 0, -0.1},
                         .buttons = 1,
                         .orientation = {0.6, 0, 0.8, 0},
@@ -144,18 +144,18 @@ class FakeHardware {
   std::atomic<int> closed_ = 0;
 };
 
-class FakeLink final : public DeviceLink {
+class FakeDriver final : public DeviceDriver {
  public:
-  explicit FakeLink(FakeHardware& hardware) : hardware_(hardware) {
+  explicit FakeDriver(FakeHardware& hardware) : hardware_(hardware) {
     hardware_.open();
     info_.name = hardware_.name();
     info_.maximum_force = 5;
     info_.rate = 2000;
   }
-  ~FakeLink() override { hardware_.close(); }
+  ~FakeDriver() override { hardware_.close(); }
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
-  [[nodiscard]] LinkReading exchange(const Eigen::Vector3d& force) override {
+  [[nodiscard]] DeviceState exchange(const Eigen::Vector3d& force) override {
     return hardware_.exchange(force);
   }
 

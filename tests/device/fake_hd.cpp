@@ -31,6 +31,7 @@ extern "C" {
 
 unsigned hdInitDevice(const char* name) {
   Lock lock = library.heard();
+  library.require_stopped();
   const unsigned before = library.current;
   for (unsigned i = 0; i < library.devices.size(); ++i) {
     Device& device = library.devices[i];
@@ -55,6 +56,7 @@ unsigned hdInitDevice(const char* name) {
 }
 void hdDisableDevice(unsigned handle) {
   Lock lock = library.heard();
+  library.require_stopped();
   Device& device = library.devices[handle];
   device.is_open = device.forces_on = false;
   device.let_go();
@@ -160,6 +162,7 @@ void hdStartScheduler() {
   library.runs = true;
   library.scheduler = std::jthread([](const std::stop_token& stop) { library.run(stop); });
 }
+// Waits for the callbacks of a tick that is under way.
 void hdStopScheduler() {
   {
     const Lock lock = library.heard();
@@ -170,8 +173,12 @@ void hdStopScheduler() {
 }
 unsigned long hdScheduleAsynchronous(unsigned (*callback)(void*), void* data, unsigned short) {
   const Lock lock = library.heard();
-  library.tasks.push_back({callback, data});
-  return library.tasks.size();
+  library.tasks.push_back({callback, data, ++library.scheduled});
+  return library.scheduled;
+}
+void hdUnschedule(unsigned long handle) {
+  const Lock lock = library.heard();
+  std::erase_if(library.tasks, [handle](const auto& each) { return each.handle == handle; });
 }
 
 }  // extern "C"

@@ -69,7 +69,8 @@ void fake_force_of(unsigned device, double* force) {
 void fake_force(double* force) {
   fake_force_of(0, force);
 }
-// How often another device was spoken of, or held a force, while one was opened or closed.
+// How often a device was opened or closed while the scheduler ran, or another device was used or
+// held a force meanwhile.
 int fake_disturbances() {
   FakeHdLibrary& fake = fake_hd_library();
   const Held lock(fake.mutex);

@@ -35,6 +35,7 @@ struct FakeHdLibrary {
   struct Task {
     unsigned (*callback)(void*);
     void* data;
+    unsigned long handle;
   };
   struct Failure {
     unsigned code;
@@ -48,6 +49,7 @@ struct FakeHdLibrary {
   FakeHd faults;
   std::vector<Failure> errors;
   std::vector<Task> tasks;
+  unsigned long scheduled = 0;  // so far
   unsigned current = kNone;
   bool runs_by_itself = true;
   int granted = 0;  // ticks
@@ -55,7 +57,7 @@ struct FakeHdLibrary {
   bool is_ticking = false;
   bool is_stuck = false;
   bool is_busy = false;    // opening or closing a device
-  int disturbances = 0;    // of that: calls for others, and forces that they hold
+  int disturbances = 0;    // calls for others and forces of others meanwhile, or while it runs
   std::jthread scheduler;  // last: it uses all of the above
 
   void run(const std::stop_token& stop);  // the scheduler
@@ -65,6 +67,8 @@ struct FakeHdLibrary {
   void fail(unsigned code) { errors.push_back({code, 0, current}); }
   [[nodiscard]] bool is_first() const { return current == 0; }
   [[nodiscard]] Device& current_one() { return devices.at(current); }
+  /// The maker's rule: no device is opened or closed while the scheduler runs.
+  void require_stopped() { disturbances += runs ? 1 : 0; }
   /// What opening or closing a device takes; others may be heard meanwhile.
   void take_time(Lock& lock, const Device& device);
 };

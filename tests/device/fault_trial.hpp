@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "device/fake_hardware.hpp"
-#include "palpate/device/linked_device.hpp"
+#include "palpate/device/threaded_device.hpp"
 
 namespace palpate::test {
 
@@ -19,7 +19,7 @@ namespace palpate::test {
 class FaultTrial {
  public:
   struct Hardware {
-    LinkedDevice::Open open;
+    ThreadedDevice::Open open;
     std::function<void(double time)> advance;  ///< the device's time, s
     std::function<double()> force;             ///< what its motors hold, N
     double period = 1e-3;                      ///< of its exchanges, s; a step has a whole number
@@ -29,11 +29,11 @@ class FaultTrial {
       : hardware_(std::move(hardware)),
         clock_(clock),
         wanted_(wanted),
-        device_(hardware_.open, clock, {.threaded = false}) {}
+        device_([this] { return open(); }, clock, {.threaded = false}) {}
 
-  void run(double duration, bool turns = true) {
+  void run(double duration, bool served = true) {
     for (const double end = clock_.now() + duration; clock_.now() < end - 1e-9;) {
-      if (turns) device_.turn();
+      if (served) device_.service();
       if (++exchanges_ % steps_ == 0) step();
       hardware_.advance(hardware_.period);
       clock_.wait_until(clock_.now() + hardware_.period);
@@ -61,9 +61,16 @@ class FaultTrial {
   /// Why there was none since the last fault, or forget().
   [[nodiscard]] const std::set<std::string>& reasons() const { return reasons_; }
   void forget() { reasons_.clear(); }
-  [[nodiscard]] LinkedDevice& device() { return device_; }
+  [[nodiscard]] ThreadedDevice& device() { return device_; }
+  /// How often the hardware was lost and opened again.
+  [[nodiscard]] int reopened() const { return opened_ - 1; }
 
  private:
+  std::unique_ptr<DeviceDriver> open() {
+    std::unique_ptr<DeviceDriver> driver = hardware_.open();
+    ++opened_;
+    return driver;
+  }
   void step() {
     const DeviceState state = device_.read();
     if (state.status == DeviceStatus::silent) reasons_.insert(device_.reason());
@@ -73,7 +80,8 @@ class FaultTrial {
   Hardware hardware_;
   MovedClock& clock_;
   Eigen::Vector3d wanted_;
-  LinkedDevice device_;
+  int opened_ = 0;
+  ThreadedDevice device_;
   std::set<std::string> reasons_;
   double pushed_ = 0;
   int exchanges_ = 0;

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "device/double_library.hpp"
+#include "device/drivers.hpp"
 #include "device/fault_trial.hpp"
-#include "device/forcedimension_link.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/device_profile.hpp"
 
@@ -21,9 +21,10 @@ using testing::HasSubstr;
 const std::string kLibrary = PALPATE_FAKE_DHD;
 const std::string kName = "forcedimension:0,library=" + kLibrary;
 const Vector3d kForce(1, 2, 3);
+const SteadyClock kClock;
 
-std::unique_ptr<DeviceLink> open(const std::string& name = kName) {
-  return std::make_unique<device::ForceDimensionLink>(device::parse_device_name(name));
+std::unique_ptr<DeviceDriver> open(const std::string& name = kName) {
+  return device::open_forcedimension(device::parse_device_name(name), kClock);
 }
 
 std::string refused_dhd(const std::string& name = kName) {
@@ -47,14 +48,14 @@ class ForceDimension : public testing::Test {
 TEST_F(ForceDimension, TellsPlacesAndForcesAsTheOperatorSits) {
   double_.place(0.01, 0.02, 0.03);
   const auto link = open();
-  const LinkReading reading = link->exchange(kForce);
+  const DeviceState reading = link->exchange(kForce);
   EXPECT_EQ(reading.position, Vector3d(0.02, -0.01, 0.03));
   EXPECT_EQ(double_.force(), Vector3d(-2, 1, 3));
   EXPECT_EQ(reading.buttons, 5u);
 }
 
 TEST_F(ForceDimension, TellsHowItsToolIsHeldWhereItHasAWrist) {
-  EXPECT_FALSE(open()->info().tells_orientation);
+  EXPECT_FALSE(open()->info().has_orientation);
   EXPECT_TRUE(open()->exchange(kForce).orientation.isApprox(Eigen::Quaterniond::Identity(), 0));
   // The maker's x is towards the operator: its tip lifted is a turn about the maker's y, which is
   // our x.
@@ -63,7 +64,7 @@ TEST_F(ForceDimension, TellsHowItsToolIsHeldWhereItHasAWrist) {
   const Eigen::Matrix3d rows = turn.transpose();  // columns are kept one after the other
   double_.find<void(const double*)>("fake_frame")(rows.data());
   const auto link = open();
-  EXPECT_TRUE(link->info().tells_orientation);
+  EXPECT_TRUE(link->info().has_orientation);
   const Eigen::Quaterniond told = link->exchange(kForce).orientation;
   const Eigen::Quaterniond expected(Eigen::AngleAxisd(lifted, Vector3d::UnitX()));
   EXPECT_LT(told.angularDistance(expected), 1e-12);
@@ -83,7 +84,7 @@ TEST_F(ForceDimension, TellsTheOpeningOfAGripper) {
 TEST_F(ForceDimension, AForceMovesTheHandItsWay) {
   const auto link = open();
   const Vector3d push(0.3, -0.6, 0.2);
-  LinkReading reading;
+  DeviceState reading;
   for (int i = 0; i < 4000; ++i) {
     reading = link->exchange(push);
     advance(0.25e-3);
@@ -173,9 +174,9 @@ class ForceDimensionFaults : public ForceDimension {
 TEST_F(ForceDimensionFaults, TakeTheForceAwayInTimeAndAreToldOnce) {
   expect_lost("fake_plug", false, "cable");
   expect_lost("fake_failing", true, "communication error");
-  expect_lost("fake_not_a_number", true, "no number");
+  expect_lost("fake_not_a_number", true, "not a number");
   trial_.expect_lost(
-      "leap", [&](bool) { double_.place(0, 0.5, 0); }, "leapt by");
+      "leap", [&](bool) { double_.place(0, 0.5, 0); }, "jumped by");
 }
 
 TEST_F(ForceDimensionFaults, AThreadThatHangsIsTheWatchdogs) {

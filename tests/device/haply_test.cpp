@@ -9,6 +9,7 @@
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/device_profile.hpp"
+#include "palpate/device/open_device.hpp"
 
 namespace palpate {
 namespace {
@@ -27,7 +28,7 @@ class Haply : public testing::Test {
   [[nodiscard]] std::string name(const std::string& id = "04EA") const {
     return "haply:" + id + ",url=" + service_.url();
   }
-  [[nodiscard]] std::unique_ptr<DeviceLink> open() const {
+  [[nodiscard]] std::unique_ptr<DeviceDriver> open() const {
     return device::open_haply(device::parse_device_name(name()), kClock);
   }
   [[nodiscard]] static std::string refusal(const std::string& name) {
@@ -60,7 +61,7 @@ class Haply : public testing::Test {
 
 TEST_F(Haply, TellsTheHandAndAppliesTheForce) {
   const auto link = open();
-  const LinkReading reading = link->exchange(kForce);
+  const DeviceState reading = link->exchange(kForce);
   EXPECT_EQ(reading.position, Vector3d(told_x(), -0.036, -0.061));
   EXPECT_EQ(reading.velocity, Vector3d(0.1, 0.2, -0.3));
   EXPECT_EQ(reading.buttons, 5u);
@@ -71,14 +72,14 @@ TEST_F(Haply, TellsTheHandAndAppliesTheForce) {
 
 TEST_F(Haply, TellsHowItsGripIsHeld) {
   auto link = open();
-  EXPECT_TRUE(link->info().tells_orientation);
+  EXPECT_TRUE(link->info().has_orientation);
   EXPECT_FALSE(link->info().has_gripper);
   EXPECT_TRUE(
       link->exchange(kForce).orientation.isApprox(Eigen::Quaterniond(0.6, 0, -0.8, 0), 1e-12));
   service_.set(Fault::no_rotation);
   EXPECT_TRUE(link->exchange(kForce).orientation.isApprox(Eigen::Quaterniond::Identity(), 0));
   link.reset();
-  EXPECT_FALSE(open()->info().tells_orientation);
+  EXPECT_FALSE(open()->info().has_orientation);
 }
 
 TEST_F(Haply, TellsWhereTheHandIsAfterThisCommand) {
@@ -115,11 +116,11 @@ TEST_F(Haply, SaysWhyThereIsNone) {
 
 TEST_F(Haply, ComplainsOfWhateverIsWrong) {
   EXPECT_THAT(complaint(Fault::closes), HasSubstr("ended"));
-  EXPECT_THAT(complaint(Fault::garbage), HasSubstr("no frame"));
-  EXPECT_THAT(complaint(Fault::not_a_number), HasSubstr("no frame"));
-  EXPECT_THAT(complaint(Fault::null), HasSubstr("no place"));
+  EXPECT_THAT(complaint(Fault::garbage), HasSubstr("not a frame"));
+  EXPECT_THAT(complaint(Fault::not_a_number), HasSubstr("not a frame"));
+  EXPECT_THAT(complaint(Fault::null), HasSubstr("no position"));
   EXPECT_THAT(complaint(Fault::far), HasSubstr("impossible"));
-  EXPECT_THAT(complaint(Fault::gone), HasSubstr("not there"));
+  EXPECT_THAT(complaint(Fault::gone), HasSubstr("is gone"));
   EXPECT_THAT(complaint(Fault::reset), HasSubstr("not calibrated"));
   EXPECT_THAT(complaint(Fault::silent), HasSubstr("does not answer"));
 }
@@ -150,7 +151,7 @@ TEST_F(Haply, AnswerThatComesLateMeetsNoForce) {
 
 TEST_F(Haply, IsLostAndComesBackBehindTheServosThread) {
   SteadyWaitingClock clock;
-  const auto device = open_device(name(), clock, {.retry = 0.01});
+  const auto device = open_device(name(), clock, {.retry_interval = 0.01});
   const auto step_until = [&](DeviceStatus wanted) {
     while (device->read().status != wanted) {
       device->write(kForce);

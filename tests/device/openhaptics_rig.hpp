@@ -8,7 +8,7 @@
 #include "device/double_library.hpp"
 #include "device/fake_hardware.hpp"
 #include "device/fake_hd.hpp"
-#include "device/openhaptics_link.hpp"
+#include "device/openhaptics.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::test {
@@ -19,26 +19,26 @@ inline const std::string kOther = "openhaptics:Other,library=" + kDouble;
 inline const Eigen::Vector3d kPush(0.2, 0.4, 0.6);  // N; a Touch bears 0.88
 
 /// A link whose scheduler ticks once for each exchange, and whenever it is told.
-class SteppedLink final : public DeviceLink {
+class SteppedDriver final : public DeviceDriver {
  public:
-  SteppedLink(const DoubleLibrary& library, const Clock& clock, const std::string& name)
+  SteppedDriver(const DoubleLibrary& library, const Clock& clock, const std::string& name)
       : library_(library) {
-    link_ = std::make_unique<device::OpenHapticsLink>(device::parse_device_name(name), clock);
+    link_ = std::make_unique<device::OpenHapticsDriver>(device::parse_device_name(name), clock);
     library_.flag("fake_by_itself", false);
   }
-  ~SteppedLink() override { library_.flag("fake_by_itself", true); }
+  ~SteppedDriver() override { library_.flag("fake_by_itself", true); }
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return link_->info(); }
-  [[nodiscard]] LinkReading exchange(const Eigen::Vector3d& force) override {
+  [[nodiscard]] DeviceState exchange(const Eigen::Vector3d& force) override {
     link_->ask(force);
     library_.find<void(int)>("fake_tick")(1);
     return link_->answer();
   }
-  device::OpenHapticsLink& link() { return *link_; }
+  device::OpenHapticsDriver& link() { return *link_; }
 
  private:
   const DoubleLibrary& library_;
-  std::unique_ptr<device::OpenHapticsLink> link_;
+  std::unique_ptr<device::OpenHapticsDriver> link_;
 };
 
 /// The driver before the double.
@@ -46,12 +46,12 @@ class OpenHapticsRig : public testing::Test {
  protected:
   OpenHapticsRig() { library_.reset(); }
 
-  [[nodiscard]] std::unique_ptr<SteppedLink> open(const std::string& name = kTouch) {
-    return std::make_unique<SteppedLink>(library_, clock_, name);
+  [[nodiscard]] std::unique_ptr<SteppedDriver> open(const std::string& name = kTouch) {
+    return std::make_unique<SteppedDriver>(library_, clock_, name);
   }
   /// One whose scheduler ticks by itself.
-  [[nodiscard]] std::unique_ptr<device::OpenHapticsLink> open_running(const std::string& name) {
-    return std::make_unique<device::OpenHapticsLink>(device::parse_device_name(name), clock_);
+  [[nodiscard]] std::unique_ptr<device::OpenHapticsDriver> open_running(const std::string& name) {
+    return std::make_unique<device::OpenHapticsDriver>(device::parse_device_name(name), clock_);
   }
   [[nodiscard]] std::string refusal(const std::string& name = kTouch) {
     try {

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-using device::OpenHapticsLink;
+using device::OpenHapticsDriver;
 using Eigen::Vector3d;
 using test::FakeHd;
 using test::kDouble;
@@ -27,7 +27,7 @@ class OpenHaptics : public test::OpenHapticsRig {};
 TEST_F(OpenHaptics, TellsPlacesAndForcesAsTheOperatorSits) {
   const auto link = open();
   library_.place(10, 20, 30);
-  const LinkReading reading = link->exchange(kPush);
+  const DeviceState reading = link->exchange(kPush);
   EXPECT_TRUE(reading.position.isApprox(Vector3d(0.01, -0.03, 0.02), 1e-12));
   EXPECT_EQ(library_.force(), Vector3d(0.2, 0.6, -0.4));
   EXPECT_EQ(reading.buttons, 2u);
@@ -35,7 +35,7 @@ TEST_F(OpenHaptics, TellsPlacesAndForcesAsTheOperatorSits) {
 
 TEST_F(OpenHaptics, AForceMovesTheHandItsWay) {
   const auto link = open();
-  LinkReading reading;
+  DeviceState reading;
   for (int i = 0; i < 1000; ++i) reading = link->exchange(kPush);
   EXPECT_NEAR(reading.position.normalized().dot(kPush.normalized()), 1, 1e-9);
   EXPECT_NEAR(reading.velocity.normalized().dot(kPush.normalized()), 1, 1e-9);
@@ -92,7 +92,7 @@ TEST_F(OpenHaptics, AFrameThatHangsAppliesNoOldForce) {
 }
 
 TEST_F(OpenHaptics, EndsWithoutAForceAndStopsTheSchedulerWithTheLast) {
-  auto other = std::make_unique<OpenHapticsLink>(
+  auto other = std::make_unique<OpenHapticsDriver>(
       device::parse_device_name("openhaptics:Other,library=" + kDouble), clock_);
   auto link = open();
   (void)link->exchange(kPush);
@@ -172,9 +172,9 @@ TEST_F(OpenHapticsFaults, TakeTheForceAwayInTimeAndAreToldOnce) {
   expect_failure(0x0304, "in time");
   expect_failure(0x0600, "0x0600");
   trial_.expect_lost(
-      "no number", [&](bool on) { set(&FakeHd::not_a_number, on); }, "no number");
+      "no number", [&](bool on) { set(&FakeHd::not_a_number, on); }, "not a number");
   trial_.expect_lost(
-      "leap", [&](bool) { library_.place(0, 0, 500); }, "leapt by");
+      "leap", [&](bool) { library_.place(0, 0, 500); }, "jumped by");
   trial_.expect_lost(
       "lost calibration", [&](bool on) { set(&FakeHd::calibration, on ? 0x5002 : 0x5000); },
       "inkwell");
@@ -199,7 +199,7 @@ TEST_F(OpenHapticsFaults, AThreadThatHangsIsTheFrames) {
   EXPECT_LE(trial_.pushed() - start, 6e-3);
   trial_.run(0.05);
   EXPECT_TRUE(trial_.is_pushed()) << "it goes on with the thread";
-  EXPECT_EQ(trial_.device().losses(), 0u);
+  EXPECT_EQ(trial_.reopened(), 0);
 }
 
 TEST_F(OpenHapticsFaults, ASchedulerThatHangsIsGivenUpAndComesBack) {
@@ -207,18 +207,19 @@ TEST_F(OpenHapticsFaults, ASchedulerThatHangsIsGivenUpAndComesBack) {
   trial_.forget();
   trial_.run(0.1);
   EXPECT_TRUE(trial_.is_free());
-  EXPECT_THAT(trial_.reasons(), testing::ElementsAre(HasSubstr("does not call any more")));
-  EXPECT_EQ(trial_.device().losses(), 1u);
+  EXPECT_THAT(trial_.reasons(), testing::ElementsAre(HasSubstr("does not run")));
+  EXPECT_EQ(trial_.reopened(), 0);
   trial_.run(1.2);
+  EXPECT_EQ(trial_.reopened(), 1);
   EXPECT_TRUE(trial_.is_pushed());
 }
 
-// With the thread of LinkedDevice and the scheduler's, in real time; no deadline.
+// With the thread of ThreadedDevice and the scheduler's, in real time; no deadline.
 TEST_F(OpenHaptics, ThreadsExchangeWithoutARace) {
   SteadyWaitingClock clock;
-  LinkedDevice device(
+  ThreadedDevice device(
       [&clock] {
-        return std::make_unique<OpenHapticsLink>(device::parse_device_name(kTouch), clock);
+        return std::make_unique<OpenHapticsDriver>(device::parse_device_name(kTouch), clock);
       },
       clock);
   int felt = 0;

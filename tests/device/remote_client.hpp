@@ -11,7 +11,7 @@
 #include <span>
 #include <string>
 
-#include "palpate/device/remote_packet.hpp"
+#include "device/remote_protocol.hpp"
 #include "support/folder.hpp"
 
 namespace palpate::test {

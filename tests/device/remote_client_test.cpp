@@ -43,7 +43,7 @@ Session run(const std::string& program) {
   const test::Folder folder;
   const SteadyClock clock;
   // However busy the machine is: no silence, and no start so soft that it hides the wall.
-  RemoteDevice device(clock, {.path = folder / "device", .silence = 60, .soft_start = 1e-3});
+  RemoteDevice device(clock, {.path = folder / "device", .client_timeout = 60, .soft_start = 1e-3});
   Session session;
   std::jthread server([&](const std::stop_token& stop) {
     while (!stop.stop_requested()) serve(device, session);

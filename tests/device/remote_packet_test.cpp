@@ -1,5 +1,3 @@
-#include "palpate/device/remote_packet.hpp"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -7,6 +5,8 @@
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "device/remote_protocol.hpp"
 
 namespace palpate {
 namespace {
@@ -148,9 +148,9 @@ TEST(RemotePacket, WhateverIsAcceptedIsFiniteAndInRange) {
 }
 
 TEST(RemotePacket, EveryFlawHasWords) {
-  EXPECT_EQ(in_words(PacketFlaw::none), "");
+  EXPECT_EQ(explain(PacketFlaw::none), "");
   for (std::size_t i = 1; i < kPacketFlaws; ++i) {
-    EXPECT_NE(in_words(static_cast<PacketFlaw>(i)), "") << i;
+    EXPECT_NE(explain(static_cast<PacketFlaw>(i)), "") << i;
   }
 }
 

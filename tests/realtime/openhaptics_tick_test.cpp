@@ -3,14 +3,15 @@
 #include <sys/syscall.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <limits>
 #include <thread>
 #include <utility>
 
 #include "device/hand_clock.hpp"
-#include "device/openhaptics_codes.hpp"
-#include "device/openhaptics_frames.hpp"
+#include "device/openhaptics_library.hpp"
+#include "device/openhaptics_scheduler.hpp"
 #include "realtime/watch.hpp"
 
 namespace palpate::realtime {
@@ -26,15 +27,12 @@ struct {
   unsigned failure = 0;
   double force = 0;
   int frames = 0;
-  OpenHapticsFrames* given_up = nullptr;  // in a frame that hangs
 } told;
 
 OpenHapticsLibrary quick_library() {
   OpenHapticsLibrary library(PALPATE_FAKE_HD);
   library.make_current = [](unsigned) {};
-  library.begin_frame = [](unsigned) {
-    if (told.given_up != nullptr) told.given_up->end(0);
-  };
+  library.begin_frame = [](unsigned) {};
   library.end_frame = [](unsigned) { ++told.frames; };
   library.enable = library.disable = library.update_calibration = [](unsigned) {};
   library.get_error = [] {
@@ -56,30 +54,29 @@ class OpenHapticsTick : public testing::Test {
  protected:
   OpenHapticsTick() {
     told = {};
-    common_.errors.open(0);
+    errors_.open(0);
   }
 
   // A watched tick. It may wake who waits for it, and does nothing else that takes its time.
-  unsigned tick() {
+  void tick() {
     Watch watch;
-    const unsigned code = frames_.tick();
+    frames_.tick();
     const Findings found = watch.stop();
     const bool wakes = found.first_system_call == SYS_futex;
     EXPECT_EQ(found.total(), wakes ? 1 : 0) << found;
     if (wakes) ++woken_;
-    return code;
   }
 
   test::HandClock clock_;
-  device::OpenHapticsCommon common_;
-  OpenHapticsFrames frames_{quick_library(), 0, clock_, common_};
+  device::OpenHapticsErrors errors_;
+  OpenHapticsFrames frames_{quick_library(), 0, clock_, errors_};
   int woken_ = 0;
 };
 
 TEST_F(OpenHapticsTick, KeepsTheContractInFramesAndFaults) {
   for (int i = 0; i < 100; ++i) {
     frames_.ask({0.5, 0, 0});
-    EXPECT_EQ(tick(), hd::kContinue);
+    tick();
     EXPECT_EQ(told.force, 0.5);
   }
   clock_.time += 1;
@@ -100,50 +97,41 @@ TEST_F(OpenHapticsTick, KeepsTheContractInFramesAndFaults) {
   EXPECT_EQ(woken_, 0) << "nobody waits";
 }
 
-TEST_F(OpenHapticsTick, KeepsTheContractWhileItStandsStill) {
+TEST_F(OpenHapticsTick, KeepsTheContractAtRest) {
   frames_.ask({0.5, 0, 0});
   tick();
-  {
-    const device::FrameGate::Stillness stillness(common_.gate, 0);
-    tick();
-    EXPECT_EQ(told.force, 0);
-    EXPECT_EQ(told.frames, 2);
-    EXPECT_EQ(tick(), hd::kContinue);
-    EXPECT_EQ(told.frames, 2);
-  }
+  frames_.rest();
+  EXPECT_FALSE(frames_.is_at_rest()) << "it has not ticked yet";
+  tick();
+  EXPECT_TRUE(frames_.is_at_rest());
+  EXPECT_EQ(told.force, 0);
+  EXPECT_EQ(told.frames, 2);
+  tick();
+  EXPECT_EQ(told.frames, 2) << "one frame is enough";
+  frames_.resume();
   tick();
   EXPECT_EQ(told.force, 0.5);
+  EXPECT_FALSE(frames_.is_at_rest()) << "it has to come to rest anew";
 }
 
 TEST_F(OpenHapticsTick, WakesWhoWaits) {
   constexpr int kExchanges = 100;
   int answered = 0;
+  std::atomic<bool> done{false};
   std::jthread other([&] {
     for (int i = 0; i < kExchanges; ++i) {
       frames_.ask({0.5, 0, 0});
       if (frames_.answer(60)) ++answered;
     }
-    frames_.end(60);
+    done = true;
   });
-  while (tick() == hd::kContinue) {
+  while (!done) {
+    tick();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));  // so that it waits
   }
   other.join();
   EXPECT_EQ(answered, kExchanges);
-  EXPECT_EQ(told.force, 0) << "the last frame's";
   EXPECT_TRUE(woken_ > 0 || !can_trap_system_calls());
-}
-
-TEST_F(OpenHapticsTick, SpeaksNoMoreOnceItIsGivenUp) {
-  frames_.ask({0.5, 0, 0});
-  tick();
-  frames_.ask({0.7, 0, 0});
-  told.given_up = &frames_;
-  (void)frames_.tick();  // begins a frame, and hangs
-  EXPECT_EQ(told.force, 0.5);
-  EXPECT_EQ(told.frames, 1);
-  EXPECT_EQ(tick(), hd::kDone);
-  EXPECT_EQ(told.frames, 1);
 }
 
 }  // namespace

@@ -56,10 +56,10 @@ void expect_paid(const GivenEnergy& given, const MostOwed& owed, const std::stri
 }
 
 // A person who wants to go where RandomHand goes.
-class RandomGuide final : public HandGuide {
+class RandomGuide final : public TargetSource {
  public:
   explicit RandomGuide(const RandomHand& hand) : hand_(hand) {}
-  [[nodiscard]] HandWish wanted(double, const Vector3d&) noexcept override {
+  [[nodiscard]] HandTarget target(double, const Vector3d&) noexcept override {
     return {hand_.next(), 0};
   }
 

@@ -137,9 +137,9 @@ TEST(Servo, RefusesAClutchThatNoDeviceHas) {
 }
 
 // Presses as hard as it may, and is torn out as soon as the clutch is held.
-class TornOut final : public HandGuide {
+class TornOut final : public TargetSource {
  public:
-  [[nodiscard]] HandWish wanted(double time, const Vector3d&) noexcept override {
+  [[nodiscard]] HandTarget target(double time, const Vector3d&) noexcept override {
     if (time < 1) return {kOverSheet, 0};
     if (time < 2) return {{kOverSheet.x(), kOverSheet.y(), -25e-3}, 0};
     return {{kOverSheet.x(), kOverSheet.y(), -25e-3 + 4 * (time - 2)}, kClutchDown};
@@ -178,11 +178,11 @@ TEST(ClutchWhileTornOut, FadingForceGivesNoMoreThanTheSpringHeld) {
 }
 
 // A hand that wanders over and into the sheet, and holds and lets go the clutch, all at random.
-class Restless final : public HandGuide {
+class Restless final : public TargetSource {
  public:
   explicit Restless(unsigned seed) : random_(seed) {}
 
-  [[nodiscard]] HandWish wanted(double time, const Vector3d&) noexcept override {
+  [[nodiscard]] HandTarget target(double time, const Vector3d&) noexcept override {
     if (time >= next_) {
       next_ = time + std::uniform_real_distribution<double>(0.02, 0.2)(random_);
       goal_ = {std::uniform_real_distribution<double>(-0.02, 0.02)(random_), 0.3e-3,

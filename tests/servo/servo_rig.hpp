@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "palpate/device/scripted.hpp"
+#include "palpate/device/simulated.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
 #include "support/snapshots.hpp"

@@ -1,7 +1,7 @@
 // A device that is not heard for a while: no force, no fault, and a soft return.
 #include <gtest/gtest.h>
 
-#include "palpate/device/paced.hpp"
+#include "palpate/device/simulated.hpp"
 #include "palpate/servo/servo.hpp"
 #include "servo/servo_rig.hpp"
 

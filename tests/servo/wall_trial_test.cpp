@@ -14,11 +14,11 @@ namespace {
 using Eigen::Vector3d;
 
 // Somebody who does what the trial says, at a hand's pace.
-class ObedientHand final : public HandGuide {
+class ObedientHand final : public TargetSource {
  public:
   explicit ObedientHand(const WallTrial& trial) : trial_(trial) {}
 
-  [[nodiscard]] HandWish wanted(double, const Vector3d&) noexcept override {
+  [[nodiscard]] HandTarget target(double, const Vector3d&) noexcept override {
     const bool presses = trial_.state().phase == WallTrialPhase::press;
     const bool rests = trial_.state().phase == WallTrialPhase::rest || trial_.is_over();
     const double goal = rests ? height_ : presses ? -12e-3 : 0;

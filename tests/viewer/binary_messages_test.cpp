@@ -5,10 +5,8 @@
 #include <random>
 
 #include "viewer/bytes.hpp"
-#include "viewer/cloud_message.hpp"
-#include "viewer/octahedral.hpp"
-#include "viewer/state_message.hpp"
-#include "viewer/surface_message.hpp"
+#include "viewer/local_surface.hpp"
+#include "viewer/messages.hpp"
 
 namespace palpate::viewer {
 namespace {

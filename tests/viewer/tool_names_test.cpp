@@ -1,9 +1,7 @@
-#include "viewer/tool_names.hpp"
-
 #include <gtest/gtest.h>
 
-#include "palpate/device/scripted.hpp"
 #include "palpate/device/simulated.hpp"
+#include "viewer/reports.hpp"
 
 namespace palpate::viewer {
 namespace {

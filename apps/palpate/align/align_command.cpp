@@ -9,7 +9,6 @@
 #include <optional>
 #include <sstream>
 
-#include "apps/palpate/align/align_picture.hpp"
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
@@ -191,7 +190,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
   std::optional<OutputFile> output, json;
   if (!options.output.empty()) output.emplace(options.output);
   if (!plan.outputs.json.empty()) json.emplace(plan.outputs.json);
-  std::optional<AlignPicture> picture;
+  std::optional<OutputFile> picture;
   if (!plan.outputs.picture.empty()) picture.emplace(plan.outputs.picture);
   std::vector<SourcePlan> sources = plan.sources;
   require(sources.size() > 1, "aligning takes two sources or more; name another");
@@ -207,7 +206,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
   }
   write_whole(json, report.dump(2) + "\n");
   write_whole(output, setup_text(command, options, sources));
-  if (picture) picture->draw(touched, aligned);
+  if (picture) draw_alignment(touched, aligned, plan.outputs.picture, *picture);
 }
 
 }  // namespace palpate::app

@@ -1,13 +1,13 @@
-#include "apps/palpate/align/align_picture.hpp"
-
 #include <nlohmann/json.hpp>
 
+#include "apps/palpate/align/align_command.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 
 namespace palpate::app {
 
-void AlignPicture::draw(const Touched& touched, const std::vector<AlignedSource>& aligned) {
+void draw_alignment(const Touched& touched, const std::vector<AlignedSource>& aligned,
+                    const std::string& path, OutputFile& picture) {
   constexpr std::size_t kShown = 60'000;  // points of a source
   const Waiting waiting("drawing the picture");
   nlohmann::json facts = {{"sources", nlohmann::json::array()}};
@@ -29,7 +29,7 @@ void AlignPicture::draw(const Touched& touched, const std::vector<AlignedSource>
                                 {"radius_m", points.radius}});
   }
   draw_by_python(align_script(), {{"cloud.f32", float_bytes(rows)}, {"facts.json", facts.dump()}},
-                 path_, file_);
+                 path, picture);
 }
 
 }  // namespace palpate::app

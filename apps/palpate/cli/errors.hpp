@@ -1,6 +1,15 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "palpate/base/error.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace palpate::app {
 
@@ -21,5 +30,29 @@ class UsageError : public std::runtime_error {
 inline void require(bool good, const char* what) {
   if (!good) throw UsageError(what);
 }
+
+/// The one of `names` that was meant by `word`, if it is only mistyped; empty: none is near.
+[[nodiscard]] std::string meant(std::string_view word, const std::vector<std::string>& names);
+
+/// "; did you mean torus?" of a word that should be one of `names`; empty: none is near.
+[[nodiscard]] std::string did_you_mean(std::string_view word,
+                                       const std::vector<std::string>& names);
+
+/// What `make` gives; an Error of it is followed by the one of `named` (things with a name) that
+/// was meant by `word`. @throws Error.
+template <class Named, class Make>
+auto suggesting(std::string_view word, const Named& named, Make make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    std::vector<std::string> names;
+    for (const auto& each : named) names.emplace_back(each.name);
+    throw Error(error.what() + did_you_mean(word, names));
+  }
+}
+
+/// "; did you mean --radius?" of the first word on a command line that `program` or one of its
+/// commands did not know; empty: nothing is near.
+[[nodiscard]] std::string hint(const CLI::App& program);
 
 }  // namespace palpate::app

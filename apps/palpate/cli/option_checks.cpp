@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/suggestion.hpp"
 
 namespace palpate::app {
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "apps/palpate/cli/errors.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
@@ -30,6 +31,22 @@ std::string where_links_lead(const std::string& path) {
 // A file that may not be written must not be replaced either.
 bool protects_itself(const std::string& place) {
   return access(place.c_str(), F_OK) == 0 && access(place.c_str(), W_OK) != 0;
+}
+
+namespace fs = std::filesystem;
+
+bool is_plain(const std::string& path) {
+  std::error_code ignored;
+  if (path.empty() || path == "-") return false;
+  return !fs::exists(path, ignored) || fs::is_regular_file(path, ignored);
+}
+
+bool same_place(const std::string& a, const std::string& b) {
+  std::error_code failed;
+  if (fs::equivalent(a, b, failed) && !failed) return true;  // two names of one file
+  const fs::path place = fs::weakly_canonical(fs::absolute(a), failed);
+  if (failed) return a == b;
+  return place == fs::weakly_canonical(fs::absolute(b), failed) && !failed;
 }
 
 }  // namespace
@@ -123,6 +140,35 @@ void write_whole(std::optional<OutputFile>& file, std::string_view text) {
   if (!file) return;
   file->write(text);
   file->close();
+}
+
+std::string numbered_path(const std::string& path, std::size_t hand) {
+  if (hand == 0 || path.empty()) return path;
+  const std::filesystem::path plain(path);
+  const std::string name =
+      fmt::format("{}-{}{}", plain.stem().string(), hand + 1, plain.extension().string());
+  return (plain.parent_path() / name).string();
+}
+
+std::vector<NamedFile> inputs(const std::vector<CloudArgument>& clouds) {
+  std::vector<NamedFile> result;
+  for (const CloudArgument& cloud : clouds) {
+    result.push_back({fmt::format("the cloud '{}'", cloud.name), cloud.path});
+  }
+  return result;
+}
+
+void check_distinct(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
+  std::vector<NamedFile> others = inputs;
+  for (const NamedFile& output : outputs) {
+    if (!is_plain(output.path)) continue;
+    for (const NamedFile& other : others) {
+      if (!is_plain(other.path) || !same_place(output.path, other.path)) continue;
+      throw UsageError(fmt::format("{} {} is the same file as {}; choose another place",
+                                   output.name, output.path, other.name));
+    }
+    others.push_back(output);
+  }
 }
 
 }  // namespace palpate::app

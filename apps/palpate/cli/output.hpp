@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "apps/palpate/cli/arguments.hpp"
 
 namespace palpate::app {
 
@@ -49,5 +53,22 @@ class OutputFile {
 
 /// Writes all of a file that was asked for, if any. @throws Error as OutputFile does.
 void write_whole(std::optional<OutputFile>& file, std::string_view text);
+
+/// Where a file goes that each hand or cloud has: "forces.csv" of the first (0), then
+/// "forces-2.csv", "forces-3.csv"; empty where it is.
+[[nodiscard]] std::string numbered_path(const std::string& path, std::size_t hand);
+
+/// A file that a command names, and by what: "--log", "the cloud 'bunny'".
+struct NamedFile {
+  std::string name;
+  std::string path;  ///< empty: not named; "-" and "synthetic:NAME" are no files
+};
+
+/// Files that are read.
+[[nodiscard]] std::vector<NamedFile> inputs(const std::vector<CloudArgument>& clouds);
+
+/// @throws UsageError when an output is a file that is read, or that another output goes to as
+/// well, links followed. What is no plain file may be written by several.
+void check_distinct(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
 }  // namespace palpate::app

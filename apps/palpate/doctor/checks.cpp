@@ -1,35 +1,62 @@
 #include "apps/palpate/doctor/checks.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include <fmt/format.h>
 
-#include "apps/palpate/doctor/camera_drivers.hpp"
-#include "apps/palpate/doctor/devices.hpp"
-#include "apps/palpate/doctor/jitter.hpp"
-#include "apps/palpate/doctor/kernel.hpp"
-#include "apps/palpate/doctor/rights.hpp"
-#include "apps/palpate/doctor/surroundings.hpp"
-#include "apps/palpate/doctor/vendor_libraries.hpp"
+#include <algorithm>
+#include <array>
+
+#include "apps/palpate/cli/terminal.hpp"
 
 namespace palpate::app::doctor {
 
 namespace {
 
-void append(Findings& findings, const Findings& more) {
-  findings.insert(findings.end(), more.begin(), more.end());
+const char* name_of(Severity severity) {
+  static constexpr std::array kNames = {"good", "note", "warning", "problem"};
+  return kNames[static_cast<std::size_t>(severity)];
 }
 
-// An area's findings together, areas in the order of their first.
-void gather_areas(Findings& findings) {
-  std::vector<std::string> areas;
-  for (const Finding& finding : findings) areas.push_back(finding.area);
-  const auto place = [&areas](const Finding& finding) {
-    return std::ranges::find(areas, finding.area) - areas.begin();
-  };
-  std::ranges::stable_sort(findings, {}, place);
+// Eight characters wide, then coloured: colours have no width.
+std::string mark(Severity severity, const Style& style) {
+  const std::string padded = fmt::format("{:<8}", name_of(severity));
+  if (severity == Severity::problem) return style.error(padded);
+  return severity == Severity::warning ? style.warning(padded) : padded;
+}
+
+void print(const Finding& finding, const Style& style, std::FILE* stream) {
+  fmt::print(stream, "  {} {}: {}\n", mark(finding.severity, style), finding.looked_at,
+             finding.words);
+  for (const std::string& line : finding.lines) fmt::print(stream, "           {}\n", line);
+  if (!finding.remedy.empty()) fmt::print(stream, "           $ {}\n", finding.remedy);
+}
+
+std::string counted(const Findings& findings, Severity severity) {
+  const auto count = std::ranges::count(findings, severity, &Finding::severity);
+  return fmt::format("{} {}{}", count, name_of(severity), count == 1 ? "" : "s");
+}
+
+std::string verdict(Severity severity) {
+  if (severity == Severity::problem) return "something that is there does not work";
+  if (severity == Severity::warning) return "palpate works, perhaps late or not with everything";
+  return "nothing is wrong";
 }
 
 }  // namespace
+
+void ask(std::span<const Check> checks, const Machine& machine, Findings& findings) {
+  for (const Check& check : checks) {
+    findings.push_back({check.question(machine), check.area, check.what});
+  }
+}
+
+Findings check_all(const System& system, double jitter) {
+  const Machine machine{system, system.try_realtime(jitter), known_usb_devices(system)};
+  Findings findings;
+  for (const auto& area : {check_kernel, check_haptic_devices, check_cameras, check_surroundings}) {
+    area(machine, findings);
+  }
+  return findings;
+}
 
 Severity worst(const Findings& findings) {
   Severity severity = Severity::good;
@@ -37,21 +64,30 @@ Severity worst(const Findings& findings) {
   return severity;
 }
 
-Findings check_all(const System& system, double jitter) {
-  const RealtimeTrial trial = system.try_realtime(jitter);
-  Findings findings = {check_preemption(system), check_governor(system),
-                       check_clock_source(system)};
-  if (trial.lateness.count > 0) findings.push_back(check_jitter(system, trial));
-  append(findings, check_rights(system, trial.report));
-  const std::vector<Found> found = known_among(usb_devices(system));
-  append(findings, check_devices(system, found));
-  append(findings, check_vendor_libraries(system, found));
-  append(findings, check_camera_drivers(system, found));
-  append(findings, {check_installation(system), check_runtime_folder(system), check_locales(system),
-                    check_decimal_point(system), check_network_buffer(system),
-                    check_matplotlib(system), check_browser(system)});
-  gather_areas(findings);
-  return findings;
+void print(const Findings& findings, std::FILE* stream) {
+  const Style style(stream);
+  std::string area;
+  for (const Finding& finding : findings) {
+    if (finding.area != area) fmt::print(stream, "{}\n", style.heading(finding.area));
+    area = finding.area;
+    print(finding, style, stream);
+  }
+  fmt::print(stream, "{}, {}, {}: {}. What mends each stands below it.\n",
+             counted(findings, Severity::problem), counted(findings, Severity::warning),
+             counted(findings, Severity::note), verdict(worst(findings)));
+}
+
+nlohmann::ordered_json as_json(const Findings& findings) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Finding& finding : findings) {
+    list.push_back({{"area", finding.area},
+                    {"looked_at", finding.looked_at},
+                    {"severity", name_of(finding.severity)},
+                    {"words", finding.words},
+                    {"remedy", finding.remedy},
+                    {"lines", finding.lines}});
+  }
+  return list;
 }
 
 }  // namespace palpate::app::doctor

@@ -1,11 +1,96 @@
 #pragma once
 
-#include "apps/palpate/doctor/finding.hpp"
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "apps/palpate/doctor/system.hpp"
+#include "apps/palpate/doctor/usb_devices.hpp"
 
 namespace palpate::app::doctor {
 
+/// How much a finding stands in the way, from nothing on.
+enum class Severity {
+  good,
+  note,     ///< something is absent that not everybody needs
+  warning,  ///< it works, but perhaps late or not for every program
+  problem,  ///< something that is there does not work
+};
+
+/// The answer to one check's question.
+struct Answer {
+  Severity severity = Severity::good;
+  std::string words = {};               ///< what was found and what that means
+  std::string remedy = {};              ///< the command that mends it; empty where all is good
+  std::vector<std::string> lines = {};  ///< more to look at, such as a histogram
+};
+
+inline Answer good(std::string words) {
+  return {Severity::good, std::move(words)};
+}
+inline Answer note(std::string words, std::string remedy) {
+  return {Severity::note, std::move(words), std::move(remedy)};
+}
+inline Answer warning(std::string words, std::string remedy) {
+  return {Severity::warning, std::move(words), std::move(remedy)};
+}
+inline Answer problem(std::string words, std::string remedy) {
+  return {Severity::problem, std::move(words), std::move(remedy)};
+}
+
+struct Finding : Answer {
+  std::string area;       ///< "kernel"
+  std::string looked_at;  ///< "clock source"
+};
+using Findings = std::vector<Finding>;
+
+/// What all checks may look at; measured and listed once.
+struct Machine {
+  const System& system;
+  RealtimeTrial trial;
+  std::vector<KnownUsbDevice> devices;
+};
+
+/// A row of an area's table: what it looks at and how it answers.
+struct Check {
+  const char* area;
+  const char* what;
+  Answer (*question)(const Machine&);
+};
+
+/// The answers to a table's questions are appended to `findings`.
+void ask(std::span<const Check> checks, const Machine& machine, Findings& findings);
+
+// One function an area; each appends to `findings`.
+
+/// Does the kernel let a servo's thread run in time, and is the thread permitted what it asks for?
+void check_kernel(const Machine& machine, Findings& findings);
+/// Haptic devices on USB, and the vendors' libraries and services that reach them.
+void check_haptic_devices(const Machine& machine, Findings& findings);
+/// Depth cameras on USB, and the drivers of `palpate cameras`.
+void check_cameras(const Machine& machine, Findings& findings);
+/// Files, locale, network, pictures, browser.
+void check_surroundings(const Machine& machine, Findings& findings);
+
+/// What is plugged in of one kind: may this user open it, does a driver of the kernel hold it?
+void check_usb(const Machine& machine, DeviceKind kind, const char* area, Findings& findings);
+/// The command that lets this user open devices on USB: from within a container, where the kernel
+/// has no USB, or by rules for udev.
+[[nodiscard]] std::string usb_command(const System& system);
+
 /// Every check, area by area. `jitter`: s to measure for; 0 leaves that out.
 [[nodiscard]] Findings check_all(const System& system, double jitter);
+
+/// The worst of them; good when there are none.
+[[nodiscard]] Severity worst(const Findings& findings);
+
+/// Findings for people: area by area, what mends each below it, how many there are at the end.
+void print(const Findings& findings, std::FILE* stream);
+
+/// The same as a list; each has the keys area, looked_at, severity, words, remedy and lines.
+[[nodiscard]] nlohmann::ordered_json as_json(const Findings& findings);
 
 }  // namespace palpate::app::doctor

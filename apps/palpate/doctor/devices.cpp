@@ -1,147 +1,224 @@
-#include "apps/palpate/doctor/devices.hpp"
-
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <map>
+
+#include "apps/palpate/doctor/checks.hpp"
 
 namespace palpate::app::doctor {
 
 namespace {
 
-std::string area_of(DeviceKind kind) {
-  return kind == DeviceKind::haptic ? "haptic devices" : "cameras";
-}
+constexpr const char* kHapticDevices = "haptic devices";
+constexpr int kHaplyPort = 10001;
+constexpr const char* kForceDimension =
+    "cd sdk-*/ && sudo cp lib/release/lin-x86_64-gcc/libd[hr]d.so.* /usr/local/lib/ && sudo "
+    "ldconfig";
 
-std::string title(const Found& found) {
-  return fmt::format("{} ({}:{} at {})", found.known.name, found.device.vendor,
-                     found.device.product, found.device.place);
-}
+constexpr const char* kOpenHaptics = "cd openhaptics*/ && sudo ./install";
+constexpr const char* kTouch = "libHD.so";  // how Touch and Phantom are reached
 
-// A serial device is used through its terminals, any other through its node.
-std::vector<std::string> nodes_of(const UsbDevice& device) {
-  std::vector<std::string> nodes;
-  for (const std::string& terminal : device.terminals) nodes.push_back("dev/" + terminal);
-  if (nodes.empty()) nodes.push_back(node_of(device));
-  return nodes;
-}
+struct VendorLibrary {
+  std::string_view name;
+  std::array<std::string_view, 2> also_called;  // where that is not installed
+  std::string_view devices;                     // that need it: what reaches them
+  std::string_view brought_by;
+  std::string_view install;  // beside the folder that was unpacked
+};
 
-Finding absent(const System& system, const Found& found, const std::string& node) {
-  Finding finding{area_of(found.known.kind), std::string(found.known.name), Severity::problem};
-  finding.words = fmt::format("{} is plugged in, but /{} is not there", title(found), node);
-  finding.remedy = in_container(system) ? usb_command(system) : "sudo udevadm trigger";
-  return finding;
-}
+constexpr std::array kLibraries = {
+    VendorLibrary{"libdhd.so.3", {}, "libdhd.so.3", "Force Dimension's SDK", kForceDimension},
+    VendorLibrary{"libdrd.so.3", {}, "", "Force Dimension's SDK", kForceDimension},
+    VendorLibrary{"libHD.so",
+                  {"libHD.so.3.4", "libHD.so.3"},
+                  kTouch,
+                  "3D Systems' OpenHaptics",
+                  kOpenHaptics},
+};
 
-Finding closed(const System& system, const Found& found, const std::string& path,
-               const Node& node) {
-  Finding finding{area_of(found.known.kind), std::string(found.known.name), Severity::problem};
-  finding.words = fmt::format("{}: this user may not open /{}", title(found), path);
-  const bool by_group = node.group_may && node.group != "root" && !node.group.empty() &&
-                        !system.groups.contains(node.group);
-  if (by_group) {
-    finding.words += fmt::format("; group {} may (with a new login)", node.group);
-    finding.remedy = fmt::format("sudo usermod -aG {} \"$USER\"", node.group);
-  } else {
-    finding.words += "; udev's rules permit it to nobody but root";
-    finding.remedy = usb_command(system);
+// The first that loads, else the first that is there and broken.
+LibraryTrial tried(const System& system, const VendorLibrary& library) {
+  using Outcome = LibraryTrial::Outcome;
+  LibraryTrial best = system.try_library(std::string(library.name));
+  for (const std::string_view name : library.also_called) {
+    if (name.empty() || best.outcome == Outcome::loaded) break;
+    LibraryTrial other = system.try_library(std::string(name));
+    if (other.outcome == Outcome::loaded || best.outcome == Outcome::absent) {
+      best = std::move(other);
+    }
   }
-  return finding;
+  return best;
 }
 
-Finding check_access(const System& system, const Found& found) {
-  for (const std::string& path : nodes_of(found.device)) {
-    const Node node = system.node(system.root / path);
-    if (!node.there) return absent(system, found, path);
-    if (!node.may_open) return closed(system, found, path, node);
+// Of "libncurses.so.5: cannot open shared object file: ...": what brings the one that is missing.
+std::string broken_remedy(const VendorLibrary& library, const std::string& words) {
+  const std::size_t colon = words.find(": cannot open shared object file");
+  const bool plain =
+      words.find_first_not_of(
+          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.+_-") == colon;
+  if (colon == std::string::npos || colon == 0 || !plain) {
+    return fmt::format("ldconfig -p | grep {}", library.name);
   }
-  return {area_of(found.known.kind), std::string(found.known.name), Severity::good,
-          title(found) + ": this user may open it"};
+  return "sudo apt install apt-file && sudo apt-file update && apt-file search " +
+         words.substr(0, colon);
 }
 
-void add_rival(const Found& found, Findings& findings) {
-  const std::string rival(found.known.rival);
-  if (rival.empty() || std::ranges::count(found.device.drivers, rival) == 0) return;
-  Finding finding{area_of(found.known.kind), "kernel drivers", Severity::warning};
-  finding.words = fmt::format("{} is held by the kernel's driver {}, which may refuse to let it go",
-                              title(found), rival);
-  finding.remedy = fmt::format(
-      "echo 'blacklist {0}' | sudo tee /etc/modprobe.d/palpate-{0}.conf && sudo modprobe -r {0}",
-      rival);
-  findings.push_back(finding);
+Answer library_answer(const VendorLibrary& library, const LibraryTrial& trial, bool needed) {
+  if (trial.outcome == LibraryTrial::Outcome::loaded) {
+    return good(trial.words.empty() ? "loaded; its C interface tells no version"
+                                    : "loaded, version " + trial.words);
+  }
+  if (trial.outcome == LibraryTrial::Outcome::broken) {
+    return {needed ? Severity::problem : Severity::warning, "does not load: " + trial.words,
+            broken_remedy(library, trial.words)};
+  }
+  return {needed ? Severity::problem : Severity::note,
+          fmt::format("not found; {} brings it (unpack it, then install it from beside its folder)",
+                      library.brought_by),
+          std::string(library.install)};
 }
 
-void add_shared_buses(const std::vector<Found>& found, Findings& findings) {
-  std::map<int, int> cameras;
-  for (const Found& each : found) {
-    if (each.known.kind == DeviceKind::camera) ++cameras[each.device.bus];
+// OpenHaptics opens what the maker's set-up has written into a file NAME.config.
+Answer touch_setup(const Machine& machine) {
+  const std::string given = variable(machine.system, "GTDD_HOME");
+  const std::filesystem::path folder =
+      std::filesystem::path(given.empty() ? variable(machine.system, "HOME") + "/.3dsystems"
+                                          : given) /
+      "config";
+  std::vector<std::string> names;
+  for (const auto& entry : entries(machine.system.root / folder.relative_path())) {
+    if (entry.extension() == ".config") names.push_back(entry.stem().string());
+  }
+  if (!names.empty()) {
+    return good(fmt::format("{} in {}", fmt::join(names, ", "), folder.string()));
+  }
+  return problem(
+      fmt::format("no device is set up in {}: OpenHaptics opens none that is not (newer drivers "
+                  "call the tool Touch_HeadlessSetup)",
+                  folder.string()),
+      fmt::format("{}mkdir -p \"$GTDD_HOME/config\" && Touch_Setup",
+                  given.empty() ? "export GTDD_HOME=\"$HOME/.3dsystems\" && " : ""));
+}
+
+Answer haply_service(const Machine& machine) {
+  if (machine.system.listens(kHaplyPort)) {
+    return good(fmt::format("answers on 127.0.0.1:{}", kHaplyPort));
+  }
+  return {any_reached_by("service", machine.devices) ? Severity::problem : Severity::note,
+          fmt::format("nobody answers on 127.0.0.1:{}; Haply's installer brings it", kHaplyPort),
+          "sudo systemctl enable --now haply-inverse-service"};
+}
+
+constexpr const char* kCameras = "cameras";
+
+// Drivers of hardware; those that simulate or play are always there.
+struct DriverPackages {
+  std::string_view driver;
+  std::string_view build;    // what a build needs to have the driver
+  std::string_view running;  // what a build with it needs
+};
+
+constexpr std::array kPackages = {
+    DriverPackages{"openni2", "libopenni2-dev", "libopenni2-0"},
+    DriverPackages{"freenect", "libfreenect-dev", "libfreenect0.5"},
+};
+
+std::string reinstall(const DriverPackages& packages) {
+  return fmt::format("sudo apt install --reinstall {}", packages.running);
+}
+
+std::string remedy_for(const System& system, const DriverInfo& driver,
+                       const DriverPackages& packages) {
+  if (driver.missing.find("this build") != std::string::npos) {
+    return fmt::format("sudo apt install {} && cmake --preset release && ninja -C build/release",
+                       packages.build);
+  }
+  return driver.missing.find("USB") == std::string::npos ? reinstall(packages)
+                                                         : usb_command(system);
+}
+
+Answer driver_answer(const Machine& machine, const DriverInfo& driver,
+                     const DriverPackages& packages) {
+  const bool plugged = any_reached_by(driver.name, machine.devices);
+  if (!driver.available) {
+    return {plugged ? Severity::problem : Severity::note, driver.missing,
+            remedy_for(machine.system, driver, packages)};
+  }
+  if (driver.devices.empty() && plugged) {
+    return problem("a camera for it is plugged in, but it finds none", reinstall(packages));
+  }
+  return good(fmt::format("available, {} found", driver.devices.size()));
+}
+
+// A driver that is missing is a problem where a camera for it is plugged in.
+void check_drivers(const Machine& machine, Findings& findings) {
+  for (const DriverInfo& driver : machine.system.cameras()) {
+    const auto* const packages = std::ranges::find(kPackages, driver.name, &DriverPackages::driver);
+    if (packages == kPackages.end()) continue;
+    findings.push_back(
+        {driver_answer(machine, driver, *packages), kCameras, "driver " + driver.name});
+  }
+  for (const auto& [device, model] : machine.devices) {
+    if (model.kind != DeviceKind::camera || !model.reached_by.empty()) continue;
+    findings.push_back(
+        {note(fmt::format("palpate has no driver for {}; record it as depth images", model.name),
+              "palpate touch sequence:FOLDER"),
+         kCameras, "driver"});
+  }
+}
+
+void check_shared_buses(const Machine& machine, Findings& findings) {
+  std::map<long, int> cameras;
+  for (const auto& [device, model] : machine.devices) {
+    if (model.kind == DeviceKind::camera) ++cameras[device.bus];
   }
   for (const auto& [bus, count] : cameras) {
     if (count < 2) continue;
-    findings.push_back(
-        {"cameras", "USB bandwidth", Severity::warning,
-         fmt::format("{} cameras share bus {}: frames may be lost; plug them into ports of "
-                     "different controllers",
-                     count, bus),
-         "lsusb -t"});
+    findings.push_back({warning(fmt::format("{} cameras share bus {}: frames may be lost; plug "
+                                            "them into ports of different controllers",
+                                            count, bus),
+                                "lsusb -t"),
+                        kCameras, "USB bandwidth"});
   }
 }
 
 // A Kinect without its own power supply shows its motor or microphones, and no camera.
-void add_powerless(const std::vector<Found>& found, Findings& findings) {
-  const auto parts = std::ranges::count(found, DeviceKind::part,
-                                        [](const Found& each) { return each.known.kind; });
-  if (parts == 0 || reaches_any("freenect", found)) return;
-  findings.push_back({"cameras", "Kinect v1", Severity::problem,
-                      "parts of a Kinect are there, its camera is not: plug in its own power "
-                      "supply, then look again",
-                      "lsusb -d 045e:"});
-}
-
-void add_absence(const System& system, const std::vector<Found>& found, DeviceKind kind,
-                 Findings& findings) {
-  const auto of_kind = [kind](const Found& each) { return each.known.kind == kind; };
-  if (std::ranges::any_of(found, of_kind)) return;
-  if (!is_there(system, "sys/bus/usb")) {
-    findings.push_back({area_of(kind), "on USB", Severity::note,
-                        "/sys does not tell what is plugged in",
-                        is_there(system, "sys/bus") ? usb_command(system) : kMountSys});
-    return;
-  }
-  const bool haptic = kind == DeviceKind::haptic;
-  findings.push_back({area_of(kind), "on USB", Severity::note,
-                      haptic ? "none that is known; without one, a mouse on the page is a hand"
-                             : "none that is known; without one, touch a simulated one",
-                      haptic ? "palpate demo" : "palpate touch camera:simulated:table --view"});
+void check_power(const Machine& machine, Findings& findings) {
+  const bool parts = std::ranges::any_of(machine.devices, [](const KnownUsbDevice& each) {
+    return each.model.kind == DeviceKind::part;
+  });
+  if (!parts || any_reached_by("freenect", machine.devices)) return;
+  findings.push_back({problem("parts of a Kinect are there, its camera is not: plug in its own "
+                              "power supply, then look again",
+                              "lsusb -d 045e:"),
+                      kCameras, "Kinect v1"});
 }
 
 }  // namespace
 
-std::string usb_command(const System& system) {
-  if (in_container(system)) {
-    return "docker run -it -v /dev:/dev --device-cgroup-rule 'c 189:* rmw' "
-           "--device-cgroup-rule 'c 166:* rmw' IMAGE";
+// A library's absence is a problem where a device needs it.
+void check_haptic_devices(const Machine& machine, Findings& findings) {
+  check_usb(machine, DeviceKind::haptic, kHapticDevices, findings);
+  for (const VendorLibrary& library : kLibraries) {
+    const bool needed =
+        !library.devices.empty() && any_reached_by(library.devices, machine.devices);
+    findings.push_back({library_answer(library, tried(machine.system, library), needed),
+                        kHapticDevices, std::string(library.name)});
   }
-  if (!is_there(system, "sys/bus/usb")) return "sudo modprobe xhci_pci";
-  return fmt::format(
-      "sudo cp {}/60-palpate.rules /etc/udev/rules.d/ && sudo udevadm control --reload && "
-      "sudo udevadm trigger",
-      system.share.string());
+  if (any_reached_by(kTouch, machine.devices)) {
+    findings.push_back({touch_setup(machine), kHapticDevices, "Touch's set-up"});
+  }
+  findings.push_back({haply_service(machine), kHapticDevices, "Haply's Inverse Service"});
 }
 
-Findings check_devices(const System& system, const std::vector<Found>& found) {
-  Findings findings;
-  for (const DeviceKind kind : {DeviceKind::haptic, DeviceKind::camera}) {
-    add_absence(system, found, kind, findings);
-    for (const Found& each : found) {
-      if (each.known.kind != kind) continue;
-      findings.push_back(check_access(system, each));
-      add_rival(each, findings);
-    }
-  }
-  add_powerless(found, findings);
-  add_shared_buses(found, findings);
-  return findings;
+void check_cameras(const Machine& machine, Findings& findings) {
+  check_usb(machine, DeviceKind::camera, kCameras, findings);
+  check_power(machine, findings);
+  check_shared_buses(machine, findings);
+  check_drivers(machine, findings);
 }
 
 }  // namespace palpate::app::doctor

@@ -5,10 +5,8 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/waiting.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/doctor/checks.hpp"
-#include "apps/palpate/doctor/report.hpp"
-#include "apps/palpate/doctor/this_system.hpp"
 
 namespace palpate::app {
 

@@ -1,10 +1,9 @@
-#include "apps/palpate/doctor/surroundings.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
+#include "apps/palpate/doctor/checks.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 
 namespace palpate::app::doctor {
@@ -49,119 +48,104 @@ std::pair<std::string, std::string> numbers_locale(const System& system) {
   return {"LANG", "C"};
 }
 
+Answer locale(const Machine& machine) {
+  for (const auto& [name, value] : machine.system.variables) {
+    if (name != "LANG" && !name.starts_with("LC_")) continue;
+    if (value.empty() || machine.system.decimal_point(value)) continue;
+    return warning(
+        fmt::format(
+            "{}={}, which does not exist here: vendors' tools may not start or read files wrongly",
+            name, value),
+        locale_command(name, value));
+  }
+  return good("exists");
+}
+
+Answer decimal_point(const Machine& machine) {
+  const auto [name, locale] = numbers_locale(machine.system);
+  const std::string point = machine.system.decimal_point(locale).value_or(".");
+  if (point == ".") return good("numbers are written 0.5");
+  return note(
+      fmt::format("{}={} writes 0{}5: palpate reads and writes 0.5 everywhere, vendors' tools may "
+                  "not",
+                  name, locale, point),
+      fmt::format("export {}=C.UTF-8", name == "LC_ALL" ? "LC_ALL" : "LC_NUMERIC"));
+}
+
+Answer network_buffer(const Machine& machine) {
+  const auto bytes = whole_number(machine.system, "proc/sys/net/core/rmem_max");
+  if (!bytes) return good("not told here (net.core.rmem_max)");
+  const std::string words =
+      fmt::format("net.core.rmem_max is {:.1f} MB", 1e-6 * static_cast<double>(*bytes));
+  if (*bytes >= kLargeCloud) return good(words);
+  return note(
+      fmt::format("{}; a cloud of 640 x 480 points over DDS (ROS 2) has {:.1f} MB and may be lost",
+                  words, 1e-6 * kLargeCloud),
+      fmt::format("echo net.core.rmem_max={} | sudo tee /etc/sysctl.d/60-palpate.conf && sudo "
+                  "sysctl --system",
+                  kLargestBuffer));
+}
+
+Answer runtime_folder(const Machine& machine) {
+  static constexpr const char* kRemedy = "export XDG_RUNTIME_DIR=$(mktemp -d)";
+  const std::string folder = variable(machine.system, "XDG_RUNTIME_DIR");
+  if (folder.empty()) {
+    return note("not set: the remote device has no place for its socket unless given one", kRemedy);
+  }
+  const auto path = machine.system.root / std::filesystem::path(folder).relative_path();
+  if (machine.system.node(path).may_open) return good(folder);
+  return warning(
+      folder + ", where this user may not write: the remote device's socket has no place there",
+      kRemedy);
+}
+
+Answer pictures(const Machine& machine) {
+  if (machine.system.succeeds(drawing_trial())) return good("Python 3 with matplotlib");
+  return note("no Python 3 with matplotlib: --picture draws nothing",
+              "sudo apt install python3-matplotlib");
+}
+
+Answer browser(const Machine& machine) {
+  const System& system = machine.system;
+  if (variable(system, "DISPLAY").empty() && variable(system, "WAYLAND_DISPLAY").empty()) {
+    return note("no desktop here: open the page from another machine, through ssh",
+                "ssh -L 8420:127.0.0.1:8420 HOST");
+  }
+  if (any_program(system, kBrowsers) && is_there(system, "usr/bin/xdg-open")) {
+    return good("opens by itself for the page");
+  }
+  return note(
+      "no browser, or no xdg-open that starts it: the page does not open by itself",
+      fmt::format("sudo apt install xdg-utils {}", is_ubuntu(system) ? "firefox" : "firefox-esr"));
+}
+
+// The files that other answers' commands copy.
+Answer installation(const Machine& machine) {
+  const std::string share = machine.system.share.string();
+  for (const char* name : {"60-palpate.rules", "palpate-limits.conf"}) {
+    std::error_code ignored;
+    if (std::filesystem::exists(machine.system.share / name, ignored)) continue;
+    return warning(
+        share + " lacks 60-palpate.rules or palpate-limits.conf, which commands told here copy",
+        "sudo cmake --install build/release");
+  }
+  return good(share);
+}
+
+constexpr std::array kChecks = {
+    Check{kSurroundings, "palpate's files", installation},
+    Check{kSurroundings, "XDG_RUNTIME_DIR", runtime_folder},
+    Check{kSurroundings, "locale", locale},
+    Check{kSurroundings, "decimal point", decimal_point},
+    Check{kSurroundings, "network buffer", network_buffer},
+    Check{kSurroundings, "pictures", pictures},
+    Check{kSurroundings, "browser", browser},
+};
+
 }  // namespace
 
-Finding check_locales(const System& system) {
-  Finding finding{kSurroundings, "locale"};
-  for (const auto& [name, value] : system.variables) {
-    if (name != "LANG" && !name.starts_with("LC_")) continue;
-    if (value.empty() || system.decimal_point(value)) continue;
-    finding.severity = Severity::warning;
-    finding.words = fmt::format(
-        "{}={}, which does not exist here: vendors' tools may not start or read files wrongly",
-        name, value);
-    finding.remedy = locale_command(name, value);
-    return finding;
-  }
-  finding.words = "exists";
-  return finding;
-}
-
-Finding check_decimal_point(const System& system) {
-  const auto [name, locale] = numbers_locale(system);
-  const std::string point = system.decimal_point(locale).value_or(".");
-  Finding finding{kSurroundings, "decimal point"};
-  finding.words = "numbers are written 0.5";
-  if (point == ".") return finding;
-  finding.severity = Severity::note;
-  finding.words = fmt::format(
-      "{}={} writes 0{}5: palpate reads and writes 0.5 everywhere, vendors' tools may not", name,
-      locale, point);
-  finding.remedy = fmt::format("export {}=C.UTF-8", name == "LC_ALL" ? "LC_ALL" : "LC_NUMERIC");
-  return finding;
-}
-
-Finding check_network_buffer(const System& system) {
-  Finding finding{kSurroundings, "network buffer"};
-  const auto bytes = whole_number(system, "proc/sys/net/core/rmem_max");
-  if (!bytes) {
-    finding.words = "not told here (net.core.rmem_max)";
-    return finding;
-  }
-  finding.words = fmt::format("net.core.rmem_max is {:.1f} MB", 1e-6 * static_cast<double>(*bytes));
-  if (*bytes >= kLargeCloud) return finding;
-  finding.severity = Severity::note;
-  finding.words +=
-      fmt::format("; a cloud of 640 x 480 points over DDS (ROS 2) has {:.1f} MB and may be lost",
-                  1e-6 * kLargeCloud);
-  finding.remedy = fmt::format(
-      "echo net.core.rmem_max={} | sudo tee /etc/sysctl.d/60-palpate.conf && sudo sysctl --system",
-      kLargestBuffer);
-  return finding;
-}
-
-Finding check_runtime_folder(const System& system) {
-  Finding finding{kSurroundings, "XDG_RUNTIME_DIR"};
-  const std::string folder = variable(system, "XDG_RUNTIME_DIR");
-  if (folder.empty()) {
-    finding.severity = Severity::note;
-    finding.words = "not set: the remote device has no place for its socket unless given one";
-    finding.remedy = "export XDG_RUNTIME_DIR=$(mktemp -d)";
-    return finding;
-  }
-  const Node node = system.node(system.root / std::filesystem::path(folder).relative_path());
-  if (node.may_open) {
-    finding.words = folder;
-    return finding;
-  }
-  finding.severity = Severity::warning;
-  finding.words = fmt::format(
-      "{}, where this user may not write: the remote device's socket has no "
-      "place there",
-      folder);
-  finding.remedy = "export XDG_RUNTIME_DIR=$(mktemp -d)";
-  return finding;
-}
-
-Finding check_matplotlib(const System& system) {
-  Finding finding{kSurroundings, "pictures"};
-  finding.words = "Python 3 with matplotlib";
-  if (system.succeeds(drawing_trial())) return finding;
-  finding.severity = Severity::note;
-  finding.words = "no Python 3 with matplotlib: --picture draws nothing";
-  finding.remedy = "sudo apt install python3-matplotlib";
-  return finding;
-}
-
-Finding check_browser(const System& system) {
-  Finding finding{kSurroundings, "browser"};
-  if (variable(system, "DISPLAY").empty() && variable(system, "WAYLAND_DISPLAY").empty()) {
-    finding.severity = Severity::note;
-    finding.words = "no desktop here: open the page from another machine, through ssh";
-    finding.remedy = "ssh -L 8420:127.0.0.1:8420 HOST";
-    return finding;
-  }
-  finding.words = "opens by itself for the page";
-  if (any_program(system, kBrowsers) && is_there(system, "usr/bin/xdg-open")) return finding;
-  finding.severity = Severity::note;
-  finding.words = "no browser, or no xdg-open that starts it: the page does not open by itself";
-  finding.remedy =
-      fmt::format("sudo apt install xdg-utils {}", is_ubuntu(system) ? "firefox" : "firefox-esr");
-  return finding;
-}
-
-Finding check_installation(const System& system) {
-  Finding finding{kSurroundings, "palpate's files"};
-  finding.words = system.share.string();
-  const auto is_missing = [&](const char* name) {
-    std::error_code ignored;
-    return !std::filesystem::exists(system.share / name, ignored);
-  };
-  if (!is_missing("60-palpate.rules") && !is_missing("palpate-limits.conf")) return finding;
-  finding.severity = Severity::warning;
-  finding.words += " lacks 60-palpate.rules or palpate-limits.conf, which commands told here copy";
-  finding.remedy = "sudo cmake --install build/release";
-  return finding;
+void check_surroundings(const Machine& machine, Findings& findings) {
+  ask(kChecks, machine, findings);
 }
 
 }  // namespace palpate::app::doctor

@@ -54,6 +54,13 @@ struct System {
   std::function<bool(const std::vector<std::string>& command)> succeeds;
 };
 
+/// The machine that the program runs on.
+[[nodiscard]] System this_system();
+
+/// Loads a library in a process of its own, which may crash or hang (10 s) without harm, and asks
+/// for its version where it is Force Dimension's. @throws Error when there can be no other process.
+[[nodiscard]] LibraryTrial try_library(const std::string& name);
+
 /// A file's text without the last line's end; nothing where it cannot be read.
 [[nodiscard]] std::optional<std::string> text(const System& system, const std::string& path);
 /// The whole number that a file of /proc or /sys begins with, 0 where there is none; nothing where

@@ -1,5 +1,3 @@
-#include "apps/palpate/paper/paper_fig5.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,7 @@
 #include <ctime>
 
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/paper/paper_frames.hpp"
+#include "apps/palpate/paper/paper_figures.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/filters.hpp"

@@ -1,5 +1,3 @@
-#include "apps/palpate/paper/paper_fig7.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -7,9 +5,10 @@
 #include <cmath>
 #include <deque>
 #include <memory>
+#include <vector>
 
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/paper/paper_frames.hpp"
+#include "apps/palpate/paper/paper_figures.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
@@ -30,6 +29,7 @@ constexpr double kSettled = 1;        // when the samples begin, s
 constexpr double kPeriod = 1e-3;      // of the servo, s
 constexpr double kAround = 0.08;      // half of the box that the paper's clouds are clipped to, m
 constexpr double kFitRadius = 0.04;   // of the points that tell the surface's normal, m
+constexpr int kMiddle = 8;            // pixels to either side of the image's middle
 
 // The test point, world frame, and the directions that variability is measured along.
 struct Place {
@@ -56,6 +56,25 @@ Vector3d normal_of(const PointCloud& cloud, const Vector3d& middle) {
   const Vector3d normal =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(0);
   return normal.dot(middle) < 0 ? normal : -normal;
+}
+
+// Median depth of the pixels in the middle of the image, m.
+double depth_in_the_middle(const DepthFrame& frame) {
+  std::vector<float> depths;
+  const int u = frame.camera.width / 2;
+  const int v = frame.camera.height / 2;
+  for (int row = std::max(0, v - kMiddle); row < std::min(frame.camera.height, v + kMiddle);
+       ++row) {
+    for (int column = std::max(0, u - kMiddle); column < std::min(frame.camera.width, u + kMiddle);
+         ++column) {
+      const auto at = static_cast<std::size_t>(row * frame.camera.width + column);
+      if (frame.depth[at] > 0) depths.push_back(frame.depth[at]);
+    }
+  }
+  if (depths.empty()) throw Error("the frame shows nothing in the middle of its image");
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return static_cast<double>(*middle);
 }
 
 Place place_of(const DepthFrame& frame) {

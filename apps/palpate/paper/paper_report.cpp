@@ -1,5 +1,3 @@
-#include "apps/palpate/paper/paper_report.hpp"
-
 #include <fmt/format.h>
 
 #include <iterator>
@@ -7,7 +5,8 @@
 #include <thread>
 
 #include "apps/palpate/cli/json.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/paper/paper_figures.hpp"
 
 namespace palpate::app {
 

@@ -8,9 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "apps/palpate/cli/child_program.hpp"
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/plot/picture_script.hpp"
+#include "apps/palpate/cli/process.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {

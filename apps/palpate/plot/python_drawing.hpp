@@ -35,4 +35,14 @@ void check_picture(const std::string& path);
 void draw_by_python(std::string_view script, const std::vector<DrawingData>& data,
                     const std::string& path, OutputFile& picture);
 
+// The scripts, as CMake found them. All import drawing.py.
+[[nodiscard]] std::string_view drawing_script();
+[[nodiscard]] std::string_view picture_script();
+[[nodiscard]] std::string_view figures_script();
+[[nodiscard]] std::string_view trust_script();
+[[nodiscard]] std::string_view align_script();
+
+/// The project's version.
+[[nodiscard]] std::string_view version();
+
 }  // namespace palpate::app

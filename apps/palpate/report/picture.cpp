@@ -4,8 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/cli/waiting.hpp"
-#include "apps/palpate/plot/picture_script.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/shapes.hpp"

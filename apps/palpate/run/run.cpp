@@ -52,7 +52,7 @@ void open_hardware(Hand& hand, const MotionPlan& motion, RealtimeOptions asked,
                    WaitingClock& clock) {
   // The processor of the servo is the servo's alone.
   asked.processor.reset();
-  LinkedDeviceOptions device;
+  ThreadedDeviceOptions device;
   device.begin = [asked] { (void)make_realtime(asked); };
   hand.device = open_device(hand.chosen.path, clock, device);
   hand.duration = motion.duration;
@@ -70,8 +70,8 @@ void play_back(Hand& hand, Trajectory way) {
 void guide(Hand& hand, const HandTask& task, SimulatedDeviceOptions device, Trajectory target) {
   device.duration = task.motion.duration;
   if (!device.duration && !task.page.wanted) device.duration = target.back().time;
-  hand.remote = std::make_unique<RemoteHand>();
-  hand.guide = std::make_unique<GuidedHand>(*hand.remote, std::move(target));
+  hand.remote = std::make_unique<RemoteTarget>();
+  hand.guide = std::make_unique<TeleoperatedHand>(*hand.remote, std::move(target));
   hand.device = std::make_unique<SimulatedDevice>(device, *hand.guide);
 }
 

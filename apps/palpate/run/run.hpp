@@ -19,10 +19,10 @@ namespace palpate::app {
 
 /// Who touches: a device, where it stands, and the surface's stiffness that goes with it.
 struct Hand {
-  std::string name;                    ///< for messages
-  DevicePlan chosen;                   ///< what is to be at the hand
-  std::unique_ptr<RemoteHand> remote;  ///< takes the tool from its way; null: nobody can
-  std::unique_ptr<GuidedHand> guide;   ///< what `remote` speaks to
+  std::string name;                         ///< for messages
+  DevicePlan chosen;                        ///< what is to be at the hand
+  std::unique_ptr<RemoteTarget> remote;     ///< takes the tool from its way; null: nobody can
+  std::unique_ptr<TeleoperatedHand> guide;  ///< what `remote` speaks to
   std::unique_ptr<Device> device;
   const RemoteDevice* socket = nullptr;  ///< the device, where it is another program's
   Workspace workspace;

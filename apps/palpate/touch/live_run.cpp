@@ -57,7 +57,7 @@ TouchStep step_of(const ServoState& state, const DeviceInfo& device, double star
   step.microseconds = 1e6 * state.timing.computing;
   step.patch_points = state.patch_points;
   step.notes = state.field_notes;
-  if (device.tells_orientation) step.orientation = state.orientation;
+  if (device.has_orientation) step.orientation = state.orientation;
   if (device.has_gripper) step.gripper = state.gripper;
   return step;
 }

@@ -19,7 +19,7 @@ class PageHold {
   void move(const Eigen::Vector3d& place, std::uint32_t buttons) {
     const std::lock_guard lock(mutex_);
     held_ = true;
-    hand_.remote->move({{hand_.workspace.position_to_device(place), buttons}, clock_.now()});
+    hand_.remote->move({hand_.workspace.position_to_device(place), buttons}, clock_.now());
   }
   void release() {
     const std::lock_guard lock(mutex_);
@@ -30,7 +30,7 @@ class PageHold {
   /// Another thread's, some tens of times a second: a page that has the tool still has it.
   void keep() {
     const std::lock_guard lock(mutex_);
-    if (held_) hand_.remote->keep();
+    if (held_) hand_.remote->keep_alive();
   }
 
  private:

@@ -1,5 +1,3 @@
-#include "apps/palpate/zwidth/wall_trial_run.hpp"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -12,10 +10,11 @@
 #include <thread>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/interruption.hpp"
 #include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/cli/words.hpp"
+#include "apps/palpate/cli/process.hpp"
+#include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/zwidth/zwidth_command.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/base/latest.hpp"
 #include "palpate/device/open_device.hpp"
@@ -139,9 +138,9 @@ void run_wall_trial(const WallTrialRunOptions& options) {
   if (!options.json.empty()) json.emplace(options.json);
   SteadyWaitingClock clock;
   const Interruption interruption;
-  LinkedDeviceOptions link;
+  ThreadedDeviceOptions link;
   link.begin = [] { static_cast<void>(make_realtime({})); };
-  const std::unique_ptr<LinkedDevice> device = open_device(options.device, clock, link);
+  const std::unique_ptr<ThreadedDevice> device = open_device(options.device, clock, link);
   fmt::print(stderr, "holds {}\n", device->info().name);
   TrialThread thread(*device, clock, options.trial);
   const WallTrialState state = lead(thread, interruption);

@@ -9,7 +9,7 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
-#include "apps/palpate/zwidth/zwidth_report.hpp"
+#include "apps/palpate/zwidth/zwidth_map.hpp"
 
 namespace palpate::app {
 
@@ -45,11 +45,7 @@ struct ZWidthOutputs {
   }
 };
 
-}  // namespace
-
-void add_zwidth_options(CLI::App& command, ZWidthChoices& choices) {
-  ZWidthOptions& o = choices.map;
-  WallTrialRunOptions& trial = choices.trial;
+void add_simulation_options(CLI::App& command, ZWidthOptions& o) {
   command
       .add_option("--device-profile", o.profile,
                   wrapped("kind of device: simulated (default), unknown, touch, omega, falcon, ... "
@@ -78,6 +74,10 @@ void add_zwidth_options(CLI::App& command, ZWidthChoices& choices) {
   add_json_option(command, o.json);
   command.add_option("--picture", o.picture, "the map as PNG (needs python3-matplotlib)")
       ->type_name("FILE.png");
+}
+
+// With --device, which excludes what is of simulated walls alone.
+void add_hardware_options(CLI::App& command, WallTrialRunOptions& trial) {
   CLI::Option* const device =
       command
           .add_option("--device", trial.device,
@@ -103,6 +103,13 @@ void add_zwidth_options(CLI::App& command, ZWidthChoices& choices) {
                                  wrapped("time without progress after which it ends (30)")))
       ->check(positive())
       ->type_name("SECONDS");
+}
+
+}  // namespace
+
+void add_zwidth_options(CLI::App& command, ZWidthChoices& choices) {
+  add_simulation_options(command, choices.map);
+  add_hardware_options(command, choices.trial);
   command.footer(kZWidthFooter);
 }
 

@@ -1,13 +1,28 @@
 #pragma once
 
-#include "apps/palpate/zwidth/wall_trial_run.hpp"
+#include <string>
+
 #include "apps/palpate/zwidth/zwidth_map.hpp"
+#include "palpate/servo/z_width.hpp"
 
 namespace CLI {
 class App;
 }
 
 namespace palpate::app {
+
+struct WallTrialRunOptions {
+  std::string device;      ///< what open_device() takes
+  bool confirmed = false;  ///< somebody holds the device and knows what comes
+  WallTrialOptions trial = {};
+  std::string json;  ///< file for what was found; "-": standard output; empty: none
+};
+
+/// Measures on hardware how stiff a wall may be: tells what comes, asks unless `confirmed`, and
+/// leads the hand step by step.
+/// @throws UsageError when nobody has confirmed, Error when there is no such device, when it failed
+///   or nothing was measured.
+void run_wall_trial(const WallTrialRunOptions& options);
 
 struct ZWidthChoices {
   ZWidthOptions map;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <functional>
 #include <string>
 #include <vector>
@@ -45,5 +46,14 @@ struct ZWidthMap {
 /// @throws Error when there is no such profile or one is out of range.
 [[nodiscard]] ZWidthMap measure_zwidth(const ZWidthOptions& options,
                                        const std::function<void(double)>& progress);
+
+/// A table for a person.
+void print_zwidth(const ZWidthMap& map, std::FILE* out);
+
+/// A row a wall: rate_Hz, delay_steps, damping_Ns_per_m, ... in N/m.
+[[nodiscard]] std::string csv(const ZWidthMap& map);
+
+/// The same as data, and what figures.py is told.
+[[nodiscard]] std::string facts(const ZWidthMap& map);
 
 }  // namespace palpate::app

@@ -1,21 +1,50 @@
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/device/hand_guide.hpp"
-#include "palpate/device/playback.hpp"
+#include "palpate/io/trajectory.hpp"
 
+// Devices without hardware: SimulatedDevice has mass and is held by a hand, ScriptedDevice plays a
+// trajectory. Both run in simulated time; PacedDevice runs them in real time.
 namespace palpate {
 
-/// A hand as a spring and a damper that pull the device after the place where the hand wants to be.
-/// The defaults are a light grip (docs/method.md 8.1).
+/// Where a hand wants to be.
+struct HandTarget {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, device frame
+  std::uint32_t buttons = 0;                           ///< bit k: button k is down
+};
+
+/// Says step by step where a simulated device's hand wants to be, for motions that are not known in
+/// advance.
+class TargetSource {
+ public:
+  virtual ~TargetSource() = default;
+
+  /// The target at `time`, s on the device's clock, which grows from call to call; the device is at
+  /// `position` now, m, device frame. Called on the servo's thread: no allocation, lock, throw or
+  /// system call. A target that is not finite makes the device fail.
+  [[nodiscard]] virtual HandTarget target(double time,
+                                          const Eigen::Vector3d& position) noexcept = 0;
+
+ protected:
+  TargetSource() = default;
+  TargetSource(const TargetSource&) = default;
+  TargetSource& operator=(const TargetSource&) = default;
+};
+
+/// A hand as a spring and a damper that pull the device towards the hand's target. The defaults are
+/// a light grip (docs/method.md 8.1).
 struct SimulatedHand {
   double stiffness = 300;    ///< N/m; 0 and no damping: nobody holds the device
   double damping = 3;        ///< N s/m
-  double maximum_force = 8;  ///< N; a hand that is held back harder gives way: it pulls no more
+  double maximum_force = 8;  ///< N; a hand that is held back harder yields: it pulls no more
 };
 
 struct SimulatedDeviceOptions {
@@ -23,83 +52,107 @@ struct SimulatedDeviceOptions {
   double damping = 0.5;       ///< viscous, N s/m
   double coulomb = 0.05;      ///< dry friction, N; holds a resting device against smaller forces
   double resolution = 3e-5;   ///< a step of the encoders along each axis, m; 0: continuous
-  int delay = 1;              ///< steps from the reading of a position to its force's effect, 0-16
-  double rate = 1000;         ///< steps a second, Hz
+  int delay = 1;              ///< steps from reading a position to its force's effect, 0-16
+  double rate = 1000;         ///< steps per second, Hz
   double maximum_force = 20;  ///< N; longer forces are shortened to it
-  double workspace_radius = 0.1;  ///< m; only told, never enforced
+  double workspace_radius = 0.1;  ///< m; only reported, never enforced
   SimulatedHand hand = {};
-  /// at time 0, m; a target's start and a guide's first wish win
+  /// at time 0, m; a trajectory's start and a source's first target take precedence
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< at time 0, m/s
   /// s after which the status is `finished`, 0 for one step at least; unset: at the end of the
-  /// target, never where there is none
+  /// trajectory, never where there is none
   std::optional<double> duration = {};
 };
 
-/// A device that exists in simulated time only: a point mass with viscous and dry friction, read
-/// through encoders, driven by a held (zero-order) and delayed force and by a hand.
+/// A simulated device: a point mass with viscous and dry friction, read through encoders, driven by
+/// a held (zero-order) and delayed force and by a hand.
 ///
 ///   M x'' = F(t_k - delay) - b x' - f_c x'/|x'| + k_h (g - x) + b_h (g' - x')
 ///
-/// between steps k and k + 1; g, where the hand wants to be, is straight between steps. Integration
-/// is exact (matrix exponential) but for the direction of dry friction, which is held for 1/16 of
-/// a step; on a straight line that is exact too. Every step takes one read() and one write();
-/// read() brings the device to the next step's time, the first one to time 0. Same input, same
-/// bits.
+/// between steps k and k + 1; g, the hand's target, is linear between steps. Integration is exact
+/// (matrix exponential) but for the direction of dry friction, which is held for 1/16 of a step; on
+/// a straight line that is exact too. Every step takes one read() and one write(); read() brings
+/// the device to the next step's time, the first one to time 0. Same input, same bits.
 class SimulatedDevice final : public Device {
  public:
-  /// `target`: where the hand wants to be, device frame, times from 0; empty: at the starting
-  /// place.
-  /// @throws Error when an option is out of range or the target is no trajectory.
+  /// `target`: the hand's target, device frame, times from 0; empty: the starting position.
+  /// @throws Error when an option is out of range or the target is not a valid trajectory.
   explicit SimulatedDevice(const SimulatedDeviceOptions& options = {}, Trajectory target = {});
 
-  /// The hand wants to be where `guide`, which outlives the device, says; asked once a step.
+  /// The hand's target comes from `source`, which outlives the device; asked once a step.
   /// @throws Error when an option is out of range.
-  SimulatedDevice(const SimulatedDeviceOptions& options, HandGuide& guide);
+  SimulatedDevice(const SimulatedDeviceOptions& options, TargetSource& source);
+  ~SimulatedDevice() override;
+
+  [[nodiscard]] const DeviceInfo& info() const noexcept override;
+  [[nodiscard]] DeviceState read() noexcept override;
+  void write(const Eigen::Vector3d& force) noexcept override;
+  [[nodiscard]] std::string reason() const override;
+
+  /// The true position and velocity, without encoders, m and m/s.
+  [[nodiscard]] const Eigen::Vector3d& true_position() const noexcept;
+  [[nodiscard]] const Eigen::Vector3d& true_velocity() const noexcept;
+
+  /// Work that the applied forces did on the hand so far, J; negative: taken from it.
+  [[nodiscard]] double work() const noexcept;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+/// Plays a trajectory, one row a step, in simulated time. The hand follows the trajectory whatever
+/// the force; its velocity is the mean since the row before.
+class ScriptedDevice final : public Device {
+ public:
+  /// @throws Error as check() does.
+  explicit ScriptedDevice(Trajectory trajectory);
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] DeviceState read() noexcept override;
   void write(const Eigen::Vector3d& force) noexcept override;
   [[nodiscard]] std::string reason() const override;
 
-  /// The true position and velocity, which no encoder shows, m and m/s.
-  [[nodiscard]] const Eigen::Vector3d& true_position() const noexcept { return position_; }
-  [[nodiscard]] const Eigen::Vector3d& true_velocity() const noexcept { return velocity_; }
-
-  /// What the forces that acted on the hand gave to it so far, J; below zero: took from it.
-  [[nodiscard]] double work() const noexcept { return work_; }
+  /// The force of the last write(), N, device frame.
+  [[nodiscard]] const Eigen::Vector3d& force() const noexcept { return force_; }
 
  private:
-  static constexpr std::size_t kMaximumDelay = 16;
-
-  [[nodiscard]] HandWish wanted(double time) noexcept;
-  [[nodiscard]] Eigen::Vector3d within_reach(const Eigen::Vector3d& goal) const noexcept;
-  [[nodiscard]] Eigen::Vector3d quantised() const noexcept;
-  void begin() noexcept;
-  void advance() noexcept;
-  void fail(const char* wrong) noexcept;
-  void advance_with_friction(const Eigen::Vector3d& push,
-                             const Eigen::Vector3d& push_rate) noexcept;
-  void slide(double duration, Eigen::Vector3d push, const Eigen::Vector3d& push_rate) noexcept;
-  void flow(const Eigen::Matrix4d& transition, const Eigen::Vector3d& push,
-            const Eigen::Vector3d& push_rate) noexcept;
-
-  SimulatedDeviceOptions options_;
-  Playback target_;
-  HandGuide* guide_ = nullptr;
-  HandWish wish_;  // at the current time
+  Trajectory rows_;
   DeviceInfo info_;
-  Eigen::Matrix4d generator_;   // of (x, v, push, push rate)
-  Eigen::Matrix4d whole_step_;  // its exponential over one step
-  Eigen::Matrix4d part_step_;   // ... and over 1/16 of one
-  Eigen::Vector3d position_;
-  Eigen::Vector3d velocity_;
-  std::array<Eigen::Vector3d, kMaximumDelay + 1> forces_;  // ring of written forces
-  double work_ = 0;
-  std::uint64_t steps_ = 0;
   DeviceState state_;
-  bool started_ = false;
-  const char* wrong_ = nullptr;  // what was not finite, once the device has failed
+  std::size_t next_ = 0;
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
+  bool failed_ = false;
 };
+
+/// Runs a device in simulated time (a simulation, a recording) on a clock: each read() steps it up
+/// to the clock's time. While the reader is late the device goes on under the force that was
+/// written last, as a real one would. Its time 0 is the first read().
+class PacedDevice final : public Device {
+ public:
+  /// Steps that one read() catches up at most; after a longer gap the device's time lags behind.
+  static constexpr int kMostSteps = 200;
+
+  /// Both outlive it; nobody else uses the device.
+  PacedDevice(Device& device, const Clock& clock);
+
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] DeviceState read() noexcept override;
+  void write(const Eigen::Vector3d& force) noexcept override { device_.write(force); }
+  [[nodiscard]] std::string reason() const override { return device_.reason(); }
+
+ private:
+  Device& device_;
+  const Clock& clock_;
+  DeviceInfo info_;
+  DeviceState state_;
+  double start_ = 0;  // the clock's time at the device's time 0, s
+  bool started_ = false;
+};
+
+/// @throws Error that names the row when a trajectory is empty, not finite, or its times do not
+/// grow strictly.
+void check(const Trajectory& trajectory);
 
 }  // namespace palpate

@@ -4,14 +4,15 @@
 
 namespace palpate {
 
-/// Where a device stands in the world and how much its motion is magnified.
+/// Where a device's frame is in the world and how much its motion is magnified.
 ///
-/// Positions and velocities are rotated, magnified by `scale` and, positions, moved. Forces are
-/// only rotated: a newton that a proxy computes is a newton that the hand feels. It follows that
-///  - a surface of K N/m in the world is felt as scale * K N/m by the hand; to be felt as K it has
-///    to be given K / scale (felt_stiffness() tells);
-///  - work done on the hand is the world's work F . dh divided by `scale`; its sign, on which
-///    passivity rests, is the same in both.
+/// Positions and velocities are rotated and multiplied by `scale`; positions are also translated.
+/// Forces are only rotated: a newton that a proxy computes is a newton that the hand feels. Hence
+///  - the hand feels a surface of K N/m in the world as scale * K N/m (felt_stiffness()); for it to
+///    feel K, give the surface K / scale;
+///  - work done on the hand is the world's work F . dh divided by `scale`; its sign, which
+///  passivity
+///    depends on, is the same in both.
 struct Workspace {
   Eigen::Isometry3d T_world_device = Eigen::Isometry3d::Identity();  ///< pose of the device's frame
   double scale = 1;  ///< metres in the world for one metre of the device; > 0
@@ -34,6 +35,30 @@ struct Workspace {
   }
   /// The stiffness that the hand feels, N/m, of a surface with `world` N/m.
   [[nodiscard]] double felt_stiffness(double world) const noexcept { return scale * world; }
+};
+
+/// Lets a hand move without its tool. At the end of a device's reach, hold the clutch, move the
+/// hand back, release it: the tool goes on from where it rested, further than any device reaches.
+///
+/// The tool is where the hand is, shifted by all that the hand moved while the clutch was held.
+/// Positions in one frame, m. Real-time.
+class Clutch {
+ public:
+  /// The tool's position while the hand is at `hand`: `rest`, finite, while the clutch is `held`;
+  /// then it moves on from there as the hand does. A hand that is not finite moves nothing, and
+  /// the result is not finite.
+  [[nodiscard]] Eigen::Vector3d tool(const Eigen::Vector3d& hand, bool held,
+                                     const Eigen::Vector3d& rest) noexcept {
+    if (!held || !hand.allFinite()) return hand + shift_;
+    shift_ = rest - hand;
+    return rest;
+  }
+
+  /// From the hand to the tool while the clutch is not held, m.
+  [[nodiscard]] const Eigen::Vector3d& shift() const noexcept { return shift_; }
+
+ private:
+  Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace palpate

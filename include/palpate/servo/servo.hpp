@@ -8,7 +8,6 @@
 
 #include "palpate/base/latest.hpp"
 #include "palpate/contact/proxy.hpp"
-#include "palpate/device/clutch.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/workspace.hpp"
 #include "palpate/scene/scene_field.hpp"

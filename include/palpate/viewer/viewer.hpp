@@ -7,7 +7,6 @@
 
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
-#include "palpate/viewer/viewer_controls.hpp"
 #include "palpate/viewer/viewer_options.hpp"
 
 namespace palpate {

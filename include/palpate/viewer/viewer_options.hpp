@@ -6,11 +6,63 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "palpate/sensor/stream.hpp"
 
 namespace palpate {
+
+enum class SettingKind {
+  number,  ///< from `least` to `most`
+  choice,  ///< one of `choices`
+  on_off,  ///< a switch
+};
+
+/// A number, a choice or a switch.
+using SettingValue = std::variant<double, std::string, bool>;
+
+/// Something that a viewer's page may change. The viewer knows no setting of its own: a program
+/// offers them (ViewerControls).
+struct Setting {
+  std::string key;    ///< "stiffness"; unique
+  std::string label;  ///< for people
+  std::string unit = {};
+  SettingKind kind = SettingKind::number;
+  double least = 0;  ///< of a number
+  double most = 1;
+  double step = 0;  ///< that its slider should take; 0: any
+  std::vector<std::string> choices = {};
+  SettingValue value = 0.0;  ///< the present one, of the kind
+};
+
+/// What a viewer's page may do to the program. All are called on the viewer's network thread, one
+/// at a time, and should return within a millisecond or so. What they throw as Error is told to the
+/// page and changes nothing. Those that are empty are refused with words, unless it says otherwise.
+struct ViewerControls {
+  /// What can be set, with present values.
+  std::function<std::vector<Setting>()> settings = {};
+  /// `value` is of the setting's kind and in its range already.
+  std::function<void(const std::string& key, const SettingValue& value)> set = {};
+
+  /// Names of several settings at once.
+  std::vector<std::string> presets = {};
+  std::function<void(const std::string& name)> preset = {};
+
+  std::function<void(bool on)> pause = {};  ///< empty: Servo::pause of every servo
+  std::function<void()> reset = {};         ///< empty: Servo::reset of every servo
+
+  /// Begins or ends a log of steps. Returns the file's name.
+  std::function<std::string(bool on)> record = {};
+
+  /// Can a page move this device's hand? Empty: where `hand` is there, all.
+  std::function<bool(std::size_t device)> takeable = {};
+  /// Where a page's hand wants the tool to be (m, world), with buttons as bits.
+  std::function<void(std::size_t device, const Eigen::Vector3d& position, std::uint32_t buttons)>
+      hand = {};
+  /// The page let go of the tool, or went away.
+  std::function<void(std::size_t device)> release = {};
+};
 
 /// What a viewer bears from those who connect (docs/viewer_protocol.md). Times in s.
 struct ViewerLimits {

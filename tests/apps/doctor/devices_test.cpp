@@ -1,28 +1,25 @@
-#include "apps/palpate/doctor/devices.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "apps/doctor/made_up.hpp"
-#include "apps/palpate/doctor/camera_drivers.hpp"
-#include "apps/palpate/doctor/vendor_libraries.hpp"
 
 namespace palpate::app::doctor {
 namespace {
 
-std::vector<Found> found_on(const MadeUp& machine) {
-  return known_among(usb_devices(machine.system));
+Findings examined(const MadeUp& machine) {
+  return check_all(machine.system, 0);
 }
 
-Findings examined(const MadeUp& machine) {
-  return check_devices(machine.system, found_on(machine));
+std::ptrdiff_t count(const char* looked_at, const MadeUp& machine) {
+  return std::ranges::count(examined(machine), looked_at, &Finding::looked_at);
 }
 
 TEST(DoctorDevices, AbsenceIsANoteAlone) {
   MadeUp machine;
   machine.file("sys/bus/usb/drivers_probe", "");
-  const Findings findings = examined(machine);
+  Findings findings = examined(machine);
+  std::erase_if(findings, [](const Finding& each) { return each.looked_at != "on USB"; });
   ASSERT_EQ(findings.size(), 2u);  // no haptic device, no camera
   EXPECT_EQ(worst(findings), Severity::note);
   EXPECT_EQ(findings.front().remedy, "palpate demo");
@@ -47,7 +44,9 @@ TEST(DoctorDevices, KnowsThemByTheirNumbersAndSomeByTheirWords) {
   machine.usb("1-6", "8086", "0b07", 1, 7, "uvcvideo", "Intel(R) RealSense(TM) Depth Camera 435");
   machine.usb("1-7", "8086", "0aa7", 1, 8, "btusb", "Bluetooth");
   std::vector<std::string> names;
-  for (const Found& each : found_on(machine)) names.emplace_back(each.known.name);
+  for (const auto& each : known_usb_devices(machine.system)) {
+    names.emplace_back(each.model.name);
+  }
   EXPECT_EQ(names, (std::vector<std::string>{"Force Dimension", "Novint Falcon", "3D Systems Touch",
                                              "Haply", "RealSense"}));
 }
@@ -99,7 +98,7 @@ TEST(DoctorDevices, WarnsOfAKernelDriverThatHoldsAKinect) {
   EXPECT_NE(finding.remedy.find("modprobe -r gspca_kinect"), std::string::npos);
   MadeUp other;
   other.usb("2-1", "045e", "02ae", 2, 3, "usbfs");
-  EXPECT_EQ(std::ranges::count(examined(other), "kernel drivers", &Finding::looked_at), 0);
+  EXPECT_EQ(count("kernel drivers", other), 0);
 }
 
 TEST(DoctorDevices, MissesTheCameraOfAKinectWithoutItsPowerSupply) {
@@ -116,7 +115,7 @@ TEST(DoctorDevices, WarnsOfCamerasThatShareABus) {
   MadeUp machine;
   machine.usb("1-1", "1d27", "0601", 1, 2);
   machine.usb("2-1", "1d27", "0601", 2, 2);
-  EXPECT_EQ(worst(examined(machine)), Severity::note);  // no haptic device
+  EXPECT_EQ(count("USB bandwidth", machine), 0);
   machine.usb("2-2", "045e", "02ae", 2, 3);
   const Finding finding = about("USB bandwidth", examined(machine));
   EXPECT_EQ(finding.severity, Severity::warning);
@@ -125,9 +124,7 @@ TEST(DoctorDevices, WarnsOfCamerasThatShareABus) {
 
 TEST(DoctorDrivers, AreMissedWhereACameraNeedsThem) {
   MadeUp machine;
-  const auto kinect = [&] {
-    return about("driver freenect", check_camera_drivers(machine.system, found_on(machine)));
-  };
+  const auto kinect = [&] { return about("driver freenect", examined(machine)); };
   EXPECT_EQ(kinect().severity, Severity::note);
   EXPECT_EQ(kinect().remedy.find("sudo apt install libfreenect-dev"), 0u) << kinect().remedy;
   machine.usb("2-1", "045e", "02ae", 2, 3);
@@ -138,9 +135,7 @@ TEST(DoctorDrivers, AreSaidToBeBlindWhereTheyFindNothingOfWhatIsThere) {
   MadeUp machine;
   DriverInfo driver{.name = "openni2", .description = "", .missing = "", .devices = {}};
   machine.system.cameras = [&driver] { return std::vector{driver}; };
-  const auto xtion = [&] {
-    return about("driver openni2", check_camera_drivers(machine.system, found_on(machine)));
-  };
+  const auto xtion = [&] { return about("driver openni2", examined(machine)); };
   EXPECT_EQ(xtion().severity, Severity::good);
   machine.usb("2-1", "1d27", "0601", 2, 3);
   EXPECT_EQ(xtion().severity, Severity::problem);
@@ -151,7 +146,7 @@ TEST(DoctorDrivers, AreSaidToBeBlindWhereTheyFindNothingOfWhatIsThere) {
 TEST(DoctorLibraries, AreMissedWhereADeviceNeedsThem) {
   MadeUp machine;
   const auto severity = [&machine](const std::string& library) {
-    return about(library, check_vendor_libraries(machine.system, found_on(machine))).severity;
+    return about(library, examined(machine)).severity;
   };
   for (const char* library :
        {"libdhd.so.3", "libdrd.so.3", "libHD.so", "Haply's Inverse Service"}) {
@@ -175,7 +170,7 @@ TEST(DoctorLibraries, TellTheirVersionOrWhatTheyMiss) {
                               "libncurses.so.5: cannot open shared object file: No such file"}
                : LibraryTrial{Outcome::loaded, "3.17.6.0"};
   };
-  const Findings findings = check_vendor_libraries(machine.system, {});
+  const Findings findings = examined(machine);
   EXPECT_EQ(about("libdhd.so.3", findings).words, "loaded, version 3.17.6.0");
   const Finding broken = about("libHD.so", findings);
   EXPECT_EQ(broken.severity, Severity::warning);
@@ -188,7 +183,7 @@ TEST(DoctorLibraries, AreFoundByTheirOtherNames) {
   machine.system.try_library = [](const std::string& name) {
     return name == "libHD.so.3" ? LibraryTrial{Outcome::loaded, "3.4.0"} : LibraryTrial{};
   };
-  const Findings findings = check_vendor_libraries(machine.system, {});
+  const Findings findings = examined(machine);
   EXPECT_EQ(about("libHD.so", findings).words, "loaded, version 3.4.0");
 }
 
@@ -196,9 +191,7 @@ TEST(DoctorLibraries, NeedATouchThatIsSetUp) {
   MadeUp machine;
   machine.usb("1-4", "2988", "0302", 1, 12);
   machine.system.variables = {{"HOME", "/home/ann"}};
-  const auto setup = [&machine] {
-    return about("Touch's set-up", check_vendor_libraries(machine.system, found_on(machine)));
-  };
+  const auto setup = [&machine] { return about("Touch's set-up", examined(machine)); };
   EXPECT_EQ(setup().severity, Severity::problem);
   EXPECT_EQ(setup().remedy.find("export GTDD_HOME"), 0u) << setup().remedy;
   machine.file("home/ann/.3dsystems/config/Default Device.config", "ModelType=OMNI");

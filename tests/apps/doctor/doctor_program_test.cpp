@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/doctor/library_trial.hpp"
+#include "apps/palpate/doctor/system.hpp"
 #include "apps/program.hpp"
 
 namespace palpate::app {

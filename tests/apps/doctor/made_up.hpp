@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include "apps/palpate/doctor/finding.hpp"
-#include "apps/palpate/doctor/system.hpp"
+#include "apps/palpate/doctor/checks.hpp"
 #include "support/folder.hpp"
 
 namespace palpate::app::doctor {

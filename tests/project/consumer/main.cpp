@@ -1,6 +1,6 @@
 // Touches a plane of points through the installed headers and libraries: both targets, one object
 // of each kind. Fails unless the plane pushes back.
-#include <palpate/device/scripted.hpp>
+#include <palpate/device/simulated.hpp>
 #include <palpate/palpate.hpp>
 
 int main() {

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "palpate/base/clock.hpp"
+#include "palpate/device/device.hpp"
+
+namespace palpate {
+
+/// A driver: a connection to hardware whose calls may block. A ThreadedDevice makes a Device of it
+/// that never blocks.
+///
+/// One thread at a time uses it. Opening it (a function of each driver's own) throws Error; the
+/// destructor sets zero force and closes the hardware. Frame of all drivers, as the operator sits
+/// in front of the device: x to the right, y away from the operator, z up.
+class DeviceDriver {
+ public:
+  virtual ~DeviceDriver() = default;
+  DeviceDriver(const DeviceDriver&) = delete;
+  DeviceDriver& operator=(const DeviceDriver&) = delete;
+
+  /// `rate`: exchanges per second that the hardware is made for; `delay`: its own, if known.
+  [[nodiscard]] virtual const DeviceInfo& info() const noexcept = 0;
+
+  /// Applies a force to the hand, N, and reads where the hand is; status and time of the result are
+  /// not used. May wait for the hardware. The force is finite and not longer than
+  /// info().maximum_force.
+  /// @throws Error that says what failed and what to do. The driver is then closed.
+  [[nodiscard]] virtual DeviceState exchange(const Eigen::Vector3d& force) = 0;
+
+ protected:
+  DeviceDriver() = default;
+};
+
+struct ThreadedDeviceOptions {
+  /// s after which a position is too old to be used; raised to 2.5 exchanges of slow devices.
+  double state_timeout = 5e-3;
+  double force_timeout = 5e-3;  ///< s after which a force is no longer applied: the servo is stuck
+  double retry_interval = 1;    ///< s between attempts to reopen lost hardware
+  bool threaded = true;  ///< false: no thread; the owner calls service(), as in simulated time
+  /// Called first on the device's thread, to ask for a priority; does not throw.
+  std::function<void()> begin = {};
+};
+
+/// Hardware with a thread of its own, so that no driver call can block the servo.
+///
+/// The thread exchanges forces and positions with the hardware at the hardware's rate. read() takes
+/// the newest position, write() leaves a force for the next exchange; neither blocks, allocates or
+/// locks.
+///
+/// Hardware may be unplugged, fail, stop answering, or report values that are not finite or
+/// impossible for a hand (too far away, too fast, or a jump). None of this makes the device fail:
+/// its status becomes `silent`, no force is applied, and the hardware is reopened as soon as it is
+/// back. The first position after a silence still has status `silent`, so that whoever computes
+/// forces knows where the hand is before there is one; a force is applied only to the connection
+/// whose position it answers. A force that is not finite latches `failed`.
+class ThreadedDevice final : public Device {
+ public:
+  /// Opens the driver. @throws Error that says why that fails.
+  using Open = std::function<std::unique_ptr<DeviceDriver>()>;
+
+  /// Opens the device. `clock` outlives it; DeviceState::time is its time.
+  /// @throws Error when `open` does, an option is out of range, or no thread can be started.
+  ThreadedDevice(Open open, WaitingClock& clock, ThreadedDeviceOptions options = {});
+  /// Sets zero force and closes the hardware.
+  ~ThreadedDevice() override;
+
+  [[nodiscard]] const DeviceInfo& info() const noexcept override;
+  [[nodiscard]] DeviceState read() noexcept override;
+  void write(const Eigen::Vector3d& force) noexcept override;
+  /// Also why the device is silent. Any thread but the servo's.
+  [[nodiscard]] std::string reason() const override;
+
+  /// One exchange with the hardware or, if it is lost and the interval is over, one attempt to
+  /// reopen it. The device's own thread calls this; without one, the owner does.
+  void service() noexcept;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,46 @@
+#include "base/shared_library.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+// What the loader says of a name that it does not find.
+bool is_absent(const std::string& name, const std::string& reason) {
+  return reason.starts_with(name + ": cannot open shared object file");
+}
+
+}  // namespace
+
+SharedLibrary::SharedLibrary(const std::vector<std::string>& names, std::string remedy,
+                             Unload unload)
+    : remedy_(std::move(remedy)) {
+  const int flags = RTLD_NOW | RTLD_LOCAL | (unload == Unload::never ? RTLD_NODELETE : 0);
+  std::string reason;
+  for (const std::string& name : names) {
+    if (void* const loaded = ::dlopen(name.c_str(), flags)) {
+      name_ = name;
+      handle_ = {loaded, [](void* handle) { ::dlclose(handle); }};
+      return;
+    }
+    const char* const error = ::dlerror();
+    const std::string words = error == nullptr ? "no reason given" : error;
+    if (!reason.empty() && (!is_absent(name_, reason) || is_absent(name, words))) continue;
+    name_ = name;
+    reason = words;
+  }
+  throw Error(fmt::format("the library {} cannot be loaded ({}). {}", name_, reason, remedy_));
+}
+
+void* SharedLibrary::address(const char* function) const {
+  if (void* const found = ::dlsym(handle_.get(), function)) return found;
+  throw Error(fmt::format("the library {} has no function {}: it is too old, or another one. {}",
+                          name_, function, remedy_));
+}
+
+}  // namespace palpate

@@ -1,0 +1,176 @@
+#include "device/openhaptics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+
+#include "base/listed.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::device {
+namespace {
+
+using Eigen::Vector3d;
+namespace fs = std::filesystem;
+
+constexpr int kCalibrationFrames = 1000;  // until it is calibrated by itself
+// Motors of a device that is opened have to be this cool; the maker's own example reduces forces
+// from 0.7 to 0.5.
+constexpr double kCool = 0.5;
+constexpr const char* kNotCalibrated =
+    "is not calibrated. Put its stylus into the inkwell, or calibrate it with the maker's "
+    "Touch_Diagnostic (in newer drivers TouchCheckup)";
+
+// What a device's model may contain, the most exact first.
+struct TouchModel {
+  std::string_view word;
+  const char* profile;
+};
+constexpr std::array kTouchModels = {
+    TouchModel{"touch x", "touch-x"},
+    TouchModel{"touch", "touch"},
+    TouchModel{"omni", "phantom-omni"},
+    TouchModel{"desktop", "phantom-desktop"},
+    TouchModel{"premium 1.5", "phantom-premium-1.5"},
+    TouchModel{"premium 3.0", "phantom-premium-3.0"},
+};
+
+std::string touch_profile_of(std::string model) {
+  std::ranges::transform(model, model.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const TouchModel& known : kTouchModels) {
+    if (model.find(known.word) != std::string::npos) return known.profile;
+  }
+  return "unknown";
+}
+
+std::string title_of(const OpenHapticsFacts& facts) {
+  return (facts.model.empty() ? "no name" : facts.model) +
+         (facts.serial_number.empty() ? "" : ", ") + facts.serial_number;
+}
+
+// What the device reports is better than its kind's profile, unless a profile was asked for.
+DeviceInfo info_of_device(const DeviceName& name, const OpenHapticsFacts& facts,
+                          const std::string& device) {
+  const std::string title = fmt::format("{} ({})", device, title_of(facts));
+  const std::string given = name.option("profile");
+  if (!given.empty()) return info_of(device_profile(given), title);
+  DeviceInfo info = info_of(device_profile(touch_profile_of(facts.model)), title);
+  if (facts.continuous_force > 0) info.maximum_force = facts.continuous_force;
+  if (facts.maximum_stiffness > 0) info.maximum_stiffness = facts.maximum_stiffness;
+  return info;
+}
+
+std::string touch_failure(unsigned code, const std::string& told) {
+  const std::string off = ", so it switched its forces off (" + told + ")";
+  switch (code) {
+    case hd::kWarmMotors:
+      return "its motors are too warm" + off + ". It will be reopened when they have cooled down";
+    case hd::kExceededVelocity:
+      return "was moved too fast" + off + ". It will be reopened";
+    case hd::kExceededForce:
+    case hd::kExceededImpulse:
+    case hd::kForceError:
+      return "was given too large a force" + off + ". It will be reopened";
+    case hd::kTimer:
+      return "received no frame in time (" + told +
+             "). End what keeps the computer busy; the device will be reopened";
+    case hd::kDeviceFault:
+    case hd::kCommunication:
+    case hd::kConfiguration:
+      return "does not answer (" + told + "). Check its cable and its power";
+    default:
+      return "fails (" + told + "). Check its cable and its power";
+  }
+}
+
+// Where the maker's drivers keep a file NAME.config for each device.
+fs::path touch_configurations() {
+  const char* given = std::getenv("GTDD_HOME");
+  if (given != nullptr && *given != '\0') return fs::path(given) / "config";
+  const char* home = std::getenv("HOME");
+  return fs::path(home == nullptr ? "" : home) / ".3dsystems" / "config";
+}
+
+}  // namespace
+
+OpenHapticsDriver::OpenHapticsDriver(const DeviceName& name, const Clock& clock)
+    : library_(name.option("library")),
+      session_(library_, name.device.empty() ? kDefault : name.device, clock) {
+  info_.name = fmt::format("openhaptics:{}", name.device.empty() ? kDefault : name.device);
+  (void)exchange(Vector3d::Zero());
+  info_ = info_of_device(name, session_.facts(), info_.name);
+  prepare();
+}
+
+DeviceState OpenHapticsDriver::exchange(const Vector3d& force) {
+  ask(force);
+  return answer();
+}
+
+// Its motors have to be cool, and it is calibrated, automatically if it can be.
+void OpenHapticsDriver::prepare() {
+  OpenHapticsFrames::Answer now = checked_answer();
+  if (now.temperature > kCool) {
+    fail(fmt::format("its motors are warm ({:.2f} of 1). Let them cool down to {}", now.temperature,
+                     kCool));
+  }
+  const int styles = session_.facts().calibration_styles & (hd::kAutomatic | hd::kInkwell);
+  if (styles != 0 && now.calibration == hd::kNeedsUpdate) session_.frames().calibrate(styles);
+  for (int i = 0; i < kCalibrationFrames && styles != 0 && now.calibration != hd::kCalibrated;
+       ++i) {
+    ask(Vector3d::Zero());
+    now = checked_answer();
+  }
+  if (now.calibration != hd::kCalibrated) fail(kNotCalibrated);
+}
+
+OpenHapticsFrames::Answer OpenHapticsDriver::checked_answer() {
+  const std::optional<OpenHapticsFrames::Answer> answer = session_.frames().answer(kPatience);
+  if (!answer) {
+    const unsigned error = session_.take_error();
+    fail(fmt::format(
+        "the maker's scheduler does not run{}. Check its cable, its power, and what keeps the "
+        "computer busy",
+        error == hd::kSuccess ? "" : fmt::format(" ({})", library_.describe(error))));
+  }
+  if (answer->failure != hd::kSuccess) {
+    fail(touch_failure(answer->failure, library_.describe(answer->failure)));
+  }
+  if (answer->calibration == hd::kNeedsHand) fail(kNotCalibrated);
+  return *answer;
+}
+
+void OpenHapticsDriver::fail(const std::string& words) const {
+  throw Error(fmt::format("{}: {}", info_.name, words));
+}
+
+DriverInfo list_openhaptics() {
+  DriverInfo driver{.name = "openhaptics",
+                    .description =
+                        "3D Systems Touch, Touch X; SensAble Phantom Omni, Desktop, "
+                        "Premium",
+                    .missing = {},
+                    .devices = {}};
+  return listed(driver, [](DriverInfo& found) {
+    const OpenHapticsLibrary library;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(touch_configurations(), none)) {
+      if (entry.path().extension() != ".config") continue;
+      found.devices.push_back({"openhaptics:" + entry.path().stem().string(),
+                               "as set up in " + touch_configurations().string()});
+    }
+    std::ranges::sort(found.devices, {}, &FoundDevice::name);
+  });
+}
+
+std::unique_ptr<DeviceDriver> open_openhaptics(const DeviceName& name, const Clock& clock) {
+  check_options(name, {"library", "profile"});
+  return std::make_unique<OpenHapticsDriver>(name, clock);
+}
+
+}  // namespace palpate::device

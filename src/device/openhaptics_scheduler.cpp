@@ -1,0 +1,292 @@
+#include "device/openhaptics_scheduler.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate::device {
+namespace {
+
+using Eigen::Vector3d;
+using std::chrono::steady_clock;
+
+constexpr double kMillimetre = 1e-3;                // m
+constexpr std::chrono::microseconds kTickNap{200};  // a frame comes each millisecond
+
+// The maker's x is to the right, y up, z towards the operator.
+Vector3d from_hd(const Vector3d& v) {
+  return {v.x(), -v.z(), v.y()};
+}
+Vector3d to_hd(const Vector3d& v) {
+  return {v.x(), v.z(), -v.y()};
+}
+
+steady_clock::duration seconds(double duration) {
+  return std::chrono::duration_cast<steady_clock::duration>(
+      std::chrono::duration<double>(duration));
+}
+
+// One of those that the device knows; never the reset of encoders, which takes this pose for
+// another.
+unsigned calibration_style(int known) {
+  return (known & hd::kAutomatic) != 0 ? hd::kAutomatic : hd::kInkwell;
+}
+
+const char* touch_opening_remedy(unsigned code) {
+  if (code == hd::kAlreadyOpen) return "It is in use already: end other programs that use it";
+  return "Plug it in, switch it on, let the maker's Touch_Setup (in newer drivers "
+         "Touch_HeadlessSetup) write its configuration under this name, end other programs that "
+         "use it, and give your user access (udev rules; 'palpate doctor' explains)";
+}
+
+// What all devices of a program share. The mutex is for whoever opens or closes a device; frames
+// never take it, and use only `errors`.
+struct Shared {
+  struct Running {
+    OpenHapticsFrames* frames = nullptr;
+    OpenHapticsLibrary::Handle handle = 0;  // of the scheduler's
+  };
+
+  std::mutex mutex;
+  std::vector<Running> running;
+  std::map<std::string, double> tried;  // when each was opened last, s
+  OpenHapticsErrors errors;
+};
+
+Shared& shared_by_all() {
+  static Shared only;
+  return only;
+}
+
+unsigned call_tick(void* frames) noexcept {
+  static_cast<OpenHapticsFrames*>(frames)->tick();
+  return hd::kContinue;
+}
+
+// Keeps all devices at rest as long as it lives. With the mutex.
+class Rest {
+ public:
+  explicit Rest(const OpenHapticsLibrary& library) : library_(library) {
+    for (const auto& each : shared_.running) each.frames->rest();
+    const auto end = steady_clock::now() + seconds(OpenHapticsSession::kPatience);
+    while (!is_complete() && steady_clock::now() < end) std::this_thread::sleep_for(kTickNap);
+  }
+  ~Rest() {
+    for (const auto& each : shared_.running) each.frames->resume();
+    if (is_stopped_ && !shared_.running.empty()) start();
+  }
+  Rest(const Rest&) = delete;
+  Rest& operator=(const Rest&) = delete;
+
+  [[nodiscard]] bool is_complete() const {
+    return std::ranges::all_of(shared_.running,
+                               [](const auto& each) { return each.frames->is_at_rest(); });
+  }
+  // Waits for a tick that is under way.
+  void stop_scheduler() {
+    is_stopped_ = true;
+    if (shared_.running.empty()) return;
+    library_.stop_scheduler();
+    for (const auto& each : shared_.running) library_.unschedule(each.handle);
+  }
+
+ private:
+  // Whether callbacks outlast a stop is not documented, so all are scheduled anew. Errors are found
+  // by the first frame, or by whoever misses it.
+  void start() {
+    for (auto& each : shared_.running) {
+      each.handle = library_.schedule(call_tick, each.frames, hd::kDefaultPriority);
+    }
+    library_.start_scheduler();
+  }
+
+  const OpenHapticsLibrary& library_;
+  Shared& shared_ = shared_by_all();
+  bool is_stopped_ = false;
+};
+
+}  // namespace
+
+void OpenHapticsFrames::ask(const Vector3d& force) noexcept {
+  wanted_.set({force, clock_.now(), ++asked_});
+}
+
+std::optional<OpenHapticsFrames::Answer> OpenHapticsFrames::answer(double patience) noexcept {
+  TimePoint end = steady_clock::now() + seconds(patience);
+  while (true) {
+    const Answer newest = answers_.get();
+    if (newest.number == asked_) return newest;
+    const TimePoint now = steady_clock::now();
+    // Time at rest does not count.
+    end = std::max(end, (resting_ ? now : resumed_.load()) + seconds(patience));
+    if (now >= end) return std::nullopt;
+    wakeup_.wait_until(end);
+  }
+}
+
+void OpenHapticsFrames::resume() noexcept {
+  resumed_ = steady_clock::now();
+  resting_ = false;
+}
+
+void OpenHapticsFrames::tick() noexcept {
+  if (!resting_) {
+    at_rest_ = false;
+    frame();
+  } else if (!at_rest_) {
+    frame_without_force();
+    at_rest_ = true;
+  }
+}
+
+void OpenHapticsFrames::frame() noexcept {
+  library_.make_current(device_);
+  library_.begin_frame(device_);
+  if (frames_ == 0) newest_.temperature = warmest_motor();
+  if (const int styles = calibrate_.exchange(0); styles != 0) {
+    library_.update_calibration(calibration_style(styles));
+  }
+  newest_.calibration = library_.check_calibration();
+  newest_.state = read();
+  keep_failure();  // before there is a force
+  if (const std::optional<Wanted> wanted = wanted_.look()) taken_ = *wanted;
+  library_.set_numbers(hd::kCurrentForce, to_hd(permitted(newest_.state)).eval().data());
+  library_.end_frame(device_);
+  keep_failure();
+  ++frames_;
+  const bool is_awaited = newest_.number != taken_.number;
+  newest_.number = taken_.number;
+  answers_.set(newest_);
+  if (is_awaited) wakeup_.post();
+}
+
+void OpenHapticsFrames::frame_without_force() noexcept {
+  const Vector3d zero = Vector3d::Zero();
+  library_.make_current(device_);
+  library_.begin_frame(device_);
+  library_.set_numbers(hd::kCurrentForce, zero.data());
+  library_.end_frame(device_);
+  keep_failure();
+}
+
+double OpenHapticsFrames::warmest_motor() noexcept {
+  keep_failure();
+  std::array<double, 6> temperatures{};  // of three motors or six
+  library_.get_numbers(hd::kMotorTemperature, temperatures.data());
+  (void)errors_.take(library_, device_);  // older libraries do not know it
+  return std::ranges::max(temperatures);
+}
+
+DeviceState OpenHapticsFrames::read() const noexcept {
+  Vector3d position = Vector3d::Zero();
+  Vector3d velocity = Vector3d::Zero();
+  int buttons = 0;
+  library_.get_numbers(hd::kCurrentPosition, position.data());
+  library_.get_numbers(hd::kCurrentVelocity, velocity.data());
+  library_.get_integers(hd::kCurrentButtons, &buttons);
+  DeviceState state;
+  state.position = kMillimetre * from_hd(position);
+  state.velocity = kMillimetre * from_hd(velocity);
+  state.buttons = static_cast<std::uint32_t>(buttons);
+  return state;
+}
+
+Vector3d OpenHapticsFrames::permitted(const DeviceState& state) const noexcept {
+  const bool recent = clock_.now() - taken_.time <= kForceTimeout;
+  const bool known = state.position.allFinite() && state.velocity.allFinite();
+  const bool calibrated = newest_.calibration != hd::kNeedsHand;
+  const bool good = newest_.failure == hd::kSuccess && calibrated;
+  return recent && known && good ? taken_.force : Vector3d::Zero();
+}
+
+void OpenHapticsFrames::keep_failure() noexcept {
+  const unsigned code = errors_.take(library_, device_);
+  if (newest_.failure == hd::kSuccess) newest_.failure = code;
+}
+
+OpenHapticsSession::OpenHapticsSession(const OpenHapticsLibrary& library,
+                                       const std::string& configuration, const Clock& clock)
+    : library_(library), name_("openhaptics:" + configuration) {
+  Shared& shared = shared_by_all();
+  const std::lock_guard lock(shared.mutex);
+  require_interval(clock.now());
+  Rest rest(library_);
+  if (!rest.is_complete()) {
+    fail(
+        "is not opened now, since another of the maker's devices does not come to rest. Check that "
+        "one's cable and its power");
+  }
+  rest.stop_scheduler();
+  open(configuration);
+  facts_ = library_.read_facts();
+  (void)shared.errors.take(library_, device_);  // of what it does not know
+  frames_ = std::make_unique<OpenHapticsFrames>(library_, device_, clock, shared.errors);
+  shared.running.push_back({frames_.get()});
+}
+
+// Goes on even where a device does not come to rest in time: one that is left open might hold a
+// force for ever.
+OpenHapticsSession::~OpenHapticsSession() {
+  Shared& shared = shared_by_all();
+  const std::lock_guard lock(shared.mutex);
+  Rest rest(library_);
+  rest.stop_scheduler();
+  std::erase_if(shared.running, [this](const auto& each) { return each.frames == frames_.get(); });
+  library_.make_current(device_);
+  library_.disable(hd::kForceOutput);
+  library_.disable_device(device_);
+  (void)shared.errors.take(library_, device_);
+  shared.errors.close(device_);
+}
+
+unsigned OpenHapticsSession::take_error() const noexcept {
+  return shared_by_all().errors.take(library_, device_);
+}
+
+void OpenHapticsSession::require_interval(double now) const {
+  Shared& shared = shared_by_all();
+  if (shared.running.empty()) shared.tried.clear();
+  const auto last = shared.tried.find(name_);
+  const double left = last == shared.tried.end() ? 0 : last->second + kInterval - now;
+  if (left > 0) {
+    fail(
+        fmt::format("can be opened again in {} s, as that takes the force from the maker's other "
+                    "devices for a moment. Wait that long, or close them",
+                    std::ceil(left)));
+  }
+  shared.tried[name_] = now;
+}
+
+// The library may attribute the errors of a device that does not open to the one that was current
+// before.
+void OpenHapticsSession::open(const std::string& configuration) {
+  OpenHapticsErrors& errors = shared_by_all().errors;
+  (void)errors.take(library_, hd::kNoDevice);  // sorts those from before
+  device_ = library_.init_device(configuration.c_str());
+  const bool is_open = device_ != hd::kNoDevice;
+  const bool has_entry = is_open && errors.open(device_);
+  const unsigned code = has_entry ? errors.take(library_, device_) : library_.take_errors();
+  if (has_entry && code == hd::kSuccess) {
+    library_.enable(hd::kForceOutput);
+    return;
+  }
+  if (is_open) library_.disable_device(device_);
+  errors.close(device_);
+  if (is_open && !has_entry) fail("too many devices are open. Close one");
+  fail(fmt::format("cannot be opened ({}). {}", library_.describe(code),
+                   touch_opening_remedy(code)));
+}
+
+void OpenHapticsSession::fail(const std::string& words) const {
+  throw Error(fmt::format("{}: {}", name_, words));
+}
+
+}  // namespace palpate::device

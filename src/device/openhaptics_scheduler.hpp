@@ -1,0 +1,160 @@
+#pragma once
+
+#include <semaphore.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "device/openhaptics_library.hpp"
+#include "palpate/base/clock.hpp"
+#include "palpate/base/latest.hpp"
+#include "palpate/device/device.hpp"
+
+// What runs in OpenHaptics' scheduler, which is one for all devices of a program.
+namespace palpate::device {
+
+/// Wakes a waiting thread from one that must not wait itself.
+class Wakeup {
+ public:
+  Wakeup() noexcept { ::sem_init(&semaphore_, 0, 0); }
+  ~Wakeup() { ::sem_destroy(&semaphore_); }
+  Wakeup(const Wakeup&) = delete;
+  Wakeup& operator=(const Wakeup&) = delete;
+
+  /// Wakes whoever waits now, or next. Takes no lock. Any thread.
+  void post() noexcept { ::sem_post(&semaphore_); }
+  /// Returns at a post, at `end`, or after a signal.
+  void wait_until(std::chrono::steady_clock::time_point end) noexcept {
+    using std::chrono::duration_cast;
+    const auto since = end.time_since_epoch();
+    const auto whole = duration_cast<std::chrono::seconds>(since);
+    const auto rest = duration_cast<std::chrono::nanoseconds>(since - whole);
+    const timespec time{whole.count(), rest.count()};
+    (void)::sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &time);
+  }
+
+ private:
+  sem_t semaphore_{};
+};
+
+/// One device's frames: the scheduler calls tick() at 1 kHz on a thread of its own; each call reads
+/// where the hand is and applies the force that was asked for last.
+///
+/// A tick does constant work; it takes no lock and no memory and waits for nothing but the device.
+/// It keeps errors as numbers, for others to put into words. There is no force from the first error
+/// on, none where the position is not finite, and none that was asked for longer than kForceTimeout
+/// ago.
+class OpenHapticsFrames {
+ public:
+  static constexpr double kForceTimeout = 5e-3;  ///< s
+
+  /// The result of the frame that took what was asked for last.
+  struct Answer {
+    DeviceState state;         // without status and time
+    std::uint64_t number = 0;  // of what was asked
+    unsigned failure = 0;      // the first error's code
+    unsigned calibration = 0;  // hd::kCalibrated and the like
+    double temperature = 0;    // of the warmest motor in the first frame; 1: as warm as allowed
+  };
+
+  /// `clock` is read in ticks, too; it and `errors` outlive this.
+  OpenHapticsFrames(const OpenHapticsLibrary& library, OpenHapticsLibrary::Device device,
+                    const Clock& clock, OpenHapticsErrors& errors)
+      : library_(library), device_(device), clock_(clock), errors_(errors) {}
+
+  // One other thread.
+  /// Asks for a force, N, as the operator sits.
+  void ask(const Eigen::Vector3d& force) noexcept;
+  /// Waits for the frame that takes what was asked last, no longer than `patience` (s) while the
+  /// device is not at rest.
+  [[nodiscard]] std::optional<Answer> answer(double patience) noexcept;
+  /// The next frame calibrates the device anew, in one of the styles that it knows.
+  void calibrate(int styles) noexcept { calibrate_ = styles; }
+
+  // Whoever stops the scheduler.
+  /// The next tick makes one frame without a force; later ones do nothing, until resume().
+  void rest() noexcept { resting_ = true; }
+  [[nodiscard]] bool is_at_rest() const noexcept { return at_rest_; }
+  void resume() noexcept;
+
+  /// One frame. The scheduler's thread.
+  void tick() noexcept;
+
+ private:
+  using TimePoint = std::chrono::steady_clock::time_point;
+  struct Wanted {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    double time = 0;  // s
+    std::uint64_t number = 0;
+  };
+
+  void frame() noexcept;
+  void frame_without_force() noexcept;
+  [[nodiscard]] DeviceState read() const noexcept;
+  [[nodiscard]] double warmest_motor() noexcept;
+  [[nodiscard]] Eigen::Vector3d permitted(const DeviceState& state) const noexcept;
+  void keep_failure() noexcept;
+
+  OpenHapticsLibrary library_;
+  OpenHapticsLibrary::Device device_;
+  const Clock& clock_;
+  OpenHapticsErrors& errors_;
+
+  // Of the scheduler's thread.
+  std::uint64_t frames_ = 0;
+  Wanted taken_;
+  Answer newest_;
+
+  std::uint64_t asked_ = 0;  // of the other thread
+
+  // Between them.
+  Latest<Wanted> wanted_;
+  Latest<Answer> answers_;
+  std::atomic<int> calibrate_{0};
+  std::atomic<bool> resting_{false};
+  std::atomic<bool> at_rest_{false};
+  std::atomic<TimePoint> resumed_{TimePoint{}};
+  Wakeup wakeup_;
+};
+
+/// An open device whose frames run in the scheduler.
+///
+/// The maker's rule: devices are opened and closed while the scheduler is stopped. Whoever does so
+/// first has all other devices make a frame without a force, since it is not documented whether a
+/// device holds its last force while no frames come. Any thread.
+class OpenHapticsSession {
+ public:
+  static constexpr double kPatience = 0.5;  ///< s for the other devices to come to rest
+  /// s before a device is opened again while others are in use, as that takes their force.
+  static constexpr double kInterval = 10;
+
+  /// `configuration`: the device's name in the maker's set-up. `clock` outlives this.
+  /// @throws Error that says why it does not open.
+  OpenHapticsSession(const OpenHapticsLibrary& library, const std::string& configuration,
+                     const Clock& clock);
+  ~OpenHapticsSession();
+  OpenHapticsSession(const OpenHapticsSession&) = delete;
+  OpenHapticsSession& operator=(const OpenHapticsSession&) = delete;
+
+  [[nodiscard]] OpenHapticsFrames& frames() noexcept { return *frames_; }
+  [[nodiscard]] const OpenHapticsFacts& facts() const noexcept { return facts_; }
+  /// An error of this device that no frame has met; hd::kSuccess: none.
+  [[nodiscard]] unsigned take_error() const noexcept;
+
+ private:
+  void require_interval(double now) const;
+  void open(const std::string& configuration);
+  [[noreturn]] void fail(const std::string& words) const;
+
+  OpenHapticsLibrary library_;
+  std::string name_;
+  OpenHapticsLibrary::Device device_ = hd::kNoDevice;
+  OpenHapticsFacts facts_;
+  std::unique_ptr<OpenHapticsFrames> frames_;
+};
+
+}  // namespace palpate::device

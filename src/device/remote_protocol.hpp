@@ -1,0 +1,120 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "device/datagram_socket.hpp"
+#include "palpate/device/remote.hpp"
+
+namespace palpate {
+
+/// The protocol between a RemoteDevice and its client, the program that stands for the hardware
+/// (docs/remote_device.md): datagrams of fixed sizes, little-endian, version 1. All functions are
+/// pure and real-time.
+inline constexpr std::uint16_t kRemoteVersion = 1;
+inline constexpr std::size_t kStatePacketSize = 80;  ///< bytes
+inline constexpr std::size_t kForcePacketSize = 56;  ///< bytes
+
+/// From the client: where the hand is.
+struct StatePacket {
+  std::uint64_t sequence = 0;                          ///< grows from packet to packet
+  double stamp = 0;                                    ///< s, on the client's clock; grows too
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, device frame
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s; zero unless has_velocity
+  std::uint32_t buttons = 0;                           ///< bit k: button k is down
+  bool has_velocity = false;
+  bool leaving = false;  ///< the client's last packet
+
+  static constexpr double kLargestStamp = 1e10;     ///< s, either way
+  static constexpr double kLargestPosition = 100;   ///< m along an axis
+  static constexpr double kLargestVelocity = 1000;  ///< m/s along an axis
+};
+
+/// To the client: the force.
+struct ForcePacket {
+  std::uint64_t sequence = 0;                       ///< grows from packet to packet
+  std::uint64_t answered = 0;                       ///< sequence of the state that it answers
+  double stamp = 0;                                 ///< of that state, s, on the client's clock
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< N, on the hand, device frame
+  bool live = false;     ///< packets from the client arrive; else the force is zero or fades
+  bool closing = false;  ///< the last packet: zero force from now on
+};
+
+/// What is wrong with a datagram that should be a StatePacket.
+enum class PacketFlaw : std::uint8_t {
+  none,
+  length,
+  magic,
+  version,
+  flags,         ///< unknown flags, or reserved bytes that are not 0
+  number,        ///< a number that is not finite
+  range,         ///< a number that is too large
+  order,         ///< sequence or stamp have not grown: repeated, or overtaken
+  other_client,  ///< the device belongs to another client
+  no_address,    ///< the client's socket has no address to answer to
+};
+inline constexpr std::size_t kPacketFlaws = 10;
+
+struct ParsedState {
+  PacketFlaw flaw = PacketFlaw::none;
+  StatePacket packet;  ///< where there is no flaw; all of it finite and in range
+};
+
+/// Finds flaws up to `range`: the others depend on who sent it, and when.
+[[nodiscard]] ParsedState parse_state(std::span<const std::byte> bytes) noexcept;
+
+[[nodiscard]] std::array<std::byte, kStatePacketSize> encode(const StatePacket& packet) noexcept;
+[[nodiscard]] std::array<std::byte, kForcePacketSize> encode(const ForcePacket& packet) noexcept;
+
+/// What is wrong and what to do; empty for none.
+[[nodiscard]] std::string_view explain(PacketFlaw flaw) noexcept;
+
+/// A RemoteDevice's side of the protocol: which client it listens to, the state that it reports,
+/// how much force it lets through. No socket and no clock: times are given, s, and never go back.
+/// Real-time.
+class RemoteProtocol {
+ public:
+  explicit RemoteProtocol(const RemoteDeviceOptions& options) noexcept : options_(options) {}
+
+  /// Takes a datagram that came from `from`. Returns what was wrong with it.
+  PacketFlaw receive(std::span<const std::byte> bytes, const SocketAddress& from,
+                     double now) noexcept;
+
+  /// The state after all that was received until now; once a step.
+  [[nodiscard]] DeviceState state(double now) noexcept;
+
+  /// The packet that answers the last state, with `force` limited to what is allowed now. None:
+  /// there is no client to answer.
+  [[nodiscard]] std::optional<ForcePacket> answer(const Eigen::Vector3d& force) noexcept;
+  /// The last packet, if there is a client to send it to.
+  [[nodiscard]] std::optional<ForcePacket> farewell() noexcept;
+  [[nodiscard]] const SocketAddress& client() const noexcept { return client_; }
+
+ private:
+  [[nodiscard]] bool is_silent(double now) const noexcept;
+  [[nodiscard]] bool is_newer(const StatePacket& packet) const noexcept;
+  void begin(const StatePacket& packet, const SocketAddress& from) noexcept;
+  void take(const StatePacket& packet) noexcept;
+  void move_limit(double now) noexcept;
+  [[nodiscard]] ForcePacket next_packet() noexcept;
+
+  RemoteDeviceOptions options_;
+  SocketAddress client_;  // kept a while after it fell silent
+  StatePacket newest_;
+  DeviceState state_{.status = DeviceStatus::silent};
+  double received_ = 0;         // when the newest packet came
+  double now_ = 0;              // of the last state()
+  double limit_ = 0;            // of the force, N
+  bool connected_ = false;      // the client has sent something and has not left
+  bool confirmed_ = false;      // ... more than one packet again and again
+  bool located_ = false;        // a step has reported where its hand is
+  bool sent_zero_ = true;       // the client knows that there is no force any more
+  std::uint64_t sequence_ = 0;  // of the last force packet
+};
+
+}  // namespace palpate

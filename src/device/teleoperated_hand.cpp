@@ -1,0 +1,171 @@
+#include "palpate/device/teleoperated_hand.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/requirement.hpp"
+#include "device/target_motion.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+TeleoperatedHandOptions checked(const TeleoperatedHandOptions& o) {
+  const Requirement require{"teleoperated hand"};
+  require.positive("speed", o.speed, "give a positive speed in m/s");
+  require.positive("command_timeout", o.command_timeout, "give a positive time in seconds");
+  require.positive("release_time", o.release_time, "give a positive time in seconds");
+  require.not_negative("return_after", o.return_after, "give 0 or more seconds");
+  return o;
+}
+
+}  // namespace
+
+bool RemoteTarget::move(const HandTarget& target, double stamp) noexcept {
+  if (!target.position.allFinite() || !std::isfinite(stamp)) return false;
+  newest_ = {target, stamp, true, newest_.moves + 1};
+  shared_.set(newest_);
+  return true;
+}
+
+void RemoteTarget::keep_alive() noexcept {
+  if (newest_.held) shared_.set(newest_);
+}
+
+void RemoteTarget::release() noexcept {
+  if (!newest_.held) return;
+  newest_.held = false;
+  shared_.set(newest_);
+}
+
+struct TeleoperatedHand::Inside {
+  enum class Mode { returning, playing, following, released };
+
+  Inside(const RemoteTarget& from, Trajectory rows, const TeleoperatedHandOptions& the_options)
+      : remote(from), options(checked(the_options)) {
+    if (!rows.empty()) check(rows);
+    trajectory = Playback(std::move(rows));
+  }
+
+  void begin(double now, const Vector3d& position) noexcept;
+  void receive(double now) noexcept;
+  void choose_mode(double now) noexcept;
+  void advance(double now, const Vector3d& position) noexcept;
+  void play(double dt) noexcept;
+  void approach(const Vector3d& goal, double dt) noexcept;
+
+  const RemoteTarget& remote;
+  Playback trajectory;
+  TeleoperatedHandOptions options;
+  TargetInterpolator interpolator;
+  RemoteCommand command;
+  HandTarget target;
+  Mode mode = Mode::released;
+  double time = 0;             // of the last call
+  double trajectory_time = 0;  // on the trajectory
+  double received = 0;         // when the last command came
+  double released = 0;         // when the tool was released
+  std::uint64_t generation = 0;
+  bool started = false;
+};
+
+TeleoperatedHand::TeleoperatedHand(const RemoteTarget& remote, Trajectory trajectory,
+                                   const TeleoperatedHandOptions& options)
+    : inside_(std::make_unique<Inside>(remote, std::move(trajectory), options)) {}
+
+TeleoperatedHand::~TeleoperatedHand() = default;
+
+HandTarget TeleoperatedHand::target(double time, const Vector3d& position) noexcept {
+  Inside& in = *inside_;
+  if (!in.started) in.begin(time, position);
+  in.receive(time);
+  in.choose_mode(time);
+  in.advance(time, position);
+  in.time = time;
+  return in.target;
+}
+
+void TeleoperatedHand::Inside::begin(double now, const Vector3d& position) noexcept {
+  started = true;
+  time = now;
+  received = now;
+  target.position = position;
+  if (trajectory.empty()) return;
+  target.position = trajectory.front().position;
+  trajectory_time = trajectory.front().time;
+  mode = Mode::playing;
+}
+
+// Commands are dated by when they are received: the device's clock is the only one that counts.
+void TeleoperatedHand::Inside::receive(double now) noexcept {
+  const std::uint64_t newest = remote.generation();
+  if (newest == generation) return;
+  const std::optional<RemoteCommand> copy = remote.command();
+  if (!copy) return;
+  generation = newest;
+  received = now;
+  const bool moved = copy->moves != command.moves;
+  command = *copy;
+  if (!command.held || !moved) return;
+  if (mode != Mode::following) interpolator.rest(target.position, now);
+  interpolator.go(command.target.position, command.stamp, now);
+}
+
+void TeleoperatedHand::Inside::choose_mode(double now) noexcept {
+  const bool held = command.held && now - received <= options.command_timeout;
+  if (held) {
+    mode = Mode::following;
+  } else if (mode == Mode::following) {
+    mode = Mode::released;
+    released = now;
+  } else if (mode == Mode::released && !trajectory.empty() &&
+             now - released >= options.return_after) {
+    mode = Mode::returning;
+  }
+  target.buttons = held ? command.target.buttons : 0;
+}
+
+void TeleoperatedHand::Inside::advance(double now, const Vector3d& position) noexcept {
+  const double dt = now - time;
+  switch (mode) {
+    case Mode::following:
+      approach(interpolator.at(now), dt);
+      return;
+    case Mode::released:
+      approach(
+          target.position + std::min(1.0, dt / options.release_time) * (position - target.position),
+          dt);
+      return;
+    case Mode::returning:
+      approach(trajectory.at(trajectory_time), dt);
+      if (target.position == trajectory.at(trajectory_time)) mode = Mode::playing;
+      return;
+    case Mode::playing:
+      play(dt);
+      return;
+  }
+}
+
+void TeleoperatedHand::Inside::play(double dt) noexcept {
+  trajectory_time += dt;
+  target.position = trajectory.at(trajectory_time);
+  if (trajectory_time < trajectory.end()) return;
+  trajectory.rewind();
+  trajectory_time = trajectory.front().time;
+  mode = Mode::returning;
+}
+
+void TeleoperatedHand::Inside::approach(const Vector3d& goal, double dt) noexcept {
+  const Vector3d path = goal - target.position;
+  const double length = path.norm();
+  const double reach = options.speed * dt;
+  if (length <= reach) {
+    target.position = goal;
+  } else {
+    target.position += reach / length * path;
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,292 @@
+#include "palpate/device/threaded_device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "base/requirement.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/base/latest.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kStaleExchanges = 2.5;
+
+// Beyond what a hand does: m from a device's origin, m/s.
+constexpr double kFarthestHand = 5;
+constexpr double kFastestHand = 20;
+
+// From one position to the next: m/s, and what the steps of coarse encoders add, m.
+constexpr double kFastestMove = 10;
+constexpr double kCoarsestStep = 0.5e-3;
+
+constexpr const char* kDistrust =
+    "so it got no force. It will be reopened; if that does not help, switch it off and on, and "
+    "calibrate it";
+
+ThreadedDeviceOptions checked(ThreadedDeviceOptions options) {
+  const Requirement require{"threaded device"};
+  require.positive("state_timeout (s)", options.state_timeout, "give a time above 0");
+  require.positive("force_timeout (s)", options.force_timeout, "give a time above 0");
+  require.positive("retry_interval (s)", options.retry_interval, "give a time above 0");
+  return options;
+}
+
+// A position waits for the servo, and its force for the next exchange: up to two exchanges more
+// than the hardware's own delay, which counts as one where it is not known.
+DeviceInfo info_of(const DeviceDriver& driver) {
+  DeviceInfo info = driver.info();
+  info.keeps_time = false;
+  info.delay = info.delay.value_or(1 / info.rate) + 2 / info.rate;
+  return info;
+}
+
+// False for what is not a number, too.
+bool is_possible(const DeviceState& reading) {
+  return reading.position.norm() <= kFarthestHand && reading.velocity.norm() <= kFastestHand;
+}
+
+void check(const DeviceState& reading, const DeviceInfo& info) {
+  const bool tool = reading.orientation.coeffs().allFinite() && std::isfinite(reading.gripper);
+  if (tool && is_possible(reading)) return;
+  throw Error(
+      fmt::format("{}: reported a position that is not a number, or impossible for a hand, {}",
+                  info.name, kDistrust));
+}
+
+std::string replaced_by(const std::string& found, const std::string& expected) {
+  return fmt::format("found {} instead of {}; start again to use it", found, expected);
+}
+
+// A connection's number, from 1 on; each one that is opened has the next.
+using Connection = std::uint32_t;
+constexpr Connection kNone = 0;
+
+}  // namespace
+
+struct ThreadedDevice::Inside {
+  struct Reading {
+    DeviceState state;  // without status and time
+    double begin = 0;   // s, of its exchange
+    double end = 0;
+    Connection connection = kNone;
+  };
+
+  struct Command {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    double time = 0;                // s, when it was written
+    Connection connection = kNone;  // whose position it answers
+  };
+
+  Inside(Open the_open, WaitingClock& the_clock, ThreadedDeviceOptions the_options)
+      : open(std::move(the_open)),
+        clock(the_clock),
+        options(checked(std::move(the_options))),
+        driver(open()),
+        info(info_of(*driver)) {
+    options.state_timeout = std::max(options.state_timeout, kStaleExchanges / info.rate);
+  }
+
+  void start();
+  void run(const std::stop_token& stop) noexcept;
+  void service() noexcept;
+  void exchange() noexcept;
+  void check_move_to(const Reading& reading) const;
+  void reopen() noexcept;
+  void lose(const char* why) noexcept;
+  [[nodiscard]] Vector3d applicable(double now) const noexcept;
+
+  Open open;
+  WaitingClock& clock;
+  ThreadedDeviceOptions options;
+
+  // Of whoever calls service().
+  std::unique_ptr<DeviceDriver> driver;  // null: lost
+  DeviceInfo info;                       // does not change; both read it
+  Reading newest;
+  Connection connection = 1;
+  double retry_at = 0;  // s
+
+  // Of the servo's thread.
+  DeviceState state{.status = DeviceStatus::silent};
+  Reading seen;
+  Connection located = kNone;  // the connection whose position the last step reported
+
+  // Between them.
+  Latest<Reading> readings;
+  Latest<Command> commands;
+  std::atomic<DeviceStatus> status{DeviceStatus::silent};
+  mutable std::mutex loss_mutex;  // the servo's thread never takes it
+  std::string loss;               // why the hardware is lost; empty: it is there
+
+  std::jthread thread;  // last: it uses all of the above
+};
+
+ThreadedDevice::ThreadedDevice(Open open, WaitingClock& clock, ThreadedDeviceOptions options)
+    : inside_(std::make_unique<Inside>(std::move(open), clock, std::move(options))) {
+  if (inside_->options.threaded) inside_->start();
+}
+
+// The thread ends first, then the driver: zero force.
+ThreadedDevice::~ThreadedDevice() = default;
+
+const DeviceInfo& ThreadedDevice::info() const noexcept {
+  return inside_->info;
+}
+
+void ThreadedDevice::service() noexcept {
+  inside_->service();
+}
+
+void ThreadedDevice::Inside::start() {
+  try {
+    thread = std::jthread([this](const std::stop_token& stop) {
+      if (options.begin) options.begin();
+      run(stop);
+    });
+  } catch (const std::system_error& error) {
+    throw Error(fmt::format("{}: the system gives no thread ({}); end other programs", info.name,
+                            error.what()));
+  }
+}
+
+void ThreadedDevice::Inside::run(const std::stop_token& stop) noexcept {
+  const double period = 1 / info.rate;
+  double due = clock.now();
+  while (!stop.stop_requested()) {
+    service();
+    due = std::max(due + period, clock.now());
+    clock.wait_until(due);
+  }
+}
+
+void ThreadedDevice::Inside::service() noexcept {
+  if (driver) {
+    exchange();
+  } else if (clock.now() >= retry_at) {
+    reopen();
+  }
+}
+
+void ThreadedDevice::Inside::exchange() noexcept {
+  try {
+    const double begin = clock.now();
+    const DeviceState told = driver->exchange(applicable(begin));
+    check(told, info);
+    const Reading reading{told, begin, clock.now(), connection};
+    check_move_to(reading);
+    newest = reading;
+    readings.set(newest);
+  } catch (const std::exception& error) {
+    lose(error.what());
+  }
+}
+
+// A position may be sampled at any moment of its exchange. The longer one of the times between two
+// beginnings and two ends is at least half of what lies between two samples: however late either
+// came, no hand is refused that is slower than half of kFastestMove.
+void ThreadedDevice::Inside::check_move_to(const Reading& reading) const {
+  if (newest.connection != reading.connection) return;
+  const double time =
+      std::max({reading.begin - newest.begin, reading.end - newest.end, 1 / info.rate});
+  const double move = (reading.state.position - newest.state.position).norm();
+  if (move <= kFastestMove * time + kCoarsestStep) return;
+  throw Error(fmt::format("{}: its position jumped by {:.1f} mm in {:.2f} ms, as no hand moves, {}",
+                          info.name, 1e3 * move, 1e3 * time, kDistrust));
+}
+
+Vector3d ThreadedDevice::Inside::applicable(double now) const noexcept {
+  const Command command = commands.get();
+  if (command.connection != connection || now - command.time > options.force_timeout) {
+    return Vector3d::Zero();
+  }
+  const double length = command.force.norm();
+  const double most = info.maximum_force;
+  return length > most ? Vector3d(most / length * command.force) : command.force;
+}
+
+void ThreadedDevice::Inside::lose(const char* why) noexcept {
+  newest.connection = kNone;
+  readings.set(newest);
+  driver.reset();  // zero force, before anything that takes a lock or memory
+  ++connection;
+  retry_at = clock.now() + options.retry_interval;
+  const std::lock_guard lock(loss_mutex);
+  loss = why;
+}
+
+// The reason stays that of the loss: that the hardware is not back yet is no news.
+void ThreadedDevice::Inside::reopen() noexcept {
+  try {
+    std::unique_ptr<DeviceDriver> found = open();
+    const bool same = found->info().name == info.name;
+    const std::lock_guard lock(loss_mutex);
+    loss = same ? "" : replaced_by(found->info().name, info.name);
+    if (same) driver = std::move(found);
+  } catch (const std::exception&) {  // not back yet
+  }
+  if (!driver) retry_at = clock.now() + options.retry_interval;
+}
+
+DeviceState ThreadedDevice::read() noexcept {
+  Inside& in = *inside_;
+  if (in.state.status == DeviceStatus::failed) return in.state;
+  const double now = in.clock.now();
+  if (const std::optional<Inside::Reading> reading = in.readings.look()) in.seen = *reading;
+  const bool known = in.seen.connection != kNone && now - in.seen.end <= in.options.state_timeout;
+  if (known) {
+    in.state = in.seen.state;
+    const bool located = in.located == in.seen.connection;
+    in.state.status = located ? DeviceStatus::ok : DeviceStatus::silent;
+    in.located = in.seen.connection;
+  } else {
+    in.state.status = DeviceStatus::silent;
+    in.state.velocity.setZero();
+    in.state.buttons = 0;
+    in.located = kNone;
+  }
+  in.state.time = now;
+  in.status.store(in.state.status);
+  return in.state;
+}
+
+void ThreadedDevice::write(const Vector3d& force) noexcept {
+  Inside& in = *inside_;
+  if (in.state.status == DeviceStatus::failed) return;
+  if (force.allFinite()) {
+    const bool felt = in.state.status == DeviceStatus::ok;
+    in.commands.set({force, in.clock.now(), felt ? in.located : kNone});
+    return;
+  }
+  in.commands.set({});
+  in.state.status = DeviceStatus::failed;
+  in.status.store(in.state.status);
+}
+
+std::string ThreadedDevice::reason() const {
+  const Inside& in = *inside_;
+  const DeviceStatus status = in.status.load();
+  if (status == DeviceStatus::failed) {
+    return "a force that was written was not finite; look for the fault in what computed it";
+  }
+  if (status == DeviceStatus::ok) return {};
+  const std::lock_guard lock(in.loss_mutex);
+  if (!in.loss.empty()) return in.loss;
+  return fmt::format(
+      "{}: does not answer; if that lasts, check its cable and its power, and what else keeps the "
+      "computer busy",
+      in.info.name);
+}
+
+}  // namespace palpate

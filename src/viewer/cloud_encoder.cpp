@@ -1,0 +1,133 @@
+#include "viewer/cloud_encoder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "field/formulas.hpp"
+
+namespace palpate::viewer {
+
+namespace {
+
+// A place in a stretch that repeats from call to call and has no rhythm that a scan's rows could
+// have, too.
+std::uint64_t scattered(std::uint64_t i) {
+  std::uint64_t x = (i + 1) * 0x9E3779B97F4A7C15u;
+  x ^= x >> 31;
+  x *= 0xBF58476D1CE4E5B9u;
+  return x ^ (x >> 29);
+}
+
+/// Of what has not faded away, in the grid's order.
+std::vector<std::uint32_t> felt(const SurfacePoints& points) {
+  const auto& weights = newest(points.density_weights, points.end_density_weights);
+  const auto& presences = newest(points.presences, points.end_presences);
+  std::vector<std::uint32_t> found;
+  found.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const bool weighs = weights.empty() || weights[i] > 0;
+    if (weighs && (presences.empty() || presences[i] > 0)) found.push_back(i);
+  }
+  return found;
+}
+
+/// Has nothing confirmed the surface for so long that it cannot be felt any more? A cloud that was
+/// set and not pushed stands still.
+bool faded(const SourceState& state, double now) {
+  return state.frames > 0 && now > state.silent_from + state.fade;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> thinned(std::size_t count, std::size_t budget) {
+  std::vector<std::uint32_t> kept(std::min(count, budget));
+  if (kept.size() == count) {
+    std::iota(kept.begin(), kept.end(), 0u);
+    return kept;
+  }
+  for (std::size_t i = 0; i < budget; ++i) {
+    const std::size_t begin = i * count / budget;
+    const std::size_t end = (i + 1) * count / budget;
+    kept[i] = static_cast<std::uint32_t>(begin + scattered(i) % (end - begin));
+  }
+  return kept;
+}
+
+std::vector<std::size_t> shares(const std::vector<std::size_t>& sizes, std::size_t budget) {
+  const std::size_t all = std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
+  if (all <= budget) return sizes;
+  std::vector<std::size_t> parts;
+  for (const std::size_t size : sizes) parts.push_back(size * budget / all);
+  return parts;
+}
+
+CloudMessage cloud_of(const SurfacePoints& points, const Eigen::Vector3d& origin,
+                      std::size_t budget) {
+  const std::vector<std::uint32_t> shown = felt(points);
+  const std::vector<std::uint32_t> kept = thinned(shown.size(), budget);
+  const auto& normals = newest(points.normals, points.end_normals);
+  const auto& confidences = newest(points.confidences, points.end_confidences);
+  const Eigen::Vector3f shift = (points.origin - origin).cast<float>();
+  CloudMessage message;
+  message.places.reserve(kept.size());
+  message.trust.reserve(kept.size());
+  if (!normals.empty()) message.normals.reserve(kept.size());
+  if (!points.colors.empty()) message.colors.reserve(kept.size());
+  for (const std::uint32_t k : kept) {
+    const std::uint32_t i = shown[k];
+    const Eigen::Vector3f& place =
+        points.end_positions.empty() ? points.grid.points()[i] : points.end_positions[i];
+    message.places.emplace_back(place + shift);
+    if (!normals.empty()) message.normals.push_back(normals[i]);
+    message.trust.push_back(static_cast<std::uint8_t>(std::lround(255 * confidences[i])));
+    if (!points.colors.empty()) message.colors.push_back(points.colors[i]);
+  }
+  return message;
+}
+
+std::vector<EncodedCloud> CloudEncoder::encode(const std::set<std::size_t>& budgets, double now) {
+  std::vector<std::shared_ptr<const SurfacePoints>> newest(sources_.size());
+  std::vector<std::size_t> sizes(sources_.size());
+  for (std::size_t s = 0; s < sources_.size(); ++s) {
+    const SourceState state = scene_.source(s).state();
+    newest[s] = scene_.source(s).points();
+    Known& known = sources_[s];
+    const bool gone = faded(state, now);
+    if (known.points.lock() != newest[s] || known.frames != state.frames || known.faded != gone) {
+      known = {newest[s], state.frames, gone, {}};
+    }
+    if (gone) newest[s] = nullptr;
+    sizes[s] = newest[s] ? newest[s]->size() : 0;
+  }
+  std::vector<EncodedCloud> clouds;
+  std::vector<std::set<std::size_t>> used(sources_.size());
+  for (const std::size_t budget : budgets) {
+    const std::vector<std::size_t> parts = shares(sizes, budget);
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      SharedBytes& bytes = sources_[s].encoded[parts[s]];
+      if (!bytes) bytes = encode(s, newest[s].get(), parts[s]);
+      used[s].insert(parts[s]);
+      clouds.push_back({s, budget, bytes});
+    }
+  }
+  for (std::size_t s = 0; s < sources_.size(); ++s) {
+    std::erase_if(sources_[s].encoded,
+                  [&](const auto& entry) { return !used[s].contains(entry.first); });
+  }
+  return clouds;
+}
+
+SharedBytes CloudEncoder::encode(std::size_t source, const SurfacePoints* points,
+                                 std::size_t share) const {
+  CloudMessage message;
+  if (points != nullptr) message = cloud_of(*points, origin_, share);
+  message.source = static_cast<std::uint8_t>(source);
+  message.stamp = scene_.source(source).state().stamp;
+  return std::make_shared<const std::string>(viewer::encode(message));
+}
+
+}  // namespace palpate::viewer

@@ -1,0 +1,195 @@
+#pragma once
+
+// The messages between program and page: docs/viewer_protocol.md says what each byte is.
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "palpate/device/device.hpp"
+#include "palpate/viewer/viewer.hpp"
+
+namespace palpate::viewer {
+
+struct Mesh;  // local_surface.hpp
+
+// What a page says. JSON.
+
+struct Hello {
+  std::string token;
+  std::size_t points = 0;
+};
+struct Hand {
+  std::size_t device = 0;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, relative to the origin; finite
+  std::uint32_t buttons = 0;
+};
+struct Release {
+  std::size_t device = 0;
+};
+struct Set {
+  std::string key;
+  SettingValue value;
+};
+struct Preset {
+  std::string name;
+};
+struct Pause {
+  bool on = false;
+};
+struct Reset {};
+struct Record {
+  bool on = false;
+};
+struct Points {
+  std::size_t points = 0;
+};
+struct Ping {
+  double id = 0;
+};
+
+/// What cannot be read, and why, in words.
+struct Unreadable {
+  std::string text;
+};
+
+using ClientMessage =
+    std::variant<Unreadable, Hello, Hand, Release, Set, Preset, Pause, Reset, Record, Points, Ping>;
+
+constexpr std::size_t kMostPoints = 10'000'000;  ///< that a page may ask for
+constexpr std::size_t kLongestWord = 256;        ///< bytes of a text
+constexpr double kFarthestHand = 1e6;            ///< m from the origin
+
+/// Never throws, whatever `text` is; takes memory in proportion to it.
+[[nodiscard]] ClientMessage read_message(std::string_view text);
+
+// What the program says. JSON, read at a human pace.
+
+/// Something that a person should know now.
+struct Notice {
+  NoticeLevel level = NoticeLevel::info;
+  std::string text;
+
+  bool operator==(const Notice&) const = default;
+};
+
+struct DeviceLabel {
+  std::string name;
+  bool takeable = false;
+};
+
+struct SourceLabel {
+  std::string name;
+  bool camera = false;
+};
+
+/// What a page is told once.
+struct Welcome {
+  std::string scene;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  double radius = 0;
+  std::vector<DeviceLabel> devices;
+  std::vector<SourceLabel> sources;
+  std::vector<Setting> settings;
+  std::vector<std::string> presets;
+  std::vector<Notice> notices;  ///< what is wrong already; messages of their own
+};
+
+/// How a device is doing; `reason`: why it is silent or has failed, and what to do.
+struct DeviceReport {
+  DeviceStatus status = DeviceStatus::ok;
+  std::string reason;
+};
+
+/// How a source fares. What is not set is left out.
+struct SourceReport {
+  std::string name;
+  std::string_view phase;
+  double rate = 0;
+  std::size_t points = 0;
+  double latency = 0;
+  std::optional<double> age;
+  std::uint64_t dropped = 0;
+  std::optional<double> disagreement;
+  std::optional<Eigen::Isometry3d> pose;  ///< relative to the origin
+  std::optional<ViewerFrustum> frustum;
+};
+
+// Texts that are no UTF-8 come out with replacement characters.
+[[nodiscard]] std::string welcome_text(const Welcome& welcome);
+[[nodiscard]] std::string settings_text(std::span<const Setting> settings);
+[[nodiscard]] std::string devices_text(std::span<const DeviceReport> devices);
+[[nodiscard]] std::string sources_text(std::span<const SourceReport> sources);
+[[nodiscard]] std::string notice_text(const Notice& notice);
+[[nodiscard]] std::string record_text(bool on, std::string_view file);
+[[nodiscard]] std::string refused_text(std::string_view text);
+[[nodiscard]] std::string lost_text(std::size_t device, std::string_view why);
+[[nodiscard]] std::string pong_text(double id);
+
+// What the program says many times a second. Binary.
+
+namespace state_flag {
+constexpr std::uint32_t kTouching = 1;
+constexpr std::uint32_t kPaused = 2;
+constexpr std::uint32_t kTaken = 4;
+constexpr std::uint32_t kClamped = 8;
+constexpr std::uint32_t kSlewed = 16;
+constexpr std::uint32_t kWatchdog = 32;
+constexpr std::uint32_t kFault = 64;
+constexpr std::uint32_t kThinned = 128;
+constexpr std::uint32_t kSofter = 256;
+constexpr std::uint32_t kBraked = 512;
+constexpr std::uint32_t kStarting = 1024;
+constexpr std::uint32_t kSoftened = 2048;
+constexpr std::uint32_t kClutched = 4096;
+constexpr std::uint32_t kOriented = 8192;  ///< set by encode(): an orientation follows
+}  // namespace state_flag
+
+/// Message 1. Places relative to the origin, m.
+struct StateMessage {
+  std::uint8_t device = 0;
+  std::uint32_t flags = 0;  ///< of state_flag
+  double time = 0;
+  Eigen::Vector3f hip = Eigen::Vector3f::Zero();
+  Eigen::Vector3f proxy = Eigen::Vector3f::Zero();
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  Eigen::Vector3f force = Eigen::Vector3f::Zero();  ///< N
+  float radius = 0;                                 ///< R; 0: not known
+  float rate = 0;                                   ///< steps a second
+  std::array<float, 2> computing{};                 ///< p50 and p99, s
+  std::array<float, 2> lateness{};                  ///< p50 and p99, s
+  float interval = 0;                               ///< between samples on average, s
+  std::vector<Eigen::Vector3f> forces;              ///< N, oldest first; at most 65535
+  std::optional<Eigen::Quaternionf> orientation{};  ///< of the tool, where it is known
+};
+
+[[nodiscard]] std::string encode(const StateMessage& message);
+
+/// Message 2. Places relative to the origin, m. Optional columns are empty or as long as `places`.
+struct CloudMessage {
+  std::uint8_t source = 0;
+  double stamp = 0;  ///< s
+  std::vector<Eigen::Vector3f> places;
+  std::vector<std::array<std::uint8_t, 3>> colors = {};
+  std::vector<Eigen::Vector3f> normals = {};
+  std::vector<std::uint8_t> trust = {};  ///< SurfacePoints::confidences, 255 for 1
+};
+
+[[nodiscard]] std::string encode(const CloudMessage& message);
+
+/// Message 3: `mesh` around `center` (m, relative to the origin). At most 65535 vertices.
+[[nodiscard]] std::string encode_surface(std::uint8_t device, const Eigen::Vector3f& center,
+                                         const Mesh& mesh);
+
+/// A unit normal in two bytes; what has no direction becomes +z.
+[[nodiscard]] std::array<std::int8_t, 2> octahedral(const Eigen::Vector3f& normal) noexcept;
+
+}  // namespace palpate::viewer

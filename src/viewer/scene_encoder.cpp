@@ -1,0 +1,199 @@
+#include "viewer/scene_encoder.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "palpate/base/clock.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/scene/scene_field.hpp"
+#include "viewer/local_surface.hpp"
+#include "viewer/messages.hpp"
+#include "viewer/reports.hpp"
+
+namespace palpate::viewer {
+
+namespace {
+
+// A proxy that moved by less shows nothing new, in R.
+constexpr double kWorthIt = 0.1;
+
+// Between the support at which capped solids end behind their surface and that of the surface
+// itself.
+double least_support_of(const FieldOptions& options) {
+  const bool ends = options.capped && options.kind != FieldKind::metaball && !options.raw_weights;
+  return ends ? 0.5 * (options.minimum_support + options.threshold) : 0;
+}
+
+constexpr double kPeriod = 0.1;         // s between pictures
+constexpr double kSourcesPeriod = 0.5;  // s between reports of the sources
+constexpr double kRest = 3;             // times what the last picture took
+
+double host_time() {
+  return SteadyClock().now();
+}
+
+}  // namespace
+
+// Meshes the surface around a servo's proxy, by a field of its own. One thread uses it, and not the
+// servo's.
+class SurfaceEncoder {
+ public:
+  // @throws Error when the scene has no place for one more field.
+  SurfaceEncoder(Scene& scene, const Servo& servo, std::size_t device,
+                 const Eigen::Vector3d& origin)
+      : servo_(servo),
+        device_(static_cast<std::uint8_t>(device)),
+        origin_(origin),
+        options_(servo.field()),
+        field_(scene, options_, "the viewer") {}
+
+  [[nodiscard]] EncodedSurface encode() {
+    const ServoState state = servo_.state();
+    if (state.step == 0) return {};
+    const Eigen::Vector3d& proxy = state.contact.proxy;
+    follow_options();
+    field_.end_step(proxy, state.contact.normal);  // it is seen from where the servo's proxy is
+    field_.update(state.time, state.hip, proxy);
+    const double radius = field_.sample(proxy).radius;
+    if (!is_new(proxy, radius)) return {radius, newest_};
+    const Mesh mesh = local_surface(field_, {proxy, radius, least_support_of(options_)});
+    const Eigen::Vector3f center = (proxy - origin_).cast<float>();
+    // An empty one takes away what a page had before.
+    newest_ = std::make_shared<const std::string>(encode_surface(device_, center, mesh));
+    return {radius, newest_};
+  }
+
+ private:
+  void follow_options() {
+    const FieldOptions options = servo_.field();
+    if (options == options_) return;
+    options_ = options;
+    field_.change(options_);
+    encoded_ = false;
+  }
+
+  bool is_new(const Eigen::Vector3d& proxy, double radius) {
+    const std::uint64_t revision = field_.traits().revision;
+    const bool same = encoded_ && revision == encoded_revision_ &&
+                      (proxy - encoded_at_).norm() < kWorthIt * radius;
+    if (same) return false;
+    encoded_ = true;
+    encoded_revision_ = revision;
+    encoded_at_ = proxy;
+    return true;
+  }
+
+  const Servo& servo_;
+  std::uint8_t device_;
+  Eigen::Vector3d origin_;
+  FieldOptions options_;  // of the field
+  SceneField field_;
+  Eigen::Vector3d encoded_at_ = Eigen::Vector3d::Zero();
+  std::uint64_t encoded_revision_ = 0;
+  bool encoded_ = false;
+  SharedBytes newest_;
+};
+
+SceneEncoder::SceneEncoder(Scene& scene, SceneEncoderOptions options)
+    : scene_(scene),
+      options_(std::move(options)),
+      clouds_(scene, options_.origin),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+SceneEncoder::~SceneEncoder() = default;
+
+void SceneEncoder::set_budgets(std::set<std::size_t> budgets) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (budgets == budgets_) return;
+    budgets_ = std::move(budgets);
+  }
+  changed_.notify_one();
+}
+
+void SceneEncoder::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    std::set<std::size_t> budgets;
+    {
+      std::unique_lock lock(mutex_);
+      if (budgets_.empty()) {
+        lock.unlock();
+        surfaces_.clear();
+        lock.lock();
+        changed_.wait(lock, stop, [this] { return !budgets_.empty(); });
+      }
+      budgets = budgets_;
+    }
+    if (!budgets.empty()) work(stop, budgets);
+  }
+}
+
+void SceneEncoder::work(const std::stop_token& stop, const std::set<std::size_t>& budgets) {
+  const double begin = host_time();
+  try {
+    options_.show(encode(budgets));
+  } catch (const std::exception& error) {
+    EncodedScene encoded;
+    encoded.complaint = news(error.what());
+    options_.show(std::move(encoded));
+  }
+  const double took = host_time() - begin;
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, stop,
+                    std::chrono::duration<double>(std::max(kPeriod - took, kRest * took)),
+                    [&] { return budgets_ != budgets; });
+}
+
+EncodedScene SceneEncoder::encode(const std::set<std::size_t>& budgets) {
+  EncodedScene encoded;
+  std::set<std::size_t> drawn = budgets;
+  drawn.erase(0);
+  encoded.clouds = clouds_.encode(drawn, now());
+  drawn.empty() ? surfaces_.clear() : encode_surfaces(encoded);
+  if (host_time() - reported_ >= kSourcesPeriod) report(encoded);
+  return encoded;
+}
+
+// A scene that has no place for one more field is seen all the same.
+void SceneEncoder::encode_surfaces(EncodedScene& encoded) {
+  std::string complaint;
+  try {
+    join_scene();
+  } catch (const Error& error) {
+    complaint = error.what();
+  }
+  encoded.complaint = news(std::move(complaint));
+  for (const auto& surface : surfaces_) encoded.surfaces.push_back(surface->encode());
+}
+
+void SceneEncoder::join_scene() {
+  for (std::size_t i = surfaces_.size(); i < options_.servos.size(); ++i) {
+    surfaces_.push_back(
+        std::make_unique<SurfaceEncoder>(scene_, *options_.servos[i], i, options_.origin));
+  }
+}
+
+void SceneEncoder::report(EncodedScene& encoded) {
+  reported_ = host_time();
+  const std::vector<ViewerStream> streams =
+      options_.streams ? options_.streams() : std::vector<ViewerStream>{};
+  encoded.sources = std::make_shared<const std::string>(
+      sources_text(source_reports(scene_, streams, options_.origin, now())));  // painting took time
+}
+
+std::string SceneEncoder::news(std::string complaint) {
+  if (told_ == complaint) return {};
+  told_ = std::move(complaint);
+  return told_;
+}
+
+// The servos' clock is the snapshots'.
+double SceneEncoder::now() const {
+  double time = 0;
+  for (const Servo* servo : options_.servos) time = std::max(time, servo->state().time);
+  return time;
+}
+
+}  // namespace palpate::viewer

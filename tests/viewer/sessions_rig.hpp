@@ -1,0 +1,84 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <deque>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "palpate/base/error.hpp"
+#include "viewer/client_sessions.hpp"
+
+namespace palpate::viewer {
+
+inline constexpr const char* kHello = R"({"type":"hello","token":"secret","points":1000})";
+
+/// Sessions with one setting and two tools, the first of which a page may take.
+struct SessionsRig {
+  SessionsRig() {
+    ClientSessionsOptions options;
+    options.token = "secret";
+    options.limits = limits;
+    options.controls.settings = [this] { return std::vector{setting}; };
+    options.controls.set = [this](const std::string&, const SettingValue& value) {
+      if (value == SettingValue{13.0}) throw Error("not thirteen");
+      setting.value = value;
+    };
+    options.controls.presets = {"soft"};
+    options.controls.preset = [this](const std::string& name) { preset = name; };
+    options.controls.pause = [this](bool on) { paused = on; };
+    options.controls.reset = [this] { ++resets; };
+    options.controls.hand = [this](std::size_t, const Eigen::Vector3d& place, std::uint32_t) {
+      hand = place;
+    };
+    options.controls.release = [this](std::size_t device) { released.push_back(device); };
+    options.devices = {{"one", true}, {"two", false}};
+    options.origin = {100, 0, 0};
+    options.welcome = [] { return Welcome{}; };
+    sessions.emplace(std::move(options));
+  }
+
+  Session& enter(bool hello = true) {
+    Session& session = clients.emplace_back(limits, now);
+    sessions->join(session);
+    if (hello) {
+      sessions->receive(session, kHello, now);
+      said(session);
+    }
+    return session;
+  }
+  /// What was said to the client since the last time.
+  static std::vector<nlohmann::json> said(Session& session) {
+    std::vector<nlohmann::json> messages;
+    while (const auto message = session.outbox.take())
+      messages.push_back(nlohmann::json::parse(*message->bytes));
+    return messages;
+  }
+  std::vector<nlohmann::json> answers(Session& session, const std::string& text) {
+    sessions->receive(session, text, now);
+    return said(session);
+  }
+  void expect_refused(Session& session, const std::string& text) {
+    const auto answers_now = answers(session, text);
+    ASSERT_EQ(answers_now.size(), 1u) << text;
+    EXPECT_EQ(answers_now[0]["type"], "refused") << text;
+    EXPECT_FALSE(answers_now[0]["text"].get<std::string>().empty()) << text;
+  }
+
+  double now = 50;
+  ViewerLimits limits = {};
+  Setting setting{.key = "k", .label = "Stiffness", .least = 0, .most = 100, .value = 20.0};
+  std::string preset;
+  bool paused = false;
+  int resets = 0;
+  Eigen::Vector3d hand = Eigen::Vector3d::Zero();
+  std::vector<std::size_t> released;
+  std::deque<Session> clients;
+  std::optional<ClientSessions> sessions;
+};
+
+}  // namespace palpate::viewer
