@@ -12,7 +12,7 @@
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/report/log.hpp"
 #include "apps/palpate/run/view_settings.hpp"
-#include "apps/palpate/view/page_hold.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/viewer/viewer.hpp"
 
 namespace palpate::app {
@@ -20,6 +20,39 @@ namespace palpate::app {
 namespace {
 
 constexpr double kFar = 1.5;  // of a frustum as drawn, in medians of depth
+
+// A page's hold on one hand that can be taken.
+class PageHold {
+ public:
+  // The hand outlives it.
+  explicit PageHold(Hand& hand) : hand_(hand) {}
+
+  [[nodiscard]] bool possible() const { return hand_.remote != nullptr; }
+
+  // The rest is for hands that can be taken. `place`: m, world.
+  void move(const Eigen::Vector3d& place, std::uint32_t buttons) {
+    const std::lock_guard lock(mutex_);
+    held_ = true;
+    hand_.remote->move({hand_.workspace.position_to_device(place), buttons}, clock_.now());
+  }
+  void release() {
+    const std::lock_guard lock(mutex_);
+    held_ = false;
+    hand_.remote->release();
+  }
+
+  // Another thread's, some tens of times a second: a page that has the tool still has it.
+  void keep() {
+    const std::lock_guard lock(mutex_);
+    if (held_) hand_.remote->keep_alive();
+  }
+
+ private:
+  Hand& hand_;
+  SteadyClock clock_;  // of poses
+  std::mutex mutex_;
+  bool held_ = false;
+};
 
 ViewSettings initial_settings(const Run& run) {
   ViewSettings settings;
