@@ -114,7 +114,8 @@ TEST(Edges, TheGradientIsExact) {
 }
 
 TEST(Edges, EveryInstructionSetGivesTheSameBits) {
-  if (&simd::best_sums() == &simd::kSumsBaseline) GTEST_SKIP() << "this processor has one level only";
+  if (&simd::best_sums() == &simd::kSumsBaseline)
+    GTEST_SKIP() << "this processor has one level only";
   SurfacePoints points = make_points(rough_ridge());
   tell_edges(points);
   Patch patch(16384);

@@ -92,7 +92,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 TEST_P(GradientTest, EveryInstructionSetGivesTheSameBits) {
-  if (&simd::best_sums() == &simd::kSumsBaseline) GTEST_SKIP() << "this processor has one level only";
+  if (&simd::best_sums() == &simd::kSumsBaseline)
+    GTEST_SKIP() << "this processor has one level only";
   ImplicitSurface plain(GetParam().options);
   ImplicitSurface wide(GetParam().options);
   plain.sums = &simd::kSumsBaseline;
