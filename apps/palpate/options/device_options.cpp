@@ -102,7 +102,7 @@ std::string device_meant_by(const std::string& text) {
 }
 
 // The device without its placement. Drivers say themselves which other options there are.
-DevicePlan kind_of(const std::string& text) {
+DevicePlan plan_of(const std::string& text) {
   if (names_hardware(text)) return {DeviceKind::hardware, text};
   const std::size_t comma = text.find(',');
   if (comma < text.find('=') && text.find('=') != std::string::npos) {
@@ -138,7 +138,7 @@ bool has_camera(const SourcePlan& source) {
 DevicePlan parse_device(const std::string& text) {
   std::string device = text;
   PlacementOptions placement = parse_placement(device);
-  DevicePlan plan = kind_of(device);
+  DevicePlan plan = plan_of(device);
   plan.placement = std::move(placement);
   check_placement(plan);
   return plan;

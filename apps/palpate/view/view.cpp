@@ -17,10 +17,6 @@
 
 namespace palpate::app {
 
-namespace {
-
-constexpr double kFar = 1.5;  // of a frustum as drawn, in medians of depth
-
 // A page's hold on one hand that can be taken.
 class PageHold {
  public:
@@ -53,6 +49,10 @@ class PageHold {
   std::mutex mutex_;
   bool held_ = false;
 };
+
+namespace {
+
+constexpr double kFar = 1.5;  // of a frustum as drawn, in medians of depth
 
 ViewSettings initial_settings(const Run& run) {
   ViewSettings settings;

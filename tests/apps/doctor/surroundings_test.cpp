@@ -8,7 +8,7 @@ namespace palpate::app::doctor {
 namespace {
 
 // What the row of one check answers on a machine.
-Finding answer(const char* what, const MadeUp& machine) {
+Finding finding_on(const char* what, const MadeUp& machine) {
   return about(what, check_all(machine.system, 0));
 }
 
@@ -91,17 +91,17 @@ TEST(DoctorChecks, MeasureJitterWhenTold) {
 TEST(DoctorLocale, ThatDoesNotExistIsMadeOrLeft) {
   MadeUp machine;
   machine.system.variables = {{"LC_ALL", "de_DE.UTF-8"}};
-  const Finding finding = answer("locale", machine);
+  const Finding finding = finding_on("locale", machine);
   EXPECT_EQ(finding.severity, Severity::warning);
   EXPECT_EQ(finding.remedy,
             "sudo apt install locales && sudo localedef -i de_DE -f UTF-8 de_DE.UTF-8");
   machine.system.variables = {{"LANG", "$(reboot)_x.y"}};
-  EXPECT_EQ(answer("locale", machine).remedy, "export LANG=C.UTF-8");
+  EXPECT_EQ(finding_on("locale", machine).remedy, "export LANG=C.UTF-8");
   machine.system.variables = {{"LANG", "sr_RS.UTF-8@latin"}};
   EXPECT_TRUE(
-      answer("locale", machine).remedy.ends_with("-i sr_RS@latin -f UTF-8 sr_RS.UTF-8@latin"));
+      finding_on("locale", machine).remedy.ends_with("-i sr_RS@latin -f UTF-8 sr_RS.UTF-8@latin"));
   machine.system.variables = {{"LANG", "C.UTF-8"}, {"LANGUAGE", "de"}};
-  EXPECT_EQ(answer("locale", machine).severity, Severity::good);
+  EXPECT_EQ(finding_on("locale", machine).severity, Severity::good);
 }
 
 TEST(DoctorLocale, WithADecimalCommaIsNamed) {
@@ -110,40 +110,40 @@ TEST(DoctorLocale, WithADecimalCommaIsNamed) {
     return std::optional<std::string>(name == "de_DE.UTF-8" ? "," : ".");
   };
   machine.system.variables = {{"LANG", "de_DE.UTF-8"}};
-  EXPECT_EQ(answer("decimal point", machine).remedy, "export LC_NUMERIC=C.UTF-8");
+  EXPECT_EQ(finding_on("decimal point", machine).remedy, "export LC_NUMERIC=C.UTF-8");
   machine.system.variables["LC_NUMERIC"] = "C.UTF-8";
-  EXPECT_EQ(answer("decimal point", machine).severity, Severity::good);
+  EXPECT_EQ(finding_on("decimal point", machine).severity, Severity::good);
   machine.system.variables["LC_ALL"] = "de_DE.UTF-8";  // before all others
-  EXPECT_EQ(answer("decimal point", machine).remedy, "export LC_ALL=C.UTF-8");
+  EXPECT_EQ(finding_on("decimal point", machine).remedy, "export LC_ALL=C.UTF-8");
 }
 
 TEST(DoctorSurroundings, MissAFolderForTheRemoteDevicesSocket) {
   MadeUp machine;
-  EXPECT_EQ(answer("XDG_RUNTIME_DIR", machine).severity, Severity::note);
+  EXPECT_EQ(finding_on("XDG_RUNTIME_DIR", machine).severity, Severity::note);
   machine.system.variables = {{"XDG_RUNTIME_DIR", "/run/user/1000"}};
-  EXPECT_EQ(answer("XDG_RUNTIME_DIR", machine).severity, Severity::warning);
+  EXPECT_EQ(finding_on("XDG_RUNTIME_DIR", machine).severity, Severity::warning);
   machine.file("run/user/1000/bus", "");
-  EXPECT_EQ(answer("XDG_RUNTIME_DIR", machine).severity, Severity::good);
+  EXPECT_EQ(finding_on("XDG_RUNTIME_DIR", machine).severity, Severity::good);
 }
 
 TEST(DoctorSurroundings, CompareTheNetworkBufferWithACloud) {
   MadeUp machine;
   machine.file("proc/sys/net/core/rmem_max", "212992");
-  const Finding finding = answer("network buffer", machine);
+  const Finding finding = finding_on("network buffer", machine);
   EXPECT_EQ(finding.severity, Severity::note);
   EXPECT_NE(finding.words.find("4.9 MB"), std::string::npos) << finding.words;
   machine.file("proc/sys/net/core/rmem_max", "8388608");
-  EXPECT_EQ(answer("network buffer", machine).severity, Severity::good);
+  EXPECT_EQ(finding_on("network buffer", machine).severity, Severity::good);
 }
 
 TEST(DoctorSurroundings, NeedABrowserOnADesktopOnly) {
   MadeUp machine;
-  EXPECT_NE(answer("browser", machine).remedy.find("ssh"), std::string::npos);
+  EXPECT_NE(finding_on("browser", machine).remedy.find("ssh"), std::string::npos);
   machine.system.variables = {{"WAYLAND_DISPLAY", "wayland-0"}};
-  EXPECT_NE(answer("browser", machine).remedy.find("apt install"), std::string::npos);
+  EXPECT_NE(finding_on("browser", machine).remedy.find("apt install"), std::string::npos);
   machine.file("usr/bin/xdg-open", "");
   machine.file("snap/bin/firefox", "");
-  EXPECT_EQ(answer("browser", machine).severity, Severity::good);
+  EXPECT_EQ(finding_on("browser", machine).severity, Severity::good);
 }
 
 }  // namespace
