@@ -29,6 +29,7 @@ function(palpate_library target name)
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   if(BUILD_SHARED_LIBS)
     target_link_options(${target} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/exported.map)
-    set_target_properties(${target} PROPERTIES LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exported.map)
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH $ORIGIN
+      LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exported.map)
   endif()
 endfunction()

@@ -1,4 +1,7 @@
 # Target docs: the public headers and the documents as HTML, in build/.../docs/html; a warning is an error.
+if(NOT PROJECT_IS_TOP_LEVEL)
+  return()
+endif()
 find_package(Doxygen 1.9)
 if(NOT DOXYGEN_FOUND)
   return()

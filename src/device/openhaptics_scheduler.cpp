@@ -55,6 +55,9 @@ struct Shared {
     OpenHapticsLibrary::Handle handle = 0;  // of the scheduler's
   };
 
+  // Of the library whose scheduler runs them; another copy of it has another one.
+  decltype(OpenHapticsLibrary::init_device) init_device = nullptr;
+
   std::mutex mutex;
   std::vector<Running> running;
   std::map<std::string, double> tried;  // when each was opened last, s
@@ -138,6 +141,7 @@ void OpenHapticsFrames::resume() noexcept {
 }
 
 void OpenHapticsFrames::tick() noexcept {
+  if (over_) return;
   if (!resting_) {
     at_rest_ = false;
     frame();
@@ -150,6 +154,7 @@ void OpenHapticsFrames::tick() noexcept {
 void OpenHapticsFrames::frame() noexcept {
   library_.make_current(device_);
   library_.begin_frame(device_);
+  if (over_) return;  // it may have hung
   if (frames_ == 0) newest_.temperature = warmest_motor();
   if (const int styles = calibrate_.exchange(0); styles != 0) {
     library_.update_calibration(calibration_style(styles));
@@ -172,6 +177,7 @@ void OpenHapticsFrames::frame_without_force() noexcept {
   const Vector3d zero = Vector3d::Zero();
   library_.make_current(device_);
   library_.begin_frame(device_);
+  if (over_) return;
   library_.set_numbers(hd::kCurrentForce, zero.data());
   library_.end_frame(device_);
   keep_failure();
@@ -218,6 +224,12 @@ OpenHapticsSession::OpenHapticsSession(const OpenHapticsLibrary& library,
   Shared& shared = shared_by_all();
   const std::lock_guard lock(shared.mutex);
   require_interval(clock.now());
+  if (!shared.running.empty() && shared.init_device != library_.init_device) {
+    fail(
+        "is not opened, since another copy of the maker's library is in use. Give all its devices "
+        "the same library=");
+  }
+  shared.running.reserve(shared.running.size() + 1);
   Rest rest(library_);
   if (!rest.is_complete()) {
     fail(
@@ -228,8 +240,10 @@ OpenHapticsSession::OpenHapticsSession(const OpenHapticsLibrary& library,
   open(configuration);
   facts_ = library_.read_facts();
   (void)shared.errors.take(library_, device_);  // of what it does not know
+  library_.enable(hd::kForceOutput);            // the first frame finds an error
   frames_ = std::make_unique<OpenHapticsFrames>(library_, device_, clock, shared.errors);
   shared.running.push_back({frames_.get()});
+  shared.init_device = library_.init_device;
 }
 
 // Goes on even where a device does not come to rest in time: one that is left open might hold a
@@ -238,6 +252,7 @@ OpenHapticsSession::~OpenHapticsSession() {
   Shared& shared = shared_by_all();
   const std::lock_guard lock(shared.mutex);
   Rest rest(library_);
+  frames_->end();
   rest.stop_scheduler();
   std::erase_if(shared.running, [this](const auto& each) { return each.frames == frames_.get(); });
   library_.make_current(device_);
@@ -245,6 +260,8 @@ OpenHapticsSession::~OpenHapticsSession() {
   library_.disable_device(device_);
   (void)shared.errors.take(library_, device_);
   shared.errors.close(device_);
+  // Whether a stop waits for a frame that hangs is not documented: it may come back to its frames.
+  if (!frames_->is_at_rest()) (void)frames_.release();
 }
 
 unsigned OpenHapticsSession::take_error() const noexcept {
@@ -274,10 +291,7 @@ void OpenHapticsSession::open(const std::string& configuration) {
   const bool is_open = device_ != hd::kNoDevice;
   const bool has_entry = is_open && errors.open(device_);
   const unsigned code = has_entry ? errors.take(library_, device_) : library_.take_errors();
-  if (has_entry && code == hd::kSuccess) {
-    library_.enable(hd::kForceOutput);
-    return;
-  }
+  if (has_entry && code == hd::kSuccess) return;
   if (is_open) library_.disable_device(device_);
   errors.close(device_);
   if (is_open && !has_entry) fail("too many devices are open. Close one");

@@ -77,9 +77,15 @@ class OpenHapticsFrames {
 
   // Whoever stops the scheduler.
   /// The next tick makes one frame without a force; later ones do nothing, until resume().
-  void rest() noexcept { resting_ = true; }
+  void rest() noexcept {
+    at_rest_ = false;
+    resting_ = true;
+  }
   [[nodiscard]] bool is_at_rest() const noexcept { return at_rest_; }
   void resume() noexcept;
+  /// The device is about to be closed: no tick does anything any more, not even one whose frame
+  /// began before this.
+  void end() noexcept { over_ = true; }
 
   /// One frame. The scheduler's thread.
   void tick() noexcept;
@@ -117,6 +123,7 @@ class OpenHapticsFrames {
   std::atomic<int> calibrate_{0};
   std::atomic<bool> resting_{false};
   std::atomic<bool> at_rest_{false};
+  std::atomic<bool> over_{false};
   std::atomic<TimePoint> resumed_{TimePoint{}};
   Wakeup wakeup_;
 };

@@ -112,6 +112,19 @@ TEST_F(OpenHapticsTick, KeepsTheContractAtRest) {
   tick();
   EXPECT_EQ(told.force, 0.5);
   EXPECT_FALSE(frames_.is_at_rest()) << "it has to come to rest anew";
+  frames_.rest();
+  tick();
+  frames_.resume();
+  frames_.rest();
+  EXPECT_FALSE(frames_.is_at_rest()) << "also where no tick came between";
+}
+
+TEST_F(OpenHapticsTick, DoesNothingOnceItsDeviceIsBeingClosed) {
+  tick();
+  const int before = told.frames;
+  frames_.end();
+  tick();
+  EXPECT_EQ(told.frames, before);
 }
 
 TEST_F(OpenHapticsTick, WakesWhoWaits) {

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/sources/touched.hpp"
@@ -204,7 +205,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
     print_source(sources[i], aligned[i], out);
     report.push_back(json_of(sources[i], aligned[i]));
   }
-  write_whole(json, report.dump(2) + "\n");
+  if (json) write_whole(json, text_of(report));
   write_whole(output, setup_text(command, options, sources));
   if (picture) draw_alignment(touched, aligned, plan.outputs.picture, *picture);
 }

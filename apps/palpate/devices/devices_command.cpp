@@ -62,8 +62,7 @@ void write_drivers(const std::vector<DriverInfo>& drivers, const std::string& pa
                     {"devices", devices}});
   }
   OutputFile file(path);
-  file.write(list.dump(2));
-  file.write("\n");
+  file.write(text_of(list));
   file.close();
 }
 

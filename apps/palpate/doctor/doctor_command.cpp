@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
@@ -28,9 +29,7 @@ not work) or the list could not be written, 2 the command line is wrong, 3 warni
 
 void write_json(const doctor::Findings& findings, const std::string& path) {
   OutputFile file(path);
-  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  file.write(doctor::as_json(findings).dump(2, ' ', false, replace));
-  file.write("\n");
+  file.write(text_of(doctor::as_json(findings)));
   file.close();
 }
 

@@ -177,8 +177,7 @@ void info(const InfoOptions& options) {
   }
   if (!options.json.empty()) {
     OutputFile file(options.json);
-    file.write(clouds.dump(2));
-    file.write("\n");
+    file.write(text_of(clouds));
     file.close();
   }
   for (TrustPicture& picture : pictures) picture.draw();

@@ -110,7 +110,7 @@ void check_hands(const std::vector<HandReport>& hands) {
 // The pictures come last: everything else is there if they cannot be drawn.
 void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
   const Json data = report_on(report, stream);
-  write_whole(outputs.json, data.dump(2) + "\n");
+  if (outputs.json) write_whole(outputs.json, text_of(data));
   for (std::size_t i = 0; i < report.hands.size(); ++i) {
     outputs.hands[i].draw(report.felt, title_of(report.touched), report.hands[i]);
   }

@@ -7,7 +7,7 @@ namespace palpate::app {
 struct View::Parts {};
 
 View::View(Run& run, std::vector<Servo*> /*servos*/, const LiveFeed& /*feed*/) {
-  if (!run.options.view.wanted) return;
+  if (!run.page.wanted) return;
   throw Error(
       "this palpate was built without its page; install libboost-dev and build it again, or leave "
       "--view out");
