@@ -55,11 +55,9 @@ struct Shared {
     OpenHapticsLibrary::Handle handle = 0;  // of the scheduler's
   };
 
-  // Of the library whose scheduler runs them; another copy of it has another one.
-  decltype(OpenHapticsLibrary::init_device) init_device = nullptr;
-
   std::mutex mutex;
   std::vector<Running> running;
+  decltype(OpenHapticsLibrary::init_device) init_device = nullptr;  // says whose scheduler runs
   std::map<std::string, double> tried;  // when each was opened last, s
   OpenHapticsErrors errors;
 };
@@ -225,16 +223,11 @@ OpenHapticsSession::OpenHapticsSession(const OpenHapticsLibrary& library,
   const std::lock_guard lock(shared.mutex);
   require_interval(clock.now());
   if (!shared.running.empty() && shared.init_device != library_.init_device) {
-    fail(
-        "is not opened, since another copy of the maker's library is in use. Give all its devices "
-        "the same library=");
+    fail("is not opened: another copy of the maker's library is in use. Give both one library=");
   }
-  shared.running.reserve(shared.running.size() + 1);
   Rest rest(library_);
   if (!rest.is_complete()) {
-    fail(
-        "is not opened now, since another of the maker's devices does not come to rest. Check that "
-        "one's cable and its power");
+    fail("is not opened: another of the maker's devices does not come to rest. Check its cable");
   }
   rest.stop_scheduler();
   open(configuration);
