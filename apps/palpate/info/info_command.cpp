@@ -121,16 +121,15 @@ std::vector<TrustPicture> pictures_of(const std::vector<CloudArgument>& clouds,
     outputs.push_back({"--picture", numbered_path(options.picture, i)});
   }
   check_distinct(inputs(clouds), outputs);
+  if (options.picture.empty()) return {};
+  for (const CloudArgument& cloud : clouds) {
+    if (!lives(cloud.path)) continue;
+    throw UsageError(
+        fmt::format("--picture is of clouds, and {} is none; remove one of them", cloud.path));
+  }
   check_picture(options.picture);
   std::vector<TrustPicture> pictures;
-  if (options.picture.empty()) return pictures;
-  for (std::size_t i = 0; i < clouds.size(); ++i) {
-    if (lives(clouds[i].path)) {
-      throw UsageError(fmt::format("--picture is of clouds, and {} is none; leave one of them out",
-                                   clouds[i].path));
-    }
-    pictures.emplace_back(outputs[i + 1].path);
-  }
+  for (std::size_t i = 0; i < clouds.size(); ++i) pictures.emplace_back(outputs[i + 1].path);
   return pictures;
 }
 
