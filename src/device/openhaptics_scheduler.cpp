@@ -58,7 +58,7 @@ struct Shared {
   std::mutex mutex;
   std::vector<Running> running;
   decltype(OpenHapticsLibrary::init_device) init_device = nullptr;  // says whose scheduler runs
-  std::map<std::string, double> tried;  // when each was opened last, s
+  std::map<std::string, double> tried;                              // when each was opened last, s
   OpenHapticsErrors errors;
 };
 

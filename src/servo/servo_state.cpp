@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-
 namespace palpate {
 
 void RecentForces::add(const Eigen::Vector3f& force) noexcept {
