@@ -21,6 +21,23 @@ function(palpate_target target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
 endfunction()
 
+# Is this a build with a sanitizer? Such a build replaces malloc and handles signals itself.
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  set(PALPATE_SANITIZED ON)
+else()
+  set(PALPATE_SANITIZED OFF)
+endif()
+
+# Sources that compute little and include headers that a compiler with sanitizers takes a minute for:
+# half of it, without optimisation. Not for whole targets: of an inline function that several sources
+# use the linker keeps the first, which would then be the slow one.
+function(palpate_slow_header target)
+  if(PALPATE_SANITIZED)
+    set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES
+      SKIP_UNITY_BUILD_INCLUSION ON COMPILE_OPTIONS -O0)
+  endif()
+endfunction()
+
 # A library of ours. Where it is a shared one, it shows the names of palpate and nothing of what it is made with.
 function(palpate_library target name)
   palpate_target(${target})

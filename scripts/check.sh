@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# What takes longer than scripts/test.sh: Debug and TSan builds with every test, a minute of fuzzing a
-# target and, where one can be made, the trial of both README commands in a fresh Debian root.
+# What takes longer than scripts/test.sh: Debug, TSan and ASan + UBSan builds with every test, the long
+# tests and the benches' tables in a release build, a minute of fuzzing a target and, where one can be
+# made, the trial of both README commands in a fresh Debian root.
 #
 # --no-fresh-root leaves the last out. --soak does another thing instead: ten minutes of touching two
 # cameras in real time while other load rises and falls; no memory may leak and no step be a fault.
@@ -37,9 +38,16 @@ configure tsan
 build tsan
 (taskset -cp 0 "$BASHPID" >/dev/null && test_preset tsan) || status=1
 
-say "fuzz targets, 60 s each"
-configure fuzz
+say "address and undefined-behaviour sanitizers, arithmetic and long tests among them"
+configure fuzz -DPALPATE_TEST_ARITHMETIC=ON
 build fuzz
+test_preset fuzz || status=1
+say "long tests in a release build"
+configure release -DPALPATE_BUILD_TESTS=ON -DPALPATE_BUILD_BENCH=ON
+build release
+test_preset release -L long || status=1
+
+say "fuzz targets, 60 s each"
 fuzz_all 60 || status=1
 
 say "format and tidy, every file"
@@ -52,5 +60,5 @@ else
 fi
 
 say "summary (after $((SECONDS - started)) s)"
-for preset in dev tsan; do summary "$preset"; done
+for preset in dev tsan fuzz release; do summary "$preset"; done
 exit $status

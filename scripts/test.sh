@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Every test in a release build and under ASan + UBSan, every fuzz target for 5 s over its seeds, and
-# the program without any optional library.
+# The tests in a release build and under ASan + UBSan, every fuzz target for 5 s over its seeds, and
+# the program without any optional library. scripts/check.sh runs what takes longer: tests labelled
+# "long", the benches' tables, and sanitizers over what only computes.
 #
 # With clang one sanitized build holds both (preset fuzz); --no-fuzz does without clang (preset asan)
 # and without the fuzz targets. Real data is looked for in $PALPATE_DATA, else in
@@ -12,7 +13,7 @@ for argument in "$@"; do
   case "$argument" in
     --no-fuzz) fuzz=no ;;
     *)
-      sed -n '2,7s/^# \{0,1\}//p' "$0"
+      sed -n '2,8s/^# \{0,1\}//p' "$0"
       exit
       ;;
   esac
@@ -33,9 +34,9 @@ if [ "$fuzz" = yes ]; then sanitized=fuzz; else sanitized=asan; fi
 find_data
 
 say "build"
-configure release -DPALPATE_BUILD_TESTS=ON
+configure release -DPALPATE_BUILD_TESTS=ON -DPALPATE_BUILD_BENCH=OFF
 build release
-configure "$sanitized"
+configure "$sanitized" -DPALPATE_TEST_ARITHMETIC=OFF
 build "$sanitized"
 configure bare
 build bare palpate_app
@@ -66,8 +67,8 @@ if [ "$fuzz" = yes ]; then
 fi
 
 say "tests"
-test_preset release || status=1
-test_preset "$sanitized" || status=1
+test_preset release -LE long || status=1
+test_preset "$sanitized" -LE long || status=1
 
 say "skipped, and why"
 skipped release
