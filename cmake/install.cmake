@@ -17,6 +17,12 @@ if(PALPATE_BUILD_APP)
   file(RELATIVE_PATH to_libraries /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
   set_target_properties(palpate_app PROPERTIES INSTALL_RPATH $ORIGIN/${to_libraries})
   install(TARGETS palpate_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  if(NOT CMAKE_CROSSCOMPILING)
+    set(texts ${CMAKE_CURRENT_BINARY_DIR}/apps/palpate)
+    install(FILES ${texts}/palpate.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+    install(FILES ${texts}/palpate.bash RENAME palpate
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  endif()
   install(FILES packaging/60-palpate.rules packaging/palpate-limits.conf
     DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate)
 endif()

@@ -47,6 +47,16 @@ configure release -DPALPATE_BUILD_TESTS=ON -DPALPATE_BUILD_BENCH=ON
 build release
 test_preset release -L long || status=1
 
+say "in the tree of another project, as shared libraries"
+if cmake -S tests/project/embedded -B build/embedded -G Ninja -DBUILD_SHARED_LIBS=ON -DCMAKE_UNITY_BUILD=ON \
+  -DCMAKE_BUILD_TYPE=Release >build/embedded.log 2>&1 &&
+  cmake --build build/embedded >>build/embedded.log 2>&1 && build/embedded/embedded >>build/embedded.log 2>&1; then
+  note "embedded: builds and runs"
+else
+  tail -n 30 build/embedded.log >&2
+  status=1
+fi
+
 say "fuzz targets, 60 s each"
 fuzz_all 60 || status=1
 

@@ -8,6 +8,7 @@
 
 #include "apps/palpate/align/align_command.hpp"
 #include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/manual.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/devices/devices_command.hpp"
 #include "apps/palpate/doctor/doctor_command.hpp"
@@ -97,6 +98,14 @@ std::vector<Command> add_commands(CLI::App& p) {
   };
 }
 
+// What the build installs beside the program, and no help mentions; empty: `argument` is no such
+// thing.
+std::string text_for_packages(CLI::App& program, std::string_view argument) {
+  if (argument == "--print-manual") return manual_page(program);
+  if (argument == "--print-completion") return bash_completion(program);
+  return "";
+}
+
 int run(int argc, char** argv) {
   CLI::App program(kAbout, "palpate");
   program.set_version_flag("--version", fmt::format("palpate {}", version()));
@@ -104,6 +113,11 @@ int run(int argc, char** argv) {
   program.get_formatter()->column_width(34);
   program.footer("'palpate COMMAND --help' tells more, with examples.");
   const std::vector<Command> commands = add_commands(program);
+  if (const std::string text = text_for_packages(program, argc == 2 ? argv[1] : "");
+      !text.empty()) {
+    fmt::print("{}", text);
+    return kSuccess;
+  }
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& done) {  // --help, --version

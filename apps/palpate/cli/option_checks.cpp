@@ -45,7 +45,7 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
     return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "),
                        did_you_mean(text, words));
   };
-  return CLI::Validator(check, "");
+  return CLI::Validator(check, "", fmt::format("{}", fmt::join(words, " ")));
 }
 
 CLI::Validator parsed_by(std::function<void(const std::string&)> parse) {

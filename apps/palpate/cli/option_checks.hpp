@@ -13,7 +13,7 @@ namespace palpate::app {
 [[nodiscard]] CLI::Validator positive();
 [[nodiscard]] CLI::Validator not_negative();
 [[nodiscard]] CLI::Validator whole_number(std::int64_t least, std::int64_t most);
-/// Suggests the word that was meant.
+/// Suggests the word that was meant. Its name is the words, with ' ' between (bash_completion()).
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& words);
 
 /// A check that takes what `parse` takes, and otherwise says what its UsageError does.
