@@ -29,7 +29,7 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"", "touch, align, info, cameras, devices, doctor, paper, demo or zwidth"},
       {"touch synthetic:torus --device simulated --trajectory long.csv", "1e+300"},
       {"tuch synthetic:torus", "did you mean touch?"},
-      {"touch", "no sources"},
+      {"touch", "no source given"},
       {"touch synthetic:torus --colour red", "--colour"},
       {"touch synthetic:torus --field mesh", "'mesh' is not one of balanced, pointset, metaball"},
       {"touch synthetic:torus --field balancd", "did you mean balanced?"},

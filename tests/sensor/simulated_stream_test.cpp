@@ -185,7 +185,7 @@ TEST_F(SimulatedStreamTest, TakesAnotherSizeThatLasts) {
 // However many: a recording goes on behind them.
 TEST_F(SimulatedStreamTest, DamagedFramesTakeTheirTimeAndTheNextIsAsGoodAsEver) {
   constexpr int kDamaged = 300;
-  for (int i = 0; i < kDamaged; ++i) give(CameraStatus::damaged, "no pose is known of it");
+  for (int i = 0; i < kDamaged; ++i) give(CameraStatus::damaged, "it has no pose");
   give({kDamaged / 30.0});
   SimulatedStream stream = this->stream();
   play(stream, 5);
@@ -194,7 +194,7 @@ TEST_F(SimulatedStreamTest, DamagedFramesTakeTheirTimeAndTheNextIsAsGoodAsEver) 
   ASSERT_EQ(taken_.size(), 1u);
   EXPECT_NEAR(taken_[0].at, kDamaged / 30.0, 1.1e-3) << "in time";
   EXPECT_EQ(stream.state().drops.garbage, static_cast<std::uint64_t>(kDamaged));
-  EXPECT_EQ(stream.state().problem, "table (fake): no pose is known of it");
+  EXPECT_EQ(stream.state().problem, "table (fake): it has no pose");
 }
 
 TEST_F(SimulatedStreamTest, ACameraThatFailsIsNamedAndNeverGivenUp) {
