@@ -39,7 +39,7 @@ TEST_F(StreamTest, NoticesAFrozenPicture) {
   EXPECT_EQ(state.phase, StreamPhase::stalled);
   EXPECT_EQ(state.stalls, 1u);
   EXPECT_EQ(state.drops.repeated, 8u);
-  EXPECT_NE(state.problem.find("repeats"), std::string::npos) << state.problem;
+  EXPECT_NE(state.problem.find("identical"), std::string::npos) << state.problem;
 }
 
 TEST_F(StreamTest, CountsGarbageAndGoesOn) {
