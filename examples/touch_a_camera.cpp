@@ -41,7 +41,7 @@ void touch(const char* name) {
   for (int i = 0; i < 500 && !source.points(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  if (!source.points()) throw palpate::Error("no frame came: " + stream.state().problem);
+  if (!source.points()) throw palpate::Error("no frame arrived: " + stream.state().problem);
   const Way way = way_to(*source.points());
   palpate::Proxy proxy({.stiffness = 500});  // N/m
   double largest = 0;                        // N
@@ -54,7 +54,7 @@ void touch(const char* name) {
     largest = std::max(largest, proxy.step(field, hand, 1e-3).force.norm());
   }
   const palpate::StreamState state = stream.state();
-  std::printf("%s: %.1f frames a second, touchable after %.1f ms; largest force %.3f N\n",
+  std::printf("%s: %.1f frames per second, touchable after %.1f ms; largest force %.3f N\n",
               state.camera.c_str(), state.rate, 1e3 * state.latency_mean, largest);
 }
 

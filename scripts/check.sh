@@ -66,7 +66,7 @@ scripts/lint.sh --all || status=1
 if [ "$fresh" = yes ]; then
   scripts/fresh_root.sh --test || [ $? -eq 77 ] || status=1  # 77: no such root can be made here
 else
-  note "fresh root: left out"
+  note "fresh root: skipped"
 fi
 
 say "summary (after $((SECONDS - started)) s)"

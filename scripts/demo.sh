@@ -26,7 +26,7 @@ fi
 build release palpate_app
 
 say "demo (ready after $((SECONDS - started)) s)"
-note "a cloud of yours: build/release/apps/palpate/palpate touch YOUR_CLOUD --view"
+note "to touch your own cloud: build/release/apps/palpate/palpate touch YOUR_CLOUD --view"
 # Where nobody could end it, it ends by itself.
 if [ ! -t 0 ] && [[ " $* " != *" --duration"* ]]; then set -- "$@" --duration 10; fi
 exec build/release/apps/palpate/palpate demo "$@"

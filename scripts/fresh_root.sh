@@ -25,7 +25,7 @@ root=$PWD/build/fresh_root
 kept=${XDG_CACHE_HOME:-~/.cache}/palpate/bookworm.tar
 
 cannot() {
-  note "fresh root: left out, $*"
+  note "fresh root: skipped, $*"
   exit 77
 }
 
@@ -46,7 +46,7 @@ make_root() {
   fi
   rm -rf --one-file-system "$root"
   debootstrap --variant=minbase bookworm "$root" "$mirror" >build/debootstrap.log 2>&1 ||
-    { tail -n 20 build/debootstrap.log >&2; fail "debootstrap did not finish; all of it: build/debootstrap.log"; }
+    { tail -n 20 build/debootstrap.log >&2; fail "debootstrap failed; full log: build/debootstrap.log"; }
   if mkdir -p "${kept%/*}" && tar -C "$root" -cf "$kept.$$" . && mv "$kept.$$" "$kept"; then
     note "a copy is kept: $kept"
   else
@@ -81,7 +81,7 @@ inside() {
 timed() {
   local started=$SECONDS
   say "in the fresh root: $1"
-  inside "$1" </dev/null || fail "in the fresh root: $1; to look at it: chroot $root"
+  inside "$1" </dev/null || fail "in the fresh root: $1; inspect it with: chroot $root"
   note "took $((SECONDS - started)) s: $1"
 }
 
@@ -98,9 +98,9 @@ fi
 [ -n "$mirror" ] || cannot "apt has no Debian 12 here: name a mirror"
 make_root
 connect_root
-git diff --quiet HEAD || note "what is not committed is not tried"
+git diff --quiet HEAD || note "uncommitted changes are not tested"
 git clone --quiet --no-hardlinks "$PWD" "$root/root/palpate"
-note "made in $((SECONDS - started)) s"
+note "created in $((SECONDS - started)) s"
 
 timed "scripts/demo.sh --headless --duration 5"
 [ -f "$root/root/palpate/build/release/src/viewer/page/app.js" ] || fail "in the fresh root: the page was not built"

@@ -18,7 +18,7 @@ as_root() {
   elif command -v sudo >/dev/null; then
     sudo "$@"
   else
-    fail "'$*' needs root and sudo is absent: run it as root, then start this script again"
+    fail "'$*' needs root, but there is no sudo: run it as root, then restart this script"
   fi
 }
 
@@ -51,21 +51,21 @@ choose() {
       return
     fi
   done
-  fail "apt knows none of: $1"
+  fail "no apt package found for: $1"
 }
 
 # need_packages GROUP...: installs what is absent of these groups and nothing else.
 need_packages() {
   local group alternatives missing=() chosen=()
   if ! command -v apt-get >/dev/null; then
-    note "no apt here: these packages or their like have to be there already: $*"
+    note "no apt: install these packages or their equivalents yourself: $*"
     return
   fi
   for group in "$@"; do
     for alternatives in $(missing_of "$group"); do missing+=("$alternatives"); done
   done
   if [ ${#missing[@]} -eq 0 ]; then
-    note "packages ($*): all there, nothing to install"
+    note "packages ($*): all installed"
     return
   fi
   as_root apt-get update -qq
@@ -78,7 +78,7 @@ need_packages() {
 # What builds the page; an npm that is there already, of whatever origin, will do.
 need_npm() {
   if command -v npm >/dev/null; then
-    note "npm: there ($(npm --version))"
+    note "npm: found ($(npm --version))"
   else
     need_packages page
   fi
@@ -89,7 +89,7 @@ need_browser() {
   if grep -q '^ID=debian$' /etc/os-release; then
     need_packages browser
   else
-    note "chromium is no package of this distribution: tests in a browser are skipped"
+    note "this distribution has no chromium package: browser tests are skipped"
   fi
 }
 
@@ -135,7 +135,7 @@ build() {
   if [ $# -gt 0 ]; then target=(--target "$@"); fi
   cmake --build "build/$preset" -j "$(jobs_that_fit)" "${target[@]}" 2>&1 |
     tee "build/$preset.build.log" | show_steps "$preset" ||
-    { tail -n 60 "build/$preset.build.log" >&2; fail "preset $preset does not build; all of it: build/$preset.build.log"; }
+    { tail -n 60 "build/$preset.build.log" >&2; fail "preset $preset does not build; full log: build/$preset.build.log"; }
   if grep -q 'no work to do' "build/$preset.build.log"; then
     note "preset $preset: up to date, nothing to build"
   else
@@ -186,7 +186,7 @@ fuzz_one() {
     note "$name: $(grep -oE 'Done [0-9]+ runs' "build/fuzz/$name.log" || true), clean"
   else
     tail -n 30 "build/fuzz/$name.log" >&2
-    note "$name: BROKEN; all of it: build/fuzz/$name.log"
+    note "$name: FAILED; full log: build/fuzz/$name.log"
     return 1
   fi
 }

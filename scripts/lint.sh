@@ -45,7 +45,7 @@ fi
 
 say "clang-format"
 sources | xargs clang-format-14 --dry-run -Werror
-note "$(sources | wc -l) files are well formed"
+note "$(sources | wc -l) files are formatted"
 
 say "clang-tidy ($mode)"
 cmake --preset dev -B build/tidy >build/tidy.configure.log 2>&1 ||
@@ -56,12 +56,12 @@ picked=$(grep '\.cpp$' <<<"$picked" | while read -r file; do
   if grep -q "\"file\": \"$PWD/$file\"" build/tidy/compile_commands.json; then echo "$file"; fi
 done || true)
 if [ -z "$picked" ]; then
-  note "no compiled source has changed"
+  note "no compiled source changed"
   exit
 fi
 started=$SECONDS
 # The flags are g++'s, some of which clang does not know.
 xargs -P "$(jobs_that_fit)" -n 4 clang-tidy-14 -p build/tidy --quiet --extra-arg=-Wno-unknown-warning-option \
   --header-filter="^$PWD/(apps|bench|examples|fuzz|include|src|tests)/" <<<"$picked" \
-  >build/tidy.log 2>build/tidy.err || { cat build/tidy.log; fail "clang-tidy has found something"; }
+  >build/tidy.log 2>build/tidy.err || { cat build/tidy.log; fail "clang-tidy reported problems"; }
 note "$(wc -l <<<"$picked") sources are clean ($((SECONDS - started)) s)"

@@ -27,7 +27,7 @@ need_npm
 need_browser
 if [ "$fuzz" = yes ]; then need_packages fuzz; fi
 if [ "$fuzz" = yes ] && ! command -v clang++ >/dev/null; then
-  note "clang++ is absent: no fuzz targets"
+  note "clang++ not found: no fuzz targets"
   fuzz=no
 fi
 if [ "$fuzz" = yes ]; then sanitized=fuzz; else sanitized=asan; fi
@@ -49,7 +49,7 @@ bare() {
     note "palpate $*: runs"
   else
     cat build/bare.log >&2
-    note "palpate $*: BROKEN, or says no \"$words\""
+    note "palpate $*: FAILED, or its output lacks \"$words\""
     status=1
   fi
 }

@@ -23,9 +23,8 @@ namespace palpate::app {
 namespace {
 
 constexpr const char* kAbout =
-    "palpate lets a hand feel a point cloud: it makes an implicit surface of the points and "
-    "computes "
-    "the force on the hand a thousand times a second.";
+    "palpate lets you feel a point cloud through a haptic device: it builds an implicit surface "
+    "from the points and computes the force on the hand at 1 kHz.";
 
 int complain(const std::string& what, int code) {
   fmt::print(stderr, "{} {}\n", Style(stderr).error("palpate:"), what);
@@ -75,25 +74,24 @@ void touch_as_told(const CLI::App& app, const TouchChoices& choices) {
 
 std::vector<Command> add_commands(CLI::App& p) {
   return {
-      command(p, "touch", "Touch clouds and what cameras see, and report the forces",
+      command(p, "touch", "Touch clouds and camera streams, and report the forces",
               add_touch_command, touch_as_told),
-      command(p, "align", "Find the poses of cameras and clouds from what they see",
+      command(p, "align", "Find the poses of cameras and clouds by aligning their surfaces",
               add_align_options, align_sources),
-      command(p, "info", "Say what is in a cloud or what a camera delivers", add_info_options,
-              info),
-      command(p, "cameras", "List cameras, and what is missing for others", add_cameras_options,
+      command(p, "info", "Describe clouds, cameras and sequences", add_info_options, info),
+      command(p, "cameras", "List cameras, and what is missing to use others", add_cameras_options,
               cameras),
       command<DoctorOptions>(p, "doctor",
-                             "Say what keeps devices from working, or from being in time",
+                             "Check this machine for problems with devices and real-time operation",
                              add_doctor_options,
                              [](const CLI::App&, const auto& options) { return examine(options); }),
-      command(p, "devices", "List haptic devices, and what is missing for others",
+      command(p, "devices", "List haptic devices, and what is missing to use others",
               add_devices_options, devices),
-      command(p, "paper", "Repeat the experiments of Leeper, Chan and Salisbury 2012",
+      command(p, "paper", "Reproduce the experiments of Leeper, Chan and Salisbury 2012",
               add_paper_options, paper),
-      command(p, "demo", "Show a made-up scene on a page, to be touched with a mouse",
-              add_demo_options, demo),
-      command(p, "zwidth", "Map how stiff a surface a device can hold, beside theory",
+      command(p, "demo", "Touch a simulated scene in the browser with a mouse", add_demo_options,
+              demo),
+      command(p, "zwidth", "Map the stiffness that a device can render, compared with theory",
               add_zwidth_options, zwidth),
   };
 }
@@ -111,7 +109,7 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", fmt::format("palpate {}", version()));
   program.require_subcommand(0, 1);
   program.get_formatter()->column_width(34);
-  program.footer("'palpate COMMAND --help' tells more, with examples.");
+  program.footer("Run 'palpate COMMAND --help' for details and examples.");
   const std::vector<Command> commands = add_commands(program);
   if (const std::string text = text_for_packages(program, argc == 2 ? argv[1] : "");
       !text.empty()) {
@@ -123,7 +121,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& done) {  // --help, --version
     return program.exit(done);
   } catch (const CLI::ParseError& error) {
-    return complain(fmt::format("{}{}\n'palpate --help' and 'palpate COMMAND --help' tell more.",
+    return complain(fmt::format("{}{}\nSee 'palpate --help' and 'palpate COMMAND --help'.",
                                 error.what(), hint(program)),
                     kUsage);
   }
@@ -131,8 +129,8 @@ int run(int argc, char** argv) {
     if (each.app->parsed()) return each.run();
   }
   throw UsageError(
-      "a command is missing: touch, align, info, cameras, devices, doctor, paper, demo or zwidth; "
-      "'palpate --help' tells more");
+      "no command given; use touch, align, info, cameras, devices, doctor, paper, demo or zwidth "
+      "(see 'palpate --help')");
 }
 
 }  // namespace
@@ -145,8 +143,7 @@ int main(int argc, char** argv) {
   } catch (const UsageError& error) {
     return complain(error.what(), kUsage);
   } catch (const std::bad_alloc&) {
-    return complain("there is not enough memory; give a smaller cloud or a larger --voxel",
-                    kFailure);
+    return complain("out of memory; give a smaller cloud or a larger --voxel", kFailure);
   } catch (const std::exception& error) {
     return complain(error.what(), kFailure);
   }

@@ -51,8 +51,8 @@ void Aligner::check_held(const Equations& e) const {
   const bool turns = part(worst).head<3>().norm() > part(worst).tail<3>().norm();
   const Vector3d axis = (turns ? part(worst).head<3>() : part(worst).tail<3>()).normalized();
   throw Error(fmt::format(
-      "what '{}' shares with the others leaves it free to {} ({:.2f}, {:.2f}, "
-      "{:.2f}); let them see more that faces different ways, such as a box",
+      "the overlap of '{}' with the others leaves it free to {} ({:.2f}, {:.2f}, {:.2f}); add "
+      "surfaces that face other directions, e.g. a box",
       sources_[worst].name, turns ? "turn about" : "slide along", axis.x(), axis.y(), axis.z()));
 }
 
@@ -89,7 +89,7 @@ void Aligner::tell_deviations(const Poses& poses, std::vector<AlignedSource>& re
 
 std::vector<AlignedSource> align(const std::vector<RoughSource>& sources) {
   if (sources.size() < 2) {
-    throw Error(fmt::format("aligning takes two sources at least, not {}", sources.size()));
+    throw Error(fmt::format("align needs at least two sources, got {}", sources.size()));
   }
   const detail::Aligner aligner(sources);
   detail::Poses poses(sources.size(), Eigen::Isometry3d::Identity());

@@ -87,10 +87,8 @@ Aligner::Aligner(const std::vector<RoughSource>& sources)
       size_ += place.squaredNorm();
     }
     if (samples_[s].size() < kEnough) {
-      throw Error(
-          fmt::format("'{}' has {} points with a normal that can be trusted; aligning takes "
-                      "{} at least",
-                      sources[s].name, samples_[s].size(), kEnough));
+      throw Error(fmt::format("'{}' has {} points with a reliable normal; align needs at least {}",
+                              sources[s].name, samples_[s].size(), kEnough));
     }
     middle_ += middles_[s];
     count += static_cast<double>(samples_[s].size());
@@ -229,8 +227,8 @@ void Aligner::place(Poses& poses, std::size_t source) const {
   const std::size_t shared = matches(poses, moving, radius_).size();
   if (shared >= kEnough) return;
   throw Error(
-      fmt::format("'{}' shares no surface with those before it ({} points in all); its "
-                  "rough pose may be too far off, or they see nothing together",
+      fmt::format("'{}' does not overlap the sources before it ({} common points); correct its "
+                  "rough pose, or make their views overlap",
                   sources_[source].name, shared));
 }
 

@@ -39,8 +39,9 @@ SharedLibrary::SharedLibrary(const std::vector<std::string>& names, std::string 
 
 void* SharedLibrary::address(const char* function) const {
   if (void* const found = ::dlsym(handle_.get(), function)) return found;
-  throw Error(fmt::format("the library {} has no function {}: it is too old, or another one. {}",
-                          name_, function, remedy_));
+  throw Error(
+      fmt::format("the library {} has no function {}: it is too old or a different library. {}",
+                  name_, function, remedy_));
 }
 
 }  // namespace palpate

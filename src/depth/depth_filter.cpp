@@ -160,8 +160,8 @@ const SensorProfile& sensor_profile(std::string_view name) {
     if (!names.empty()) names += ", ";
     names += profile.name;
   }
-  throw Error("there is no noise profile \"" + std::string(name) + "\"; take one of " + names +
-              ", or none: then the noise is measured");
+  throw Error("unknown noise profile \"" + std::string(name) + "\"; give one of " + names +
+              ", or none to measure the noise");
 }
 
 NoiseModel unknown_sensor_noise() {

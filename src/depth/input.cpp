@@ -16,16 +16,15 @@ void check(const NoiseModel& noise, const DepthFilterOptions& options) {
   for (const double z : {options.nearest, options.farthest}) {
     if (!(noise.sigma(z) > 0 && std::isfinite(noise.sigma(z)))) {
       throw Error(
-          fmt::format("depth filter: the noise at {} m is {} m; give a model that is "
-                      "positive from nearest to farthest",
+          fmt::format("depth filter: the noise at {} m is {} m; give a model that is positive from "
+                      "nearest to farthest depth",
                       z, noise.sigma(z)));
     }
   }
   if (!(noise.correlation >= 1 && std::isfinite(noise.correlation))) {
-    throw Error(
-        fmt::format("depth filter: the noise's correlation is {}; take 1 (independent "
-                    "pixels) or more",
-                    noise.correlation));
+    throw Error(fmt::format(
+        "depth filter: the noise correlation is {}; give 1 (independent pixels) or more",
+        noise.correlation));
   }
 }
 
@@ -33,20 +32,19 @@ void check(const NoiseModel& noise, const DepthFilterOptions& options) {
 
 void check(const DepthFilterOptions& options) {
   if (!(options.normal_error > 0 && options.normal_error < 1)) {
-    throw Error(fmt::format("depth filter: normal_error is {} rad; take a value from 0.001 to 0.1",
+    throw Error(fmt::format("depth filter: normal_error is {} rad; give a value from 0.001 to 0.1",
                             options.normal_error));
   }
   if (options.memory < 1) {
-    throw Error(fmt::format("depth filter: memory is {} frames; take 1 or more", options.memory));
+    throw Error(fmt::format("depth filter: memory is {} frames; give 1 or more", options.memory));
   }
   constexpr double kClosest = 1e-3;  // m; inverse depths are counted in 31 bits of 2^-20 / m
   const bool range = options.nearest >= kClosest && options.farthest > options.nearest &&
                      std::isfinite(options.farthest);
   if (!range) {
-    throw Error(
-        fmt::format("depth filter: depths from {} to {} m are none; take 0.001 <= nearest < "
-                    "farthest",
-                    options.nearest, options.farthest));
+    throw Error(fmt::format(
+        "depth filter: {} to {} m is not a valid depth range; give 0.001 <= nearest < farthest",
+        options.nearest, options.farthest));
   }
   if (options.noise) check(*options.noise, options);
 }
@@ -55,14 +53,14 @@ void check(const DepthFrame& frame) {
   const CameraModel& camera = frame.camera;
   if (camera.width < 2 || camera.height < 2) {
     throw Error(
-        fmt::format("depth filter: a frame of {} x {} pixels has no block of 2 x 2; give "
-                    "the camera's width and height",
+        fmt::format("depth filter: a frame of {} x {} pixels is smaller than one block of 2 x 2; "
+                    "give the camera's width and height",
                     camera.width, camera.height));
   }
   if (camera.width < kFewestPixels || camera.height < kFewestPixels) {
     throw Error(
-        fmt::format("depth filter: a frame of {} x {} pixels has too few to tell slopes from; give "
-                    "{} or more each way",
+        fmt::format("depth filter: a frame of {} x {} pixels is too small to estimate slopes; give "
+                    "at least {} in each direction",
                     camera.width, camera.height, kFewestPixels));
   }
   const auto pixels = static_cast<std::size_t>(camera.width) * camera.height;
@@ -75,15 +73,15 @@ void check(const DepthFrame& frame) {
                          std::isfinite(p.cx) && std::isfinite(p.cy);
   if (!is_camera) {
     throw Error(
-        fmt::format("depth filter: a pinhole with fx {}, fy {}, cx {}, cy {} is none; give "
-                    "the focal lengths and the centre in pixels",
+        fmt::format("depth filter: fx {}, fy {}, cx {}, cy {} are not valid intrinsics; give focal "
+                    "lengths and principal point in pixels",
                     p.fx, p.fy, p.cx, p.cy));
   }
 }
 
 void check(const Eigen::Isometry3d& T_world_sensor) {
   if (T_world_sensor.matrix().allFinite()) return;
-  throw Error("depth filter: the sensor's pose is not finite; give one that is");
+  throw Error("depth filter: the sensor pose is not finite; give a finite one");
 }
 
 namespace {

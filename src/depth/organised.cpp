@@ -170,7 +170,7 @@ bool is_organised(const PointCloud& cloud) {
 OrganisedFrame depth_frame_of(const PointCloud& cloud) {
   OrganisedFrame result;
   if (!is_organised(cloud)) {
-    result.why_none = "its points are not those of an image, or of too small a one";
+    result.why_none = "its points do not form an image, or the image is too small";
     return result;
   }
   const auto size = static_cast<double>(std::max(cloud.width, cloud.height));
@@ -185,7 +185,7 @@ OrganisedFrame depth_frame_of(const PointCloud& cloud) {
     }
     if (camera.isZero(0)) break;
   }
-  result.why_none = "no pinhole camera sees its points in their pixels";
+  result.why_none = "no pinhole camera projects its points to their pixels";
   return result;
 }
 

@@ -94,7 +94,7 @@ void make_room(const std::string& path, const Native& address) {
   if (::lstat(path.c_str(), &file) != 0) return;
   if (!S_ISSOCK(file.st_mode)) refuse(path, "it is a file, not a socket; give another path");
   if (!left_over(address)) {
-    refuse(path, "another program listens there; end it or give another path");
+    refuse(path, "another program is listening there; stop it or give another path");
   }
   ::unlink(path.c_str());
 }

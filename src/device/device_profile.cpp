@@ -66,7 +66,7 @@ class Reader {
       const toml::table* table = node.as_table();
       if (table == nullptr) {
         fail(key.source(),
-             fmt::format("'{}' is not a table; write [NAME] and its keys in lines below",
+             fmt::format("'{}' is not a table; write [NAME] with its keys on the lines below",
                          key.str()));
       }
       profiles.push_back(profile(std::string(key.str()), *table));
@@ -106,7 +106,7 @@ class Reader {
 
   [[nodiscard]] std::string text(const toml::key& key, const toml::node& node) const {
     if (!node.is_string())
-      fail(node.source(), fmt::format("'{}' is not a text in quotes", key.str()));
+      fail(node.source(), fmt::format("'{}' is not text in quotes", key.str()));
     return *node.value<std::string>();
   }
 
@@ -161,7 +161,7 @@ DeviceProfile device_profile(std::string_view name, const std::vector<DeviceProf
   if (found != among.end()) return *found;
   std::string known;
   for (const DeviceProfile& each : among) known += (known.empty() ? "" : ", ") + each.name;
-  throw Error(fmt::format("there is no device profile '{}'; the profiles are {}", name, known));
+  throw Error(fmt::format("unknown device profile '{}'; the profiles are {}", name, known));
 }
 
 }  // namespace palpate

@@ -41,8 +41,8 @@ struct ForceDimensionLibrary {
   // Throws Error that says what is missing.
   explicit ForceDimensionLibrary(const std::string& file = kName)
       : library({file},
-                "Force Dimension's SDK 3 brings it (forcedimension.com, for Linux): copy it to "
-                "/usr/local/lib and run ldconfig; 'palpate doctor' says what is missing",
+                "It is part of Force Dimension's SDK 3 for Linux (forcedimension.com): copy it to "
+                "/usr/local/lib and run ldconfig; 'palpate doctor' shows what is missing",
                 SharedLibrary::Unload::never) {
     library.find("dhdGetDeviceCount", count);
     library.find("dhdOpenID", open);
@@ -150,7 +150,7 @@ class ForceDimensionDriver final : public DeviceDriver {
 
   [[nodiscard]] DeviceState exchange(const Vector3d& force) override {
     const Vector3d f = to_maker(force);
-    check(library_.set_force(f.x(), f.y(), f.z(), 0, 0, 0, 0, id_), "does not take a force");
+    check(library_.set_force(f.x(), f.y(), f.z(), 0, 0, 0, 0, id_), "does not accept a force");
     Vector3d position;
     check(library_.position(&position.x(), &position.y(), &position.z(), id_),
           "does not report its position");
@@ -167,14 +167,14 @@ class ForceDimensionDriver final : public DeviceDriver {
     const int count = library_.count();
     if (number >= count) {
       fail(
-          fmt::format("there is no such device ({} found). Plug it in, switch it on, and give "
-                      "your user access (udev rules; 'palpate doctor' explains)",
+          fmt::format("no such device ({} found). Plug it in, switch it on, and give your user "
+                      "access (udev rules; 'palpate doctor' explains)",
                       std::max(count, 0)));
     }
     const int id = library_.open(static_cast<char>(number));
     if (id < 0) {
       fail(
-          fmt::format("cannot be opened ({}). End other programs that use it; give your user "
+          fmt::format("cannot be opened ({}). Close other programs that use it; give your user "
                       "access (udev rules; 'palpate doctor' explains)",
                       library_.error_text()));
     }
@@ -188,36 +188,36 @@ class ForceDimensionDriver final : public DeviceDriver {
         library_.set_watchdog(static_cast<unsigned char>(kWatchdog / kWatchdogUnit), id_);
     library_.disable_expert_mode();
     if (armed < 0) info_.name += ", without a watchdog";  // older ones have none
-    check(library_.set_force(0, 0, 0, 0, 0, 0, 0, id_), "does not take a force");
-    check(library_.enable_force(1, id_), "does not switch its forces on");
+    check(library_.set_force(0, 0, 0, 0, 0, 0, 0, id_), "does not accept a force");
+    check(library_.enable_force(1, id_), "does not enable its forces");
   }
 
   void check_status() const {
     std::array<int, Flag::kRoom> flags{};
     flags[Flag::kPower] = 1;
     check(library_.status(flags.data(), id_), "does not report its status");
-    if (flags[Flag::kPower] == 0) fail("has no power. Switch it on, and check its supply");
+    if (flags[Flag::kPower] == 0) fail("has no power. Switch it on and check its power supply");
     if (flags[Flag::kReset] != 0) {
       fail(
           "is not calibrated. Put its calibration pole into the pit in its base, or run HapticInit "
-          "of the maker's SDK");
+          "from the vendor's SDK");
     }
     if (flags[Flag::kError] != 0) fail("reports an error. Switch it off and on");
     if (flags[Flag::kForce] != 0) return;
     const int cause = flags[Flag::kForceOffCause];
     if (cause == kOffByVelocity && exchanges_ > 0) {
-      fail("was moved too fast, so it switched its forces off. It will be reopened");
+      fail("was moved too fast, so it disabled its forces. It will be reopened");
     }
     if (cause == kOffByWatchdog && exchanges_ > 0) {
       fail(
-          "received nothing for 5 ms, so its watchdog switched its forces off. End what keeps the "
-          "computer busy; the device will be reopened");
+          "received nothing for 5 ms, so its watchdog disabled its forces. Close programs that "
+          "keep the computer busy; the device will be reopened");
     }
   }
 
   void check(int result, const char* what) const {
     if (result >= 0) return;
-    fail(fmt::format("{} ({}). Check its cable and its power", what, library_.error_text()));
+    fail(fmt::format("{} ({}). Check its cable and power", what, library_.error_text()));
   }
 
   [[noreturn]] void fail(std::string_view words) const {
@@ -270,7 +270,7 @@ DriverInfo list_forcedimension() {
     const ForceDimensionLibrary library;
     for (int i = 0; i < library.count(); ++i) {
       found.devices.push_back(
-          {fmt::format("forcedimension:{}", i), "its kind is known once it is opened"});
+          {fmt::format("forcedimension:{}", i), "its model is known once it is opened"});
     }
   });
 }

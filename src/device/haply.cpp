@@ -77,7 +77,7 @@ class HaplyDriver final : public DeviceDriver {
     const std::vector<HaplyDevice> devices = ask([this] { return greet(socket_); });
     const std::optional<HaplyDevice> found = find(devices, id_);
     if (!found) {
-      fail(fmt::format("there is no such Inverse3 (there is: {}). {}", ids_of(devices), kCheck));
+      fail(fmt::format("no such Inverse3 (connected: {}). {}", ids_of(devices), kCheck));
     }
     id_ = found->id;
     check(*found);
@@ -96,10 +96,10 @@ class HaplyDriver final : public DeviceDriver {
 
   [[nodiscard]] DeviceState exchange(const Vector3d& force) override {
     const std::optional<HaplyDevice> device = ask([&] { return find(answer_to(force), id_); });
-    if (!device) fail(fmt::format("it is gone. {}", kCheck));
+    if (!device) fail(fmt::format("it was disconnected. {}", kCheck));
     check(*device);
     if (!device->reading)
-      fail(fmt::format("it reports no position, or an impossible one. {}", kCheck));
+      fail(fmt::format("it reports no position or an impossible one. {}", kCheck));
     return *device->reading;
   }
 
@@ -111,7 +111,7 @@ class HaplyDriver final : public DeviceDriver {
   void check(const HaplyDevice& device) const {
     if (!device.calibrated.value_or(true))
       fail("it is not calibrated. Calibrate it in Haply's Hub");
-    if (!device.powered.value_or(true)) fail("it has no power. Plug in its supply");
+    if (!device.powered.value_or(true)) fail("it has no power. Plug in its power supply");
   }
 
   // What the service answers, with words that say whose fault it is.
@@ -137,7 +137,7 @@ class HaplyDriver final : public DeviceDriver {
     socket_.send(haply_command(id_, force), kPatience);
     if (!socket_.wait(before, kQuick)) {
       socket_.send(haply_command(id_, Vector3d::Zero()), kPatience);
-      if (!socket_.wait(before, kPatience)) throw Error("the service does not answer any more");
+      if (!socket_.wait(before, kPatience)) throw Error("the service stopped answering");
       (void)socket_.wait(before + 1, kPatience);  // of the zero, lest it be taken for a later one
     }
     socket_.poll();

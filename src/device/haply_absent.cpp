@@ -8,8 +8,8 @@ DriverInfo list_haply() {
           .description = "Haply Inverse3",
           .available = false,
           .missing =
-              "this build cannot speak to Haply's Inverse Service. Install libboost-dev (Debian, "
-              "Ubuntu) and build palpate again",
+              "this build cannot connect to Haply's Inverse Service. Install libboost-dev (Debian, "
+              "Ubuntu) and rebuild palpate",
           .devices = {}};
 }
 

@@ -106,7 +106,7 @@ std::string to_device(std::string_view id, const char* what, const Json& told) {
 
 std::vector<HaplyDevice> parse_haply_frame(std::string_view text) {
   const Json frame = Json::parse(text, nullptr, false);
-  if (!frame.is_object()) throw Error("what came is not a frame of Haply's Inverse Service");
+  if (!frame.is_object()) throw Error("the message is not a frame of Haply's Inverse Service");
   std::vector<HaplyDevice> devices;
   const Json& told = child(frame, "inverse3");
   if (!told.is_array()) return devices;

@@ -51,8 +51,8 @@ DeviceName parse_device_name(std::string_view text) {
 void check_options(const DeviceName& name, std::initializer_list<std::string_view> known) {
   for (const auto& [key, value] : name.options) {
     if (std::ranges::find(known, key) != known.end()) continue;
-    throw Error(fmt::format("device {}: there is no option '{}'; the options are {}", name.driver,
-                            key, fmt::join(known, ", ")));
+    throw Error(fmt::format("device {}: unknown option '{}'; the options are {}", name.driver, key,
+                            fmt::join(known, ", ")));
   }
 }
 
@@ -80,7 +80,7 @@ std::unique_ptr<ThreadedDevice> open_device(const std::string& name, WaitingCloc
   if (driver == kDrivers.end()) {
     throw Error(
         fmt::format("{}: no such device. Devices are forcedimension[:N], openhaptics[:NAME] and "
-                    "haply[:ID]; 'palpate devices' lists those that are there",
+                    "haply[:ID]; 'palpate devices' lists those connected",
                     name));
   }
   return std::make_unique<ThreadedDevice>(

@@ -23,8 +23,8 @@ constexpr int kCalibrationFrames = 1000;  // until it is calibrated by itself
 // from 0.7 to 0.5.
 constexpr double kCool = 0.5;
 constexpr const char* kNotCalibrated =
-    "is not calibrated. Put its stylus into the inkwell, or calibrate it with the maker's "
-    "Touch_Diagnostic (in newer drivers TouchCheckup)";
+    "is not calibrated. Put its stylus into the inkwell, or calibrate it with the vendor's "
+    "Touch_Diagnostic (TouchCheckup in newer drivers)";
 
 // What a device's model may contain, the most exact first.
 struct TouchModel {
@@ -66,25 +66,25 @@ DeviceInfo info_of_device(const DeviceName& name, const OpenHapticsFacts& facts,
 }
 
 std::string touch_failure(unsigned code, const std::string& told) {
-  const std::string off = ", so it switched its forces off (" + told + ")";
+  const std::string off = ", so it disabled its forces (" + told + ")";
   switch (code) {
     case hd::kWarmMotors:
-      return "its motors are too warm" + off + ". It will be reopened when they have cooled down";
+      return "its motors are too hot" + off + ". It will be reopened once they have cooled down";
     case hd::kExceededVelocity:
       return "was moved too fast" + off + ". It will be reopened";
     case hd::kExceededForce:
     case hd::kExceededImpulse:
     case hd::kForceError:
-      return "was given too large a force" + off + ". It will be reopened";
+      return "was sent too large a force" + off + ". It will be reopened";
     case hd::kTimer:
       return "received no frame in time (" + told +
-             "). End what keeps the computer busy; the device will be reopened";
+             "). Close programs that keep the computer busy; the device will be reopened";
     case hd::kDeviceFault:
     case hd::kCommunication:
     case hd::kConfiguration:
-      return "does not answer (" + told + "). Check its cable and its power";
+      return "does not answer (" + told + "). Check its cable and power";
     default:
-      return "fails (" + told + "). Check its cable and its power";
+      return "fails (" + told + "). Check its cable and power";
   }
 }
 
@@ -116,7 +116,7 @@ DeviceState OpenHapticsDriver::exchange(const Vector3d& force) {
 void OpenHapticsDriver::prepare() {
   OpenHapticsFrames::Answer now = checked_answer();
   if (now.temperature > kCool) {
-    fail(fmt::format("its motors are warm ({:.2f} of 1). Let them cool down to {}", now.temperature,
+    fail(fmt::format("its motors are hot ({:.2f} of 1). Let them cool down to {}", now.temperature,
                      kCool));
   }
   const int styles = session_.facts().calibration_styles & (hd::kAutomatic | hd::kInkwell);
@@ -133,10 +133,10 @@ OpenHapticsFrames::Answer OpenHapticsDriver::checked_answer() {
   const std::optional<OpenHapticsFrames::Answer> answer = session_.frames().answer(kPatience);
   if (!answer) {
     const unsigned error = session_.take_error();
-    fail(fmt::format(
-        "the maker's scheduler does not run{}. Check its cable, its power, and what keeps the "
-        "computer busy",
-        error == hd::kSuccess ? "" : fmt::format(" ({})", library_.describe(error))));
+    fail(
+        fmt::format("the vendor's scheduler is not running{}. Check the cable, the power, and what "
+                    "keeps the computer busy",
+                    error == hd::kSuccess ? "" : fmt::format(" ({})", library_.describe(error))));
   }
   if (answer->failure != hd::kSuccess) {
     fail(touch_failure(answer->failure, library_.describe(answer->failure)));

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kLengthUnit = 1e-3;  // m
 constexpr const char* kBroughtBy =
-    "OpenHaptics 3 for Linux and the Touch Device Driver bring it (3D Systems): run the installers "
-    "of both; 'palpate doctor' says what is missing";
+    "It is part of OpenHaptics 3 for Linux and the Touch Device Driver (3D Systems): run the "
+    "installers of both; 'palpate doctor' shows what is missing";
 
 // The most exact first.
 std::vector<std::string> names_of(const std::string& file) {

@@ -41,10 +41,10 @@ unsigned calibration_style(int known) {
 }
 
 const char* touch_opening_remedy(unsigned code) {
-  if (code == hd::kAlreadyOpen) return "It is in use already: end other programs that use it";
-  return "Plug it in, switch it on, let the maker's Touch_Setup (in newer drivers "
-         "Touch_HeadlessSetup) write its configuration under this name, end other programs that "
-         "use it, and give your user access (udev rules; 'palpate doctor' explains)";
+  if (code == hd::kAlreadyOpen) return "It is already in use: close other programs that use it";
+  return "Plug it in, switch it on, configure it under this name with the vendor's Touch_Setup "
+         "(Touch_HeadlessSetup in newer drivers), close other programs that use it, and give your "
+         "user access (udev rules; 'palpate doctor' explains)";
 }
 
 // What all devices of a program share. The mutex is for whoever opens or closes a device; frames
@@ -223,11 +223,11 @@ OpenHapticsSession::OpenHapticsSession(const OpenHapticsLibrary& library,
   const std::lock_guard lock(shared.mutex);
   require_interval(clock.now());
   if (!shared.running.empty() && shared.init_device != library_.init_device) {
-    fail("is not opened: another copy of the maker's library is in use. Give both one library=");
+    fail("is not opened: another copy of its library is in use. Give both the same library=");
   }
   Rest rest(library_);
   if (!rest.is_complete()) {
-    fail("is not opened: another of the maker's devices does not come to rest. Check its cable");
+    fail("is not opened: another device of the vendor does not stop. Check its cable");
   }
   rest.stop_scheduler();
   open(configuration);
@@ -268,8 +268,8 @@ void OpenHapticsSession::require_interval(double now) const {
   const double left = last == shared.tried.end() ? 0 : last->second + kInterval - now;
   if (left > 0) {
     fail(
-        fmt::format("can be opened again in {} s, as that takes the force from the maker's other "
-                    "devices for a moment. Wait that long, or close them",
+        fmt::format("can be reopened in {} s, because that briefly interrupts the force of the "
+                    "vendor's other devices. Wait that long, or close them",
                     std::ceil(left)));
   }
   shared.tried[name_] = now;

@@ -26,7 +26,7 @@ RemoteDeviceOptions checked(RemoteDeviceOptions o) {
   require.positive("maximum_force", o.maximum_force, "give a positive force in newtons");
   require.not_negative("maximum_stiffness", o.maximum_stiffness, "give 0 or more N/m");
   require.not_negative("workspace_radius", o.workspace_radius, "give 0 or more metres");
-  require.positive("rate", o.rate, "give a positive number of steps a second");
+  require.positive("rate", o.rate, "give a positive number of steps per second");
   require.positive("client_timeout", o.client_timeout, "give a positive time in seconds");
   require.positive("fade", o.fade, "give a positive time in seconds");
   require.positive("soft_start", o.soft_start, "give a positive time in seconds");
@@ -154,11 +154,11 @@ std::string RemoteDevice::reason() const {
       return fmt::format("receiving on '{}' failed: {}; open the device again", path(),
                          std::system_category().message(shown.error));
     }
-    return "a force that was written was not finite; look for the fault in what computed it";
+    return "a written force was not finite; find the error in the code that computed it";
   }
-  std::string words = fmt::format("no client sends to '{}'; start one", path());
+  std::string words = fmt::format("no client is sending to '{}'; start one", path());
   if (shown.refused != PacketFlaw::none) {
-    words += fmt::format("; a packet was refused: {}", explain(shown.refused));
+    words += fmt::format("; a packet was rejected: {}", explain(shown.refused));
   }
   return words;
 }

@@ -136,23 +136,25 @@ std::string_view explain(PacketFlaw flaw) noexcept {
     case PacketFlaw::none:
       return {};
     case PacketFlaw::length:
-      return "it does not have 80 bytes; send one state per datagram";
+      return "it is not 80 bytes long; send one state per datagram";
     case PacketFlaw::magic:
-      return "it does not begin with plpS; is that client meant for something else?";
+      return "it does not start with plpS; is the client meant for another program?";
     case PacketFlaw::version:
-      return "it is not of version 1; use a client for this palpate";
+      return "its version is not 1; use a client for this version of palpate";
     case PacketFlaw::flags:
-      return "it has flags that are unknown in version 1, or reserved bytes that are not 0";
+      return "it has unknown flags or nonzero reserved bytes; send version 1";
     case PacketFlaw::number:
-      return "a number in it is not finite; send nothing while the hand's position is unknown";
+      return "it contains a number that is not finite; send nothing while the hand's position is "
+             "unknown";
     case PacketFlaw::range:
-      return "a number in it is too large; lengths are metres, times seconds";
+      return "it contains a number that is too large; use metres and seconds";
     case PacketFlaw::order:
-      return "its sequence or its stamp has not grown; wait for the timeout before starting again";
+      return "its sequence number or timestamp did not increase; wait for the timeout before "
+             "restarting";
     case PacketFlaw::other_client:
-      return "the device belongs to another client; end that one";
+      return "the device is in use by another client; stop that one";
     case PacketFlaw::no_address:
-      return "its socket has no address to answer to; bind it";
+      return "its socket has no return address; bind it";
   }
   return {};
 }

@@ -11,17 +11,16 @@ namespace palpate {
 
 void check(const Trajectory& trajectory) {
   if (trajectory.empty())
-    throw Error("a trajectory without rows cannot be played: give one row at least");
+    throw Error("a trajectory without rows cannot be played: give at least one row");
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const TrajectoryRow& row = trajectory[i];
     if (!std::isfinite(row.time) || !row.position.allFinite()) {
-      throw Error(
-          fmt::format("row {} of the trajectory is not finite: leave it out or repair it", i));
+      throw Error(fmt::format("row {} of the trajectory is not finite: remove or correct it", i));
     }
     if (i > 0 && !(row.time > trajectory[i - 1].time)) {
       throw Error(
-          fmt::format("row {} of the trajectory has t = {} s after t = {} s: times must grow", i,
-                      row.time, trajectory[i - 1].time));
+          fmt::format("row {} of the trajectory has t = {} s after t = {} s: times must increase",
+                      i, row.time, trajectory[i - 1].time));
     }
   }
 }
@@ -68,7 +67,8 @@ void ScriptedDevice::write(const Eigen::Vector3d& force) noexcept {
 std::string ScriptedDevice::reason() const {
   if (!failed_) return {};
   return fmt::format(
-      "the force written after t = {} s was not finite; look for the fault in what computed it",
+      "the force written after t = {} s was not finite; find the error in the code that computed "
+      "it",
       state_.time);
 }
 

@@ -41,7 +41,7 @@ SimulatedDeviceOptions checked(const SimulatedDeviceOptions& o) {
   require.not_negative("coulomb", o.coulomb, "give 0 or more newtons");
   require.not_negative("resolution", o.resolution, "give 0 or more metres");
   require(o.delay >= 0 && o.delay <= kMostDelay, "delay", o.delay, "give 0 to 16 steps");
-  require.positive("rate", o.rate, "give a positive number of steps a second");
+  require.positive("rate", o.rate, "give a positive number of steps per second");
   require.positive("maximum_force", o.maximum_force, "give a positive force in newtons");
   require.not_negative("hand.stiffness", o.hand.stiffness, "give 0 or more N/m");
   require.not_negative("hand.damping", o.hand.damping, "give 0 or more N s/m");
@@ -188,7 +188,7 @@ void SimulatedDevice::write(const Eigen::Vector3d& force) noexcept {
 std::string SimulatedDevice::reason() const {
   const Inside& in = *inside_;
   if (in.wrong == nullptr) return {};
-  return fmt::format("{} at t = {} s was not finite; look for the fault in what computed it",
+  return fmt::format("{} at t = {} s was not finite; find the error in the code that computed it",
                      in.wrong, in.state.time);
 }
 

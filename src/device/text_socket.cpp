@@ -114,7 +114,7 @@ struct TextSocket::Inside {
   }
 
   void require() const {
-    if (error) throw Error(fmt::format("the connection has ended ({})", error.message()));
+    if (error) throw Error(fmt::format("the connection was closed ({})", error.message()));
   }
 
   net::io_context io{1};
@@ -131,7 +131,7 @@ TextSocket::TextSocket(const std::string& url, double patience)
     : inside_(std::make_unique<Inside>()) {
   Inside& in = *inside_;
   in.connect(parse_url(url), patience);
-  if (in.error) throw Error(fmt::format("nobody answers at {} ({})", url, in.error.message()));
+  if (in.error) throw Error(fmt::format("no answer from {} ({})", url, in.error.message()));
   in.socket.text(true);
   in.socket.read_message_max(kLongestText);
   in.read();
@@ -153,7 +153,7 @@ TextSocket::~TextSocket() {
 void TextSocket::send(std::string text, double patience) {
   Inside& in = *inside_;
   const auto taken = [&in] { return in.sent || in.error; };
-  if (!in.run(patience, taken)) throw Error("the other side has stopped reading");
+  if (!in.run(patience, taken)) throw Error("the server stopped reading");
   in.require();
   in.sending = std::move(text);
   in.sent = false;
@@ -162,7 +162,7 @@ void TextSocket::send(std::string text, double patience) {
                           if (failed) in.error = failed;
                           in.sent = true;
                         });
-  if (!in.run(patience, taken)) throw Error("the other side has stopped reading");
+  if (!in.run(patience, taken)) throw Error("the server stopped reading");
   in.require();
 }
 

@@ -61,12 +61,12 @@ void check(const DeviceState& reading, const DeviceInfo& info) {
   const bool tool = reading.orientation.coeffs().allFinite() && std::isfinite(reading.gripper);
   if (tool && is_possible(reading)) return;
   throw Error(
-      fmt::format("{}: reported a position that is not a number, or impossible for a hand, {}",
+      fmt::format("{}: reported a position that is not a number or impossible for a hand, {}",
                   info.name, kDistrust));
 }
 
 std::string replaced_by(const std::string& found, const std::string& expected) {
-  return fmt::format("found {} instead of {}; start again to use it", found, expected);
+  return fmt::format("found {} instead of {}; restart to use it", found, expected);
 }
 
 // A connection's number, from 1 on; each one that is opened has the next.
@@ -156,7 +156,7 @@ void ThreadedDevice::Inside::start() {
       run(stop);
     });
   } catch (const std::system_error& error) {
-    throw Error(fmt::format("{}: the system gives no thread ({}); end other programs", info.name,
+    throw Error(fmt::format("{}: cannot start a thread ({}); close other programs", info.name,
                             error.what()));
   }
 }
@@ -202,8 +202,9 @@ void ThreadedDevice::Inside::check_move_to(const Reading& reading) const {
       std::max({reading.begin - newest.begin, reading.end - newest.end, 1 / info.rate});
   const double move = (reading.state.position - newest.state.position).norm();
   if (move <= kFastestMove * time + kCoarsestStep) return;
-  throw Error(fmt::format("{}: its position jumped by {:.1f} mm in {:.2f} ms, as no hand moves, {}",
-                          info.name, 1e3 * move, 1e3 * time, kDistrust));
+  throw Error(fmt::format(
+      "{}: its position jumped by {:.1f} mm in {:.2f} ms, faster than a hand can move, {}",
+      info.name, 1e3 * move, 1e3 * time, kDistrust));
 }
 
 Vector3d ThreadedDevice::Inside::applicable(double now) const noexcept {
@@ -278,13 +279,13 @@ std::string ThreadedDevice::reason() const {
   const Inside& in = *inside_;
   const DeviceStatus status = in.status.load();
   if (status == DeviceStatus::failed) {
-    return "a force that was written was not finite; look for the fault in what computed it";
+    return "a written force was not finite; find the error in the code that computed it";
   }
   if (status == DeviceStatus::ok) return {};
   const std::lock_guard lock(in.loss_mutex);
   if (!in.loss.empty()) return in.loss;
   return fmt::format(
-      "{}: does not answer; if that lasts, check its cable and its power, and what else keeps the "
+      "{}: does not answer; if this persists, check its cable and power, and what else keeps the "
       "computer busy",
       in.info.name);
 }

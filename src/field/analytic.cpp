@@ -27,7 +27,7 @@ AnalyticField::AnalyticField(const AnalyticOptions& options)
   require_length("tool_radius", options.tool_radius);
   require_length("reanchor_reach", options.reanchor_reach);
   if (!options.T_world_shape.matrix().allFinite()) {
-    throw Error("analytic field: the pose is not finite; give a rotation and a place in metres");
+    throw Error("analytic field: the pose is not finite; give a finite rotation and translation");
   }
 }
 
@@ -109,9 +109,9 @@ Distance TorusField::distance(const Eigen::Vector3d& x) const noexcept {
 }
 
 UnionField::UnionField(std::vector<const Field*> parts) : parts_(std::move(parts)) {
-  if (parts_.empty()) throw Error("union of fields: it has no part; give at least one");
+  if (parts_.empty()) throw Error("union of fields: it has no parts; give at least one");
   for (const Field* part : parts_) {
-    if (part == nullptr) throw Error("union of fields: a part is null; give fields that live");
+    if (part == nullptr) throw Error("union of fields: a part is null; give fields that exist");
   }
 }
 

@@ -40,12 +40,12 @@ void check(const FieldOptions& options) {
   const Requirement require{"field"};
   require.positive("threshold", options.threshold, "give a number above 0");
   require(options.raw_weights || options.threshold < 1, "threshold", options.threshold,
-          "give less than 1 with density-normalised weights (0.4 unless there is a reason)");
+          "give less than 1 with density-normalised weights (usually 0.4)");
   require(options.minimum_support > 0 && options.minimum_support < 1, "minimum_support",
           options.minimum_support, "give a number between 0 and 1");
   require.not_negative("tool_radius", options.tool_radius, "give 0 or more, in metres");
   require(options.tool_radius == 0 || !options.raw_weights, "tool_radius", options.tool_radius,
-          "give 0 with raw weights (the preset `paper` has a point for a tool)");
+          "give 0 with raw weights (the preset `paper` uses a point tool)");
 }
 
 FieldOptions paper_field(FieldKind kind) {

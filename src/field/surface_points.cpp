@@ -27,8 +27,9 @@ std::vector<float> reaches(const SurfacePoints& points) {
 
 void require_length(const char* column, std::size_t length, std::size_t expected) {
   if (length == expected) return;
-  throw Error(fmt::format("surface points: {} has {} entries and not {}; fill it, then finish()",
-                          column, length, expected));
+  throw Error(
+      fmt::format("surface points: {} has {} entries instead of {}; fill it, then call finish()",
+                  column, length, expected));
 }
 
 void require_range(const char* column, const std::vector<float>& values, float low, float high) {
@@ -89,8 +90,8 @@ void check_edges(const PointEdges& edges) {
   for (std::size_t i = 0; i < edges.of_point.size(); ++i) {
     const std::uint32_t edge = edges.of_point[i];
     if (edge < edges.start.size() || edge == PointEdges::kNone) continue;
-    throw Error(fmt::format("surface points: edges.of_point[{}] is {}, and there are {} edges", i,
-                            edge, edges.start.size()));
+    throw Error(fmt::format("surface points: edges.of_point[{}] is {}, but there are only {} edges",
+                            i, edge, edges.start.size()));
   }
   require_edges("edges.start", edges.start);
   require_edges("edges.end", edges.end);

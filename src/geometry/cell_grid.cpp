@@ -66,7 +66,7 @@ class Stack {
 
 CellGrid::CellGrid(std::span<const Eigen::Vector3f> positions) {
   if (positions.size() > detail::kPlaceMask) {
-    throw Error(fmt::format("index: {} points are more than the {} that it can hold; thin them out",
+    throw Error(fmt::format("index: {} points exceed the limit of {}; downsample them",
                             positions.size(), detail::kPlaceMask));
   }
   const detail::CellBuilder builder(positions);

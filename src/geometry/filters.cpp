@@ -112,7 +112,8 @@ struct Lattice {
 
 Lattice make_lattice(const PointCloud& cloud, double leaf) {
   if (!(leaf > 0) || !std::isfinite(leaf)) {
-    throw Error(fmt::format("voxel filter: a leaf of {} m; it must be positive and finite", leaf));
+    throw Error(
+        fmt::format("voxel filter: the leaf size is {} m; it must be positive and finite", leaf));
   }
   Lattice lattice;
   lattice.leaf = leaf;
@@ -134,9 +135,8 @@ Lattice make_lattice(const PointCloud& cloud, double leaf) {
     if (!(cubes <= kMaxCubes)) {
       const double length = static_cast<double>(upper[axis]) - static_cast<double>(lower[axis]);
       throw Error(
-          fmt::format("voxel filter: a leaf of {} m cuts a cloud of {} m into {:.3g} cubes along "
-                      "one axis, more "
-                      "than {}; take a leaf of {:.3g} m or more",
+          fmt::format("voxel filter: a leaf size of {} m divides a cloud of {} m into {:.3g} "
+                      "voxels along one axis, more than {}; give {:.3g} m or more",
                       leaf, length, cubes, kMaxCubes, 1.01 * length / kMaxCubes));
     }
     lattice.bits[static_cast<std::size_t>(axis)] =
@@ -237,7 +237,7 @@ PointCloud voxel_downsample(const PointCloud& cloud, double leaf,
   result.origin = cloud.origin;
   result.viewpoint = cloud.viewpoint;
   if (cloud.size() > kPlaceMask) {
-    throw Error(fmt::format("voxel filter: {} points are more than the {} that it can hold",
+    throw Error(fmt::format("voxel filter: {} points exceed the limit of {}; split the cloud",
                             cloud.size(), kPlaceMask));
   }
   const Lattice lattice = make_lattice(cloud, leaf);

@@ -43,7 +43,7 @@ void write(float count, const simd::Planes& planes, std::size_t query, std::size
 
 void check_radius(float radius) {
   if (!(radius > 0) || !std::isfinite(radius)) {
-    throw Error(fmt::format("normals: a radius of {} m; it must be positive and finite", radius));
+    throw Error(fmt::format("normals: the radius is {} m; it must be positive and finite", radius));
   }
 }
 

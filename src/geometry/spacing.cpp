@@ -229,7 +229,7 @@ std::vector<float> smooth(const CellGrid& grid, std::vector<float> spacings) {
 }  // namespace
 
 double mean_spacing(const CellGrid& grid, int k) {
-  if (k < 1) throw Error(fmt::format("spacing: k = {} neighbours; it takes one or more", k));
+  if (k < 1) throw Error(fmt::format("spacing: k = {} neighbours; give 1 or more", k));
   if (grid.size() < 2) return kLoneSpacing;
   const std::vector<float> means =
       k == 3 ? mean_distances_to_three(grid) : mean_distances(grid, static_cast<std::size_t>(k));

@@ -22,7 +22,7 @@ void check(const CellGrid& grid, std::span<const float> radii) {
   for (const float radius : radii) {
     if (!(radius > 0) || !std::isfinite(radius)) {
       throw Error(
-          fmt::format("weight sums: a radius of {} m; all must be positive and finite", radius));
+          fmt::format("weight sums: a radius is {} m; all must be positive and finite", radius));
     }
   }
 }

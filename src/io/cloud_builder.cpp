@@ -151,14 +151,14 @@ void check_options(const Input& input) {
   const double scale = input.options.scale;
   if (std::isfinite(scale) && scale > 0) return;
   fail(input, fmt::format("cannot multiply coordinates by a scale of {}", scale),
-       "Give a scale above zero, such as 0.001 for millimetres or 0.3048 for feet");
+       "Give a scale above zero, e.g. 0.001 for millimetres or 0.3048 for feet");
 }
 
 void check_not_empty(const Input& input, std::size_t kept, std::size_t dropped) {
   if (kept > 0) return;
   if (dropped > 0) {
     fail(input, fmt::format("none of the {} points is finite and valid", dropped),
-         "Check how the file was made, and its units and scale");
+         "Check how the file was generated, and its units and scale");
   }
   fail(input, "the file holds no points", "Export it again with its points (vertices)");
 }

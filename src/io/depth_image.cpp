@@ -35,10 +35,10 @@ std::size_t median_depth(const DepthImage& image) {
 Pinhole intrinsics_of(const Input& input, const DepthImage& image) {
   if (!input.options.intrinsics) {
     fail(input,
-         fmt::format("a depth image of {} x {} pixels, and the camera is not known", image.width,
+         fmt::format("a depth image of {} x {} pixels without camera intrinsics", image.width,
                      image.height),
-         "Give its intrinsics in pixels (--intrinsics fx,fy,cx,cy; a sequence.json or camera file "
-         "beside the image may hold them) and the metres of one depth step (--depth-unit)");
+         "Give them in pixels (--intrinsics fx,fy,cx,cy, or a sequence.json or camera file next to "
+         "the image) and the metres per depth unit (--depth-unit)");
   }
   const Pinhole camera = *input.options.intrinsics;
   const bool sane = std::isfinite(camera.cx) && std::isfinite(camera.cy) &&
@@ -46,9 +46,9 @@ Pinhole intrinsics_of(const Input& input, const DepthImage& image) {
                     camera.fy != 0;
   if (!sane) {
     fail(input,
-         fmt::format("intrinsics {},{},{},{} are those of no camera", camera.fx, camera.fy,
-                     camera.cx, camera.cy),
-         "Give fx,fy,cx,cy in pixels, fx and fy not zero");
+         fmt::format("intrinsics {},{},{},{} are invalid", camera.fx, camera.fy, camera.cx,
+                     camera.cy),
+         "Give fx,fy,cx,cy in pixels, with nonzero fx and fy");
   }
   return camera;
 }
@@ -56,8 +56,8 @@ Pinhole intrinsics_of(const Input& input, const DepthImage& image) {
 double unit_of(const Input& input) {
   const double unit = input.options.depth_unit;
   if (std::isfinite(unit) && unit > 0) return unit;
-  fail(input, fmt::format("a depth unit of {} metres", unit),
-       "Give the metres of one depth step, such as 0.001 for millimetres");
+  fail(input, fmt::format("invalid depth unit of {} metres", unit),
+       "Give the metres per depth unit, e.g. 0.001 for millimetres");
 }
 
 bool is_depth(const DepthImage& image, std::uint16_t sample) {
@@ -94,9 +94,9 @@ void check_image_size(const Input& input, std::uint64_t width, std::uint64_t hei
                     2 * width * height / kLargestRatio <= input.bytes.size();
   if (sane) return;
   fail(input,
-       fmt::format("{} x {} pixels announced, too many for {} bytes", width, height,
+       fmt::format("{} x {} pixels declared, too many for {} bytes", width, height,
                    input.bytes.size()),
-       "The file is cut or damaged: fetch it again");
+       "The file is truncated or damaged: download it again");
 }
 
 namespace {
@@ -161,7 +161,7 @@ class PgmHeaderParser {
     const std::optional<std::size_t> value = parse_count(text.substr(begin, offset_ - begin));
     if (!value) {
       fail_at_byte(input_, begin, fmt::format("the PGM header lacks its {}", what),
-                   "Fetch or export the image again");
+                   "Download or export the image again");
     }
     return *value;
   }
@@ -196,7 +196,7 @@ DepthImage read_pgm(const Input& input) {
   if (present < pixels) {
     fail_at_byte(input, input.bytes.size(),
                  fmt::format("the file ends after {} of {} pixels", present, pixels),
-                 "Fetch the image again");
+                 "Download the image again");
   }
   image.samples.reserve(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -216,8 +216,8 @@ constexpr std::size_t kLargestChunk = std::size_t{64} << 20U;  // bytes of text,
 
 void check(const Input& input, int status) {
   if (status == SPNG_OK) return;
-  fail(input, fmt::format("the PNG data is damaged or cut ({})", spng_strerror(status)),
-       "Fetch or export the image again");
+  fail(input, fmt::format("the PNG data is damaged or truncated ({})", spng_strerror(status)),
+       "Download or export the image again");
 }
 
 }  // namespace

@@ -80,9 +80,9 @@ Bytes read_stream(int fd, const std::string& name) {
     done += read_full(fd, bytes.span().subspan(done), name);
     if (done < bytes.size()) break;
     if (done >= kLongestStream) {
-      throw Error(name +
-                  ": more than 16 GiB without an end. Write it to a file and cut it into "
-                  "tiles first.");
+      throw Error(
+          name +
+          ": still not finished after 16 GiB. Write it to a file and split it into tiles first.");
     }
     bytes.resize(2 * bytes.size());
   }
@@ -108,20 +108,20 @@ Bytes read_bytes(const std::filesystem::path& path) {
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) fail_open(name, errno);
   if (S_ISDIR(status.st_mode)) {
-    throw Error(name + ": is a folder, not a file. Name one file in it.");
+    throw Error(name + ": is a folder, not a file. Give a file in it.");
   }
   if (S_ISFIFO(status.st_mode)) return read_stream(file.get(), name);
   if (!S_ISREG(status.st_mode)) {
-    throw Error(name +
-                ": is a device or socket, not a file. Name a file, or \"-\" to read "
-                "standard input.");
+    throw Error(
+        name +
+        ": is a device or socket, not a file. Give a file, or \"-\" to read standard input.");
   }
   Bytes bytes(static_cast<std::size_t>(status.st_size));
   const std::size_t done = read_full(file.get(), bytes.span(), name);
   if (done < bytes.size()) {
     throw Error(
-        fmt::format("{}: was cut from {} to {} bytes while it was read. Wait until the "
-                    "other program is done, then try again.",
+        fmt::format("{}: was truncated from {} to {} bytes while it was read. Wait until the other "
+                    "program is done, then try again.",
                     name, bytes.size(), done));
   }
   return bytes;
@@ -170,9 +170,9 @@ class Gunzip {
         if (!next_member()) break;
       } else if (status != Z_OK && status != Z_BUF_ERROR) {
         fail_at_byte(input_, in_, "the gzip data is damaged",
-                     "Fetch the file again; \"gzip -t\" tests it");
+                     "Download the file again; \"gzip -t\" tests it");
       } else if (in_ == input_.bytes.size() && done_ < out_.size()) {
-        fail(input_, "the gzip data ends early: the file is cut", "Fetch it again");
+        fail(input_, "the gzip data ends early: the file is truncated", "Download it again");
       }
       if (done_ == out_.size()) grow();
     }
@@ -208,7 +208,7 @@ class Gunzip {
       fail(input_,
            fmt::format("unpacks to more than {} MiB, over {} times its size", allowed >> 20U,
                        kLargestRatio),
-           "If it is to be trusted, unpack it with gunzip and read the result");
+           "If you trust it, unpack it with gunzip and read the result");
     }
     out_.resize(std::min(2 * out_.size(), allowed));
   }

@@ -15,8 +15,8 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::string_view kReadable =
-    "Readable are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, 16-bit depth PNG and PGM, and gzip around "
-    "them";
+    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, 16-bit depth PNG and PGM, optionally "
+    "gzipped";
 
 struct Known {
   std::string_view start;
@@ -46,11 +46,11 @@ constexpr std::string_view kExport =
 constexpr Refused kRefused[] = {
     {"\xfd"
      "7zXZ\0"sv,
-     "packed with xz",
+     "compressed with xz",
      "Unpack it first: \"xz -dk FILE\", or pipe it: \"xz -dc FILE | palpate ... -\""},
-    {"(\xb5/\xfd", "packed with zstd", "Unpack it first: zstd -d FILE"},
-    {"BZh", "packed with bzip2", "Unpack it first: bunzip2 -k FILE"},
-    {"PK\x03\x04", "a ZIP archive", "Unpack it first and name the cloud inside"},
+    {"(\xb5/\xfd", "compressed with zstd", "Unpack it first: zstd -d FILE"},
+    {"BZh", "compressed with bzip2", "Unpack it first: bunzip2 -k FILE"},
+    {"PK\x03\x04", "a ZIP archive", "Unpack it first and give the cloud inside"},
     {"\xff\xd8\xff", "a JPEG picture", kReadable},
     {"GIF8", "a GIF picture", kReadable},
     {"BM", "a BMP picture", kReadable},
@@ -70,11 +70,11 @@ constexpr Refused kRefused[] = {
     {"\x7f"
      "ELF",
      "a program", kReadable},
-    {"<", "a web page or XML document", "If it was fetched, fetch the file itself again"},
+    {"<", "a web page or XML document", "If it was downloaded, download the file itself again"},
     {"{", "a JSON document", kReadable},
     {"[", "a JSON document", kReadable},
     {"version https://git-lfs", "a Git LFS pointer, not the file itself",
-     "Fetch the file: git lfs pull"},
+     "Download the file: git lfs pull"},
 };
 
 // Text if the first few thousand bytes hold no control characters but white space.
@@ -110,8 +110,7 @@ FileKind text_kind(const Input& input) {
 void refuse_known(const Input& input) {
   for (const Refused& entry : kRefused) {
     if (input.text().starts_with(entry.start)) {
-      fail(input, fmt::format("this is {}, not a point cloud that can be read", entry.what),
-           entry.remedy);
+      fail(input, fmt::format("this is {}, not a supported point cloud", entry.what), entry.remedy);
     }
   }
 }
@@ -123,14 +122,14 @@ void refuse_known(const Input& input) {
   for (const std::byte b : input.bytes.first(std::min<std::size_t>(input.bytes.size(), 8))) {
     head += fmt::format(" {:02x}", std::to_integer<unsigned>(b));
   }
-  fail(input, fmt::format("no known kind of file (it starts with{})", head), kReadable);
+  fail(input, fmt::format("unknown file type (it starts with{})", head), kReadable);
 }
 
 }  // namespace
 
 FileKind kind_of(const Input& input) {
   if (input.bytes.empty()) {
-    fail(input, "the file is empty", "Fetch or export it again");
+    fail(input, "the file is empty", "Download or export it again");
   }
   for (const Known& entry : kKnown) {
     if (input.text().starts_with(entry.start)) return entry.kind;

@@ -38,7 +38,8 @@ class LasHeaderParser {
     header_.minor_version = std::to_integer<int>(data_[kMinor]);
     const int major = std::to_integer<int>(data_[kMajor]);
     if (major != 1 || header_.minor_version > 4) {
-      wrong(kMajor, fmt::format("LAS version {}.{} is not known", major, header_.minor_version));
+      wrong(kMajor,
+            fmt::format("LAS version {}.{} is not supported", major, header_.minor_version));
     }
     if (header_.minor_version == 4) need(kSmallest14);
     read_layout();
@@ -60,7 +61,7 @@ class LasHeaderParser {
     header_.compressed = (format & 0xC0U) != 0;  // LASzip marks the format byte
     header_.format = static_cast<int>(format & 0x3FU);
     if (header_.format > 10) {
-      wrong(kFormat, fmt::format("LAS point format {} is not known", header_.format));
+      wrong(kFormat, fmt::format("LAS point format {} is not supported", header_.format));
     }
     header_.record_size = load_as<std::uint16_t>(data_ + kRecordSize);
     if (header_.record_size < kRecordSizes[static_cast<std::size_t>(header_.format)]) {
@@ -70,8 +71,8 @@ class LasHeaderParser {
     header_.points_offset = load_as<std::uint32_t>(data_ + kPointsOffset);
     const std::size_t header_size = load_as<std::uint16_t>(data_ + kHeaderSize);
     if (header_size < kSmallest || header_.points_offset < header_size) {
-      wrong(kHeaderSize, fmt::format("a header of {} bytes with points from byte {} on",
-                                     header_size, header_.points_offset));
+      wrong(kHeaderSize, fmt::format("a header of {} bytes, but points from byte {}", header_size,
+                                     header_.points_offset));
     }
   }
 
@@ -81,10 +82,10 @@ class LasHeaderParser {
       header_.scale[axis] = load_as<double>(data_ + kScale + step);
       header_.offset[axis] = load_as<double>(data_ + kOffset + step);
       if (!std::isfinite(header_.scale[axis]) || header_.scale[axis] == 0) {
-        wrong(kScale + step, fmt::format("a coordinate scale of {}", header_.scale[axis]));
+        wrong(kScale + step, fmt::format("invalid coordinate scale of {}", header_.scale[axis]));
       }
       if (!std::isfinite(header_.offset[axis])) {
-        wrong(kOffset + step, fmt::format("a coordinate offset of {}", header_.offset[axis]));
+        wrong(kOffset + step, fmt::format("invalid coordinate offset of {}", header_.offset[axis]));
       }
     }
   }
@@ -97,7 +98,7 @@ class LasHeaderParser {
   }
 
   [[noreturn]] void wrong(std::size_t offset, std::string_view what) const {
-    fail_at_byte(input_, offset, what, "The file is damaged, or no LAS file: export it again");
+    fail_at_byte(input_, offset, what, "The file is damaged or not a LAS file: export it again");
   }
 
   const Input& input_;
@@ -169,8 +170,8 @@ class LasReader {
     if (present >= header_.points) return;
     fail_at_byte(input_, input_.bytes.size(),
                  fmt::format("the file ends after {} of {} points", present, header_.points),
-                 "Fetch or copy it again; \"lasinfo -repair_counters\" (LAStools) lets the points "
-                 "that are there be used");
+                 "Download or copy it again; \"lasinfo -repair_counters\" (LAStools) makes the "
+                 "present points usable");
   }
 
   const std::byte* record(std::size_t i) const {

@@ -61,7 +61,7 @@ class LazReader {
  public:
   LazReader(const Input& input, const LasHeader& header, const LaszipLibrary& library)
       : input_(input), header_(header), library_(library), file_(input.bytes) {
-    if (library_.create(&handle_) != 0) fail(input, "LASzip cannot start", "Install it anew");
+    if (library_.create(&handle_) != 0) fail(input, "LASzip cannot start", "Reinstall it");
   }
   LazReader(const LazReader&) = delete;
   LazReader& operator=(const LazReader&) = delete;
@@ -113,9 +113,9 @@ class LazReader {
     char* message = nullptr;
     library_.get_error(handle_, &message);
     fail(input_,
-         fmt::format("LASzip stops after {} of {} points: {}", present, header_.points,
+         fmt::format("LASzip stopped after {} of {} points: {}", present, header_.points,
                      excerpt(message == nullptr ? "no reason given" : message)),
-         "Fetch the file again; \"lasinfo\" or \"pdal info\" tests it");
+         "Download the file again; \"lasinfo\" or \"pdal info\" tests it");
   }
 
   const Input& input_;
@@ -133,7 +133,7 @@ CloudFile read_laz(const Input& input, const LasHeader& header,
   const std::optional<LaszipLibrary> library = load_laszip(libraries);
   if (!library) {
     fail(input,
-         fmt::format("{} points compressed as LAZ, and LASzip (liblaszip.so.8) is not installed",
+         fmt::format("{} points compressed as LAZ, but LASzip (liblaszip.so.8) is not installed",
                      header.points),
          "Convert the file with \"pdal translate IN.laz OUT.las\" or \"laszip -i IN.laz -o "
          "OUT.las\" and read the .las, or install LASzip 3 where the loader finds it "

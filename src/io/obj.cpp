@@ -91,8 +91,7 @@ class ObjReader {
       if (!number) wrong(begin, fmt::format("\"{}\" is not a number", excerpt(cell)));
       values[count] = *number;
     }
-    if (count < 3)
-      wrong(begin, fmt::format("{} numbers behind \"{}\" where 3 are needed", count, word));
+    if (count < 3) wrong(begin, fmt::format("{} numbers after \"{}\" instead of 3", count, word));
     return count;
   }
 

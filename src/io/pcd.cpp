@@ -163,20 +163,20 @@ class PcdReader {
     if (header_.points > unpacked / header_.point_size ||
         unpacked != header_.points * header_.point_size) {
       fail_at_byte(input_, header_.size + 4,
-                   fmt::format("{} bytes of data announced for {} points of {} bytes", unpacked,
+                   fmt::format("{} bytes of data declared for {} points of {} bytes", unpacked,
                                header_.points, header_.point_size),
-                   "The file is damaged: fetch or export it again");
+                   "The file is damaged: download or export it again");
     }
     if (data_.size() - kSizes < packed || unpacked / kLzfLargestRatio > packed) {
       fail_at_byte(
           input_, header_.size,
-          fmt::format("{} compressed bytes announced, {} present", packed, data_.size() - kSizes),
-          "The file is cut; compressed data cannot be used in part: fetch it again");
+          fmt::format("{} compressed bytes declared, {} present", packed, data_.size() - kSizes),
+          "The file is truncated, and compressed data cannot be used in part: download it again");
     }
     Bytes bytes(unpacked);
     if (const auto wrong = lzf_unpack(data_.subspan(kSizes, packed), bytes.span())) {
       fail_at_byte(input_, header_.size + kSizes + *wrong, "the compressed data is damaged",
-                   "Fetch or export the file again");
+                   "Download or export the file again");
     }
     return bytes;
   }
@@ -193,8 +193,8 @@ class PcdReader {
   [[noreturn]] void fail_cut(std::size_t present) const {
     fail_at_byte(input_, input_.bytes.size(),
                  fmt::format("the file ends after {} of {} points", present, header_.points),
-                 fmt::format("Fetch or export it again; to use the points that are there, write "
-                             "WIDTH {}, HEIGHT 1 and POINTS {} in its header",
+                 fmt::format("Download or export it again; to use the points that are present, "
+                             "write WIDTH {}, HEIGHT 1 and POINTS {} in its header",
                              present, present));
   }
 

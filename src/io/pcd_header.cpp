@@ -42,7 +42,7 @@ class PcdHeaderParser {
   PcdHeader run() {
     while (!has_data_) {
       if (scanner_.at_end()) {
-        fail(input_, "the PCD header has no DATA line", "The file is cut: fetch it again");
+        fail(input_, "the PCD header has no DATA line", "The file is truncated: download it again");
       }
       line_begin_ = scanner_.offset();
       std::string_view line = scanner_.next_line();
@@ -76,7 +76,7 @@ class PcdHeaderParser {
   std::size_t count(const Words& words) {
     const std::optional<std::size_t> number =
         words.size() == 1 ? parse_count(words[0]) : std::nullopt;
-    if (!number) wrong("here a single whole number is expected");
+    if (!number) wrong("expected a single whole number");
     return *number;
   }
 
@@ -106,9 +106,10 @@ class PcdHeaderParser {
   void make_fields() {
     line_begin_ = 0;
     const std::size_t n = names_.size();
-    if (n == 0 || n > kMostFields) wrong("the header names no FIELDS, or thousands of them");
+    if (n == 0 || n > kMostFields) wrong("the header has no FIELDS, or thousands of them");
     if (sizes_.size() != n || types_.size() != n || (!counts_.empty() && counts_.size() != n)) {
-      wrong(fmt::format("FIELDS names {} columns, but SIZE, TYPE or COUNT have another number", n));
+      wrong(
+          fmt::format("FIELDS has {} columns, but SIZE, TYPE or COUNT have a different number", n));
     }
     for (std::size_t i = 0; i < n; ++i) {
       PcdField field{.name = std::string(names_[i])};
@@ -121,7 +122,7 @@ class PcdHeaderParser {
       field.type = *type;
       field.count = counts_.empty() ? 1 : parse_count(counts_[i]).value_or(kLargestCount + 1);
       if (field.count > kLargestCount) {
-        wrong(fmt::format("field \"{}\" has no sensible COUNT", excerpt(names_[i])));
+        wrong(fmt::format("field \"{}\" has an invalid COUNT", excerpt(names_[i])));
       }
       field.offset = header_.point_size;
       header_.point_size += size * field.count;

@@ -149,7 +149,7 @@ class PlyReader {
     double length = 0;
     if (!cursor_.next(*property.list_count, length)) return false;
     if (!(length >= 0 && length <= 4294967295.0)) {
-      fail_at_byte(input_, begin, fmt::format("a list of {} items", length),
+      fail_at_byte(input_, begin, fmt::format("invalid list length {}", length),
                    "The file is damaged: export it again");
     }
     return cursor_.skip(property.type, static_cast<std::size_t>(length));
@@ -167,8 +167,8 @@ class PlyReader {
     fail_at_byte(input_, input_.bytes.size(),
                  fmt::format("the file ends after {} of {} rows of \"{}\"", present, element.count,
                              excerpt(element.name)),
-                 fmt::format("Fetch or export it again; to use the {} rows that are there, write "
-                             "\"element {} {}\" in its header",
+                 fmt::format("Download or export it again; to use the {} rows that are present, "
+                             "write \"element {} {}\" in its header",
                              present, excerpt(element.name), present));
   }
 

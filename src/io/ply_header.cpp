@@ -31,7 +31,8 @@ class PlyHeaderParser {
     (void)next_line();  // "ply": that is how we came here
     while (true) {
       if (scanner_.at_end()) {
-        fail(input_, "the PLY header has no end_header line", "The file is cut: fetch it again");
+        fail(input_, "the PLY header has no end_header line",
+             "The file is truncated: download it again");
       }
       line_begin_ = scanner_.offset();
       std::string_view line = next_line();
@@ -82,7 +83,7 @@ class PlyHeaderParser {
     const std::string_view name = take_word(rest);
     const std::string_view word = take_word(rest);
     const std::optional<std::size_t> count = parse_count(word);
-    if (name.empty() || !count) wrong(fmt::format("\"{}\" is no element count", excerpt(word)));
+    if (name.empty() || !count) wrong(fmt::format("\"{}\" is not an element count", excerpt(word)));
     count_column();
     header_.elements.push_back({std::string(name), *count, {}});
   }
@@ -94,7 +95,7 @@ class PlyHeaderParser {
     std::string_view word = take_word(rest);
     if (word == "list") {
       property.list_count = type(take_word(rest));
-      if (is_floating(*property.list_count)) wrong("a list's length is no whole number");
+      if (is_floating(*property.list_count)) wrong("the length type of a list is not an integer");
       word = take_word(rest);
     }
     property.type = type(word);

@@ -39,7 +39,7 @@ CloudFile read_kind(const Input& input, FileKind kind) {
     case FileKind::gzip:
       break;
   }
-  fail(input, "packed with gzip twice", "Unpack it once with gunzip");
+  fail(input, "compressed with gzip twice", "Unpack it once with gunzip");
 }
 
 // "cloud.ply.gz" holds "cloud.ply".
@@ -67,7 +67,8 @@ CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& 
     if (options.progress) options.progress(1.0);
     return file;
   } catch (const std::bad_alloc&) {
-    fail(input, "not enough memory for its points", "Thin the cloud or cut it into tiles first");
+    fail(input, "not enough memory for its points",
+         "Downsample the cloud or split it into tiles first");
   }
 }
 
@@ -77,8 +78,9 @@ CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& 
     const Bytes bytes = read_bytes(path);
     return read_cloud_bytes(bytes.span(), name, options);
   } catch (const std::bad_alloc&) {
-    throw Error(name +
-                ": not enough memory to read it. Thin the cloud or cut it into tiles first.");
+    throw Error(
+        name +
+        ": not enough memory to read it. Downsample the cloud or split it into tiles first.");
   }
 }
 

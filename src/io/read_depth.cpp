@@ -37,8 +37,8 @@ void check_size(const Input& input, const DepthImage& image, const CameraModel& 
   };
   if (fits(camera.width, image.width) && fits(camera.height, image.height)) return;
   fail(input,
-       fmt::format("an image of {} x {} pixels from a camera of {} x {}", image.width, image.height,
-                   camera.width, camera.height),
+       fmt::format("an image of {} x {} pixels, but the camera has {} x {}", image.width,
+                   image.height, camera.width, camera.height),
        "Give the camera's own images, or correct its width and height");
 }
 
@@ -46,9 +46,8 @@ void straighten(const Input& input, DepthImage& image, bool swapped) {
   if (swapped) {
     swap_bytes(image);
   } else if (looks_swapped(image)) {
-    fail(input, "the two bytes of its samples seem to be exchanged",
-         "If they are, say so (\"byte_order\": \"little\" in a sequence.json), or write the image "
-         "again");
+    fail(input, "the two bytes of its samples seem to be swapped",
+         "If so, set \"byte_order\": \"little\" in a sequence.json, or write the image again");
   }
 }
 

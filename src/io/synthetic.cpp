@@ -21,13 +21,13 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kJitter = 0.2;  // of the spacing
 
 constexpr std::array<SyntheticName, 7> kNames = {{
-    {"bumps", "a 20 x 20 cm relief of rounded bumps, seen from above"},
+    {"bumps", "a 20 x 20 cm surface of rounded bumps, seen from above"},
     {"sheet", "a gently waved 20 x 15 cm sheet that can be touched from both sides"},
     {"sphere", "a closed ball of 12 cm"},
     {"torus", "a closed ring of 20 cm, 6 cm thick"},
     {"table", "a table-top with a ball and a box on it"},
-    {"rabbit", "a closed rabbit of 20 cm, as a scan would show it"},
-    {"room", "a room of 4 x 3 m with furniture; points are five times as far apart"},
+    {"rabbit", "a closed rabbit of 20 cm, like a laser scan"},
+    {"room", "a room of 4 x 3 m with furniture; point spacing is five times as large"},
 }};
 
 struct Oriented {
@@ -292,7 +292,7 @@ PointCloud synthetic_cloud(std::string_view name, const SyntheticOptions& option
   if (name == "room") return room(options);
   std::string known;
   for (const SyntheticName& each : kNames) known += fmt::format(" {}", each.name);
-  throw Error(fmt::format("there is no synthetic cloud '{}': choose one of{}", name, known));
+  throw Error(fmt::format("unknown synthetic cloud '{}': choose one of{}", name, known));
 }
 
 }  // namespace palpate

@@ -71,7 +71,7 @@ class Reader {
         row(line);
       }
     }
-    if (stream.bad()) fail("could not be read to its end");
+    if (stream.bad()) fail("could not be read completely");
     if (!columns_) fail("is empty: the first line must name the columns t,hip_x,hip_y,hip_z");
     if (rows_.empty()) fail("has a header but no rows: give at least one step");
     return std::move(rows_);
@@ -90,10 +90,9 @@ class Reader {
       std::size_t found = 0;
       while (found < names.size() && names[found] != kColumns[wanted]) ++found;
       if (found == names.size()) {
-        fail(
-            fmt::format("there is no column '{}': the header line must name t,hip_x,hip_y,hip_z "
-                        "(it reads '{}')",
-                        kColumns[wanted], text.substr(0, 80)));
+        fail(fmt::format(
+            "no column '{}': the header line must name t,hip_x,hip_y,hip_z (it reads '{}')",
+            kColumns[wanted], text.substr(0, 80)));
       }
       columns[wanted] = found;
     }
@@ -112,13 +111,13 @@ class Reader {
       }
       const std::optional<double> value = number(cells[place]);
       if (!value) {
-        fail(fmt::format("'{}' in column '{}' is not a finite number: repair or remove the row",
+        fail(fmt::format("'{}' in column '{}' is not a finite number: correct or remove the row",
                          cells[place].substr(0, 40), kColumns[i]));
       }
       values[i] = *value;
     }
     if (!rows_.empty() && !(values[0] > rows_.back().time)) {
-      fail(fmt::format("t = {} s follows t = {} s: times must grow from row to row", values[0],
+      fail(fmt::format("t = {} s follows t = {} s: times must increase from row to row", values[0],
                        rows_.back().time));
     }
     rows_.push_back({values[0], {values[1], values[2], values[3]}});

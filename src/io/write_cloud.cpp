@@ -156,8 +156,8 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
   std::error_code ignored;
   std::filesystem::remove(path, ignored);
   throw Error(
-      fmt::format("{}: cannot be written ({} bytes). Check that the folder exists and may be "
-                  "written, and that the disk has room.",
+      fmt::format("{}: cannot be written ({} bytes). Check that the folder exists and is writable, "
+                  "and that the disk has space.",
                   path.string(), bytes.size()));
 }
 
@@ -175,7 +175,7 @@ void write_cloud(const std::filesystem::path& path, const PointCloud& cloud,
   std::error_code ignored;
   std::filesystem::remove(part, ignored);
   throw Error(
-      fmt::format("{}: cannot be replaced ({}). Check that it is no folder and may be written.",
+      fmt::format("{}: cannot be replaced ({}). Check that it is not a folder and is writable.",
                   path.string(), error.message()));
 }
 

@@ -14,7 +14,8 @@ namespace palpate::io {
 namespace {
 
 constexpr std::string_view kRemedy =
-    "A text cloud has a point a line, x y z first, or a header line that names the columns x, y, z";
+    "A text cloud has one point per line, x y z first, or a header line that names the columns x, "
+    "y, z";
 
 class XyzReader {
  public:
@@ -114,7 +115,7 @@ class XyzReader {
       }
     }
     if (count == 0) fail(input_, "no line holds numbers", kRemedy);
-    if (count < 3) fail(input_, fmt::format("{} columns where x y z need 3", count), kRemedy);
+    if (count < 3) fail(input_, fmt::format("{} columns, but x y z need 3", count), kRemedy);
     columns_ = columns_from_rows(count, rows);
   }
 
@@ -123,7 +124,7 @@ class XyzReader {
     if (cells_.count != columns_.count || cells_.too_many) {
       refuse_decimal_commas();
       fail_at_line(input_, line_begin_,
-                   fmt::format("{} columns where the first line has {}: \"{}\"", cells_.count,
+                   fmt::format("{} columns, but the first line has {}: \"{}\"", cells_.count,
                                columns_.count, excerpt(line_)),
                    kRemedy);
     }
@@ -136,7 +137,7 @@ class XyzReader {
   void refuse_decimal_commas() const {
     if (!has_decimal_commas(line_)) return;
     fail_at_line(input_, line_begin_, "commas inside numbers",
-                 "Write decimal points: sed 's/,/./g' does so where semicolons separate columns");
+                 "Use decimal points: sed 's/,/./g' does this if semicolons separate the columns");
   }
 
   // An empty cell is a missing value.
@@ -156,10 +157,10 @@ class XyzReader {
   }
 
   [[noreturn]] void fail_cut(std::size_t present, std::size_t announced) const {
-    fail(input_,
-         fmt::format("holds {} points where its first line announces {}", present, announced),
-         fmt::format("Fetch it again; to use the points that are there, write {} in its first line",
-                     present));
+    fail(input_, fmt::format("has {} points, but its first line declares {}", present, announced),
+         fmt::format(
+             "Download it again; to use the points that are present, write {} in its first line",
+             present));
   }
 
   const Input& input_;

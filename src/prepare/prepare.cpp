@@ -105,8 +105,8 @@ class Preparation {
  private:
   void require_points() const {
     if (!cloud_->empty()) return;
-    throw Error(
-        fmt::format("no point is left of {}: check the clip box and the file", report_.points_in));
+    throw Error(fmt::format("none of the {} points is left: check the clip box and the file",
+                            report_.points_in));
   }
 
   void index() {

@@ -22,16 +22,16 @@ constexpr double kSilentIntervals = 3;
 void check(const SourceOptions& source) {
   for (const double radius : {source.prepare.minimum_radius, source.prepare.radius.value_or(0)}) {
     if (radius >= 0 && std::isfinite(radius)) continue;
-    throw Error(fmt::format("a support radius of {} m; give a length in metres", radius));
+    throw Error(fmt::format("invalid support radius of {} m; give a length in metres", radius));
   }
   const PolicyOptions& options = source.policy;
   if (options.history < 1 || options.history > static_cast<int>(Snapshot::kMaxLayers) - 1) {
-    throw Error(fmt::format("policy: a history of {} clouds; give 1 to {}", options.history,
+    throw Error(fmt::format("policy: invalid history of {} clouds; give 1 to {}", options.history,
                             Snapshot::kMaxLayers - 1));
   }
   const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
   if (!positive(options.silence) || !positive(options.fade)) {
-    throw Error(fmt::format("policy: silence of {} s and fade in {} s; give times above 0",
+    throw Error(fmt::format("policy: invalid silence of {} s or fade of {} s; give times above 0",
                             options.silence, options.fade));
   }
 }
@@ -121,8 +121,8 @@ std::shared_ptr<const Snapshot> Intake::take(const PointCloud& cloud, double sta
   time_of("stamp", stamp);
   if (clouds_ == Policy::morph) {
     throw Error(
-        "policy morph is for depth frames, whose pixels keep their identity; clouds take replace, "
-        "average, crossfade or fusion");
+        "policy morph works only with depth frames; give replace, average, crossfade or fusion for "
+        "clouds");
   }
   const bool clips = options_.policy.clip_to_reach && !arrival.reach.empty();
   const PointCloud clipped = clips ? within_reach(cloud, arrival) : PointCloud();

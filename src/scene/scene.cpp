@@ -17,12 +17,13 @@ Source& Scene::add(std::string name, const SourceOptions& options) {
   }
   if (*fields_ > 0) {
     throw Error(fmt::format(
-        "cannot add '{}': the scene is being touched; add sources before making fields of it",
-        name));
+        "cannot add '{}': the scene is already in use; add sources before creating fields", name));
   }
   const bool taken =
       std::ranges::any_of(sources_, [&](const Source& source) { return source.name() == name; });
-  if (taken) throw Error(fmt::format("a source named '{}' is in the scene; choose another", name));
+  if (taken)
+    throw Error(
+        fmt::format("the scene already has a source named '{}'; choose another name", name));
   if (!seams_) seams_ = std::make_shared<Seams>();
   Source& source = sources_.emplace_back(std::move(name), options);
   source.seams_ = seams_;

@@ -29,7 +29,7 @@ void check_factor(const std::string& name, const char* option, double factor) {
 
 void check(const std::string& name, const Snapshot& snapshot) {
   if (snapshot.layers.size() > Snapshot::kMaxLayers) {
-    throw Error(fmt::format("source '{}': a snapshot of {} layers; at most {} are felt", name,
+    throw Error(fmt::format("source '{}': a snapshot of {} layers; give at most {}", name,
                             snapshot.layers.size(), Snapshot::kMaxLayers));
   }
   if (!std::isfinite(snapshot.start) || !std::isfinite(snapshot.end) ||
@@ -41,7 +41,8 @@ void check(const std::string& name, const Snapshot& snapshot) {
   check_factor(name, "presence_start", snapshot.presence_start);
   check_factor(name, "presence_end", snapshot.presence_end);
   for (const Layer& layer : snapshot.layers) {
-    if (!layer.points) throw Error(fmt::format("source '{}': a layer without points", name));
+    if (!layer.points)
+      throw Error(fmt::format("source '{}': a layer has no points; give every layer some", name));
     check_factor(name, "a layer's weight_start", layer.weight_start);
     check_factor(name, "a layer's weight_end", layer.weight_end);
     check(*layer.points);

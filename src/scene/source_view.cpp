@@ -30,7 +30,7 @@ SourceView::SourceView(Handoff<Snapshot>& handoff, const std::atomic<double>& le
                        const std::string& name)
     : handoff_(&handoff), wanted_radius_(&least_radius), reader_(handoff.join(name)) {
   if (reader_ == Handoff<Snapshot>::kReaders) {
-    throw Error(fmt::format("the scene has {} fields already; destroy one before making another",
+    throw Error(fmt::format("the scene already has {} fields; destroy one before creating another",
                             Handoff<Snapshot>::kReaders));
   }
 }

@@ -37,7 +37,7 @@ std::optional<Objection> check_form(const DepthFrame& frame) {
                     camera.height, frame.depth.size(), frame.colors.size())};
   }
   if (frame.T_world_sensor && !frame.T_world_sensor->matrix().allFinite()) {
-    return Objection{&StreamDrops::garbage, "a frame whose pose is not finite"};
+    return Objection{&StreamDrops::garbage, "a frame with a pose that is not finite"};
   }
   return {};
 }
@@ -89,15 +89,16 @@ std::optional<Objection> FrameCheck::examine(const DepthFrame& frame, double lat
 
 std::optional<Objection> FrameCheck::check_stamp(double stamp, double latest) const {
   if (!std::isfinite(stamp) || stamp > latest) {
-    return Objection{
-        &StreamDrops::late,
-        fmt::format("a frame taken at {} s, which is {}", stamp,
-                    stamp > latest ? "yet to come: is the camera on another clock?" : "no time")};
+    return Objection{&StreamDrops::late,
+                     fmt::format("a frame taken at {} s, which is {}", stamp,
+                                 stamp > latest ? "in the future: is the camera on another clock?"
+                                                : "not a valid time")};
   }
   if (stamp_ && stamp <= *stamp_) {
     return Objection{
         &StreamDrops::late,
-        fmt::format("a frame taken at {:.6f} s, not after the one of {:.6f} s", stamp, *stamp_)};
+        fmt::format("a frame taken at {:.6f} s, not later than the previous one at {:.6f} s", stamp,
+                    *stamp_)};
   }
   return {};
 }
@@ -125,13 +126,12 @@ std::optional<Objection> FrameCheck::check_size(const DepthFrame& frame) {
 std::optional<Objection> FrameCheck::check_picture(const DepthFrame& frame) {
   if (is_empty(frame.depth)) {
     return Objection{&StreamDrops::empty,
-                     "a frame without a single depth: is the lens covered, or "
-                     "everything out of range?"};
+                     "a frame without any depth: is the lens covered, or everything out of range?"};
   }
   if (allow_repeats_) return {};
   const std::uint64_t picture = sum_of(frame.depth);
   if (picture_ == picture) {
-    return Objection{&StreamDrops::repeated, "a frame that repeats the one before bit for bit"};
+    return Objection{&StreamDrops::repeated, "a frame identical to the previous one"};
   }
   picture_ = picture;
   return {};

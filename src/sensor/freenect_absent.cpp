@@ -8,8 +8,8 @@ DriverInfo freenect_driver() {
           .description = "Kinect v1",
           .available = false,
           .missing =
-              "this build has no libfreenect. Install libfreenect-dev (Debian, Ubuntu) and build "
-              "palpate again.",
+              "this build has no libfreenect. Install libfreenect-dev (Debian, Ubuntu) and rebuild "
+              "palpate.",
           .devices = {}};
 }
 

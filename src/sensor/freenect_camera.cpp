@@ -15,10 +15,9 @@
 namespace palpate::sensor {
 namespace {
 
-constexpr const char* kMissing =
-    "the USB system cannot be reached. Give this user access to /dev/bus/usb";
+constexpr const char* kMissing = "USB is not accessible. Give this user access to /dev/bus/usb";
 constexpr const char* kSilence =
-    "Is its own power supply plugged in? A Kinect needs it besides USB.";
+    "Is its power supply plugged in? A Kinect needs it in addition to USB.";
 constexpr double kTicks = 60e6;  // of the device's clock, a second
 constexpr std::uint16_t kNoMillimetres = 10'000;
 
@@ -58,18 +57,17 @@ freenect_frame_mode best_mode() {
 // What libusb's numbers mean to a user.
 std::string why_not(int code) {
   if (code == -3) {
-    return "there is no right to use it. Plug it in again after installing libfreenect0.5 (its "
-           "udev "
-           "rules), and be in the group plugdev";
+    return "no permission to use it. Install libfreenect0.5 (its udev rules), join the group "
+           "plugdev, and plug it in again";
   }
   if (code == -6) {
-    return "it is in use. End the other program; if there is none, the kernel holds it: sudo "
-           "modprobe -r gspca_kinect";
+    return "it is in use. Close the other program; if there is none, the kernel driver uses it: "
+           "sudo modprobe -r gspca_kinect";
   }
-  if (code == -4) return "it is gone. Plug it in again";
+  if (code == -4) return "it was disconnected. Plug it in again";
   return fmt::format(
-      "libfreenect answers {}. Is it plugged into USB and into its own power supply, "
-      "used by no other program, and may this user use it (group plugdev)?",
+      "libfreenect returned {}. Check that it is plugged into USB and its power supply, that no "
+      "other program uses it, and that this user is in the group plugdev",
       code);
 }
 
@@ -81,9 +79,8 @@ class FreenectConnection final : public Connection {
     const int count = freenect_num_devices(context_.get());
     if (number >= count) {
       throw Error(
-          fmt::format("{}: there is no such Kinect, {} found. Plug it into USB and into its "
-                      "own power supply.",
-                      name_, count == 0 ? "none was" : fmt::format("{} were", count)));
+          fmt::format("{}: no such Kinect, {} found. Plug it into USB and its power supply.", name_,
+                      count == 0 ? "none was" : fmt::format("{} were", count)));
     }
     freenect_device* device = nullptr;
     check(freenect_open_device(context_.get(), &device, number), "cannot be opened");
@@ -126,14 +123,14 @@ class FreenectConnection final : public Connection {
 
   void start() {
     mode_ = best_mode();
-    if (mode_.is_valid == 0) throw Error(name_ + ": knows no depth mode of 640 x 480. Update it.");
+    if (mode_.is_valid == 0) throw Error(name_ + ": has no depth mode of 640 x 480. Update it.");
     const auto pixels =
         static_cast<std::size_t>(mode_.width) * static_cast<std::size_t>(mode_.height);
     samples_.resize(std::max(pixels, static_cast<std::size_t>(mode_.bytes) / 2));
     freenect_set_user(device_.get(), this);
     freenect_set_depth_callback(device_.get(), &FreenectConnection::receive);
-    check(freenect_set_depth_mode(device_.get(), mode_), "does not take its depth mode");
-    check(freenect_set_depth_buffer(device_.get(), samples_.data()), "does not take a buffer");
+    check(freenect_set_depth_mode(device_.get(), mode_), "does not accept its depth mode");
+    check(freenect_set_depth_buffer(device_.get(), samples_.data()), "does not accept a buffer");
     check(freenect_start_depth(device_.get()), "does not start");
   }
 

@@ -16,7 +16,7 @@ using namespace sensor;
 
 DriverInfo simulated_driver() {
   DriverInfo driver{.name = "simulated",
-                    .description = "scenes made by formulas, seen with a sensor's noise",
+                    .description = "analytic scenes with simulated sensor noise",
                     .missing = {},
                     .devices = {}};
   for (const SimulatedName& scene : simulated_names()) {
@@ -46,9 +46,8 @@ std::unique_ptr<DepthCamera> open_camera(const std::string& name, const CameraOp
   if (driver == "freenect") return open_freenect(device, options);
   if (name.ends_with(".oni")) return open_openni2(name, options);
   throw Error(
-      fmt::format("{}: no such camera. Cameras are simulated[:SCENE], sequence:DIR, "
-                  "openni2[:URI], FILE.oni and freenect[:NUMBER]; 'palpate cameras' lists "
-                  "those that are there.",
+      fmt::format("{}: no such camera. Cameras are simulated[:SCENE], sequence:DIR, openni2[:URI], "
+                  "FILE.oni and freenect[:NUMBER]; 'palpate cameras' lists those connected.",
                   name));
 }
 

@@ -4,13 +4,13 @@
 namespace palpate::sensor {
 
 DriverInfo openni2_driver() {
-  return {.name = "openni2",
-          .description = "PrimeSense and Asus Xtion cameras, and .oni recordings",
-          .available = false,
-          .missing =
-              "this build has no OpenNI2. Install libopenni2-dev (Debian, Ubuntu) and build "
-              "palpate again.",
-          .devices = {}};
+  return {
+      .name = "openni2",
+      .description = "PrimeSense and Asus Xtion cameras, and .oni recordings",
+      .available = false,
+      .missing =
+          "this build has no OpenNI2. Install libopenni2-dev (Debian, Ubuntu) and rebuild palpate.",
+      .devices = {}};
 }
 
 std::unique_ptr<DepthCamera> open_openni2(const std::string& /*device*/,

@@ -34,10 +34,11 @@ bool is_recording(std::string_view device) {
 // What a camera that cannot be opened may need.
 std::string remedy(const std::string& device) {
   if (is_recording(device)) {
-    return "Is it an OpenNI2 recording, whole and readable? Those of OpenNI 1 are not always";
+    return "Check that it is a complete, readable OpenNI2 recording; OpenNI 1 recordings do not "
+           "always work";
   }
-  return "Plug it into USB; be in the group video or plugdev (the udev rules come with "
-         "libopenni2-0), and end other programs that use it. Orbbec's Astra needs Orbbec's own "
+  return "Plug it into USB, join the group video or plugdev (libopenni2-0 installs the udev "
+         "rules), and close other programs that use it. The Orbbec Astra needs Orbbec's own "
          "OpenNI2";
 }
 
@@ -135,7 +136,7 @@ class OpenNi2Connection final : public Connection {
         device_name_(device),
         device_(open_device(), {library}),
         stream_(library, device_.get()) {
-    check(stream_.create(), "has no depth that can be had");
+    check(stream_.create(), "has no depth stream");
     if (stream_.is_file()) {
       stream_.play(options.clock == nullptr);
       once_ = !options.loop;
@@ -182,8 +183,8 @@ class OpenNi2Connection final : public Connection {
   [[nodiscard]] std::string damage() const override {
     return fmt::format("{}: a damaged frame of {}. {}", name_, damaged_,
                        is_recording(device_name_)
-                           ? "It was left out."
-                           : "If it happens again, plug the camera into another USB socket.");
+                           ? "It was skipped."
+                           : "If it happens again, plug the camera into another USB port.");
   }
 
  private:
@@ -262,10 +263,9 @@ std::unique_ptr<DepthCamera> open_openni2(const std::string& device, const Camer
   if (recording && !std::filesystem::exists(device)) {
     throw Error(name + ": no such file. Check the path.");
   }
-  const char* silence =
-      recording ? "Recordings without the properties of a camera (those of OpenNI2's dummy device) "
-                  "are never played by OpenNI2; record it again from a camera."
-                : "Plug it out and in again, into USB 2 if it is on USB 3.";
+  const char* silence = recording ? "OpenNI2 cannot play recordings without camera properties "
+                                    "(made with its dummy device); record it again from a camera."
+                                  : "Unplug it and plug it in again, into USB 2 if it is on USB 3.";
   // Started here once: a stream opens a lost device again on its own thread.
   const Library library = std::make_shared<OpenNi2Library>();
   return std::make_unique<LiveCamera>(

@@ -26,8 +26,8 @@ OpenNi2Library::OpenNi2Library() : library_(load_openni2()) {
   find_all();
   if (initialize_(ONI_API_VERSION) == ONI_STATUS_OK) return;
   throw Error(
-      fmt::format("openni2: the library does not start ({}). Install libopenni2-0 again; its "
-                  "drivers lie in OpenNI2/Drivers beside it.",
+      fmt::format("openni2: the library does not start ({}). Reinstall libopenni2-0; its drivers "
+                  "are in OpenNI2/Drivers next to it.",
                   last_words()));
 }
 

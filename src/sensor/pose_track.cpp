@@ -83,13 +83,14 @@ std::vector<ListedFrame> parse_frame_list(std::string_view text, const std::stri
     if (line.empty() || line.front() == '#') continue;
     std::optional<ListedFrame> frame = frame_of(line);
     if (!frame) {
-      io::fail_at_line(input, offset,
-                       "this is neither \"time file\" nor \"time file time file\" with one of the "
-                       "files under depth/",
-                       kRemedy);
+      io::fail_at_line(
+          input, offset,
+          "this is neither \"time file\" nor \"time file time file\" with one file under depth/",
+          kRemedy);
     }
     if (!frames.empty() && frame->stamp <= frames.back().stamp) {
-      io::fail_at_line(input, offset, "this time is not after that of the line before", kRemedy);
+      io::fail_at_line(input, offset, "this time is not later than that of the previous line",
+                       kRemedy);
     }
     frames.push_back(std::move(*frame));
   }
@@ -136,7 +137,8 @@ Eigen::Isometry3d read_matrix(const Input& input, TextScanner& scanner) {
     matrix.row(row) = Eigen::Map<const Eigen::RowVector4d>(values->data());
   }
   const auto pose = rigid(matrix.block<3, 1>(0, 3), Eigen::Matrix3d(matrix.block<3, 3>(0, 0)));
-  if (!pose) io::fail_at_line(input, begin, "this matrix is no rotation and place", kPoseRemedy);
+  if (!pose)
+    io::fail_at_line(input, begin, "this matrix is not a rotation and translation", kPoseRemedy);
   return *pose;
 }
 
@@ -154,11 +156,12 @@ PoseTrack read_track(const Input& input) {
     const auto [t, x, y, z, qx, qy, qz, qw] = *v;
     const auto pose = rigid({x, y, z}, Eigen::Quaterniond(qw, qx, qy, qz));
     if (!pose) {
-      io::fail_at_line(input, offset, "this quaternion's length is not 1, or the place is none",
+      io::fail_at_line(input, offset,
+                       "this quaternion's length is not 1, or the position is not finite",
                        kPoseRemedy);
     }
     if (!track.empty() && t <= track.back().stamp) {
-      io::fail_at_line(input, offset, "this time is not after that of the line before",
+      io::fail_at_line(input, offset, "this time is not later than that of the previous line",
                        kPoseRemedy);
     }
     track.push_back({t, *pose});
@@ -174,7 +177,7 @@ PosesByOrder read_by_order(const Input& input) {
     std::string_view line = scanner.next_line();
     if (is_comment(line)) continue;
     const auto number = io::parse_count(take_word(line));
-    if (!number) io::fail_at_line(input, offset, "a frame's number is missing", kPoseRemedy);
+    if (!number) io::fail_at_line(input, offset, "a frame number is missing", kPoseRemedy);
     result.poses[*number] = read_matrix(input, scanner);
   }
   return result;
@@ -230,7 +233,7 @@ Poses parse_poses(std::string_view text, const std::string& name) {
   if (numbers<8>(first)) return read_track(input);
   if (text.find("frame-") != std::string_view::npos) return read_by_number(input);
   if (numbers<3>(first)) return read_by_order(input);
-  io::fail(input, "no poses that are known",
+  io::fail(input, "unknown pose format",
            "Give lines \"time x y z qx qy qz qw\", or 4 x 4 matrices as in docs/sequences.md");
 }
 

@@ -46,13 +46,13 @@ SequenceDescription describe(const fs::path& folder) {
   if (is_file(description)) return parse_description(text_of(description), description.string());
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) {
-    throw Error(fmt::format("{}: no such folder. Give the folder of a sequence.", folder.string()));
+    throw Error(fmt::format("{}: no such folder. Give a sequence folder.", folder.string()));
   }
   SequenceDescription sequence = tum_layout(folder);
   if (sequence.frames.empty()) {
     throw Error(
-        fmt::format("{}: holds no sequence. Write a sequence.json there (docs/sequences.md), or "
-                    "add the depth.txt or associations.txt of a TUM RGB-D sequence.",
+        fmt::format("{}: contains no sequence. Add a sequence.json (docs/sequences.md), or the "
+                    "depth.txt or associations.txt of a TUM RGB-D sequence.",
                     folder.string()));
   }
   return sequence;
@@ -63,7 +63,7 @@ std::string text_named(const fs::path& folder, const std::string& file, std::str
   const fs::path path = folder / file;
   if (is_file(path)) return text_of(path);
   throw Error(
-      fmt::format("{}: no such file, which \"{}\" in {} names. Add it, or correct the name.",
+      fmt::format("{}: no such file, but \"{}\" in {} names it. Add it, or correct the name.",
                   path.string(), field, (folder / "sequence.json").string()));
 }
 
@@ -106,8 +106,8 @@ void check_stamps(const fs::path& folder, const std::vector<double>& stamps, std
                          std::ranges::adjacent_find(stamps, std::greater_equal{}) == stamps.end());
   if (good) return;
   throw Error(
-      fmt::format("{}: \"stamps\" has {} times for {} images, or they do not grow. Give one "
-                  "time in seconds an image, each after the one before.",
+      fmt::format("{}: \"stamps\" has {} times for {} images, or they do not increase. Give one "
+                  "increasing time in seconds per image.",
                   (folder / "sequence.json").string(), stamps.size(), images));
 }
 

@@ -58,7 +58,7 @@ SequenceCamera::SequenceCamera(Sequence sequence, const SequenceOptions& options
               .invalid = sequence_.invalid,
               .swapped = sequence_.swapped} {
   if (sequence_.frames.empty()) {
-    throw Error(fmt::format("{}: a sequence without frames. Add 16-bit depth images (PNG, PGM).",
+    throw Error(fmt::format("{}: the sequence has no frames. Add 16-bit depth images (PNG, PGM).",
                             sequence_.name));
   }
   lap_ = sequence_.frames.back().stamp - sequence_.frames.front().stamp + 1 / sequence_.rate;
@@ -97,7 +97,7 @@ void SequenceCamera::load() {
 void SequenceCamera::load_image(const SequenceFrame& frame) {
   if (sequence_.posed && !frame.T_world_sensor) {
     status_ = CameraStatus::unposed;
-    failure_ = fmt::format("{}: no pose is known of it, though of others. It was left out.",
+    failure_ = fmt::format("{}: it has no pose, but other frames have one. It was skipped.",
                            frame.image.string());
     return;
   }

@@ -104,7 +104,7 @@ json parse(std::string_view text, const std::string& name) {
   try {
     document = json::parse(text.begin(), text.end());
   } catch (const json::exception& error) {
-    throw Error(fmt::format("{}: not JSON ({}). Correct it there.", name, error.what()));
+    throw Error(fmt::format("{}: not valid JSON ({}). Correct it there.", name, error.what()));
   }
   if (!document.is_object()) {
     throw Error(fmt::format("{}: not an object. Give {{\"fx\": ..., \"fy\": ..., ...}}.", name));
@@ -116,10 +116,9 @@ json parse(std::string_view text, const std::string& name) {
 void check_names(const json& document, const std::string& name) {
   for (const auto& [field, value] : document.items()) {
     if (std::ranges::find(kFields, field) != kFields.end() || field.ends_with("note")) continue;
-    throw Error(
-        fmt::format("{}: there is no field \"{:.40}\". Fields are {}; and any whose name "
-                    "ends in \"note\".",
-                    name, field, fmt::join(kFields, ", ")));
+    throw Error(fmt::format(
+        "{}: unknown field \"{:.40}\". Fields are {}, and any whose name ends in \"note\".", name,
+        field, fmt::join(kFields, ", ")));
   }
 }
 
@@ -135,8 +134,7 @@ CameraModel camera_of(const Fields& fields) {
   camera.pinhole.cx = fields.number("cx", -kFar, kFar, kCentre);
   camera.pinhole.cy = fields.number("cy", -kFar, kFar, kCentre);
   constexpr std::string_view kWanted =
-      "[k1, k2, p1, p2, k3] after Brown and Conrady; trailing "
-      "zeros may be left out";
+      "[k1, k2, p1, p2, k3] (Brown-Conrady); trailing zeros are optional";
   std::vector<double> k = fields.numbers("distortion", kWanted);
   if (k.size() > 5) fields.fail("distortion", kWanted);
   k.resize(5);
@@ -173,8 +171,7 @@ std::string file_of(const Fields& fields, std::string_view field) {
 
 Eigen::Isometry3d mounting_of(const Fields& fields) {
   constexpr std::string_view kWanted =
-      "[x, y, z, qx, qy, qz, qw] in metres, the quaternion of "
-      "length 1";
+      "[x, y, z, qx, qy, qz, qw] with metres and a unit quaternion";
   const std::vector<double> v = fields.numbers("T_pose_camera", kWanted);
   if (v.empty() && fields.find("T_pose_camera") == nullptr) return Eigen::Isometry3d::Identity();
   if (v.size() != 7) fields.fail("T_pose_camera", kWanted);
@@ -192,13 +189,13 @@ SequenceDescription parse_description(std::string_view text, const std::string& 
   SequenceDescription sequence;
   sequence.camera = camera_of(fields);
   sequence.depth_unit = fields.number("depth_unit_m", 1e-9, kLargestUnit,
-                                      "the metres of one depth step, such as 0.001", 1e-3);
+                                      "the metres per depth unit, e.g. 0.001", 1e-3);
   sequence.invalid = invalid_of(fields);
   sequence.swapped = second_of(fields, "byte_order", "big", "little");
-  sequence.rate = fields.number("fps", 1e-3, kFastest, "frames a second", 30);
+  sequence.rate = fields.number("fps", 1e-3, kFastest, "frames per second", 30);
   sequence.images = fields.text("images", "the name of a folder in the same folder");
   sequence.frames = file_of(fields, "frames");
-  sequence.stamps = fields.numbers("stamps", "a list of times in seconds, one an image");
+  sequence.stamps = fields.numbers("stamps", "a list of times in seconds, one per image");
   sequence.poses = file_of(fields, "pose");
   sequence.world_to_camera =
       second_of(fields, "pose_direction", "camera_to_world", "world_to_camera");

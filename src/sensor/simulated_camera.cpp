@@ -27,10 +27,9 @@ double draw(std::uint64_t seed, std::uint64_t frame) {
 
 void demand(bool right, const char* what, double value) {
   if (!right) {
-    throw Error(
-        fmt::format("a simulated camera cannot have {} {:g}; docs/simulated_cameras.md "
-                    "says what it may be",
-                    what, value));
+    throw Error(fmt::format(
+        "a simulated camera cannot have {} {:g}; see the limits in docs/simulated_cameras.md", what,
+        value));
   }
 }
 

@@ -98,8 +98,8 @@ Vector2d undistorted(const Distortion& d, const Vector2d& image) {
     p -= error;
   }
   throw Error(
-      fmt::format("the distortion of a simulated camera cannot be undone at ({:.3f}, "
-                  "{:.3f}); give smaller coefficients",
+      fmt::format("the distortion of a simulated camera cannot be inverted at ({:.3f}, {:.3f}); "
+                  "give smaller coefficients",
                   image.x(), image.y()));
 }
 

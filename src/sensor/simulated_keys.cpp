@@ -69,7 +69,7 @@ void set_noise(SimulatedNoiseOptions& noise, const std::string& text) {
              .mixed = 0.5,
              .pattern = 1e-3};
   } else {
-    throw Error(fmt::format("'{}' is none of none, a, b, c, structured, stereo and tof", text));
+    throw Error(fmt::format("'{}' is not one of none, a, b, c, structured, stereo and tof", text));
   }
 }
 
@@ -154,14 +154,15 @@ void set(SimulatedSetup& setup, const Key& key, const std::string& value) {
 void set_simulated(SimulatedSetup& setup, const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) {
-    throw Error(fmt::format("a simulated camera takes KEY=VALUE, not '{}'; keys are {}", assignment,
-                            known_keys()));
+    throw Error(fmt::format("a simulated camera takes KEY=VALUE, not '{}'; the keys are {}",
+                            assignment, known_keys()));
   }
   const std::string name = assignment.substr(0, equals);
   for (const Key& key : kKeys) {
     if (name == key.name) return set(setup, key, assignment.substr(equals + 1));
   }
-  throw Error(fmt::format("a simulated camera has no '{}'; keys are {}", name, known_keys()));
+  throw Error(
+      fmt::format("a simulated camera has no key '{}'; the keys are {}", name, known_keys()));
 }
 
 }  // namespace palpate

@@ -121,8 +121,8 @@ Layout layout_of(int number) {
       return {{0.12, -0.02}, {-0.02, -0.22}, {0.30, 0.11}, {0.18, 0.27},
               {-0.07, 0.18}, 20 * kDegree,   0.60};
     default:
-      throw Error("there is no layout " + std::to_string(number) +
-                  " of the simulated table; take 0 to " + std::to_string(kTableLayouts - 1));
+      throw Error("unknown layout " + std::to_string(number) +
+                  " of the simulated table; give 0 to " + std::to_string(kTableLayouts - 1));
   }
 }
 

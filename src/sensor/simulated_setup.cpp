@@ -131,15 +131,13 @@ constexpr std::array<Named, 10> kNamed = {{
     {"table", "table-top with sphere, box, cylinder and plate; the sphere moves", table},
     {"desk", "the same with a wire across it", desk},
     {"still", "the table, nothing moves", still},
-    {"left", "the table that stands still from 40 degrees to the left",
-     [] { return turned(-40 * kDegree); }},
-    {"right", "the table that stands still from 40 degrees to the right",
-     [] { return turned(40 * kDegree); }},
-    {"wander", "the table that stands still with a camera that moves", wandering},
-    {"approach", "a wall and a ball that come and go", approach},
-    {"arm", "the table, over which an arm goes to and fro", arm},
-    {"slant", "a table-top, 65 degrees from square to the camera", slant},
-    {"poles", "poles of 8, 15, 25 and 40 mm before a wall", poles},
+    {"left", "the static table from 40 degrees to the left", [] { return turned(-40 * kDegree); }},
+    {"right", "the static table from 40 degrees to the right", [] { return turned(40 * kDegree); }},
+    {"wander", "the static table with a moving camera", wandering},
+    {"approach", "a wall and a ball that appear and disappear", approach},
+    {"arm", "the table with an arm moving back and forth over it", arm},
+    {"slant", "a table-top inclined by 65 degrees to the camera", slant},
+    {"poles", "poles of 8, 15, 25 and 40 mm in front of a wall", poles},
 }};
 
 std::string known_names() {
@@ -175,7 +173,7 @@ SimulatedSetup make_simulated_setup(const std::string& name) {
     setup.camera.name = "simulated:" + name;
     return setup;
   }
-  throw Error(fmt::format("there is no simulated scene '{}'; there are {}", name, known_names()));
+  throw Error(fmt::format("unknown simulated scene '{}'; the scenes are {}", name, known_names()));
 }
 
 std::unique_ptr<SimulatedCamera> open_simulated(const std::string& specification,

@@ -31,14 +31,13 @@ const SimulatedStreamOptions& checked(const SimulatedStreamOptions& options,
 double frame_time_of(const CameraInfo& camera, const std::string& name) {
   if (camera.paces) {
     throw Error(
-        fmt::format("stream to {}: {} keeps its own time. Open it without a clock, or play "
-                    "a recording of it.",
+        fmt::format("stream to {}: {} runs only in real time. Open it without a clock, or play a "
+                    "recording of it.",
                     name, camera.name));
   }
   if (!(camera.rate > 0 && camera.rate < kEver)) {
     throw Error(
-        fmt::format("stream to {}: {} tells a rate of {} Hz. Let it tell how many frames a "
-                    "second it is made for.",
+        fmt::format("stream to {}: {} reports a rate of {} Hz. Report its nominal frame rate.",
                     name, camera.name, camera.rate));
   }
   return 1 / camera.rate;

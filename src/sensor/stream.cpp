@@ -129,8 +129,8 @@ void Stream::Threads::start(const std::string& name) {
   } catch (const std::system_error& error) {
     stop();
     throw Error(
-        fmt::format("stream to {}: its threads cannot start ({}). End other programs or "
-                    "raise the limit (ulimit -u).",
+        fmt::format("stream to {}: its threads cannot start ({}). Close other programs or raise "
+                    "the limit (ulimit -u).",
                     name, error.what()));
   }
 }
@@ -176,8 +176,8 @@ void Stream::Threads::leave_out(CameraStatus status) {
 
 void Stream::Threads::compare_clocks(double stamp, double now) {
   if (!(std::abs(stamp - now) > kOtherClock)) return;
-  log.remark(now, fmt::format("the camera is on another clock: its first frame was taken at {:.6g} "
-                              "s, and now it is {:.6g} s. Open it with the clock of the stream",
+  log.remark(now, fmt::format("the camera uses another clock: its first frame was taken at {:.6g} "
+                              "s, but it is {:.6g} s now. Open it with the stream's clock",
                               stamp, now));
 }
 

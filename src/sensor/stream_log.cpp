@@ -69,7 +69,7 @@ void StreamLog::came(double now, const std::optional<Objection>& objection,
   objection_ = objection ? objection->words : "";
   if (size_changes != state_.size_changes) {
     state_.size_changes = size_changes;
-    note(now, "its frames have another size from now on");
+    note(now, "its frame size changed");
   }
   if (objection) {
     ++(state_.drops.*(objection->cause));
@@ -107,7 +107,7 @@ void StreamLog::failed(double now, const std::string& why, bool repeatedly) {
   ++state_.failures;
   failing_ = repeatedly;
   if (repeatedly) state_.phase = StreamPhase::failed;
-  note(now, why.empty() ? "it failed without a reason" : why);
+  note(now, why.empty() ? "it failed without giving a reason" : why);
 }
 
 void StreamLog::retried() {
@@ -138,7 +138,7 @@ void StreamLog::look(double now) {
   if (std::exchange(told_, true)) return;
   ++state_.stalls;
   note(now, objection_.empty() ? fmt::format("no frame for {:.3g} s", now - useful_)
-                               : fmt::format("no frame of use for {:.3g} s; the last: {}",
+                               : fmt::format("no usable frame for {:.3g} s; the last: {}",
                                              now - useful_, objection_));
 }
 

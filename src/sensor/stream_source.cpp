@@ -12,8 +12,8 @@ FrameSink sink_of(Source& source) {
   return [&source](const DepthFrame& frame, const StartTime& start) {
     if (source.push(frame, start)) return;
     throw Error(
-        fmt::format("all snapshots are held by fields that stand still, such as that of {}. "
-                    "Update it, or close it",
+        fmt::format("all snapshots are held by fields that are not updated, e.g. that of {}. "
+                    "Update or close it",
                     source.state().slowest));
   };
 }

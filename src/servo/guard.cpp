@@ -238,15 +238,15 @@ std::string_view in_words(GuardFault fault) noexcept {
     case GuardFault::none:
       return {};
     case GuardFault::force:
-      return "the force that was computed is not finite; report it with what was touched";
+      return "the computed force is not finite; report this with the cloud that was touched";
     case GuardFault::hand:
-      return "the device told a place or a velocity that is not finite; look at the device";
+      return "the device reported a position or velocity that is not finite; check the device";
     case GuardFault::time:
-      return "time did not go on: it was not finite, or went back; look at the clock";
+      return "the time was not finite or went backwards; check the clock";
     case GuardFault::proxy:
-      return "the proxy was given a place or a time that is not finite; look at the device";
+      return "the proxy got a position or time that is not finite; check the device";
     case GuardFault::device:
-      return "the device has failed; it says why, and has to be opened again";
+      return "the device failed; see its message and reopen it";
   }
   return {};
 }
@@ -261,20 +261,20 @@ std::string in_words(const GuardState& state) {
     words += text;
   };
   if (has(state.notes, GuardNote::silence)) {
-    add("zero force: the servo was silent for too long; the force comes back softly");
+    add("zero force: the servo was late (watchdog); the force ramps up again");
   }
   if (has(state.notes, GuardNote::slewed)) {
-    add("the force follows slowly: it changed by more than the hand explains");
+    add("slew limit: the force changed faster than the hand's motion explains");
   }
   if (has(state.notes, GuardNote::clamped)) {
-    add("the force is shortened to the device's maximum");
+    add("the force is limited to the device's maximum");
   }
   if (has(state.notes, GuardNote::braked)) {
-    add("a brake takes back the energy that the hand was given");
+    add("braking to dissipate energy given to the hand");
   }
-  if (has(state.notes, GuardNote::starting)) add("the force comes up softly");
+  if (has(state.notes, GuardNote::starting)) add("soft start: the force ramps up");
   if (has(state.notes, GuardNote::softened)) {
-    add("the surface is softer than was asked for: the device could not hold that");
+    add("the surface is softer than requested: the device cannot render that stiffness");
   }
   return words;
 }

@@ -39,11 +39,11 @@ RealtimeRequest ask_for_priority(int priority) {
   const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
   request.granted = error == 0;
   if (error == EINVAL) {
-    request.remedy = "there is no such priority; give 1 to 99";
+    request.remedy = "no such priority; give 1 to 99";
   } else if (!request.granted) {
     request.remedy = fmt::format(
-        "{}; permit it with a line '@realtime - rtprio {}' in /etc/security/limits.d, "
-        "the user in the group 'realtime', and a new login",
+        "{}; add '@realtime - rtprio {}' to a file in /etc/security/limits.d, join the group "
+        "'realtime' and log in again",
         reason(error), std::max(priority, 95));
   }
   return request;
@@ -64,8 +64,8 @@ RealtimeRequest ask_for_memory() {
   request.granted = error == 0;
   if (!request.granted) {
     request.remedy = fmt::format(
-        "{}; permit it with a line '@realtime - memlock unlimited' in /etc/security/limits.d, "
-        "the user in the group 'realtime', and a new login",
+        "{}; add '@realtime - memlock unlimited' to a file in /etc/security/limits.d, join the "
+        "group 'realtime' and log in again",
         reason(error));
   }
   return request;
@@ -99,8 +99,8 @@ RealtimeRequest answered(std::string what, int error) {
   RealtimeRequest request{std::move(what), error == 0, {}};
   if (!request.granted) {
     request.remedy = fmt::format(
-        "{}; this thread may run on {}: give one of these, or permit others where the program is "
-        "started (systemd: AllowedCPUs=, containers: --cpuset-cpus, or without taskset)",
+        "{}; this thread may run on {}: give one of these, or allow others when you start the "
+        "program (systemd: AllowedCPUs=, containers: --cpuset-cpus, or without taskset)",
         reason(error), allowed_processors());
   }
   return request;
@@ -139,7 +139,7 @@ std::string in_words(const RealtimeReport& report) {
 }
 
 RealtimeRequest leave_processor(int processor) {
-  std::string what = fmt::format("processor {} left to the servo", processor);
+  std::string what = fmt::format("processor {} reserved for the servo", processor);
   cpu_set_t set;
   int error = pthread_getaffinity_np(pthread_self(), sizeof set, &set);
   if (error != 0) return answered(std::move(what), error);
@@ -148,7 +148,7 @@ RealtimeRequest leave_processor(int processor) {
   }
   CPU_CLR(static_cast<std::size_t>(processor), &set);
   if (CPU_COUNT(&set) == 0) {
-    return {std::move(what), false, "it is the only one that this process may use"};
+    return {std::move(what), false, "it is the only one this process may use"};
   }
   error = pthread_setaffinity_np(pthread_self(), sizeof set, &set);
   return answered(std::move(what), error);
@@ -186,10 +186,9 @@ namespace {
 double rate_for(const DeviceInfo& device, const std::optional<double>& wanted) {
   const double rate = device.keeps_time || !wanted ? device.rate : *wanted;
   if (rate >= ServoThread::kLeastRate && rate <= ServoThread::kMostRate) return rate;
-  throw Error(
-      fmt::format("servo: {} steps a second for the device '{}' is out of range; give {} "
-                  "to {} Hz",
-                  rate, device.name, ServoThread::kLeastRate, ServoThread::kMostRate));
+  throw Error(fmt::format(
+      "servo: {} steps per second for the device '{}' is out of range; give {} to {} Hz", rate,
+      device.name, ServoThread::kLeastRate, ServoThread::kMostRate));
 }
 
 }  // namespace
@@ -206,7 +205,7 @@ ServoThread::ServoThread(Servo& servo, WaitingClock& clock, const ServoThreadOpt
     });
   } catch (const std::system_error& error) {
     throw Error(
-        fmt::format("servo: the system gives no thread ({}); end other programs", error.what()));
+        fmt::format("servo: cannot start a thread ({}); close other programs", error.what()));
   }
   realtime_ = answer.get();
 }

@@ -172,21 +172,21 @@ GuardInput WallTrial::felt(const DeviceState& hand, double dt) const noexcept {
 std::string_view in_words(WallTrialPhase phase) noexcept {
   switch (phase) {
     case WallTrialPhase::rest:
-      return "hold the device still, somewhere in its middle";
+      return "hold the device still near the middle of its workspace";
     case WallTrialPhase::press:
-      return "press down on the wall, gently, and rest on it";
+      return "press gently down on the wall and stay there";
     case WallTrialPhase::lift:
       return "good; lift off";
     case WallTrialPhase::shook:
-      return "the wall made the device shake; the force is gone";
+      return "the wall made the device vibrate; the force is off";
     case WallTrialPhase::held:
-      return "the stiffest wall that is tried stood still";
+      return "the stiffest wall that was tried is stable";
     case WallTrialPhase::gave_up:
-      return "nobody did so; start again when you are ready";
+      return "timed out; start again when you are ready";
     case WallTrialPhase::too_fast:
-      return "the device moved faster than a hand that presses; the force is gone";
+      return "the device moved faster than a pressing hand; the force is off";
     case WallTrialPhase::device_lost:
-      return "the device fell silent or failed";
+      return "the device stopped responding or failed";
   }
   return {};
 }

@@ -86,7 +86,7 @@ bool origin_is_ours(std::string_view origin, std::string_view host) {
 std::string make_token() {
   std::array<unsigned char, 16> bits{};
   if (getrandom(bits.data(), bits.size(), 0) != static_cast<ssize_t>(bits.size())) {
-    throw Error("viewer: the system gives no random bits for a token; give one yourself");
+    throw Error("viewer: no random bits for a token from the system; give a token");
   }
   std::string token;
   for (const unsigned char byte : bits) token += fmt::format("{:02x}", byte);

@@ -22,20 +22,20 @@ std::string why_not(const Setting& setting, double value) {
 }
 
 std::string why_not(const Setting& setting, const std::string& value) {
-  if (setting.kind != SettingKind::choice) return "it is not a choice";
+  if (setting.kind != SettingKind::choice) return "it is not the number of a choice";
   if (std::ranges::find(setting.choices, value) != setting.choices.end()) return {};
   return fmt::format("there are only {}", fmt::join(setting.choices, ", "));
 }
 
 std::string why_not(const Setting& setting, bool) {
-  return setting.kind == SettingKind::on_off ? "" : "it is not a switch";
+  return setting.kind == SettingKind::on_off ? "" : "it is not true or false";
 }
 
 // Why `key` cannot be set to `value`, in words; empty: it can.
 std::string why_not(std::span<const Setting> settings, const std::string& key,
                     const SettingValue& value) {
   const auto found = std::ranges::find(settings, key, &Setting::key);
-  if (found == settings.end()) return "there is no such setting";
+  if (found == settings.end()) return "unknown setting";
   const std::string reason =
       std::visit([&](const auto& given) { return why_not(*found, given); }, value);
   return reason.empty() ? "" : fmt::format("{}: {}", found->label, reason);
@@ -47,7 +47,7 @@ Message text_message(std::string text) {
 
 template <class Function>
 void require(const Function& function, const char* what) {
-  if (!function) throw Error(fmt::format("this program does not let a page {}", what));
+  if (!function) throw Error(fmt::format("this program does not allow a page to {}", what));
 }
 
 }  // namespace
@@ -68,14 +68,14 @@ void ClientSessions::receive(Session& session, std::string_view text, double now
   if (session.closing) return;
   session.heard = now;
   if (session.messages.exceeded(now)) {
-    refuse(session, fmt::format("more than {} messages a second", options_.limits.messages), now);
+    refuse(session, fmt::format("more than {} messages per second", options_.limits.messages), now);
     return;
   }
   try {
     const ClientMessage message = read_message(text);
     const bool hello = std::holds_alternative<Hello>(message);
-    if (!session.greeted && !hello) throw Error("say hello first");
-    if (session.greeted && hello) throw Error("hello was said already");
+    if (!session.greeted && !hello) throw Error("send hello first");
+    if (session.greeted && hello) throw Error("hello was already sent");
     std::visit([&](const auto& read) { act(session, read); }, message);
   } catch (const std::exception& error) {
     refuse(session, error.what(), now);
@@ -83,19 +83,18 @@ void ClientSessions::receive(Session& session, std::string_view text, double now
 }
 
 void ClientSessions::receive_binary(Session& session, double now) {
-  if (!session.closing) refuse(session, "a binary message; say it in JSON", now);
+  if (!session.closing) refuse(session, "binary message; send JSON", now);
 }
 
 void ClientSessions::check(double now) {
   for (Session* session : sessions_) {
     const bool late = !session->greeted && now - session->opened > options_.limits.hello_time;
-    if (late && !session->closing)
-      close(*session, close_code::kTryAgainLater, "no hello came in time");
+    if (late && !session->closing) close(*session, close_code::kTryAgainLater, "no hello in time");
   }
   for (std::size_t device = 0; device < holders_.size(); ++device) {
     const Session* holder = holders_[device];
     if (holder == nullptr || now - holder->heard <= options_.limits.hand_silence) continue;
-    lose(device, fmt::format("nothing was heard of this page for {} s: the tool is let go",
+    lose(device, fmt::format("no message from this page for {} s: the tool was released",
                              options_.limits.hand_silence));
     release(device);
   }
@@ -104,13 +103,13 @@ void ClientSessions::check(double now) {
 void ClientSessions::act(Session& session, const Hello& hello) {
   if (!same_token(hello.token, options_.token)) {
     ++wrong_tokens_;
-    close(session, close_code::kPolicy, "the token is another; take the address that was printed");
+    close(session, close_code::kPolicy, "wrong token; use the address that the program printed");
     return;
   }
   if (greeted().size() >= options_.limits.clients) {
     ++turned_away_;
     const std::string words =
-        fmt::format("{} pages look already; close one of them", options_.limits.clients);
+        fmt::format("{} pages are already connected; close one of them", options_.limits.clients);
     answer(session, refused_text(words));
     close(session, close_code::kTryAgainLater, words);
     return;
@@ -136,7 +135,7 @@ void ClientSessions::act(Session& session, const Hand& hand) {
   const ViewerControls& controls = options_.controls;
   require(controls.hand, "move the tool");
   if (hand.device >= holders_.size() || !options_.devices[hand.device].takeable) {
-    throw Error(fmt::format("there is no tool {} that a page may move", hand.device));
+    throw Error(fmt::format("no tool {} that a page can move", hand.device));
   }
   if (session.lost.contains(hand.device)) return;  // said before it knew
   controls.hand(hand.device, options_.origin + hand.position, hand.buttons);
@@ -147,7 +146,7 @@ void ClientSessions::act(Session& session, const Hand& hand) {
 
 // Of another's tool: it was taken away in the meantime, and this client knows it now.
 void ClientSessions::act(Session& session, const Release& wish) {
-  if (wish.device >= holders_.size()) throw Error("there is no such tool");
+  if (wish.device >= holders_.size()) throw Error("unknown tool");
   session.lost.erase(wish.device);
   if (holders_[wish.device] == &session) release(wish.device);
 }
@@ -175,7 +174,7 @@ void ClientSessions::act(Session&, const Preset& preset) {
   const ViewerControls& controls = options_.controls;
   require(controls.preset, "choose presets");
   if (std::ranges::find(controls.presets, preset.name) == controls.presets.end()) {
-    throw Error("there is no such preset");
+    throw Error("unknown preset");
   }
   controls.preset(preset.name);
   send_settings();
@@ -244,7 +243,7 @@ void ClientSessions::refuse(Session& session, std::string_view text, double now)
   ++refused_;
   answer(session, refused_text(text));
   if (session.refusals.exceeded(now)) {
-    close(session, close_code::kPolicy, "too much that could not be understood");
+    close(session, close_code::kPolicy, "too many invalid messages");
   }
 }
 

@@ -81,7 +81,8 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
   void end() override {
     if (!joined_) return abort();
     session_.outbox = {};
-    if (!session_.closing) session_.closing = Closing{close_code::kGoingAway, "the program ends"};
+    if (!session_.closing)
+      session_.closing = Closing{close_code::kGoingAway, "the program is exiting"};
     flush();
   }
   void abort() override { beast::get_lowest_layer(stream_).close(); }
@@ -217,7 +218,7 @@ class HttpConnection final : public Connection,
     if (!is_allowed(request)) {
       ++context().forbidden;
       send(request, {http::status::forbidden, kPlain,
-                     "This page is asked for under another name than the program printed."});
+                     "Wrong host name; use the address that the program printed."});
     } else if (path_of(request) == "/live" && websocket::is_upgrade(request)) {
       std::make_shared<Socket>(context(), std::move(stream_))->run(parser_->release());
     } else {
@@ -237,14 +238,14 @@ class HttpConnection final : public Connection,
 
   [[nodiscard]] static Answer find(const Request& request) {
     if (request.method() != http::verb::get && request.method() != http::verb::head) {
-      return {http::status::method_not_allowed, kPlain, "Only GET is answered here."};
+      return {http::status::method_not_allowed, kPlain, "Only GET is supported."};
     }
     if (path_of(request) == "/live") {
-      return {http::status::upgrade_required, kPlain, "This is the address of a WebSocket."};
+      return {http::status::upgrade_required, kPlain, "This address is a WebSocket."};
     }
     const auto files = page_files();
     const auto found = std::ranges::find(files, path_of(request), &PageFile::path);
-    if (found == files.end()) return {http::status::not_found, kPlain, "There is no such file."};
+    if (found == files.end()) return {http::status::not_found, kPlain, "No such file."};
     return {http::status::ok, found->type, found->bytes};
   }
 

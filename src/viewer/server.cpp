@@ -27,7 +27,8 @@ net::ip::address address_of(const std::string& text) {
   const auto address = net::ip::make_address(text, error);
   if (!error) return address;
   throw Error(fmt::format(
-      "viewer: '{}' is no address; give one like 127.0.0.1, ::1 or 0.0.0.0 (everywhere)", text));
+      "viewer: '{}' is not an IP address; give one like 127.0.0.1, ::1 or 0.0.0.0 (all interfaces)",
+      text));
 }
 
 // A program that this one starts (a browser) has no part in its sockets.

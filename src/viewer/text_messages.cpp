@@ -33,17 +33,18 @@ double number(const json& value, const char* name, double least, double most) {
   if (!value.is_number()) throw Unread{fmt::format("'{}' is not a number", name)};
   const auto x = value.get<double>();
   if (x >= least && x <= most) return x;
-  throw Unread{fmt::format("'{}' is {}; it has to be from {} to {}", name, x, least, most)};
+  throw Unread{fmt::format("'{}' is {}; it must be from {} to {}", name, x, least, most)};
 }
 
 double whole(const json& object, const char* name, double most) {
   const double x = number(member(object, name), name, 0, most);
-  if (x != std::floor(x)) throw Unread{fmt::format("'{}' is {}, which is not whole", name, x)};
+  if (x != std::floor(x))
+    throw Unread{fmt::format("'{}' is {}, which is not a whole number", name, x)};
   return x;
 }
 
 std::string word(const json& value, const char* name) {
-  if (!value.is_string()) throw Unread{fmt::format("'{}' is not a text", name)};
+  if (!value.is_string()) throw Unread{fmt::format("'{}' is not text", name)};
   const auto& text = value.get_ref<const std::string&>();
   if (text.size() > kLongestWord) throw Unread{fmt::format("'{}' is too long", name)};
   return text;
@@ -51,7 +52,7 @@ std::string word(const json& value, const char* name) {
 
 bool on(const json& object) {
   const json& value = member(object, "on");
-  if (!value.is_boolean()) throw Unread{"'on' is neither true nor false"};
+  if (!value.is_boolean()) throw Unread{"'on' is not true or false"};
   return value.get<bool>();
 }
 
@@ -97,7 +98,7 @@ ClientMessage read_object(const json& object) {
   if (type == "reset") return Reset{};
   if (type == "record") return Record{on(object)};
   if (type == "points") return Points{points(object)};
-  throw Unread{"there is no message of this type"};
+  throw Unread{"unknown message type"};
 }
 
 using nlohmann::json;
@@ -169,7 +170,7 @@ const char* name_of(DeviceStatus status) {
 
 ClientMessage read_message(std::string_view text) {
   const json object = json::parse(text, nullptr, false);
-  if (!object.is_object()) return Unreadable{"that is no JSON object"};
+  if (!object.is_object()) return Unreadable{"the message is not a JSON object"};
   try {
     return read_object(object);
   } catch (Unread& unread) {

@@ -64,10 +64,10 @@ Eigen::Vector3d middle(const Scene& scene) {
 ViewerOptions complete(ViewerOptions options, const Scene& scene) {
   if (options.token.empty()) options.token = make_token();
   if (!is_token(options.token)) {
-    throw Error(fmt::format(
-        "viewer: a token of {} bytes that cannot end an address; give 1 to {} letters, digits and "
-        "any of -._~, or none",
-        options.token.size(), kLongestWord));
+    throw Error(
+        fmt::format("viewer: a token of {} bytes that is not valid in a URL; give 1 to {} letters, "
+                    "digits or any of -._~, or none",
+                    options.token.size(), kLongestWord));
   }
   if (!options.origin) options.origin = middle(scene);
   return options;
@@ -90,7 +90,7 @@ ViewerControls complete(ViewerControls controls, const std::vector<Servo*>& serv
 std::vector<DeviceLabel> labels_of(const std::vector<Servo*>& servos,
                                    const ViewerControls& controls) {
   if (servos.size() > std::numeric_limits<std::uint8_t>::max()) {
-    throw Error(fmt::format("viewer: {} servos; at most 255 can be shown", servos.size()));
+    throw Error(fmt::format("viewer: {} servos; give at most 255", servos.size()));
   }
   const std::vector<std::string> names = tool_names(servos);
   std::vector<DeviceLabel> labels;

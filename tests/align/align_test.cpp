@@ -120,27 +120,27 @@ TEST(Align, TellsHowSureItIs) {
 TEST(Align, RefusesWhatSlidesOrTurns) {
   const Isometry3d none = Isometry3d::Identity();
   EXPECT_THAT(refusal({{"a", corner(1, none, 1, 0.3e-3)}, {"bare", corner(2, none, 1, 0.3e-3)}}),
-              HasSubstr("what 'bare' shares with the others leaves it free to"));
+              HasSubstr("the overlap of 'bare' with the others leaves it free to"));
   EXPECT_THAT(refusal({{"a", corner(1, none, 2, 0.3e-3)}, {"edge", corner(2, none, 2, 0.3e-3)}}),
               HasSubstr("free to slide along"));
 }
 
 TEST(Align, RefusesWhatCannotBeAligned) {
   const auto good = corner(1, Isometry3d::Identity());
-  EXPECT_THAT(refusal({{"a", good}}), HasSubstr("two sources at least, not 1"));
-  EXPECT_THAT(refusal({}), HasSubstr("two sources at least, not 0"));
+  EXPECT_THAT(refusal({{"a", good}}), HasSubstr("at least two sources, got 1"));
+  EXPECT_THAT(refusal({}), HasSubstr("at least two sources, got 0"));
   EXPECT_THAT(refusal({{"a", good}, {"far", corner(2, pose({5, 0, 0}, 0, {1, 0, 0}))}}),
-              HasSubstr("'far' shares no surface with those before it"));
+              HasSubstr("'far' does not overlap the sources before it"));
   EXPECT_THAT(refusal({{"a", good}, {"nothing", std::make_shared<SurfacePoints>()}}),
               HasSubstr("'nothing' has 0 points"));
   SurfacePoints bald = *good;
   bald.normals.clear();
   EXPECT_THAT(refusal({{"bald", std::make_shared<SurfacePoints>(bald)}, {"b", good}}),
-              HasSubstr("'bald' has 0 points with a normal"));
+              HasSubstr("'bald' has 0 points with a reliable normal"));
   SurfacePoints doubtful = *good;
   for (float& c : doubtful.confidences) c = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THAT(refusal({{"a", good}, {"doubtful", std::make_shared<SurfacePoints>(doubtful)}}),
-              HasSubstr("'doubtful' has 0 points with a normal that can be trusted"));
+              HasSubstr("'doubtful' has 0 points with a reliable normal"));
 }
 
 }  // namespace

@@ -53,8 +53,8 @@ TEST(DevicePlacement, RefusesWhatIsNoValueOrNotForThatDevice) {
   EXPECT_TRUE(contains(refusal("remote,scale"), "scale"));
   EXPECT_TRUE(contains(refusal("remote,offset=1/2"), "X/Y/Z"));
   EXPECT_TRUE(contains(refusal("remote,clutch=32"), "0 to 31"));
-  EXPECT_TRUE(contains(refusal("remote,clutch=0.5"), "no button"));
-  EXPECT_TRUE(contains(refusal("remote,frame=a b"), "no source's name"));
+  EXPECT_TRUE(contains(refusal("remote,clutch=0.5"), "not a button number"));
+  EXPECT_TRUE(contains(refusal("remote,frame=a b"), "not a valid source name"));
   EXPECT_TRUE(contains(refusal("remote,scale=1,scale=1"), "twice"));
   EXPECT_TRUE(contains(refusal("remote:/tmp/hand,scal=1"), "scale=S"));
   EXPECT_TRUE(contains(refusal("scripted,scale=2"), "simulated"));
@@ -80,7 +80,7 @@ TEST(DevicePlacement, FrameNamesASourceThatHasACamera) {
   };
   EXPECT_TRUE(contains(refused("camera", {left, right}), "left, right"));
   EXPECT_TRUE(contains(refused("lift", {left, right}), "left, right"));
-  EXPECT_TRUE(contains(refused("camera", {ball}), "no camera"));
+  EXPECT_TRUE(contains(refused("camera", {ball}), "no source is a camera"));
   EXPECT_TRUE(contains(refused("ball", {ball, left}), "a cloud"));
 }
 

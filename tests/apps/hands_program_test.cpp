@@ -63,7 +63,7 @@ TEST(HandsProgram, AnotherProgramsHandFeelsTheSurface) {
       "run.json "
       "--log "
       "forces.csv");
-  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 1: listens on hand"); }));
+  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 1: listening on hand"); }));
   test::RemoteClient client(shell.path("hand"), shell.path("client"));
   EXPECT_TRUE(arrives(client, kAbove));
   EXPECT_TRUE(presses_and_feels(client, -4e-3, 0.8)) << "2 mm deep, 1 N";
@@ -87,7 +87,7 @@ TEST(HandsProgram, AClutchTakesTheSurfaceToTheHand) {
   const auto run = shell.start(
       "touch plane.xyz --scale 2 --viewpoint 0,0,1 --stiffness 500 --json run.json --device "
       "remote:hand,clutch=2,offset=0/0/0.001");
-  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 1: listens on hand"); }));
+  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 1: listening on hand"); }));
   test::RemoteClient client(shell.path("hand"), shell.path("client"));
   EXPECT_TRUE(arrives(client, kAbove));
   EXPECT_TRUE(presses_and_feels(client, -5e-3, 0.8)) << "2 mm deep, 1 N";
@@ -103,7 +103,7 @@ TEST(HandsProgram, AClutchTakesTheSurfaceToTheHand) {
   EXPECT_TRUE(felt_at(kHigh, [](double force) { return force == 0; }));
   EXPECT_TRUE(until([&] {
     client.say(kHigh);
-    return contains(shell.read("stderr"), "clutch held: the hand moves freely");
+    return contains(shell.read("stderr"), "clutch held: the hand moves without the tool");
   }));
   client.packet().buttons = 0;
   int step = 0;
@@ -123,8 +123,10 @@ TEST(HandsProgram, ASilentDeviceSaysWhyAndEndsWithTheDuration) {
   shell.write("plane.xyz", plane_xyz());
   const Outcome outcome = shell.run("touch plane.xyz --device remote:hand --duration 3");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, " s  no client sends to 'hand'; start one")) << outcome.err;
-  EXPECT_TRUE(contains(outcome.out, "never met the surface: no client sends")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.err, " s  no client is sending to 'hand'; start one"))
+      << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "never touched the surface: no client is sending"))
+      << outcome.out;
   EXPECT_TRUE(contains(outcome.out, "remote device")) << outcome.out;
 }
 
@@ -138,7 +140,7 @@ TEST(HandsProgram, WhereASocketCannotBeIsSaidBeforeTheCloudIsRead) {
   const RemoteDevice other(clock, {.path = shell.path("taken")});
   const Outcome taken = shell.run("touch missing.ply --device remote:taken");
   EXPECT_EQ(taken.code, 1);
-  EXPECT_TRUE(contains(taken.err, "another program listens there")) << taken.err;
+  EXPECT_TRUE(contains(taken.err, "another program is listening there")) << taken.err;
   const Outcome nowhere = shell.run("touch missing.ply --device remote", "", "XDG_RUNTIME_DIR=");
   EXPECT_EQ(nowhere.code, 1);
   EXPECT_TRUE(contains(nowhere.err, "XDG_RUNTIME_DIR is not set")) << nowhere.err;
@@ -172,7 +174,7 @@ TEST(HandsProgram, AHandThatIsLedTouchesBesideAnotherPrograms) {
   const auto run = shell.start(
       "touch plane.xyz --scale 2 --viewpoint 0,0,1 --trajectory way.csv --device scripted --device "
       "remote:hand --json run.json");
-  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 2: listens on hand"); }));
+  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 2: listening on hand"); }));
   test::RemoteClient client(shell.path("hand"), shell.path("client"));
   EXPECT_TRUE(arrives(client, kAbove));
   EXPECT_TRUE(presses_and_feels(client, -4e-3, 0.8));
@@ -187,7 +189,7 @@ TEST(HandsProgram, ADemoHasAsManyHandsAsItIsAskedFor) {
   const Outcome outcome = shell.run(
       "demo scan --headless --port 0 --duration 3 --device simulated --device remote:hand");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "| hand 2: no client sends to 'hand'")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "| hand 2: no client is sending to 'hand'")) << outcome.err;
   EXPECT_TRUE(contains(outcome.out, "hand 1 ")) << outcome.out;
 }
 
@@ -198,7 +200,7 @@ TEST(HandsProgram, RefusesDevicesThatCannotBeOrHaveNoUse) {
   const std::pair<const char*, const char*> cases[] = {
       {"--device falcon", "scripted, simulated, remote"},
       {"--device remote:", "remote:PATH"},
-      {"--device remote,frame=camera", "there is no camera"},
+      {"--device remote,frame=camera", "no source is a camera"},
       {"--device remote,frame=torus", "a cloud"},
       {"--device remote,clutch=x", "clutch"},
       {"--device scripted,scale=2", "works only with simulated"},
@@ -206,8 +208,8 @@ TEST(HandsProgram, RefusesDevicesThatCannotBeOrHaveNoUse) {
       {"--device remote --seed 2", "--seed"},
       {"--device remote --simulated-time", "real time"},
       {"--device simulated --device simulated --simulated-time", "real time"},
-      {"--device simulated --device scripted --trajectory way.csv", "one hand"},
-      {"--device remote --device remote", "the usual path"},
+      {"--device simulated --device scripted --trajectory way.csv", "only one device"},
+      {"--device remote --device remote", "the default path"},
       {"--device remote:a --device remote:a", "'a'"},
       {"--device simulated --device simulated --log -", "standard output"},
       {"--device simulated --device simulated --log a.csv --json a-2.csv", "same file"},

@@ -56,9 +56,10 @@ TEST(Info, TellsTheCameraOfAnOrganisedCloud) {
     shell.write("wall.pcd", cloud);
     const Outcome outcome = shell.run("info wall.pcd --json info.json");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_NE(outcome.out.find(bent ? "64 x 48, felt as loose points: no pinhole camera"
-                                    : "64 x 48 pixels of a camera of 60 px, felt as a depth frame"),
-              std::string::npos)
+    EXPECT_NE(
+        outcome.out.find(bent ? "64 x 48, processed as unorganised points: no pinhole camera"
+                              : "64 x 48 pixels, focal length 60 px, processed as a depth frame"),
+        std::string::npos)
         << outcome.out;
     const auto organised = nlohmann::json::parse(shell.read("info.json"))[0]["organised"];
     ASSERT_EQ(organised.is_null(), bent);

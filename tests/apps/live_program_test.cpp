@@ -116,7 +116,7 @@ TEST(LiveProgram, GuardAndServoAreAsTheSetUpSays) {
   EXPECT_GT(run["largest_force_N"].get<double>(), 0.4);
   ASSERT_EQ(run["live"]["realtime"].size(), 2u) << "nothing else was asked for";
   EXPECT_EQ(run["live"]["realtime"][0]["what"], "pinned to processor 1023");
-  EXPECT_EQ(run["live"]["realtime"][1]["what"], "processor 1023 left to the servo");
+  EXPECT_EQ(run["live"]["realtime"][1]["what"], "processor 1023 reserved for the servo");
 }
 
 TEST(LiveProgram, RefusesRatesThatNoServoKeepsInRealTime) {

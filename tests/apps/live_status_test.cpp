@@ -59,7 +59,7 @@ TEST(LiveStatus, TellsWhatIsWrong) {
   moment.streams.push_back(other);
   std::string words = in_words(moment);
   for (const char* part :
-       {"FAULT: the device told", "table STALLED", "3 dropped", "side waiting"}) {
+       {"FAULT: the device reported", "table STALLED", "3 dropped", "side waiting"}) {
     EXPECT_TRUE(contains(words, part)) << part << " in " << words;
   }
   moment.streams[0].phase = StreamPhase::failed;
@@ -73,14 +73,15 @@ TEST(LiveStatus, TellsOfEachHandByName) {
   LiveMoment moment = second();
   moment.hands.push_back(moment.hands[0]);
   moment.hands[1].name = "hand 2";
-  moment.hands[1].silence = "no client sends to 'a'";
+  moment.hands[1].silence = "no client is sending to 'a'";
   moment.hands.push_back(moment.hands[0]);
   moment.hands[2].name = "hand 3";
   moment.hands[2].ended = true;
   moment.hands[2].servo.guard.fault = GuardFault::device;
   const std::string words = in_words(moment);
-  for (const char* part : {"12.3 s | hand 1: 1.23 N  1000 Hz", "| hand 2: no client sends to 'a' |",
-                           "| hand 3: ended  FAULT: ", "| table 30.0 Hz"}) {
+  for (const char* part :
+       {"12.3 s | hand 1: 1.23 N  1000 Hz", "| hand 2: no client is sending to 'a' |",
+        "| hand 3: ended  FAULT: ", "| table 30.0 Hz"}) {
     EXPECT_TRUE(contains(words, part)) << part << " in " << words;
   }
 }

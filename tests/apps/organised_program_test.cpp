@@ -42,9 +42,9 @@ TEST(Organised, OrganisedCloudGoesThroughTheDepthFilterUnlessUnorganised) {
         shell.run("touch wall.pcd --trajectory way.csv --log log.csv --json r.json " + more);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NEAR(number(columns(shell.read("log.csv"))["fz"].back()), -500 * 3e-3, 0.05) << more;
-    const bool said = outcome.out.find(
-                          "64 x 48 pixels of a camera of 60 px, felt as a depth "
-                          "frame") != std::string::npos;
+    const bool said =
+        outcome.out.find("64 x 48 pixels, focal length 60 px, processed as a depth frame") !=
+        std::string::npos;
     EXPECT_EQ(Json::parse(shell.read("r.json"))["sources"][0].contains("organised"), said);
     return said;
   };

@@ -28,7 +28,7 @@ std::string printed(const TouchedSource& source) {
 TEST(SourceReport, SimulatedTimeSaysWhatLiveWouldBeDropped) {
   const TouchedSource slow = fed(30, 570, true);
   const std::string text = printed(slow);
-  EXPECT_NE(text.find("a frame takes 570 ms to prepare and comes every 33.3 ms: live, 95 % of them "
+  EXPECT_NE(text.find("preparing a frame takes 570 ms, but frames arrive every 33.3 ms: live, 95 % "
                       "would be dropped"),
             std::string::npos)
       << text;

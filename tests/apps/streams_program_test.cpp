@@ -188,7 +188,7 @@ TEST(Streams, AFrameWithoutAPoseIsCountedAsSuch) {
   EXPECT_EQ(source["drops"]["unposed"], 1);
   EXPECT_EQ(source["drops"]["garbage"], 0);
   const Outcome info = shell.run("info sequence:wall");
-  EXPECT_NE(info.out.find("1 without one left out"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("1 frames without one skipped"), std::string::npos) << info.out;
 }
 
 TEST(Streams, FramesOfNoUseAreDroppedInSimulatedTimeAndTheReportSaysWhy) {
@@ -200,7 +200,7 @@ TEST(Streams, FramesOfNoUseAreDroppedInSimulatedTimeAndTheReportSaysWhy) {
   const Outcome outcome =
       shell.run("touch wall=sequence:wall --simulated-time --trajectory way.csv --json r.json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("wall (sequence:wall): a frame that repeats the one before"),
+  EXPECT_NE(outcome.out.find("wall (sequence:wall): a frame identical to the previous one"),
             std::string::npos)
       << outcome.out;
   const Json source = Json::parse(shell.read("r.json"))["sources"][0];
@@ -229,7 +229,7 @@ TEST(Streams, RecordingsThatBeginBlackAreExplored) {
   blacken(5, 40);
   const Outcome outcome = shell.run(command);
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.err.find("shows no surface"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("contains no surface"), std::string::npos) << outcome.err;
 }
 
 TEST(Streams, WhatIsNotThereIsNamed) {
@@ -242,7 +242,7 @@ TEST(Streams, WhatIsNotThereIsNamed) {
            {"camera:telescope --simulated-time", "telescope"},
            {"sequence:nowhere --simulated-time", "nowhere"},
            {"missing.oni --simulated-time", "missing.oni"},
-           {"camera:simulated --simulated-time --soft-stiffness 100", "depths alone"}}) {
+           {"camera:simulated --simulated-time --soft-stiffness 100", "only depths"}}) {
     const Outcome outcome = shell.run(fmt::format("touch {}", arguments));
     EXPECT_EQ(outcome.code, 1) << arguments << "\n" << outcome.err;
     EXPECT_NE(outcome.err.find(word), std::string::npos) << arguments << "\n" << outcome.err;

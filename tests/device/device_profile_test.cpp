@@ -66,7 +66,7 @@ TEST(DeviceProfile, SaysWhatIsWrongAndWhere) {
             "my.toml, line 2: 'delay' is not a number of 0 or more");
   EXPECT_EQ(refusal("[arm]\nrate = nan\n"), "my.toml, line 2: 'rate' is not a number above 0");
   EXPECT_EQ(refusal("[arm]\nrate = \"fast\"\n"), "my.toml, line 2: 'rate' is not a number above 0");
-  EXPECT_EQ(refusal("[arm]\ntitle = 3\n"), "my.toml, line 2: 'title' is not a text in quotes");
+  EXPECT_EQ(refusal("[arm]\ntitle = 3\n"), "my.toml, line 2: 'title' is not text in quotes");
   EXPECT_NE(refusal("[arm]\nweight = 3\n").find("'weight' is not a key"), std::string::npos);
   EXPECT_NE(refusal("arm = 3\n").find("not a table"), std::string::npos);
   EXPECT_NE(refusal("[arm\n").find("my.toml, line 1"), std::string::npos);

@@ -109,20 +109,20 @@ TEST_F(Haply, SaysWhyThereIsNone) {
   service_.set(Fault::reset);
   EXPECT_THAT(refusal(name()), AllOf(HasSubstr("not calibrated"), HasSubstr("Hub")));
   service_.set(Fault::closes);
-  EXPECT_THAT(refusal(name()), HasSubstr("ended"));
-  EXPECT_THAT(refusal("haply,url=" + service_.url()), HasSubstr("the connection has ended"));
+  EXPECT_THAT(refusal(name()), HasSubstr("closed"));
+  EXPECT_THAT(refusal("haply,url=" + service_.url()), HasSubstr("the connection was closed"));
   EXPECT_EQ(service_.commands(), 0) << "no force where there is no hand";
 }
 
 TEST_F(Haply, ComplainsOfWhateverIsWrong) {
-  EXPECT_THAT(complaint(Fault::closes), HasSubstr("ended"));
+  EXPECT_THAT(complaint(Fault::closes), HasSubstr("was closed"));
   EXPECT_THAT(complaint(Fault::garbage), HasSubstr("not a frame"));
   EXPECT_THAT(complaint(Fault::not_a_number), HasSubstr("not a frame"));
   EXPECT_THAT(complaint(Fault::null), HasSubstr("no position"));
   EXPECT_THAT(complaint(Fault::far), HasSubstr("impossible"));
-  EXPECT_THAT(complaint(Fault::gone), HasSubstr("is gone"));
+  EXPECT_THAT(complaint(Fault::gone), HasSubstr("was disconnected"));
   EXPECT_THAT(complaint(Fault::reset), HasSubstr("not calibrated"));
-  EXPECT_THAT(complaint(Fault::silent), HasSubstr("does not answer"));
+  EXPECT_THAT(complaint(Fault::silent), HasSubstr("stopped answering"));
 }
 
 TEST_F(Haply, ServiceThatIsSilentIsToldToTakeTheForceAway) {

@@ -184,7 +184,7 @@ TEST_F(OpenHapticsFaults, MotorsCoolDownBeforeItIsOpenedAgain) {
   set(&FakeHd::failing, 0x0200);
   set(&FakeHd::temperature, 0.9);
   trial_.run(0.1);
-  EXPECT_THAT(trial_.reasons(), testing::Contains(HasSubstr("too warm")));
+  EXPECT_THAT(trial_.reasons(), testing::Contains(HasSubstr("too hot")));
   set(&FakeHd::failing, 0);
   trial_.run(2.5);
   EXPECT_TRUE(trial_.is_free()) << "they are still warm";
@@ -207,7 +207,7 @@ TEST_F(OpenHapticsFaults, ASchedulerThatHangsIsGivenUpAndComesBack) {
   trial_.forget();
   trial_.run(0.1);
   EXPECT_TRUE(trial_.is_free());
-  EXPECT_THAT(trial_.reasons(), testing::ElementsAre(HasSubstr("does not run")));
+  EXPECT_THAT(trial_.reasons(), testing::ElementsAre(HasSubstr("is not running")));
   EXPECT_EQ(trial_.reopened(), 0);
   trial_.run(1.2);
   EXPECT_EQ(trial_.reopened(), 1);

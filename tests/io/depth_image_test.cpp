@@ -87,7 +87,7 @@ TEST(DepthImage, AsksForTheCamera) {
   EXPECT_THAT(refusal("P5 1 1 65535\n" + samples({5000})), HasSubstr("--intrinsics fx,fy,cx,cy"));
   ReadOptions options = kOptions;
   options.intrinsics->fx = 0;
-  EXPECT_THAT(refusal("P5 1 1 65535\nab", "a", options), HasSubstr("those of no camera"));
+  EXPECT_THAT(refusal("P5 1 1 65535\nab", "a", options), HasSubstr("are invalid"));
   options = kOptions;
   options.depth_unit = 0;
   EXPECT_THAT(refusal("P5 1 1 65535\nab", "a", options), HasSubstr("depth unit of 0"));

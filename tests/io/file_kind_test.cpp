@@ -43,7 +43,7 @@ TEST(FileKind, SaysWhatToDoAboutKindsThatAreNotRead) {
 
 TEST(FileKind, ShowsTheFirstBytesOfWhatItDoesNotKnow) {
   EXPECT_THAT(refusal(std::string("\x01\x02\x00\xff", 4), "a.bin"),
-              HasSubstr("a.bin: no known kind of file (it starts with 01 02 00 ff)"));
+              HasSubstr("a.bin: unknown file type (it starts with 01 02 00 ff)"));
   EXPECT_THAT(refusal(""), HasSubstr("the file is empty"));
 }
 

@@ -62,7 +62,7 @@ TEST(Gzip, StopsABombEarly) {
 }
 
 TEST(Gzip, IsNotUnpackedTwice) {
-  EXPECT_THAT(refusal(gzip(gzip(many_points(3)))), HasSubstr("packed with gzip twice"));
+  EXPECT_THAT(refusal(gzip(gzip(many_points(3)))), HasSubstr("compressed with gzip twice"));
 }
 
 }  // namespace

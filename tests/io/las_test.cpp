@@ -84,7 +84,7 @@ TEST(Las, NamesTheByteOfWhatIsWrong) {
   EXPECT_THAT(broken(104, std::uint8_t{11}), HasSubstr("byte 104: LAS point format 11"));
   EXPECT_THAT(broken(105, std::uint16_t{20}), HasSubstr("byte 105: point records of 20 bytes"));
   EXPECT_THAT(broken(96, std::uint32_t{3}), HasSubstr("byte 94"));
-  EXPECT_THAT(broken(131, 0.0), HasSubstr("byte 131: a coordinate scale of 0"));
+  EXPECT_THAT(broken(131, 0.0), HasSubstr("byte 131: invalid coordinate scale of 0"));
   EXPECT_THAT(broken(163, std::numeric_limits<double>::infinity()), HasSubstr("byte 163"));
   EXPECT_THAT(refusal(las_bytes(2, 0, {})), HasSubstr("holds no points"));
 }

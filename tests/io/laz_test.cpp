@@ -65,7 +65,7 @@ TEST(Laz, ALibraryWithoutTheFunctionsIsNoLibrary) {
 TEST(Laz, PassesOnWhatTheLibrarySaysOfACutFile) {
   const std::string bytes = compressed(2, 3);
   const std::string message = refusal_with(bytes.substr(0, bytes.size() - 1), kDouble);
-  EXPECT_THAT(message, HasSubstr("stops after 2 of 3 points: the double's own words"));
+  EXPECT_THAT(message, HasSubstr("stopped after 2 of 3 points: the double's own words"));
 }
 
 }  // namespace

@@ -164,8 +164,7 @@ TEST(Pcd, SaysHowManyPointsOfACutFileAreThere) {
   EXPECT_THAT(refusal(binary), HasSubstr("after 1 of 2 points"));
   EXPECT_THAT(refusal(binary), HasSubstr("WIDTH 1, HEIGHT 1 and POINTS 1"));
   const std::string packed = rich("binary_compressed").text() + rich_compressed();
-  EXPECT_THAT(refusal(packed.substr(0, packed.size() - 1)),
-              HasSubstr("compressed bytes announced"));
+  EXPECT_THAT(refusal(packed.substr(0, packed.size() - 1)), HasSubstr("compressed bytes declared"));
 }
 
 TEST(Pcd, RefusesHostileCounts) {
@@ -175,19 +174,19 @@ TEST(Pcd, RefusesHostileCounts) {
   EXPECT_THAT(refusal(overflow.text() + "1 2 3\n"), HasSubstr("is not POINTS"));
   Head wide;
   wide.counts = "1 1 99999999999";
-  EXPECT_THAT(refusal(wide.text()), HasSubstr("no sensible COUNT"));
+  EXPECT_THAT(refusal(wide.text()), HasSubstr("an invalid COUNT"));
   Head bomb{.width = "300000000", .points = "300000000", .data = "binary_compressed"};
   std::string data = bomb.text();
   append<std::uint32_t>(data, 2);
   append<std::uint32_t>(data, 3600000000U);
-  EXPECT_THAT(refusal(data + "ab"), HasSubstr("compressed bytes announced"));
+  EXPECT_THAT(refusal(data + "ab"), HasSubstr("compressed bytes declared"));
 }
 
 TEST(Pcd, SaysWhatIsWrongInAHeader) {
   EXPECT_THAT(refusal(Head{.points = "3"}.text()), HasSubstr("is not POINTS 3"));
   EXPECT_THAT(refusal(Head{.types = "F F G"}.text()), HasSubstr("field \"z\" has type \"G\""));
   EXPECT_THAT(refusal(Head{.sizes = "4 4 3"}.text()), HasSubstr("of 3 bytes"));
-  EXPECT_THAT(refusal(Head{.types = "F F"}.text()), HasSubstr("another number"));
+  EXPECT_THAT(refusal(Head{.types = "F F"}.text()), HasSubstr("a different number"));
   EXPECT_THAT(refusal(Head{.fields = "x y w"}.text()), HasSubstr("lack x, y or z"));
   EXPECT_THAT(refusal(Head{.viewpoint = "0 0 0"}.text()), HasSubstr("line 9: VIEWPOINT"));
   EXPECT_THAT(refusal(Head{.data = "zip"}.text()), HasSubstr("line 11: DATA"));

@@ -143,7 +143,7 @@ TEST(Ply, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n"),
               HasSubstr("unknown type \"half\""));
   EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int x\n"),
-              HasSubstr("no whole number"));
+              HasSubstr("not an integer"));
   EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 1\n"), HasSubstr("no end_header"));
   EXPECT_THAT(refusal("ply\nelement vertex 1\nend_header\n"), HasSubstr("no format line"));
   EXPECT_THAT(refusal("ply\nformat ascii 1.0\nhello\n"), HasSubstr("unknown word \"hello\""));

@@ -49,7 +49,7 @@ TEST(Trajectory, NumbersKeepEveryBit) {
 TEST(Trajectory, ErrorsNameFileLineAndRemedy) {
   const std::string header = "t,hip_x,hip_y,hip_z\n";
   EXPECT_EQ(message(header + "0,1,2,3\n1,1,x,3\n"),
-            "path.csv, line 3: 'x' in column 'hip_y' is not a finite number: repair or remove the "
+            "path.csv, line 3: 'x' in column 'hip_y' is not a finite number: correct or remove the "
             "row");
   EXPECT_NE(message(header + "0,nan,2,3\n").find("line 2: 'nan'"), std::string::npos);
   EXPECT_NE(message(header + "0,1,2,inf\n").find("'inf'"), std::string::npos);
@@ -58,7 +58,8 @@ TEST(Trajectory, ErrorsNameFileLineAndRemedy) {
   EXPECT_NE(message(header + "0,1,2\n").find("ends before column 'hip_z'"), std::string::npos);
   EXPECT_NE(message(header + "0,1,2,3\n0,1,2,3\n").find("line 3: t = 0 s follows t = 0 s"),
             std::string::npos);
-  EXPECT_NE(message(header + "1,1,2,3\n0.5,1,2,3\n").find("times must grow"), std::string::npos);
+  EXPECT_NE(message(header + "1,1,2,3\n0.5,1,2,3\n").find("times must increase"),
+            std::string::npos);
   EXPECT_NE(message("t,x,y,z\n0,1,2,3\n").find("no column 'hip_x'"), std::string::npos);
   EXPECT_NE(message("").find("is empty"), std::string::npos);
   EXPECT_NE(message(header).find("no rows"), std::string::npos);

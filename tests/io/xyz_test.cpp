@@ -54,7 +54,7 @@ TEST(Xyz, TellsColumnsFromTheirNumber) {
 TEST(Xyz, ReadsTheCountOfPts) {
   EXPECT_EQ(read_text("2\n1 2 3\n4 5 6\n", "a.pts").cloud.size(), 2u);
   EXPECT_THAT(refusal("3\n1 2 3\n4 5 6\n"),
-              HasSubstr("holds 2 points where its first line announces 3"));
+              HasSubstr("has 2 points, but its first line declares 3"));
 }
 
 TEST(Xyz, DropsRowsWithMissingValues) {
@@ -65,9 +65,9 @@ TEST(Xyz, DropsRowsWithMissingValues) {
 
 TEST(Xyz, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(refusal("1 2 3\n4 5 6\n7 8\n"),
-              HasSubstr("line 3: 2 columns where the first line has 3"));
+              HasSubstr("line 3: 2 columns, but the first line has 3"));
   EXPECT_THAT(refusal("1 2 3\n4 fünf 6\n"), HasSubstr("line 2: \"f??nf\" is not a number"));
-  EXPECT_THAT(refusal("1 2\n"), HasSubstr("2 columns where x y z need 3"));
+  EXPECT_THAT(refusal("1 2\n"), HasSubstr("2 columns, but x y z need 3"));
   EXPECT_THAT(refusal("a,b,c\n1,2,3\n"), HasSubstr("neither a point nor a header"));
   EXPECT_THAT(refusal("# nothing\n"), HasSubstr("no line holds numbers"));
   EXPECT_THAT(refusal("x y z\n"), HasSubstr("holds no points"));

@@ -94,17 +94,18 @@ TEST(Poses, SetsRoundedRotationsRight) {
 }
 
 TEST(Poses, NamesTheLineThatIsWrong) {
-  EXPECT_THAT(refusal(parse_poses, ""), HasSubstr("no poses"));
-  EXPECT_THAT(refusal(parse_poses, "hello\n"), HasSubstr("no poses"));
+  EXPECT_THAT(refusal(parse_poses, ""), HasSubstr("unknown pose format"));
+  EXPECT_THAT(refusal(parse_poses, "hello\n"), HasSubstr("unknown pose format"));
   EXPECT_THAT(refusal(parse_poses, "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 1\n"), HasSubstr("a.txt, line 2"));
-  EXPECT_THAT(refusal(parse_poses, "1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"), HasSubstr("not after"));
+  EXPECT_THAT(refusal(parse_poses, "1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"),
+              HasSubstr("not later than"));
   EXPECT_THAT(refusal(parse_poses, "1 0 0 0 0 0 0 2\n"), HasSubstr("length is not 1"));
-  EXPECT_THAT(refusal(parse_poses, "1 nan 0 0 0 0 0 1\n"), HasSubstr("no poses"));
+  EXPECT_THAT(refusal(parse_poses, "1 nan 0 0 0 0 0 1\n"), HasSubstr("unknown pose format"));
   EXPECT_THAT(refusal(parse_poses, "0 0 1\n1 0 0 0\n0 1 0 0\n"), HasSubstr("line 4"));
   EXPECT_THAT(refusal(parse_poses, "0 0 1\n1 0 0 0\n0 2 0 0\n0 0 1 0\n0 0 0 1\n"),
-              HasSubstr("line 2: this matrix is no rotation"));
+              HasSubstr("line 2: this matrix is not a rotation"));
   EXPECT_THAT(refusal(parse_poses, "0 0 1\n1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n"),
-              HasSubstr("no rotation"));
+              HasSubstr("not a rotation"));
 }
 
 TEST(FrameList, ReadsDepthAndAssociations) {
@@ -124,7 +125,7 @@ TEST(FrameList, NamesTheLineThatIsWrong) {
   EXPECT_THAT(refusal(parse_frame_list, "1 a\nx b\n"), HasSubstr("a.txt, line 2"));
   EXPECT_THAT(refusal(parse_frame_list, "1\n"), HasSubstr("line 1"));
   EXPECT_THAT(refusal(parse_frame_list, "1 a 2 b\n"), HasSubstr("under depth/"));
-  EXPECT_THAT(refusal(parse_frame_list, "2 a\n1 b\n"), HasSubstr("not after"));
+  EXPECT_THAT(refusal(parse_frame_list, "2 a\n1 b\n"), HasSubstr("not later than"));
   EXPECT_THAT(refusal(parse_frame_list, "inf a\n"), HasSubstr("line 1"));
 }
 

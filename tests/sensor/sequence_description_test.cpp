@@ -65,15 +65,15 @@ TEST(SequenceDescription, TellsEveryField) {
 }
 
 TEST(SequenceDescription, RefusesWhatItCannotUnderstand) {
-  EXPECT_THAT(refusal("{"), AllOf(HasSubstr("a.json"), HasSubstr("not JSON")));
+  EXPECT_THAT(refusal("{"), AllOf(HasSubstr("a.json"), HasSubstr("not valid JSON")));
   EXPECT_THAT(refusal("[1]"), HasSubstr("not an object"));
   EXPECT_THAT(refusal("{}"), HasSubstr("\"fx\" is missing"));
-  EXPECT_THAT(refusal(with(R"(, "fbs": 3)")), HasSubstr("no field \"fbs\""));
+  EXPECT_THAT(refusal(with(R"(, "fbs": 3)")), HasSubstr("unknown field \"fbs\""));
   EXPECT_THAT(refusal(with(R"(, "fps": "fast")")), HasSubstr("\"fps\" is \"fast\""));
   EXPECT_THAT(refusal(with(R"(, "fps": 0)")), HasSubstr("\"fps\" is 0"));
   EXPECT_THAT(refusal(with(R"(, "fps": 1e999)")), HasSubstr("a.json"));
   EXPECT_THAT(refusal(with(R"(, "width": -1)")), HasSubstr("\"width\" is -1"));
-  EXPECT_THAT(refusal(with(R"(, "depth_unit_m": 0)")), HasSubstr("metres of one depth step"));
+  EXPECT_THAT(refusal(with(R"(, "depth_unit_m": 0)")), HasSubstr("metres per depth unit"));
   EXPECT_THAT(refusal(with(R"(, "invalid": [70000])")), HasSubstr("0 to 65535"));
   EXPECT_THAT(refusal(with(R"(, "invalid": [0.5])")), HasSubstr("0 to 65535"));
   EXPECT_THAT(refusal(with(R"(, "distortion": [1, 2, 3, 4, 5, 6])")), HasSubstr("Brown"));
@@ -81,7 +81,8 @@ TEST(SequenceDescription, RefusesWhatItCannotUnderstand) {
   EXPECT_THAT(refusal(with(R"(, "pose": 3)")), HasSubstr("name of a file"));
   EXPECT_THAT(refusal(with(R"(, "byte_order": "middle")")), HasSubstr("\"big\" or \"little\""));
   EXPECT_THAT(refusal(with(R"(, "T_pose_camera": [1, 2, 3])")), HasSubstr("qx"));
-  EXPECT_THAT(refusal(with(R"(, "T_pose_camera": [1, 2, 3, 0, 0, 0, 0])")), HasSubstr("length 1"));
+  EXPECT_THAT(refusal(with(R"(, "T_pose_camera": [1, 2, 3, 0, 0, 0, 0])")),
+              HasSubstr("unit quaternion"));
 }
 
 }  // namespace

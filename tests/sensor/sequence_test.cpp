@@ -111,7 +111,7 @@ TEST(Sequence, TakesPosesByOrderNumberDirectionAndMounting) {
 TEST(Sequence, SaysWhatIsMissing) {
   const Folder folder;
   EXPECT_THAT(refusal(folder.path() / "absent"), HasSubstr("no such folder"));
-  EXPECT_THAT(refusal(folder.path()), HasSubstr("Write a sequence.json"));
+  EXPECT_THAT(refusal(folder.path()), HasSubstr("Add a sequence.json"));
   folder.write("sequence.json", described(R"(, "images": "absent")"));
   EXPECT_THAT(refusal(folder.path()), HasSubstr("cannot be listed"));
   folder.write("sequence.json", described(R"(, "pose": "absent.log")"));
@@ -218,7 +218,7 @@ TEST(SequenceCamera, GoesOnAfterEveryKindOfDamage) {
   DepthFrame frame;
   ASSERT_EQ(camera->read(frame, 0), CameraStatus::frame);
   for (const char* why :
-       {"pixels", "002.pgm", "8 x 6 pixels from a camera of 4 x 3", "no such file"}) {
+       {"pixels", "002.pgm", "8 x 6 pixels, but the camera has 4 x 3", "no such file"}) {
     EXPECT_EQ(camera->read(frame, 0), CameraStatus::damaged);
     EXPECT_THAT(camera->reason(), HasSubstr(why));
   }

@@ -120,7 +120,7 @@ TEST(Guard, GivesZeroAfterASilenceAndComesBackSoftly) {
   late.dt = 0.1;
   EXPECT_EQ(guard.pass(late), Vector3d::Zero());
   EXPECT_TRUE(has(guard.state().notes, GuardNote::silence));
-  EXPECT_NE(in_words(guard.state()).find("silent"), std::string::npos);
+  EXPECT_NE(in_words(guard.state()).find("watchdog"), std::string::npos);
   for (int i = 1; i <= 6; ++i) {
     EXPECT_NEAR(guard.pass(pushed({0, 0, 2}, {0, 0, -0.05})).z(), 0.3 * i, 1e-12);
   }

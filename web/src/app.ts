@@ -101,7 +101,7 @@ export class App {
         },
         message: (message) => this.take(message),
         binary: (message) => this.takeBinary(message),
-        garbled: (text) => this.notices.add("warning", `a message could not be read (${text})`),
+        garbled: (text) => this.notices.add("warning", `invalid message from the program (${text})`),
       },
     );
     this.plotInterval = matchMedia("(prefers-reduced-motion: reduce)").matches ? kCalmInterval : kPlotInterval;
@@ -167,7 +167,7 @@ export class App {
     const again = this.scene === welcome.scene;
     this.scene = welcome.scene;
     if (welcome.version !== kVersion) {
-      this.notices.add("warning", `the program speaks version ${welcome.version}, this page ${kVersion}: reload the page`);
+      this.notices.add("warning", `the program uses protocol version ${welcome.version}, this page ${kVersion}: reload the page`);
     }
     this.session.begin(welcome);
     this.world.begin(welcome, again);
@@ -186,7 +186,7 @@ export class App {
     for (const [key, text] of this.link.values) {
       const setting = welcome.settings.find((one) => one.key === key);
       const value = setting === undefined ? undefined : settingFromText(setting, text);
-      if (value === undefined) this.notices.add("warning", `the link's ${key} = ${text} is nothing that can be set here`);
+      if (value === undefined) this.notices.add("warning", `the link's ${key} = ${text} is not a setting of this run`);
       else if (value !== setting?.value) this.send({ type: "set", key, value });
     }
     history.replaceState(null, "", writeLink(this.link.token, [])); // not again when it is loaded again
@@ -232,8 +232,8 @@ export class App {
     const { frameTime, software } = this.world.stage;
     if (this.saidSlow || now < kSettled || !(frameTime > kSlow)) return;
     this.saidSlow = true;
-    this.notices.add("info", `drawing is slow (${frameTime.toFixed(0)} ms a picture): show fewer points` +
-      (software ? ", or let the browser use the graphics card" : ""));
+    this.notices.add("info", `rendering is slow (${frameTime.toFixed(0)} ms per frame): show fewer points` +
+      (software ? ", or enable hardware acceleration in the browser" : ""));
   }
 
   private relook(): void {

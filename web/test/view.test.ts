@@ -37,7 +37,7 @@ test("numbers read well", () => {
 });
 
 test("what is not trusted of a cloud is told from a hundredth on", () => {
-  assert.equal(distrust(0.123), "12 % of this cloud is not trusted; it is felt as metaball there");
+  assert.equal(distrust(0.123), "12 % of this cloud has low trust and is rendered as a metaball");
   assert.equal(distrust(0.0099), "");
 });
 

@@ -30,12 +30,12 @@ constexpr const char* kAlignFooter = R"(Examples:
   palpate align a.ply b.ply --pose b=0.1,0,0,0,0,0,1
   palpate touch --setup desk.toml
 
-The first source stays where it is; each of the others shares surface with those before it and stands
-right to some 10 cm and 10 degrees: by --pose, by the set-up file or, where cameras stand close
-together, without either. What they see together must not slide along itself, as a bare table-top does.
-docs/cameras.md tells more.
+The first source stays fixed. Each other source must overlap those before it, and its pose must be
+right to about 10 cm and 10 degrees: from --pose, from the set-up file or, if the cameras are close
+together, from neither. The overlap must fix the pose; a bare table-top can slide along itself.
+docs/cameras.md has details.
 
-Exit codes: 0 done, 1 the input is at fault or holds no sure answer, 2 the command line is wrong.)";
+Exit codes: 0 done, 1 the input is bad or gives no reliable answer, 2 the command line is wrong.)";
 
 std::vector<double> numbers_of(const Eigen::Isometry3d& pose) {
   const Eigen::Vector3d p = pose.translation();
@@ -117,7 +117,7 @@ std::string setup_text(const CLI::App& command, const AlignOptions& options,
 }
 
 std::string fit_in_words(const Fit& fit) {
-  return fmt::format("{} apart, {:.0f} % of it lies on others", length(fit.residual),
+  return fmt::format("residual {}, {:.0f} % overlap with the others", length(fit.residual),
                      100 * fit.overlap);
 }
 
@@ -128,7 +128,7 @@ void print_source(const SourcePlan& source, const AlignedSource& aligned, std::F
   fmt::print(out, "  before     {}\n  after      {}\n", fit_in_words(aligned.before),
              fit_in_words(aligned.after));
   if (aligned.place_deviation > 0) {
-    fmt::print(out, "  turned by  {:.2f} degrees\n  sure to    {} and {:.3f} degrees (one sigma)\n",
+    fmt::print(out, "  rotated    {:.2f} degrees\n  sigma      {} and {:.3f} degrees\n",
                kDegrees * Eigen::AngleAxisd(moved.linear()).angle(),
                length(aligned.place_deviation), kDegrees * aligned.turn_deviation);
   }
@@ -153,10 +153,8 @@ void check_outputs(const std::string& output, const OutputPlan& others) {
   check_distinct({},
                  {{"--output", output}, {"--json", others.json}, {"--picture", others.picture}});
   if (output == "-" || !fs::exists(output)) return;
-  throw UsageError(
-      fmt::format("--output {} is there already and is not overwritten; name another file or "
-                  "remove it",
-                  output));
+  throw UsageError(fmt::format(
+      "--output {} already exists and is not overwritten; name another file or remove it", output));
 }
 
 std::vector<AlignedSource> solve(const Touched& touched) {
@@ -176,11 +174,11 @@ void add_align_options(CLI::App& command, AlignOptions& options) {
   add_placed_sources(table, options.touch);
   table.under("Output");
   table.add("--output", options.output, "FILE.toml",
-            "the poses as a set-up file for 'palpate touch --setup', with all else that --setup "
-            "and the command line say; never overwrites one");
+            "write the poses to a set-up file for 'palpate touch --setup', with all other settings "
+            "of --setup and the command line; never overwrites a file");
   add_json_option(command, outputs.json)->group("Output");
   table.add("--picture", outputs.picture, "FILE.png",
-            "the sources before and after as PNG (needs python3-matplotlib)");
+            "the sources before and after alignment as PNG (needs python3-matplotlib)");
   command.footer(kAlignFooter);
   options.touch.every_source.options.policy.fit_everywhere = true;
 }
@@ -194,7 +192,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
   std::optional<OutputFile> picture;
   if (!plan.outputs.picture.empty()) picture.emplace(plan.outputs.picture);
   std::vector<SourcePlan> sources = plan.sources;
-  require(sources.size() > 1, "aligning takes two sources or more; name another");
+  require(sources.size() > 1, "align needs at least two sources; name another one");
   const Touched touched = prepare_touched(sources, {.explored = true});
   const std::vector<AlignedSource> aligned = solve(touched);
   nlohmann::ordered_json report = nlohmann::ordered_json::array();

@@ -85,13 +85,13 @@ std::vector<double> parse_numbers(const std::string& text, std::size_t count,
 }
 
 Eigen::Vector3d parse_point(const std::string& text, const std::string& option) {
-  const std::vector<double> v = parse_numbers(text, 3, option, "x,y,z in metres, such as 0,0,1.2");
+  const std::vector<double> v = parse_numbers(text, 3, option, "x,y,z in metres, e.g. 0,0,1.2");
   return {v[0], v[1], v[2]};
 }
 
 Pinhole parse_intrinsics(const std::string& text) {
   const std::vector<double> v =
-      parse_numbers(text, 4, "--intrinsics", "fx,fy,cx,cy in pixels, such as 525,525,319.5,239.5");
+      parse_numbers(text, 4, "--intrinsics", "fx,fy,cx,cy in pixels, e.g. 525,525,319.5,239.5");
   if (v[0] <= 0 || v[1] <= 0) {
     throw UsageError(fmt::format("--intrinsics: focal lengths {}, {} must be above 0", v[0], v[1]));
   }
@@ -109,12 +109,12 @@ NoiseModel parse_noise(const std::string& text) {
   const auto commas = static_cast<std::size_t>(std::ranges::count(text, ','));
   const std::vector<double> v =
       parse_numbers(text, commas == 3 ? 4 : 3, "--noise",
-                    "S0,S1,S2 or S0,S1,S2,C, such as 0.0012,0,0.0019 for 1.2 mm + 1.9 mm z^2");
+                    "S0,S1,S2 or S0,S1,S2,C, e.g. 0.0012,0,0.0019 for 1.2 mm + 1.9 mm z^2");
   NoiseModel model;
   std::copy_n(v.begin(), 3, model.coefficients.begin());
   if (v.size() == 4) model.correlation = v[3];
   if (model.correlation < 1) {
-    throw UsageError(fmt::format("--noise: a correlation of {}; it is 1 or more", v[3]));
+    throw UsageError(fmt::format("--noise: the correlation {} is below 1; give 1 or more", v[3]));
   }
   return model;
 }
@@ -130,7 +130,7 @@ Eigen::Isometry3d pose_of(const std::vector<double>& v, const std::string& what)
 }
 
 PoseArgument parse_pose(const std::string& text) {
-  const std::string form = "NAME=x,y,z,qx,qy,qz,qw in metres and as a unit quaternion";
+  const std::string form = "NAME=x,y,z,qx,qy,qz,qw: metres and a unit quaternion";
   const std::size_t place = text.find('=');
   if (place == std::string::npos || place == 0) {
     throw UsageError(fmt::format("--pose: '{}' names no source; write {}", text, form));
@@ -166,10 +166,9 @@ bool names_something(const std::string& path) {
 void name_all(std::vector<CloudArgument>& sources) {
   for (const CloudArgument& source : sources) {
     if (names_something(source.path)) continue;
-    throw UsageError(
-        fmt::format("'{}' names nothing; write a file's path, camera:NAME, sequence:FOLDER or "
-                    "synthetic:NAME",
-                    source.path));
+    throw UsageError(fmt::format(
+        "'{}' names no source; give a file path, camera:NAME, sequence:FOLDER or synthetic:NAME",
+        source.path));
   }
   std::set<std::string> taken;
   for (const CloudArgument& source : sources) {
@@ -184,7 +183,7 @@ void name_all(std::vector<CloudArgument>& sources) {
   }
   const auto standard_input = [](const CloudArgument& source) { return source.path == "-"; };
   if (std::ranges::count_if(sources, standard_input) > 1) {
-    throw UsageError("standard input (-) can be read only once");
+    throw UsageError("standard input (-) can be read only once; give a file for the other input");
   }
 }
 

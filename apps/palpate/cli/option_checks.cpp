@@ -61,7 +61,7 @@ CLI::Validator parsed_by(std::function<void(const std::string&)> parse) {
 }
 
 CLI::Option* add_json_option(CLI::App& command, std::string& path) {
-  return command.add_option("--json", path, "the same as data; - is standard output")
+  return command.add_option("--json", path, "the same as JSON; - is standard output")
       ->type_name("FILE");
 }
 

@@ -79,7 +79,7 @@ OutputFile::~OutputFile() {
 void OutputFile::open() {
   if (file_ || open_nameless()) return;
   file_.reset(std::fopen(growing_.c_str(), growing_ == place_ ? "wb" : "wbx"));
-  if (!file_) fail("cannot be made");
+  if (!file_) fail("cannot be created");
 }
 
 // One that is never seen, however the program ends. Not every file system has such files.
@@ -133,7 +133,7 @@ void OutputFile::close() {
 }
 
 void OutputFile::fail(const char* what) const {
-  throw Error(fmt::format("{} {}: {}; choose another place", path_, what, std::strerror(errno)));
+  throw Error(fmt::format("{} {}: {}; choose another path", path_, what, std::strerror(errno)));
 }
 
 void write_whole(std::optional<OutputFile>& file, std::string_view text) {
@@ -164,8 +164,8 @@ void check_distinct(const std::vector<NamedFile>& inputs, const std::vector<Name
     if (!is_plain(output.path)) continue;
     for (const NamedFile& other : others) {
       if (!is_plain(other.path) || !same_place(output.path, other.path)) continue;
-      throw UsageError(fmt::format("{} {} is the same file as {}; choose another place",
-                                   output.name, output.path, other.name));
+      throw UsageError(fmt::format("{} {} is the same file as {}; choose another path", output.name,
+                                   output.path, other.name));
     }
     others.push_back(output);
   }

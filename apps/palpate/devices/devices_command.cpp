@@ -87,15 +87,15 @@ Exit codes: 0 done, 1 the list could not be written, 2 the command line is wrong
 // Those that need no hardware.
 std::vector<DriverInfo> built_in() {
   return {{.name = "scripted",
-           .description = "a hand that goes where it is told, whatever the force",
+           .description = "follows its trajectory exactly, whatever the force",
            .missing = {},
            .devices = {}},
           {.name = "simulated",
-           .description = "a device with mass and friction, pulled by a hand",
+           .description = "a device with mass and friction that is pulled along its trajectory",
            .missing = {},
            .devices = {}},
           {.name = "remote",
-           .description = "any other program, through a socket (docs/remote_device.md)",
+           .description = "another program, over a socket (docs/remote_device.md)",
            .missing = {},
            .devices = {}}};
 }

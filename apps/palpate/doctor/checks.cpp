@@ -36,9 +36,10 @@ std::string counted(const Findings& findings, Severity severity) {
 }
 
 std::string verdict(Severity severity) {
-  if (severity == Severity::problem) return "something that is there does not work";
-  if (severity == Severity::warning) return "palpate works, perhaps late or not with everything";
-  return "nothing is wrong";
+  if (severity == Severity::problem) return "something does not work";
+  if (severity == Severity::warning)
+    return "palpate works, but perhaps late or not with every device";
+  return "no problems found";
 }
 
 }  // namespace
@@ -72,7 +73,7 @@ void print(const Findings& findings, std::FILE* stream) {
     area = finding.area;
     print(finding, style, stream);
   }
-  fmt::print(stream, "{}, {}, {}: {}. What mends each stands below it.\n",
+  fmt::print(stream, "{}, {}, {}: {}. The fix for each is shown below it.\n",
              counted(findings, Severity::problem), counted(findings, Severity::warning),
              counted(findings, Severity::note), verdict(worst(findings)));
 }

@@ -68,7 +68,7 @@ std::string broken_remedy(const VendorLibrary& library, const std::string& words
 
 Answer library_answer(const VendorLibrary& library, const LibraryTrial& trial, bool needed) {
   if (trial.outcome == LibraryTrial::Outcome::loaded) {
-    return good(trial.words.empty() ? "loaded; its C interface tells no version"
+    return good(trial.words.empty() ? "loaded; its C interface reports no version"
                                     : "loaded, version " + trial.words);
   }
   if (trial.outcome == LibraryTrial::Outcome::broken) {
@@ -76,8 +76,9 @@ Answer library_answer(const VendorLibrary& library, const LibraryTrial& trial, b
             broken_remedy(library, trial.words)};
   }
   return {needed ? Severity::problem : Severity::note,
-          fmt::format("not found; {} brings it (unpack it, then install it from beside its folder)",
-                      library.brought_by),
+          fmt::format(
+              "not found; it is part of {} (unpack that, then run this command next to its folder)",
+              library.brought_by),
           std::string(library.install)};
 }
 
@@ -95,21 +96,21 @@ Answer touch_setup(const Machine& machine) {
   if (!names.empty()) {
     return good(fmt::format("{} in {}", fmt::join(names, ", "), folder.string()));
   }
-  return problem(
-      fmt::format("no device is set up in {}: OpenHaptics opens none that is not (newer drivers "
-                  "call the tool Touch_HeadlessSetup)",
-                  folder.string()),
-      fmt::format("{}mkdir -p \"$GTDD_HOME/config\" && Touch_Setup",
-                  given.empty() ? "export GTDD_HOME=\"$HOME/.3dsystems\" && " : ""));
+  return problem(fmt::format("no device is configured in {}, so OpenHaptics cannot open one (newer "
+                             "drivers call the tool Touch_HeadlessSetup)",
+                             folder.string()),
+                 fmt::format("{}mkdir -p \"$GTDD_HOME/config\" && Touch_Setup",
+                             given.empty() ? "export GTDD_HOME=\"$HOME/.3dsystems\" && " : ""));
 }
 
 Answer haply_service(const Machine& machine) {
   if (machine.system.listens(kHaplyPort)) {
     return good(fmt::format("answers on 127.0.0.1:{}", kHaplyPort));
   }
-  return {any_reached_by("service", machine.devices) ? Severity::problem : Severity::note,
-          fmt::format("nobody answers on 127.0.0.1:{}; Haply's installer brings it", kHaplyPort),
-          "sudo systemctl enable --now haply-inverse-service"};
+  return {
+      any_reached_by("service", machine.devices) ? Severity::problem : Severity::note,
+      fmt::format("no answer on 127.0.0.1:{}; Haply's installer provides the service", kHaplyPort),
+      "sudo systemctl enable --now haply-inverse-service"};
 }
 
 constexpr const char* kCameras = "cameras";
@@ -148,7 +149,8 @@ Answer driver_answer(const Machine& machine, const DriverInfo& driver,
             remedy_for(machine.system, driver, packages)};
   }
   if (driver.devices.empty() && plugged) {
-    return problem("a camera for it is plugged in, but it finds none", reinstall(packages));
+    return problem("a camera for it is plugged in, but the driver does not find it",
+                   reinstall(packages));
   }
   return good(fmt::format("available, {} found", driver.devices.size()));
 }
@@ -191,8 +193,8 @@ void check_power(const Machine& machine, Findings& findings) {
     return each.model.kind == DeviceKind::part;
   });
   if (!parts || any_reached_by("freenect", machine.devices)) return;
-  findings.push_back({problem("parts of a Kinect are there, its camera is not: plug in its own "
-                              "power supply, then look again",
+  findings.push_back({problem("a Kinect is connected, but its camera is missing: plug in its power "
+                              "supply, then check again",
                               "lsusb -d 045e:"),
                       kCameras, "Kinect v1"});
 }

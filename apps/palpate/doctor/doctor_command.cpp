@@ -17,15 +17,15 @@ constexpr int kWarnings = 3;
 constexpr double kLongest = 3600;  // s
 
 constexpr const char* kDoctorFooter =
-    R"(It changes nothing: it prints commands, and you decide whether to run them.
+    R"(It changes nothing; it prints commands for you to run.
 
 Examples:
   palpate doctor
   palpate doctor --jitter 60
   palpate doctor --jitter 0 --json -
 
-Exit codes: 0 nothing is wrong (notes tell what is absent), 1 a problem (something that is there does
-not work) or the list could not be written, 2 the command line is wrong, 3 warnings.)";
+Exit codes: 0 no problems (notes list what is missing), 1 a problem (something does not work) or the
+list could not be written, 2 the command line is wrong, 3 warnings.)";
 
 void write_json(const doctor::Findings& findings, const std::string& path) {
   OutputFile file(path);
@@ -38,7 +38,7 @@ void write_json(const doctor::Findings& findings, const std::string& path) {
 void add_doctor_options(CLI::App& command, DoctorOptions& options) {
   command
       .add_option("--jitter", options.jitter,
-                  wrapped("for how long to measure how late steps at 1 kHz are; 0: not at all"))
+                  wrapped("how long to measure the jitter of 1 kHz steps; 0: skip"))
       ->check(
           number("from 0 to 3600 s", [](double value) { return value >= 0 && value <= kLongest; }))
       ->type_name("SECONDS")
@@ -49,7 +49,7 @@ void add_doctor_options(CLI::App& command, DoctorOptions& options) {
 
 int examine(const DoctorOptions& options) {
   const doctor::Findings findings = [&] {
-    const Waiting waiting("looking at this machine");
+    const Waiting waiting("checking this machine");
     return doctor::check_all(doctor::this_system(), options.jitter);
   }();
   doctor::print(findings, options.json == "-" ? stderr : stdout);

@@ -55,17 +55,16 @@ Answer preemption(const Machine& machine) {
   const System& system = machine.system;
   const auto version = text(system, "proc/version");
   if (!version) {
-    return note("/proc/version cannot be read, so the kernel is not known",
-                "sudo mount -t proc proc /proc");
+    return note("kernel unknown: /proc/version cannot be read", "sudo mount -t proc proc /proc");
   }
   if (text(system, "sys/kernel/realtime") == "1" ||
       version->find("PREEMPT_RT") != std::string::npos) {
     return good(fmt::format("real-time (PREEMPT_RT), {}", release_of(*version)));
   }
-  return note(fmt::format("{} is no real-time kernel (PREEMPT_RT): under load, drivers may delay a "
-                          "step by milliseconds{}",
+  return note(fmt::format("{} is not a real-time kernel (PREEMPT_RT): under load, drivers may "
+                          "delay a step by milliseconds{}",
                           release_of(*version),
-                          in_container(system) ? "; a container has the kernel of its host" : ""),
+                          in_container(system) ? "; a container uses its host's kernel" : ""),
               realtime_kernel_command(system));
 }
 
@@ -76,10 +75,10 @@ Answer frequency_governor(const Machine& machine) {
     const auto governor = text(machine.system, path + "/cpufreq/scaling_governor");
     if (governor) found.insert(*governor);
   }
-  if (found.empty()) return good("the kernel leaves the processors' frequency alone");
+  if (found.empty()) return good("no frequency scaling");
   if (found == std::set<std::string>{"performance"}) return good("performance");
   return {found.contains("powersave") ? Severity::warning : Severity::note,
-          fmt::format("{}: processors slow down between steps, and are slow when one begins",
+          fmt::format("{}: CPUs slow down between steps and start each step slowly",
                       fmt::join(found, ", ")),
           "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"};
 }
@@ -91,14 +90,14 @@ Answer clock_source(const Machine& machine) {
     return text(machine.system, std::string(kClock) + file);
   };
   const auto current = told("current_clocksource");
-  if (!current) return note("/sys does not tell it", kMountSys);
+  if (!current) return note("unknown: not in /sys", kMountSys);
   if (std::ranges::find(kSlow, *current) == kSlow.end()) return good(*current);
-  const std::string words = *current + ": each look at the clock takes a microsecond or more";
+  const std::string words = *current + ": reading the clock takes a microsecond or more";
   if (told("available_clocksource").value_or("").find("tsc") != std::string::npos) {
-    return warning(words + ", with tsc some 20 ns",
+    return warning(words + ", about 20 ns with tsc",
                    fmt::format("echo tsc | sudo tee /{}current_clocksource", kClock));
   }
-  return warning(words + "; the kernel refused tsc", "sudo dmesg | grep -iE 'tsc|clocksource'");
+  return warning(words + "; the kernel rejected tsc", "sudo dmesg | grep -iE 'tsc|clocksource'");
 }
 
 // One row an octave, from the first that holds a step to the last.
@@ -137,9 +136,9 @@ Answer jitter(const Machine& machine) {
   answer.lines = histogram(lateness);
   if (machine.trial.left_out == 0 && lateness.longest < kStep) return answer;
   answer.severity = lateness.quantile(0.999) < kStep ? Severity::note : Severity::warning;
-  answer.words += fmt::format("; left out: {}", grouped(machine.trial.left_out));
+  answer.words += fmt::format("; skipped: {}", grouped(machine.trial.left_out));
   if (text(machine.system, "proc/cpuinfo").value_or("").find(" hypervisor") != std::string::npos) {
-    answer.words += "; this is a virtual machine, whose host may halt it";
+    answer.words += "; this is a virtual machine, which its host may pause";
   }
   answer.remedy = jitter_remedy(machine);
   return answer;
@@ -147,11 +146,11 @@ Answer jitter(const Machine& machine) {
 
 Answer granted(const System& system, const RealtimeRequest& request) {
   if (request.granted) return good("granted");
-  std::string hint = "; takes effect with a new login";
+  std::string hint = "; takes effect after a new login";
   if (in_container(system)) {
-    hint = "; a container gets it where it is started";
+    hint = "; a container is granted it at its start";
   } else if (is_there(system, kLimits)) {
-    hint = fmt::format("; /{} is there, so a new login of a member of 'realtime' helps", kLimits);
+    hint = fmt::format("; /{} exists: log in again as a member of 'realtime'", kLimits);
   }
   const std::string reason = request.remedy.substr(0, request.remedy.find(';'));
   return warning(fmt::format("not granted ({}); steps will start late{}", reason, hint),
@@ -174,7 +173,7 @@ Answer limits(const Machine& machine) {
       fmt::format("rtprio {}, memlock {}", limit(told, "Max realtime priority"),
                   limit(told, "Max locked memory"));
   if (machine.trial.report.all_granted()) return good(words);
-  return note(words + "; needed are rtprio 80 or more and memlock unlimited",
+  return note(words + "; palpate needs rtprio 80 or more and unlimited memlock",
               rights_command(machine.system));
 }
 
@@ -187,7 +186,7 @@ Answer share_of_threads(const Machine& machine) {
       fmt::format("{:.0f} % of the time (kernel.sched_rt_runtime_us)", 100 * share);
   if (share >= kEnough) return good(words);
   return {share > 0 ? Severity::warning : Severity::problem,
-          words + ": they are halted for the rest",
+          words + ": real-time threads are paused for the rest",
           "sudo sysctl -w kernel.sched_rt_runtime_us=950000"};
 }
 

@@ -54,8 +54,8 @@ Answer locale(const Machine& machine) {
     if (value.empty() || machine.system.decimal_point(value)) continue;
     return warning(
         fmt::format(
-            "{}={}, which does not exist here: vendors' tools may not start or read files wrongly",
-            name, value),
+            "{}={}, which is not installed: vendor tools may not start or may misread files", name,
+            value),
         locale_command(name, value));
   }
   return good("exists");
@@ -64,23 +64,23 @@ Answer locale(const Machine& machine) {
 Answer decimal_point(const Machine& machine) {
   const auto [name, locale] = numbers_locale(machine.system);
   const std::string point = machine.system.decimal_point(locale).value_or(".");
-  if (point == ".") return good("numbers are written 0.5");
+  if (point == ".") return good("numbers are written as 0.5");
   return note(
-      fmt::format("{}={} writes 0{}5: palpate reads and writes 0.5 everywhere, vendors' tools may "
-                  "not",
+      fmt::format("{}={} writes 0{}5: palpate always reads and writes 0.5, vendor tools may not",
                   name, locale, point),
       fmt::format("export {}=C.UTF-8", name == "LC_ALL" ? "LC_ALL" : "LC_NUMERIC"));
 }
 
 Answer network_buffer(const Machine& machine) {
   const auto bytes = whole_number(machine.system, "proc/sys/net/core/rmem_max");
-  if (!bytes) return good("not told here (net.core.rmem_max)");
+  if (!bytes) return good("unknown (net.core.rmem_max)");
   const std::string words =
       fmt::format("net.core.rmem_max is {:.1f} MB", 1e-6 * static_cast<double>(*bytes));
   if (*bytes >= kLargeCloud) return good(words);
   return note(
-      fmt::format("{}; a cloud of 640 x 480 points over DDS (ROS 2) has {:.1f} MB and may be lost",
-                  words, 1e-6 * kLargeCloud),
+      fmt::format(
+          "{}; a cloud of 640 x 480 points over DDS (ROS 2) takes {:.1f} MB and may be lost", words,
+          1e-6 * kLargeCloud),
       fmt::format("echo net.core.rmem_max={} | sudo tee /etc/sysctl.d/60-palpate.conf && sudo "
                   "sysctl --system",
                   kLargestBuffer));
@@ -90,32 +90,31 @@ Answer runtime_folder(const Machine& machine) {
   static constexpr const char* kRemedy = "export XDG_RUNTIME_DIR=$(mktemp -d)";
   const std::string folder = variable(machine.system, "XDG_RUNTIME_DIR");
   if (folder.empty()) {
-    return note("not set: the remote device has no place for its socket unless given one", kRemedy);
+    return note("not set: the remote device has no default socket path", kRemedy);
   }
   const auto path = machine.system.root / std::filesystem::path(folder).relative_path();
   if (machine.system.node(path).may_open) return good(folder);
-  return warning(
-      folder + ", where this user may not write: the remote device's socket has no place there",
-      kRemedy);
+  return warning(folder + " is not writable: the remote device cannot create its socket there",
+                 kRemedy);
 }
 
 Answer pictures(const Machine& machine) {
   if (machine.system.succeeds(drawing_trial())) return good("Python 3 with matplotlib");
-  return note("no Python 3 with matplotlib: --picture draws nothing",
+  return note("no Python 3 with matplotlib: --picture does not work",
               "sudo apt install python3-matplotlib");
 }
 
 Answer browser(const Machine& machine) {
   const System& system = machine.system;
   if (variable(system, "DISPLAY").empty() && variable(system, "WAYLAND_DISPLAY").empty()) {
-    return note("no desktop here: open the page from another machine, through ssh",
+    return note("no desktop: open the page from another machine over ssh",
                 "ssh -L 8420:127.0.0.1:8420 HOST");
   }
   if (any_program(system, kBrowsers) && is_there(system, "usr/bin/xdg-open")) {
-    return good("opens by itself for the page");
+    return good("opens the page automatically");
   }
   return note(
-      "no browser, or no xdg-open that starts it: the page does not open by itself",
+      "no browser or no xdg-open to start it: the page does not open automatically",
       fmt::format("sudo apt install xdg-utils {}", is_ubuntu(system) ? "firefox" : "firefox-esr"));
 }
 
@@ -125,9 +124,10 @@ Answer installation(const Machine& machine) {
   for (const char* name : {"60-palpate.rules", "palpate-limits.conf"}) {
     std::error_code ignored;
     if (std::filesystem::exists(machine.system.share / name, ignored)) continue;
-    return warning(
-        share + " lacks 60-palpate.rules or palpate-limits.conf, which commands told here copy",
-        "sudo cmake --install build/release");
+    return warning(share +
+                       " lacks 60-palpate.rules or palpate-limits.conf, which other commands in "
+                       "this list copy",
+                   "sudo cmake --install build/release");
   }
   return good(share);
 }

@@ -196,8 +196,8 @@ std::string read_all(int pipe) {
 // What a process that told nothing died of.
 std::string death(int status) {
   if (!WIFSIGNALED(status))
-    return fmt::format("it ends the program (exit code {})", WEXITSTATUS(status));
-  if (WTERMSIG(status) == SIGALRM) return fmt::format("it hangs ({} s)", kPatience);
+    return fmt::format("it exits the program (exit code {})", WEXITSTATUS(status));
+  if (WTERMSIG(status) == SIGALRM) return fmt::format("it hangs (for {} s)", kPatience);
   return fmt::format("it crashes (signal {})", WTERMSIG(status));
 }
 
@@ -205,13 +205,14 @@ std::string death(int status) {
 
 LibraryTrial try_library(const std::string& name) {
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Error("doctor: no pipe; end other programs");
+  if (pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw Error("doctor: cannot create a pipe; close other programs");
   const pid_t child = fork();
   if (child == 0) load_and_tell(name, ends[1]);
   ::close(ends[1]);
   const std::string told = child > 0 ? read_all(ends[0]) : "";
   ::close(ends[0]);
-  if (child < 0) throw Error("doctor: the system gives no process; end other programs");
+  if (child < 0) throw Error("doctor: cannot start a process; close other programs");
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }

@@ -100,13 +100,13 @@ std::vector<std::string> nodes_of(const UsbDevice& device) {
 
 Answer closed(const System& system, const KnownUsbDevice& found, const std::string& path,
               const Node& node) {
-  const std::string words = fmt::format("{}: this user may not open /{}", title(found), path);
+  const std::string words = fmt::format("{}: no permission to open /{}", title(found), path);
   const bool by_group = node.group_may && node.group != "root" && !node.group.empty() &&
                         !system.groups.contains(node.group);
   if (!by_group) {
-    return problem(words + "; udev's rules permit it to nobody but root", usb_command(system));
+    return problem(words + "; the udev rules allow only root", usb_command(system));
   }
-  return problem(words + fmt::format("; group {} may (with a new login)", node.group),
+  return problem(words + fmt::format("; join the group {} and log in again", node.group),
                  fmt::format("sudo usermod -aG {} \"$USER\"", node.group));
 }
 
@@ -114,16 +114,16 @@ Answer access(const System& system, const KnownUsbDevice& found) {
   for (const std::string& path : nodes_of(found.device)) {
     const Node node = system.node(system.root / path);
     if (!node.there) {
-      return problem(fmt::format("{} is plugged in, but /{} is not there", title(found), path),
+      return problem(fmt::format("{} is plugged in, but /{} does not exist", title(found), path),
                      in_container(system) ? usb_command(system) : "sudo udevadm trigger");
     }
     if (!node.may_open) return closed(system, found, path, node);
   }
-  return good(title(found) + ": this user may open it");
+  return good(title(found) + ": accessible");
 }
 
 Answer held_by(const KnownUsbDevice& found, const std::string& rival) {
-  return warning(fmt::format("{} is held by the kernel's driver {}, which may refuse to let it go",
+  return warning(fmt::format("{} is claimed by the kernel driver {}, which may not release it",
                              title(found), rival),
                  fmt::format("echo 'blacklist {0}' | sudo tee /etc/modprobe.d/palpate-{0}.conf && "
                              "sudo modprobe -r {0}",
@@ -132,13 +132,13 @@ Answer held_by(const KnownUsbDevice& found, const std::string& rival) {
 
 Answer absence(const System& system, DeviceKind kind) {
   if (!is_there(system, "sys/bus/usb")) {
-    return note("/sys does not tell what is plugged in",
+    return note("unknown: /sys does not list USB devices",
                 is_there(system, "sys/bus") ? usb_command(system) : kMountSys);
   }
-  return kind == kHaptic ? note("none that is known; without one, a mouse on the page is a hand",
-                                "palpate demo")
-                         : note("none that is known; without one, touch a simulated one",
-                                "palpate touch camera:simulated:table --view");
+  return kind == kHaptic
+             ? note("no known device; without one, use a mouse on the page", "palpate demo")
+             : note("no known camera; without one, touch a simulated one",
+                    "palpate touch camera:simulated:table --view");
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ constexpr const char* kInfoFooter = R"(Examples:
   palpate info - < scan.pcd
   palpate info sequence:recording camera:openni2
 
-docs/touch.md says what each line of the report means.
+docs/touch.md explains each line of the report.
 
-Exit codes: 0 done, 1 the input is at fault, 2 the command line is wrong.)";
+Exit codes: 0 done, 1 the input is bad, 2 the command line is wrong.)";
 
 constexpr std::size_t kShownPoints = 100'000;
 
@@ -68,8 +68,8 @@ void TrustPicture::take(const std::string& name, const Prepared& prepared, const
   const std::string thinned =
       kept < points.size() ? fmt::format("; thinned to {} points", grouped(kept)) : "";
   const nlohmann::json facts = {
-      {"title", fmt::format("{:.3g} % of {} is not trusted", share, name)},
-      {"subtitle", "felt as metaball where trust is below 0.5" + thinned},
+      {"title", fmt::format("{:.3g} % of {} has low trust", share, name)},
+      {"subtitle", "rendered as a metaball where trust is below 0.5" + thinned},
       {"middle", {middle.x(), middle.y(), middle.z()}}};
   facts_ = facts.dump();
 }
@@ -85,7 +85,8 @@ void print_map(const PointCloud& cloud, std::FILE* out) {
   const Style style(out);
   const DensityMap map = map_density(cloud, kColumns);
   const std::size_t largest = *std::max_element(map.counts.begin(), map.counts.end());
-  fmt::print(out, "{} {} to the right, {} up; a letter is {} wide, the densest holds {} points\n{}",
+  fmt::print(out,
+             "{} {} to the right, {} up; each character is {} wide, the densest has {} points\n{}",
              style.heading("density"), "xyz"[map.horizontal], "xyz"[map.vertical], length(map.cell),
              grouped(largest), draw(map, style.colored()));
 }
@@ -124,8 +125,8 @@ std::vector<TrustPicture> pictures_of(const std::vector<CloudArgument>& clouds,
   if (options.picture.empty()) return {};
   for (const CloudArgument& cloud : clouds) {
     if (!lives(cloud.path)) continue;
-    throw UsageError(
-        fmt::format("--picture is of clouds, and {} is none; remove one of them", cloud.path));
+    throw UsageError(fmt::format(
+        "--picture works only with clouds, and {} is a stream; remove one of them", cloud.path));
   }
   check_picture(options.picture);
   std::vector<TrustPicture> pictures;
@@ -146,8 +147,8 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
   add_json_option(command, options.json)->group("Output");
   command
       .add_option("--picture", options.picture,
-                  wrapped("where the cloud is trusted, as PNG (needs python3-matplotlib); of "
-                          "several clouds a file each: a.png, a-2.png"))
+                  wrapped("map of the cloud's trust as PNG (needs python3-matplotlib); several "
+                          "clouds give one file each: a.png, a-2.png"))
       ->type_name("FILE")
       ->group("Output");
   command.footer(kInfoFooter);

@@ -32,20 +32,20 @@ std::string columns_of(const PointCloud& cloud) {
 std::string organised_as(const InfoReport& report) {
   const PointCloud& cloud = report.loaded.file.cloud;
   if (!report.organised.frame) {
-    return fmt::format("{} x {}, felt as loose points: {}", cloud.width, cloud.height,
+    return fmt::format("{} x {}, processed as unorganised points: {}", cloud.width, cloud.height,
                        report.organised.why_none);
   }
   return in_words(report.organised.frame->camera) +
-         (report.image.depth > 0 ? ", felt as a depth frame"
-                                 : ", felt as loose points: half are nearer than 0.1 m or farther "
-                                   "than 20 m; is --scale right?");
+         (report.image.depth > 0 ? ", processed as a depth frame"
+                                 : ", processed as unorganised points: half are nearer than 0.1 m "
+                                   "or farther than 20 m; check --scale");
 }
 
 void add_points(Report& report, const InfoReport& info) {
   const CloudFile& file = info.loaded.file;
   report.line("points",
               grouped(file.cloud.size()) +
-                  (file.dropped > 0 ? fmt::format(", {} of {} announced dropped as invalid",
+                  (file.dropped > 0 ? fmt::format(", {} of {} declared dropped as invalid",
                                                   grouped(file.dropped), grouped(file.declared))
                                     : ""));
   if (file.cloud.width > 0) report.line("organised", organised_as(info));
@@ -83,7 +83,7 @@ void add_bounds(Report& report, const InfoReport& info) {
   }
   const Eigen::Vector3d core = info.core.size();
   if (core != size) {
-    report.line("core", fmt::format("{} x {} x {} but for some stray points", length(core.x()),
+    report.line("core", fmt::format("{} x {} x {} without outliers", length(core.x()),
                                     length(core.y()), length(core.z())));
   }
   const UnitsGuess& units = info.units;
@@ -102,7 +102,7 @@ void add_surface(Report& report, const InfoReport& info) {
                           length(s.nine_tenths)));
   report.line("noise", fmt::format("{} from the local plane", length(info.prepared.noise)));
   report.line("holes",
-              fmt::format("{:.1f} % of the points lie at a border or a hole", 100 * info.rim));
+              fmt::format("{:.1f} % of the points are at a border or a hole", 100 * info.rim));
   report.data.update({{"spacing_m",
                        {{"nearest_three", s.nearest_three},
                         {"from_area", s.from_area},
@@ -182,12 +182,11 @@ Report advice_of(const InfoReport& info) {
                 fmt::format("({} points, R {}); with --unorganised", grouped(info.image.points),
                             length(info.image_radius)));
   }
-  report.line("--voxel",
-              fmt::format("{:.3g} ({} points are left{}{})", r.voxel, grouped(r.points_out),
-                          and_some(r.duplicates, "were at the place of another"),
-                          and_some(r.speckle, "dropped as speckle")));
+  report.line("--voxel", fmt::format("{:.3g} (keeps {} points{}{})", r.voxel, grouped(r.points_out),
+                                     and_some(r.duplicates, "duplicates"),
+                                     and_some(r.speckle, "dropped as speckle")));
   const std::string varies = r.radius_largest > 1.01 * r.radius_smallest
-                                 ? fmt::format("; it follows the density, {} to {}",
+                                 ? fmt::format("; varies with the density, {} to {}",
                                                length(r.radius_smallest), length(r.radius_largest))
                                  : "";
   report.line("--radius", fmt::format("{:.3g} ({:.1f} times the spacing{})", r.radius,
@@ -239,19 +238,19 @@ Report report_of(const LiveFacts& facts) {
                 fmt::format("{} ({} x {} pixels)", facts.argument.path, facts.width, facts.height));
   report.line("intrinsics", fmt::format("{:.6g}, {:.6g}, {:.6g}, {:.6g}{}", p.fx, p.fy, p.cx, p.cy,
                                         facts.distorted ? ", with distortion" : ""));
-  report.line("frames", fmt::format("{:.1f} a second; of the first {} {} repeated, {} failed",
+  report.line("frames", fmt::format("{:.1f} Hz; of the first {}: {} repeated, {} failed",
                                     facts.rate, facts.frames, facts.repeated, facts.failures));
   report.line(
       "poses",
       fmt::format(
-          "{}{}",
-          facts.posed ? "frames tell where they were taken" : "none; --pose says where it stands",
-          facts.unposed > 0 ? fmt::format("; {} without one left out", facts.unposed) : ""));
-  report.line("depth",
-              fmt::format("{:.0f} % of the pixels have one, {} to {}, median {}", 100 * facts.valid,
-                          length(facts.nearest), length(facts.farthest), length(facts.depth)));
-  report.line("noise", fmt::format("{} a pixel at the median; --noise {:.4g},{:.4g},{:.4g},{:.3g}",
-                                   length(noise), c[0], c[1], c[2], facts.noise.correlation));
+          "{}{}", facts.posed ? "each frame has one" : "none; set one with --pose",
+          facts.unposed > 0 ? fmt::format("; {} frames without one skipped", facts.unposed) : ""));
+  report.line("depth", fmt::format("{:.0f} % of the pixels are valid, {} to {}, median {}",
+                                   100 * facts.valid, length(facts.nearest), length(facts.farthest),
+                                   length(facts.depth)));
+  report.line("noise",
+              fmt::format("{} per pixel at the median; --noise {:.4g},{:.4g},{:.4g},{:.3g}",
+                          length(noise), c[0], c[1], c[2], facts.noise.correlation));
   report.data = json_of(facts);
   return report;
 }

@@ -24,31 +24,31 @@ constexpr const char* kTheCamera = "camera";
 double scale_of(const std::string& text) {
   const double scale = parse_numbers(text, 1, "scale", "a number above 0").front();
   if (scale > 0 && scale <= kLargestScale) return scale;
-  throw UsageError(
-      fmt::format("scale: {} is out of range; write a number above 0, to {}", text, kLargestScale));
+  throw UsageError(fmt::format("scale: {} is out of range; give a number above 0 and at most {}",
+                               text, kLargestScale));
 }
 
 Eigen::Vector3d offset_of(std::string text) {
   std::ranges::replace(text, '/', ',');
   const std::vector<double> v =
-      parse_numbers(text, 3, "offset", "X/Y/Z in metres, such as 0/-0.1/0.05");
+      parse_numbers(text, 3, "offset", "X/Y/Z in metres, e.g. 0/-0.1/0.05");
   return {v[0], v[1], v[2]};
 }
 
 int button_of(const std::string& text) {
-  const double button = parse_numbers(text, 1, "clutch", "a button's number, from 0").front();
+  const double button = parse_numbers(text, 1, "clutch", "a button number from 0").front();
   if (button >= 0 && button <= kLastButton && std::floor(button) == button) {
     return static_cast<int>(button);
   }
   throw UsageError(
-      fmt::format("clutch: {} is no button; write its number, 0 to {}", text, kLastButton));
+      fmt::format("clutch: {} is not a button number; give one from 0 to {}", text, kLastButton));
 }
 
 std::string frame_of(const std::string& text) {
   if (is_name(text)) return text;
   throw UsageError(
-      fmt::format("frame: '{}' is no source's name; write that of a camera, or frame=camera where "
-                  "there is one",
+      fmt::format("frame: '{}' is not a valid source name; give the name of a camera, or "
+                  "frame=camera if there is only one",
                   text));
 }
 
@@ -106,17 +106,17 @@ DevicePlan plan_of(const std::string& text) {
   if (names_hardware(text)) return {DeviceKind::hardware, text};
   const std::size_t comma = text.find(',');
   if (comma < text.find('=') && text.find('=') != std::string::npos) {
-    throw UsageError(fmt::format("'{}' is no option of {}; there are {}", text.substr(comma + 1),
-                                 text.substr(0, comma), kPlacementOptions));
+    throw UsageError(fmt::format("'{}' is not an option of {}; the options are {}",
+                                 text.substr(comma + 1), text.substr(0, comma), kPlacementOptions));
   }
   if (const std::optional<DeviceKind> kind = choice_of(kDevices, text)) return {*kind};
   if (text.starts_with(kRemotePath) && text.size() > kRemotePath.size()) {
     return {DeviceKind::remote, text.substr(kRemotePath.size())};
   }
-  throw UsageError(
-      fmt::format("'{}' is no device; give scripted, simulated, remote, remote:PATH of a socket, "
-                  "or hardware: forcedimension, openhaptics or haply ('palpate devices' looks){}",
-                  text, device_meant_by(text)));
+  throw UsageError(fmt::format(
+      "'{}' is not a device; give scripted, simulated, remote, remote:PATH (a socket), or "
+      "hardware: forcedimension, openhaptics or haply ('palpate devices' lists it){}",
+      text, device_meant_by(text)));
 }
 
 // A trajectory is in the world, wherever the device is.
@@ -148,16 +148,13 @@ void add_device_option(OptionTable& table, std::vector<DevicePlan>& devices) {
   table.add_texts(
       "--device", KeyKind::texts, "NAME[:PATH][,KEY=VALUE]",
       [&devices](const std::string& text) { devices.push_back(parse_device(text)); },
-      "scripted: the hand is where the trajectory or exploration says, whatever "
-      "the force; simulated: a hand pulls a device with mass and friction "
-      "there; remote: the hand of another program, which speaks to a socket "
-      "(docs/remote_device.md); forcedimension[:N], openhaptics[:NAME], haply[:ID]: "
-      "hardware "
-      "('palpate devices' lists it; docs/devices.md). Behind the name: ,scale=S "
-      "magnifies its motion; ,offset=X/Y/Z (m) moves its origin; ,frame=CAMERA turns "
-      "its axes as that source's camera looks; ,clutch=BUTTON lets the hand move "
-      "without the tool while it is held. Once for each hand, four at most; with "
-      "several the run is in real time. Default: scripted with --trajectory, else "
+      "scripted: follows the trajectory or exploration exactly, whatever the force; simulated: a "
+      "device with mass and friction that is pulled along it; remote: another program, over a "
+      "socket (docs/remote_device.md); forcedimension[:N], openhaptics[:NAME], haply[:ID]: "
+      "hardware ('palpate devices' lists it; docs/devices.md). Options after the name: ,scale=S "
+      "scales its motion; ,offset=X/Y/Z (m) moves its origin; ,frame=CAMERA aligns its axes with "
+      "that camera; ,clutch=BUTTON: while held, the hand moves without the tool. Repeat for each "
+      "hand, up to four; several hands run in real time. Default: scripted with --trajectory, else "
       "simulated");
 }
 
@@ -166,19 +163,21 @@ bool need_real_time(const std::vector<DevicePlan>& devices) {
 }
 
 void check_devices(const std::vector<DevicePlan>& devices) {
-  require(devices.size() <= kMostHands, "more than four --device; four hands can touch at once");
+  require(devices.size() <= kMostHands,
+          "more than four --device options; at most four hands can touch at once, so remove some");
   std::set<std::string> paths;
   for (const DevicePlan& device : devices) {
     if (device.follows_trajectory() || paths.insert(device.path).second) continue;
     if (device.kind == DeviceKind::hardware) {
-      throw UsageError(fmt::format(
-          "two hands cannot hold {}; name another device for each ('palpate devices' lists them)",
-          device.path));
+      throw UsageError(
+          fmt::format("two hands cannot share the device {}; name a different one for each "
+                      "('palpate devices' lists them)",
+                      device.path));
     }
     throw UsageError(
-        fmt::format("two remote devices cannot share {}; give each a path of its own, as in "
-                    "--device remote:/tmp/hand",
-                    device.path.empty() ? "the usual path" : "'" + device.path + "'"));
+        fmt::format("two remote devices cannot share {}; give each its own path, e.g. --device "
+                    "remote:/tmp/hand",
+                    device.path.empty() ? "the default path" : "'" + device.path + "'"));
   }
 }
 
@@ -189,17 +188,17 @@ std::string camera_named(const std::string& frame, const std::vector<SourcePlan>
     if (source.argument.name != frame) continue;
     if (has_camera(source)) return frame;
     throw UsageError(
-        fmt::format("--device: frame={}: it is a cloud, which no camera looks at; leave it out for "
-                    "the world's axes",
+        fmt::format("--device: frame={}: this source is a cloud without a camera; remove frame= to "
+                    "use the world axes",
                     frame));
   }
   if (frame == kTheCamera && cameras.size() == 1) return cameras.front();
   if (cameras.empty()) {
     throw UsageError(fmt::format(
-        "--device: frame={}: there is no camera; leave it out for the world's axes", frame));
+        "--device: frame={}: no source is a camera; remove frame= to use the world axes", frame));
   }
-  throw UsageError(fmt::format("--device: frame={}: name one of the cameras: {}", frame,
-                               fmt::join(cameras, ", ")));
+  throw UsageError(fmt::format("--device: frame={}: not the name of one camera; give one of {}",
+                               frame, fmt::join(cameras, ", ")));
 }
 
 }  // namespace palpate::app

@@ -124,7 +124,7 @@ bool OptionTable::has_section(std::string_view section) const {
 }
 
 std::string OptionTable::unknown_section(std::string_view section) const {
-  return fmt::format("'{}' is no part of a set-up; {}its parts are {}", section,
+  return fmt::format("'{}' is not a section of a set-up file; {}the sections are {}", section,
                      question(section, sections()), fmt::join(sections(), ", "));
 }
 
@@ -134,9 +134,9 @@ std::string OptionTable::unknown_key(std::string_view section, std::string_view 
     const std::vector<std::string> there = keys(each);
     if (std::ranges::find(there, key) != there.end()) places.push_back(in_brackets(each));
   }
-  return fmt::format("'{}' is no key of {}; {}its keys are {}", key, in_brackets(section),
+  return fmt::format("'{}' is not a key of {}; {}its keys are {}", key, in_brackets(section),
                      places.empty() ? question(key, keys(section))
-                                    : fmt::format("it is one of {}; ", fmt::join(places, ", ")),
+                                    : fmt::format("it belongs to {}; ", fmt::join(places, ", ")),
                      fmt::join(keys(section), ", "));
 }
 

@@ -76,12 +76,12 @@ void SetupFile::fail(const toml::source_region& place, const std::string& what) 
 toml::table SetupFile::parse() const {
   std::error_code ignored;
   if (!fs::is_regular_file(path_, ignored)) {
-    throw Error(fmt::format("{}: there is no such file; --setup takes a TOML file", path_));
+    throw Error(fmt::format("{}: no such file; --setup takes a TOML file", path_));
   }
   try {
     return toml::parse_file(path_);
   } catch (const toml::parse_error& error) {
-    fail(error.source(), fmt::format("{}; a set-up file is TOML", error.description()));
+    fail(error.source(), fmt::format("{}; a set-up file must be valid TOML", error.description()));
   }
 }
 
@@ -102,7 +102,7 @@ std::string SetupFile::numbers(std::string_view key, const toml::node& node) con
   }
   for (const toml::node& each : *list) {
     if (!each.is_number()) {
-      fail(each.source(), fmt::format("'{}' holds {}; give numbers alone", key, type_name(each)));
+      fail(each.source(), fmt::format("'{}' contains {}; give only numbers", key, type_name(each)));
     }
     joined += fmt::format("{}{}", joined.empty() ? "" : ",", *each.value<double>());
   }
@@ -137,7 +137,8 @@ std::string SetupFile::text_of(std::string_view key, KeyKind kind, const toml::n
   }
   if (!node.is_string()) wrong("text in quotes");
   const std::string text = *node.value<std::string>();
-  if (text.empty()) fail(node.source(), fmt::format("'{}' is empty; leave it out", key));
+  if (text.empty())
+    fail(node.source(), fmt::format("'{}' is empty; give a value or remove it", key));
   return kind == KeyKind::path ? resolved(text) : text;
 }
 
@@ -146,7 +147,8 @@ std::vector<std::string> SetupFile::texts_of(std::string_view key, KeyKind kind,
                                              const toml::node& node) const {
   const toml::array* list = node.as_array();
   if (kind != KeyKind::texts || list == nullptr) return {text_of(key, kind, node)};
-  if (list->empty()) fail(node.source(), fmt::format("'{}' is empty; leave it out", key));
+  if (list->empty())
+    fail(node.source(), fmt::format("'{}' is empty; give a value or remove it", key));
   std::vector<std::string> texts;
   for (const toml::node& each : *list) texts.push_back(text_of(key, KeyKind::text, each));
   return texts;
@@ -173,9 +175,8 @@ void SetupFile::take(const OptionTable& table, std::string_view section, const t
 Eigen::Isometry3d SetupFile::pose(const toml::node& node) const {
   constexpr const char* kWhat = "'pose' of [[source]]";
   try {
-    const std::vector<double> values =
-        parse_numbers(numbers("pose", node), 7, kWhat,
-                      "[x, y, z, qx, qy, qz, qw] in metres and as a unit quaternion");
+    const std::vector<double> values = parse_numbers(
+        numbers("pose", node), 7, kWhat, "[x, y, z, qx, qy, qz, qw]: metres and a unit quaternion");
     return pose_of(values, kWhat);
   } catch (const UsageError& error) {
     fail(node.source(), error.what());
@@ -186,7 +187,7 @@ std::string SetupFile::name(const toml::node& node) const {
   std::string name = text_of("name", KeyKind::text, node);
   if (!is_name(name)) {
     fail(node.source(),
-         fmt::format("'name' is '{}'; give letters, digits, '-', '_' and '.' alone", name));
+         fmt::format("'name' is '{}'; use only letters, digits, '-', '_' and '.'", name));
   }
   return name;
 }
@@ -194,9 +195,8 @@ std::string SetupFile::name(const toml::node& node) const {
 std::string SetupFile::from(const toml::node& node) const {
   const std::string from = text_of("from", KeyKind::text, node);
   if (!names_something(from)) {
-    fail(node.source(), fmt::format("'from' is '{}', which names nothing; write more behind the "
-                                    "colon",
-                                    from));
+    fail(node.source(),
+         fmt::format("'from' is '{}', which names no source; add a name after the colon", from));
   }
   return resolved(from);
 }
@@ -219,7 +219,8 @@ DescribedSource SetupFile::source(const SourcePlan& base, const toml::table& par
     }
   }
   if (plan.argument.path.empty()) {
-    fail(part.source(), "this [[source]] has no 'from', which names a file, camera or sequence");
+    fail(part.source(),
+         "this [[source]] has no 'from'; add one that names a file, camera or sequence");
   }
   return result;
 }
@@ -228,7 +229,7 @@ std::vector<DescribedSource> SetupFile::sources(const SourcePlan& base,
                                                 const toml::node& node) const {
   const toml::array* list = node.as_array();
   if (list == nullptr || !list->is_homogeneous(toml::node_type::table)) {
-    fail(node.source(), "'source' is not written as [[source]], once for each source");
+    fail(node.source(), "'source' must be written as [[source]], once for each source");
   }
   std::vector<DescribedSource> result;
   std::set<std::string> names;
@@ -245,8 +246,9 @@ void SetupFile::check_sections(const toml::table& file) const {
   for (const auto& [key, node] : file) {
     if (!table_.has_section(key.str())) fail(key.source(), table_.unknown_section(key.str()));
     if (key.str() != "source" && !node.is_table()) {
-      fail(node.source(), fmt::format("'{0}' is {1}; write [{0}] and its keys in lines below",
-                                      key.str(), type_name(node)));
+      fail(node.source(),
+           fmt::format("'{0}' is {1}; write a section [{0}] with its keys on the lines below",
+                       key.str(), type_name(node)));
     }
   }
 }

@@ -111,14 +111,15 @@ void place(std::vector<DescribedSource>& sources, const std::vector<PoseArgument
 void check_radius(const PrepareOptions& prepare, double tool_radius) {
   if (!prepare.radius || *prepare.radius >= prepare.minimum_radius) return;
   throw UsageError(
-      fmt::format("--radius {} is too small for --tool-radius {}; it must be {:.4g} at least",
+      fmt::format("--radius {} is too small for --tool-radius {}; give at least {:.4g}",
                   *prepare.radius, tool_radius, prepare.minimum_radius));
 }
 
 void check_range(const DepthFilterOptions& depth) {
   if (depth.nearest < depth.farthest) return;
-  throw UsageError(fmt::format("--nearest {} is not below --farthest {}; no depth is between them",
-                               depth.nearest, depth.farthest));
+  throw UsageError(fmt::format(
+      "--nearest {} is not below --farthest {}; give a smaller --nearest or a larger --farthest",
+      depth.nearest, depth.farthest));
 }
 
 // What the kind of a source and the surface of all say of it.
@@ -137,8 +138,8 @@ void complete(SourcePlan& source, const SurfacePlan& surface) {
   source.as_cloud = source.as_cloud || surface.paper;
   std::optional<Policy>& policy = source.options.policy.policy;
   require(policy != Policy::morph || !source.as_cloud,
-          "--policy morph is for depth images with rows and columns; leave --unorganised and "
-          "--preset paper out or choose another policy");
+          "--policy morph needs organised depth images; remove --unorganised and --preset paper, "
+          "or choose another policy");
   source.as_cloud = source.as_cloud || policy == Policy::fusion;
   source.options.organised = !source.as_cloud;
   if (!policy && surface.paper) policy = Policy::average;
@@ -152,9 +153,9 @@ std::vector<DescribedSource> choose_sources(const TouchChoices& choices,
   name(sources);
   add_command_line(sources, choices);
   name(sources);
-  require(!sources.empty(),
-          "no sources: name a file, a camera or a sequence; 'palpate touch --help' tells which "
-          "there are");
+  require(
+      !sources.empty(),
+      "no source given; name a file, a camera or a sequence ('palpate touch --help' lists them)");
   place(sources, choices.poses);
   for (DescribedSource& source : sources) complete(source.plan, surface);
   return sources;

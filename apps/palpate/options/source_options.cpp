@@ -11,26 +11,26 @@ namespace {
 
 constexpr Scope kStream{&RunFacts::stream,
                         "applies only to cameras and sequences; no source is one"};
-constexpr Scope kImage{
-    &RunFacts::image,
-    "applies only to depth images; clouds need none, a camera knows its own, and "
-    "a sequence has it in its sequence.json"};
+constexpr Scope kImage{&RunFacts::image,
+                       "applies only to depth images; clouds do not need it, cameras report their "
+                       "own, and sequences store it in sequence.json"};
 constexpr Scope kFiltered{&RunFacts::filtered,
-                          "applies only to the depth filter; no source goes through it"};
-constexpr Scope kFilteredFrames{&RunFacts::filtered_frames,
-                                "applies only to frames that go through the depth filter; none do"};
-constexpr Scope kCloud{&RunFacts::cloud,
-                       "applies only to clouds; the depth filter chooses by itself what pixels and "
-                       "noise allow: remove it, or add --unorganised"};
+                          "applies only to the depth filter; no source uses it"};
+constexpr Scope kFilteredFrames{
+    &RunFacts::filtered_frames,
+    "applies only to streams that use the depth filter; no source does"};
+constexpr Scope kCloud{
+    &RunFacts::cloud,
+    "applies only to clouds; the depth filter does not use it: remove it, or add --unorganised"};
 
 void add_surface_of_source(OptionTable& table, SourcePlan& s) {
   table.under("Surface (chosen from the data unless given)", "surface", true);
   table.add("--radius", s.options.prepare.radius, "METRES", positive(),
-            "support radius R of every point, of depth images and streams the smallest: larger is "
-            "smoother");
+            "support radius R of every point (for depth images and streams: the smallest R); "
+            "larger is smoother");
   table
       .add("--voxel", s.options.prepare.voxel, "METRES", not_negative(),
-           "edge of the voxel filter of clouds; 0: none")
+           "voxel size of the voxel filter for clouds; 0: no filter")
       .only_for(kCloud);
   table.add_key(
       "--normal-error",
@@ -43,21 +43,22 @@ void add_surface_of_source(OptionTable& table, SourcePlan& s) {
 
 void add_time_of_source(OptionTable& table, PolicyOptions& policy) {
   table
-      .add_choice("--policy", policy.policy, kPolicies,
-                  "how frames become one surface in time: replace (hard swap), average (of N, the "
-                  "paper), crossfade, fusion or morph (default of depth cameras)")
+      .add_choice(
+          "--policy", policy.policy, kPolicies,
+          "how successive frames update the surface: replace (hard swap), average (of N frames, as "
+          "in the paper), crossfade, fusion or morph (default for depth cameras)")
       .only_for(kStream);
   table
       .add("--history", policy.history, "N", whole_number(1, 7),
-           "N of average and crossfade, 1 to 7 (4)")
+           "number of frames N for average and crossfade, 1 to 7 (4)")
       .only_for(kStream)
       .only_for({&RunFacts::history,
                  "applies only to the policies average and crossfade; add --policy average"});
   table
       .add("--silence", policy.silence, "SECONDS", positive(),
-           "a surface that no frame has confirmed for this long begins to fade (0.3)")
+           "fade a surface after this long without new data (0.3)")
       .only_for(kStream);
-  table.add("--fade", policy.fade, "SECONDS", positive(), "time that it takes to fade away (0.5)")
+  table.add("--fade", policy.fade, "SECONDS", positive(), "duration of that fade (0.5)")
       .only_for(kStream);
 }
 
@@ -67,20 +68,20 @@ void add_depth_filter(OptionTable& table, SourcePlan& s) {
       .add_text(
           "--noise", KeyKind::numbers_or_text, "S0,S1,S2[,C]",
           [&depth](const std::string& text) { depth.noise = parse_noise(text); },
-          "standard deviation of a depth pixel, S0 + S1 z + S2 z^2 at z metres, and how much "
-          "neighbours err together (C >= 1); or a sensor: kinect1, xtion, realsense, tof. Measured "
-          "from the frames unless given")
+          "standard deviation of a depth pixel, S0 + S1 z + S2 z^2 at z metres, and the noise "
+          "correlation C >= 1 of neighbouring pixels; or a sensor: kinect1, xtion, realsense, tof. "
+          "Default: measured from the frames")
       .only_for({&RunFacts::depth,
                  "applies only to depth images, organised clouds and streams; no source is one"});
   table
       .add("--nearest", depth.nearest, "METRES",
            number("a depth of 0.001 m or more", [](double x) { return x >= 1e-3; }),
-           "the depth filter takes no depth nearer than this (0.1)")
+           "the depth filter ignores smaller depths (0.1)")
       .only_for(kFiltered);
   table
       .add("--farthest", s.farthest, "METRES", positive(),
-           "the depth filter takes no depth beyond this (20, or ten times the first frame's median "
-           "where that is less)")
+           "the depth filter ignores larger depths (20, or ten times the first frame's median if "
+           "that is less)")
       .only_for(kFiltered);
   table.add_key("--memory", depth.memory, whole_number(1, 255)).only_for(kFilteredFrames);
   table.add_key("--fit-everywhere", s.options.policy.fit_everywhere).only_for(kFilteredFrames);
@@ -92,13 +93,12 @@ void add_stream_options(OptionTable& table, SourcePlan& s) {
   add_depth_filter(table, s);
   table
       .add_flag("--clip-to-reach", s.options.policy.clip_to_reach,
-                "of frames taken as clouds, prepare only what the tool can reach before the next "
-                "one, as the paper does")
-      .only_for(
-          {&RunFacts::cloud_frames,
-           "applies only to frames that are taken as clouds; add --unorganised, or remove it: "
-           "the depth filter does its costly part within reach alone by itself"});
-  table.add_flag("--loop", s.loop, "sequences start again at their end")
+                "for frames processed as clouds: prepare only what the tool can reach before the "
+                "next frame, as in the paper")
+      .only_for({&RunFacts::cloud_frames,
+                 "applies only to frames processed as clouds; add --unorganised, or remove it: the "
+                 "depth filter always limits its costly steps to the tool's reach"});
+  table.add_flag("--loop", s.loop, "restart sequences when they end")
       .only_for({&RunFacts::recorded, "applies only to sequences; no source is one"});
 }
 
@@ -110,7 +110,7 @@ std::string cloud_help() {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", each.name);
   }
   return fmt::format(
-      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, depth PNG or PGM, any of them "
+      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, depth PNG or PGM, optionally "
       "gzipped; - for standard input; or synthetic:NAME with NAME one of {}",
       names);
 }
@@ -121,17 +121,18 @@ void add_reading_options(OptionTable& table, ReadOptions& o) {
       .add("--scale", o.scale, "FACTOR", positive(),
            "metres per unit of the file: 0.001 for millimetres, 0.3048 for feet (1)")
       .only_for({&RunFacts::is_static,
-                 "applies only to files; a camera knows its own, and a sequence has it in its "
+                 "applies only to files; cameras report their own, and sequences store it in "
                  "sequence.json"});
   table
       .add_text(
           "--intrinsics", KeyKind::numbers, "FX,FY,CX,CY",
           [&o](const std::string& text) { o.intrinsics = parse_intrinsics(text); },
-          "focal lengths and centre of a depth image, in pixels; a depth image needs them")
+          "focal lengths and principal point of a depth image, in pixels; required for depth "
+          "images")
       .only_for(kImage);
   table
       .add("--depth-unit", o.depth_unit, "METRES", positive(),
-           "metres per step of a depth image's values (0.001)")
+           "metres per unit of a depth image's pixel values (0.001)")
       .only_for(kImage);
 }
 
@@ -145,12 +146,12 @@ void add_source_options(OptionTable& table, SourcePlan& s) {
             prepare.viewpoint = parse_point(text, "--viewpoint");
             prepare.orientation = Orientation::viewpoint;
           },
-          "where the sensor stood, in the cloud's frame: orients normals")
+          "sensor position in the cloud's frame; orients the normals")
       .only_for(kCloud);
   table
       .add_flag("--unorganised", s.as_cloud,
-                "take depth images and organised clouds as loose points: voxel filter and fitted "
-                "normals in place of the depth filter")
+                "process depth images and organised clouds as unorganised points: voxel filter and "
+                "fitted normals instead of the depth filter")
       .only_for({&RunFacts::depth,
                  "applies only to depth images, organised clouds and streams; no source is one"});
   add_surface_of_source(table, s);

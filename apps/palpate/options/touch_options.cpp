@@ -14,9 +14,9 @@ constexpr std::int64_t kLargestSeed = 1'000'000'000'000'000;
 constexpr std::array<Named<bool>, 2> kPresets = {{{"default", false}, {"paper", true}}};
 
 constexpr Scope kGuarded{&RunFacts::guarded,
-                         "applies only to runs in real time; static sources and --simulated-time "
-                         "have neither a guard nor a servo thread"};
-constexpr Scope kPage{&RunFacts::page, "applies only to the page, and there is none; add --view"};
+                         "applies only to real-time runs; remove it: static sources and "
+                         "--simulated-time use no guard or servo thread"};
+constexpr Scope kPage{&RunFacts::page, "applies only to the page; add --view"};
 
 void check_address(const std::string& text) {
   in6_addr parsed;  // has room for either kind
@@ -24,28 +24,27 @@ void check_address(const std::string& text) {
     if (inet_pton(kind, text.c_str(), &parsed) == 1) return;
   }
   throw UsageError(fmt::format(
-      "'{}' is no address; give one like 127.0.0.1, ::1 or 0.0.0.0 (everywhere)", text));
+      "'{}' is not an IP address; give one like 127.0.0.1, ::1 or 0.0.0.0 (all interfaces)", text));
 }
 
 void add_field_options(OptionTable& table, TouchChoices& o) {
   FieldOptions& field = o.plan.surface.field;
   table.under("Surface (chosen from the data unless given)", "surface");
   table.add_choice("--field", o.field, kFields,
-                   "how points become a surface: balanced (default), pointset or metaball");
+                   "implicit function of the surface: balanced (default), pointset or metaball");
   table.add_choice(
       "--preset", o.plan.surface.paper, kPresets,
-      "default, or paper: the method of Leeper, Chan and Salisbury 2012 as they ran it");
+      "default, or paper: the method of Leeper, Chan and Salisbury 2012 with their settings");
   table.add_choice("--kernel", field.kernel, kKernels, "wyvill (default) or wendland");
-  table.add_choice(
-      "--gradient", o.gradient, kGradients,
-      "of the metaball: exact (default), or as in the paper: normal (eq. 8) or printed (eq. 4 as "
-      "printed, which points inward)");
+  table.add_choice("--gradient", o.gradient, kGradients,
+                   "gradient of the field: exact (default), or as in the paper: normal (eq. 8, "
+                   "point-set) or printed (eq. 4 of the metaball as printed, which points inward)");
   table.add("--threshold", o.threshold, "LEVEL",
             number("between 0 and 1", [](double x) { return x > 0 && x < 1; }),
-            "level of the metaball, 0 to 1; lower is farther out (0.4). Other fields become a "
-            "metaball where normals cannot be trusted");
+            "iso-level of the metaball, 0 to 1; lower moves the surface outward (0.4). Other "
+            "fields become a metaball where normals are unreliable");
   table.add("--tool-radius", field.tool_radius, "METRES", not_negative(),
-            "radius of the ball that touches; 0: a point");
+            "radius of the spherical tool; 0: a point");
   table.add_key("--sharp-edges", field.sharp_edges);
 }
 
@@ -54,26 +53,26 @@ void add_material_options(OptionTable& table, TouchChoices& o) {
   Friction& friction = surface.proxy.friction;
   Texture& texture = surface.proxy.texture;
   table.under("Feel", "material");
-  table.add("--stiffness", surface.stiffness, "N/M",
-            number("above 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }),
-            "K of the surface, in the cloud's metres (500; less where a large cloud is explored)");
+  table.add(
+      "--stiffness", surface.stiffness, "N/M",
+      number("above 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }),
+      "stiffness K of the surface, in the cloud's metres (500; less if a large cloud is explored)");
   table.add("--soft-stiffness", surface.soft_stiffness, "N/M", not_negative(),
-            "K where the cloud's intensity is lowest; it grows to --stiffness where that is "
-            "highest");
+            "stiffness at the cloud's lowest intensity; rises to --stiffness at the highest");
   table.add("--friction-static", o.friction_static, "MU", not_negative(),
-            "coefficient while the proxy sticks (--friction-dynamic)");
+            "friction coefficient while the proxy sticks (default: --friction-dynamic)");
   table.add("--friction-dynamic", friction.dynamic_coefficient, "MU", not_negative(),
-            "coefficient while it slides (0)");
+            "friction coefficient while the proxy slides (0)");
   table.add("--friction-viscous", friction.viscous, "N S/M", not_negative(),
-            "friction that grows with the speed of sliding (0)");
+            "viscous friction, proportional to the sliding speed (0)");
   table.add("--soft-friction", surface.soft_friction, "SHARE",
             number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }),
-            "share of the friction, 0 to 1, where the cloud's intensity is lowest; it grows to all "
-            "of it where that is highest");
+            "fraction of the friction, 0 to 1, at the cloud's lowest intensity; rises to full "
+            "friction at the highest");
   table.add("--texture-amplitude", texture.amplitude, "METRES", not_negative(),
-            "amplitude of a fine relief on the surface (0: none)");
+            "amplitude of a fine texture on the surface (0: none)");
   table.add("--texture-wavelength", texture.wavelength, "METRES", positive(),
-            "wavelength of that relief (0.004)");
+            "wavelength of that texture (0.004)");
 }
 
 void add_hand_options(OptionTable& table, TouchPlan& plan) {
@@ -81,45 +80,44 @@ void add_hand_options(OptionTable& table, TouchPlan& plan) {
   table.under("Hand", "hand");
   table
       .add("--trajectory", motion.trajectory, "FILE",
-           "CSV with columns t,hip_x,hip_y,hip_z (s, m): one servo step a row; a log will do")
+           "CSV with columns t,hip_x,hip_y,hip_z (s, m), one servo step per row; a log works too")
       .only_for({&RunFacts::follows,
-                 "applies only to scripted and simulated devices; a remote one goes where its "
-                 "program says, hardware where its hand does"});
+                 "applies only to scripted and simulated devices; remote and hardware devices "
+                 "supply their own motion"});
   add_device_option(table, plan.devices);
   table
       .add("--duration", motion.duration, "SECONDS",
            number("between 0.01 and 3600 s", [](double x) { return x >= 0.01 && x <= 3600; }),
-           "how long the built-in exploration goes on (10); where it is given, a run with a remote "
-           "device or a page ends then, too (without it by Ctrl-C)")
-      .only_for(
-          {&RunFacts::has_duration, "applies only to the exploration; a --trajectory has its own"});
+           "length of the built-in exploration (10); also ends a run with a remote or hardware "
+           "device or a page, which otherwise runs until Ctrl-C")
+      .only_for({&RunFacts::has_duration,
+                 "applies only to the exploration; a --trajectory has its own length"});
   table
       .add("--seed", motion.seed, "N", whole_number(0, kLargestSeed),
-           "which places the exploration touches: another number, other places (1; each further "
-           "hand has the next number)")
+           "random seed of the exploration path (1; each further hand uses the next number)")
       .only_for({&RunFacts::explores,
-                 "applies only to the exploration; a --trajectory is played as it is, and a remote "
-                 "hand goes where its program says"});
+                 "applies only to the exploration; a --trajectory is played back unchanged, and "
+                 "remote and hardware devices supply their own motion"});
   table
       .add("--rate", motion.rate, "HZ",
            number("between 500 and 10000 Hz", [](double x) { return x >= 500 && x <= 1e4; }),
-           "steps a second of the exploration and of simulated and remote devices (1000)")
+           "servo rate of the exploration and of simulated and remote devices (1000)")
       .only_for({&RunFacts::has_rate,
                  "applies only to the exploration and to --device simulated or remote; a "
-                 "--trajectory has its own"});
+                 "--trajectory has its own rate"});
 }
 
 void add_time_options(OptionTable& table, TouchChoices& o) {
   table.under("Streams", "stream");
   table.add_flag("--simulated-time", o.simulated_time,
-                 "cameras, preparation and servo on one simulated clock, as fast as they go: the "
-                 "same command gives the same log. Files without a page do so anyway");
+                 "run cameras, preparation and servo on one simulated clock, as fast as possible: "
+                 "the same command gives the same log. Files without a page always run this way");
   table
       .add("--latency", o.plan.time.latency, "SECONDS",
            number("between 0 and 10 s", [](double x) { return x >= 0 && x <= 10; }),
-           "time from a frame's stamp until its surface is felt, in simulated time (0.01)")
+           "delay from a frame's timestamp until its surface can be felt, in simulated time (0.01)")
       .only_for({&RunFacts::stream,
-                 "applies only to cameras and sequences; a static source is there from the start"})
+                 "applies only to cameras and sequences; static sources have no latency"})
       .only_for(
           {&RunFacts::simulated_time, "applies only to simulated time; add --simulated-time"});
 }
@@ -128,21 +126,21 @@ void add_view_options(OptionTable& table, TouchChoices& o) {
   table.under("Page");
   table
       .add_flag("--view", o.plan.page.wanted,
-                "shows the run on a page in a browser, where the tool can be taken with a mouse; "
-                "it then goes on in real time until --duration or Ctrl-C")
-      .only_for({&RunFacts::any_time, "shows a run in real time; remove it or --simulated-time"});
+                "show the run on a page in a browser, where a mouse can move the tool; the run is "
+                "in real time and lasts until --duration or Ctrl-C")
+      .only_for({&RunFacts::any_time, "needs a run in real time; remove it or --simulated-time"});
   table
       .add_flag("--no-view", o.no_view,
-                "no page; without this, runs of cameras and sequences in real time have one where "
-                "they are started at a terminal")
+                "no page; by default, real-time runs of cameras and sequences show one if started "
+                "at a terminal")
       .only_for({&RunFacts::page_unasked, "contradicts --view; remove one of them"});
   add_page_options(table, o.plan.page);
 }
 
 void add_output_options(OptionTable& table, OutputPlan& outputs) {
   table.under("Output");
-  table.add("--log", outputs.log, "FILE", "every servo step as a row of CSV; - is standard output");
-  table.add("--json", outputs.json, "FILE", "the report as data; - is standard output");
+  table.add("--log", outputs.log, "FILE", "CSV with one row per servo step; - is standard output");
+  table.add("--json", outputs.json, "FILE", "the report as JSON; - is standard output");
   table.add("--picture", outputs.picture, "FILE.png",
             "cloud, path, proxy and force as PNG (needs python3-matplotlib)");
 }
@@ -160,21 +158,21 @@ constexpr const char* kTouchFooter = R"(Examples:
   palpate touch --setup desk.toml left=sequence:monday
   gunzip -c dragon.ply.gz | palpate touch -
 
-The log begins with t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,fx,fy,fz,us: seconds, metres in the
-world frame, newtons on the hand (K (proxy - hip); in real time the force that the guard let pass),
-microseconds of computing. The same input gives the same log but for us. With streams in simulated
-time, t = 0 is the first frame's stamp. docs/touch.md explains log, report and picture.
+The log starts with t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,fx,fy,fz,us: seconds, metres in the
+world frame, newtons on the hand (K (proxy - hip); in real time after the guard), microseconds of
+computation. The same input gives the same log except for us. With streams in simulated time, t = 0
+is the first frame's timestamp. docs/touch.md explains log, report and picture.
 
 Exit codes: 0 done, 1 the input or the run failed, 2 the command line is wrong.)";
 
 }  // namespace
 
 void add_placed_sources(OptionTable& table, TouchChoices& o) {
-  table.add_positional("sources", o.sources, "SOURCE",
-                       cloud_help() +
-                           "; or a live source: camera:simulated[:SCENE], camera:openni2, "
-                           "camera:freenect, sequence:FOLDER, or an .oni file ('palpate cameras' "
-                           "lists what is there)");
+  table.add_positional(
+      "sources", o.sources, "SOURCE",
+      cloud_help() +
+          "; or a live source: camera:simulated[:SCENE], camera:openni2, camera:freenect, "
+          "sequence:FOLDER, or an .oni file ('palpate cameras' lists those available)");
   table.under("Reading");
   table.add("--setup", o.setup, "FILE",
             "TOML file with sources, poses, surface, material, hand; the command line overrides it "
@@ -184,8 +182,7 @@ void add_placed_sources(OptionTable& table, TouchChoices& o) {
   table.add_texts(
       "--pose", KeyKind::numbers, "NAME=X,Y,Z,QX,QY,QZ,QW",
       [&o](const std::string& text) { o.poses.push_back(parse_pose(text)); },
-      "where a source's frame is in the world; once for each source that is not at the world's "
-      "origin");
+      "pose of a source's frame in the world; repeat for each source that is not at the origin");
 }
 
 void add_live_options(OptionTable& table, TimePlan& time) {
@@ -194,8 +191,7 @@ void add_live_options(OptionTable& table, TimePlan& time) {
   table.under("Real time", "guard");
   table
       .add("--maximum-force", guard.maximum_force, "N", positive(),
-           "largest force that goes to the device, never more than it can hold (what the device "
-           "can hold)")
+           "largest force sent to the device, capped at what it can sustain (default: that limit)")
       .only_for(kGuarded);
   table.add_key("--slew", guard.slew, positive());
   table.add_key("--watchdog", guard.silence,
@@ -207,8 +203,7 @@ void add_live_options(OptionTable& table, TimePlan& time) {
   table.under("Real time", "servo");
   table
       .add("--processor", realtime.processor, "N", whole_number(0, 1023),
-           "the servo's thread runs on this processor alone, counted from 0; best one that is kept "
-           "free (isolcpus=N)")
+           "pin the servo thread to this CPU, counted from 0; ideally an isolated one (isolcpus=N)")
       .only_for(kGuarded);
   table.add_key("--priority", realtime.priority, whole_number(1, 99));
   table.add_key("--realtime", realtime.realtime_priority);
@@ -219,12 +214,12 @@ void add_page_options(OptionTable& table, PagePlan& page) {
   table.under("Page");
   table
       .add("--listen", page.address, "ADDRESS", parsed_by(check_address),
-           "address that the page is served on (127.0.0.1: this machine alone); whoever knows the "
-           "page's address may move the hand")
+           "address to serve the page on (127.0.0.1: this machine only); anyone who knows the "
+           "page's URL can move the hand")
       .only_for(kPage);
   table
       .add("--port", page.port, "N", whole_number(0, 65535),
-           "port of the page; 0: any (the first free one from 8420)")
+           "port of the page; 0: any free port (default: the first free one from 8420)")
       .only_for(kPage);
 }
 

@@ -41,13 +41,12 @@ SurfacePlan surface_of(const TouchChoices& choices) {
 void check_surface(const TouchChoices& choices, const SurfacePlan& surface) {
   const bool metaball = surface.field.kind == FieldKind::metaball;
   require(metaball || choices.gradient != GradientKind::printed,
-          "--gradient printed is eq. (4) of the metaball; add --field metaball");
-  require(
-      !metaball || choices.gradient != GradientKind::normal,
-      "--gradient normal needs normals, which a metaball does without; give --field pointset or "
-      "balanced");
+          "--gradient printed applies only to the metaball (eq. 4); add --field metaball");
+  require(!metaball || choices.gradient != GradientKind::normal,
+          "--gradient normal needs normals, which the metaball does not use; give --field pointset "
+          "or balanced");
   require(!surface.paper || surface.field.tool_radius == 0,
-          "--preset paper touches with a point; leave --tool-radius out");
+          "--preset paper uses a point tool; remove --tool-radius");
 }
 
 // Where a cloud is explored, K is known later, and checked again.
@@ -58,7 +57,7 @@ void check_material(const SurfacePlan& surface, bool explored) {
   const Friction& friction = surface.proxy.friction;
   if (friction.static_coefficient >= friction.dynamic_coefficient) return;
   throw UsageError(
-      fmt::format("--friction-static {} is below --friction-dynamic {}; it must not be",
+      fmt::format("--friction-static {} is below --friction-dynamic {}; give at least as much",
                   friction.static_coefficient, friction.dynamic_coefficient));
 }
 
@@ -71,14 +70,13 @@ std::vector<DevicePlan> devices_of(const TouchChoices& choices) {
   }
   const auto led = std::ranges::count_if(devices, &DevicePlan::follows_trajectory);
   require(!choices.simulated_time || !need_real_time(devices),
-          "hardware, --device remote and several hands are of real time; leave --simulated-time "
-          "out, or give one scripted or simulated device");
+          "hardware, --device remote and several hands need real time; remove --simulated-time, or "
+          "give one scripted or simulated device");
   require(motion.trajectory.empty() || led <= 1,
-          "a --trajectory leads one hand, and several devices would follow it; leave it out, so "
-          "that they explore, or give one scripted or simulated device");
+          "a --trajectory can drive only one device; remove it to let all of them explore, or give "
+          "only one scripted or simulated device");
   require(devices.size() == 1 || choices.plan.outputs.log != "-",
-          "each of several hands has a log of its own; --log cannot go to standard output: name a "
-          "file");
+          "several hands write one log each, so --log cannot go to standard output; name a file");
   check_devices(devices);
   return devices;
 }
@@ -89,10 +87,10 @@ void check_files(const TouchPlan& plan, const std::string& setup) {
   for (const SourcePlan& source : plan.sources) clouds.push_back(source.argument);
   for (const CloudArgument& cloud : clouds) {
     require(cloud.path != "-" || plan.motion.trajectory != "-",
-            "standard input (-) can be read only once");
+            "standard input (-) can be read only once; give a file for the other input");
   }
   require(outputs.log != "-" || outputs.json != "-",
-          "--log and --json cannot both go to standard output");
+          "--log and --json cannot both go to standard output; name a file for one of them");
   std::vector<NamedFile> read = inputs(clouds);
   read.push_back({"--trajectory", plan.motion.trajectory});
   read.push_back({"--setup", setup});
@@ -158,8 +156,8 @@ SoftMaterial SurfacePlan::soft_material(double hardest) const {
   if (!soft_stiffness) return soft;
   if (*soft_stiffness > hardest) {
     throw UsageError(
-        fmt::format("--soft-stiffness {} is above the {:.4g} N/m of the hardest points; give less, "
-                    "or a larger --stiffness",
+        fmt::format("--soft-stiffness {} exceeds the largest stiffness, {:.4g} N/m; give less, or "
+                    "a larger --stiffness",
                     *soft_stiffness, hardest));
   }
   soft.stiffness_factor = *soft_stiffness / hardest;

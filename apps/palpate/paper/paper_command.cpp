@@ -29,10 +29,10 @@ for Constraint-Based Haptic Rendering, ICRA 2012.)";
 void add_common(CLI::App& command, PaperOptions& o) {
   command
       .add_option("source", o.source,
-                  wrapped("a simulated camera or a sequence (camera:simulated:still, a table seen "
-                          "as in the paper)"))
+                  wrapped("a simulated camera or a sequence (default: camera:simulated:still, a "
+                          "table viewed as in the paper)"))
       ->type_name("SOURCE");
-  command.add_option("--csv", o.csv, "the numbers; - is standard output")->type_name("FILE");
+  command.add_option("--csv", o.csv, "the data as CSV; - is standard output")->type_name("FILE");
   command.add_option("--picture", o.picture, "the figure as PNG (needs python3-matplotlib)")
       ->type_name("FILE.png");
   command.footer(kPaperFooter);
@@ -40,9 +40,9 @@ void add_common(CLI::App& command, PaperOptions& o) {
 
 CLI::App* add_fig5(CLI::App& command, PaperOptions& o) {
   CLI::App* fig5 = command.add_subcommand(
-      "fig5", "How long preparation takes at the paper's four sizes, beside the paper's own times");
+      "fig5", "Preparation times at the paper's four cloud sizes, compared with the paper's");
   add_common(*fig5, o);
-  fig5->add_option("--repeats", o.repeats, "of each measurement; the fastest counts (5)")
+  fig5->add_option("--repeats", o.repeats, "runs per measurement; the fastest counts (5)")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
   return fig5;
@@ -50,13 +50,13 @@ CLI::App* add_fig5(CLI::App& command, PaperOptions& o) {
 
 CLI::App* add_fig7(CLI::App& command, PaperOptions& o) {
   CLI::App* fig7 = command.add_subcommand("fig7",
-                                          "How steady a pressed surface is in time: metaball and "
-                                          "point-set with 1 to 4 clouds, and ours");
+                                          "Stability over time of a pressed surface: metaball and "
+                                          "point-set with 1 to 4 clouds, and palpate");
   add_common(*fig7, o);
-  fig7->add_option("--duration", o.duration, "of the press, after a second to settle (4)")
+  fig7->add_option("--duration", o.duration, "length of the press, after 1 s to settle (4)")
       ->check(number("between 0.1 and 60 s", [](double x) { return x >= 0.1 && x <= 60; }))
       ->type_name("SECONDS");
-  fig7->add_option("--voxel", o.voxel, "of the paper's clouds (0.004)")
+  fig7->add_option("--voxel", o.voxel, "voxel size of the paper's clouds (0.004)")
       ->check(positive())
       ->type_name("METRES");
   fig7->add_option("--radius", o.radius, "R of the paper's clouds (2.5 times their spacing)")
@@ -73,7 +73,7 @@ inline constexpr const char* kPaperSource = "camera:simulated:still";
 std::unique_ptr<DepthCamera> open_paper_source(const std::string& source) {
   if (!lives(source)) {
     throw UsageError(fmt::format(
-        "{} is neither a camera nor a sequence; name one such as sequence:FOLDER", source));
+        "{} is neither a camera nor a sequence; name one, e.g. sequence:FOLDER", source));
   }
   SourcePlan chosen;
   chosen.argument = {"source", source};
@@ -116,7 +116,7 @@ void add_paper_options(CLI::App& command, PaperCommand& paper) {
 
 void paper(const PaperCommand& paper) {
   if (!paper.fig5->parsed() && !paper.fig7->parsed()) {
-    throw UsageError("a figure is missing: fig5 or fig7; 'palpate paper --help' tells more");
+    throw UsageError("no figure given; use fig5 or fig7 (see 'palpate paper --help')");
   }
   PaperOptions options = paper.options;
   if (options.source.empty()) options.source = kPaperSource;

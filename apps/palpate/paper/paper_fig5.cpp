@@ -96,10 +96,9 @@ Fig5 measure_fig5(DepthCamera& camera, int repeats) {
   const DepthFrame frame = first_frame(camera);
   const PointCloud cloud = cloud_of(frame);
   if (cloud.size() < kSizes.front()) {
-    throw Error(
-        fmt::format("the frame has {} points, and the paper's largest cloud {}; take a "
-                    "larger image",
-                    cloud.size(), kSizes.front()));
+    throw Error(fmt::format(
+        "the frame has {} points, but the paper's largest cloud has {}; use a larger image",
+        cloud.size(), kSizes.front()));
   }
   Fig5 result;
   result.pixels = cloud.size();

@@ -71,7 +71,8 @@ double depth_in_the_middle(const DepthFrame& frame) {
       if (frame.depth[at] > 0) depths.push_back(frame.depth[at]);
     }
   }
-  if (depths.empty()) throw Error("the frame shows nothing in the middle of its image");
+  if (depths.empty())
+    throw Error("the frame has no depth at the centre of its image; choose another source");
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
   std::nth_element(depths.begin(), middle, depths.end());
   return static_cast<double>(*middle);
@@ -219,13 +220,14 @@ void sum_up(Press& press) {
 void check(const StreamState& stream, double time, double whole) {
   if (stream.phase == StreamPhase::ended) {
     throw Error(
-        fmt::format("{} ended after {} frames, before the press of {} s did; give a shorter "
-                    "--duration or --loop{}",
+        fmt::format("{} ended after {} frames, before the press of {} s; give a shorter --duration "
+                    "or a longer recording{}",
                     stream.camera, stream.frames, whole,
                     stream.problem.empty() ? "" : " (" + stream.problem + ")"));
   }
   if (stream.phase != StreamPhase::failed && stream.phase != StreamPhase::stalled) return;
-  throw Error(fmt::format("{:.3g} s into the press of {} s: {}", time, whole, stream.problem));
+  throw Error(
+      fmt::format("the press failed after {:.3g} of {} s: {}", time, whole, stream.problem));
 }
 
 }  // namespace

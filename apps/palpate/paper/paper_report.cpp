@@ -34,8 +34,8 @@ const char* radius_text(const Fig7& figure) {
 void print_figure(const Fig5& figure, const std::string& source, std::FILE* out) {
   const Style style(out);
   fmt::print(out,
-             "{} preparation of clouds, ms: the paper (Core i7-950, 2012) and here ({} cores, "
-             "the fastest of some runs)\n",
+             "{} preparation of clouds in ms: paper (Core i7-950, 2012) and here ({} cores, "
+             "fastest run)\n",
              style.heading("fig 5"), std::thread::hardware_concurrency());
   fmt::print(out, "{:>8} {:>8} {:>8}   {:^15}   {:^15}   {:^15}   {:^17}\n", "points", "here",
              "voxel", "index", "normals", "spacing", "sum");
@@ -49,23 +49,21 @@ void print_figure(const Fig5& figure, const std::string& source, std::FILE* out)
                row.paper.normals, row.here.normals, row.paper.spacing, row.here.spacing,
                row.paper.sum(), row.here.sum(), row.paper.sum() / row.here.sum());
   }
+  fmt::print(
+      out,
+      "points from {} ({} pixels with depth), reduced to the paper's sizes by a voxel filter\n",
+      source, grouped(figure.pixels));
   fmt::print(out,
-             "points of {} ({} pixels with a depth), thinned by a voxel filter to the paper's "
-             "sizes\n",
-             source, grouped(figure.pixels));
-  fmt::print(out,
-             "the whole frame as a depth stream, filtered and ready to touch everywhere: {:.3g} ms "
-             "of computing\n",
+             "the whole frame as a depth stream, filtered and touchable everywhere: {:.3g} ms of "
+             "computation\n",
              figure.everywhere);
 }
 
 void print_figure(const Fig7& figure, const std::string& source, std::FILE* out) {
   const Style style(out);
-  fmt::print(out,
-             "{} a hand pressed into {}: {} from the camera, which looks at the surface at {:.0f} "
-             "degrees; {} frames\n",
-             style.heading("fig 7"), source, length(figure.depth), degrees(figure.angle),
-             figure.frames);
+  fmt::print(
+      out, "{} hand pressed into {}: {} from the camera, viewing angle {:.0f} degrees; {} frames\n",
+      style.heading("fig 7"), source, length(figure.depth), degrees(figure.angle), figure.frames);
   fmt::print(out, "{:<18} {:>9} {:>11} {:>9} {:>9} {:>12} {:>8}\n", "", "R", "height, sd",
              "n_x, sd", "n_y, sd", "force step", "contact");
   for (const Press& press : figure.presses) {
@@ -74,9 +72,9 @@ void print_figure(const Fig7& figure, const std::string& source, std::FILE* out)
                degrees(press.ny_sd), press.jump, 100 * press.touching);
   }
   fmt::print(out,
-             "metaball and point-set as in the paper: T = 0.5, {}, voxels of {}, N clouds, "
-             "hard swap\nnormals are the field's at the proxy; n_x along the view, n_y across; "
-             "force step: the largest from one servo step to the next\n",
+             "metaball and point-set as in the paper: T = 0.5, {}, voxels of {}, N clouds, hard "
+             "swap\nnormals of the field at the proxy: n_x along the view, n_y across; force step: "
+             "largest change per servo step\n",
              radius_text(figure), length(figure.voxel));
 }
 

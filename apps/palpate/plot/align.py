@@ -42,7 +42,7 @@ def main(folder, picture):
         cut = np.abs(places[:, 0] - cut_at) < thick
         low = cells[1, column]
         low.scatter(seen[cut, 2], seen[cut, 1], s=4, c=COLORS[source[cut] % 8], linewidths=0)
-        low.set_xlabel(f"a cut, {unit_name}")
+        low.set_xlabel(f"section, {unit_name}")
         for each in (axes, low):
             each.set(xlim=(-span, span), ylim=(-0.78 * span, 0.78 * span), aspect="equal")
     scale_bar(cells[0, 0], unit_name)
@@ -50,7 +50,7 @@ def main(folder, picture):
         figure.text(0.03 + 0.23 * (index % 4), 0.965 - 0.05 * (index // 4), each["name"], fontsize=13,
                     color=COLORS[index % 8], fontweight="bold")
         figure.text(0.03 + 0.23 * (index % 4), 0.945 - 0.05 * (index // 4), color=FAINT, fontsize=10,
-                    s=f"{1e3 * each['before_m']:.2f} mm apart before, {1e3 * each['after_m']:.2f} after")
+                    s=f"{1e3 * each['before_m']:.2f} mm residual before, {1e3 * each['after_m']:.2f} after")
     figure.subplots_adjust(left=0.05, right=0.98, top=0.88, bottom=0.06, hspace=0.08, wspace=0.08)
     figure.savefig(picture, format="png")
 

@@ -54,7 +54,7 @@ def fig5(facts, picture):
     all_axes[0].set_ylim(0.5 * min(every), 2.5 * max(every))
     all_axes[2].legend(loc="upper left", frameon=False)
     head(figure, "Preparing clouds of four sizes",
-         f"the paper on a Core i7-950 in 2012; here on {facts['cores']} cores; points of "
+         f"paper: Core i7-950, 2012; palpate: {facts['cores']} cores; points from "
          f"{facts['source']}")
     figure.savefig(picture, format="png")
 
@@ -121,8 +121,8 @@ def fig7(facts, table, picture):
               "normal: standard deviation of its direction", "degrees")
     draw_bars(figure.add_subplot(lower[0, 1]), facts, lambda p: p["height_sd_m"], 1e3,
               "height: standard deviation", "mm")
-    head(figure, "A hand pressed into a surface that stands still",
-         f"{facts['depth_m']:.2f} m from the camera, which looks at it at "
+    head(figure, "A hand pressed into a static surface",
+         f"{facts['depth_m']:.2f} m from the camera, viewing angle "
          f"{facts['angle_degrees']:.0f} degrees; metaball and point-set with {1e3 * facts['voxel_m']:.1f} "
          f"mm voxels, {facts['radius']}, T = 0.5, hard swap; {facts['source']}")
     figure.savefig(picture, format="png")
@@ -157,11 +157,11 @@ def zwidth(facts, picture):
         axes.set_yscale("log")
         axes.set_xlabel(unit)
         axes.set_title(f"{delay} step{'' if delay == 1 else 's'} of delay", loc="left", color=INK)
-    panels[0][0].set_ylabel("stiffness of a wall, N/m")
+    panels[0][0].set_ylabel("wall stiffness, N/m")
     panels[0][0].legend(loc="upper left", frameon=False)
-    head(figure, f"How stiff a wall may be: {facts['device']}",
+    head(figure, f"Largest wall stiffness: {facts['device']}",
          f"dots: stable, crosses: passive, dashed: Colgate's condition; simulated with "
-         f"{facts['mass_kg']:g} kg, wall damper {facts['wall_damping_Ns_per_m']:g} N s/m")
+         f"{facts['mass_kg']:g} kg, wall damping {facts['wall_damping_Ns_per_m']:g} N s/m")
     figure.savefig(picture, format="png")
 
 

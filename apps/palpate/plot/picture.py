@@ -119,7 +119,7 @@ def section_plane(run, first, last):
 
 def draw_section(axes, cloud, run, unit_name):
     """A cut through the cloud along a piece of the longest contact."""
-    axes.set_title("close by, in section", loc="left", color=INK)
+    axes.set_title("section through the longest contact", loc="left", color=INK)
     if not run.touching.any():
         axes.text(0.5, 0.5, "the hand never touched", ha="center", color=FAINT,
                   transform=axes.transAxes)

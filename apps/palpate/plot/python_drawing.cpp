@@ -22,10 +22,9 @@ class TemporaryFolder {
   TemporaryFolder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "palpate-XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr) {
-      throw Error(
-          fmt::format("{} cannot be made for the picture's data; set TMPDIR to a folder with "
-                      "room",
-                      pattern));
+      throw Error(fmt::format(
+          "{} cannot be created for the picture's data; set TMPDIR to a folder with room",
+          pattern));
     }
     path_ = pattern;
   }
@@ -80,7 +79,7 @@ std::vector<std::string> drawing_trial() {
 void check_picture(const std::string& path) {
   if (path.empty()) return;
   if (path == "-") {
-    throw UsageError("--picture cannot go to standard output; name a file such as a.png");
+    throw UsageError("--picture cannot go to standard output; name a file, e.g. a.png");
   }
   const std::filesystem::path file(path);
   const std::string ending = file.extension().string();
@@ -90,8 +89,8 @@ void check_picture(const std::string& path) {
   }
   if (run_program(drawing_trial(), "/dev/null") == 0) return;
   throw Error(
-      fmt::format("{} cannot be drawn: Python 3 with matplotlib is missing; install it with "
-                  "'apt install python3-matplotlib', or leave --picture out",
+      fmt::format("{} cannot be drawn: Python 3 with matplotlib is missing; install it with 'apt "
+                  "install python3-matplotlib', or remove --picture",
                   path));
 }
 

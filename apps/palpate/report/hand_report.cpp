@@ -16,19 +16,19 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-// "slowed 12 steps, shortened 3"; empty: it let everything pass.
+// "12 steps slew-limited, 3 steps force-limited"; empty: it never intervened.
 std::string guard_words(const GuardCounts& counts) {
   std::string words;
   const auto add = [&words](std::uint64_t count, std::string_view text) {
     if (count == 0) return;
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", grouped(count), text);
   };
-  add(counts.slewed, "steps slowed that the hand did not cause");
-  add(counts.clamped, "steps shortened");
-  add(counts.braked, "braked, for the hand had been given energy");
-  add(counts.starting, "within a soft start");
-  add(counts.softened, "softer than asked for, as the device bears no more");
-  add(counts.silences, "silences ended by zero force");
+  add(counts.slewed, "steps slew-limited");
+  add(counts.clamped, "steps force-limited");
+  add(counts.braked, "steps braked to dissipate energy given to the hand");
+  add(counts.starting, "steps in a soft start");
+  add(counts.softened, "steps with stiffness reduced to the device's limit");
+  add(counts.silences, "watchdog stops");
   add(counts.faults, "faults");
   return words;
 }
@@ -37,11 +37,11 @@ Json add_guard(Report& report, const GuardOptions& limits, const GuardState& gua
   const GuardCounts& counts = guard.counts;
   const std::string words = guard_words(counts);
   const std::string most = std::isfinite(limits.maximum_force)
-                               ? fmt::format("{:.3g} N at most", limits.maximum_force)
-                               : "any force";
-  report.line("guard", fmt::format("{}, {:.3g} N/s, watchdog {}: {}", most, limits.slew,
-                                   duration(limits.silence),
-                                   words.empty() ? "let every force pass" : words));
+                               ? fmt::format("at most {:.3g} N", limits.maximum_force)
+                               : "no force limit";
+  report.line("guard",
+              fmt::format("{}, {:.3g} N/s, watchdog {}: {}", most, limits.slew,
+                          duration(limits.silence), words.empty() ? "no intervention" : words));
   const std::string fault(in_words(guard.fault));
   if (guard.fault != GuardFault::none) report.line("fault", fault, Mark::warning);
   return {{"maximum_force_N", limit(limits.maximum_force)},
@@ -79,15 +79,17 @@ Json add_live(Report& report, const LiveReport& live) {
   const double p50 = live.lateness.quantile(0.5);
   const double p99 = live.lateness.quantile(0.99);
   const double longest = live.lateness.longest;
-  report.line("pace", fmt::format("{:.4g} Hz; late by {} (p50), {} (p99), {} (max); steps left "
-                                  "out: {}",
-                                  live.rate, duration(p50), duration(p99), duration(longest),
-                                  live.skipped == 0 ? "none" : grouped(live.skipped)));
+  report.line("pace",
+              fmt::format("{:.4g} Hz; late by {} (p50), {} (p99), {} (max); steps skipped: {}",
+                          live.rate, duration(p50), duration(p99), duration(longest),
+                          live.skipped == 0 ? "none" : grouped(live.skipped)));
   if (live.unwritten > 0) {
-    report.line("unwritten",
-                fmt::format("{} steps came too fast to be written down; they are in no log",
-                            grouped(live.unwritten)),
-                Mark::warning);
+    report.line(
+        "unwritten",
+        fmt::format(
+            "{} steps were not recorded because they came too fast; they are missing from the log",
+            grouped(live.unwritten)),
+        Mark::warning);
   }
   Json data = {{"rate_Hz", live.rate},
                {"late_s", {{"p50", p50}, {"p99", p99}, {"max", longest}}},
@@ -104,14 +106,14 @@ Json add_unguarded(Report& report, const Unguarded& run) {
   const GuardCounts& counts = run.counts();
   std::string words;
   if (counts.slewed > 0) {
-    words += fmt::format("; {} steps one would have slowed (largest {:.2g} N in a step)",
+    words += fmt::format("; it would have slew-limited {} steps (largest {:.2g} N in a step)",
                          grouped(counts.slewed), run.largest_change());
   }
   if (counts.clamped > 0) {
-    words += fmt::format("; {} steps one would have shortened to {:.3g} N", grouped(counts.clamped),
+    words += fmt::format("; it would have limited {} steps to {:.3g} N", grouped(counts.clamped),
                          run.limits().maximum_force);
   }
-  if (words.empty()) words = "; one would have let every force pass";
+  if (words.empty()) words = "; it would not have intervened";
   report.line("guard", "none in simulated time" + words);
   return {{"slew_N_per_s", run.limits().slew},
           {"maximum_force_N", limit(run.limits().maximum_force)},
@@ -125,21 +127,21 @@ void add_scale(Report& report, const Hand& hand) {
   const double felt = hand.workspace.felt_stiffness(hand.stiffness);
   report.data["device"].update({{"scale", scale}, {"felt_stiffness_N_per_m", felt}});
   if (scale == 1) return;
-  report.line("scale",
-              fmt::format("1 m of the hand is {} m of the cloud; {:.4g} N/m there is {:.4g} N/m to "
-                          "the hand",
-                          scale, hand.stiffness, felt));
+  report.line(
+      "scale",
+      fmt::format(
+          "1 m of hand motion is {} m in the cloud; {:.4g} N/m there is {:.4g} N/m at the hand",
+          scale, hand.stiffness, felt));
 }
 
-// Where a device stands that a person or a program leads.
+// Pose of a device that a person or a program moves.
 void add_placement(Report& report, const Hand& hand) {
   Json& device = report.data["device"];
   const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
   const PlacementOptions& placement = hand.chosen.placement;
-  report.line("stands",
-              fmt::format("its origin at {:.4g}, {:.4g}, {:.4g} m, axes as {}", origin.x(),
-                          origin.y(), origin.z(),
-                          placement.frame.empty() ? "the world's" : placement.frame + " looks"));
+  report.line("origin",
+              fmt::format("{:.4g}, {:.4g}, {:.4g} m, axes aligned with {}", origin.x(), origin.y(),
+                          origin.z(), placement.frame.empty() ? "the world" : placement.frame));
   add_scale(report, hand);
   device["origin_m"] = {origin.x(), origin.y(), origin.z()};
   if (!placement.frame.empty()) device["frame"] = placement.frame;
@@ -152,7 +154,7 @@ void add_device(Report& report, const Hand& hand) {
   Json& device = report.data["device"];
   device = {{"name", hand.device->info().name}};
   if (hand.plan) {
-    report.line("explored", fmt::format("up to {} across, pressing about {} deep",
+    report.line("explored", fmt::format("an area up to {} across, pressing about {} deep",
                                         length(hand.plan->patch), length(hand.plan->depth)));
     add_scale(report, hand);
     device.update({{"explored_m", hand.plan->patch}, {"depth_m", hand.plan->depth}});
@@ -160,7 +162,7 @@ void add_device(Report& report, const Hand& hand) {
   RemoteCounts counts;
   if (hand.socket != nullptr) {
     counts = hand.socket->counts();
-    report.line("socket", fmt::format("{}: {} packets taken of {}", hand.socket->path(),
+    report.line("socket", fmt::format("{}: {} of {} packets accepted", hand.socket->path(),
                                       grouped(counts.taken), grouped(counts.received)));
   }
   if (!hand.chosen.follows_trajectory()) add_placement(report, hand);
@@ -176,16 +178,17 @@ void add_forces(Report& report, const HandReport& hand) {
   const StepTimes times = s.times();
   const HandEnergy energies = energy_at_hand(hand);
   const double touching = share(s.touching(), s.steps());
-  report.line("computing", fmt::format("p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} us a step",
-                                       times.p50, times.p99, times.p999, times.maximum));
+  report.line("computing",
+              fmt::format("p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} us per step", times.p50,
+                          times.p99, times.p999, times.maximum));
   report.line("contacts",
               fmt::format("{}, {:.3g} % of the time", grouped(s.contacts()), 100 * touching));
-  report.line("force", fmt::format("{:.3g} N at most, changing by {:.2g} N a step at most",
+  report.line("force", fmt::format("at most {:.3g} N, changing by at most {:.2g} N per step",
                                    s.largest_force(), s.largest_jump()));
-  report.line(
-      "energy",
-      fmt::format("{} given to the hand{}, {} along the path", energy(energies.given),
-                  energies.given < 0 ? " (negative: taken from it)" : "", energy(energies.path)));
+  report.line("energy",
+              fmt::format("{} given to the hand{}, {} along the path", energy(energies.given),
+                          energies.given < 0 ? " (negative: absorbed from it)" : "",
+                          energy(energies.path)));
   report.data.update(
       {{"computing_us",
         {{"p50", times.p50}, {"p99", times.p99}, {"p99.9", times.p999}, {"max", times.maximum}}},
@@ -216,15 +219,15 @@ std::string way_to_surface(const HandReport& report) {
   const Hand& hand = report.hand;
   if (hand.plan) return "give it more time (--duration)";
   if (hand.chosen.follows_trajectory()) {
-    return fmt::format("is the trajectory in metres and in the {}?",
-                       report.scales ? "cloud's frame, and --scale right" : "world's frame");
+    return fmt::format("check that the trajectory is in metres and in the {}",
+                       report.scales ? "cloud's frame, and --scale" : "world frame");
   }
   // A socket has reasons of single packets, too: they count where none was good.
   const bool counts = hand.socket == nullptr || hand.socket->counts().taken == 0;
   const std::string silence = counts ? hand.device->reason() : "";
   if (!silence.empty()) return silence;
-  return "it starts 2 mm in front of the surface, moved by its offset if it has one; --view shows "
-         "where it goes";
+  return "it starts 2 mm in front of the surface, plus its offset if it has one; --view shows "
+         "where it moves";
 }
 
 }  // namespace
@@ -238,14 +241,14 @@ HandEnergy energy_at_hand(const HandReport& report) {
 std::vector<std::string> advice(const HandReport& report) {
   std::vector<std::string> sentences;
   if (report.statistics.touching() == 0) {
-    sentences.push_back("the hand never met the surface: " + way_to_surface(report));
+    sentences.push_back("the hand never touched the surface: " + way_to_surface(report));
   }
   const double scale = report.hand.workspace.scale;
   const double felt = scale * report.stiffness;
   if (felt > kStiffest) {
     sentences.push_back(
-        fmt::format("{:.4g} N/m to the hand is stiffer than forces held for a step can be without "
-                    "giving it energy; a --stiffness up to {:.4g} is steady",
+        fmt::format("{:.4g} N/m at the hand is too stiff for a sampled force to stay passive; give "
+                    "a --stiffness up to {:.4g}",
                     felt, kStiffest / scale));
   }
   return sentences;

@@ -66,7 +66,7 @@ Recording::~Recording() {
   try {
     end();
   } catch (const Error& error) {
-    fmt::print(stderr, "the page's recording was lost: {}\n", error.what());
+    fmt::print(stderr, "the page's recording failed: {}\n", error.what());
   }
 }
 

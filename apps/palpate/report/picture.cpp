@@ -96,7 +96,7 @@ std::vector<float> step_rows(const std::vector<TouchStep>& steps, const Box& box
 }  // namespace
 
 void Picture::draw(const Scene& scene, const std::string& title, const std::string& subtitle) {
-  if (steps_.empty()) throw Error("there is no picture of a run without steps");
+  if (steps_.empty()) throw Error("cannot draw a picture of a run without steps");
   const Waiting waiting("drawing the picture");
   const Box box = view(steps_, scene);
   const nlohmann::json facts = {{"title", title}, {"subtitle", subtitle}};

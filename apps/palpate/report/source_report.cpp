@@ -18,8 +18,8 @@ namespace {
 
 // What is said of a phase at the end of a run.
 std::string_view phase_words(StreamPhase phase) {
-  if (phase == StreamPhase::starting) return "no frame came";
-  if (phase == StreamPhase::ended) return "ended; its last surface stayed";
+  if (phase == StreamPhase::starting) return "no frame arrived";
+  if (phase == StreamPhase::ended) return "ended; its last surface was kept";
   return name_of(phase);
 }
 
@@ -30,14 +30,15 @@ struct DropText {
   const char* words;
 };
 
-constexpr std::array<DropText, 8> kDrops = {{{&StreamDrops::overtaken, "overtaken", "overtaken"},
-                                             {&StreamDrops::repeated, "repeated", "repeated"},
-                                             {&StreamDrops::late, "late", "late"},
-                                             {&StreamDrops::empty, "empty", "empty"},
-                                             {&StreamDrops::garbage, "garbage", "garbage"},
-                                             {&StreamDrops::unposed, "unposed", "without a pose"},
-                                             {&StreamDrops::resized, "resized", "of another size"},
-                                             {&StreamDrops::refused, "refused", "refused"}}};
+constexpr std::array<DropText, 8> kDrops = {
+    {{&StreamDrops::overtaken, "overtaken", "overtaken"},
+     {&StreamDrops::repeated, "repeated", "repeated"},
+     {&StreamDrops::late, "late", "late"},
+     {&StreamDrops::empty, "empty", "empty"},
+     {&StreamDrops::garbage, "garbage", "garbage"},
+     {&StreamDrops::unposed, "unposed", "without a pose"},
+     {&StreamDrops::resized, "resized", "of a different size"},
+     {&StreamDrops::refused, "refused", "refused"}}};
 
 // "overtaken 3, late 1".
 std::string drop_words(const StreamDrops& drops) {
@@ -103,11 +104,10 @@ void add_times(Report& report, const TouchedSource& cloud) {
 Report cloud_report(const TouchedSource& cloud) {
   const PrepareReport& r = cloud.prepared;
   Report report = file_report(cloud);
-  report.line(
-      "points",
-      fmt::format("{} read, {} felt{}{}{}", grouped(r.points_in), grouped(r.points_out),
-                  and_some(r.duplicates, "at the place of another"),
-                  and_some(r.speckle, "dropped as speckle"), and_some(cloud.dropped, "invalid")));
+  report.line("points", fmt::format("{} read, {} felt{}{}{}", grouped(r.points_in),
+                                    grouped(r.points_out), and_some(r.duplicates, "duplicates"),
+                                    and_some(r.speckle, "dropped as speckle"),
+                                    and_some(cloud.dropped, "invalid")));
   report.data.update({{"points_declared", cloud.declared},
                       {"points_invalid", cloud.dropped},
                       {"points_read", r.points_in},
@@ -135,16 +135,16 @@ Report cloud_report(const TouchedSource& cloud) {
 }
 
 void add_seen(Report& report, const SourceState& state) {
-  report.line("points", fmt::format("{} felt", grouped(state.points)) +
-                            (state.depth > 0 ? fmt::format(", the middle of the image {} away",
-                                                           length(state.depth))
-                                             : ""));
+  report.line(
+      "points",
+      fmt::format("{} felt", grouped(state.points)) +
+          (state.depth > 0 ? fmt::format(", image centre {} away", length(state.depth)) : ""));
   if (state.depth > 0) {
-    report.line("noise", fmt::format("{} a pixel there", length(state.noise)) +
-                             (state.correlation > 1.01
-                                  ? fmt::format(", {:.2f} times that in means of neighbours",
-                                                state.correlation)
-                                  : ""));
+    report.line("noise",
+                fmt::format("{} per pixel there", length(state.noise)) +
+                    (state.correlation > 1.01
+                         ? fmt::format(", correlation {:.2f} between neighbours", state.correlation)
+                         : ""));
   }
   report.data.update({{"points_felt", state.points},
                       {"depth_m", state.depth},
@@ -160,7 +160,7 @@ Report image_report(const TouchedSource& source) {
   Report report = file_report(source);
   report.data["seconds"] = {{"read", source.read_seconds}, {"prepare", source.prepare_seconds}};
   if (source.lens.width > 0) {
-    report.line("organised", fmt::format("{}, felt as a depth frame", in_words(source.lens)));
+    report.line("organised", fmt::format("{}, processed as a depth frame", in_words(source.lens)));
     report.data["organised"] = json_of(source.lens);
   }
   add_seen(report, source.state);
@@ -171,9 +171,9 @@ Report image_report(const TouchedSource& source) {
 
 void add_frames(Report& report, const FeedReport& feed) {
   const StreamState& state = feed.state;
-  report.line("frames", fmt::format("{} touchable of {}, {:.1f} a second; {} dropped",
-                                    grouped(state.touchable), grouped(state.frames), state.rate,
-                                    drop_words(state.drops)));
+  report.line("frames",
+              fmt::format("{} of {} touchable, {:.1f} Hz; dropped: {}", grouped(state.touchable),
+                          grouped(state.frames), state.rate, drop_words(state.drops)));
   report.data.update({{"width", feed.width},
                       {"height", feed.height},
                       {"phase", name_of(state.phase)},
@@ -191,17 +191,16 @@ void add_latency(Report& report, const FeedReport& feed) {
   const PrepareQuantiles times = prepare_times(feed.prepare_ms);
   const double dropped = share_too_fast(feed, times);
   report.line("latency",
-              fmt::format("{} from frame to touchable, {} at worst; prepared in {} (p50), {} (max)",
+              fmt::format("{} from frame to touchable, {} at worst; preparation {} (p50), {} (max)",
                           duration(state.latency_mean), duration(state.latency_worst),
                           duration(1e-3 * times.p50), duration(1e-3 * times.longest)));
   if (dropped > 0) {
-    report.line(
-        "too slow",
-        fmt::format("a frame takes {} to prepare and comes every {}: live, {:.0f} % of them "
-                    "would be dropped",
-                    duration(1e-3 * times.p50), duration(1 / state.rate),
-                    std::min(99.0, std::ceil(100 * dropped))),
-        Mark::warning);
+    report.line("too slow",
+                fmt::format("preparing a frame takes {}, but frames arrive every {}: live, {:.0f} "
+                            "% would be dropped",
+                            duration(1e-3 * times.p50), duration(1 / state.rate),
+                            std::min(99.0, std::ceil(100 * dropped))),
+                Mark::warning);
   }
   report.data.update({{"latency_s", {{"mean", state.latency_mean}, {"worst", state.latency_worst}}},
                       {"prepare_ms", {{"p50", times.p50}, {"max", times.longest}}},
@@ -249,13 +248,13 @@ void add_trust(Report& report, const PrepareReport& prepared) {
   report.data["trust"] = {{"low", prepared.trust_low}, {"untrusted_share", prepared.untrusted}};
   if (prepared.untrusted < 0.01) return;
   report.line("trust",
-              fmt::format("{:.0f} % of this cloud is not trusted; it is felt as metaball there",
+              fmt::format("{:.0f} % of this cloud has low trust and is rendered as a metaball",
                           100 * prepared.untrusted));
 }
 
 std::string in_words(const CameraModel& camera) {
   const Pinhole& p = camera.pinhole;
-  return fmt::format("{} x {} pixels of a camera of {:.4g} px", camera.width, camera.height,
+  return fmt::format("{} x {} pixels, focal length {:.4g} px", camera.width, camera.height,
                      0.5 * (p.fx + p.fy));
 }
 

@@ -73,7 +73,7 @@ Union unite(const Scene& scene) {
     }
     most = std::max(most, source->size());
   }
-  if (all.sources.empty()) throw Error("there is nothing to explore: no cloud has a point");
+  if (all.sources.empty()) throw Error("nothing to explore: no source has any points");
   if (all.sources.size() > 1) {
     for (const auto& source : all.sources) append(all, *source);
   }

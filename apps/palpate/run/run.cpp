@@ -28,8 +28,8 @@ std::string socket_path(const DevicePlan& plan) {
     return default_remote_path();
   } catch (const Error&) {
     throw Error(
-        "--device remote: XDG_RUNTIME_DIR is not set, so there is no usual place for the socket; "
-        "give one, as in --device remote:/tmp/hand");
+        "--device remote: XDG_RUNTIME_DIR is not set, so there is no default socket path; give "
+        "one, e.g. --device remote:/tmp/hand");
   }
 }
 
@@ -45,7 +45,7 @@ void open_socket(Hand& hand, const MotionPlan& motion, const GuardOptions& guard
   hand.socket = opened.get();
   hand.duration = motion.duration;
   hand.device = std::move(opened);
-  fmt::print(stderr, "{}: listens on {}\n", hand.name, hand.socket->path());
+  fmt::print(stderr, "{}: listening on {}\n", hand.name, hand.socket->path());
 }
 
 void open_hardware(Hand& hand, const MotionPlan& motion, RealtimeOptions asked,
@@ -56,7 +56,7 @@ void open_hardware(Hand& hand, const MotionPlan& motion, RealtimeOptions asked,
   device.begin = [asked] { (void)make_realtime(asked); };
   hand.device = open_device(hand.chosen.path, clock, device);
   hand.duration = motion.duration;
-  fmt::print(stderr, "{}: holds {}\n", hand.name, hand.device->info().name);
+  fmt::print(stderr, "{}: using {}\n", hand.name, hand.device->info().name);
 }
 
 // The hand is where `way` says, whatever the force.
@@ -141,7 +141,7 @@ void check(const Trajectory& way, const std::string& file, bool simulated) {
   const double duration = way.back().time - way.front().time;
   if (simulated && duration > kLongestRun) {
     throw UsageError(
-        fmt::format("--trajectory lasts {:.6g} s; --device simulated plays {:.0f} s at most: are "
+        fmt::format("--trajectory lasts {:.6g} s; --device simulated plays at most {:.0f} s: are "
                     "its times in seconds?",
                     duration, kLongestRun));
   }
@@ -149,8 +149,8 @@ void check(const Trajectory& way, const std::string& file, bool simulated) {
     const double far = way[i].position.cwiseAbs().maxCoeff();
     if (far <= Proxy::kLargestCoordinate) continue;
     throw Error(
-        fmt::format("row {} of {} is {:.4g} m from the origin; beyond {:.0e} m no surface can be "
-                    "resolved: are its places in metres?",
+        fmt::format("row {} of {} is {:.4g} m from the origin; surfaces beyond {:.0e} m cannot be "
+                    "resolved: are its positions in metres?",
                     i, file, far, Proxy::kLargestCoordinate));
   }
 }

@@ -23,52 +23,53 @@ struct Note {
 
 constexpr std::array<Note, 14> kNotes = {{
     {"sweep_truncated",
-     "the hand moved too far for one step, so the proxy caught up in the next ones; move slower or "
-     "give shorter steps",
+     "the hand moved too far in one step, so the proxy caught up over the next steps; move slower "
+     "or use shorter steps",
      ContactNote::sweep_truncated, FieldNote::none},
     {"lost",
-     "no surface could be found near the proxy, so the force faded; a larger --radius closes "
-     "holes",
+     "no surface was found near the proxy, so the force faded; a larger --radius closes holes",
      ContactNote::lost, FieldNote::none},
     {"not_converged",
-     "the proxy's iterations ran out before the closest point; it goes on in the next step",
+     "the proxy reached its iteration limit before the closest point; it continues in the next "
+     "step",
      ContactNote::not_converged, FieldNote::none},
-    {"reanchored", "the surface had moved over the proxy, which was taken along",
+    {"reanchored", "the surface moved past the proxy, so the proxy was moved back onto it",
      ContactNote::reanchored, FieldNote::none},
     {"fault",
-     "a hand or surface position was not finite or beyond 1e9 m, so the force was zero from there "
-     "on; repair the trajectory or --pose",
+     "a hand or surface position was not finite or beyond 1e9 m, so the force was zero from then "
+     "on; fix the trajectory or --pose",
      ContactNote::fault, FieldNote::none},
     {"softer",
-     "the surface was softer than asked for: stiffness grows only as fast as the hand's motion "
+     "the surface was softer than requested: stiffness rises only as fast as the hand's motion "
      "supplies the energy",
      ContactNote::softer, FieldNote::none},
     {"fell",
-     "the surface gave way: the hand came off an edge or through a gap (a larger --radius closes "
-     "gaps), or what it touched had gone",
+     "contact was lost: the hand slid off an edge or went through a gap (a larger --radius closes "
+     "gaps), or the touched surface disappeared",
      ContactNote::fell, FieldNote::none},
     {"thinned",
-     "more points than the patch holds lay near the tool, so some were left out; give a smaller "
-     "--radius or a larger --voxel",
+     "there were more points near the tool than the patch holds, so some were ignored; give a "
+     "smaller --radius or a larger --voxel",
      ContactNote::none, FieldNote::thinned},
     {"no_surface", "no source had a surface (yet)", ContactNote::none, FieldNote::no_surface},
     {"time_not_finite",
-     "a time was not finite, so the surface stayed as it was; mend the device's or the recording's "
-     "clock",
+     "a timestamp was not finite, so the surface was not updated; fix the device's or the "
+     "recording's clock",
      ContactNote::none, FieldNote::time_not_finite},
     {"other_kernel",
-     "points were prepared for another kernel than the field's; prepare them with the same",
+     "the points were prepared for a different kernel than the field uses; prepare them with the "
+     "same kernel",
      ContactNote::none, FieldNote::other_kernel},
     {"tool_too_large",
-     "the tool is too large for the surface's R, so it counted for less; give a smaller "
+     "the tool is too large for the surface's R, so a smaller radius was used; give a smaller "
      "--tool-radius",
      ContactNote::none, FieldNote::tool_too_large},
     {"work_spent",
-     "looking for points took all the work that a step may do, so the proxy stopped short; give a "
-     "larger --voxel, or clip the cloud",
+     "the point search reached its work limit for one step, so the proxy stopped early; give a "
+     "larger --voxel, or crop the cloud",
      ContactNote::none, FieldNote::work_spent},
     {"behind",
-     "the tool was behind what a camera sees, on the side that it never saw, which holds nothing",
+     "the tool was behind the surface that a camera sees; the unseen side exerts no force",
      ContactNote::none, FieldNote::behind},
 }};
 

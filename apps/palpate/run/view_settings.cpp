@@ -114,7 +114,7 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
     list.push_back(number("history", "History", "clouds", 1, 7, 1, settings.history));
   }
   if (scope.clouds) {
-    list.push_back(number("voxel", "Voxel (0: by itself)", "mm", 0, 50, 0.5,
+    list.push_back(number("voxel", "Voxel (0: automatic)", "mm", 0, 50, 0.5,
                           settings.voxel.value_or(0) / kMillimetre));
   }
   return list;
@@ -148,7 +148,7 @@ void set(ViewSettings& settings, const std::string& key, const SettingValue& val
   } else if (key == "stiffness" || key == "friction" || key == "texture") {
     set_feel(settings.feel, key, std::get<double>(value));
   } else {
-    throw Error(fmt::format("there is no setting '{}'", key));
+    throw Error(fmt::format("unknown setting '{}'", key));
   }
 }
 
@@ -168,7 +168,7 @@ ViewSettings preset(const ViewSettings& initial, const std::string& name, const 
     feel.texture.amplitude = std::min(feel.texture.amplitude, scope.deepest_texture);
     return result;
   }
-  throw Error(fmt::format("there is no preset '{}'", name));
+  throw Error(fmt::format("unknown preset '{}'", name));
 }
 
 SourceOptions prepared_by(const ViewSettings& settings, const ViewSettings& initial,

@@ -31,9 +31,9 @@ UnitsGuess survey_units(const Box& bounds) {
   const Eigen::Vector3d middle = bounds.center();
   const bool utm = middle.x() > 1e5 && middle.x() < 9e5 && middle.y() > 1.1e6 && middle.y() < 1e7;
   const std::string where =
-      fmt::format("they lie around x = {:.0f}, y = {:.0f}", middle.x(), middle.y());
-  if (utm) return {"metres", where + ", which is what UTM coordinates look like", ""};
-  return {"metres or feet", where + ": survey coordinates, but not in UTM's range",
+      fmt::format("the points are around x = {:.0f}, y = {:.0f}", middle.x(), middle.y());
+  if (utm) return {"metres", where + ", typical of UTM coordinates", ""};
+  return {"metres or feet", where + ": survey coordinates, but outside the UTM range",
           "if they are feet (state-plane data often is), give --scale 0.3048"};
 }
 
@@ -44,10 +44,10 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
   const std::string size = fmt::format("the longest side is {:.4g}", extent);
   if (is_survey(bounds)) return survey_units(bounds);
   if (format.starts_with("LAS") || format.starts_with("LAZ")) {
-    return {"metres or feet", size + "; LAS files hold either",
+    return {"metres or feet", size + "; LAS files use either",
             "if they are feet, give --scale 0.3048"};
   }
-  if (extent == 0) return {"unknown", "all points are at one place", ""};
+  if (extent == 0) return {"unknown", "all points coincide", ""};
   if (extent > 400) {
     return {"millimetres",
             size + ": too long for a scanned room in metres, plausible in millimetres",
@@ -60,7 +60,7 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
   }
   if (extent < 0.004) {
     return {"unknown", size + ": very small for metres",
-            "give --scale with the metres in a unit of the file"};
+            "give --scale with the metres per unit of the file"};
   }
   return {"metres", size + ", plausible for an object or a room in metres", ""};
 }

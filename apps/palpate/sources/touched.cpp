@@ -26,16 +26,16 @@ double seconds_since(WallClock::time_point start) {
 
 void check_intensities(const LoadedCloud& loaded) {
   if (!loaded.file.cloud.intensities.empty()) return;
-  throw Error(fmt::format(
-      "--soft-stiffness and --soft-friction need a scalar for each point, but {} has no "
-      "intensity column; leave them out or give a file with one",
-      loaded.argument.path));
+  throw Error(
+      fmt::format("--soft-stiffness and --soft-friction need an intensity per point, but {} has no "
+                  "intensity column; remove them or give a file with one",
+                  loaded.argument.path));
 }
 
 void refuse_material(const CloudArgument& source) {
   throw Error(
-      fmt::format("--soft-stiffness and --soft-friction need a scalar for each point, and {} has "
-                  "depths alone; leave them out",
+      fmt::format("--soft-stiffness and --soft-friction need an intensity per point, but {} has "
+                  "only depths; remove them",
                   source.path));
 }
 
@@ -57,7 +57,7 @@ void check_range(const DepthFrame& frame, const DepthFilterOptions& range) {
   if (middle == 0) return;
   throw Error(
       fmt::format("all depths are nearer than {} m or farther than {} m (median {:.4g} m); widen "
-                  "the range (--nearest, --farthest), or mend the unit (depth_unit_m of a "
+                  "the range (--nearest, --farthest), or correct the unit (depth_unit_m of a "
                   "recording, --depth-unit of an image)",
                   range.nearest, range.farthest, middle));
 }
@@ -70,7 +70,7 @@ void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
                               (points.origin + root.upper.cast<double>()).cwiseAbs().maxCoeff());
   if (far <= Proxy::kLargestCoordinate) return;
   throw Error(fmt::format(
-      "{} reaches {:.4g} m from the origin; beyond {:.0e} m no surface can be resolved: {} right?",
+      "{} extends {:.4g} m from the origin; surfaces beyond {:.0e} m cannot be resolved: {} right?",
       cloud.path, far, Proxy::kLargestCoordinate,
       lives(cloud.path) ? "is --pose" : "are --scale and --pose"));
 }
@@ -85,8 +85,8 @@ void check_radius(const CloudArgument& cloud, const PrepareOptions& options, con
   const double spacing = mean_spacing(grid);
   if (*options.radius <= kFarBeyond * spacing) return;
   throw Error(
-      fmt::format("--radius {:.4g} is too large for {}, which is {} across: every point would "
-                  "reach over all of it; leave it out, or give some times the spacing ({})",
+      fmt::format("--radius {:.4g} is too large for {}, which is only {} across; remove it, or "
+                  "give a few times the point spacing ({})",
                   *options.radius, cloud.path, length(across), length(spacing)));
 }
 
@@ -120,8 +120,9 @@ void add_cloud(Scene& scene, bool keep, TouchedSource& result) {
 void check_felt(const Source& source, TouchedSource& result) {
   const std::shared_ptr<const SurfacePoints> points = source.points();
   if (!points || points->size() == 0) {
-    throw Error(
-        fmt::format("{} shows no surface: there is nothing to touch", result.plan.argument.path));
+    throw Error(fmt::format(
+        "{} contains no surface, so there is nothing to touch; check its units and range",
+        result.plan.argument.path));
   }
   check_place(result.plan.argument, *points);
   check_radius(result.plan.argument, result.plan.options.prepare, points->grid);

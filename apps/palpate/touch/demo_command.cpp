@@ -17,14 +17,14 @@ struct DemoScene {
 
 constexpr std::array<DemoScene, 5> kScenes = {{
     {"desk",
-     "a depth camera over a table-top with a wire and other things, one of them moving",
+     "a depth camera over a table-top with a wire and other objects, one of them moving",
      {"desk=camera:simulated:desk", nullptr}},
     {"arm",
-     "a table-top as a structured-light sensor sees it, and an arm that goes to and fro over it",
+     "a table-top seen by a structured-light sensor, with an arm moving back and forth over it",
      {"arm=camera:simulated:arm,noise=structured", nullptr}},
-    {"scan", "a rabbit, as a scanner would show it", {"rabbit=synthetic:rabbit", nullptr}},
+    {"scan", "a rabbit, like a laser scan", {"rabbit=synthetic:rabbit", nullptr}},
     {"two",
-     "two depth cameras that see one scene from two sides, 2 mm off",
+     "two depth cameras that see one scene from two sides, misaligned by 2 mm",
      {"left=camera:simulated:table,view=40,phase=0.011,seed=2,error=0.002",
       "right=camera:simulated:table,view=-40"}},
     {"room", "a room of 4 x 3 m, 300 000 points", {"room=synthetic:room", nullptr}},
@@ -37,7 +37,7 @@ std::vector<std::string> names() {
 }
 
 std::string list() {
-  std::string text = "what is there to touch (desk):";
+  std::string text = "scene to touch (desk):";
   for (const DemoScene& scene : kScenes) {
     text += std::string("\n") + scene.name + ": " + scene.description;
   }
@@ -64,8 +64,8 @@ void add_demo_options(CLI::App& command, DemoOptions& o) {
   table.under("Options");
   table.add("--duration", plan.motion.duration, "SECONDS",
             number("from 0.1 to 86400 s", [](double x) { return x >= 0.1 && x <= 86'400; }),
-            "ends after this time (without it: when Ctrl-C is pressed)");
-  table.add_flag("--headless", o.headless, "opens no browser");
+            "stop after this time (default: at Ctrl-C)");
+  table.add_flag("--headless", o.headless, "do not open a browser");
   table.under("OPTIONS");
   add_device_option(table, plan.devices);
   add_live_options(table, plan.time);

@@ -208,7 +208,7 @@ class FailureWatch {
       const std::string failure = told_[i] ? "" : hands[i].failure();
       if (failure.empty()) continue;
       told_[i] = true;
-      status.tell(failure + "; it feels nothing any more, the others go on");
+      status.tell(failure + "; it gets no more force, the other hands continue");
     }
   }
 

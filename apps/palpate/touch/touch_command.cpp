@@ -74,8 +74,7 @@ void check_texture(double amplitude, const Scene& scene) {
   const double largest = deepest_texture(scene);
   if (amplitude <= largest) return;
   throw UsageError(
-      fmt::format("--texture-amplitude {} is carved deeper than the surface reaches with its R; "
-                  "give {:.2g} at most",
+      fmt::format("--texture-amplitude {} is too deep for the surface's R; give at most {:.2g}",
                   amplitude, largest));
 }
 
@@ -104,7 +103,9 @@ void check_hands(const std::vector<HandReport>& hands) {
     if (hand.live != nullptr && !hand.live->failure.empty()) throw Error(hand.live->failure);
   }
   if (std::ranges::none_of(hands, felt_nothing)) return;
-  throw Error("every step was a fault: nothing was felt (everything was written)");
+  throw Error(
+      "every step was a fault, so no force was rendered (all outputs were written); check the "
+      "trajectory and --pose");
 }
 
 // The pictures come last: everything else is there if they cannot be drawn.

@@ -8,9 +8,7 @@ struct View::Parts {};
 
 View::View(Run& run, std::vector<Servo*> /*servos*/, const LiveFeed& /*feed*/) {
   if (!run.page.wanted) return;
-  throw Error(
-      "this palpate was built without its page; install libboost-dev and build it again, or leave "
-      "--view out");
+  throw Error("this build has no page; install libboost-dev and rebuild, or remove --view");
 }
 View::~View() = default;
 void View::add(std::size_t /*hand*/, const TouchStep& /*step*/) {}

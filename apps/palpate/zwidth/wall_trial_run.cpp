@@ -69,22 +69,23 @@ class TrialThread {
 };
 
 void ask(const WallTrialRunOptions& options) {
-  fmt::print(
-      stderr,
-      "This moves the device: you press on walls that are simulated under your hand, each "
-      "{:.0f} % stiffer\nthan the one before, until one makes the device shake. No force is "
-      "longer than {:.1f} N; the guard's\nbrake and its limit of stiffness are off. The force goes "
-      "away when the device shakes, moves faster\nthan {} m/s, or is not heard. Take the handle, "
-      "clear the table, keep the other hand at the switch.\n",
-      100 * (options.trial.factor - 1), options.trial.maximum_force, options.trial.fastest);
+  fmt::print(stderr,
+             "This moves the device: you press on simulated walls, each {:.0f} % stiffer than the "
+             "last, until one\nmakes the device vibrate. No force exceeds {:.1f} N; the guard's "
+             "brake and stiffness limit are off.\nThe force is switched off when the device "
+             "vibrates, moves faster than {} m/s or stops responding.\nHold the handle, clear the "
+             "table and keep the other hand on the power switch.\n",
+             100 * (options.trial.factor - 1), options.trial.maximum_force, options.trial.fastest);
   if (options.confirmed) return;
   if (isatty(STDIN_FILENO) == 0) {
-    throw UsageError("nobody can be asked here: give --confirm when somebody holds the device");
+    throw UsageError(
+        "cannot ask for confirmation without a terminal; give --confirm if somebody holds the "
+        "device");
   }
   fmt::print(stderr, "Type yes to begin: ");
   std::string answer;
   std::getline(std::cin, answer);
-  if (answer != "yes") throw UsageError("not confirmed with yes; nothing was moved");
+  if (answer != "yes") throw UsageError("not confirmed with yes; the device was not moved");
 }
 
 // What the hand is to do, whenever that changes.
@@ -99,7 +100,7 @@ WallTrialState lead(TrialThread& thread, const Interruption& interruption) {
   }
   thread.stop();
   const WallTrialState state = thread.state();
-  fmt::print(stderr, "the end: {}\n", in_words(state.phase));
+  fmt::print(stderr, "finished: {}\n", in_words(state.phase));
   return state;
 }
 
@@ -116,11 +117,13 @@ std::string found(const WallTrialRunOptions& options, const DeviceInfo& info,
 
 void tell(const WallTrialState& state, double damping, std::FILE* out) {
   const Style style(out);
-  fmt::print(out,
-             "{} walls up to {:.0f} N/m stood still in this hand, with a damper of {:.3g} N s/m\n",
-             style.heading("z-width"), state.stable, damping);
+  fmt::print(
+      out,
+      "{} walls up to {:.0f} N/m were stable in this hand, with a wall damping of {:.3g} N s/m\n",
+      style.heading("z-width"), state.stable, damping);
   if (state.phase == WallTrialPhase::shook) {
-    fmt::print(out, "one of {:.0f} N/m shook by {:.2f} mm\n", state.wall, 1e3 * state.amplitude);
+    fmt::print(out, "a wall of {:.0f} N/m vibrated by {:.2f} mm\n", state.wall,
+               1e3 * state.amplitude);
   }
 }
 
@@ -128,10 +131,10 @@ void tell(const WallTrialState& state, double damping, std::FILE* out) {
 
 void run_wall_trial(const WallTrialRunOptions& options) {
   if (!names_hardware(options.device)) {
-    throw UsageError(fmt::format(
-        "{}: no device that a hand presses. Give forcedimension, openhaptics or haply; without "
-        "--device walls are simulated",
-        options.device));
+    throw UsageError(
+        fmt::format("{} is not a hardware device; give forcedimension, openhaptics or haply, or "
+                    "remove --device to simulate the walls",
+                    options.device));
   }
   ask(options);
   std::optional<OutputFile> json;
@@ -141,7 +144,7 @@ void run_wall_trial(const WallTrialRunOptions& options) {
   ThreadedDeviceOptions link;
   link.begin = [] { static_cast<void>(make_realtime({})); };
   const std::unique_ptr<ThreadedDevice> device = open_device(options.device, clock, link);
-  fmt::print(stderr, "holds {}\n", device->info().name);
+  fmt::print(stderr, "using {}\n", device->info().name);
   TrialThread thread(*device, clock, options.trial);
   const WallTrialState state = lead(thread, interruption);
   if (json) write_whole(json, found(options, device->info(), state));

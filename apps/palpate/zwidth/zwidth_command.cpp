@@ -21,13 +21,13 @@ constexpr const char* kZWidthFooter = R"(Examples:
   palpate zwidth --device-profile my-arm --profiles arms.toml --csv arm.csv
   palpate zwidth --device forcedimension
 
-A profile file is TOML, a table a device, with the keys that are known of it: title, source,
+A profile file is TOML with one table per device and any of these keys: title, source,
 maximum_force, peak_force (N), maximum_stiffness (N/m), damping (N s/m), coulomb (N), mass (kg),
 resolution, workspace_radius (m), rate (Hz), delay (s).
 
-Walls are simulated: a mass with friction behind encoders, a force that is held for a step and comes
-late. Nothing moves; but with --device a person presses on walls that the device renders, each stiffer
-than the one before, until one makes it shake. It says what comes and asks first.)";
+By default the walls are simulated and nothing moves: a mass with friction, quantised positions and
+a sampled, delayed force. With --device, a person presses on walls that the device renders, each
+stiffer than the last, until one makes it vibrate; palpate explains this and asks before it starts.)";
 
 // Every file is made before the work: a place that does not exist is told at once.
 struct ZWidthOutputs {
@@ -48,29 +48,29 @@ struct ZWidthOutputs {
 void add_simulation_options(CLI::App& command, ZWidthOptions& o) {
   command
       .add_option("--device-profile", o.profile,
-                  wrapped("kind of device: simulated (default), unknown, touch, omega, falcon, ... "
-                          "or one of --profiles"))
+                  wrapped("device profile: simulated (default), unknown, touch, omega, falcon, ... "
+                          "or one from --profiles"))
       ->type_name("NAME");
-  command.add_option("--profiles", o.profiles, "TOML file with profiles of your own")
+  command.add_option("--profiles", o.profiles, "TOML file with your own profiles")
       ->type_name("FILE");
-  command.add_option("--rate", o.rates, "steps a second (500 to 4000, and the device's own)")
+  command.add_option("--rate", o.rates, "servo rates (500 to 4000, and the device's own)")
       ->delimiter(',')
       ->check(number("between 100 and 20000 Hz", [](double x) { return x >= 100 && x <= 2e4; }))
       ->type_name("HZ,...");
-  command.add_option("--delay", o.delays, "steps from a place to its force (0,1,2)")
+  command.add_option("--delay", o.delays, "delays from position to force, in steps (0,1,2)")
       ->delimiter(',')
       ->check(whole_number(0, 16))
       ->type_name("N,...");
   command
       .add_option("--damping", o.dampings,
-                  wrapped("of the device by itself (what its profile says, else 0.1 to 2)"))
+                  wrapped("physical damping of the device (from its profile, else 0.1 to 2)"))
       ->delimiter(',')
       ->check(not_negative())
       ->type_name("N S/M,...");
-  command.add_option("--wall-damping", o.wall_damping, "B of a damper in the wall (0)")
+  command.add_option("--wall-damping", o.wall_damping, "virtual damping B of the wall (0)")
       ->check(not_negative())
       ->type_name("N S/M");
-  command.add_option("--csv", o.csv, "the map; - is standard output")->type_name("FILE");
+  command.add_option("--csv", o.csv, "the map as CSV; - is standard output")->type_name("FILE");
   add_json_option(command, o.json);
   command.add_option("--picture", o.picture, "the map as PNG (needs python3-matplotlib)")
       ->type_name("FILE.png");
@@ -80,8 +80,10 @@ void add_simulation_options(CLI::App& command, ZWidthOptions& o) {
 void add_hardware_options(CLI::App& command, WallTrialRunOptions& trial) {
   CLI::Option* const device =
       command
-          .add_option("--device", trial.device,
-                      wrapped("measure on this device (palpate devices); it asks first"))
+          .add_option(
+              "--device", trial.device,
+              wrapped(
+                  "measure on this device ('palpate devices' lists them); asks before it starts"))
           ->group("On hardware");
   std::string text = "NAME Excludes:";  // of its own, CLI11 would list them by their addresses
   for (const char* simulated :
@@ -94,13 +96,13 @@ void add_hardware_options(CLI::App& command, WallTrialRunOptions& trial) {
     return option->needs(device)->group("On hardware");
   };
   on_hardware(
-      command.add_flag("--confirm", trial.confirmed, "somebody holds the device: do not ask"));
-  on_hardware(
-      command.add_option("--maximum-force", trial.trial.maximum_force, "of a wall (2; 4 at most)"))
+      command.add_flag("--confirm", trial.confirmed, "do not ask; somebody holds the device"));
+  on_hardware(command.add_option("--maximum-force", trial.trial.maximum_force,
+                                 "largest force of a wall (2; at most 4)"))
       ->check(number("above 0.3, up to 4 N", [](double x) { return x > 0.3 && x <= 4; }))
       ->type_name("N");
   on_hardware(command.add_option("--patience", trial.trial.patience,
-                                 wrapped("time without progress after which it ends (30)")))
+                                 wrapped("stop after this long without progress (30)")))
       ->check(positive())
       ->type_name("SECONDS");
 }

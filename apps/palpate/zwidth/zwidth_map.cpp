@@ -103,11 +103,11 @@ ZWidthMap measure_zwidth(const ZWidthOptions& options,
 
 void print_zwidth(const ZWidthMap& map, std::FILE* out) {
   const Style style(out);
-  fmt::print(out, "{} {}: how stiff a wall may be, N/m\n", style.heading("z-width"),
+  fmt::print(out, "{} {}: largest wall stiffness, N/m\n", style.heading("z-width"),
              map.profile.title);
   fmt::print(out,
-             "simulated with {:.3g} kg, dry friction {:.3g} N, places in steps of {}, wall damper "
-             "{:.3g} N s/m\n",
+             "simulated with {:.3g} kg, Coulomb friction {:.3g} N, position resolution {}, wall "
+             "damping {:.3g} N s/m\n",
              map.mass, map.coulomb, length(map.resolution), map.wall_damping);
   fmt::print(out, "{:>8} {:>6} {:>9} {:>9} {:>9} {:>9} {:>11}\n", "rate", "delay", "damping",
              "Colgate", "stable", "passive", "with brake");
@@ -116,16 +116,15 @@ void print_zwidth(const ZWidthMap& map, std::FILE* out) {
                row.damping, row.colgate, stiffness(row.stable), stiffness(row.passive),
                stiffness(row.braked));
   }
-  fmt::print(
-      out,
-      "delay: steps from a place to its force; damping: of the device, N s/m\n"
-      "Colgate: 2 (b + B) / (T + 2 T_d); stable: oscillations of a device that nobody holds "
-      "do not grow;\npassive: it leaves the wall no faster than it came; with brake: likewise, "
-      "with the guard's passivity controller\n");
+  fmt::print(out,
+             "delay: steps from a position to its force; damping: of the device, N s/m\nColgate: 2 "
+             "(b + B) / (T + 2 T_d); stable: oscillations of the released device do not "
+             "grow;\npassive: it leaves the wall no faster than it entered; with brake: the same "
+             "with the guard's passivity controller\n");
   if (map.profile.damping && map.profile.mass) return;
   fmt::print(out,
-             "{} mass or friction of this device are not known and are assumed: a map to look up, "
-             "not a measurement of yours\n",
+             "{} the mass or friction of this device is unknown and was assumed: the map is a "
+             "guide, not a measurement\n",
              style.warning("note:"));
 }
 

@@ -87,7 +87,7 @@ void Fusion::add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_senso
   const PointCloud clipped = prepare_.clip ? clip(cloud, *prepare_.clip) : cloud;
   if (leaf_ == 0) choose_leaf(cloud, T_world_sensor);
   const std::vector<Eigen::Vector3d> points = usable(clipped, T_world_sensor);
-  if (points.empty() && voxels_.empty()) throw Error("no point of the cloud can be used");
+  if (points.empty() && voxels_.empty()) throw Error("the cloud has no usable points");
   mix(points);
   PrepareOptions options = prepare_;
   options.voxel = 0;

@@ -42,13 +42,13 @@ export class Bar {
   /** What the program says of itself shows on the buttons: they may be pressed elsewhere. */
   update(): void {
     const paused = this.session.tool?.has("paused") ?? false;
-    this.press("pause", paused, paused ? "play" : "pause", paused ? "Go on" : "Pause");
+    this.press("pause", paused, paused ? "play" : "pause", paused ? "Resume" : "Pause");
     byId("follow").setAttribute("aria-pressed", String(this.world.followed !== undefined));
     const open = byId("link-state").dataset["phase"] === "open";
     const rate = this.session.tool?.latest?.rate;
-    if (open && rate !== undefined) say(byId("link-words"), `${whole(rate)} steps a second`);
-    const delay = Number.isNaN(this.delay) ? "" : `; answers in ${(1000 * this.delay).toFixed(1)} ms`;
-    byId("link-state").title = `connected${delay}; a picture every ${this.world.stage.frameTime.toFixed(0)} ms`;
+    if (open && rate !== undefined) say(byId("link-words"), `${whole(rate)} steps/s`);
+    const delay = Number.isNaN(this.delay) ? "" : `; latency ${(1000 * this.delay).toFixed(1)} ms`;
+    byId("link-state").title = `connected${delay}; a frame every ${this.world.stage.frameTime.toFixed(0)} ms`;
   }
 
   pause(): void {
@@ -87,7 +87,7 @@ export class Bar {
   private async toggleSound(): Promise<void> {
     const asked = !this.sound.on;
     const on = await this.sound.toggle();
-    if (asked && !on) this.notices.add("warning", "the browser finds no device for sound");
+    if (asked && !on) this.notices.add("warning", "the browser finds no audio device");
     byId("sound").setAttribute("aria-pressed", String(on));
     icon(byId("sound"), on ? "sound" : "mute");
   }
@@ -109,7 +109,7 @@ export class Bar {
     const address = location.href.replace(/#.*/, "") + writeLink(this.token, this.session.values);
     try {
       await navigator.clipboard.writeText(address);
-      this.notices.add("info", "copied a link with these settings; it holds the token, so mind who gets it");
+      this.notices.add("info", "copied a link with these settings; it contains the token, so share it with care");
     } catch {
       const field = byId<HTMLInputElement>("share-link");
       field.value = address;

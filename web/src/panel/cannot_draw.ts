@@ -4,10 +4,10 @@ import { byId, say } from "./dom";
 
 export function sayCannotDraw(): void {
   byId("link-state").dataset["phase"] = "refused";
-  say(byId("link-words"), "nothing can be drawn");
-  say(byId("cover-title"), "This browser cannot draw the view");
+  say(byId("link-words"), "cannot render");
+  say(byId("cover-title"), "This browser cannot render the view");
   say(byId("cover-text"),
-    "It has no WebGL 2, or it is switched off: turn on the use of the graphics card in the browser's settings, " +
+    "WebGL 2 is missing or disabled: enable hardware acceleration in the browser's settings, " +
     "or open this address in another browser.");
   byId("cover").hidden = false;
 }

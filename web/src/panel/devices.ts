@@ -22,6 +22,6 @@ export class Devices {
 
   private tell(name: string, before: string, { status, reason }: DeviceReport): void {
     if (reason !== undefined) this.notices.add("warning", `${name}: ${reason}`);
-    else if (status === "ok" && before === "silent") this.notices.add("info", `${name} is heard`);
+    else if (status === "ok" && before === "silent") this.notices.add("info", `${name} is back`);
   }
 }

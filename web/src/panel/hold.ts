@@ -78,19 +78,19 @@ export class HoldPanel {
     if (held === this.held) return;
     this.held = held;
     button.setAttribute("aria-pressed", String(held));
-    say(byId("take-words"), held ? "Let go" : "Take the tool");
+    say(byId("take-words"), held ? "Release" : "Take the tool");
     byId("depth").hidden = !held;
     byId("view-area").classList.toggle("held", held);
-    say(byId("polite"), held ? "You hold the tool." : "The tool is let go.");
+    say(byId("polite"), held ? "You hold the tool." : "The tool is released.");
   }
 
   offer(spaceMouse: SpaceMouse, keys: Keys, notices: Notices): void {
     const text = make("p", { class: "soft" },
-      "Mouse, touch and keys move the tool; game controllers and 3D mice that the browser shows too, " +
-      "once a button on them is pressed.");
+      "Mouse, touch and keys move the tool; so do game controllers and 3D mice that the browser supports, " +
+      "once you press a button on them.");
     keys.single = recall("single-keys", true);
     const single = fieldRow(
-      { key: "single-keys", label: "Single letters act", kind: "switch", value: keys.single },
+      { key: "single-keys", label: "Single-letter shortcuts", kind: "switch", value: keys.single },
       (value) => remember("single-keys", (keys.single = value === true)),
     );
     const parts: HTMLElement[] = [text, single.row];
@@ -99,7 +99,7 @@ export class HoldPanel {
         const name = await spaceMouse.choose();
         if (name !== undefined) notices.add("info", `${name} moves the tool; its first button takes it`);
       };
-      const failed = (error: unknown) => notices.add("warning", `the 3D mouse cannot be opened: ${String(error)}`);
+      const failed = (error: unknown) => notices.add("warning", `cannot open the 3D mouse: ${String(error)}`);
       parts.push(make("button", { type: "button", class: "button", click: () => void choose().catch(failed) },
         "Choose a 3D mouse"));
       void spaceMouse.resume().catch(failed);
@@ -127,7 +127,7 @@ export class HoldPanel {
     }
     if (!this.session.open || this.session.tool?.latest === undefined) return "";
     if (!this.takeable()) {
-      return this.session.tool.report.status === "silent" ? "The device that moves this tool is silent" : "A device moves this tool";
+      return this.session.tool.report.status === "silent" ? "The device of this tool is not responding" : "A device moves this tool";
     }
     const colour = kColours[this.session.device % kColours.length];
     return `Drag the ${colour} hand to touch` + (kCoarse.matches ? "" : "; drag elsewhere to look around");

@@ -42,7 +42,7 @@ export class LookPanel {
       step: 0.1, value: this.look.pointSize,
     }, (value) => (this.look.pointSize = Number(value)));
     this.add({
-      key: "count", label: "Points, at most", kind: "choice", choices: kPointCounts.map(whole),
+      key: "count", label: "Maximum points", kind: "choice", choices: kPointCounts.map(whole),
       value: whole(this.points),
     }, (value) => this.choosePoints(kPointCounts.find((count) => whole(count) === value) ?? this.points));
     for (const [key, label] of [

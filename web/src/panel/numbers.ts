@@ -39,7 +39,7 @@ export function millimetres(value: number): string {
 /** How much of a cloud is no surface that its points agree on, where it is a hundredth or more. */
 export function distrust(share: number): string {
   if (share < 0.01) return "";
-  return `${(100 * share).toFixed(0)} % of this cloud is not trusted; it is felt as metaball there`;
+  return `${(100 * share).toFixed(0)} % of this cloud has low trust and is rendered as a metaball`;
 }
 
 /** Bounds of a slider: even for small ranges, by ratio for wide ones that stay above zero. */

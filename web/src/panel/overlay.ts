@@ -58,7 +58,7 @@ export class Overlay {
   private showRamp(): void {
     const { x: low, y: high } = this.world.heights;
     const ends: Partial<Record<Colouring, [string, string]>> = {
-      height: ["0", `${lengthInWords(high - low)} high`], age: ["now", "1 s old"], trust: ["not trusted", "trusted"],
+      height: ["0", `${lengthInWords(high - low)} high`], age: ["now", "1 s old"], trust: ["low trust", "high trust"],
     };
     const colouring = this.world.colouring;
     const words = ends[colouring];

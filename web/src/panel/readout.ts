@@ -8,15 +8,15 @@ import { millimetres } from "./numbers";
 type Name = keyof typeof Flag;
 
 const kFlagWords: Partial<Record<Name, [level: string, words: string, reason: string]>> = {
-  paused: ["info", "paused: no force", "Somebody paused it; the force comes back softly"],
-  clutched: ["info", "clutch held: the hand moves freely", "The tool rests until the button is let go"],
-  fault: ["fault", "fault: no force until reset", "What was computed or told was no force or place"],
-  watchdog: ["fault", "watchdog: the servo was late", "Zero force now; it comes back softly"],
-  clamped: ["warning", "force at its bound", "Shortened to what the device holds, or to --maximum-force"],
-  slewed: ["warning", "force change slowed", "It changed by more than the hand explains"],
-  braked: ["warning", "brake: energy taken back", "The hand had been given more energy than it put in"],
-  softened: ["info", "as stiff as the device bears", "A stiffer surface was asked for; it would shake"],
-  thinned: ["warning", "surface thinned: too many points near", "Some were left out, so that steps keep their time"],
+  paused: ["info", "paused: no force", "Somebody paused the run; the force ramps up again on resume"],
+  clutched: ["info", "clutch held: the hand moves without the tool", "The tool stays until the button is released"],
+  fault: ["fault", "fault: no force until reset", "A computed force or reported position was not finite"],
+  watchdog: ["fault", "watchdog: the servo was late", "Zero force now; it ramps up again"],
+  clamped: ["warning", "force limit reached", "Limited to what the device can sustain, or to --maximum-force"],
+  slewed: ["warning", "slew limit active", "The force changed faster than the hand's motion explains"],
+  braked: ["warning", "brake: dissipating energy", "The hand had received more energy than it put in"],
+  softened: ["info", "stiffness limited by the device", "The requested stiffness would make the device vibrate"],
+  thinned: ["warning", "points skipped: too many near the tool", "Some were skipped to keep the servo rate"],
 };
 const kLift = "lift the tool to feel full force again";
 const kLinger = 700; // ms that a flag stays readable
@@ -58,7 +58,7 @@ export class Readout {
     }
     say(this.force, Math.hypot(...state.force).toFixed(2));
     this.parts.forEach((part, i) => say(part, signed(state.force[i as 0 | 1 | 2])));
-    say(this.touch, now - tool.received > kStale ? "nothing heard for a while" : this.words(tool));
+    say(this.touch, now - tool.received > kStale ? "no data for a while" : this.words(tool));
     byId("view-area").classList.toggle("touching", tool.has("touching"));
   }
 

@@ -5,7 +5,7 @@ import type { Setting, SettingValue } from "../protocol/messages";
 import { byId, make, say } from "./dom";
 import { fieldRow, type FieldRow } from "./field";
 
-const kSofter = "felt softer: in contact it grows with motion alone; lift and touch again";
+const kSofter = "currently softer: stiffness rises only with motion in contact; lift and touch again";
 const kLinger = 700; // ms that it stays readable
 
 export class SettingsPanel {

@@ -27,11 +27,11 @@ function makeRow(source: SourceHistory, index: number, changed: () => void): Row
   box.checked = source.visible;
   box.style.setProperty("--swatch", `var(${sourceColour(index)})`);
   const phase = make("small");
-  const rate = cell("frames a second");
+  const rate = cell("frames per second");
   const points = cell("points");
-  const latency = cell("from a frame to what can be touched");
-  const age = cell("age of what is felt");
-  const dropped = cell("frames left out");
+  const latency = cell("latency from frame to touchable surface");
+  const age = cell("age of the rendered surface");
+  const dropped = cell("frames dropped");
   const trust = make("td", { colspan: 5, class: "trust" });
   const name = make("th", { scope: "rowgroup", colspan: 5 },
     make("label", {}, box, make("span", {}, source.name), phase));

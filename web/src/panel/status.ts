@@ -26,17 +26,17 @@ export class Status {
     byId("panel-settings").inert = link.phase !== "open";
     byId("link-state").dataset["phase"] = link.phase;
     if (link.phase === "open") {
-      if (this.everOpen) say(byId("polite"), "Connected again.");
+      if (this.everOpen) say(byId("polite"), "Reconnected.");
       this.everOpen = true;
       this.uncover();
       this.words("connected");
     } else if (link.phase === "connecting") {
       this.words("connecting");
     } else if (link.phase === "refused") {
-      this.words("not let in");
-      this.ask("The program does not know this page",
-        `It said: ${link.reason}. Each start of the program has a token of its own: ` +
-        "open the address that it printed last, or put it here.");
+      this.words("access denied");
+      this.ask("The program rejected this page",
+        `Reason: ${link.reason}. Each start of the program has a new token: ` +
+        "open the address that it printed last, or paste it here.");
     } else {
       this.wait(link.seconds, link.reason);
     }
@@ -46,18 +46,18 @@ export class Status {
     byId("link-state").dataset["phase"] = "refused";
     this.words("no token");
     this.ask("Open the address that palpate printed",
-      "It ends in # and a token, which lets this page watch and move the tool. " +
-      "Nothing is shown without one. Put the address, or the token alone, here.");
+      "It ends in # and a token that lets this page watch and move the tool. " +
+      "Nothing is shown without it. Paste the address or the token here.");
   }
 
   private wait(seconds: number, reason: string): void {
     let left = Math.ceil(seconds);
-    const title = this.everOpen ? "The connection is lost" : "The program does not answer";
-    say(byId("polite"), `${title}. Trying again by itself.`);
+    const title = this.everOpen ? "Connection lost" : "The program does not answer";
+    say(byId("polite"), `${title}. Reconnecting automatically.`);
     const tell = () => {
-      this.words(left > 0 ? `again in ${left} s` : "connecting");
-      this.cover(title, (reason === "" ? "" : `It said: ${reason}. `) +
-        "The tool is let go. This page tries again by itself" + (left > 0 ? ` in ${left} s.` : " now."));
+      this.words(left > 0 ? `retry in ${left} s` : "connecting");
+      this.cover(title, (reason === "" ? "" : `Reason: ${reason}. `) +
+        "The tool is released. This page reconnects automatically" + (left > 0 ? ` in ${left} s.` : " now."));
       left -= 1;
     };
     tell();

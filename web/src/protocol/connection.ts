@@ -126,7 +126,7 @@ export class Connection {
     const wasWelcome = this.welcomed;
     this.drop();
     if (code === kPolicyViolation && !wasWelcome) {
-      this.listener.link({ phase: "refused", reason: reason || "the token is not the program's" });
+      this.listener.link({ phase: "refused", reason: reason || "wrong token" });
       return;
     }
     const seconds = this.backoff.next();

@@ -69,7 +69,7 @@ export class DecodeError extends Error {}
 
 function need(buffer: ArrayBuffer, bytes: number, what: string): void {
   if (buffer.byteLength < bytes) {
-    throw new DecodeError(`${what}: ${buffer.byteLength} bytes where ${bytes} are needed`);
+    throw new DecodeError(`${what}: ${buffer.byteLength} bytes instead of ${bytes}`);
   }
 }
 
@@ -151,7 +151,7 @@ function decodeSurface(buffer: ArrayBuffer, view: DataView): SurfaceMessage {
     triangles: new Uint16Array(buffer, afterVertices, 3 * triangles),
   };
   if (message.triangles.some((vertex) => vertex >= vertices)) {
-    throw new DecodeError(`surface: a triangle beyond its ${vertices} vertices`);
+    throw new DecodeError(`surface: triangle index beyond its ${vertices} vertices`);
   }
   return message;
 }
@@ -164,5 +164,5 @@ export function decode(buffer: ArrayBuffer): BinaryMessage {
   if (kind === Kind.state) return decodeState(buffer, view);
   if (kind === Kind.cloud) return decodeCloud(buffer, view);
   if (kind === Kind.surface) return decodeSurface(buffer, view);
-  throw new DecodeError(`message of kind ${kind}`);
+  throw new DecodeError(`unknown message kind ${kind}`);
 }

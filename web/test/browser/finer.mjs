@@ -27,7 +27,7 @@ test("letters act while a switch or a slider has the focus, and not while one wr
 
 test("letters can be switched off", () =>
   withPage(kSmall, async (page, program) => {
-    const letters = page.getByRole("switch", { name: "Single letters act" });
+    const letters = page.getByRole("switch", { name: "Single-letter shortcuts" });
     await letters.click();
     await page.focus("#view");
     await page.keyboard.press("t");
@@ -129,7 +129,7 @@ test("a browser without WebGL 2 is told so", async () => {
       return kind === "webgl2" ? null : plain.call(this, kind, ...rest);
     };
   });
-  await until("said", async () => /cannot draw[\s\S]*WebGL 2/.test(await page.locator("#cover").innerText()));
+  await until("said", async () => /cannot render[\s\S]*WebGL 2/.test(await page.locator("#cover").innerText()));
   assert.deepEqual(page.troubles, []);
   await page.context().close();
   await server.close();
@@ -167,7 +167,7 @@ test("two hands are told apart, and why one is silent is said", async () => {
   await until("the reason", async () => (await text(page, "#touch")) === `silent: ${why}`);
   assert.equal(await tags.filter({ hasText: "remote" }).getAttribute("class"), "chosen");
   server.program.silent = undefined;
-  await until("heard", async () => (await text(page, "#notices")).includes("remote is heard"));
+  await until("heard", async () => (await text(page, "#notices")).includes("remote is back"));
   assert.deepEqual(page.troubles, []);
   await page.context().close();
   await server.close();

@@ -48,7 +48,7 @@ async function onTable(act, options) {
 
 test("the page comes from the program, connects and draws its cloud", () =>
   onTable(async (page) => {
-    await until("says how it goes", async () => /steps a second/.test(await text(page, "#link-words")));
+    await until("says how it goes", async () => /steps\/s/.test(await text(page, "#link-words")));
     assert.equal(await text(page, "#scene"), "table");
     await until("sources", async () => /table[\s\S]*still/.test(await text(page, "#sources")));
     await until("a cloud", async () => (await heard(page)).clouds > 0);
@@ -216,7 +216,7 @@ async function heldOverRelay(act) {
 test("a cut connection comes back by itself, and the tool is let go meanwhile", () =>
   heldOverRelay(async (relay, page, watcher) => {
     relay.cut();
-    await until("says so", async () => /connection is lost[\s\S]*tool is let go[\s\S]*tries again/.test(await text(page, "#cover")));
+    await until("says so", async () => /Connection lost[\s\S]*tool is released[\s\S]*reconnects/.test(await text(page, "#cover")));
     await until("let go", async () => !(await felt(watcher)).taken);
     relay.mend();
     await until("connected", async () => (await phase(page)) === "open");
@@ -229,7 +229,7 @@ test("the tool is let go when nothing is heard of its page any more", () =>
   heldOverRelay(async (relay, page, watcher) => {
     relay.freeze();
     await until("let go", async () => !(await felt(watcher)).taken);
-    await until("the page knows", async () => /connection is lost/.test(await text(page, "#cover")));
+    await until("the page knows", async () => /Connection lost/.test(await text(page, "#cover")));
   }));
 
 test("live cameras are shown; a program that ends and one that follows are told apart", async () => {
@@ -241,10 +241,10 @@ test("live cameras are shown; a program that ends and one that follows are told 
   await until("its clouds follow one another", async () => (await heard(page)).clouds > clouds + 2);
   await picture(page, "desktop");
   assert.equal(await one.stop(), 0);
-  await until("says so", async () => /connection is lost/.test(await text(page, "#cover")));
+  await until("says so", async () => /Connection lost/.test(await text(page, "#cover")));
   const two = await desk(one.port);
   await until("tells what to do", async () =>
-    /does not know this page[\s\S]*open the address that it printed last/.test(await text(page, "#cover")));
+    /rejected this page[\s\S]*open the address that it printed last/.test(await text(page, "#cover")));
   await page.fill("#cover-token", two.address);
   await page.keyboard.press("Enter");
   await until("connected to the other", async () => (await phase(page)) === "open");

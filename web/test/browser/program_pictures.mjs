@@ -63,7 +63,7 @@ for (const [name, scene, points, look, options] of kPictures) {
   const program = await startProgram(["demo", scene, "--headless", "--port", "0"]);
   const page = await openPage(browser, program.address, { ...options, reducedMotion: "reduce" }, listen);
   await until("the page is connected", () => page.locator("#take").isEnabled());
-  await choose(page, "Points, at most", points);
+  await choose(page, "Maximum points", points);
   await look(page);
   await page.waitForTimeout(kPast);
   const first = await firstPaint(page);

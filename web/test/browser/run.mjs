@@ -22,7 +22,7 @@ test("clouds that stand still, without colours and normals, show too", async () 
   await until("sources", async () => /left[\s\S]*still/.test(await text(page, "#sources")));
   assert.ok(await page.locator("#ramp").isVisible(), "coloured by height");
   assert.ok(await page.locator(".chart.frames").isHidden(), "no frames to time");
-  await until("trust", async () => /\d % of this cloud is not trusted/.test(await text(page, "#sources")));
+  await until("trust", async () => /\d % of this cloud has low trust/.test(await text(page, "#sources")));
   assert.deepEqual(page.troubles, []);
   await page.context().close();
   await server.close();
@@ -31,7 +31,7 @@ test("clouds that stand still, without colours and normals, show too", async () 
 test("trust is shown by colour, with its ends named", () =>
   withPage(kSmall, async (page) => {
     await page.getByRole("combobox", { name: "Colour by" }).selectOption("trust");
-    await until("the ramp", async () => /not trusted\s*trusted/.test(await text(page, "#ramp")));
+    await until("the ramp", async () => /low trust\s*high trust/.test(await text(page, "#ramp")));
   }));
 
 test("keys take the tool, push it against the table, and let go", () =>
@@ -205,7 +205,7 @@ test("comes back by itself when the program is gone for a while", async () => {
   const page = await openPage(browser, server.address, kSmall);
   await ready(page);
   await server.close();
-  await until("says so", async () => /connection is lost/.test(await page.locator("#cover").innerText()));
+  await until("says so", async () => /Connection lost/.test(await page.locator("#cover").innerText()));
   await page.focus("#view");
   await page.keyboard.press("t");
   assert.equal(await page.getAttribute("#take", "aria-pressed"), "false", "nobody hears that it is taken");
@@ -225,7 +225,7 @@ test("without a token, and with a wrong one, says what to do", async () => {
   await ready(bare);
   await bare.context().close();
   const wrong = await openPage(browser, server.address.replace(/#.*/, "#0123"), kSmall);
-  await until("refused", async () => /does not know this page/.test(await wrong.locator("#cover").innerText()));
+  await until("refused", async () => /rejected this page/.test(await wrong.locator("#cover").innerText()));
   await wrong.waitForTimeout(1500);
   assert.equal(sent(server.program, "hello").filter(({ token }) => token === "0123").length, 1, "no second try");
   await wrong.context().close();

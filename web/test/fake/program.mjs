@@ -130,7 +130,7 @@ export class FakeProgram {
 
   set(key, value) {
     const setting = this.settings.find((one) => one.key === key);
-    if (setting === undefined) return `there is no setting ${key}`;
+    if (setting === undefined) return `unknown setting ${key}`;
     if (setting.kind === "number" && !(value >= setting.least && value <= setting.most)) {
       return `${key} = ${value} is not between ${setting.least} and ${setting.most} ${setting.unit}`;
     }
@@ -151,7 +151,7 @@ export class FakeProgram {
     const message = JSON.parse(text);
     this.received.push(message);
     const answer = (reply) => client.socket.send(JSON.stringify(reply));
-    if (!client.welcome && message.type !== "hello") return answer({ type: "refused", text: "say hello first" });
+    if (!client.welcome && message.type !== "hello") return answer({ type: "refused", text: "send hello first" });
     const act = {
       hello: () => this.hello(client, message),
       hand: () => this.move(client, message.position),
