@@ -44,14 +44,14 @@ Felt play(const TouchPlan& plan, const Trajectory& way, const Scene& seen, Touch
           plan.surface.field,
           plan.surface.proxy_of(hands[0].stiffness)};
   Felt result;
-  run_simulated(run, [&](std::size_t, const TouchStep& step) {
+  run_simulated(run, [&](std::size_t, const ServoState& step) {
     const Contact& contact = step.contact;
-    const bool quiet = contact.force.allFinite() && contact.proxy.allFinite() &&
+    const bool quiet = step.force.allFinite() && contact.proxy.allFinite() &&
                        !has(contact.notes, ContactNote::fault);
     ++result.steps;
     result.bad += quiet ? 0 : 1;
     result.touching += contact.touching ? 1 : 0;
-    result.without_surface += has(step.notes, FieldNote::no_surface) ? 1 : 0;
+    result.without_surface += has(step.field_notes, FieldNote::no_surface) ? 1 : 0;
   });
   return result;
 }

@@ -57,7 +57,7 @@ TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
   std::vector<std::size_t> steps(2);
   SteadyWaitingClock clock;
   const LiveOutcome outcome =
-      run_live(run, clock, [&](std::size_t hand, const TouchStep&) { ++steps[hand]; });
+      run_live(run, clock, [&](std::size_t hand, const ServoState&) { ++steps[hand]; });
   const std::vector<LiveReport>& reports = outcome.hands;
   ASSERT_EQ(reports.size(), 2u);
   EXPECT_FALSE(outcome.interrupted);

@@ -28,9 +28,9 @@ HandOutputs::HandOutputs(const OutputPlan& outputs, std::size_t hand) {
   if (!outputs.picture.empty()) picture_.emplace(numbered_path(outputs.picture, hand));
 }
 
-void HandOutputs::add(const TouchStep& step) {
+void HandOutputs::add(const ServoState& step, const DeviceInfo& device) {
   statistics_.add(step);
-  if (log_) log_->add(step);
+  if (log_) log_->add(step, device);
   if (picture_) picture_->add(step);
 }
 

@@ -20,7 +20,7 @@ class HandOutputs {
   /// @throws Error when they cannot be.
   HandOutputs(const OutputPlan& outputs, std::size_t hand);
 
-  void add(const TouchStep& step);
+  void add(const ServoState& step, const DeviceInfo& device);
   void close_log();
 
   /// @throws Error as Picture::draw() does.

@@ -13,7 +13,6 @@
 #include "palpate/device/open_device.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
-#include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
 
@@ -156,6 +155,17 @@ void check(const Trajectory& way, const std::string& file, bool simulated) {
 }
 
 }  // namespace
+
+ServoOptions servo_options(const Run& run, const Hand& hand, StepQueue* steps) {
+  ServoOptions options;
+  options.field = run.field;
+  options.proxy = run.proxy;
+  options.guard = run.time.guard;
+  options.workspace = hand.workspace;
+  options.clutch_button = hand.chosen.placement.clutch;
+  options.steps = steps;
+  return options;
+}
 
 Trajectory read_way(const MotionPlan& motion, const std::vector<DevicePlan>& devices) {
   const bool follows = std::ranges::any_of(devices, &DevicePlan::follows_trajectory);

@@ -7,13 +7,13 @@
 
 #include "apps/palpate/options/touch_plan.hpp"
 #include "apps/palpate/run/exploration_plan.hpp"
-#include "apps/palpate/run/touch_statistics.hpp"
 #include "apps/palpate/sources/touched.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/remote.hpp"
 #include "palpate/device/teleoperated_hand.hpp"
 #include "palpate/device/workspace.hpp"
+#include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
 
@@ -43,8 +43,12 @@ struct Run {
   ProxyOptions proxy;
 };
 
+/// What the servo of one of the hands is made with; `steps`: who records its steps, if anybody.
+[[nodiscard]] ServoOptions servo_options(const Run& run, const Hand& hand,
+                                         StepQueue* steps = nullptr);
+
 /// Is handed every step of every hand, by its index, as soon as it is done.
-using EachStep = std::function<void(std::size_t hand, const TouchStep&)>;
+using EachStep = std::function<void(std::size_t hand, const ServoState&)>;
 
 /// Reads the trajectory of `motion`; empty: none is named, or no device follows one.
 /// @throws Error as reading does, and when a place is farther from the origin than surfaces can be

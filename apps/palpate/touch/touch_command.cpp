@@ -40,8 +40,8 @@ bool play_simulated(Run& run, TouchOutputs& outputs) {
   HandOutputs& kept = outputs.hands.front();
   Progress progress("touching");
   const auto whole = static_cast<double>(hand.steps);
-  return run_simulated(run, [&](std::size_t, const TouchStep& step) {
-    kept.add(step);
+  return run_simulated(run, [&](std::size_t, const ServoState& step) {
+    kept.add(step, hand.device->info());
     unguarded.add(step);
     const std::size_t steps = kept.statistics().steps();
     if (steps % 256 == 0) progress.update(static_cast<double>(steps) / whole);
@@ -55,8 +55,8 @@ LiveOutcome play(Run& run, WaitingClock* clock, TouchOutputs& outputs) {
   if (clock == nullptr) {
     outcome.interrupted = !play_simulated(run, outputs);
   } else {
-    outcome = run_live(run, *clock, [&](std::size_t hand, const TouchStep& step) {
-      outputs.hands[hand].add(step);
+    outcome = run_live(run, *clock, [&](std::size_t hand, const ServoState& step) {
+      outputs.hands[hand].add(step, run.hands[hand].device->info());
     });
   }
   for (HandOutputs& hand : outputs.hands) hand.close_log();

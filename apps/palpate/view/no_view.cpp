@@ -13,7 +13,7 @@ View::View(Run& run, std::vector<Servo*> /*servos*/, const LiveFeed& /*feed*/) {
       "--view out");
 }
 View::~View() = default;
-void View::add(std::size_t /*hand*/, const TouchStep& /*step*/) {}
+void View::add(std::size_t /*hand*/, const ServoState& /*step*/) {}
 void View::look() {}
 
 }  // namespace palpate::app

@@ -207,8 +207,8 @@ View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
 
 View::~View() = default;
 
-void View::add(std::size_t hand, const TouchStep& step) {
-  parts_->recording.add(hand, step);
+void View::add(std::size_t hand, const ServoState& step) {
+  parts_->recording.add(hand, step, parts_->run.hands[hand].device->info());
 }
 
 void View::look() {
