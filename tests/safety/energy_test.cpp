@@ -10,7 +10,7 @@
 #include <memory>
 #include <numbers>
 
-#include "apps/palpate/run/exploration_plan.hpp"
+#include "palpate/device/exploration.hpp"
 #include "palpate/io/read_cloud.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "safety/given_energy.hpp"
@@ -178,9 +178,8 @@ void expect_exploration_is_paid(const PointCloud& cloud) {
   Scene scene;
   scene.add("cloud", cloud);
   ServoOptions options;
-  app::PlanOptions wanted;
-  wanted.duration = 1e-3 * kExplored;
-  const app::ExplorationPlan plan = app::plan_exploration(scene, options.field, wanted);
+  const ExplorationPlan plan =
+      plan_exploration(scene, options.field, {.duration = 1e-3 * kExplored});
   options.workspace = plan.workspace;
   options.proxy.stiffness = plan.stiffness;
   SimulatedDevice device({}, plan.target);

@@ -242,11 +242,11 @@ std::vector<std::string> advice(const HandReport& report) {
   }
   const double scale = report.hand.workspace.scale;
   const double felt = scale * report.stiffness;
-  if (felt > kStiffest) {
+  if (felt > kSteadyStiffness) {
     sentences.push_back(
         fmt::format("{:.4g} N/m to the hand is stiffer than forces held for a step can be without "
                     "giving it energy; a --stiffness up to {:.4g} is steady",
-                    felt, kStiffest / scale));
+                    felt, kSteadyStiffness / scale));
   }
   return sentences;
 }

@@ -95,7 +95,7 @@ void follow(Hand& hand, const HandTask& task, Trajectory way) {
   simulate(hand, task, std::move(way));
 }
 
-void explore(Hand& hand, const HandTask& task, const Scene& scene, PlanOptions plan) {
+void explore(Hand& hand, const HandTask& task, const Scene& scene, ExplorationPlanOptions plan) {
   const bool pulled = hand.chosen.kind == DeviceKind::simulated;
   if (!pulled) plan.hand.stiffness = std::numeric_limits<double>::infinity();
   Progress progress("planning the exploration");
@@ -118,15 +118,16 @@ Eigen::Matrix3d behind(const Eigen::Isometry3d& T_world_camera) {
   return axes;
 }
 
-void stand(Hand& hand, const FieldOptions& field, const Scene& scene, const PlanOptions& plan) {
-  const Stand stand = plan_stand(scene, field, plan);
-  hand.workspace = stand.workspace;
-  hand.stiffness = stand.stiffness;
+void stand(Hand& hand, const FieldOptions& field, const Scene& scene,
+           const ExplorationPlanOptions& plan) {
+  const Placement placement = place_device(scene, field, plan);
+  hand.workspace = placement.workspace;
+  hand.stiffness = placement.stiffness;
   place(hand.workspace, hand.chosen.placement, scene);
 }
 
-PlanOptions plan_options(const HandTask& task, const Trajectory& way) {
-  PlanOptions plan;
+ExplorationPlanOptions plan_options(const HandTask& task, const Trajectory& way) {
+  ExplorationPlanOptions plan;
   plan.duration = task.motion.duration.value_or(plan.duration);
   plan.stiffness = task.surface.stiffness.value_or(way.empty() ? 0 : kStiffness);
   plan.tool_radius = task.surface.field.tool_radius;
@@ -192,7 +193,7 @@ std::vector<Hand> open_hands(const std::vector<DevicePlan>& devices, const Motio
 
 void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajectory& way,
                  const Scene& scene) {
-  PlanOptions plan = plan_options(task, way);
+  ExplorationPlanOptions plan = plan_options(task, way);
   for (Hand& hand : hands) {
     plan.scale = hand.chosen.placement.scale;
     if (!hand.chosen.follows_trajectory()) {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "apps/palpate/options/touch_plan.hpp"
-#include "apps/palpate/run/exploration_plan.hpp"
 #include "apps/palpate/sources/touched.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
+#include "palpate/device/exploration.hpp"
 #include "palpate/device/remote.hpp"
 #include "palpate/device/teleoperated_hand.hpp"
 #include "palpate/device/workspace.hpp"

@@ -70,7 +70,7 @@ ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
   ViewScope scope;
   double scale = 0;
   for (const Hand& hand : run.hands) scale = std::max(scale, hand.workspace.scale);
-  scope.stiffest = kStiffest / scale;
+  scope.stiffest = kSteadyStiffness / scale;
   for (const Servo* servo : servos) {
     scope.stiffest = std::min(scope.stiffest, servo->stiffness_limit());
   }
