@@ -67,16 +67,11 @@ bool is_quiet(const ServoState& step) {
 
 // As `palpate touch FILE --duration 10` does.
 TouchStatistics touch(const TouchPlan& plan) {
-  Touched touched = prepare_touched(plan.sources, {.explored = true});
+  LoadedScene loaded = load_sources(plan.sources, {.explored = true});
   std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, nullptr);
-  place_hands(hands, {plan.motion, plan.surface, plan.page}, {}, touched.scene);
-  Run run{plan.time,
-          plan.page,
-          touched,
-          touched.scene,
-          hands,
-          plan.surface.field,
-          plan.surface.proxy_of(hands[0].stiffness)};
+  place_hands(hands, {plan.motion, plan.surface, plan.page}, {}, loaded.scene);
+  Run run{plan.time, plan.page,          loaded,
+          hands,     plan.surface.field, plan.surface.proxy_of(hands[0].stiffness)};
   TouchStatistics statistics;
   std::size_t bad = 0;
   run_simulated(run, [&](std::size_t, const ServoState& step) {

@@ -38,14 +38,14 @@ void HandOutputs::close_log() {
   if (log_) log_->close();
 }
 
-void HandOutputs::draw(const Scene& felt, const std::string& title, const HandReport& report) {
-  if (picture_) picture_->draw(felt, title, subtitle(report));
+void HandOutputs::draw(const Scene& scene, const std::string& title, const HandReport& report) {
+  if (picture_) picture_->draw(scene, title, subtitle(report));
 }
 
 // What is of a hand stands beside what is of the run where there is one hand, else under "hands".
 Json report_on(const TouchReport& report, std::FILE* stream) {
   Json sources = Json::array();
-  for (const TouchedSource& source : report.touched.sources) {
+  for (const LoadedSource& source : report.loaded.sources) {
     const Report part = source_report(source);
     part.print(stream);
     sources.push_back(part.data);

@@ -85,7 +85,7 @@ LiveHand::LiveHand(Run& run, std::size_t index, WaitingClock& clock)
       index_(index),
       rate_(rate_of(hand_)),
       steps_(static_cast<std::size_t>(kQueue * rate_)),
-      servo_(paced_by(paced_, *hand_.device, clock), run.felt,
+      servo_(paced_by(paced_, *hand_.device, clock), run.loaded.scene,
              servo_options(run, hand_, &steps_)),
       thread_(servo_, clock, {.rate = rate_, .realtime = run.time.realtime}) {}
 
@@ -206,7 +206,7 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   LiveHands hands;
   // Setting them up may take half a second; recordings begin when the hands do.
   const double start = start_hands(run, clock, hands);
-  LiveFeed feed(run.touched, run.felt, clock, start);
+  LiveFeed feed(run.loaded, clock, start);
   std::optional<View> view;
   if (run.page.served) view.emplace(run, servos_of(hands), feed);
   const EachStep keep = [&](std::size_t hand, const ServoState& step) {

@@ -19,7 +19,7 @@ struct LiveOutcome {
 /// and the hands at once after them. Shows on standard error how it goes. Ends when every hand has
 /// come to its end, or when it is interrupted; a device that fails ends its own hand alone, which
 /// is said at once. Hands every step to `each`, on the calling thread, with times from 0. Fills in
-/// what `touched` tells of its cameras.
+/// what `loaded` tells of its cameras.
 /// @throws Error when a recording cannot begin, or there are no threads to be had.
 LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each);
 

@@ -19,13 +19,13 @@ std::vector<SimulatedStream> make_streams(Run& run) {
   SimulatedStreamOptions options;
   options.latency = run.time.latency.value_or(options.latency);
   std::vector<SimulatedStream> streams;
-  for (std::size_t i = 0; i < run.felt.size(); ++i) {
-    TouchedSource& touched = run.touched.sources[i];
-    if (!touched.camera) continue;
-    touched.feed.simulated = true;
-    Source& felt = run.felt.source(i);
-    streams.emplace_back(*touched.camera, felt.name(), feeding(touched, felt, thread_cpu_seconds),
-                         options, [&felt] { felt.keep(); });
+  for (std::size_t i = 0; i < run.loaded.sources.size(); ++i) {
+    LoadedSource& from = run.loaded.sources[i];
+    if (!from.camera) continue;
+    from.feed.simulated = true;
+    Source& to = run.loaded.scene.source(i);
+    streams.emplace_back(*from.camera, to.name(), feeding(from, to, thread_cpu_seconds), options,
+                         [&to] { to.keep(); });
   }
   return streams;
 }
@@ -37,7 +37,7 @@ bool run_simulated(Run& run, const EachStep& each) {
   Device& device = *hand.device;
   ServoOptions options = servo_options(run, hand);
   options.guard.on = false;
-  Servo servo(device, run.felt, options);
+  Servo servo(device, run.loaded.scene, options);
   std::vector<SimulatedStream> streams = make_streams(run);
   const Interruption interruption;
   DeviceState state = device.read();
@@ -56,7 +56,7 @@ bool run_simulated(Run& run, const EachStep& each) {
   }
   std::vector<StreamState> states;
   for (const SimulatedStream& stream : streams) states.push_back(stream.state());
-  keep_states(run.touched, run.felt, states);
+  keep_states(run.loaded, states);
   return !interruption.asked();
 }
 
