@@ -12,6 +12,7 @@
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
+#include "palpate/geometry/spacing.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/sensor/simulated_stream.hpp"
 
@@ -72,9 +73,7 @@ double depth_in_the_middle(const DepthFrame& frame) {
     }
   }
   if (depths.empty()) throw Error("the frame shows nothing in the middle of its image");
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return static_cast<double>(*middle);
+  return median(depths);
 }
 
 Place place_of(const DepthFrame& frame) {
