@@ -9,13 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/palpate/run/exploration_plan.hpp"
 #include "device/double_library.hpp"
 #include "device/drivers.hpp"
 #include "device/fake_haply_service.hpp"
 #include "device/fake_hd.hpp"
 #include "palpate/base/clock.hpp"
-#include "palpate/device/simulated.hpp"
+#include "palpate/device/exploration.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/servo/servo.hpp"
 
@@ -72,7 +71,7 @@ void step(benchmark::State& state, const std::string& cloud) {
   Scene scene;
   scene.add(cloud, synthetic_cloud(cloud));
   ServoOptions options;
-  const app::ExplorationPlan plan = app::plan_exploration(scene, options.field, {.duration = 60});
+  const ExplorationPlan plan = plan_exploration(scene, options.field, {.duration = 60});
   options.workspace = plan.workspace;
   options.proxy.stiffness = plan.stiffness;
   std::vector<double> times;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "palpate/geometry/shapes.hpp"
+#include "palpate/geometry/spacing.hpp"
 
 namespace palpate {
 
@@ -14,14 +15,12 @@ using Eigen::Vector3f;
 
 constexpr std::size_t kFitNeighbors = 12;
 
-Vector3f median(std::span<const Vector3f> points) {
+Vector3f middle_of(std::span<const Vector3f> points) {
   Vector3f middle;
   std::vector<float> values(points.size());
-  const auto half = static_cast<std::ptrdiff_t>(points.size() / 2);
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][axis];
-    std::nth_element(values.begin(), values.begin() + half, values.end());
-    middle[axis] = values[points.size() / 2];
+    middle[axis] = static_cast<float>(median(values));
   }
   return middle;
 }
@@ -48,7 +47,7 @@ void SurfaceMap::choose(const ExploredSurface& surface, double patch) {
   for (const Vector3f& p : surface.points) box.extend(p.cast<double>());
   const bool everything = box.size().maxCoeff() <= patch;
   const Vector3f middle = everything ? Vector3f(box.center().cast<float>())
-                                     : nearest_to(median(surface.points), surface.points);
+                                     : nearest_to(middle_of(surface.points), surface.points);
   center_ = middle.cast<double>();
   reach_ = everything ? box.size().norm() : patch / 2;
   extent_ = std::min(box.size().maxCoeff(), patch);

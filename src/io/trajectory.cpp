@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -44,11 +44,8 @@ char separator_of(std::string_view header) {
 }
 
 std::optional<double> number(std::string_view text) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
+  const std::optional<double> value = io::parse_number(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 // Where each of kColumns stands in the header.

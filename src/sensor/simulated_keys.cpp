@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "base/angle.hpp"
+#include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -17,13 +18,11 @@ namespace {
 constexpr double kMostWhole = 1e6;
 
 double number(const std::string& text) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || !std::isfinite(value)) {
+  const std::optional<double> value = io::parse_number(text);
+  if (!value || !std::isfinite(*value)) {
     throw Error(fmt::format("'{}' is not a finite number", text));
   }
-  return value;
+  return *value;
 }
 
 int whole(const std::string& text) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "base/requirement.hpp"
@@ -30,6 +31,7 @@ ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
 // What the hand may feel, as a stiffness in the world, where motion is magnified.
 double stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options) {
   const GuardOptions& guard = options.guard;
+  if (!guard.on) return std::numeric_limits<double>::infinity();
   double felt = guard.stiffness_share * passive_stiffness(device, guard.damping);
   if (device.maximum_stiffness > 0) felt = std::min(felt, device.maximum_stiffness);
   return felt / options.workspace.scale;

@@ -8,12 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/palpate/options/touch_options.hpp"
-#include "apps/palpate/run/exploration_plan.hpp"
-#include "apps/palpate/sources/touched.hpp"
+#include "apps/palpate/run/touch_statistics.hpp"
 #include "apps/palpate/touch/simulated_run.hpp"
 #include "apps/program.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/device/simulated.hpp"
 #include "support/effort.hpp"
 
 namespace palpate::app {
@@ -62,24 +60,21 @@ void describe_depth(const fs::path& file, ReadOptions& reading) {
   reading.depth_unit = value("depth_unit_m");
 }
 
-bool is_quiet(const TouchStep& step) {
-  return step.contact.force.allFinite() && step.contact.proxy.allFinite() &&
+bool is_quiet(const ServoState& step) {
+  return step.force.allFinite() && step.contact.proxy.allFinite() &&
          !has(step.contact.notes, ContactNote::fault);
 }
 
 // As `palpate touch FILE --duration 10` does.
-TouchStatistics touch(const TouchPlan& choice) {
-  Touched touched = prepare_touched(choice.sources, {.explored = true});
-  Scene& scene = touched.scene;
-  const FieldOptions& field_choice = choice.surface.field;
-  const ExplorationPlan plan =
-      plan_exploration(scene, field_choice, {.duration = 1e-3 * milliseconds()});
-  SimulatedDevice device({}, plan.target);
-  SceneField field(scene, field_choice);
-  Proxy proxy(choice.surface.proxy_of(plan.stiffness));
+TouchStatistics touch(const TouchPlan& plan) {
+  LoadedScene loaded = load_sources(plan.sources, {.explored = true});
+  std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, nullptr);
+  place_hands(hands, {plan.motion, plan.surface, plan.page}, {}, loaded.scene);
+  Run run{plan.time, plan.page,          loaded,
+          hands,     plan.surface.field, plan.surface.proxy_of(hands[0].stiffness)};
   TouchStatistics statistics;
   std::size_t bad = 0;
-  run_touch(device, plan.workspace, field, proxy, [&](const TouchStep& step) {
+  run_simulated(run, [&](std::size_t, const ServoState& step) {
     statistics.add(step);
     if (!is_quiet(step)) ++bad;
   });
@@ -91,6 +86,7 @@ void expect_touched(const fs::path& file) {
   SCOPED_TRACE(file.string());
   TouchChoices choices;
   choices.sources = {file.string()};
+  choices.plan.motion.duration = 1e-3 * milliseconds();
   if (file.extension() == ".png") describe_depth(file, choices.every_source.reading);
   try {
     const TouchStatistics statistics = touch(plan_touch(CLI::App(), choices));

@@ -31,27 +31,21 @@ struct Felt {
 };
 
 // The hand goes along `way` or, where that is empty, explores what `seen` shows.
-Felt play(const TouchPlan& plan, const Trajectory& way, const Scene& seen, Touched& touched,
-          Scene& felt) {
+Felt play(const TouchPlan& plan, const Trajectory& way, const Scene& seen, LoadedScene& loaded) {
   std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, nullptr);
   place_hands(hands, {plan.motion, plan.surface, plan.page}, way, seen);
-  fill_felt(felt, touched, {});
-  Run run{plan.time,
-          plan.page,
-          touched,
-          felt,
-          hands,
-          plan.surface.field,
-          plan.surface.proxy_of(hands[0].stiffness)};
+  begin_run(loaded, {});
+  Run run{plan.time, plan.page,          loaded,
+          hands,     plan.surface.field, plan.surface.proxy_of(hands[0].stiffness)};
   Felt result;
-  run_simulated(run, [&](std::size_t, const TouchStep& step) {
+  run_simulated(run, [&](std::size_t, const ServoState& step) {
     const Contact& contact = step.contact;
-    const bool quiet = contact.force.allFinite() && contact.proxy.allFinite() &&
+    const bool quiet = step.force.allFinite() && contact.proxy.allFinite() &&
                        !has(contact.notes, ContactNote::fault);
     ++result.steps;
     result.bad += quiet ? 0 : 1;
     result.touching += contact.touching ? 1 : 0;
-    result.without_surface += has(step.notes, FieldNote::no_surface) ? 1 : 0;
+    result.without_surface += has(step.field_notes, FieldNote::no_surface) ? 1 : 0;
   });
   return result;
 }
@@ -74,19 +68,17 @@ TEST(EverySequence, PlaysThroughAndIsTouchedWithoutAFault) {
     const TouchPlan plan = planned(
         fmt::format("sequence:{} --simulated-time --duration {}", folder.string(), duration));
     // The first run shows what there is to touch at the end, the second one touches it.
-    Scene seen;
-    Touched watched = prepare_touched(plan.sources, {});
-    EXPECT_EQ(play(plan, aside(duration), watched.scene, watched, seen).bad, 0u);
-    Touched touched = prepare_touched(plan.sources, {});
-    Scene scene;
-    const Felt felt = play(plan, {}, seen, touched, scene);
+    LoadedScene watched = load_sources(plan.sources, {});
+    EXPECT_EQ(play(plan, aside(duration), watched.scene, watched).bad, 0u);
+    LoadedScene loaded = load_sources(plan.sources, {});
+    const Felt felt = play(plan, {}, watched.scene, loaded);
     EXPECT_EQ(felt.bad, 0u) << "steps with a fault, or not finite";
     // A hand that has a tenth of the time is still on its way.
     if (test::effort(10) == 10) {
       EXPECT_GT(felt.touching, felt.steps / 100);
     }
     EXPECT_LE(felt.without_surface, 10u) << "before the first frame is touchable";
-    const StreamState& state = touched.sources[0].feed.state;
+    const StreamState& state = loaded.sources[0].feed.state;
     EXPECT_GT(state.touchable, 2u);
     EXPECT_EQ(state.failures + state.drops.garbage, 0u) << state.problem;
   }

@@ -47,17 +47,15 @@ TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
   TouchPlan plan = planned("synthetic:sheet");
   plan.time.realtime.realtime_priority = false;
   plan.time.realtime.lock_memory = false;
-  Touched touched = prepare_touched(plan.sources, {});
-  Scene felt;
-  fill_felt(felt, touched, {});
+  LoadedScene loaded = load_sources(plan.sources, {});
   std::vector<Hand> hands;
   hands.push_back(hand_with("hand 1", 20, DeviceStatus::failed));
   hands.push_back(hand_with("hand 2", 200, DeviceStatus::finished));
-  app::Run run{plan.time, plan.page, touched, felt, hands, {}, plan.surface.proxy_of(kStiffness)};
+  app::Run run{plan.time, plan.page, loaded, hands, {}, plan.surface.proxy_of(kStiffness)};
   std::vector<std::size_t> steps(2);
   SteadyWaitingClock clock;
   const LiveOutcome outcome =
-      run_live(run, clock, [&](std::size_t hand, const TouchStep&) { ++steps[hand]; });
+      run_live(run, clock, [&](std::size_t hand, const ServoState&) { ++steps[hand]; });
   const std::vector<LiveReport>& reports = outcome.hands;
   ASSERT_EQ(reports.size(), 2u);
   EXPECT_FALSE(outcome.interrupted);

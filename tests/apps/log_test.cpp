@@ -7,10 +7,10 @@
 namespace palpate::app {
 namespace {
 
-std::string logged(const std::vector<TouchStep>& steps) {
+std::string logged(const std::vector<ServoState>& steps, const DeviceInfo& device = {}) {
   const Shell shell;
   TouchLog log(shell.path("log.csv"));
-  for (const TouchStep& step : steps) log.add(step);
+  for (const ServoState& step : steps) log.add(step, device);
   log.close();
   return shell.read("log.csv");
 }
@@ -19,21 +19,24 @@ TEST(TouchLog, HasAHeaderAndARowAStep) {
   const std::string none = logged({});
   EXPECT_TRUE(none.starts_with("t,hip_x,hip_y,hip_z,proxy_x"));
   EXPECT_TRUE(none.ends_with("field_notes\n"));
-  const auto two = columns(logged({TouchStep{}, TouchStep{}}));
+  const auto two = columns(logged({ServoState{}, ServoState{}}));
   EXPECT_EQ(two.at("field_notes").size(), 2u);
   EXPECT_FALSE(two.contains("qw"));
   EXPECT_FALSE(two.contains("gripper"));
 }
 
 TEST(TouchLog, TellsOrientationAndGripperAtTheEndWhereTheyAreKnown) {
-  TouchStep step;
+  ServoState step;
   step.orientation = Eigen::Quaterniond(0.6, 0, -0.8, 0);
-  const auto oriented = columns(logged({step, step}));
+  step.gripper = 0.0125;
+  DeviceInfo device;
+  device.has_orientation = true;
+  const auto oriented = columns(logged({step, step}, device));
   EXPECT_EQ(oriented.at("qw").back(), "0.6");
   EXPECT_EQ(oriented.at("qy").back(), "-0.8");
   EXPECT_FALSE(oriented.contains("gripper"));
-  step.gripper = 0.0125;
-  const std::string text = logged({step});
+  device.has_gripper = true;
+  const std::string text = logged({step}, device);
   EXPECT_TRUE(text.ends_with(",0,-0.8,0,0.6,0.0125\n")) << text;
   EXPECT_EQ(columns(text).at("gripper").front(), "0.0125");
 }

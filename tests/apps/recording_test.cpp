@@ -35,11 +35,11 @@ TEST_F(RecordingTest, WhatWasBegunIsKeptWhenTheRunEnds) {
   std::string name;
   {
     Recording recording(2, ignore);
-    recording.add(0, {});  // nothing is recorded yet
+    recording.add(0, {}, {});  // nothing is recorded yet
     name = recording.record(true);
-    recording.add(0, {});
-    recording.add(1, {});
-    recording.add(1, {});
+    recording.add(0, {}, {});
+    recording.add(1, {}, {});
+    recording.add(1, {}, {});
   }
   ASSERT_EQ(files().size(), 2u) << "a file a hand";
   EXPECT_TRUE(fs::exists(name));
@@ -48,9 +48,9 @@ TEST_F(RecordingTest, WhatWasBegunIsKeptWhenTheRunEnds) {
 TEST_F(RecordingTest, ToBeginTwiceIsToGoOn) {
   Recording recording(1, ignore);
   const std::string name = recording.record(true);
-  recording.add(0, {});
+  recording.add(0, {}, {});
   EXPECT_EQ(recording.record(true), name);
-  recording.add(0, {});
+  recording.add(0, {}, {});
   EXPECT_EQ(recording.record(false), name);
   EXPECT_EQ(recording.record(false), "") << "nothing goes on any more";
   ASSERT_EQ(files(), std::vector{name});
@@ -61,7 +61,7 @@ TEST_F(RecordingTest, WhatCannotBeMadeChangesNothing) {
   Recording recording(1, ignore);
   fs::current_path("/proc");
   EXPECT_ANY_THROW(recording.record(true));
-  recording.add(0, {});
+  recording.add(0, {}, {});
   fs::current_path(folder_.path());
   EXPECT_FALSE(recording.record(true).empty()) << "it may be begun again";
 }

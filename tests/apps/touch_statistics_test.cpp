@@ -10,11 +10,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-TouchStep step(double time, const Vector3d& hip, const Vector3d& force) {
-  TouchStep result;
+ServoState step(double time, const Vector3d& hip, const Vector3d& force) {
+  ServoState result;
   result.time = time;
   result.hip = hip;
-  result.contact.force = force;
+  result.force = force;
   result.contact.touching = !force.isZero();
   return result;
 }
@@ -55,7 +55,7 @@ TEST(TouchStatistics, HeldForceOfASpringGivesHalfStiffnessTimesEachStepSquared) 
 
 TEST(TouchStatistics, EnergyIsOfTheHandsOwnWayWhereAClutchMovesTheTool) {
   TouchStatistics statistics;
-  TouchStep pressed = step(0, {0, 0, -4e-3}, {0, 0, 2});
+  ServoState pressed = step(0, {0, 0, -4e-3}, {0, 0, 2});
   statistics.add(pressed);
   pressed.hip.setZero();  // the tool goes to the surface, the hand stays
   pressed.shift = {0, 0, 4e-3};
@@ -91,8 +91,8 @@ TEST(TouchStatistics, CountsContactsAndKeepsTheLargest) {
 TEST(TouchStatistics, TimesAreToldToFivePercentAndTheLongestExactly) {
   TouchStatistics statistics;
   for (int i = 1; i <= 1000; ++i) {
-    TouchStep each;
-    each.microseconds = 1001 - i;
+    ServoState each;
+    each.timing.computing = 1e-6 * (1001 - i);
     statistics.add(each);
   }
   const StepTimes times = statistics.times();
@@ -106,9 +106,9 @@ TEST(TouchStatistics, TimesAreToldToFivePercentAndTheLongestExactly) {
 
 TEST(TouchStatistics, CountsEveryNoteUnderItsOwnName) {
   TouchStatistics statistics;
-  TouchStep each;
+  ServoState each;
   each.contact.notes = ContactNote::lost | ContactNote::fault | ContactNote::fell;
-  each.notes = FieldNote::thinned;
+  each.field_notes = FieldNote::thinned;
   statistics.add(each);
   std::string names;
   for (const CountedNote& note : statistics.notes()) {
@@ -121,10 +121,10 @@ TEST(TouchStatistics, CountsEveryNoteUnderItsOwnName) {
 
 TEST(TouchStatistics, CountsEveryBitOfContactsAndFields) {
   TouchStatistics statistics;
-  TouchStep each;
+  ServoState each;
   for (int bit = 0; bit < 7; ++bit) {
     each.contact.notes |= static_cast<ContactNote>(1u << bit);
-    each.notes = each.notes | static_cast<FieldNote>(1u << bit);
+    each.field_notes = each.field_notes | static_cast<FieldNote>(1u << bit);
   }
   statistics.add(each);
   EXPECT_EQ(statistics.notes().size(), 14u);

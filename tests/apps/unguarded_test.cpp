@@ -15,15 +15,15 @@ using Eigen::Vector3d;
 constexpr double kPressed = 500;  // N/m
 
 // A hand at `depth` (m) in a surface that looks up.
-TouchStep pressed(int index, double depth) {
-  TouchStep step;
+ServoState pressed(int index, double depth) {
+  ServoState step;
   step.time = 1e-3 * index;
   step.hip = {0, 0, -depth};
   step.contact.touching = depth > 0;
   if (depth <= 0) return step;
   step.contact.normal = Vector3d::UnitZ();
   step.contact.stiffness = kPressed;
-  step.contact.force = {0, 0, kPressed * depth};
+  step.force = {0, 0, kPressed * depth};
   return step;
 }
 
@@ -41,7 +41,7 @@ TEST(Unguarded, CountsTheStepsInWhichASlewWouldHaveFollowedAForceThatVanishes) {
   for (const double scale : {1., 10.}) {
     Unguarded run(GuardOptions{}, {}, scale);
     for (int i = 0; i < 20; ++i) run.add(pressed(i, 4e-4 * i));
-    TouchStep fallen = pressed(20, 0);
+    ServoState fallen = pressed(20, 0);
     fallen.hip = {0, 0, -4e-4 * 19};
     for (int i = 20; i < 60; ++i) {
       run.add(fallen);

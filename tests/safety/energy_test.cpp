@@ -7,11 +7,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <numbers>
 
-#include "apps/palpate/run/exploration_plan.hpp"
+#include "palpate/device/exploration.hpp"
 #include "palpate/io/read_cloud.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "safety/given_energy.hpp"
@@ -122,8 +121,7 @@ TEST(Energy, WithoutTheGuardAStiffBallGivesWhatNobodyPutIn) {
   scene.add("points").publish(still(ball({}, 0.03)));
   ServoOptions options;
   options.proxy.stiffness = 2000;
-  options.guard = {.slew = 1e9, .damping = 0, .soft_start = 0, .passivity = {.on = false}};
-  options.guard.stiffness_share = std::numeric_limits<double>::infinity();
+  options.guard.on = false;
   RandomGuide guide(RandomHand(1, 0.045));
   SimulatedDevice device({}, guide);
   const GivenEnergy given = given_energy(device, scene, options, kSteps);
@@ -180,9 +178,8 @@ void expect_exploration_is_paid(const PointCloud& cloud) {
   Scene scene;
   scene.add("cloud", cloud);
   ServoOptions options;
-  app::PlanOptions wanted;
-  wanted.duration = 1e-3 * kExplored;
-  const app::ExplorationPlan plan = app::plan_exploration(scene, options.field, wanted);
+  const ExplorationPlan plan =
+      plan_exploration(scene, options.field, {.duration = 1e-3 * kExplored});
   options.workspace = plan.workspace;
   options.proxy.stiffness = plan.stiffness;
   SimulatedDevice device({}, plan.target);

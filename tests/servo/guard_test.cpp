@@ -144,6 +144,15 @@ TEST(Guard, ComesUpSoftlyWhenItStartsInContact) {
   EXPECT_NEAR(guard.pass(pushed({0, 0, 5})).z(), 0.6, 1e-12);
 }
 
+TEST(Guard, ThatIsOffLetsEveryForcePass) {
+  Guard guard({.on = false});
+  EXPECT_EQ(guard.pass(pushed({0, 0, 1e12})), Vector3d(0, 0, 1e12));
+  GuardInput input = pushed({0, 0, 5});
+  input.felt = false;
+  EXPECT_EQ(guard.pass(input), Vector3d::Zero());
+  EXPECT_EQ(guard.state().counts.steps, 2u);
+}
+
 TEST(Guard, RefusesOptionsOutOfRange) {
   for (const double bad : {0.0, -1.0, kNaN}) {
     EXPECT_THROW(Guard({.maximum_force = bad}), Error);

@@ -24,6 +24,8 @@ TEST(StiffnessLimit, IsWhatTheDeviceBears) {
   device.info().maximum_force = 10;
   EXPECT_NEAR(Servo(device, scene).stiffness_limit(), 0.8 * 2 * 1 / 3e-3, 1e-9)
       << "what is not known is taken as the worst";
+  EXPECT_EQ(Servo(device, scene, {.guard = {.on = false}}).stiffness_limit(),
+            std::numeric_limits<double>::infinity());
   device.info().maximum_stiffness = 300;
   ServoOptions options;
   options.workspace.scale = 2;

@@ -13,7 +13,7 @@
 #include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/sources/touched.hpp"
+#include "apps/palpate/sources/loaded_scene.hpp"
 #include "palpate/align/align.hpp"
 
 namespace palpate::app {
@@ -157,10 +157,10 @@ void check_outputs(const std::string& output, const OutputPlan& others) {
       "--output {} already exists and is not overwritten; name another file or remove it", output));
 }
 
-std::vector<AlignedSource> solve(const Touched& touched) {
+std::vector<AlignedSource> solve(const LoadedScene& loaded) {
   std::vector<RoughSource> rough;
-  for (std::size_t i = 0; i < touched.sources.size(); ++i) {
-    rough.push_back({touched.sources[i].plan.argument.name, touched.scene.source(i).points()});
+  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
+    rough.push_back({loaded.sources[i].plan.argument.name, loaded.scene.source(i).points()});
   }
   const Waiting waiting("aligning");
   return align(rough);
@@ -193,8 +193,8 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
   if (!plan.outputs.picture.empty()) picture.emplace(plan.outputs.picture);
   std::vector<SourcePlan> sources = plan.sources;
   require(sources.size() > 1, "align needs at least two sources; name another one");
-  const Touched touched = prepare_touched(sources, {.explored = true});
-  const std::vector<AlignedSource> aligned = solve(touched);
+  const LoadedScene loaded = load_sources(sources, {.explored = true});
+  const std::vector<AlignedSource> aligned = solve(loaded);
   nlohmann::ordered_json report = nlohmann::ordered_json::array();
   std::FILE* out = options.output == "-" || plan.outputs.json == "-" ? stderr : stdout;
   for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -205,7 +205,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
   }
   if (json) write_whole(json, text_of(report));
   write_whole(output, setup_text(command, options, sources));
-  if (picture) draw_alignment(touched, aligned, plan.outputs.picture, *picture);
+  if (picture) draw_alignment(loaded, aligned, plan.outputs.picture, *picture);
 }
 
 }  // namespace palpate::app

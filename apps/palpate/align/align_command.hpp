@@ -5,7 +5,7 @@
 
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/options/touch_options.hpp"
-#include "apps/palpate/sources/touched.hpp"
+#include "apps/palpate/sources/loaded_scene.hpp"
 #include "palpate/align/align.hpp"
 
 namespace palpate::app {
@@ -23,7 +23,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options);
 
 /// Draws sources before and after they were aligned, into `picture` (`path` in messages).
 /// @throws Error when Python or matplotlib is missing, naming the package, or drawing fails.
-void draw_alignment(const Touched& touched, const std::vector<AlignedSource>& aligned,
+void draw_alignment(const LoadedScene& loaded, const std::vector<AlignedSource>& aligned,
                     const std::string& path, OutputFile& picture);
 
 }  // namespace palpate::app

@@ -12,6 +12,7 @@
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
+#include "palpate/geometry/spacing.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/sensor/simulated_stream.hpp"
 
@@ -71,11 +72,10 @@ double depth_in_the_middle(const DepthFrame& frame) {
       if (frame.depth[at] > 0) depths.push_back(frame.depth[at]);
     }
   }
-  if (depths.empty())
+  if (depths.empty()) {
     throw Error("the frame has no depth at the centre of its image; choose another source");
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return static_cast<double>(*middle);
+  }
+  return median(depths);
 }
 
 Place place_of(const DepthFrame& frame) {

@@ -245,11 +245,11 @@ std::vector<std::string> advice(const HandReport& report) {
   }
   const double scale = report.hand.workspace.scale;
   const double felt = scale * report.stiffness;
-  if (felt > kStiffest) {
+  if (felt > kSteadyStiffness) {
     sentences.push_back(
         fmt::format("{:.4g} N/m at the hand is too stiff for a sampled force to stay passive; give "
                     "a --stiffness up to {:.4g}",
-                    felt, kStiffest / scale));
+                    felt, kSteadyStiffness / scale));
   }
   return sentences;
 }

@@ -6,6 +6,7 @@
 
 #include "apps/palpate/report/report.hpp"
 #include "apps/palpate/run/run.hpp"
+#include "apps/palpate/run/touch_statistics.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/histogram.hpp"
 #include "palpate/servo/servo_thread.hpp"

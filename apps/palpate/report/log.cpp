@@ -22,7 +22,6 @@ TouchLog::TouchLog(const std::string& path) : file_(path) {
   buffer_.reserve(kFlush + 1024);
 }
 
-// What a device tells it tells in every step.
 void TouchLog::begin(bool orientation, bool gripper) {
   buffer_.append(std::string_view(
       "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,fx,fy,fz,us,touching,sliding,nx,ny,nz,"
@@ -33,22 +32,24 @@ void TouchLog::begin(bool orientation, bool gripper) {
   begun_ = true;
 }
 
-void TouchLog::add(const TouchStep& step) {
-  if (!begun_) begin(step.orientation.has_value(), step.gripper.has_value());
+void TouchLog::add(const ServoState& step, const DeviceInfo& device) {
+  if (!begun_) begin(device.has_orientation, device.has_gripper);
   const Contact& c = step.contact;
   const Eigen::Vector3d& h = step.hip;
+  const Eigen::Vector3d& f = step.force;
   fmt::format_to(std::back_inserter(buffer_),
                  "{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{},", step.time, h.x(), h.y(),
-                 h.z(), c.proxy.x(), c.proxy.y(), c.proxy.z(), c.force.x(), c.force.y(),
-                 c.force.z(), step.microseconds, c.touching ? 1 : 0, c.sliding ? 1 : 0,
-                 c.normal.x(), c.normal.y(), c.normal.z());
+                 h.z(), c.proxy.x(), c.proxy.y(), c.proxy.z(), f.x(), f.y(), f.z(),
+                 1e6 * step.timing.computing, c.touching ? 1 : 0, c.sliding ? 1 : 0, c.normal.x(),
+                 c.normal.y(), c.normal.z());
   fmt::format_to(std::back_inserter(buffer_), "{},{},{},{},{},{},{}", c.stiffness, c.iterations,
                  c.evaluations, step.patch_points, c.source, static_cast<unsigned>(c.notes),
-                 static_cast<unsigned>(step.notes));
-  if (const auto& q = step.orientation) {
-    fmt::format_to(std::back_inserter(buffer_), ",{},{},{},{}", q->x(), q->y(), q->z(), q->w());
+                 static_cast<unsigned>(step.field_notes));
+  if (device.has_orientation) {
+    const Eigen::Quaterniond& q = step.orientation;
+    fmt::format_to(std::back_inserter(buffer_), ",{},{},{},{}", q.x(), q.y(), q.z(), q.w());
   }
-  if (step.gripper) fmt::format_to(std::back_inserter(buffer_), ",{}", *step.gripper);
+  if (device.has_gripper) fmt::format_to(std::back_inserter(buffer_), ",{}", step.gripper);
   buffer_.push_back('\n');
   if (buffer_.size() < kFlush) return;
   file_.write({buffer_.data(), buffer_.size()});
@@ -92,13 +93,13 @@ std::string Recording::end() {
   return std::exchange(name_, {});
 }
 
-void Recording::add(std::size_t hand, const TouchStep& step) {
+void Recording::add(std::size_t hand, const ServoState& step, const DeviceInfo& device) {
   std::string why;
   {
     const std::lock_guard lock(mutex_);
     if (logs_.empty()) return;
     try {
-      logs_[hand].add(step);
+      logs_[hand].add(step, device);
       return;
     } catch (const Error& error) {
       why = error.what();

@@ -8,17 +8,18 @@
 #include <vector>
 
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/run/touch_statistics.hpp"
+#include "palpate/device/device.hpp"
+#include "palpate/servo/servo_state.hpp"
 
 namespace palpate::app {
 
 /// The CSV log of a run: a header, then a row a step. Numbers are the shortest that read back to
-/// the same bits; `us` alone differs from run to run. The first row says whether there are columns
-/// for orientation and gripper.
+/// the same bits; `us` alone differs from run to run. The device, which is the same in every row,
+/// says whether there are columns for orientation and gripper.
 class TouchLog {
  public:
   explicit TouchLog(const std::string& path);
-  void add(const TouchStep& step);
+  void add(const ServoState& step, const DeviceInfo& device);
   void close();
 
  private:
@@ -47,7 +48,7 @@ class Recording {
   std::string record(bool on);
 
   /// Another thread's: a step of a hand.
-  void add(std::size_t hand, const TouchStep& step);
+  void add(std::size_t hand, const ServoState& step, const DeviceInfo& device);
 
  private:
   void begin();

@@ -22,9 +22,9 @@ constexpr std::size_t kCloudColumns = 7;
 
 // What the picture shows: the way of hand and proxy, and some of what is around it or, unless that
 // is much larger, the whole cloud.
-Box view(const std::vector<TouchStep>& steps, const Scene& scene) {
+Box view(const std::vector<ServoState>& steps, const Scene& scene) {
   Box box;
-  for (const TouchStep& step : steps) {
+  for (const ServoState& step : steps) {
     box.extend(step.hip);
     box.extend(step.contact.proxy);
   }
@@ -77,16 +77,17 @@ std::vector<float> visible_points(const Scene& scene, const Box& box) {
   return thinned(values);
 }
 
-std::vector<float> step_rows(const std::vector<TouchStep>& steps, const Box& box) {
+std::vector<float> step_rows(const std::vector<ServoState>& steps, const Box& box) {
   const std::size_t stride = steps.size() / kSteps + 1;
   std::vector<float> values;
   for (std::size_t i = 0; i < steps.size(); i += stride) {
-    const TouchStep& s = steps[i];
+    const ServoState& s = steps[i];
     const Vector3d h = s.hip - box.center();
     const Vector3d p = s.contact.proxy - box.center();
-    const Vector3d& f = s.contact.force;
-    for (const double v : {s.time - steps.front().time, h.x(), h.y(), h.z(), p.x(), p.y(), p.z(),
-                           f.x(), f.y(), f.z(), s.contact.touching ? 1.0 : 0.0, s.microseconds}) {
+    const Vector3d& f = s.force;
+    for (const double v :
+         {s.time - steps.front().time, h.x(), h.y(), h.z(), p.x(), p.y(), p.z(), f.x(), f.y(),
+          f.z(), s.contact.touching ? 1.0 : 0.0, 1e6 * s.timing.computing}) {
       values.push_back(static_cast<float>(v));
     }
   }

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/run/touch_statistics.hpp"
 #include "palpate/scene/scene.hpp"
+#include "palpate/servo/servo_state.hpp"
 
 namespace palpate::app {
 
@@ -16,7 +16,7 @@ class Picture {
   /// @throws Error when the file cannot be made.
   explicit Picture(const std::string& path) : path_(path), file_(path) {}
 
-  void add(const TouchStep& step) { steps_.push_back(step); }
+  void add(const ServoState& step) { steps_.push_back(step); }
 
   /// @throws Error when Python or matplotlib is missing, naming the package, or drawing fails.
   void draw(const Scene& scene, const std::string& title, const std::string& subtitle);
@@ -24,7 +24,7 @@ class Picture {
  private:
   std::string path_;
   OutputFile file_;
-  std::vector<TouchStep> steps_;
+  std::vector<ServoState> steps_;
 };
 
 }  // namespace palpate::app

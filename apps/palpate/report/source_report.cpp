@@ -79,14 +79,14 @@ std::string range(double smallest, double middle, double largest) {
   return fmt::format("{} ({} to {})", length(middle), length(smallest), length(largest));
 }
 
-Report file_report(const TouchedSource& source) {
+Report file_report(const LoadedSource& source) {
   const CloudArgument& argument = source.plan.argument;
   Report report(argument.name, fmt::format("{} ({})", argument.path, source.format));
   report.data = {{"name", argument.name}, {"file", argument.path}, {"format", source.format}};
   return report;
 }
 
-void add_times(Report& report, const TouchedSource& cloud) {
+void add_times(Report& report, const LoadedSource& cloud) {
   const PrepareReport& r = cloud.prepared;
   report.line("prepared",
               fmt::format("{} after {} of reading: filter {}, index {}, spacing {}, normals {}, "
@@ -101,7 +101,7 @@ void add_times(Report& report, const TouchedSource& cloud) {
                             {"weights", r.seconds_weights}};
 }
 
-Report cloud_report(const TouchedSource& cloud) {
+Report cloud_report(const LoadedSource& cloud) {
   const PrepareReport& r = cloud.prepared;
   Report report = file_report(cloud);
   report.line("points", fmt::format("{} read, {} felt{}{}{}", grouped(r.points_in),
@@ -156,7 +156,7 @@ void add_seen(Report& report, const SourceState& state) {
   report.data["disagreement_m"] = *state.disagreement;
 }
 
-Report image_report(const TouchedSource& source) {
+Report image_report(const LoadedSource& source) {
   Report report = file_report(source);
   report.data["seconds"] = {{"read", source.read_seconds}, {"prepare", source.prepare_seconds}};
   if (source.lens.width > 0) {
@@ -220,7 +220,7 @@ void add_policy(Report& report, const SourcePlan& plan) {
 
 }  // namespace
 
-Report camera_report(const TouchedSource& source) {
+Report camera_report(const LoadedSource& source) {
   const CloudArgument& argument = source.plan.argument;
   const FeedReport& feed = source.feed;
   const StreamState& state = feed.state;
@@ -239,7 +239,7 @@ Report camera_report(const TouchedSource& source) {
   return report;
 }
 
-Report source_report(const TouchedSource& source) {
+Report source_report(const LoadedSource& source) {
   if (source.camera) return camera_report(source);
   return source.depth_image ? image_report(source) : cloud_report(source);
 }

@@ -3,15 +3,15 @@
 #include <string>
 
 #include "apps/palpate/report/report.hpp"
-#include "apps/palpate/sources/touched.hpp"
+#include "apps/palpate/sources/loaded_scene.hpp"
 
 namespace palpate::app {
 
 /// What a run knows of one of its sources and, of a camera, of what became of its frames.
-[[nodiscard]] Report source_report(const TouchedSource& source);
+[[nodiscard]] Report source_report(const LoadedSource& source);
 
 /// That of a camera.
-[[nodiscard]] Report camera_report(const TouchedSource& source);
+[[nodiscard]] Report camera_report(const LoadedSource& source);
 
 /// Says how much of a cloud is no surface that its points agree on, where it is a hundredth or
 /// more.

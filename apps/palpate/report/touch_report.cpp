@@ -28,9 +28,9 @@ HandOutputs::HandOutputs(const OutputPlan& outputs, std::size_t hand) {
   if (!outputs.picture.empty()) picture_.emplace(numbered_path(outputs.picture, hand));
 }
 
-void HandOutputs::add(const TouchStep& step) {
+void HandOutputs::add(const ServoState& step, const DeviceInfo& device) {
   statistics_.add(step);
-  if (log_) log_->add(step);
+  if (log_) log_->add(step, device);
   if (picture_) picture_->add(step);
 }
 
@@ -38,14 +38,14 @@ void HandOutputs::close_log() {
   if (log_) log_->close();
 }
 
-void HandOutputs::draw(const Scene& felt, const std::string& title, const HandReport& report) {
-  if (picture_) picture_->draw(felt, title, subtitle(report));
+void HandOutputs::draw(const Scene& scene, const std::string& title, const HandReport& report) {
+  if (picture_) picture_->draw(scene, title, subtitle(report));
 }
 
 // What is of a hand stands beside what is of the run where there is one hand, else under "hands".
 Json report_on(const TouchReport& report, std::FILE* stream) {
   Json sources = Json::array();
-  for (const TouchedSource& source : report.touched.sources) {
+  for (const LoadedSource& source : report.loaded.sources) {
     const Report part = source_report(source);
     part.print(stream);
     sources.push_back(part.data);

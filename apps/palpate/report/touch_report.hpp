@@ -8,7 +8,7 @@
 #include "apps/palpate/report/hand_report.hpp"
 #include "apps/palpate/report/log.hpp"
 #include "apps/palpate/report/picture.hpp"
-#include "apps/palpate/sources/touched.hpp"
+#include "apps/palpate/sources/loaded_scene.hpp"
 #include "palpate/contact/proxy.hpp"
 
 namespace palpate::app {
@@ -20,11 +20,11 @@ class HandOutputs {
   /// @throws Error when they cannot be.
   HandOutputs(const OutputPlan& outputs, std::size_t hand);
 
-  void add(const TouchStep& step);
+  void add(const ServoState& step, const DeviceInfo& device);
   void close_log();
 
   /// @throws Error as Picture::draw() does.
-  void draw(const Scene& felt, const std::string& title, const HandReport& report);
+  void draw(const Scene& scene, const std::string& title, const HandReport& report);
 
   [[nodiscard]] const TouchStatistics& statistics() const { return statistics_; }
 
@@ -36,9 +36,8 @@ class HandOutputs {
 
 /// Everything that a run's report tells.
 struct TouchReport {
-  const Touched& touched;
-  const Scene& felt;   ///< as the run left it
-  bool paper = false;  ///< the preset paper
+  const LoadedScene& loaded;  ///< as the run left it
+  bool paper = false;         ///< the preset paper
   FieldOptions field;
   ProxyOptions proxy;
   std::vector<HandReport> hands;

@@ -4,35 +4,35 @@
 
 namespace palpate::app {
 
-FrameSink feeding(TouchedSource& touched, Source& felt, double (*computing)()) {
-  return [&touched, &felt, computing](const DepthFrame& frame, const StartTime& start) {
-    FeedReport& feed = touched.feed;
+FrameSink feeding(LoadedSource& from, Source& to, double (*computing)()) {
+  return [&from, &to, computing](const DepthFrame& frame, const StartTime& start) {
+    FeedReport& feed = from.feed;
     feed.width = frame.camera.width;
     feed.height = frame.camera.height;
     const double begin = computing();
-    push_frame(touched, felt, frame, start);
+    push_frame(from, to, frame, start);
     feed.prepare_ms.push_back(1e3 * (computing() - begin));
   };
 }
 
-void keep_states(Touched& touched, const Scene& felt, const std::vector<StreamState>& states) {
+void keep_states(LoadedScene& loaded, const std::vector<StreamState>& states) {
   auto next = states.begin();
-  for (std::size_t i = 0; i < felt.size(); ++i) {
-    TouchedSource& source = touched.sources[i];
+  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
+    LoadedSource& source = loaded.sources[i];
     if (!source.camera) continue;
     source.feed.state = *next++;
-    source.state = felt.state(i);
+    source.state = loaded.scene.state(i);
   }
 }
 
-LiveFeed::LiveFeed(Touched& touched, Scene& felt, const Clock& clock, double start)
-    : touched_(touched), felt_(felt), start_(start) {
+LiveFeed::LiveFeed(LoadedScene& loaded, const Clock& clock, double start)
+    : loaded_(loaded), start_(start) {
   StreamOptions options;
   options.start = start;
-  for (std::size_t i = 0; i < touched.sources.size(); ++i) {
-    TouchedSource& from = touched.sources[i];
+  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
+    LoadedSource& from = loaded.sources[i];
     if (!from.camera) continue;
-    Source& to = felt.source(i);
+    Source& to = loaded.scene.source(i);
     streams_.emplace_back(*from.camera, to.name(), feeding(from, to, thread_cpu_seconds), clock,
                           options, [&to] { to.keep(); });
   }
@@ -51,7 +51,7 @@ void LiveFeed::finish() {
     state.problem_at -= start_;
     state.last_frame -= start_;
   }
-  keep_states(touched_, felt_, states);
+  keep_states(loaded_, states);
 }
 
 }  // namespace palpate::app

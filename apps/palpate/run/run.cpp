@@ -13,7 +13,6 @@
 #include "palpate/device/open_device.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
-#include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
 
@@ -59,14 +58,14 @@ void open_hardware(Hand& hand, const MotionPlan& motion, RealtimeOptions asked,
   fmt::print(stderr, "{}: using {}\n", hand.name, hand.device->info().name);
 }
 
-// The hand is where `way` says, whatever the force.
-void play_back(Hand& hand, Trajectory way) {
-  hand.steps = way.size();
-  hand.device = std::make_unique<ScriptedDevice>(std::move(way));
+// The hand is where `trajectory` says, whatever the force.
+void play_back(Hand& hand, Trajectory trajectory) {
+  hand.steps = trajectory.size();
+  hand.device = std::make_unique<ScriptedDevice>(std::move(trajectory));
 }
 
 // The hand is pulled along `target` again and again, unless somebody takes the tool. Who did not
-// ask for the page has a run that ends with its way.
+// ask for the page has a run that ends with its trajectory.
 void guide(Hand& hand, const HandTask& task, SimulatedDeviceOptions device, Trajectory target) {
   device.duration = task.motion.duration;
   if (!device.duration && !task.page.wanted) device.duration = target.back().time;
@@ -84,19 +83,21 @@ void simulate(Hand& hand, const HandTask& task, Trajectory target) {
   hand.device = std::make_unique<SimulatedDevice>(device, std::move(target));
 }
 
-void follow(Hand& hand, const HandTask& task, Trajectory way) {
+void follow(Hand& hand, const HandTask& task, Trajectory trajectory) {
   hand.stiffness = task.surface.stiffness.value_or(kStiffness);
-  if (hand.chosen.kind == DeviceKind::scripted) return play_back(hand, std::move(way));
+  if (hand.chosen.kind == DeviceKind::scripted) return play_back(hand, std::move(trajectory));
   hand.workspace.scale = hand.chosen.placement.scale.value_or(1);
-  const double start = way.front().time;
-  for (TrajectoryRow& row : way) row.time -= start;
+  const double start = trajectory.front().time;
+  for (TrajectoryRow& row : trajectory) row.time -= start;
   // Encoders count from where the hand begins, so that far from the origin nothing is lost.
-  hand.workspace.T_world_device.translation() = way.front().position;
-  for (TrajectoryRow& row : way) row.position = hand.workspace.position_to_device(row.position);
-  simulate(hand, task, std::move(way));
+  hand.workspace.T_world_device.translation() = trajectory.front().position;
+  for (TrajectoryRow& row : trajectory) {
+    row.position = hand.workspace.position_to_device(row.position);
+  }
+  simulate(hand, task, std::move(trajectory));
 }
 
-void explore(Hand& hand, const HandTask& task, const Scene& scene, PlanOptions plan) {
+void explore(Hand& hand, const HandTask& task, const Scene& scene, ExplorationPlanOptions plan) {
   const bool pulled = hand.chosen.kind == DeviceKind::simulated;
   if (!pulled) plan.hand.stiffness = std::numeric_limits<double>::infinity();
   Progress progress("planning the exploration");
@@ -119,34 +120,35 @@ Eigen::Matrix3d behind(const Eigen::Isometry3d& T_world_camera) {
   return axes;
 }
 
-void stand(Hand& hand, const FieldOptions& field, const Scene& scene, const PlanOptions& plan) {
-  const Stand stand = plan_stand(scene, field, plan);
-  hand.workspace = stand.workspace;
-  hand.stiffness = stand.stiffness;
+void put_at_surface(Hand& hand, const FieldOptions& field, const Scene& scene,
+                    const ExplorationPlanOptions& plan) {
+  const Placement placement = place_device(scene, field, plan);
+  hand.workspace = placement.workspace;
+  hand.stiffness = placement.stiffness;
   place(hand.workspace, hand.chosen.placement, scene);
 }
 
-PlanOptions plan_options(const HandTask& task, const Trajectory& way) {
-  PlanOptions plan;
+ExplorationPlanOptions plan_options(const HandTask& task, const Trajectory& trajectory) {
+  ExplorationPlanOptions plan;
   plan.duration = task.motion.duration.value_or(plan.duration);
-  plan.stiffness = task.surface.stiffness.value_or(way.empty() ? 0 : kStiffness);
+  plan.stiffness = task.surface.stiffness.value_or(trajectory.empty() ? 0 : kStiffness);
   plan.tool_radius = task.surface.field.tool_radius;
   plan.seed = task.motion.seed;
   plan.rate = task.motion.rate.value_or(plan.rate);
   return plan;
 }
 
-void check(const Trajectory& way, const std::string& file, bool simulated) {
-  if (way.empty()) return;
-  const double duration = way.back().time - way.front().time;
+void check(const Trajectory& trajectory, const std::string& file, bool simulated) {
+  if (trajectory.empty()) return;
+  const double duration = trajectory.back().time - trajectory.front().time;
   if (simulated && duration > kLongestRun) {
     throw UsageError(
         fmt::format("--trajectory lasts {:.6g} s; --device simulated plays at most {:.0f} s: are "
                     "its times in seconds?",
                     duration, kLongestRun));
   }
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    const double far = way[i].position.cwiseAbs().maxCoeff();
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const double far = trajectory[i].position.cwiseAbs().maxCoeff();
     if (far <= Proxy::kLargestCoordinate) continue;
     throw Error(
         fmt::format("row {} of {} is {:.4g} m from the origin; surfaces beyond {:.0e} m cannot be "
@@ -157,14 +159,25 @@ void check(const Trajectory& way, const std::string& file, bool simulated) {
 
 }  // namespace
 
-Trajectory read_way(const MotionPlan& motion, const std::vector<DevicePlan>& devices) {
+ServoOptions servo_options(const Run& run, const Hand& hand, StepQueue* steps) {
+  ServoOptions options;
+  options.field = run.field;
+  options.proxy = run.proxy;
+  options.guard = run.time.guard;
+  options.workspace = hand.workspace;
+  options.clutch_button = hand.chosen.placement.clutch;
+  options.steps = steps;
+  return options;
+}
+
+Trajectory trajectory_of(const MotionPlan& motion, const std::vector<DevicePlan>& devices) {
   const bool follows = std::ranges::any_of(devices, &DevicePlan::follows_trajectory);
   if (motion.trajectory.empty() || !follows) return {};
-  Trajectory way = read_trajectory(motion.trajectory);
+  Trajectory trajectory = read_trajectory(motion.trajectory);
   const bool simulated = std::ranges::any_of(
       devices, [](const DevicePlan& each) { return each.kind == DeviceKind::simulated; });
-  check(way, motion.trajectory, simulated);
-  return way;
+  check(trajectory, motion.trajectory, simulated);
+  return trajectory;
 }
 
 std::vector<Hand> open_hands(const std::vector<DevicePlan>& devices, const MotionPlan& motion,
@@ -180,17 +193,17 @@ std::vector<Hand> open_hands(const std::vector<DevicePlan>& devices, const Motio
   return hands;
 }
 
-void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajectory& way,
+void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajectory& trajectory,
                  const Scene& scene) {
-  PlanOptions plan = plan_options(task, way);
+  ExplorationPlanOptions plan = plan_options(task, trajectory);
   for (Hand& hand : hands) {
     plan.scale = hand.chosen.placement.scale;
     if (!hand.chosen.follows_trajectory()) {
-      stand(hand, task.surface.field, scene, plan);
-    } else if (way.empty()) {
+      put_at_surface(hand, task.surface.field, scene, plan);
+    } else if (trajectory.empty()) {
       explore(hand, task, scene, plan);
     } else {
-      follow(hand, task, way);
+      follow(hand, task, trajectory);
     }
     ++plan.seed;
   }

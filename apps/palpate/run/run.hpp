@@ -6,28 +6,28 @@
 #include <vector>
 
 #include "apps/palpate/options/touch_plan.hpp"
-#include "apps/palpate/run/exploration_plan.hpp"
-#include "apps/palpate/run/touch_statistics.hpp"
-#include "apps/palpate/sources/touched.hpp"
+#include "apps/palpate/sources/loaded_scene.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
+#include "palpate/device/exploration.hpp"
 #include "palpate/device/remote.hpp"
 #include "palpate/device/teleoperated_hand.hpp"
 #include "palpate/device/workspace.hpp"
+#include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
 
 /// Who touches: a device, where it stands, and the surface's stiffness that goes with it.
 struct Hand {
-  std::string name;                         ///< for messages
-  DevicePlan chosen;                        ///< what is to be at the hand
-  std::unique_ptr<RemoteTarget> remote;     ///< takes the tool from its way; null: nobody can
+  std::string name;                      ///< for messages
+  DevicePlan chosen;                     ///< what is to be at the hand
+  std::unique_ptr<RemoteTarget> remote;  ///< takes the tool from its trajectory; null: nobody can
   std::unique_ptr<TeleoperatedHand> guide;  ///< what `remote` speaks to
   std::unique_ptr<Device> device;
   const RemoteDevice* socket = nullptr;  ///< the device, where it is another program's
   Workspace workspace;
   double stiffness = 0;                 ///< of the surface, N/m in the world; of all hands the same
-  std::size_t steps = 0;                ///< that its way takes
+  std::size_t steps = 0;                ///< that its trajectory takes
   std::optional<double> duration = {};  ///< s, of a device that never ends by itself
   std::optional<ExplorationPlan> plan = {};  ///< of the built-in exploration, if it is that
 };
@@ -36,20 +36,24 @@ struct Hand {
 struct Run {
   const TimePlan& time;
   const PagePlan& page;
-  Touched& touched;
-  Scene& felt;  ///< what the run feels of it: fill_felt()
+  LoadedScene& loaded;
   std::vector<Hand>& hands;
   FieldOptions field;
   ProxyOptions proxy;
 };
 
+/// What the servo of one of the hands is made with; `steps`: who records its steps, if anybody.
+[[nodiscard]] ServoOptions servo_options(const Run& run, const Hand& hand,
+                                         StepQueue* steps = nullptr);
+
 /// Is handed every step of every hand, by its index, as soon as it is done.
-using EachStep = std::function<void(std::size_t hand, const TouchStep&)>;
+using EachStep = std::function<void(std::size_t hand, const ServoState&)>;
 
 /// Reads the trajectory of `motion`; empty: none is named, or no device follows one.
 /// @throws Error as reading does, and when a place is farther from the origin than surfaces can be
 /// felt; UsageError when it lasts longer than a day and is to be simulated.
-[[nodiscard]] Trajectory read_way(const MotionPlan& motion, const std::vector<DevicePlan>& devices);
+[[nodiscard]] Trajectory trajectory_of(const MotionPlan& motion,
+                                       const std::vector<DevicePlan>& devices);
 
 /// A hand for each of `devices`. Those of other programs and those that hold hardware have their
 /// device: it is opened before anything is read. `clock` is the run's and outlives them; null:
@@ -67,9 +71,9 @@ struct HandTask {
 };
 
 /// Puts the hands into what `scene` shows. Those that no person or program leads get their device
-/// and go along `way` or, where that is empty, explore.
+/// and go along `trajectory` or, where that is empty, explore.
 /// @throws Error when there is nothing to explore.
-void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajectory& way,
+void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajectory& trajectory,
                  const Scene& scene);
 
 /// Turns and moves `workspace`, whose axes are the world's, as `placement` wants it. Its frame is

@@ -16,8 +16,8 @@ struct Note {
   ContactNote contact;
   FieldNote field;
 
-  [[nodiscard]] bool is_in(const TouchStep& step) const {
-    return has(step.contact.notes, contact) || has(step.notes, field);
+  [[nodiscard]] bool is_in(const ServoState& step) const {
+    return has(step.contact.notes, contact) || has(step.field_notes, field);
   }
 };
 
@@ -84,24 +84,24 @@ GuardOptions limits_for(const GuardOptions& guard, const DeviceInfo& device, dou
 
 }  // namespace
 
-void TouchStatistics::add(const TouchStep& step) {
+void TouchStatistics::add(const ServoState& step) {
   const Contact& contact = step.contact;
   const bool first = steps_ == 0;
   if (first) first_time_ = step.time;
   if (!first) {
     const Eigen::Vector3d way = (step.hip - step.shift) - (last_.hip - last_.shift);  // the hand's
-    given_energy_ += last_.contact.force.dot(way);
-    path_energy_ += 0.5 * (last_.contact.force + contact.force).dot(way);
-    largest_jump_ = std::max(largest_jump_, (contact.force - last_.contact.force).norm());
+    given_energy_ += last_.force.dot(way);
+    path_energy_ += 0.5 * (last_.force + step.force).dot(way);
+    largest_jump_ = std::max(largest_jump_, (step.force - last_.force).norm());
   }
   if (contact.touching) {
     ++touching_;
     if (first || !last_.contact.touching) ++contacts_;
   }
-  largest_force_ = std::max(largest_force_, contact.force.norm());
+  largest_force_ = std::max(largest_force_, step.force.norm());
   for (std::size_t i = 0; i < kNotes.size(); ++i) notes_[i] += kNotes[i].is_in(step) ? 1 : 0;
   if (has(contact.notes, ContactNote::fault)) ++faults_;
-  times_.add(1e-6 * step.microseconds);
+  times_.add(step.timing.computing);
   ++steps_;
   last_ = step;
 }
@@ -122,9 +122,9 @@ StepTimes TouchStatistics::times() const {
 Unguarded::Unguarded(const GuardOptions& guard, const DeviceInfo& device, double scale)
     : guard_(limits_for(guard, device, scale)) {}
 
-void Unguarded::add(const TouchStep& step) {
+void Unguarded::add(const ServoState& step) {
   GuardInput input;
-  input.force = step.contact.force;
+  input.force = step.force;
   input.normal = step.contact.normal;
   input.drift = step.contact.drift;
   input.hip = step.hip;
@@ -132,7 +132,7 @@ void Unguarded::add(const TouchStep& step) {
   input.dt = counts().steps > 0 ? step.time - last_.time : 0;
   static_cast<void>(guard_.pass(input));
   if (has(guard_.state().notes, GuardNote::slewed)) {
-    const double change = (step.contact.force - last_.contact.force).norm();
+    const double change = (step.force - last_.force).norm();
     largest_change_ = std::max(largest_change_, change);
   }
   last_ = step;

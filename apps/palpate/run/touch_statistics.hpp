@@ -1,31 +1,15 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
-#include "palpate/contact/proxy.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/histogram.hpp"
+#include "palpate/servo/servo_state.hpp"
 
 namespace palpate::app {
-
-/// One servo step as the program saw it. World frame.
-struct TouchStep {
-  double time = 0;                                  ///< s
-  Eigen::Vector3d hip = Eigen::Vector3d::Zero();    ///< m
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< from the hand to it, by a clutch, m
-  Contact contact;
-  double microseconds = 0;       ///< of computing: update() and step()
-  std::size_t patch_points = 0;  ///< gathered around the tool
-  FieldNote notes = FieldNote::none;
-  std::optional<Eigen::Quaterniond> orientation = {};  ///< of the tool, where the device tells it
-  std::optional<double> gripper = {};                  ///< its opening, m, where there is one
-};
 
 /// Computing times, us.
 struct StepTimes {
@@ -42,10 +26,10 @@ struct CountedNote {
   std::size_t steps = 0;
 };
 
-/// Sums up a run, step by step.
+/// Sums up a run, step by step. Forces are those that were felt.
 class TouchStatistics {
  public:
-  void add(const TouchStep& step);
+  void add(const ServoState& step);
 
   [[nodiscard]] std::size_t steps() const { return steps_; }
   /// Simulated time from the first to the last step, s.
@@ -76,7 +60,7 @@ class TouchStatistics {
  private:
   std::size_t steps_ = 0;
   Durations times_;
-  TouchStep last_;
+  ServoState last_;
   double first_time_ = 0;
   std::size_t contacts_ = 0;
   std::size_t touching_ = 0;
@@ -95,7 +79,7 @@ class Unguarded {
   /// With the limits that a run in real time would have. `scale` is the workspace's.
   Unguarded(const GuardOptions& guard, const DeviceInfo& device, double scale);
 
-  void add(const TouchStep& step);
+  void add(const ServoState& step);
 
   [[nodiscard]] const GuardOptions& limits() const { return guard_.options(); }
   /// `slewed` and `clamped` are the steps that would have been slowed and shortened.
@@ -105,7 +89,7 @@ class Unguarded {
 
  private:
   Guard guard_;
-  TouchStep last_;
+  ServoState last_;
   double largest_change_ = 0;
 };
 

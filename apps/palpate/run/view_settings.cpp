@@ -242,18 +242,19 @@ void Preparer::work(const std::stop_token& stop) {
 
 // What lives is prepared so from its next frame on.
 void Preparer::prepare(const ViewSettings& settings) {
-  for (std::size_t i = 0; i < run_.felt.size(); ++i) {
-    Source& source = run_.felt.source(i);
-    const TouchedSource& touched = run_.touched.sources[i];
-    source.change(prepared_by(settings, initial_, touched.plan.options));
-    if (touched.cloud) source.set(*touched.cloud);
+  for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
+    Source& source = run_.loaded.scene.source(i);
+    const LoadedSource& loaded = run_.loaded.sources[i];
+    source.change(prepared_by(settings, initial_, loaded.plan.options));
+    if (loaded.cloud) source.set(*loaded.cloud);
   }
 }
 
 // What could not be prepared has left its surface as it was; frames to come go on as before.
 void Preparer::take_back() {
-  for (std::size_t i = 0; i < run_.felt.size(); ++i) {
-    run_.felt.source(i).change(prepared_by(held_, initial_, run_.touched.sources[i].plan.options));
+  for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
+    const SourceOptions& options = run_.loaded.sources[i].plan.options;
+    run_.loaded.scene.source(i).change(prepared_by(held_, initial_, options));
   }
 }
 

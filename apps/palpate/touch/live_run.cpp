@@ -35,33 +35,6 @@ Device& paced_by(std::optional<PacedDevice>& paced, Device& device, const Clock&
   return paced.emplace(device, clock);
 }
 
-ServoOptions servo_options(const Run& run, const Hand& hand, StepQueue& steps) {
-  ServoOptions options;
-  options.field = run.field;
-  options.proxy = run.proxy;
-  options.guard = run.time.guard;
-  options.workspace = hand.workspace;
-  options.clutch_button = hand.chosen.placement.clutch;
-  options.steps = &steps;
-  return options;
-}
-
-// With the force that was felt, which the guard may have changed.
-TouchStep step_of(const ServoState& state, const DeviceInfo& device, double start) {
-  TouchStep step;
-  step.time = state.time - start;
-  step.hip = state.hip;
-  step.shift = state.shift;
-  step.contact = state.contact;
-  step.contact.force = state.force;
-  step.microseconds = 1e6 * state.timing.computing;
-  step.patch_points = state.patch_points;
-  step.notes = state.field_notes;
-  if (device.has_orientation) step.orientation = state.orientation;
-  if (device.has_gripper) step.gripper = state.gripper;
-  return step;
-}
-
 // One hand of a run in real time: its servo, on a thread of its own from construction on. The
 // thread that made it calls all the rest.
 class LiveHand {
@@ -74,7 +47,7 @@ class LiveHand {
   // The run's time 0, s on the clock. What came before is left out.
   void begin(double start);
 
-  // Hands its new steps to `each`, with the force that was felt and times from 0.
+  // Hands its new steps to `each`, with times from 0.
   void take_steps(const EachStep& each);
 
   // Has it come to its end, whatever ended it?
@@ -112,7 +85,8 @@ LiveHand::LiveHand(Run& run, std::size_t index, WaitingClock& clock)
       index_(index),
       rate_(rate_of(hand_)),
       steps_(static_cast<std::size_t>(kQueue * rate_)),
-      servo_(paced_by(paced_, *hand_.device, clock), run.felt, servo_options(run, hand_, steps_)),
+      servo_(paced_by(paced_, *hand_.device, clock), run.loaded.scene,
+             servo_options(run, hand_, &steps_)),
       thread_(servo_, clock, {.rate = rate_, .realtime = run.time.realtime}) {}
 
 void LiveHand::begin(double start) {
@@ -121,11 +95,11 @@ void LiveHand::begin(double start) {
 }
 
 void LiveHand::take_steps(const EachStep& each) {
-  while (const std::optional<ServoState> state = steps_.pop()) {
-    if (state->time < start_) continue;
-    const TouchStep step = step_of(*state, hand_.device->info(), start_);
-    force_ = std::max(force_, step.contact.force.norm());
-    each(index_, step);
+  while (std::optional<ServoState> step = steps_.pop()) {
+    if (step->time < start_) continue;
+    step->time -= start_;
+    force_ = std::max(force_, step->force.norm());
+    each(index_, *step);
   }
 }
 
@@ -232,10 +206,10 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   LiveHands hands;
   // Setting them up may take half a second; recordings begin when the hands do.
   const double start = start_hands(run, clock, hands);
-  LiveFeed feed(run.touched, run.felt, clock, start);
+  LiveFeed feed(run.loaded, clock, start);
   std::optional<View> view;
   if (run.page.served) view.emplace(run, servos_of(hands), feed);
-  const EachStep keep = [&](std::size_t hand, const TouchStep& step) {
+  const EachStep keep = [&](std::size_t hand, const ServoState& step) {
     each(hand, step);
     if (view) view->add(hand, step);
   };

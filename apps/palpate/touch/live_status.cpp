@@ -30,8 +30,7 @@ std::string hand_words(const HandMoment& moment) {
                                  1e6 * moment.computing.quantile(0.99),
                                  1e3 * moment.lateness.quantile(0.99));
   const GuardState& guard = moment.servo.guard;
-  if (moment.servo.clutched)
-    words += "  clutch held: the hand moves without the tool";
+  if (moment.servo.clutched) words += "  clutch held: the hand moves without the tool";
   if (guard.fault != GuardFault::none) {
     words += fmt::format("  FAULT: {}", in_words(guard.fault));
   } else if (guard.notes != GuardNote::none) {

@@ -40,8 +40,8 @@ bool play_simulated(Run& run, TouchOutputs& outputs) {
   HandOutputs& kept = outputs.hands.front();
   Progress progress("touching");
   const auto whole = static_cast<double>(hand.steps);
-  return run_simulated(run, [&](std::size_t, const TouchStep& step) {
-    kept.add(step);
+  return run_simulated(run, [&](std::size_t, const ServoState& step) {
+    kept.add(step, hand.device->info());
     unguarded.add(step);
     const std::size_t steps = kept.statistics().steps();
     if (steps % 256 == 0) progress.update(static_cast<double>(steps) / whole);
@@ -55,8 +55,8 @@ LiveOutcome play(Run& run, WaitingClock* clock, TouchOutputs& outputs) {
   if (clock == nullptr) {
     outcome.interrupted = !play_simulated(run, outputs);
   } else {
-    outcome = run_live(run, *clock, [&](std::size_t hand, const TouchStep& step) {
-      outputs.hands[hand].add(step);
+    outcome = run_live(run, *clock, [&](std::size_t hand, const ServoState& step) {
+      outputs.hands[hand].add(step, run.hands[hand].device->info());
     });
   }
   for (HandOutputs& hand : outputs.hands) hand.close_log();
@@ -81,7 +81,7 @@ void check_texture(double amplitude, const Scene& scene) {
 std::vector<HandReport> hand_reports(const Run& run, const TouchOutputs& outputs,
                                      const LiveOutcome& outcome) {
   const bool scales = std::ranges::any_of(
-      run.touched.sources, [](const TouchedSource& source) { return !source.camera; });
+      run.loaded.sources, [](const LoadedSource& source) { return !source.camera; });
   std::vector<HandReport> reports;
   for (std::size_t i = 0; i < run.hands.size(); ++i) {
     reports.push_back({run.hands[i], outputs.hands[i].statistics(), run.field, run.proxy.stiffness,
@@ -113,7 +113,7 @@ void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
   const Json data = report_on(report, stream);
   if (outputs.json) write_whole(outputs.json, text_of(data));
   for (std::size_t i = 0; i < report.hands.size(); ++i) {
-    outputs.hands[i].draw(report.felt, title_of(report.touched), report.hands[i]);
+    outputs.hands[i].draw(report.loaded.scene, title_of(report.loaded), report.hands[i]);
   }
   check_hands(report.hands);
 }
@@ -121,29 +121,27 @@ void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
 }  // namespace
 
 void touch(const TouchPlan& plan) {
-  const Trajectory way = read_way(plan.motion, plan.devices);
+  const Trajectory trajectory = trajectory_of(plan.motion, plan.devices);
   TouchOutputs outputs(plan.outputs, plan.devices.size());
   SteadyWaitingClock steady;
   WaitingClock* clock = plan.time.real_time ? &steady : nullptr;
   std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, clock);
   const SurfacePlan& surface = plan.surface;
   const double texture = surface.proxy.texture.amplitude;
-  const bool explored = way.empty() || hands.size() > 1 || texture > 0;
+  const bool explored = trajectory.empty() || hands.size() > 1 || texture > 0;
   const std::optional<RealtimeRequest> left = leave_to_servo(plan.time);
-  Touched touched = prepare_touched(plan.sources, {explored, plan.page.served, clock});
-  check_texture(texture, touched.scene);
-  place_hands(hands, {plan.motion, surface, plan.page}, way, touched.scene);
+  LoadedScene loaded = load_sources(plan.sources, {explored, plan.page.served, clock});
+  check_texture(texture, loaded.scene);
+  place_hands(hands, {plan.motion, surface, plan.page}, trajectory, loaded.scene);
   const double stiffness = hands.front().stiffness;
-  Scene felt;
-  fill_felt(felt, touched, surface.soft_material(stiffness));
-  Run run{plan.time, plan.page, touched, felt, hands, surface.field, surface.proxy_of(stiffness)};
+  begin_run(loaded, surface.soft_material(stiffness));
+  Run run{plan.time, plan.page, loaded, hands, surface.field, surface.proxy_of(stiffness)};
   LiveOutcome outcome = play(run, clock, outputs);
   for (LiveReport& each : outcome.hands) {
     if (left) each.realtime.requests.push_back(*left);
   }
-  tell(
-      {touched, felt, surface.paper, surface.field, run.proxy, hand_reports(run, outputs, outcome)},
-      plan.outputs.takes_stdout() ? stderr : stdout, outputs);
+  tell({loaded, surface.paper, surface.field, run.proxy, hand_reports(run, outputs, outcome)},
+       plan.outputs.takes_stdout() ? stderr : stdout, outputs);
 }
 
 }  // namespace palpate::app

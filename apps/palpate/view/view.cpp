@@ -58,7 +58,7 @@ ViewSettings initial_settings(const Run& run) {
   ViewSettings settings;
   settings.field = run.field;
   settings.feel = {run.proxy.stiffness, run.proxy.friction, run.proxy.texture};
-  const SourceOptions first = run.felt.source(0).options();
+  const SourceOptions first = run.loaded.scene.source(0).options();
   settings.policy = first.policy.policy;
   settings.history = first.policy.history;
   settings.voxel = first.prepare.voxel;
@@ -70,13 +70,13 @@ ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
   ViewScope scope;
   double scale = 0;
   for (const Hand& hand : run.hands) scale = std::max(scale, hand.workspace.scale);
-  scope.stiffest = kStiffest / scale;
+  scope.stiffest = kSteadyStiffness / scale;
   for (const Servo* servo : servos) {
     scope.stiffest = std::min(scope.stiffest, servo->stiffness_limit());
   }
-  const double deepest = deepest_texture(run.felt);
+  const double deepest = deepest_texture(run.loaded.scene);
   scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
-  for (const TouchedSource& source : run.touched.sources) {
+  for (const LoadedSource& source : run.loaded.sources) {
     scope.lives = scope.lives || source.camera;
     scope.depth = scope.depth || (source.camera && !source.plan.as_cloud);
     scope.clouds = scope.clouds || source.cloud || source.plan.as_cloud;
@@ -84,7 +84,7 @@ ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
   return scope;
 }
 
-std::optional<ViewerFrustum> frustum_of(const TouchedSource& source, const SourceState& state) {
+std::optional<ViewerFrustum> frustum_of(const LoadedSource& source, const SourceState& state) {
   if (!source.camera) return std::nullopt;
   const CameraModel& lens = source.lens;
   return ViewerFrustum{0.5 * lens.width / lens.pinhole.fx, 0.5 * lens.height / lens.pinhole.fy,
@@ -95,9 +95,9 @@ std::vector<ViewerStream> streams_of(const Run& run, const LiveFeed& feed) {
   std::vector<ViewerStream> streams;
   for (StreamState& state : feed.states()) {
     ViewerStream& stream = streams.emplace_back();
-    for (std::size_t i = 0; i < run.felt.size(); ++i) {
-      if (run.felt.source(i).name() != state.source) continue;
-      stream.frustum = frustum_of(run.touched.sources[i], run.felt.source(i).state());
+    for (std::size_t i = 0; i < run.loaded.scene.size(); ++i) {
+      if (run.loaded.scene.source(i).name() != state.source) continue;
+      stream.frustum = frustum_of(run.loaded.sources[i], run.loaded.scene.source(i).state());
     }
     stream.state = std::move(state);
   }
@@ -117,7 +117,7 @@ struct View::Parts {
         recording(r.hands.size(), [this](const std::string& why) { recording_broke(why); }),
         preparer(r, initial,
                  [this](const std::string& why, const ViewSettings& held) { go_back(why, held); }),
-        viewer(r.felt, servos, viewer_options(), controls()) {}
+        viewer(r.loaded.scene, servos, viewer_options(), controls()) {}
 
   ~Parts() { preparer.stop(); }  // what it tells, it tells the viewer
   Parts(const Parts&) = delete;
@@ -128,7 +128,7 @@ struct View::Parts {
     const PagePlan& page = run.page;
     if (!page.address.empty()) options.address = page.address;
     options.port = page.port;
-    options.scene = title_of(run.touched);
+    options.scene = title_of(run.loaded);
     options.streams = [this] { return streams_of(run, feed); };
     return options;
   }
@@ -207,8 +207,8 @@ View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
 
 View::~View() = default;
 
-void View::add(std::size_t hand, const TouchStep& step) {
-  parts_->recording.add(hand, step);
+void View::add(std::size_t hand, const ServoState& step) {
+  parts_->recording.add(hand, step, parts_->run.hands[hand].device->info());
 }
 
 void View::look() {

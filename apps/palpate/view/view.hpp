@@ -21,7 +21,7 @@ class View {
   View& operator=(const View&) = delete;
 
   /// Every step of each hand, in order; one thread, that of look().
-  void add(std::size_t hand, const TouchStep& step);
+  void add(std::size_t hand, const ServoState& step);
 
   /// Some tens of times a second: says of pages that have a tool that they still have.
   void look();

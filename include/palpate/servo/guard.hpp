@@ -40,6 +40,7 @@ enum class GuardFault : std::uint8_t {
 };
 
 struct GuardOptions {
+  bool on = true;  ///< off: what is felt goes out as it is, and any stiffness is felt
   double maximum_force = std::numeric_limits<double>::infinity();  ///< N; > 0
   double slew = 300;        ///< S: how fast a force may change that the hand does not explain, N/s
   double damping = 1;       ///< B of a damper between surface and hand, in contact, N s/m; 0: none

@@ -1,4 +1,4 @@
-#include "apps/palpate/sources/touched.hpp"
+#include "apps/palpate/sources/loaded_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -90,7 +90,7 @@ void check_radius(const CloudArgument& cloud, const PrepareOptions& options, con
                   *options.radius, cloud.path, length(across), length(spacing)));
 }
 
-void add_cloud(Scene& scene, bool keep, TouchedSource& result) {
+void add_cloud(Scene& scene, bool keep, LoadedSource& result) {
   const SourcePlan& plan = result.plan;
   LoadedCloud loaded = load(plan.argument, plan.reading);
   if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
@@ -117,7 +117,7 @@ void add_cloud(Scene& scene, bool keep, TouchedSource& result) {
   if (keep) result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
 }
 
-void check_felt(const Source& source, TouchedSource& result) {
+void check_felt(const Source& source, LoadedSource& result) {
   const std::shared_ptr<const SurfacePoints> points = source.points();
   if (!points || points->size() == 0) {
     throw Error(fmt::format(
@@ -139,7 +139,7 @@ void believe_no_farther(const DepthFrame& frame, SourcePlan& plan) {
   if (farthest > options.nearest) options.farthest = std::min(options.farthest, farthest);
 }
 
-void add_depth_image(Scene& scene, TouchedSource& result) {
+void add_depth_image(Scene& scene, LoadedSource& result) {
   SourcePlan& plan = result.plan;
   const auto begin = WallClock::now();
   DepthFrame frame = load_depth_image(plan.argument.path, plan.reading);
@@ -159,7 +159,7 @@ void add_depth_image(Scene& scene, TouchedSource& result) {
 
 // Makes it the first frame of the source. False: it shows no surface; `problem` gets the reason, if
 // one is told.
-bool shows(const DepthFrame& frame, const TouchedSource& result, Source& source,
+bool shows(const DepthFrame& frame, const LoadedSource& result, Source& source,
            std::string& problem) {
   try {
     push_frame(result, source, frame, [] { return 0.0; });  // in which no tool is known yet
@@ -179,7 +179,7 @@ bool take_next(DepthCamera& camera, double latest, DepthFrame& frame) {
   return frame.stamp <= latest;
 }
 
-void add_stream(Scene& scene, const LoadOptions& options, TouchedSource& result) {
+void add_stream(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   constexpr double kFirstLook = 1;  // s of frames, the first of which may be black
   SourcePlan& plan = result.plan;
   result.camera = open_stream(plan, options.clock);
@@ -207,54 +207,56 @@ bool is_filtered_image(const SourcePlan& plan) {
 
 }  // namespace
 
-std::string title_of(const Touched& touched) {
+std::string title_of(const LoadedScene& loaded) {
   std::string title;
-  for (const TouchedSource& source : touched.sources) {
+  for (const LoadedSource& source : loaded.sources) {
     title += fmt::format("{}{}", title.empty() ? "" : " + ", source.plan.argument.name);
   }
   return title;
 }
 
-Touched prepare_touched(const std::vector<SourcePlan>& sources, const LoadOptions& options) {
-  Touched touched;
+LoadedScene load_sources(const std::vector<SourcePlan>& sources, const LoadOptions& options) {
+  LoadedScene loaded;
   for (const SourcePlan& plan : sources) {
-    TouchedSource& source = touched.sources.emplace_back();
+    LoadedSource& source = loaded.sources.emplace_back();
     source.plan = plan;
     const bool depths = plan.kind == SourceKind::stream || is_filtered_image(plan);
     if (depths && plan.options.prepare.material_from_intensity) refuse_material(plan.argument);
     if (plan.kind == SourceKind::stream) {
-      add_stream(touched.scene, options, source);
+      add_stream(loaded.scene, options, source);
     } else if (is_filtered_image(plan)) {
-      add_depth_image(touched.scene, source);
+      add_depth_image(loaded.scene, source);
     } else {
-      add_cloud(touched.scene, options.keep_clouds, source);
+      add_cloud(loaded.scene, options.keep_clouds, source);
     }
   }
-  return touched;
+  return loaded;
 }
 
-void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft) {
-  for (std::size_t i = 0; i < touched.sources.size(); ++i) {
-    const TouchedSource& source = touched.sources[i];
-    SourceOptions options = source.plan.options;
+void begin_run(LoadedScene& loaded, const SoftMaterial& soft) {
+  Scene scene;
+  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
+    const LoadedSource& from = loaded.sources[i];
+    SourceOptions options = from.plan.options;
     options.soft = soft;
-    Source& felt = scene.add(source.plan.argument.name, options);
-    if (source.camera) continue;
+    Source& source = scene.add(from.plan.argument.name, options);
+    if (from.camera) continue;
     auto snapshot = std::make_unique<Snapshot>();
-    snapshot->layers.push_back({touched.scene.source(i).points(), 1, 1});
-    felt.publish(std::move(snapshot));
+    snapshot->layers.push_back({loaded.scene.source(i).points(), 1, 1});
+    source.publish(std::move(snapshot));
   }
+  loaded.scene = std::move(scene);
 }
 
-void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
+void push_frame(const LoadedSource& from, Source& to, const DepthFrame& frame,
                 const StartTime& start) {
-  if (!touched.plan.as_cloud) {
-    check_range(frame, touched.plan.options.depth);
-    felt.push(frame, start);
+  if (!from.plan.as_cloud) {
+    check_range(frame, from.plan.options.depth);
+    to.push(frame, start);
     return;
   }
-  if (frame.T_world_sensor) felt.set_pose(*frame.T_world_sensor);
-  felt.push(cloud_of(frame), frame.stamp, start);
+  if (frame.T_world_sensor) to.set_pose(*frame.T_world_sensor);
+  to.push(cloud_of(frame), frame.stamp, start);
 }
 
 }  // namespace palpate::app

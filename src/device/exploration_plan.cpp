@@ -1,5 +1,3 @@
-#include "apps/palpate/run/exploration_plan.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "apps/palpate/options/touch_plan.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/contact/proxy.hpp"
 #include "palpate/device/exploration.hpp"
 #include "palpate/geometry/shapes.hpp"
 
-namespace palpate::app {
+namespace palpate {
 
 namespace {
 
@@ -27,7 +25,7 @@ constexpr double kDepth = 0.75;         // R under the surface
 constexpr double kLargestForce = 4;     // N
 constexpr double kPaperMultiple = 2.5;  // m = R / s where s is not known
 constexpr float kUpward = 0.7F;         // of a normal's z: it looks up, give or take 45 degrees
-constexpr double kClearance = 2e-3;     // m of the hand, from the surface to where a device stands
+constexpr double kStandoff = 2e-3;      // m of the hand, from the surface to where a device is put
 
 // All sources' points, relative to one origin. A single source's are not copied: it may be large.
 struct Union {
@@ -98,23 +96,24 @@ double offset(const FieldOptions& field, const Union& all, double tool_radius) {
 
 double choose_scale(double patch, double stiffness) {
   const double scale = workspace_scale(patch);
-  if (stiffness == 0 || scale * stiffness <= kStiffest) return scale;
-  return std::min(scale, std::max(1.0, kStiffest / stiffness));
+  if (stiffness == 0 || scale * stiffness <= kSteadyStiffness) return scale;
+  return std::min(scale, std::max(1.0, kSteadyStiffness / stiffness));
 }
 
-// What exploring and standing have in common.
+// What exploring and placing have in common.
 struct Extent {
   double patch = 0;  // m across
   double scale = 1;
   double stiffness = 0;  // N/m in the world
 };
 
-Extent extent_of(const Union& all, const PlanOptions& options) {
+Extent extent_of(const Union& all, const ExplorationPlanOptions& options) {
   const double widest = std::max(kPatch, kPatchRadii * all.radius);
   Extent extent;
   extent.patch = std::max(std::min(all.box.size().maxCoeff(), widest), all.radius);
   extent.scale = options.scale.value_or(choose_scale(extent.patch, options.stiffness));
-  extent.stiffness = options.stiffness > 0 ? options.stiffness : kStiffness / extent.scale;
+  extent.stiffness =
+      options.stiffness > 0 ? options.stiffness : ProxyOptions().stiffness / extent.scale;
   return extent;
 }
 
@@ -126,7 +125,7 @@ Vector3f normal_at(const ExploredSurface& surface, std::size_t point) {
 
 // The place over which a hand that comes down meets the surface nearest to its middle; where
 // nothing looks up, the one that is nearest to it.
-std::size_t standing_place(const ExploredSurface& surface) {
+std::size_t place_to_stand(const ExploredSurface& surface) {
   Vector3d sum = Vector3d::Zero();
   for (const Vector3f& p : surface.points) sum += p.cast<double>();
   const Vector3f middle = (sum / static_cast<double>(surface.points.size())).cast<float>();
@@ -160,7 +159,7 @@ double workspace_scale(double extent) {
 }
 
 ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
-                                 const PlanOptions& options) {
+                                 const ExplorationPlanOptions& options) {
   const Union all = unite(scene);
   ExplorationPlan plan;
   const Extent extent = extent_of(all, options);
@@ -194,19 +193,20 @@ ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
   return plan;
 }
 
-Stand plan_stand(const Scene& scene, const FieldOptions& field, const PlanOptions& options) {
+Placement place_device(const Scene& scene, const FieldOptions& field,
+                       const ExplorationPlanOptions& options) {
   const Union all = unite(scene);
   const ExploredSurface surface = all.view();
   const Extent extent = extent_of(all, options);
-  const std::size_t point = standing_place(surface);
-  const double height = offset(field, all, options.tool_radius) + kClearance * extent.scale;
-  Stand stand;
-  stand.stiffness = extent.stiffness;
-  stand.workspace.scale = extent.scale;
-  stand.workspace.T_world_device.translation() = surface.origin +
-                                                 surface.points[point].cast<double>() +
-                                                 height * normal_at(surface, point).cast<double>();
-  return stand;
+  const std::size_t point = place_to_stand(surface);
+  const double height = offset(field, all, options.tool_radius) + kStandoff * extent.scale;
+  Placement placement;
+  placement.stiffness = extent.stiffness;
+  placement.workspace.scale = extent.scale;
+  placement.workspace.T_world_device.translation() =
+      surface.origin + surface.points[point].cast<double>() +
+      height * normal_at(surface, point).cast<double>();
+  return placement;
 }
 
-}  // namespace palpate::app
+}  // namespace palpate

@@ -1,12 +1,10 @@
-#include "apps/palpate/run/exploration_plan.hpp"
-
 #include <gtest/gtest.h>
 
-#include "apps/palpate/options/touch_plan.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/device/exploration.hpp"
 #include "palpate/io/synthetic.hpp"
 
-namespace palpate::app {
+namespace palpate {
 namespace {
 
 PointCloud scaled(double factor) {
@@ -28,7 +26,7 @@ TEST(ExplorationPlan, HandFeelsTheSameOfSmallAndLargeClouds) {
     Scene scene;
     scene.add("cloud", scaled(factor));
     const ExplorationPlan plan = plan_exploration(scene, {}, {.duration = 2});
-    EXPECT_NEAR(plan.workspace.felt_stiffness(plan.stiffness), kStiffness, 1e-6) << factor;
+    EXPECT_NEAR(plan.workspace.felt_stiffness(plan.stiffness), 500, 1e-6) << factor;
     EXPECT_LE(plan.depth * plan.stiffness, 4 + 1e-9) << factor;
     double reach = 0;
     for (const TrajectoryRow& row : plan.target) reach = std::max(reach, row.position.norm());
@@ -58,13 +56,13 @@ TEST(ExplorationPlan, ADeviceThatNobodyLeadsStandsJustOutsideTheMiddleOfTheSurfa
     plane.viewpoint = Eigen::Vector3d(0, 0, factor);
     Scene scene;
     scene.add("plane", plane);
-    const PlanOptions options{.duration = 1};
-    const Stand stand = plan_stand(scene, {}, options);
+    const ExplorationPlanOptions options{.duration = 1};
+    const Placement placement = place_device(scene, {}, options);
     const ExplorationPlan plan = plan_exploration(scene, {}, options);
-    EXPECT_EQ(stand.workspace.scale, plan.workspace.scale) << "as hands that explore";
-    EXPECT_EQ(stand.stiffness, plan.stiffness);
-    const Eigen::Vector3d outside(0, 0, 2e-3 * stand.workspace.scale);
-    const Eigen::Vector3d origin = stand.workspace.position_to_world(Eigen::Vector3d::Zero());
+    EXPECT_EQ(placement.workspace.scale, plan.workspace.scale) << "as hands that explore";
+    EXPECT_EQ(placement.stiffness, plan.stiffness);
+    const Eigen::Vector3d outside(0, 0, 2e-3 * placement.workspace.scale);
+    const Eigen::Vector3d origin = placement.workspace.position_to_world(Eigen::Vector3d::Zero());
     EXPECT_LT((origin - outside).norm(), 1e-6 * factor) << origin.transpose();
   }
 }
@@ -75,8 +73,8 @@ TEST(ExplorationPlan, ADeviceThatNobodyLeadsComesDownOnWhatIsRound) {
   scene.add("sphere", sphere);
   float top = 0;
   for (const Eigen::Vector3f& p : sphere.positions) top = std::max(top, p.z());
-  const Stand stand = plan_stand(scene, {}, {.duration = 1});
-  const Eigen::Vector3d origin = stand.workspace.position_to_world(Eigen::Vector3d::Zero());
+  const Placement placement = place_device(scene, {}, {.duration = 1});
+  const Eigen::Vector3d origin = placement.workspace.position_to_world(Eigen::Vector3d::Zero());
   EXPECT_NEAR(origin.z(), static_cast<double>(top) + 2e-3, 1e-3);
   EXPECT_LT(origin.head<2>().norm(), 5e-3) << origin.transpose();
 }
@@ -120,4 +118,4 @@ TEST(ExplorationPlan, SceneWithoutPointsIsRefused) {
 }
 
 }  // namespace
-}  // namespace palpate::app
+}  // namespace palpate

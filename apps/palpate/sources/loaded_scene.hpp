@@ -25,7 +25,7 @@ struct FeedReport {
 };
 
 /// One source of a run. Points themselves live in the scene.
-struct TouchedSource {
+struct LoadedSource {
   SourcePlan plan;         ///< of a camera with the range of depths that its first frame asks for
   PrepareReport prepared;  ///< of a cloud
   SourceState state;       ///< of a depth image; of what lives, after the run
@@ -46,16 +46,15 @@ struct TouchedSource {
   FeedReport feed;                      ///< after the run
 };
 
-/// What is touched: everything that is known of it before the first step.
-struct Touched {
-  std::vector<TouchedSource> sources;
-  /// As prepared before the run; of a camera its first frame, where `explored` was asked for, and
-  /// its pose then.
+/// What is touched: the scene, and everything that is known of it before the first step.
+struct LoadedScene {
+  std::vector<LoadedSource> sources;
+  /// As prepared; of a camera its first frame, where `explored` was asked for, and its pose then.
   Scene scene;
 };
 
 /// The names of all sources, for pictures and pages.
-[[nodiscard]] std::string title_of(const Touched& touched);
+[[nodiscard]] std::string title_of(const LoadedScene& loaded);
 
 struct LoadOptions {
   bool explored = false;         ///< the surface has to be there before the run
@@ -67,18 +66,19 @@ struct LoadOptions {
 /// first frame or, if the surface is to be explored before the run, prepares frames until one of
 /// the first second shows a surface.
 /// @throws Error as reading, opening and preparing do.
-[[nodiscard]] Touched prepare_touched(const std::vector<SourcePlan>& sources,
-                                      const LoadOptions& options);
+[[nodiscard]] LoadedScene load_sources(const std::vector<SourcePlan>& sources,
+                                       const LoadOptions& options);
 
-/// Puts into `scene` what is felt in the run: clouds as they were prepared, shared, with another
-/// soft material (how hard the hardest points are may be known after preparation only); cameras
-/// without a surface yet.
-void fill_felt(Scene& scene, const Touched& touched, const SoftMaterial& soft);
+/// Makes the scene what a run begins with: clouds as they were prepared, with another soft material
+/// (how hard the hardest points are may be known after preparation only); cameras without a
+/// surface.
+void begin_run(LoadedScene& loaded, const SoftMaterial& soft);
 
-/// Makes a camera's frame part of what is felt: by the depth filter or, where that is wanted, as a
-/// cloud. @throws Error as Source::push() does, and when nothing that the filter could take is in
-/// its range.
-void push_frame(const TouchedSource& touched, Source& felt, const DepthFrame& frame,
+/// Makes a camera's frame part of its source in the scene: by the depth filter or, where that is
+/// wanted, as a cloud.
+/// @throws Error as Source::push() does, and when nothing that the filter could take is in its
+/// range.
+void push_frame(const LoadedSource& from, Source& to, const DepthFrame& frame,
                 const StartTime& start);
 
 }  // namespace palpate::app
