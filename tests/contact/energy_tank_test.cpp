@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "palpate/contact/proxy.hpp"
+#include "contact/energy_tank.hpp"
 
 namespace palpate {
 namespace {
