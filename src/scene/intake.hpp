@@ -9,6 +9,7 @@
 #include "scene/policies/fusion.hpp"
 #include "scene/policies/morph.hpp"
 #include "scene/recycler.hpp"
+#include "scene/tool_reach.hpp"
 
 namespace palpate {
 

@@ -5,15 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "palpate/depth/depth_filter.hpp"
-#include "palpate/geometry/shapes.hpp"
 #include "palpate/prepare/prepare.hpp"
-#include "palpate/scene/handoff.hpp"
 #include "palpate/scene/snapshot.hpp"
 
 namespace palpate {
@@ -41,10 +37,6 @@ struct PolicyOptions {
                                 ///< next ones (the paper's section IV-B)
 };
 
-/// Where a tool can be before the next frames: around hand and proxy. World frame. Fields publish
-/// it, preparation clips to it and runs the costly fit in it.
-using Reach = Ball;
-
 /// How a source fares, for those who show or log it.
 struct SourceState {
   std::uint64_t frames = 0;   ///< frames and clouds that became a surface
@@ -65,10 +57,6 @@ struct SourceState {
 
   [[nodiscard]] double rate() const { return interval > 0 ? 1 / interval : 0; }  ///< Hz
 };
-
-class Intake;
-class ReachBoard;
-class Seams;
 
 /// What points of material 0 feel like. Material 1 is as stiff and rough as the proxy's options
 /// say, and between the two it goes in a straight line.
@@ -107,7 +95,7 @@ class Source {
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
 
-  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& name() const;
   /// Any thread but a servo's.
   [[nodiscard]] SourceOptions options() const;
   /// Of the newest cloud that was prepared here. Any thread but a servo's.
@@ -171,28 +159,8 @@ class Source {
   friend class Scene;
   friend class SceneField;
 
-  void take_change();
-  [[nodiscard]] bool room_for(bool clouds);
-  void hand_over(std::shared_ptr<const Snapshot> snapshot);
-  void note(const Snapshot& snapshot);
-  void note(const Intake& intake);
-  void compare();
-
-  std::string name_;
-  mutable std::mutex mutex_;  // of what follows; whoever draws, and the preparing thread
-  SourceOptions options_;
-  std::unique_ptr<Intake> changed_;  // for the next push
-  Eigen::Isometry3d pose_;
-  PrepareReport report_;
-  std::shared_ptr<const SurfacePoints> points_;
-  SourceState state_;
-
-  std::unique_ptr<Intake> intake_;  // the preparing thread's
-  std::vector<Reach> found_;        // likewise
-  std::unique_ptr<ReachBoard> reaches_;
-  std::shared_ptr<Seams> seams_;  // of the scene
-  std::size_t place_ = 0;         // in it
-  Handoff<Snapshot> handoff_;
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
 };
 
 }  // namespace palpate
