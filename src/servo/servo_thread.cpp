@@ -235,7 +235,7 @@ bool ServoThread::step(Deadlines& deadlines) noexcept {
   const DeviceState state = device.read();
   if (state.status == DeviceStatus::finished) return false;
   const double now = clock_.now();
-  StepTiming timing;
+  ServoState::Timing timing;
   timing.lateness = deadlines.begin(now);
   if (device.info().keeps_time) deadlines.restart(now);
   skipped_.store(deadlines.skipped(), std::memory_order_relaxed);

@@ -112,7 +112,7 @@ double StateReporter::interval(const ServoState& state) {
 
 // What was felt after the state was read waits for the next message.
 std::vector<Eigen::Vector3f> StateReporter::forces_until(std::uint64_t step) {
-  std::vector<Eigen::Vector3f> forces = servo_.recent_forces().since(forces_seen_);
+  std::vector<Eigen::Vector3f> forces = servo_.forces_since(forces_seen_);
   if (forces_seen_ <= step) return forces;
   const std::uint64_t later = std::min<std::uint64_t>(forces_seen_ - step, forces.size());
   forces.resize(forces.size() - static_cast<std::size_t>(later));

@@ -13,8 +13,8 @@ using test::contains;
 
 // A second of 1 kHz: 20 us of computing, the last hundredth 80; late by 50 us.
 LiveMoment second() {
-  Histogram computing;
-  Histogram lateness;
+  Durations computing;
+  Durations lateness;
   for (int i = 0; i < 1000; ++i) {
     computing.add(i < 985 ? 20e-6 : 80e-6);
     lateness.add(50e-6);
@@ -25,8 +25,8 @@ LiveMoment second() {
   hand.name = "hand 1";
   hand.force = 1.234;
   hand.rate = 1000;
-  hand.computing = computing.look();
-  hand.lateness = lateness.look();
+  hand.computing = computing;
+  hand.lateness = lateness;
   StreamState stream;
   stream.source = "table";
   stream.phase = StreamPhase::running;

@@ -7,7 +7,7 @@
 #include "apps/palpate/report/report.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "palpate/servo/guard.hpp"
-#include "palpate/servo/histogram.hpp"
+#include "palpate/servo/servo.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {

@@ -10,7 +10,7 @@
 #include "palpate/device/device.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
-#include "palpate/servo/histogram.hpp"
+#include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
 

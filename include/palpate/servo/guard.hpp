@@ -3,10 +3,9 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
-
-#include "palpate/servo/passivity.hpp"
 
 namespace palpate {
 
@@ -40,13 +39,22 @@ enum class GuardFault : std::uint8_t {
 };
 
 struct GuardOptions {
+  /// Of the brake that takes back what the hand was given.
+  struct Passivity {
+    bool on = true;
+    double mass = 0.1;     ///< moved with the hand, kg: bounds the brake
+    double memory = 0.02;  ///< J: what was taken from the hand beyond this hides nothing later
+    double forget = 1;     ///< s in which that memory falls to 1/e
+    int delay = 1;         ///< steps from a force's being sent to its effect, 0-16
+  };
+
   double maximum_force = std::numeric_limits<double>::infinity();  ///< N; > 0
   double slew = 300;        ///< S: how fast a force may change that the hand does not explain, N/s
   double damping = 1;       ///< B of a damper between surface and hand, in contact, N s/m; 0: none
   double silence = 5e-3;    ///< steps further apart than this trip the watchdog, s; infinite: none
   double soft_start = 0.5;  ///< s in which forces come up after a start; 0: at once
   double stiffness_share = 0.8;  ///< of the passive stiffness, that is felt at most; infinite: any
-  PassivityOptions passivity = {};
+  Passivity passivity = {};
 };
 
 /// What the guard is told of a step. World frame.
@@ -114,6 +122,9 @@ class Guard {
 
   /// @throws Error when an option is out of its range.
   explicit Guard(const GuardOptions& options = {});
+  ~Guard();
+  Guard(Guard&&) noexcept;
+  Guard& operator=(Guard&&) noexcept;
 
   /// The force that may go to the device, N. Finite, whatever the input.
   [[nodiscard]] Eigen::Vector3d pass(const GuardInput& input) noexcept;
@@ -121,46 +132,12 @@ class Guard {
   /// Forgets a fault and where the hand was; the next force comes up from zero.
   void reset() noexcept;
 
-  [[nodiscard]] const GuardState& state() const noexcept { return state_; }
-  [[nodiscard]] const GuardOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const GuardState& state() const noexcept;
+  [[nodiscard]] const GuardOptions& options() const noexcept;
 
  private:
-  /// How the hand moved against the surface since the step before.
-  struct Motion {
-    Eigen::Vector3d way;       // m
-    Eigen::Vector3d velocity;  // smoothed, m/s
-  };
-
-  void begin(const GuardInput& input) noexcept;
-  [[nodiscard]] Motion follow(const GuardInput& input) const noexcept;
-  [[nodiscard]] double sliding(const GuardInput& input, const Motion& motion) const noexcept;
-  [[nodiscard]] double held(const GuardInput& input) const noexcept;
-  [[nodiscard]] Eigen::Vector3d damp(const GuardInput& input, const Motion& motion) const noexcept;
-  [[nodiscard]] Eigen::Vector3d start(const GuardInput& input,
-                                      const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] double affordable_gain(const GuardInput& input) const noexcept;
-  [[nodiscard]] bool fades_unpaid(const GuardInput& input, const Motion& motion) const noexcept;
-  [[nodiscard]] Eigen::Vector3d limit_change(const GuardInput& input, const Motion& motion,
-                                             const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] Eigen::Vector3d brake(const GuardInput& input, const Motion& motion,
-                                      const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] Eigen::Vector3d limit_length(const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] Eigen::Vector3d remember(const GuardInput& input, const Motion& motion,
-                                         const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] Eigen::Vector3d fail(GuardFault fault) noexcept;
-  void note(GuardNote bit, std::uint64_t& count) noexcept;
-
-  GuardOptions options_;
-  Passivity passivity_;
-  GuardState state_;
-  GuardInput before_;                                   // its force is the one that was let through
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  // smoothed, of the step before
-  Eigen::Vector3d slewed_ = Eigen::Vector3d::Zero();    // let through by clamp and slew then
-  double stiffness_ = 0;                                // that made a force last, N/m
-  Eigen::Vector3d stretch_ = Eigen::Vector3d::Zero();   // from hand to proxy in the step before, m
-  double sliding_ = 1;                                  // share of its way that the proxy follows
-  double gain_ = 0;                                     // of the soft start
-  bool started_ = false;
+  class Inside;
+  std::unique_ptr<Inside> inside_;
 };
 
 /// The same guard for a hand whose motion is magnified `scale` times (Workspace::scale): in the

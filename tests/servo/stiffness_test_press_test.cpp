@@ -11,7 +11,7 @@ namespace {
 // Somebody who presses, step by step: a millisecond each, at 1 cm/s.
 class Presser {
  public:
-  explicit Presser(const WallTrialOptions& options = {}, double maximum_force = 8)
+  explicit Presser(const StiffnessTestOptions& options = {}, double maximum_force = 8)
       : trial_(device(maximum_force), options) {}
 
   DeviceState hand;
@@ -34,18 +34,18 @@ class Presser {
   }
   // Rests until the wall is under the hand, and goes down until the force is there, N.
   void press(double force) {
-    while (phase() == WallTrialPhase::rest) step();
+    while (phase() == StiffnessTest::Phase::rest) step();
     for (int i = 0; force_ < force && i < 5000; ++i) go_by(-1e-5);
     ASSERT_GE(force_, force);
-    ASSERT_EQ(phase(), WallTrialPhase::press);
+    ASSERT_EQ(phase(), StiffnessTest::Phase::press);
   }
   // Presses until the wall was held for long enough.
   void hold() {
-    for (int i = 0; phase() == WallTrialPhase::press && i < 5000; ++i) step();
-    ASSERT_EQ(phase(), WallTrialPhase::lift);
+    for (int i = 0; phase() == StiffnessTest::Phase::press && i < 5000; ++i) step();
+    ASSERT_EQ(phase(), StiffnessTest::Phase::lift);
   }
   // The force goes within 5 ms of something that is wrong, and comes back for nothing.
-  void expect_over(WallTrialPhase why) {
+  void expect_over(StiffnessTest::Phase why) {
     const double before = force_;
     ASSERT_LE(step(), before);
     EXPECT_EQ(phase(), why);
@@ -58,8 +58,8 @@ class Presser {
     EXPECT_EQ(force_, 0) << "over is over";
   }
 
-  [[nodiscard]] const WallTrialState& state() const { return trial_.state(); }
-  [[nodiscard]] WallTrialPhase phase() const { return trial_.state().phase; }
+  [[nodiscard]] StiffnessTest::State state() const { return trial_.state(); }
+  [[nodiscard]] StiffnessTest::Phase phase() const { return trial_.state().phase; }
   [[nodiscard]] double force() const { return force_; }
 
  private:
@@ -69,7 +69,7 @@ class Presser {
     return info;
   }
 
-  WallTrial trial_;
+  StiffnessTest trial_;
   double force_ = 0;
   int steps_ = 0;
 };
@@ -79,10 +79,10 @@ TEST(PressedWall, EndsWhenAHandThatPressesIsTooFast) {
   presser.press(1);
   presser.hand.velocity = {0.34, 0, -0.34};
   presser.wait(0.1);
-  EXPECT_EQ(presser.phase(), WallTrialPhase::press) << "0.48 m/s";
+  EXPECT_EQ(presser.phase(), StiffnessTest::Phase::press) << "0.48 m/s";
   EXPECT_GT(presser.force(), 0.9);
   presser.hand.velocity = {0.4, 0, -0.4};
-  presser.expect_over(WallTrialPhase::too_fast);
+  presser.expect_over(StiffnessTest::Phase::too_fast);
   EXPECT_EQ(presser.state().stable, 0);
 }
 
@@ -92,7 +92,7 @@ TEST(PressedWall, EndsWhenAHandThatLiftsIsTooFast) {
   presser.hold();
   ASSERT_GT(presser.force(), 0.9);
   presser.hand.velocity = {0, 0, 0.25};
-  presser.expect_over(WallTrialPhase::too_fast);
+  presser.expect_over(StiffnessTest::Phase::too_fast);
   EXPECT_EQ(presser.state().stable, 0) << "nobody has lifted off it";
 }
 
@@ -102,7 +102,7 @@ TEST(PressedWall, EndsWhenTheDeviceFails) {
     presser.press(1);
     if (lifts) presser.hold();
     presser.hand.status = DeviceStatus::failed;
-    presser.expect_over(WallTrialPhase::device_lost);
+    presser.expect_over(StiffnessTest::Phase::device_lost);
   }
 }
 
@@ -113,7 +113,7 @@ TEST(PressedWall, IsPutUnderARestingHandAgainAfterASilence) {
     if (lifts) presser.hold();
     presser.hand.status = DeviceStatus::silent;
     presser.wait(5e-3);
-    EXPECT_EQ(presser.phase(), WallTrialPhase::rest);
+    EXPECT_EQ(presser.phase(), StiffnessTest::Phase::rest);
     EXPECT_EQ(presser.force(), 0);
     presser.hand.status = DeviceStatus::ok;
     presser.wait(0.1);
@@ -130,7 +130,7 @@ TEST(PressedWall, APlaceThatIsNoNumberTakesTheForceAtOnce) {
   presser.press(1);
   presser.hand.position.x() = std::nan("");
   EXPECT_EQ(presser.step(), 0);
-  EXPECT_EQ(presser.phase(), WallTrialPhase::device_lost);
+  EXPECT_EQ(presser.phase(), StiffnessTest::Phase::device_lost);
 }
 
 TEST(PressedWall, AWallIsStableOnceItWasHeldAndLeft) {
@@ -142,13 +142,13 @@ TEST(PressedWall, AWallIsStableOnceItWasHeldAndLeft) {
   EXPECT_EQ(presser.state().pressed, 0);
   presser.press(0.5);
   presser.wait(0.6);
-  EXPECT_EQ(presser.phase(), WallTrialPhase::press) << "for a second without a pause";
+  EXPECT_EQ(presser.phase(), StiffnessTest::Phase::press) << "for a second without a pause";
   presser.hold();
   presser.go_by(6.5e-3);  // 0.5 N are 5 mm
-  EXPECT_EQ(presser.phase(), WallTrialPhase::lift) << "1.5 mm over the wall";
+  EXPECT_EQ(presser.phase(), StiffnessTest::Phase::lift) << "1.5 mm over the wall";
   EXPECT_EQ(presser.state().stable, 0);
   presser.go_by(1e-3);
-  EXPECT_EQ(presser.phase(), WallTrialPhase::press);
+  EXPECT_EQ(presser.phase(), StiffnessTest::Phase::press);
   EXPECT_EQ(presser.state().stable, 100);
   EXPECT_DOUBLE_EQ(presser.state().wall, 115);
 }
@@ -159,18 +159,18 @@ TEST(PressedWall, GivesUpAHandThatNeverLiftsOrNeverPressesAgain) {
   stays.hold();
   stays.go_by(6e-3);
   stays.wait(2.2);
-  EXPECT_EQ(stays.phase(), WallTrialPhase::lift);
+  EXPECT_EQ(stays.phase(), StiffnessTest::Phase::lift);
   stays.wait(0.3);
-  EXPECT_EQ(stays.phase(), WallTrialPhase::gave_up);
+  EXPECT_EQ(stays.phase(), StiffnessTest::Phase::timed_out);
   EXPECT_EQ(stays.state().stable, 0);
   Presser leaves({.patience = 3});
   leaves.press(0.5);
   leaves.hold();
   leaves.go_by(12e-3);
   leaves.wait(2.4);
-  EXPECT_EQ(leaves.phase(), WallTrialPhase::press) << "patience begins anew with each phase";
+  EXPECT_EQ(leaves.phase(), StiffnessTest::Phase::press) << "patience begins anew with each phase";
   leaves.wait(0.6);
-  EXPECT_EQ(leaves.phase(), WallTrialPhase::gave_up);
+  EXPECT_EQ(leaves.phase(), StiffnessTest::Phase::timed_out);
   EXPECT_EQ(leaves.state().stable, 100) << "what was found stays";
 }
 
@@ -178,9 +178,9 @@ TEST(PressedWall, GivesUpAHandThatIsNeverStill) {
   Presser presser;
   presser.hand.velocity = {0.03, 0, 0};
   presser.wait(29.9);
-  EXPECT_EQ(presser.phase(), WallTrialPhase::rest);
+  EXPECT_EQ(presser.phase(), StiffnessTest::Phase::rest);
   presser.wait(0.2);
-  EXPECT_EQ(presser.phase(), WallTrialPhase::gave_up);
+  EXPECT_EQ(presser.phase(), StiffnessTest::Phase::timed_out);
 }
 
 TEST(PressedWall, AForceAtItsBoundProvesNothing) {
@@ -188,7 +188,7 @@ TEST(PressedWall, AForceAtItsBoundProvesNothing) {
   presser.press(0.7);
   presser.go_by(-3e-3);
   presser.wait(3);
-  EXPECT_EQ(presser.phase(), WallTrialPhase::press);
+  EXPECT_EQ(presser.phase(), StiffnessTest::Phase::press);
   EXPECT_EQ(presser.state().pressed, 0);
 }
 

@@ -7,6 +7,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/servo/z_width.hpp"
+#include "servo/oscillation_detector.hpp"
 
 namespace palpate {
 namespace {
@@ -16,11 +17,11 @@ using Eigen::Vector3d;
 // Somebody who does what the trial says, at a hand's pace.
 class ObedientHand final : public TargetSource {
  public:
-  explicit ObedientHand(const WallTrial& trial) : trial_(trial) {}
+  explicit ObedientHand(const StiffnessTest& trial) : trial_(trial) {}
 
   [[nodiscard]] HandTarget target(double, const Vector3d&) noexcept override {
-    const bool presses = trial_.state().phase == WallTrialPhase::press;
-    const bool rests = trial_.state().phase == WallTrialPhase::rest || trial_.is_over();
+    const bool presses = trial_.state().phase == StiffnessTest::Phase::press;
+    const bool rests = trial_.state().phase == StiffnessTest::Phase::rest || trial_.is_over();
     const double goal = rests ? height_ : presses ? -12e-3 : 0;
     const double most = 2e-5;  // 2 cm/s
     height_ += std::clamp(goal - height_, -most, most);
@@ -28,20 +29,20 @@ class ObedientHand final : public TargetSource {
   }
 
  private:
-  const WallTrial& trial_;
+  const StiffnessTest& trial_;
   double height_ = 0;
 };
 
 struct Tried {
-  WallTrialState state;
+  StiffnessTest::State state;
   double longest_force = 0;     // N
   double force_when_over = -1;  // N, 20 ms after the end
   double seconds = 0;
 };
 
-Tried try_walls(const SimulatedDeviceOptions& made, const WallTrialOptions& options) {
+Tried try_walls(const SimulatedDeviceOptions& made, const StiffnessTestOptions& options) {
   SimulatedDevice plain(made);
-  WallTrial trial(plain.info(), options);
+  StiffnessTest trial(plain.info(), options);
   ObedientHand hand(trial);
   SimulatedDevice device(made, hand);
   Tried tried;
@@ -67,9 +68,9 @@ SimulatedDeviceOptions gripped() {
   return device;
 }
 
-TEST(WallTrial, FindsTheStiffnessAtWhichADeviceBeginsToShake) {
+TEST(StiffnessTest, FindsTheStiffnessAtWhichADeviceBeginsToShake) {
   const Tried tried = try_walls(gripped(), {});
-  EXPECT_EQ(tried.state.phase, WallTrialPhase::shook);
+  EXPECT_EQ(tried.state.phase, StiffnessTest::Phase::unstable);
   const double theory = passive_stiffness(0.5 + 1, 1e-3, 1e-3);
   EXPECT_GT(tried.state.stable, 0.45 * theory) << "steps of the encoders make it shake before";
   EXPECT_LT(tried.state.stable, theory);
@@ -77,22 +78,22 @@ TEST(WallTrial, FindsTheStiffnessAtWhichADeviceBeginsToShake) {
   EXPECT_EQ(tried.force_when_over, 0);
 }
 
-TEST(WallTrial, ADamperInTheWallAllowsMore) {
+TEST(StiffnessTest, ADamperInTheWallAllowsMore) {
   const double without = try_walls(gripped(), {}).state.stable;
   EXPECT_GT(try_walls(gripped(), {.damping = 1}).state.stable, 1.2 * without);
 }
 
-TEST(WallTrial, EndsWhereTheStiffestWallStandsStill) {
+TEST(StiffnessTest, EndsWhereTheStiffestWallStandsStill) {
   const Tried tried = try_walls(gripped(), {.stiffest = 300});
-  EXPECT_EQ(tried.state.phase, WallTrialPhase::held);
+  EXPECT_EQ(tried.state.phase, StiffnessTest::Phase::held);
   EXPECT_EQ(tried.state.stable, 300);
 }
 
 // What a trial ends in, or is at, whose hand stays as it is.
-WallTrialPhase after(const DeviceState& hand, double seconds) {
+StiffnessTest::Phase after(const DeviceState& hand, double seconds) {
   DeviceInfo info;
   info.maximum_force = 8;
-  WallTrial trial(info);
+  StiffnessTest trial(info);
   for (int i = 0; i < static_cast<int>(1000 * seconds) && !trial.is_over(); ++i) {
     static_cast<void>(trial.step(hand, 1e-3 * i));
   }
@@ -101,47 +102,48 @@ WallTrialPhase after(const DeviceState& hand, double seconds) {
   return trial.state().phase;
 }
 
-TEST(WallTrial, EndsWhenSomethingIsWrong) {
-  EXPECT_EQ(after({}, 1), WallTrialPhase::press);
-  EXPECT_EQ(after({}, 60), WallTrialPhase::gave_up);
-  EXPECT_EQ(after({.velocity = {0, 0.6, 0}}, 1), WallTrialPhase::too_fast);
-  EXPECT_EQ(after({.status = DeviceStatus::silent}, 1), WallTrialPhase::rest) << "not heard yet";
-  EXPECT_EQ(after({.status = DeviceStatus::silent}, 60), WallTrialPhase::device_lost);
-  EXPECT_EQ(after({.status = DeviceStatus::failed}, 1), WallTrialPhase::device_lost);
-  EXPECT_EQ(after({.position = {0, 0, std::nan("")}}, 1), WallTrialPhase::device_lost);
+TEST(StiffnessTest, EndsWhenSomethingIsWrong) {
+  EXPECT_EQ(after({}, 1), StiffnessTest::Phase::press);
+  EXPECT_EQ(after({}, 60), StiffnessTest::Phase::timed_out);
+  EXPECT_EQ(after({.velocity = {0, 0.6, 0}}, 1), StiffnessTest::Phase::too_fast);
+  EXPECT_EQ(after({.status = DeviceStatus::silent}, 1), StiffnessTest::Phase::rest)
+      << "not heard yet";
+  EXPECT_EQ(after({.status = DeviceStatus::silent}, 60), StiffnessTest::Phase::device_lost);
+  EXPECT_EQ(after({.status = DeviceStatus::failed}, 1), StiffnessTest::Phase::device_lost);
+  EXPECT_EQ(after({.position = {0, 0, std::nan("")}}, 1), StiffnessTest::Phase::device_lost);
 }
 
-TEST(WallTrial, WallsGoNoFurtherThanTheMakerAllows) {
+TEST(StiffnessTest, WallsGoNoFurtherThanTheMakerAllows) {
   SimulatedDeviceOptions made = gripped();
   DeviceInfo info = SimulatedDevice(made).info();
   info.maximum_stiffness = 150;
-  WallTrial trial(info);
+  StiffnessTest trial(info);
   ObedientHand hand(trial);
   SimulatedDevice device(made, hand);
   for (int i = 0; i < 60'000 && !trial.is_over(); ++i) {
     const DeviceState state = device.read();
     device.write(trial.step(state, state.time));
   }
-  EXPECT_EQ(trial.state().phase, WallTrialPhase::held);
+  EXPECT_EQ(trial.state().phase, StiffnessTest::Phase::held);
   EXPECT_EQ(trial.state().stable, 150);
 }
 
-TEST(WallTrial, RefusesWhatCannotBeMeasured) {
+TEST(StiffnessTest, RefusesWhatCannotBeMeasured) {
   DeviceInfo info;
-  EXPECT_THROW(WallTrial{info}, Error) << "renders no force";
+  EXPECT_THROW(StiffnessTest{info}, Error) << "renders no force";
   info.maximum_force = 8;
-  EXPECT_THROW(WallTrial(info, {.softest = 0}), Error);
-  EXPECT_THROW(WallTrial(info, {.softest = 500, .stiffest = 100}), Error);
-  EXPECT_THROW(WallTrial(info, {.factor = 1}), Error);
-  EXPECT_THROW(WallTrial(info, {.damping = -1}), Error);
-  EXPECT_THROW(WallTrial(info, {.hold = 0}), Error);
-  EXPECT_THROW(WallTrial(info, {.patience = 0}), Error);
-  EXPECT_THROW(WallTrial(info, {.maximum_force = 20}), Error);
-  EXPECT_THROW(WallTrial(info, {.fastest = 0}), Error);
+  EXPECT_THROW(StiffnessTest(info, {.softest = 0}), Error);
+  EXPECT_THROW(StiffnessTest(info, {.softest = 500, .stiffest = 100}), Error);
+  EXPECT_THROW(StiffnessTest(info, {.factor = 1}), Error);
+  EXPECT_THROW(StiffnessTest(info, {.damping = -1}), Error);
+  EXPECT_THROW(StiffnessTest(info, {.hold = 0}), Error);
+  EXPECT_THROW(StiffnessTest(info, {.patience = 0}), Error);
+  EXPECT_THROW(StiffnessTest(info, {.maximum_force = 20}), Error);
+  EXPECT_THROW(StiffnessTest(info, {.fastest = 0}), Error);
 }
 
 double swing_of(double amplitude, double frequency) {
-  Shaking shaking;
+  OscillationDetector shaking;
   double swing = 0;
   for (int i = 0; i < 1000; ++i) {
     const double t = 1e-3 * i;
@@ -151,7 +153,7 @@ double swing_of(double amplitude, double frequency) {
   return swing;
 }
 
-TEST(Shaking, IsTheSwingOfWhatIsFasterThanAHand) {
+TEST(OscillationDetector, IsTheSwingOfWhatIsFasterThanAHand) {
   EXPECT_NEAR(swing_of(1e-3, 20), 2e-3, 0.6e-3);
   EXPECT_NEAR(swing_of(1e-3, 100), 2e-3, 0.3e-3);
   EXPECT_EQ(swing_of(5e-3, 2), 0) << "a hand";

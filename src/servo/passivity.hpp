@@ -4,15 +4,9 @@
 #include <array>
 #include <cstddef>
 
-namespace palpate {
+#include "palpate/servo/guard.hpp"
 
-struct PassivityOptions {
-  bool on = true;
-  double mass = 0.1;     ///< moved with the hand, kg: bounds the brake
-  double memory = 0.02;  ///< J: what was taken from the hand beyond this hides nothing later
-  double forget = 1;     ///< s in which that memory falls to 1/e
-  int delay = 1;         ///< steps from a force's being sent to its effect, 0-16
-};
+namespace palpate {
 
 /// The ledger of what forces gave to the hand, and the brake that takes it back: passivity observer
 /// and controller (Hannaford and Ryu 2002, in the impedance form; docs/method.md 8.5).
@@ -29,7 +23,9 @@ class Passivity {
   static constexpr int kMaximumDelay = 16;
 
   /// Options in their ranges.
-  explicit Passivity(const PassivityOptions& options) noexcept : options_(options) { reset(); }
+  explicit Passivity(const GuardOptions::Passivity& options) noexcept : options_(options) {
+    reset();
+  }
 
   /// `force` (N, on the hand) was sent at the step before; over the last `dt` (s) the hand went
   /// `way` (m) against the surface. `stored` (J): what the stretched spring holds and will give
@@ -56,7 +52,7 @@ class Passivity {
   [[nodiscard]] bool rests() const noexcept;
   [[nodiscard]] double strongest(double dt, double damping) const noexcept;
 
-  PassivityOptions options_;
+  GuardOptions::Passivity options_;
   std::array<Eigen::Vector3d, kMaximumDelay + 1> sent_;  // ring
   std::size_t newest_ = 0;
   double energy_ = 0;
