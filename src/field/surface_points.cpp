@@ -98,6 +98,12 @@ void check_edges(const PointEdges& edges) {
 
 }  // namespace
 
+Box SurfacePoints::bounds() const {
+  if (grid.cells().empty()) return {};
+  const CellGrid::Cell& root = grid.cells().front();
+  return {origin + root.lower.cast<double>(), origin + root.upper.cast<double>()};
+}
+
 void check(const SurfacePoints& points) {
   check_lengths(points);
   constexpr float kLarge = std::numeric_limits<float>::max();

@@ -7,6 +7,7 @@
 
 #include "palpate/field/field_options.hpp"
 #include "palpate/geometry/cell_grid.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate {
 
@@ -83,6 +84,9 @@ struct SurfacePoints {
   double smallest_radius = 0;     ///< smallest R_i, m
 
   [[nodiscard]] std::size_t size() const { return grid.size(); }
+
+  /// Around the points and where they are going, m, world frame; empty where there are none.
+  [[nodiscard]] Box bounds() const;
 };
 
 /// Fills `cell_reach`, `radius` and `smallest_radius` from the other columns, which must be whole.
