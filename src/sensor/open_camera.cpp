@@ -6,8 +6,8 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/sequence.hpp"
-#include "palpate/sensor/simulated_camera.hpp"
 #include "sensor/drivers.hpp"
+#include "sim/simulated_camera.hpp"
 
 namespace palpate {
 namespace {

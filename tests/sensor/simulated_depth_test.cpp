@@ -1,11 +1,11 @@
-#include "palpate/sensor/simulated_depth.hpp"
+#include "sim/simulated_depth.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_scene.hpp"
+#include "sim/simulated_scene.hpp"
 #include "support/effort.hpp"
 
 namespace palpate {

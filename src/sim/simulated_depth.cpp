@@ -1,4 +1,4 @@
-#include "palpate/sensor/simulated_depth.hpp"
+#include "sim/simulated_depth.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "palpate/base/error.hpp"
-#include "sensor/ray_cut.hpp"
+#include "sim/ray_cut.hpp"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "palpate/sensor/simulated_depth.hpp"
+#include "sim/simulated_depth.hpp"
 
 namespace palpate {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "palpate/sensor/simulated_camera.hpp"
+#include "sim/simulated_camera.hpp"
 
 namespace palpate {
 

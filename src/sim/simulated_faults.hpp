@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "palpate/sensor/simulated_noise.hpp"
+#include "sim/simulated_noise.hpp"
 
-namespace palpate::sensor {
+namespace palpate::sim {
 
 /// Depths (m, row by row, 0: none) to look at.
 struct DepthView {
@@ -29,4 +29,4 @@ void disturb_silhouettes(const DepthView& exact, std::uint64_t seed, bool far_si
 void punch_holes(const DepthView& exact, const SimulatedNoiseOptions& options, std::uint64_t frame,
                  float* depth);
 
-}  // namespace palpate::sensor
+}  // namespace palpate::sim

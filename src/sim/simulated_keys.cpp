@@ -1,4 +1,4 @@
-#include "sensor/simulated_keys.hpp"
+#include "sim/simulated_keys.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/sensor/simulated_noise.hpp"
+#include "sim/simulated_noise.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "base/random.hpp"
 #include "palpate/base/error.hpp"
-#include "sensor/simulated_faults.hpp"
+#include "sim/simulated_faults.hpp"
 
 namespace palpate {
 namespace {
@@ -179,13 +179,13 @@ void SimulatedNoise::disturb_rims(int width, int height, std::uint64_t frame,
                                   std::vector<float>& depth) {
   const auto copy = [&] {
     exact_ = depth;
-    return sensor::DepthView{width, height, exact_.data()};
+    return sim::DepthView{width, height, exact_.data()};
   };
-  if (options_.curl != 0) sensor::bend_rims(copy(), options_, depth.data());
-  if (options_.mixed > 0) sensor::mix_rims(copy(), options_, depth.data());
+  if (options_.curl != 0) sim::bend_rims(copy(), options_, depth.data());
+  if (options_.mixed > 0) sim::mix_rims(copy(), options_, depth.data());
   if (options_.silhouettes) {
-    sensor::disturb_silhouettes(copy(), stream(options_.seed ^ kSilhouetteStream, frame),
-                                options_.curl != 0, depth.data());
+    sim::disturb_silhouettes(copy(), stream(options_.seed ^ kSilhouetteStream, frame),
+                             options_.curl != 0, depth.data());
   }
 }
 
@@ -226,7 +226,7 @@ void SimulatedNoise::apply(int width, int height, std::uint64_t frame, std::vect
     }
   }
   if (options_.holes > 0) {
-    sensor::punch_holes({width, height, depth.data()}, options_, frame, depth.data());
+    sim::punch_holes({width, height, depth.data()}, options_, frame, depth.data());
   }
 }
 

@@ -6,9 +6,9 @@
 
 #include "base/angle.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_camera.hpp"
-#include "palpate/sensor/simulated_scene.hpp"
-#include "sensor/simulated_keys.hpp"
+#include "sim/simulated_camera.hpp"
+#include "sim/simulated_keys.hpp"
+#include "sim/simulated_scene.hpp"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "sensor/simulated_faults.hpp"
+#include "sim/simulated_faults.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "base/random.hpp"
 
-namespace palpate::sensor {
+namespace palpate::sim {
 namespace {
 
 constexpr float kDepthJump = 0.02f;   // between pixels beside one another, m
@@ -166,4 +166,4 @@ void punch_holes(const DepthView& exact, const SimulatedNoiseOptions& options, s
   }
 }
 
-}  // namespace palpate::sensor
+}  // namespace palpate::sim

@@ -8,9 +8,9 @@
 
 #include "palpate/base/clock.hpp"
 #include "palpate/sensor/depth_camera.hpp"
-#include "palpate/sensor/simulated_depth.hpp"
-#include "palpate/sensor/simulated_noise.hpp"
-#include "palpate/sensor/simulated_scene.hpp"
+#include "sim/simulated_depth.hpp"
+#include "sim/simulated_noise.hpp"
+#include "sim/simulated_scene.hpp"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "sensor/ray_cut.hpp"
+#include "sim/ray_cut.hpp"
 
 #include <algorithm>
 #include <cmath>
