@@ -7,11 +7,11 @@
 #include <optional>
 #include <system_error>
 
+#include "base/latest.hpp"
 #include "base/requirement.hpp"
 #include "device/datagram_socket.hpp"
 #include "device/remote_protocol.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/latest.hpp"
 
 namespace palpate {
 namespace {

@@ -36,7 +36,7 @@ void check(const std::string& name, const Snapshot& snapshot) {
   }
   check_factor(name, "presence_start", snapshot.presence_start);
   check_factor(name, "presence_end", snapshot.presence_end);
-  for (const Layer& layer : snapshot.layers) {
+  for (const Snapshot::Layer& layer : snapshot.layers) {
     if (!layer.points) throw Error(fmt::format("source '{}': a layer without points", name));
     check_factor(name, "a layer's weight_start", layer.weight_start);
     check_factor(name, "a layer's weight_end", layer.weight_end);

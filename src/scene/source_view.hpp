@@ -7,7 +7,7 @@
 #include <string>
 
 #include "field/patch.hpp"
-#include "palpate/scene/snapshot.hpp"
+#include "palpate/scene/source.hpp"
 #include "scene/handoff.hpp"
 
 namespace palpate {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "palpate/geometry/shapes.hpp"
-#include "palpate/scene/snapshot.hpp"
+#include "palpate/scene/source.hpp"
 #include "scene/handoff.hpp"
 
 namespace palpate {

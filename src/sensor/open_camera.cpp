@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/sequence.hpp"
 #include "sensor/drivers.hpp"
+#include "sensor/sequence.hpp"
 #include "sim/simulated_camera.hpp"
 
 namespace palpate {

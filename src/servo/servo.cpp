@@ -6,8 +6,8 @@
 #include <mutex>
 #include <optional>
 
+#include "base/latest.hpp"
 #include "base/requirement.hpp"
-#include "palpate/base/latest.hpp"
 #include "palpate/servo/z_width.hpp"
 #include "servo/clutch.hpp"
 #include "servo/passivity.hpp"

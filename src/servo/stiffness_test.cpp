@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/latest.hpp"
 #include "base/requirement.hpp"
-#include "palpate/base/latest.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/servo/z_width.hpp"
 #include "servo/oscillation_detector.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "palpate/base/error.hpp"
-#include "palpate/viewer/viewer_options.hpp"
+#include "palpate/viewer/viewer.hpp"
 #include "viewer/messages.hpp"
 #include "viewer/session.hpp"
 

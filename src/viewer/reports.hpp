@@ -14,7 +14,7 @@
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/servo.hpp"
-#include "palpate/viewer/viewer_options.hpp"
+#include "palpate/viewer/viewer.hpp"
 #include "viewer/messages.hpp"
 
 namespace palpate::viewer {

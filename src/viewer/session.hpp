@@ -11,7 +11,7 @@
 #include <set>
 #include <string>
 
-#include "palpate/viewer/viewer_options.hpp"
+#include "palpate/viewer/viewer.hpp"
 
 namespace palpate::viewer {
 

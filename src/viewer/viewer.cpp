@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/latest.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/latest.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/shapes.hpp"
 #include "viewer/access.hpp"

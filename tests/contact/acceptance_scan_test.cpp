@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "palpate/contact/proxy.hpp"
-#include "palpate/io/read_cloud.hpp"
+#include "palpate/io/cloud_file.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/effort.hpp"
 #include "support/kind_name.hpp"

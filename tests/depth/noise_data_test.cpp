@@ -10,7 +10,7 @@
 
 #include "depth/noise_tracker.hpp"
 #include "palpate/depth/depth_filter.hpp"
-#include "palpate/io/read_cloud.hpp"
+#include "palpate/io/cloud_file.hpp"
 
 namespace palpate {
 namespace {

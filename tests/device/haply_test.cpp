@@ -8,7 +8,7 @@
 #include "device/fake_haply_service.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/device/device_profile.hpp"
+#include "palpate/device/device.hpp"
 #include "palpate/device/open_device.hpp"
 
 namespace palpate {

@@ -8,7 +8,7 @@
 
 #include "device/fault_trial.hpp"
 #include "device/openhaptics_rig.hpp"
-#include "palpate/device/device_profile.hpp"
+#include "palpate/device/device.hpp"
 
 namespace palpate {
 namespace {

@@ -12,7 +12,7 @@
 #include <numbers>
 
 #include "apps/palpate/run/exploration_plan.hpp"
-#include "palpate/io/read_cloud.hpp"
+#include "palpate/io/cloud_file.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "safety/given_energy.hpp"
 #include "support/effort.hpp"

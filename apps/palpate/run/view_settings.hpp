@@ -12,7 +12,7 @@
 #include "palpate/field/field_options.hpp"
 #include "palpate/scene/source.hpp"
 #include "palpate/servo/servo.hpp"
-#include "palpate/viewer/viewer_options.hpp"
+#include "palpate/viewer/viewer.hpp"
 
 namespace palpate::app {
 

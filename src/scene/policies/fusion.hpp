@@ -10,7 +10,6 @@
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/prepare/prepare.hpp"
-#include "palpate/scene/snapshot.hpp"
 #include "palpate/scene/source.hpp"
 #include "scene/frame_timing.hpp"
 
@@ -26,7 +25,7 @@ class LayerHistory {
   /// Fills `layers` with the newest cloud and those before it. Weights sum to 1 at every time, and
   /// under crossfade they go on from what they are at the moment's start.
   void add(std::shared_ptr<const SurfacePoints> newest, const Moment& moment,
-           std::vector<Layer>& layers);
+           std::vector<Snapshot::Layer>& layers);
 
   void forget() { layers_.clear(); }
 
@@ -38,7 +37,7 @@ class LayerHistory {
   Policy policy_;
   int history_;
   Moment last_;
-  std::vector<Layer> layers_;  // oldest first
+  std::vector<Snapshot::Layer> layers_;  // oldest first
 };
 
 /// The policy for clouds of a scene that stands still: a running mean in each voxel, over about
