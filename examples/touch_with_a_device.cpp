@@ -6,7 +6,7 @@
 
 int main(int count, char** arguments) try {
   if (count != 3) return std::puts("usage: touch_with_a_device DEVICE CLOUD");
-  palpate::SteadyWaitingClock clock;
+  palpate::SteadyClock clock;
   const auto device = palpate::open_device(arguments[1], clock);
   palpate::Scene scene;
   const auto points = scene.add("cloud", palpate::read_cloud(arguments[2])).points();

@@ -23,7 +23,7 @@ class Probe {
   [[nodiscard]] bool inside(const Eigen::Vector3d& x) noexcept { return !(sample(x).value > 0); }
 
   [[nodiscard]] const Field& field() const noexcept { return field_; }
-  [[nodiscard]] const FieldTraits& traits() const noexcept { return traits_; }
+  [[nodiscard]] const Field::Traits& traits() const noexcept { return traits_; }
 
   /// The support radius R where it was last known, m: what steps are measured in.
   [[nodiscard]] double step_length() const noexcept { return step_length_; }
@@ -39,7 +39,7 @@ class Probe {
  private:
   const Field& field_;
   const Texture& texture_;
-  FieldTraits traits_;
+  Field::Traits traits_;
   double step_length_;
   int evaluations_ = 0;
 };

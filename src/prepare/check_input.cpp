@@ -76,10 +76,12 @@ void check(const PrepareOptions& options, const PointCloud& cloud) {
   }
   require.not_negative("minimum_radius", options.minimum_radius, "give 0 or a length in metres");
   require.positive("normal_error", options.normal_error, "give an angle above 0, in radians");
-  if (options.orientation == Orientation::viewpoint && !options.viewpoint && !cloud.viewpoint) {
+  if (options.orientation == PrepareOptions::Orientation::viewpoint && !options.viewpoint &&
+      !cloud.viewpoint) {
     throw Error("normals are to point to the viewpoint, but none is known; give one");
   }
-  if (options.orientation == Orientation::given && share_given(cloud.normals) == 0) {
+  if (options.orientation == PrepareOptions::Orientation::given &&
+      share_given(cloud.normals) == 0) {
     throw Error("normals are to be as given, but the cloud has none");
   }
   if (options.viewpoint && !options.viewpoint->allFinite()) {

@@ -57,7 +57,7 @@ struct Twin {
 /// is outside: n_p, mirrored by the plane halfway between p and q, looks like n_q, as if an arc
 /// joined the two. Where the signs of nearly all points of a sheet are known, these count instead.
 /// `twins`: gets the points that lie on two sheets, in rising order.
-[[nodiscard]] PointSheets make_sheets(const SheetInput& input, const KnownSigns& known,
-                                      OwnSheets& own, std::vector<Twin>& twins);
+[[nodiscard]] SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known,
+                                                OwnSheets& own, std::vector<Twin>& twins);
 
 }  // namespace palpate

@@ -41,7 +41,8 @@ PointCloud points_of(const FilteredDepth& depth) {
   PointCloud cloud;
   cloud.viewpoint = Eigen::Vector3d::Zero();
   for (std::size_t b = 0; b < depth.size(); ++b) {
-    if (depth.states[b] != BlockState::empty) cloud.positions.push_back(depth.positions[b]);
+    if (depth.states[b] != FilteredDepth::State::empty)
+      cloud.positions.push_back(depth.positions[b]);
   }
   return cloud;
 }
@@ -207,7 +208,7 @@ void Intake::note_noise(const FilteredDepth& depth) {
   noise_ = depth.noise;
   depths_.clear();
   for (std::size_t b = 0; b < depth.size(); b += kStep) {
-    if (depth.states[b] != BlockState::empty) depths_.push_back(depth.positions[b].z());
+    if (depth.states[b] != FilteredDepth::State::empty) depths_.push_back(depth.positions[b].z());
   }
   if (depths_.empty()) return;
   const auto middle = depths_.begin() + static_cast<std::ptrdiff_t>(depths_.size() / 2);

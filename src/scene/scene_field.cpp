@@ -268,7 +268,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   return felt_surface(mean, state.soft[static_cast<std::size_t>(mean.source)]);
 }
 
-FieldTraits SceneField::traits() const noexcept {
+Field::Traits SceneField::traits() const noexcept {
   const State& state = *state_;
   const bool metaball = options_.kind == FieldKind::metaball;
   // One finely sampled spot must not make sweeps fine everywhere.

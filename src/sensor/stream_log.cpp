@@ -11,17 +11,17 @@
 
 namespace palpate {
 
-std::string_view name_of(StreamPhase phase) noexcept {
+std::string_view name_of(StreamState::Phase phase) noexcept {
   switch (phase) {
-    case StreamPhase::starting:
+    case StreamState::Phase::starting:
       return "starting";
-    case StreamPhase::running:
+    case StreamState::Phase::running:
       return "running";
-    case StreamPhase::stalled:
+    case StreamState::Phase::stalled:
       return "stalled";
-    case StreamPhase::failed:
+    case StreamState::Phase::failed:
       return "failed";
-    case StreamPhase::ended:
+    case StreamState::Phase::ended:
       break;
   }
   return "ended";
@@ -79,7 +79,7 @@ void StreamLog::came(double now, const std::optional<Objection>& objection,
   }
   useful_ = now;
   told_ = false;
-  state_.phase = StreamPhase::running;
+  state_.phase = StreamState::Phase::running;
 }
 
 void StreamLog::overtaken() {
@@ -106,7 +106,7 @@ void StreamLog::failed(double now, const std::string& why, bool repeatedly) {
   const std::lock_guard lock(mutex_);
   ++state_.failures;
   failing_ = repeatedly;
-  if (repeatedly) state_.phase = StreamPhase::failed;
+  if (repeatedly) state_.phase = StreamState::Phase::failed;
   note(now, why.empty() ? "it failed without a reason" : why);
 }
 
@@ -117,7 +117,7 @@ void StreamLog::retried() {
 
 void StreamLog::ended() {
   const std::lock_guard lock(mutex_);
-  state_.phase = StreamPhase::ended;
+  state_.phase = StreamState::Phase::ended;
 }
 
 void StreamLog::waiting(double now) {
@@ -132,9 +132,10 @@ void StreamLog::remark(double now, const std::string& what) {
 }
 
 void StreamLog::look(double now) {
-  const bool over = state_.phase == StreamPhase::stalled || state_.phase == StreamPhase::ended;
+  const bool over =
+      state_.phase == StreamState::Phase::stalled || state_.phase == StreamState::Phase::ended;
   if (over || failing_ || now - useful_ <= stall_) return;
-  state_.phase = StreamPhase::stalled;
+  state_.phase = StreamState::Phase::stalled;
   if (std::exchange(told_, true)) return;
   ++state_.stalls;
   note(now, objection_.empty() ? fmt::format("no frame for {:.3g} s", now - useful_)
@@ -151,7 +152,7 @@ StreamState StreamLog::state(double now) {
   const std::lock_guard lock(mutex_);
   look(now);
   StreamState state = state_;
-  const bool over = state_.phase == StreamPhase::ended;
+  const bool over = state_.phase == StreamState::Phase::ended;
   const double interval = over ? interval_ : std::max(interval_, now - state_.last_frame);
   state.rate = state_.frames > 1 && interval > 0 ? 1 / interval : 0;
   return state;

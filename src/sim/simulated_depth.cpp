@@ -80,7 +80,7 @@ using Eigen::Vector3d;
 constexpr int kUndistortSteps = 50;
 constexpr double kUndistorted = 1e-12;  // error of a ray, of a unit of depth
 
-Vector2d distorted(const Distortion& d, const Vector2d& p) {
+Vector2d distorted(const CameraModel::Distortion& d, const Vector2d& p) {
   const double x = p.x();
   const double y = p.y();
   const double r2 = x * x + y * y;
@@ -90,7 +90,7 @@ Vector2d distorted(const Distortion& d, const Vector2d& p) {
 }
 
 // A fixed point: what distortion adds is small and changes slowly.
-Vector2d undistorted(const Distortion& d, const Vector2d& image) {
+Vector2d undistorted(const CameraModel::Distortion& d, const Vector2d& image) {
   Vector2d p = image;
   for (int i = 0; i < kUndistortSteps; ++i) {
     const Vector2d error = distorted(d, p) - image;

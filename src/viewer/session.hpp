@@ -102,7 +102,7 @@ constexpr std::uint16_t kTryAgainLater = 1013;
 
 /// One socket, as those who know nothing of sockets see it.
 struct Session {
-  Session(const ViewerLimits& limits, double time)
+  Session(const ViewerOptions::Limits& limits, double time)
       : opened(time),
         messages(limits.messages, 1),
         refusals(limits.refusals - 1, limits.refusal_time) {}

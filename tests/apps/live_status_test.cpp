@@ -29,7 +29,7 @@ LiveMoment second() {
   hand.lateness = lateness;
   StreamState stream;
   stream.source = "table";
-  stream.phase = StreamPhase::running;
+  stream.phase = StreamState::Phase::running;
   stream.rate = 29.97;
   stream.latency_mean = 11.4e-3;
   moment.streams = {stream};
@@ -51,7 +51,7 @@ TEST(LiveStatus, TellsPaceForceAndStreamsInOneLine) {
 TEST(LiveStatus, TellsWhatIsWrong) {
   LiveMoment moment = second();
   moment.hands[0].servo.guard.fault = GuardFault::hand;
-  moment.streams[0].phase = StreamPhase::stalled;
+  moment.streams[0].phase = StreamState::Phase::stalled;
   moment.streams[0].drops.overtaken = 2;
   moment.streams[0].drops.late = 1;
   StreamState other;
@@ -62,8 +62,8 @@ TEST(LiveStatus, TellsWhatIsWrong) {
        {"FAULT: the device told", "table STALLED", "3 dropped", "side waiting"}) {
     EXPECT_TRUE(contains(words, part)) << part << " in " << words;
   }
-  moment.streams[0].phase = StreamPhase::failed;
-  moment.streams[1].phase = StreamPhase::ended;
+  moment.streams[0].phase = StreamState::Phase::failed;
+  moment.streams[1].phase = StreamState::Phase::ended;
   words = in_words(moment);
   EXPECT_TRUE(contains(words, "table FAILED"));
   EXPECT_TRUE(contains(words, "side ended"));

@@ -150,7 +150,7 @@ TEST_F(Haply, AnswerThatComesLateMeetsNoForce) {
 }
 
 TEST_F(Haply, IsLostAndComesBackBehindTheServosThread) {
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   const auto device = open_device(name(), clock, {.retry_interval = 0.01});
   const auto step_until = [&](DeviceStatus wanted) {
     while (device->read().status != wanted) {

@@ -216,7 +216,7 @@ TEST_F(OpenHapticsFaults, ASchedulerThatHangsIsGivenUpAndComesBack) {
 
 // With the thread of ThreadedDevice and the scheduler's, in real time; no deadline.
 TEST_F(OpenHaptics, ThreadsExchangeWithoutARace) {
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   ThreadedDevice device(
       [&clock] {
         return std::make_unique<OpenHapticsDriver>(device::parse_device_name(kTouch), clock);

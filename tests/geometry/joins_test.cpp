@@ -10,6 +10,7 @@
 
 #include "base/cpu.hpp"
 #include "field/density.hpp"
+#include "field/formulas.hpp"
 #include "geometry/clouds.hpp"
 #include "geometry/neighborhoods.hpp"
 #include "geometry/weight_sums.hpp"

@@ -163,8 +163,8 @@ TEST(ServoThread, RefusesRatesThatNoServoHas) {
   EXPECT_THROW(ServoThread(servo, clock, modest()), Error) << "too slow to feel anything by";
 }
 
-TEST(SteadyWaitingClock, WaitsAndNeverWakesEarly) {
-  SteadyWaitingClock clock;
+TEST(SteadyClock, WaitsAndNeverWakesEarly) {
+  SteadyClock clock;
   EXPECT_NEAR(clock.now(), SteadyClock().now(), 60) << "the same time of day";
   const double start = clock.now();
   clock.wait_until(start + 2e-3);

@@ -74,7 +74,7 @@ fs::path share() {
 }
 
 void keep_time(double seconds, RealtimeTrial& trial) {
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   Durations lateness;
   const double start = clock.now();
   Deadlines deadlines(start, kJitterPeriod);

@@ -34,16 +34,16 @@ SurfacePlan surface_of(const TouchChoices& choices) {
   surface.field = field_of(choices);
   Friction& friction = surface.proxy.friction;
   friction.static_coefficient = choices.friction_static.value_or(friction.dynamic_coefficient);
-  if (surface.paper) surface.proxy.method = ProxyMethod::single_step;
+  if (surface.paper) surface.proxy.method = ProxyOptions::Method::single_step;
   return surface;
 }
 
 void check_surface(const TouchChoices& choices, const SurfacePlan& surface) {
   const bool metaball = surface.field.kind == FieldKind::metaball;
-  require(metaball || choices.gradient != GradientKind::printed,
+  require(metaball || choices.gradient != FieldOptions::Gradient::printed,
           "--gradient printed is eq. (4) of the metaball; add --field metaball");
   require(
-      !metaball || choices.gradient != GradientKind::normal,
+      !metaball || choices.gradient != FieldOptions::Gradient::normal,
       "--gradient normal needs normals, which a metaball does without; give --field pointset or "
       "balanced");
   require(!surface.paper || surface.field.tool_radius == 0,

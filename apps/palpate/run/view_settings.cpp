@@ -37,7 +37,7 @@ Setting choice(const char* key, const char* label, std::vector<std::string> choi
   Setting setting;
   setting.key = key;
   setting.label = label;
-  setting.kind = SettingKind::choice;
+  setting.kind = Setting::Kind::choice;
   setting.choices = std::move(choices);
   setting.value = std::string(value);
   return setting;
@@ -133,7 +133,7 @@ ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other) 
   return settings;
 }
 
-void set(ViewSettings& settings, const std::string& key, const SettingValue& value) {
+void set(ViewSettings& settings, const std::string& key, const Setting::Value& value) {
   if (key == "field") {
     settings.field = other_kind(settings.field, *choice_of(kFields, std::get<std::string>(value)));
   } else if (key == "policy") {

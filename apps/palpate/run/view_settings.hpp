@@ -46,7 +46,7 @@ struct ViewScope {
 [[nodiscard]] ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other);
 
 /// @throws Error when there is no such key.
-void set(ViewSettings& settings, const std::string& key, const SettingValue& value);
+void set(ViewSettings& settings, const std::string& key, const Setting::Value& value);
 
 /// The names that preset() knows.
 [[nodiscard]] std::vector<std::string> preset_names();

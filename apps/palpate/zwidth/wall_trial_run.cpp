@@ -133,7 +133,7 @@ void run_wall_trial(const WallTrialRunOptions& options) {
   ask(options);
   std::optional<OutputFile> json;
   if (!options.json.empty()) json.emplace(options.json);
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   const Interruption interruption;
   ThreadedDeviceOptions link;
   link.begin = [] { static_cast<void>(make_realtime({})); };

@@ -49,12 +49,6 @@ struct Contact {
   ContactNote notes = ContactNote::none;
 };
 
-/// How the proxy follows the hand along the surface.
-enum class ProxyMethod {
-  converged,    ///< to the closest point in every step (docs/method.md 3.3)
-  single_step,  ///< one tangent-plane step a tick (Salisbury and Tarr 1997; the paper)
-};
-
 /// A cone on the proxy, with a viscous term that is implicit in time (docs/method.md 4.1).
 struct Friction {
   double static_coefficient = 0;   ///< mu_s; at least mu_d
@@ -72,10 +66,16 @@ struct Texture {
 };
 
 struct ProxyOptions {
+  /// How the proxy follows the hand along the surface.
+  enum class Method {
+    converged,    ///< to the closest point in every step (docs/method.md 3.3)
+    single_step,  ///< one tangent-plane step a tick (Salisbury and Tarr 1997; the paper)
+  };
+
   double stiffness = 500;  ///< K, N/m
   Friction friction = {};
   Texture texture = {};
-  ProxyMethod method = ProxyMethod::converged;
+  Method method = Method::converged;
   int max_iterations = 20;  ///< constrained sub-steps a step; 1 to 1000
   double tangent_tolerance =
       1e-3;  ///< closest-point iteration stops below this many R; 1e-6 to 0.1

@@ -71,22 +71,22 @@ struct GuardInput {
   GuardFault fault = GuardFault::none;  ///< known already
 };
 
-/// How often each link stepped in, since construction.
-struct GuardCounts {
-  std::uint64_t steps = 0;
-  std::uint64_t slewed = 0;
-  std::uint64_t clamped = 0;
-  std::uint64_t silences = 0;
-  std::uint64_t faults = 0;  ///< times that one was latched, not steps spent in it
-  std::uint64_t braked = 0;
-  std::uint64_t starting = 0;
-  std::uint64_t softened = 0;
-};
-
 struct GuardState {
+  /// How often each link stepped in, since construction.
+  struct Counts {
+    std::uint64_t steps = 0;
+    std::uint64_t slewed = 0;
+    std::uint64_t clamped = 0;
+    std::uint64_t silences = 0;
+    std::uint64_t faults = 0;  ///< times that one was latched, not steps spent in it
+    std::uint64_t braked = 0;
+    std::uint64_t starting = 0;
+    std::uint64_t softened = 0;
+  };
+
   GuardNote notes = GuardNote::none;  ///< of the last step
   GuardFault fault = GuardFault::none;
-  GuardCounts counts;
+  Counts counts;
   /// Of the passivity ledger, J: above zero was given to the hand. Work in the world, which is
   /// Workspace::scale times that on the hand.
   double energy = 0;

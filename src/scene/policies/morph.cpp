@@ -263,14 +263,14 @@ PointState Morph::old_point(std::uint32_t i) const {
           fades ? between(p.presences[i], p.end_presences[i]) : 1.0f};
 }
 
-EdgePlane Morph::old_edge(std::uint32_t i) const {
+SurfacePoints::EdgePlane Morph::old_edge(std::uint32_t i) const {
   return edge_now({.points = last_.get(), .progress = std::min(progress_, 1.0)}, i);
 }
 
 /// Of what the block shows that is looked at.
-EdgePlane Morph::new_edge(const Point& point) const {
+SurfacePoints::EdgePlane Morph::new_edge(const Point& point) const {
   if (point.edge == kNone) return {};
-  const EdgePlane& edge = edges_.plane(point.edge);
+  const SurfacePoints::EdgePlane& edge = edges_.plane(point.edge);
   return {turn_ * edge.normal, edge.height, edge.share};
 }
 

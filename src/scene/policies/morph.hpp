@@ -163,8 +163,8 @@ class Morph {
   [[nodiscard]] Way leave(std::uint32_t i) const;
   static void leave(Way& way);
   void add(Way way, const Point& at, Piece& to) const;
-  [[nodiscard]] EdgePlane old_edge(std::uint32_t i) const;
-  [[nodiscard]] EdgePlane new_edge(const Point& point) const;
+  [[nodiscard]] SurfacePoints::EdgePlane old_edge(std::uint32_t i) const;
+  [[nodiscard]] SurfacePoints::EdgePlane new_edge(const Point& point) const;
 
   MorphOptions options_;
   BlockOrder order_;

@@ -66,7 +66,7 @@ void PointWriter::write(std::size_t at, const Way& way, Extremes& extremes) {
   p.end_radii[at] = way.to.radius;
   p.end_confidences[at] = way.to.confidence;
   p.end_presences[at] = way.to.presence;
-  p.edges.of_point[at] = PointEdges::kNone;
+  p.edges.of_point[at] = SurfacePoints::Edges::kNone;
   extremes.add({Floats{} + std::min(way.from.radius, way.to.radius),
                 Floats{} + std::min(way.from.presence, way.to.presence)});
 }
@@ -94,10 +94,10 @@ void PointWriter::write(std::size_t at, const std::uint32_t* codes, const PointS
 /// Where there is none, there is the other end's plane.
 void PointWriter::add_edge(std::size_t at, const EdgeWay& edge) {
   if (edge.start.share == 0 && edge.end.share == 0) return;
-  PointEdges& edges = points_->edges;
+  SurfacePoints::Edges& edges = points_->edges;
   edges.of_point[at] = static_cast<std::uint32_t>(edges.start.size());
-  const EdgePlane& start = edge.start.share != 0 ? edge.start : edge.end;
-  const EdgePlane& end = edge.end.share != 0 ? edge.end : edge.start;
+  const SurfacePoints::EdgePlane& start = edge.start.share != 0 ? edge.start : edge.end;
+  const SurfacePoints::EdgePlane& end = edge.end.share != 0 ? edge.end : edge.start;
   edges.start.push_back({start.normal, start.height, edge.start.share});
   edges.end.push_back({end.normal, end.height, edge.end.share});
 }

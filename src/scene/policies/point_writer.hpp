@@ -30,8 +30,8 @@ struct PointStates {
 
 /// What a point meets at either end of its way; share 0: no edge.
 struct EdgeWay {
-  EdgePlane start;
-  EdgePlane end;
+  SurfacePoints::EdgePlane start;
+  SurfacePoints::EdgePlane end;
 };
 
 /// Of a point while a snapshot lasts.
