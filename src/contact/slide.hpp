@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "contact/friction.hpp"
 #include "contact/probe.hpp"
 #include "palpate/contact/proxy.hpp"
 

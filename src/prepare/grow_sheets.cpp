@@ -9,7 +9,7 @@
 
 #include "field/formulas.hpp"
 #include "geometry/neighborhoods.hpp"
-#include "geometry/signed_sets.hpp"
+#include "prepare/sheets.hpp"
 #include "prepare/snapping.hpp"
 
 namespace palpate {

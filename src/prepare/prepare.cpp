@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "field/density.hpp"
 #include "geometry/normals.hpp"
 #include "geometry/weight_sums.hpp"
 #include "palpate/base/error.hpp"

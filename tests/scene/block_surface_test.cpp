@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "field/density.hpp"
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/geometry/cell_grid.hpp"
+#include "prepare/radii.hpp"
 #include "support/depth_frames.hpp"
 
 namespace palpate {
