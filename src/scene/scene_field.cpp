@@ -82,7 +82,7 @@ struct SceneField::State {
   ImplicitSurface surface;
   std::shared_ptr<std::atomic<int>> fields;  // of the scene
   std::deque<SourceView> views;
-  std::vector<ReachBoard*> boards;  // of the views' sources
+  std::vector<ReachTable*> boards;  // of the views' sources
   ToolReach reach;
   std::vector<SoftMaterial> soft;
   std::array<ActiveLayer, Scene::kMaxSources * Snapshot::kMaxLayers> layers;

@@ -79,7 +79,7 @@ Source::Source(std::string name, const SourceOptions& options)
   inside_->pose = options.T_world_sensor;
   check_factor(inside_->name, "soft.stiffness_factor", options.soft.stiffness_factor);
   check_factor(inside_->name, "soft.friction_factor", options.soft.friction_factor);
-  named(inside_->name, [&] { inside_->intake = std::make_unique<Intake>(options); });
+  named(inside_->name, [&] { inside_->builder = std::make_unique<SnapshotBuilder>(options); });
 }
 
 Source::~Source() = default;
@@ -94,8 +94,8 @@ SourceOptions Source::options() const {
 }
 
 void Source::change(const SourceOptions& options) {
-  std::unique_ptr<Intake> changed;
-  named(inside_->name, [&] { changed = std::make_unique<Intake>(options); });
+  std::unique_ptr<SnapshotBuilder> changed;
+  named(inside_->name, [&] { changed = std::make_unique<SnapshotBuilder>(options); });
   const std::lock_guard lock(inside_->mutex);
   inside_->changed = std::move(changed);
   inside_->options.prepare = options.prepare;
@@ -106,7 +106,7 @@ void Source::change(const SourceOptions& options) {
 
 void Source::Inside::take_change() {
   const std::lock_guard lock(mutex);
-  if (changed) intake = std::move(changed);
+  if (changed) builder = std::move(changed);
 }
 
 PrepareReport Source::report() const {
@@ -156,12 +156,12 @@ void Source::set(const DepthFrame& frame) {
   auto snapshot = std::make_shared<Snapshot>();
   named(inside_->name, [&] {
     check_pose(stand);
-    Intake intake(whole);
-    snapshot->layers = intake.take(frame, {stand, {}, at_once})->layers;
+    SnapshotBuilder builder(whole);
+    snapshot->layers = builder.take(frame, {stand, {}, at_once})->layers;
     const std::lock_guard lock(inside_->mutex);
     inside_->state = {};
     inside_->note(*snapshot);
-    inside_->note(intake);
+    inside_->note(builder);
   });
   publish(std::move(snapshot));
 }
@@ -173,10 +173,10 @@ bool Source::push(const DepthFrame& frame, const StartTime& start) {
   named(inside_->name, [&] {
     const Eigen::Isometry3d pose_now = frame.T_world_sensor ? *frame.T_world_sensor : pose();
     if (frame.T_world_sensor) check_pose(pose_now);
-    inside_->hand_over(*this, inside_->intake->take(frame, {pose_now, inside_->found, start}));
+    inside_->hand_over(*this, inside_->builder->take(frame, {pose_now, inside_->found, start}));
   });
   const std::lock_guard lock(inside_->mutex);
-  inside_->note(*inside_->intake);
+  inside_->note(*inside_->builder);
   return true;
 }
 
@@ -187,7 +187,7 @@ bool Source::push(const PointCloud& cloud, double stamp, const StartTime& start)
   PrepareReport report;
   named(inside_->name, [&] {
     inside_->hand_over(
-        *this, inside_->intake->take(cloud, stamp, {pose(), inside_->found, start}, report));
+        *this, inside_->builder->take(cloud, stamp, {pose(), inside_->found, start}, report));
   });
   const std::lock_guard lock(inside_->mutex);
   inside_->report = report;
@@ -198,7 +198,7 @@ void Source::keep() {
   const Snapshot* newest = inside_->handoff.peek();  // nobody else publishes, so nobody frees it
   if (newest == nullptr) return;
   std::shared_ptr<Snapshot> kept =
-      inside_->room_for(false) ? inside_->intake->last_of_frames(*newest) : nullptr;
+      inside_->room_for(false) ? inside_->builder->last_of_frames(*newest) : nullptr;
   if (!kept) kept = std::make_shared<Snapshot>(*newest);
   kept->silent_from = std::numeric_limits<double>::infinity();
   {
@@ -211,7 +211,7 @@ void Source::keep() {
 
 /// May one more snapshot be made? If not, says whom it waits for.
 bool Source::Inside::room_for(bool clouds) {
-  const std::size_t most = intake->most_snapshots(clouds, handoff.readers());
+  const std::size_t most = builder->most_snapshots(clouds, handoff.readers());
   if (handoff.alive() < most) return true;
   handoff.sweep();
   if (handoff.alive() < most) return true;
@@ -239,7 +239,7 @@ void Source::Inside::compare(const Source& source) {
 void Source::Inside::note(const Snapshot& snapshot) {
   points = snapshot.layers.back().points;
   ++state.frames;
-  state.interval = state.frames > 1 ? intake->interval() : 0;
+  state.interval = state.frames > 1 ? builder->interval() : 0;
   state.latency = snapshot.start - snapshot.stamp;
   state.stamp = snapshot.stamp;
   state.points = points->size();
@@ -247,7 +247,7 @@ void Source::Inside::note(const Snapshot& snapshot) {
   state.fade = snapshot.fade;
 }
 
-void Source::Inside::note(const Intake& made) {
+void Source::Inside::note(const SnapshotBuilder& made) {
   state.depth = made.median_depth();
   state.noise = made.noise().sigma(state.depth);
   state.correlation = made.noise().correlation;

@@ -19,11 +19,11 @@ using Reach = Ball;
 
 /// Where fields write their reach, each in a place of its own, and preparation reads it. Without
 /// locks: a version that is odd while a place is being written tells who reads to look again.
-class ReachBoard {
+class ReachTable {
  public:
   static constexpr std::size_t kPlaces = Handoff<Snapshot>::kReaders;
 
-  ReachBoard() {
+  ReachTable() {
     for (std::size_t i = 0; i < kPlaces; ++i) clear(i);
   }
 

@@ -95,7 +95,7 @@ struct Servo::Inside {
         wanted_field(options.field) {}
 
   void step(const DeviceState& read, double now) noexcept;
-  void take_wishes() noexcept;
+  void apply_pending() noexcept;
   void place_tool(const DeviceState& read) noexcept;
   [[nodiscard]] bool is_clutched(std::uint32_t buttons) const noexcept;
   [[nodiscard]] Vector3d guarded() noexcept;
@@ -112,15 +112,15 @@ struct Servo::Inside {
   ServoState state;                  // of the stepping thread; the others see what was shown
   bool started = false;
   bool heard = false;  // the device has known where the hand is
-  std::uint64_t feel_seen = 0;
+  std::uint64_t contact_seen = 0;
   std::uint64_t field_seen = 0;
 
   Latest<ServoState> shown;
   RecentForces recent_forces;
   Histogram lateness;
   Histogram computing;
-  std::mutex wish_mutex;  // between those who change what is felt; the step never takes it
-  Latest<Feel> feel;
+  std::mutex pending_mutex;  // between those who change what is felt; the step never takes it
+  Latest<ContactSettings> wanted_contact;
   Latest<FieldOptions> wanted_field;
   std::atomic<bool> paused{false};
   std::atomic<bool> reset{false};
@@ -157,7 +157,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   state.time = now;
   hand = options.workspace.position_to_world(read.position);
   heard = heard || read.status != DeviceStatus::silent;
-  take_wishes();
+  apply_pending();
   place_tool(read);
   field.update(now, state.hip, started ? proxy.position() : state.hip);
   started = true;
@@ -188,14 +188,14 @@ bool Servo::Inside::is_clutched(std::uint32_t buttons) const noexcept {
          ((buttons >> *options.clutch_button) & 1u) != 0;
 }
 
-void Servo::Inside::take_wishes() noexcept {
+void Servo::Inside::apply_pending() noexcept {
   state.paused = paused.load();
   if (reset.exchange(false) || !heard) {
     clutch = {};
     proxy.reset(hand);
     guard.reset();
   }
-  if (const std::optional<Feel> wanted = news(feel, feel_seen)) {
+  if (const std::optional<ContactSettings> wanted = news(wanted_contact, contact_seen)) {
     is_softened = wanted->stiffness > stiffness_limit;
     proxy.change(std::min(wanted->stiffness, stiffness_limit), wanted->friction, wanted->texture);
   }
@@ -278,19 +278,19 @@ void Servo::reset() noexcept {
   inside_->reset.store(true);
 }
 
-void Servo::set_feel(const Feel& feel) {
+void Servo::set_contact(const ContactSettings& contact) {
   ProxyOptions checked = inside_->options.proxy;
-  checked.stiffness = feel.stiffness;
-  checked.friction = feel.friction;
-  checked.texture = feel.texture;
+  checked.stiffness = contact.stiffness;
+  checked.friction = contact.friction;
+  checked.texture = contact.texture;
   static_cast<void>(Proxy(checked));  // throws what is out of range
-  const std::lock_guard lock(inside_->wish_mutex);
-  inside_->feel.set(feel);
+  const std::lock_guard lock(inside_->pending_mutex);
+  inside_->wanted_contact.set(contact);
 }
 
 void Servo::set_field(const FieldOptions& field) {
   check(field);
-  const std::lock_guard lock(inside_->wish_mutex);
+  const std::lock_guard lock(inside_->pending_mutex);
   inside_->wanted_field.set(field);
 }
 

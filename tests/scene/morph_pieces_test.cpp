@@ -43,7 +43,7 @@ Shown show(const std::vector<FilteredDepth>& frames) {
   Shown last;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const MorphInput input{.depth = frames[k], .pinhole = {}, .everywhere = false};
-    const Moment moment{frames[k].stamp, 0.7 * static_cast<double>(k) * kFrame, kFrame};
+    const FrameTiming moment{frames[k].stamp, 0.7 * static_cast<double>(k) * kFrame, kFrame};
     auto points = std::make_shared<SurfacePoints>();
     morph.look(input);
     morph.fill(input, moment, points);

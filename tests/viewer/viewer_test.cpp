@@ -126,7 +126,7 @@ TEST(Viewer, TellsThatAStiffnessWaitsForMotion) {
   auto client = rig.enter();
   const Frame before = client->receive_until([](const Frame& f) { return f.binary(1); });
   EXPECT_EQ(test::u32(before.payload, 4) & 256, 0u);
-  rig.servo->set_feel({.stiffness = 2000});
+  rig.servo->set_contact({.stiffness = 2000});
   rig.press(0.021);
   client->receive_until(
       [](const Frame& f) { return f.binary(1) && (test::u32(f.payload, 4) & 256) != 0; });

@@ -19,7 +19,7 @@ namespace palpate::app {
 /// What a viewer's page may change while the tool feels.
 struct ViewSettings {
   FieldOptions field;
-  Feel feel;
+  ContactSettings feel;
   std::optional<Policy> policy;  ///< unset: as each kind of source has it
   int history = 4;
   double smoothing = 1;         ///< of what the noise asks for: windows and radii grow with it

@@ -163,7 +163,7 @@ struct View::Parts {
   void apply(const ViewSettings& wanted) {
     check(wanted.field);  // before anything changes
     for (Servo* servo : servos) {
-      servo->set_feel(wanted.feel);
+      servo->set_contact(wanted.feel);
       servo->set_field(wanted.field);
     }
     const std::lock_guard lock(settings_mutex);

@@ -114,7 +114,7 @@ struct ServoOptions {
 };
 
 /// What may change while a servo runs.
-struct Feel {
+struct ContactSettings {
   double stiffness = 500;  ///< K, N/m
   Friction friction = {};
   Texture texture = {};
@@ -189,7 +189,7 @@ class Servo {
   /// Changes what is felt from the next step on. In contact, stiffness changes as the energy
   /// tank allows (docs/method.md 3.5): the hand is given no energy. Any thread; not real-time.
   /// @throws Error when a value is out of its range.
-  void set_feel(const Feel& feel);
+  void set_contact(const ContactSettings& contact);
 
   /// Makes another surface of the same points from the next step on; the guard sees to it that the
   /// force goes there softly. Any thread; not real-time.

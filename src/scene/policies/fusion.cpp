@@ -17,7 +17,7 @@ constexpr double kNoWeight = 1e-9;
 
 }  // namespace
 
-void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const Moment& moment,
+void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const FrameTiming& moment,
                        std::vector<Snapshot::Layer>& layers) {
   age(moment);
   layers_.push_back({std::move(newest), 0, 0});
@@ -30,7 +30,7 @@ void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const Moment
 }
 
 /// Weights as they are at the new start; what has faded away is dropped.
-void LayerHistory::age(const Moment& moment) {
+void LayerHistory::age(const FrameTiming& moment) {
   const double u = progress(last_, moment.start);
   for (Snapshot::Layer& layer : layers_) {
     layer.weight_start += u * (layer.weight_end - layer.weight_start);
@@ -98,7 +98,7 @@ void Fusion::add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_senso
   prepared_ = prepare(means(), options);
 }
 
-SurfacePoints Fusion::surface(const Moment& moment) {
+SurfacePoints Fusion::surface(const FrameTiming& moment) {
   age(moment);
   last_ = moment;
   show();
@@ -125,7 +125,7 @@ void Fusion::choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_wor
 }
 
 /// Brings what is shown to the new start.
-void Fusion::age(const Moment& moment) {
+void Fusion::age(const FrameTiming& moment) {
   const auto u = static_cast<float>(progress(last_, moment.start));
   const auto between = [u](const auto& a, const auto& b) { return a + u * (b - a); };
   for (auto& [key, voxel] : voxels_) {

@@ -42,7 +42,7 @@ void Morph::forget() {
   entries_.clear();
 }
 
-void Morph::fill_still(const MorphInput& input, const Moment& moment,
+void Morph::fill_still(const MorphInput& input, const FrameTiming& moment,
                        const std::shared_ptr<SurfacePoints>& points) {
   forget();
   still_ = true;
@@ -68,7 +68,7 @@ void Morph::look(const MorphInput& input) {
   edges_.look(depth, surface_);
 }
 
-void Morph::fill(const MorphInput& input, const Moment& moment,
+void Morph::fill(const MorphInput& input, const FrameTiming& moment,
                  const std::shared_ptr<SurfacePoints>& points) {
   start(input, moment, *points);
   if (moved_) follow_camera(input);
@@ -179,7 +179,7 @@ void Morph::write_unseen() {
   }
 }
 
-void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& points) {
+void Morph::start(const MorphInput& input, const FrameTiming& moment, SurfacePoints& points) {
   const FilteredDepth& depth = input.depth;
   const Eigen::Isometry3d& T_world_sensor = depth.T_world_sensor;
   const bool far = (T_world_sensor.translation() - origin_).norm() > kFarFromOrigin;

@@ -54,11 +54,11 @@ class Morph {
 
   /// The rest: fills `points`, keeping it as what the next frame starts from. Allocates only to
   /// grow.
-  void fill(const MorphInput& input, const Moment& moment,
+  void fill(const MorphInput& input, const FrameTiming& moment,
             const std::shared_ptr<SurfacePoints>& points);
 
   /// Likewise, with nothing before the frame and no motion.
-  void fill_still(const MorphInput& input, const Moment& moment,
+  void fill_still(const MorphInput& input, const FrameTiming& moment,
                   const std::shared_ptr<SurfacePoints>& points);
 
   /// There is no surface any more.
@@ -115,7 +115,7 @@ class Morph {
     PointWriter::Extremes extremes;
   };
 
-  void start(const MorphInput& input, const Moment& moment, SurfacePoints& points);
+  void start(const MorphInput& input, const FrameTiming& moment, SurfacePoints& points);
   void measure(const MorphInput& input);
   void follow_camera(const MorphInput& input);
   void settle(const FilteredDepth& depth, std::size_t begin, std::size_t end);
@@ -174,14 +174,14 @@ class Morph {
 
   // What was shown last.
   std::shared_ptr<const SurfacePoints> last_;
-  Moment last_moment_;
+  FrameTiming last_moment_;
   std::vector<Entry> entries_;  // of its points
   BlockEntries by_block_;
   std::vector<std::uint32_t> place_of_block_;
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
 
   // What is being made.
-  Moment moment_;
+  FrameTiming moment_;
   float comes_ = 1;       // presence that what is seen gains
   float doubt_ = 1;       // by which variances of what is known grow
   bool ends_ = false;     // no frame follows

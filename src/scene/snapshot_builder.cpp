@@ -1,4 +1,4 @@
-#include "scene/intake.hpp"
+#include "scene/snapshot_builder.hpp"
 
 #include <fmt/core.h>
 
@@ -54,7 +54,7 @@ double time_of(const char* what, double time) {
 
 }  // namespace
 
-Intake::Intake(const SourceOptions& options)
+SnapshotBuilder::SnapshotBuilder(const SourceOptions& options)
     : options_((check(options), options)),
       frames_(options.policy.policy.value_or(kDepthPolicy)),
       clouds_(options.policy.policy.value_or(kCloudPolicy)),
@@ -69,13 +69,14 @@ Intake::Intake(const SourceOptions& options)
   last_.presence_end = 0;  // there is none
 }
 
-std::size_t Intake::most_snapshots(bool clouds, std::size_t fields) const {
+std::size_t SnapshotBuilder::most_snapshots(bool clouds, std::size_t fields) const {
   const Policy policy = clouds ? clouds_ : frames_;
   const bool weighs = policy == Policy::average || policy == Policy::crossfade;
   return (weighs ? static_cast<std::size_t>(options_.policy.history) : 1) + 2 + fields;
 }
 
-std::shared_ptr<const Snapshot> Intake::take(const DepthFrame& frame, const Arrival& arrival) {
+std::shared_ptr<const Snapshot> SnapshotBuilder::take(const DepthFrame& frame,
+                                                      const Arrival& arrival) {
   time_of("stamp", frame.stamp);
   const bool everywhere = options_.policy.fit_everywhere;
   const FilteredDepth& depth = everywhere
@@ -84,12 +85,12 @@ std::shared_ptr<const Snapshot> Intake::take(const DepthFrame& frame, const Arri
   note_noise(depth);
   if (frames_ == Policy::fusion) {
     fusion_.add(points_of(depth), arrival.T_world_sensor);
-    return fused(next_moment(frame.stamp, arrival.start));
+    return fused(next_timing(frame.stamp, arrival.start));
   }
   pinhole_ = frame.camera.pinhole;
   const MorphInput input{depth, pinhole_, arrival.reach, everywhere};
   morph_.look(input);
-  const Moment moment = next_moment(frame.stamp, arrival.start);
+  const FrameTiming moment = next_timing(frame.stamp, arrival.start);
   if (frames_ == Policy::morph) return morphed(input, moment);
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, frames_);
   std::shared_ptr<SurfacePoints> points = points_.take();
@@ -98,7 +99,8 @@ std::shared_ptr<const Snapshot> Intake::take(const DepthFrame& frame, const Arri
   return snapshot;
 }
 
-std::shared_ptr<Snapshot> Intake::morphed(const MorphInput& input, const Moment& moment) {
+std::shared_ptr<Snapshot> SnapshotBuilder::morphed(const MorphInput& input,
+                                                   const FrameTiming& moment) {
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, Policy::morph);
   std::shared_ptr<SurfacePoints> points = points_.take();
   morph_.fill(input, moment, points);
@@ -106,7 +108,7 @@ std::shared_ptr<Snapshot> Intake::morphed(const MorphInput& input, const Moment&
   return snapshot;
 }
 
-std::shared_ptr<Snapshot> Intake::last_of_frames(const Snapshot& newest) {
+std::shared_ptr<Snapshot> SnapshotBuilder::last_of_frames(const Snapshot& newest) {
   constexpr double kLeast = 0.1;  // s, in which a surface goes to where the fit has it
   const bool own = newest.sequence > 0 && newest.sequence == last_.sequence;
   if (frames_ != Policy::morph || !own) return nullptr;
@@ -117,8 +119,9 @@ std::shared_ptr<Snapshot> Intake::last_of_frames(const Snapshot& newest) {
   return morphed(input, {last_.stamp, last_.end, std::max(kLeast, last_.end - last_.start)});
 }
 
-std::shared_ptr<const Snapshot> Intake::take(const PointCloud& cloud, double stamp,
-                                             const Arrival& arrival, PrepareReport& report) {
+std::shared_ptr<const Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double stamp,
+                                                      const Arrival& arrival,
+                                                      PrepareReport& report) {
   time_of("stamp", stamp);
   if (clouds_ == Policy::morph) {
     throw Error(
@@ -132,19 +135,19 @@ std::shared_ptr<const Snapshot> Intake::take(const PointCloud& cloud, double sta
   if (clouds_ == Policy::fusion) {
     fusion_.add(wanted, arrival.T_world_sensor);
     report = fusion_.report();
-    return fused(next_moment(stamp, arrival.start));
+    return fused(next_timing(stamp, arrival.start));
   }
   Prepared prepared = prepare(wanted, options_.prepare, arrival.T_world_sensor);
   report = prepared.report;
   std::shared_ptr<SurfacePoints> points = points_.take();
   *points = std::move(prepared.points);
-  const Moment moment = next_moment(stamp, arrival.start);
+  const FrameTiming moment = next_timing(stamp, arrival.start);
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
   layers_.add(std::move(points), moment, snapshot->layers);
   return snapshot;
 }
 
-std::shared_ptr<const Snapshot> Intake::fused(const Moment& moment) {
+std::shared_ptr<const Snapshot> SnapshotBuilder::fused(const FrameTiming& moment) {
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, Policy::fusion);
   std::shared_ptr<SurfacePoints> points = points_.take();
   *points = fusion_.surface(moment);
@@ -152,14 +155,14 @@ std::shared_ptr<const Snapshot> Intake::fused(const Moment& moment) {
   return snapshot;
 }
 
-Moment Intake::next_moment(double stamp, const StartTime& start) {
-  const Moment moment = rhythm_.next(stamp, time_of("start", start()));
+FrameTiming SnapshotBuilder::next_timing(double stamp, const StartTime& start) {
+  const FrameTiming moment = interval_filter_.next(stamp, time_of("start", start()));
   if (presence_at(moment.start) <= 0) forget();
   return moment;
 }
 
 /// A snapshot without layers. Presence goes on from where the last one's is at its start.
-std::shared_ptr<Snapshot> Intake::next_snapshot(const Moment& moment, Policy policy) {
+std::shared_ptr<Snapshot> SnapshotBuilder::next_snapshot(const FrameTiming& moment, Policy policy) {
   const bool moving = policy != Policy::replace && policy != Policy::average;
   const double fade = options_.policy.fade;
   const bool first = presence_at(moment.start) <= 0;
@@ -180,17 +183,17 @@ std::shared_ptr<Snapshot> Intake::next_snapshot(const Moment& moment, Policy pol
   return snapshot;
 }
 
-double Intake::presence_at(double time) const {
+double SnapshotBuilder::presence_at(double time) const {
   return last_.sequence == 0 ? 0 : presence(last_, time);
 }
 
-void Intake::forget() {
+void SnapshotBuilder::forget() {
   morph_.forget();
   layers_.forget();
   fusion_.forget();
 }
 
-PointCloud Intake::within_reach(const PointCloud& cloud, const Arrival& arrival) const {
+PointCloud SnapshotBuilder::within_reach(const PointCloud& cloud, const Arrival& arrival) const {
   std::vector<std::uint32_t> inside;
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d p = arrival.T_world_sensor * cloud.point(i);
@@ -203,7 +206,7 @@ PointCloud Intake::within_reach(const PointCloud& cloud, const Arrival& arrival)
 }
 
 /// What the noise is at the median depth of the image.
-void Intake::note_noise(const FilteredDepth& depth) {
+void SnapshotBuilder::note_noise(const FilteredDepth& depth) {
   constexpr std::size_t kStep = 37;  // a sample is enough
   noise_ = depth.noise;
   depths_.clear();

@@ -1,4 +1,4 @@
-#include "sensor/stream_log.hpp"
+#include "sensor/stream_statistics.hpp"
 
 #include <fmt/format.h>
 
@@ -48,15 +48,15 @@ constexpr std::uint64_t kMean = 8;  // intervals that the rate is a mean of, abo
 
 }  // namespace
 
-StreamLog::StreamLog(std::string source, std::string camera, double stall, double now)
+StreamStatistics::StreamStatistics(std::string source, std::string camera, double stall, double now)
     : stall_(stall), useful_(now) {
   state_.source = std::move(source);
   state_.camera = std::move(camera);
   state_.last_frame = now;
 }
 
-void StreamLog::came(double now, const std::optional<Objection>& objection,
-                     std::uint64_t size_changes) {
+void StreamStatistics::frame_received(double now, const std::optional<Objection>& objection,
+                                      std::uint64_t size_changes) {
   const std::lock_guard lock(mutex_);
   failing_ = false;
   look(now);
@@ -82,18 +82,18 @@ void StreamLog::came(double now, const std::optional<Objection>& objection,
   state_.phase = StreamState::Phase::running;
 }
 
-void StreamLog::overtaken() {
+void StreamStatistics::overtaken() {
   const std::lock_guard lock(mutex_);
   ++state_.drops.overtaken;
 }
 
-void StreamLog::refused(double now, const std::string& why) {
+void StreamStatistics::refused(double now, const std::string& why) {
   const std::lock_guard lock(mutex_);
   ++state_.drops.refused;
   note(now, "a frame could not be prepared: " + why);
 }
 
-void StreamLog::touchable(double latency) {
+void StreamStatistics::touchable(double latency) {
   const std::lock_guard lock(mutex_);
   ++state_.touchable;
   ++latencies_;
@@ -102,7 +102,7 @@ void StreamLog::touchable(double latency) {
   state_.latency_worst = latencies_ == 1 ? latency : std::max(state_.latency_worst, latency);
 }
 
-void StreamLog::failed(double now, const std::string& why, bool repeatedly) {
+void StreamStatistics::failed(double now, const std::string& why, bool repeatedly) {
   const std::lock_guard lock(mutex_);
   ++state_.failures;
   failing_ = repeatedly;
@@ -110,28 +110,28 @@ void StreamLog::failed(double now, const std::string& why, bool repeatedly) {
   note(now, why.empty() ? "it failed without a reason" : why);
 }
 
-void StreamLog::retried() {
+void StreamStatistics::retried() {
   const std::lock_guard lock(mutex_);
   ++state_.retries;
 }
 
-void StreamLog::ended() {
+void StreamStatistics::ended() {
   const std::lock_guard lock(mutex_);
   state_.phase = StreamState::Phase::ended;
 }
 
-void StreamLog::waiting(double now) {
+void StreamStatistics::waiting(double now) {
   const std::lock_guard lock(mutex_);
   failing_ = false;
   look(now);
 }
 
-void StreamLog::remark(double now, const std::string& what) {
+void StreamStatistics::warning(double now, const std::string& what) {
   const std::lock_guard lock(mutex_);
   note(now, what);
 }
 
-void StreamLog::look(double now) {
+void StreamStatistics::look(double now) {
   const bool over =
       state_.phase == StreamState::Phase::stalled || state_.phase == StreamState::Phase::ended;
   if (over || failing_ || now - useful_ <= stall_) return;
@@ -143,12 +143,12 @@ void StreamLog::look(double now) {
                                              now - useful_, objection_));
 }
 
-void StreamLog::note(double now, const std::string& what) {
+void StreamStatistics::note(double now, const std::string& what) {
   state_.problem = fmt::format("{} ({}): {}", state_.source, state_.camera, what);
   state_.problem_at = now;
 }
 
-StreamState StreamLog::state(double now) {
+StreamState StreamStatistics::state(double now) {
   const std::lock_guard lock(mutex_);
   look(now);
   StreamState state = state_;

@@ -22,10 +22,10 @@ struct Arrival {
 
 /// Makes a source's snapshots out of what is pushed into it, as its policy says. One thread uses
 /// it; what it gives out comes back to it by itself and is used again.
-class Intake {
+class SnapshotBuilder {
  public:
   /// @throws Error when an option is out of its range.
-  explicit Intake(const SourceOptions& options);
+  explicit SnapshotBuilder(const SourceOptions& options);
 
   /// @throws Error as DepthFilter::filter does, and when a time is not finite.
   [[nodiscard]] std::shared_ptr<const Snapshot> take(const DepthFrame& frame,
@@ -44,7 +44,7 @@ class Intake {
   /// look at them: N + 2 and one for each.
   [[nodiscard]] std::size_t most_snapshots(bool clouds, std::size_t fields) const;
 
-  [[nodiscard]] double interval() const { return rhythm_.interval(); }
+  [[nodiscard]] double interval() const { return interval_filter_.interval(); }
   [[nodiscard]] const NoiseModel& noise() const { return noise_; }
   [[nodiscard]] double median_depth() const { return median_depth_; }
 
@@ -53,10 +53,11 @@ class Intake {
     void operator()(Snapshot& snapshot) const noexcept { snapshot.layers.clear(); }
   };
 
-  [[nodiscard]] std::shared_ptr<Snapshot> morphed(const MorphInput& input, const Moment& moment);
-  [[nodiscard]] std::shared_ptr<const Snapshot> fused(const Moment& moment);
-  [[nodiscard]] Moment next_moment(double stamp, const StartTime& start);
-  [[nodiscard]] std::shared_ptr<Snapshot> next_snapshot(const Moment& moment, Policy policy);
+  [[nodiscard]] std::shared_ptr<Snapshot> morphed(const MorphInput& input,
+                                                  const FrameTiming& moment);
+  [[nodiscard]] std::shared_ptr<const Snapshot> fused(const FrameTiming& moment);
+  [[nodiscard]] FrameTiming next_timing(double stamp, const StartTime& start);
+  [[nodiscard]] std::shared_ptr<Snapshot> next_snapshot(const FrameTiming& moment, Policy policy);
   [[nodiscard]] double presence_at(double time) const;
   void forget();
   [[nodiscard]] PointCloud within_reach(const PointCloud& cloud, const Arrival& arrival) const;
@@ -65,7 +66,7 @@ class Intake {
   SourceOptions options_;
   Policy frames_;  // the policies for depth frames and for clouds
   Policy clouds_;
-  Rhythm rhythm_;
+  FrameIntervalFilter interval_filter_;
   DepthFilter filter_;
   Morph morph_;
   LayerHistory layers_;

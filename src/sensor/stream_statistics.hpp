@@ -26,12 +26,13 @@ inline void require_time(bool good, double seconds, const char* what, const std:
                                std::string& reason);
 
 /// Keeps a stream's books. Any thread; times are s on the stream's clock.
-class StreamLog {
+class StreamStatistics {
  public:
-  StreamLog(std::string source, std::string camera, double stall, double now);
+  StreamStatistics(std::string source, std::string camera, double stall, double now);
 
   /// A frame came from the camera; one of use if nothing objects to it.
-  void came(double now, const std::optional<Objection>& objection, std::uint64_t size_changes);
+  void frame_received(double now, const std::optional<Objection>& objection,
+                      std::uint64_t size_changes);
   void overtaken();
   /// Preparation of a frame threw.
   void refused(double now, const std::string& why);
@@ -40,7 +41,7 @@ class StreamLog {
   /// The camera is well and has no frame yet.
   void waiting(double now);
   /// To be told, though nothing is dropped for it.
-  void remark(double now, const std::string& what);
+  void warning(double now, const std::string& what);
   void retried();
   void ended();
 
