@@ -5,7 +5,7 @@
 
 namespace palpate {
 
-/// A way to cameras or to haptic devices.
+/// A driver of cameras or haptic devices.
 struct DriverInfo {
   /// A camera or a haptic device that is there, though another program may use it.
   struct Device {

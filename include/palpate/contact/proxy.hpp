@@ -18,8 +18,9 @@ enum class ContactNote : std::uint32_t {
   fault = 1u << 4,            ///< an input was not finite: zero force until reset()
   softer = 1u << 5,  ///< stiffness is much below what is wanted: the energy tank lets it grow
                      ///< only as motion pays for it
-  fell = 1u << 6,  ///< what held the proxy gave way: it went, in contact or out of it, farther than
-                   ///< twice the hand's way and the surface's by half of |proxy - HIP| before
+  fell =
+      1u << 6,  ///< what held the proxy gave way: it went, in contact or out of it, farther than
+                ///< twice the hand's displacement and the surface's by half of |proxy - HIP| before
 };
 
 [[nodiscard]] constexpr ContactNote operator|(ContactNote a, ContactNote b) noexcept {
@@ -113,7 +114,7 @@ class Proxy {
   /// each constrained sub-step allowed (and what a Newton takes), and recovery.
   [[nodiscard]] int max_evaluations() const noexcept;
 
-  /// Feels stiffness (N/m), friction and texture like this from the next step on; in contact,
+  /// Sets stiffness (N/m), friction and texture from the next step on; in contact,
   /// stiffness goes there as the energy tank allows (docs/method.md 3.5). False, and nothing
   /// changes, where a number is out of its range.
   bool change(double stiffness, const Friction& friction, const Texture& texture) noexcept;

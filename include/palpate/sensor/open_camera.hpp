@@ -11,7 +11,7 @@
 namespace palpate {
 
 struct CameraOptions {
-  /// What stamps are told by; outlives the camera. Recordings and simulated cameras also wait for
+  /// Clock of the stamps; outlives the camera. Recordings and simulated cameras also wait for
   /// it; null: they are as fast as they are asked, and real cameras stamp by the host's clock.
   const Clock* clock = nullptr;
   bool loop = false;  ///< recordings begin again at the end

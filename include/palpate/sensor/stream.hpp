@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-/// How a stream fares, for whoever looks on.
+/// State of a stream, for display and logs.
 struct StreamState {
   /// Frames that came and were not made touchable, by cause.
   struct Drops {
@@ -86,7 +86,7 @@ using FrameSink = std::function<void(const DepthFrame&, const StartTime&)>;
 /// (CameraInfo::paces) is read when preparation is ready, and loses nothing.
 ///
 /// No frame of a camera, and nothing that it or preparation throws, ends a stream: it is counted
-/// and told by state(). What stops coming fades as the source's PolicyOptions say; but what the
+/// and reported by state(). What stops coming fades as the source's PolicyOptions say; but what the
 /// last frames of a recording showed stays (Source::keep).
 class Stream {
  public:
@@ -106,7 +106,7 @@ class Stream {
   Stream(Stream&&) noexcept;
   Stream& operator=(Stream&&) noexcept;
 
-  /// How it fares. Any thread; takes a lock, so not for a servo's.
+  /// Its state. Any thread; takes a lock, so not for a servo's.
   [[nodiscard]] StreamState state() const;
 
  private:

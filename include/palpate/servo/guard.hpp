@@ -18,7 +18,7 @@ enum class GuardNote : std::uint32_t {
   fault = 1u << 3,     ///< latched: zero until reset(); GuardState::fault says why
   braked = 1u << 4,    ///< the hand had been given energy; a brake takes it back
   starting = 1u << 5,  ///< a force comes up softly: after a start, a pause, a silence or a fault
-  softened = 1u << 6,  ///< felt less stiff than was asked for: the device could not hold that
+  softened = 1u << 6,  ///< rendered softer than requested: the device could not hold that
 };
 
 [[nodiscard]] constexpr GuardNote operator|(GuardNote a, GuardNote b) noexcept {
@@ -32,7 +32,7 @@ enum class GuardNote : std::uint32_t {
 enum class GuardFault : std::uint8_t {
   none,
   force,   ///< force or stiffness were not finite, or absurdly large
-  hand,    ///< the hand's place or velocity was
+  hand,    ///< hand position or velocity not finite, or absurdly large
   time,    ///< the time since the last step was not finite, or negative
   proxy,   ///< the proxy has latched a fault (ContactNote::fault)
   device,  ///< the device has failed
@@ -53,11 +53,11 @@ struct GuardOptions {
   double damping = 1;       ///< B of a damper between surface and hand, in contact, N s/m; 0: none
   double silence = 5e-3;    ///< steps further apart than this trip the watchdog, s; infinite: none
   double soft_start = 0.5;  ///< s in which forces come up after a start; 0: at once
-  double stiffness_share = 0.8;  ///< of the passive stiffness, that is felt at most; infinite: any
+  double stiffness_share = 0.8;  ///< most stiffness, as a share of the passive one; infinite: any
   Passivity passivity = {};
 };
 
-/// What the guard is told of a step. World frame.
+/// Input of one step. World frame.
 struct GuardInput {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< the proxy's, on the hand, N
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the touched surface; 0: none is
@@ -67,7 +67,7 @@ struct GuardInput {
   double dt = 0;                                       ///< since the last step, s
   double stiffness = 0;                                ///< K that made the force, N/m
   bool felt = true;                     ///< false: the force goes to zero and starts softly again
-  bool softened = false;                ///< a stiffer surface was asked for
+  bool softened = false;                ///< a stiffer surface was requested
   GuardFault fault = GuardFault::none;  ///< known already
 };
 
@@ -100,7 +100,7 @@ struct GuardState {
 ///  3. Damper: in contact, beside the spring: -B (n (n . v) + (1 - s) v_t), v the hand's velocity
 ///     against the surface, smoothed, v_t the part of it along the surface, and s the share of that
 ///     in which the proxy goes along: what is held is damped, what slides is hardly dragged (in a
-///     bowl, where the proxy's way is shorter than the hand's, by that share). It never makes the
+///     bowl, where the proxy's path is shorter than the hand's, by that share). It never makes the
 ///     surface attract.
 ///  4. Soft start: the force comes up from zero while nothing is touched; in contact only as far as
 ///     the hand has paid for, since a spring that grows stiffer while stretched gives energy.

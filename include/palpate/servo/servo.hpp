@@ -74,7 +74,7 @@ struct Durations {
 
 /// Every step of a servo, in order, for one thread that records them. Lock-free; all memory is
 /// taken at construction. Where the recorder falls behind by more than there is room for, steps are
-/// left out and counted: the servo waits for nobody.
+/// left out and counted: the servo never waits.
 class StepQueue {
  public:
   /// Room for `capacity` steps, rounded up to a power of two.
@@ -120,18 +120,17 @@ struct ContactSettings {
   Texture texture = {};
 };
 
-/// One hand in a scene: SceneField, Proxy and Guard between a device's place and its force.
+/// One hand in a scene: SceneField, Proxy and Guard between a device's position and its
+/// force.
 ///
-/// Owns no thread: a device's callback calls tick(), or a ServoThread does, or whoever owns the
-/// loop makes a step of its parts. One thread steps; all that is marked so may be called by others
-/// meanwhile. Device and scene outlive it. While the device is silent the hand feels nothing: the
-/// force fades and comes back at the guard's rate, and the contact begins with the first hand
-/// heard.
+/// Owns no thread: a device's callback or a ServoThread calls tick(), or the owner of a loop calls
+/// step() and show(). One thread steps; functions marked "any thread" may be called meanwhile.
+/// Device and scene outlive it. While the device is silent the force fades to zero at the guard's
+/// rate; it returns the same way, and contact begins with the first known position.
 ///
-/// While the clutch is held the tool rests at the proxy, and goes where a surface takes that. So
-/// nothing is stretched when it is let go: no force comes until the hand pushes, and none that it
-/// did not pay for. What the force is worth until it is gone counts in the guard's ledger, which is
-/// told of the hand's own way.
+/// While the clutch is held the tool stays at the proxy, which a moving surface may take along. The
+/// spring is not stretched when the clutch is released, so force returns only as the hand pushes.
+/// The guard's ledger counts the fading force on the hand's own displacement.
 class Servo {
  public:
   /// Of a device's continuous maximum: what it is asked to hold (docs/method.md 8.6).
@@ -145,7 +144,7 @@ class Servo {
   Servo& operator=(const Servo&) = delete;
 
   /// One step: reads the device, computes, writes the force, shows the state. `now`: s, on the
-  /// clock that snapshots are stamped on; it never goes back. noexcept, allocation-free, lock-free;
+  /// clock of the snapshots' times; it never decreases. noexcept, allocation-free, lock-free;
   /// what the device does in read() and write() is the device's.
   const ServoState& tick(double now) noexcept;
 
@@ -153,10 +152,10 @@ class Servo {
   const ServoState& tick() noexcept;
 
   /// The computing part of a step alone: the force for the device is in state().force, world frame.
-  /// Shows nothing yet. Real-time (docs/architecture.md, contract 1).
+  /// Publishes nothing yet. Real-time (docs/architecture.md, contract 1).
   const ServoState& step(const DeviceState& device, double now) noexcept;
 
-  /// Shows the last step to those who watch, with what was measured of it. Real-time.
+  /// Publishes the last step to other threads, with its measured timing. Real-time.
   void show(const ServoState::Timing& timing = {}) noexcept;
 
   /// `state.force` in the device's frame.
@@ -165,8 +164,8 @@ class Servo {
   [[nodiscard]] Device& device() const noexcept;
   [[nodiscard]] const ServoOptions& options() const noexcept;
 
-  /// The stiffest surface that this device can hold in this workspace, N/m in the world; what is
-  /// asked for beyond it is felt as this (docs/method.md 8.1). Infinite where it renders none.
+  /// The stiffest surface that this device can hold in this workspace, N/m in the world; stiffer
+  /// settings are reduced to it (docs/method.md 8.1). Infinite for devices without force.
   [[nodiscard]] double stiffness_limit() const noexcept;
 
   /// The newest state. Any thread.
@@ -180,22 +179,23 @@ class Servo {
   /// rarely misses some. Any thread; allocates.
   [[nodiscard]] std::vector<Eigen::Vector3f> forces_since(std::uint64_t& seen) const;
 
-  /// Lets the hand feel nothing: the force goes to zero at the guard's rate, and back. Any thread.
+  /// Fades the force to zero at the guard's rate, and back. Any thread.
   void pause(bool paused) noexcept;
-  /// Forgets faults, the contact and what the clutch moved in the next step; tool and proxy are put
-  /// to the hand. Any thread.
+  /// In the next step, clears faults, contact and clutch shift; tool and proxy move to the hand.
+  /// Any thread.
   void reset() noexcept;
 
-  /// Changes what is felt from the next step on. In contact, stiffness changes as the energy
-  /// tank allows (docs/method.md 3.5): the hand is given no energy. Any thread; not real-time.
+  /// Changes stiffness, friction and texture from the next step on. In contact, stiffness changes
+  /// as the energy tank allows (docs/method.md 3.5): the hand is given no energy. Any thread; not
+  /// real-time.
   /// @throws Error when a value is out of its range.
   void set_contact(const ContactSettings& contact);
 
-  /// Makes another surface of the same points from the next step on; the guard sees to it that the
-  /// force goes there softly. Any thread; not real-time.
+  /// Renders another surface of the same points from the next step on; the guard smooths the change
+  /// of force. Any thread; not real-time.
   /// @throws Error when an option is out of its range.
   void set_field(const FieldOptions& field);
-  /// The surface that is felt, from the next step on at the latest. Any thread.
+  /// The field options in use, from the next step on at the latest. Any thread.
   [[nodiscard]] FieldOptions field() const noexcept;
 
  private:
@@ -204,7 +204,7 @@ class Servo {
 };
 
 /// `options` at the hand of a device: maximum_force is lowered to Servo::kForceShare of what it can
-/// hold, silence raised to 2.5 periods of slow ones, mass and delay are what it tells.
+/// hold, silence raised to 2.5 periods of slow ones, mass and delay taken from DeviceInfo.
 [[nodiscard]] GuardOptions guard_for(const DeviceInfo& device, GuardOptions options);
 
 }  // namespace palpate

@@ -13,15 +13,15 @@ namespace palpate {
 /// The stiffest wall, N/m, that gives no energy to a free device whatever the hand does
 /// (Colgate and Schenkel 1997, with a delay): K = 2 b / (T + 2 T_d).
 ///
-/// `damping`: of device and wall, N s/m. `period`: between steps, s. `delay`: from reading a place
-/// to its force's effect, s, the hold of the force not counted.
+/// `damping`: of device and wall, N s/m. `period`: between steps, s. `delay`: from reading a
+/// position to its force's effect, s, the hold of the force not counted.
 [[nodiscard]] constexpr double passive_stiffness(double damping, double period,
                                                  double delay) noexcept {
   return 2 * damping / (period + 2 * delay);
 }
 
-/// The same of a device with a wall that damps with `damping` (N s/m). What a device does not tell
-/// is taken on the safe side: no damping, a delay of a step. Infinite where it renders no force.
+/// The same of a device with a wall that damps with `damping` (N s/m). Unknown values are
+/// assumed on the safe side: no damping, a delay of a step. Infinite where it renders no force.
 [[nodiscard]] double passive_stiffness(const DeviceInfo& device, double damping) noexcept;
 
 struct StiffnessTestOptions {
@@ -87,8 +87,8 @@ class StiffnessTest {
 /// A flat virtual wall that is rendered through a guard on a simulated device that nobody holds:
 /// how stiff may it be? (Colgate and Brown 1994: the Z-width.)
 struct WallOptions {
-  SimulatedDeviceOptions device = {};  ///< its hand and place are left out of account
-  GuardOptions guard = {};             ///< of which the stiffness limit is left out of account
+  SimulatedDeviceOptions device = {};  ///< its hand and position are ignored
+  GuardOptions guard = {};             ///< its stiffness limit is ignored
   double stiffness = 500;              ///< K, N/m
   double speed = 0.1;                  ///< with which the device meets the wall, m/s
   double stretch = 5e-3;               ///< of the spring from which oscillations begin, m

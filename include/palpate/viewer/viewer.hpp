@@ -40,8 +40,9 @@ struct Setting {
 };
 
 /// What a viewer's page may do to the program. All are called on the viewer's network thread, one
-/// at a time, and should return within a millisecond or so. What they throw as Error is told to the
-/// page and changes nothing. Those that are empty are refused with words, unless it says otherwise.
+/// at a time, and should return within a millisecond or so. An Error that they throw is reported to
+/// the page and changes nothing. Those that are empty are refused with words, unless it says
+/// otherwise.
 struct ViewerControls {
   /// What can be set, with present values.
   std::function<std::vector<Setting>()> settings = {};
@@ -91,14 +92,14 @@ struct ViewerOptions {
     std::uint32_t header = 8 * 1024;  ///< bytes of a request's header
     double header_time = 10;          ///< for a request to come, and for its answer to go
     double hello_time = 5;
-    double silence = 10;      ///< a client that takes nothing for so long is closed
-    double hand_silence = 5;  ///< a client that says nothing for so long lets go of its tool
+    double silence = 10;      ///< a client that reads nothing for this long is closed
+    double hand_silence = 5;  ///< a client that sends nothing for this long releases its tool
     int refusals = 20;        ///< after so many in `refusal_time` a client is closed
     double refusal_time = 10;
   };
 
   /// An address of this machine, v4 or v6. 0.0.0.0 and :: listen to every network: whoever knows
-  /// the token may then move the hand, and nothing on the way is secret.
+  /// the token may then move the hand, and nothing is encrypted.
   std::string address = "127.0.0.1";
   /// 0: any that is free. Unset: the first free one of kFirstPort and the nine after it.
   std::optional<std::uint16_t> port = {};
@@ -106,7 +107,7 @@ struct ViewerOptions {
   std::string token = {};
   std::string scene = "palpate";  ///< the scene's name, for people
   /// m, world; unset: the middle of all points, or of where the sensors stand. What is shown is
-  /// told in single precision from there.
+  /// sent in single precision relative to it.
   std::optional<Eigen::Vector3d> origin = {};
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   /// How the streams fare; called about four times a second by two threads of the viewer, perhaps
