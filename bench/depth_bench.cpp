@@ -10,8 +10,8 @@
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_camera.hpp"
 #include "peers/depth_peers.hpp"
+#include "sim/simulated_camera.hpp"
 
 namespace palpate::bench {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "clouds.hpp"
 #include "field/evaluate.hpp"
+#include "field/formulas.hpp"
 #include "field/patch.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"

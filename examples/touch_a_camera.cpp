@@ -22,9 +22,9 @@ struct Way {
 };
 
 Way way_to(const palpate::SurfacePoints& points) {
-  const auto cell = points.grid.cells().front();  // the root: the box of all points
+  const Eigen::Vector3f center = (points.bounds().center() - points.origin).cast<float>();
   std::vector<palpate::CellGrid::Neighbor> found;
-  points.grid.nearest(0.5f * (cell.lower + cell.upper), 1, found);
+  points.grid.nearest(center, 1, found);
   const auto index = found.front().index;
   const Vector3d place = points.origin + points.grid.points()[index].cast<double>();
   return {place, place + 8 * points.radius * points.normals[index].cast<double>()};

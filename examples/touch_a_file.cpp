@@ -16,8 +16,7 @@ struct Target {
 };
 
 Target middle_of(const palpate::SurfacePoints& points) {
-  const auto cell = points.grid.cells().front();  // the root: the box of all points
-  const Eigen::Vector3f center = 0.5f * (cell.lower + cell.upper);
+  const Eigen::Vector3f center = (points.bounds().center() - points.origin).cast<float>();
   std::vector<palpate::CellGrid::Neighbor> found;
   points.grid.nearest(center, 1, found);
   const Vector3d place = points.origin + points.grid.points()[found.front().index].cast<double>();

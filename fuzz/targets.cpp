@@ -12,6 +12,7 @@
 #include "device/haply_message.hpp"
 #include "device/remote_protocol.hpp"
 #include "io/depth_image.hpp"
+#include "io/encode_cloud.hpp"
 #include "io/file_bytes.hpp"
 #include "io/input.hpp"
 #include "io/las.hpp"
@@ -20,10 +21,8 @@
 #include "io/ply.hpp"
 #include "io/xyz.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/io/read_cloud.hpp"
 #include "palpate/io/read_depth.hpp"
 #include "palpate/io/trajectory.hpp"
-#include "palpate/io/write_cloud.hpp"
 #include "sensor/pose_track.hpp"
 #include "sensor/sequence_description.hpp"
 

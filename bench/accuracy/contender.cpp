@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kForEver = 1e6;  // s
 
-ProxyOptions proxy_options(ProxyMethod method) {
+ProxyOptions proxy_options(ProxyOptions::Method method) {
   ProxyOptions options;
   options.stiffness = kStiffness;
   options.method = method;
@@ -17,14 +17,14 @@ ProxyOptions proxy_options(ProxyMethod method) {
 Contender ours(std::string name, FieldKind kind, const PrepareOptions& prepare) {
   FieldOptions field;
   field.kind = kind;
-  return {std::move(name), false, prepare, field, proxy_options(ProxyMethod::converged)};
+  return {std::move(name), false, prepare, field, proxy_options(ProxyOptions::Method::converged)};
 }
 
 Contender papers(std::string name, FieldKind kind) {
   PrepareOptions prepare;
   prepare.paper = true;
   return {std::move(name), false, prepare, paper_field(kind),
-          proxy_options(ProxyMethod::single_step)};
+          proxy_options(ProxyOptions::Method::single_step)};
 }
 
 Contender organised() {

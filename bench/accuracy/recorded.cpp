@@ -14,7 +14,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/sequence.hpp"
+#include "sensor/sequence.hpp"
 
 namespace palpate::accuracy {
 namespace {

@@ -20,8 +20,8 @@ Surface TruthField::surface(const Eigen::Vector3d& /*x*/) const noexcept {
   return {};
 }
 
-FieldTraits TruthField::traits() const noexcept {
-  FieldTraits traits;
+Field::Traits TruthField::traits() const noexcept {
+  Field::Traits traits;
   traits.resolution = 0.002 * kRadius;
   return traits;
 }

@@ -14,7 +14,7 @@ class TruthField final : public Field {
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
-  [[nodiscard]] FieldTraits traits() const noexcept override;
+  [[nodiscard]] Field::Traits traits() const noexcept override;
 
  private:
   const TruthScene* scene_;

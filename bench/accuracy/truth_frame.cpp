@@ -1,7 +1,7 @@
 #include "accuracy/truth_frame.hpp"
 
 #include "accuracy/truth_scene.hpp"
-#include "palpate/sensor/simulated_depth.hpp"
+#include "sim/simulated_depth.hpp"
 
 namespace palpate::accuracy {
 

@@ -2,7 +2,7 @@
 
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/point_cloud.hpp"
-#include "palpate/sensor/simulated_noise.hpp"
+#include "sim/simulated_noise.hpp"
 
 namespace palpate::accuracy {
 

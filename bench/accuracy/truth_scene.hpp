@@ -3,7 +3,7 @@
 #include <array>
 
 #include "palpate/depth/depth_frame.hpp"
-#include "palpate/sensor/simulated_scene.hpp"
+#include "sim/simulated_scene.hpp"
 
 namespace palpate::accuracy {
 

@@ -20,7 +20,7 @@ std::uint64_t hash(const std::string& text) {
   return value;
 }
 
-// Orientation may look at what is up, so some scenes stay upright.
+// PrepareOptions::Orientation may look at what is up, so some scenes stay upright.
 Eigen::Quaterniond turn(Random& random) {
   if (random.uniform() < kUpright) return Eigen::Quaterniond::Identity();
   const double w = random.normal();

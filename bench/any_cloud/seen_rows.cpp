@@ -5,7 +5,7 @@
 #include "accuracy/truth_frame.hpp"
 #include "any_cloud/rows.hpp"
 #include "any_cloud/ways.hpp"
-#include "palpate/sensor/simulated_depth.hpp"
+#include "sim/simulated_depth.hpp"
 
 namespace palpate::any_cloud {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "palpate/field/analytic.hpp"
-#include "palpate/sensor/simulated_depth.hpp"
+#include "sim/simulated_depth.hpp"
 
 namespace palpate::any_cloud {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "palpate/sensor/simulated_camera.hpp"
+#include "sim/simulated_camera.hpp"
 
 namespace palpate::events {
 

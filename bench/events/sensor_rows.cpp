@@ -2,7 +2,7 @@
 
 #include "events/draft.hpp"
 #include "events/rows.hpp"
-#include "sensor/simulated_keys.hpp"
+#include "sim/simulated_keys.hpp"
 
 // What is thin, slanted or has a rim, as families of sensors see it.
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_camera.hpp"
+#include "sim/simulated_camera.hpp"
 
 namespace palpate::four_cameras {
 

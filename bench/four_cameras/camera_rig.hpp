@@ -5,7 +5,7 @@
 
 #include "palpate/base/clock.hpp"
 #include "palpate/scene/scene.hpp"
-#include "palpate/sensor/simulated_camera.hpp"
+#include "sim/simulated_camera.hpp"
 
 namespace palpate::four_cameras {
 

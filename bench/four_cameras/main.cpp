@@ -20,7 +20,7 @@ void print_drops(const RunResult& run) {
   fmt::print("| camera | frames | touchable | rate | latency mean | worst | dropped |\n");
   fmt::print("|---|---|---|---|---|---|---|\n");
   for (const StreamState& stream : run.streams) {
-    const StreamDrops& drops = stream.drops;
+    const StreamState::Drops& drops = stream.drops;
     fmt::print("| {} | {} | {} | {:.1f} Hz | {:.1f} ms | {:.0f} ms | overtaken {}, other {} |\n",
                stream.source, stream.frames, stream.touchable, stream.rate,
                1e3 * stream.latency_mean, 1e3 * stream.latency_worst, drops.overtaken,
@@ -49,7 +49,7 @@ bool print_rises(const Rises& moving, const Rises& still) {
 }
 
 bool run(const CostOptions& options) {
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   CameraRig rig(clock);
   Scene scene;
   CameraRig::add_sources(scene);

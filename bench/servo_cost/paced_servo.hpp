@@ -9,7 +9,6 @@
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "palpate/scene/scene.hpp"
-#include "palpate/servo/histogram.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/servo/servo_thread.hpp"
 #include "servo_cost/counting_device.hpp"

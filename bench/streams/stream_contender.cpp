@@ -9,7 +9,7 @@ constexpr double kVoxel = 0.004;          // m
 constexpr double kRadius = 0.010;         // m
 constexpr double kFigureRadius = 0.0051;  // m
 
-ProxyOptions proxy_options(ProxyMethod method) {
+ProxyOptions proxy_options(ProxyOptions::Method method) {
   ProxyOptions options;
   options.stiffness = accuracy::kStiffness;
   options.method = method;
@@ -19,11 +19,11 @@ ProxyOptions proxy_options(ProxyMethod method) {
 Tool ours(std::string name, FieldKind kind) {
   FieldOptions field;
   field.kind = kind;
-  return {std::move(name), field, proxy_options(ProxyMethod::converged)};
+  return {std::move(name), field, proxy_options(ProxyOptions::Method::converged)};
 }
 
 Tool papers(std::string name, FieldKind kind) {
-  return {std::move(name), paper_field(kind), proxy_options(ProxyMethod::single_step)};
+  return {std::move(name), paper_field(kind), proxy_options(ProxyOptions::Method::single_step)};
 }
 
 std::string with_history(const std::string& name, int history) {

@@ -4,7 +4,7 @@
 
 #include "accuracy/path.hpp"
 #include "accuracy/truth_scene.hpp"
-#include "palpate/sensor/simulated_camera.hpp"
+#include "sim/simulated_camera.hpp"
 
 namespace palpate::streams {
 

@@ -163,7 +163,7 @@ class Attacks {
     const std::uint64_t before = viewer_->counts().accepted;
     for (int i = 0; i < kConnections; ++i) leave(i);
     wait([&] {
-      const ViewerCounts counts = viewer_->counts();
+      const Viewer::Counts counts = viewer_->counts();
       return counts.connections == 1 && counts.accepted == before + kConnections;
     });
     return fmt::format(

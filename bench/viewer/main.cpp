@@ -83,7 +83,7 @@ class Bench {
   }
 
   CostOptions options_;
-  SteadyWaitingClock clock_;
+  SteadyClock clock_;
   Scene scene_;
 };
 

@@ -20,7 +20,7 @@ struct Beside {
 
 struct RunResult {
   servo_cost::ServoRun servo;
-  ViewerCounts counts;                ///< at the servo's end
+  Viewer::Counts counts;              ///< at the servo's end
   std::vector<ClientReport> clients;  ///< of those that read
 };
 

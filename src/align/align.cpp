@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-void Aligner::tell_fits(const Poses& poses, double reach, Fit AlignedSource::*fit,
+void Aligner::tell_fits(const Poses& poses, double reach, AlignedSource::Fit AlignedSource::*fit,
                         std::vector<AlignedSource>& results) const {
   const Moving all{0, sources_.size()};
   std::vector<std::vector<Match>> of(sources_.size());

@@ -47,7 +47,7 @@ class Aligner {
   /// From coarse to fine: where `reach` (m) is large, so are heights that count.
   void refine(Poses& poses, Moving moving, double reach, std::size_t stride = 1) const;
   /// Residuals within `reach`, overlap within R.
-  void tell_fits(const Poses& poses, double reach, Fit AlignedSource::*fit,
+  void tell_fits(const Poses& poses, double reach, AlignedSource::Fit AlignedSource::*fit,
                  std::vector<AlignedSource>& results) const;
   /// @throws Error when something is left free to slide or turn.
   void tell_deviations(const Poses& poses, std::vector<AlignedSource>& results) const;

@@ -12,7 +12,7 @@ double SteadyClock::now() const noexcept {
 }
 
 // The steady clock of the C++ library is CLOCK_MONOTONIC.
-void SteadyWaitingClock::wait_until(double time) noexcept {
+void SteadyClock::wait_until(double time) noexcept {
   if (!(time > 0)) return;
   const double seconds = std::floor(time);
   std::timespec until{};

@@ -1,7 +1,7 @@
+#include "contact/energy_tank.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include "palpate/contact/proxy.hpp"
 
 namespace palpate {
 namespace {

@@ -34,7 +34,8 @@ class Slider {
   }
 
   [[nodiscard]] Slide run() noexcept {
-    const int limit = options_.method == ProxyMethod::single_step ? 1 : options_.max_iterations;
+    const int limit =
+        options_.method == ProxyOptions::Method::single_step ? 1 : options_.max_iterations;
     int releases = 0;
     while (result_.iterations < limit) {
       if (exhausted()) return unfinished();
@@ -49,7 +50,7 @@ class Slider {
       }
       if (turn == Turn::stop) return result_;
     }
-    return options_.method == ProxyMethod::single_step ? result_ : unfinished();
+    return options_.method == ProxyOptions::Method::single_step ? result_ : unfinished();
   }
 
  private:
@@ -131,7 +132,7 @@ class Slider {
   // or nearer to another face.
   [[nodiscard]] Turn leap(const Eigen::Vector3d& step) noexcept {
     const SurfacePoint& at = result_.at;
-    if (options_.method == ProxyMethod::single_step) return Turn::stop;
+    if (options_.method == ProxyOptions::Method::single_step) return Turn::stop;
     if (step.norm() < kStay * at.radius || exhausted()) return Turn::stop;
     const Eigen::Vector3d from = at.position + kLift * at.radius * at.normal;
     const Eigen::Vector3d over = from + step;
@@ -160,7 +161,8 @@ class Slider {
   // Returns the length that was accepted; 0: none.
   [[nodiscard]] double move(const Eigen::Vector3d& direction, double step, double length) noexcept {
     const bool tiny = step < options_.tangent_tolerance * result_.at.radius;
-    const int halvings = tiny || options_.method == ProxyMethod::single_step ? 0 : kHalvings;
+    const int halvings =
+        tiny || options_.method == ProxyOptions::Method::single_step ? 0 : kHalvings;
     double trial = step;
     for (int i = 0; i <= halvings && !exhausted(); ++i, trial *= 0.5) {
       const std::optional<SurfacePoint> next =
@@ -175,7 +177,7 @@ class Slider {
 
   // `gain` is |t| L: what the squared distance to the hand should fall in proportion to.
   [[nodiscard]] bool acceptable(const SurfacePoint& next, double gain) const noexcept {
-    if (options_.method == ProxyMethod::single_step) return true;
+    if (options_.method == ProxyOptions::Method::single_step) return true;
     const SurfacePoint& at = result_.at;
     return (hip_ - next.position).squaredNorm() <=
                (hip_ - at.position).squaredNorm() - kArmijo * gain &&

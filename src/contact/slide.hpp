@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "contact/friction.hpp"
 #include "contact/probe.hpp"
 #include "palpate/contact/proxy.hpp"
 
@@ -10,7 +9,7 @@ namespace palpate {
 
 /// How the constrained motion of one step is done.
 struct SlideOptions {
-  ProxyMethod method = ProxyMethod::converged;
+  ProxyOptions::Method method = ProxyOptions::Method::converged;
   int max_iterations = 20;
   double tangent_tolerance = 1e-3;  ///< of R
   double longest_step = 0;          ///< m; 0: no limit but that of R

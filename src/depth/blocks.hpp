@@ -124,7 +124,7 @@ void average_blocks(const float* image, int width, const NoiseModel& noise,
 /// (slope_x, slope_y, rho - slope_x x - slope_y y) . p = 1.
 struct BlockFits {
   BlockGrid grid;
-  std::vector<BlockState> states;
+  std::vector<FilteredDepth::State> states;
   std::vector<float> rho;             ///< inverse depth, 1/m
   std::vector<float> variance;        ///< of rho, 1/m^2, with the noise's correlation in it
   std::vector<float> slope_x;         ///< d rho / d x, 1/m
@@ -143,7 +143,7 @@ struct BlockFits {
   void resize(const BlockGrid& new_grid) {
     grid = new_grid;
     const std::size_t size = new_grid.size();
-    states.resize(size, BlockState::empty);
+    states.resize(size, FilteredDepth::State::empty);
     for (auto* column : {&flat, &reach_u, &reach_v}) column->resize(size);
     for (auto* column : {&rho, &variance, &slope_x, &slope_y, &slope_variance, &confidences}) {
       column->resize(size);

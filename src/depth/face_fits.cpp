@@ -41,7 +41,7 @@ Vector3d direction_of(const BlockGrid& grid, const FacePlane& plane) {
 
 bool is_flat(const BlockFits& fits, int column, int row) {
   const std::size_t i = fits.grid.index(column, row);
-  return fits.states[i] == BlockState::fitted && fits.flat[i] != 0;
+  return fits.states[i] == FilteredDepth::State::fitted && fits.flat[i] != 0;
 }
 
 // Is the block (u, v) away inside, or does a border cross it?
@@ -233,7 +233,7 @@ void FaceFits::share(const simd::FitInput& input, const NoiseModel& noise, int t
       const int row = tile_row * kTile + k / kTile;
       if (column >= fits.grid.columns || row >= fits.grid.rows) continue;
       const std::size_t i = fits.grid.index(column, row);
-      if (fits.states[i] != BlockState::fitted) continue;
+      if (fits.states[i] != FilteredDepth::State::fitted) continue;
       const float rho = input.blocks.rho[row * input.blocks.stride + column];
       give({near, count}, rho, block_sigma(noise, rho), column, row, fits);
     }

@@ -89,7 +89,7 @@ namespace {
 bool same(const CameraModel& a, const CameraModel& b) {
   const auto parts = [](const CameraModel& m) {
     const Pinhole& p = m.pinhole;
-    const Distortion& d = m.distortion;
+    const CameraModel::Distortion& d = m.distortion;
     return std::array{
         double(m.width), double(m.height), p.fx, p.fy, p.cx, p.cy, d.k1, d.k2, d.p1, d.p2, d.k3};
   };
@@ -97,7 +97,7 @@ bool same(const CameraModel& a, const CameraModel& b) {
 }
 
 // Does the distorted radius still grow here? From where it does not, the model means nothing.
-bool grows(const Distortion& d, double x, double y) {
+bool grows(const CameraModel::Distortion& d, double x, double y) {
   const double r2 = x * x + y * y;
   return 1 + r2 * (3 * d.k1 + r2 * (5 * d.k2 + r2 * 7 * d.k3)) > 0;
 }
@@ -127,7 +127,7 @@ bool same_surface(const simd::DepthGate& gate, float z, float other) {
 
 }  // namespace
 
-ImagePoint distort(const Distortion& d, double x, double y) {
+ImagePoint distort(const CameraModel::Distortion& d, double x, double y) {
   const double r2 = x * x + y * y;
   const double radial = 1 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));
   return {x * radial + 2 * d.p1 * x * y + d.p2 * (r2 + 2 * x * x),

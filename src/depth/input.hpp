@@ -65,6 +65,6 @@ struct ImagePoint {
   double x = 0;
   double y = 0;
 };
-[[nodiscard]] ImagePoint distort(const Distortion& distortion, double x, double y);
+[[nodiscard]] ImagePoint distort(const CameraModel::Distortion& distortion, double x, double y);
 
 }  // namespace palpate::depth

@@ -67,7 +67,7 @@ void resize(const BlockGrid& grid, FilteredDepth& out) {
   out.rows = grid.rows;
   out.pitch = std::max(std::abs(grid.step_x), std::abs(grid.step_y));
   const std::size_t size = grid.size();
-  out.states.resize(size, BlockState::empty);
+  out.states.resize(size, FilteredDepth::State::empty);
   out.positions.resize(size, Vector3f::Zero());
   out.normals.resize(size, Vector3f::Zero());
   out.confidences.resize(size);
@@ -90,7 +90,7 @@ void write_points(const BlockFits& fits, const DepthRange& range, FilteredDepth&
       rays.follow(fits, i, count, part, out);
       for (int k = 0; k < count; ++k, ++i) {
         const bool sane = fits.rho[i] >= farthest && fits.rho[i] <= nearest;
-        out.states[i] = sane ? fits.states[i] : BlockState::empty;
+        out.states[i] = sane ? fits.states[i] : FilteredDepth::State::empty;
         out.positions[i] = part.z[k] * Vector3f(part.x[k], rays.y, 1);
         const bool known = fits.confidences[i] > 0;
         const Vector3f normal(part.normal_x[k], part.normal_y[k], part.normal_z[k]);

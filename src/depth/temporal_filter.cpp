@@ -24,7 +24,7 @@ float squared(float x) {
 /// One frame's block.
 struct Measured {
   float rho, variance, slope_x, slope_y, slope_variance, confidence;
-  BlockState state;
+  FilteredDepth::State state;
 };
 
 Measured measured(const BlockFits& fits, std::size_t i) {
@@ -99,7 +99,7 @@ void average_slopes(const Measured& now, float share, BlockMemory& m) {
 
 /// Frames that a still block averages: more where one frame's normal is less sure than is wanted.
 int remembered(const TemporalOptions& options, const BlockMemory& m) {
-  const bool fitted = m.state == BlockState::fitted && m.confidence > 0;
+  const bool fitted = m.state == FilteredDepth::State::fitted && m.confidence > 0;
   if (!fitted || !(options.normal_error > 0) || options.memory == 1) return options.memory;
   const float wanted = squared(static_cast<float>(options.normal_error) * m.rho);
   const float longer = std::clamp(m.slope_variance / wanted, 1.0F, kLonger);
@@ -205,7 +205,7 @@ void TemporalFilter::filter(const TemporalOptions& options, const Eigen::Isometr
   detail::parallel_ranges(memory_.size(), kBlocksAtATime, [&](std::size_t i, std::size_t end) {
     for (; i < end; ++i) {
       BlockMemory& m = memory_[i];
-      if (fits.states[i] == BlockState::empty) {
+      if (fits.states[i] == FilteredDepth::State::empty) {
         miss(options.hold, m);
         continue;
       }

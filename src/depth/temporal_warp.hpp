@@ -27,7 +27,7 @@ struct BlockMemory {
   std::uint8_t calm = 0;    ///< frames in a row that a moving block stood still
   std::uint8_t missed = 0;
   bool moving = false;
-  BlockState state = BlockState::empty;
+  FilteredDepth::State state = FilteredDepth::State::empty;
 };
 
 /// A change of inverse depth beyond this is another surface, not one that moves: 30 mm, what a

@@ -164,7 +164,8 @@ void WindowFits::fit_row(const simd::FitInput& in, int row, std::span<const std:
                          BlockFits& fits) const {
   functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), fits.row(row));
   const std::size_t first = fits.grid.index(0, row);
-  for (const std::int32_t column : columns) fits.states[first + column] = BlockState::fitted;
+  for (const std::int32_t column : columns)
+    fits.states[first + column] = FilteredDepth::State::fitted;
 }
 
 void WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,

@@ -1,5 +1,3 @@
-#include "palpate/device/device_profile.hpp"
-
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -11,6 +9,7 @@
 
 #include "device/drivers.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/device/device.hpp"
 
 namespace palpate {
 namespace device {

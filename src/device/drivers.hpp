@@ -8,7 +8,7 @@
 
 #include "palpate/base/clock.hpp"
 #include "palpate/base/driver_info.hpp"
-#include "palpate/device/device_profile.hpp"
+#include "palpate/device/device.hpp"
 #include "palpate/device/threaded_device.hpp"
 
 namespace palpate::device {

@@ -164,7 +164,7 @@ DriverInfo list_openhaptics() {
       found.devices.push_back({"openhaptics:" + entry.path().stem().string(),
                                "as set up in " + touch_configurations().string()});
     }
-    std::ranges::sort(found.devices, {}, &FoundDevice::name);
+    std::ranges::sort(found.devices, {}, &DriverInfo::Device::name);
   });
 }
 

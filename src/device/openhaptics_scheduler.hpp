@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
+#include "base/latest.hpp"
 #include "device/openhaptics_library.hpp"
 #include "palpate/base/clock.hpp"
-#include "palpate/base/latest.hpp"
 #include "palpate/device/device.hpp"
 
 // What runs in OpenHaptics' scheduler, which is one for all devices of a program.

@@ -7,11 +7,11 @@
 #include <optional>
 #include <system_error>
 
+#include "base/latest.hpp"
 #include "base/requirement.hpp"
 #include "device/datagram_socket.hpp"
 #include "device/remote_protocol.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/latest.hpp"
 
 namespace palpate {
 namespace {
@@ -59,7 +59,7 @@ std::string default_remote_path() {
 struct RemoteDevice::Inside {
   // What others may know.
   struct Shown {
-    RemoteCounts counts;
+    RemoteDevice::Counts counts;
     PacketFlaw refused = PacketFlaw::none;  // the newest one
     DeviceStatus status = DeviceStatus::silent;
     int error = 0;  // errno of a broken socket; 0: a force that was not finite, where it failed
@@ -92,7 +92,7 @@ void RemoteDevice::Inside::receive(double now) noexcept {
     const Reception reception = socket.receive(bytes);
     if (reception.error != 0) return fail(reception.error);
     if (!reception.any) return;
-    RemoteCounts& counts = shown.counts;
+    RemoteDevice::Counts& counts = shown.counts;
     ++counts.received;
     const auto used = std::span<const std::byte>(bytes).first(reception.size);
     const PacketFlaw flaw = protocol.receive(used, reception.from, now);
@@ -167,7 +167,7 @@ const std::string& RemoteDevice::path() const noexcept {
   return inside_->options.path;
 }
 
-RemoteCounts RemoteDevice::counts() const noexcept {
+RemoteDevice::Counts RemoteDevice::counts() const noexcept {
   return inside_->for_others.get().counts;
 }
 

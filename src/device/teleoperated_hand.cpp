@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/latest.hpp"
 #include "base/requirement.hpp"
 #include "device/target_motion.hpp"
 
@@ -23,21 +24,39 @@ TeleoperatedHandOptions checked(const TeleoperatedHandOptions& o) {
 
 }  // namespace
 
+struct RemoteTarget::Inside {
+  Command newest;  // of the sender
+  Latest<Command> shared;
+};
+
+RemoteTarget::RemoteTarget() : inside_(std::make_unique<Inside>()) {}
+
+RemoteTarget::~RemoteTarget() = default;
+
 bool RemoteTarget::move(const HandTarget& target, double stamp) noexcept {
   if (!target.position.allFinite() || !std::isfinite(stamp)) return false;
-  newest_ = {target, stamp, true, newest_.moves + 1};
-  shared_.set(newest_);
+  Command& newest = inside_->newest;
+  newest = {target, stamp, true, newest.moves + 1};
+  inside_->shared.set(newest);
   return true;
 }
 
 void RemoteTarget::keep_alive() noexcept {
-  if (newest_.held) shared_.set(newest_);
+  if (inside_->newest.held) inside_->shared.set(inside_->newest);
 }
 
 void RemoteTarget::release() noexcept {
-  if (!newest_.held) return;
-  newest_.held = false;
-  shared_.set(newest_);
+  if (!inside_->newest.held) return;
+  inside_->newest.held = false;
+  inside_->shared.set(inside_->newest);
+}
+
+std::optional<RemoteTarget::Command> RemoteTarget::command() const noexcept {
+  return inside_->shared.look();
+}
+
+std::uint64_t RemoteTarget::generation() const noexcept {
+  return inside_->shared.generation();
 }
 
 struct TeleoperatedHand::Inside {
@@ -60,7 +79,7 @@ struct TeleoperatedHand::Inside {
   Playback trajectory;
   TeleoperatedHandOptions options;
   TargetInterpolator interpolator;
-  RemoteCommand command;
+  RemoteTarget::Command command;
   HandTarget target;
   Mode mode = Mode::released;
   double time = 0;             // of the last call
@@ -102,7 +121,7 @@ void TeleoperatedHand::Inside::begin(double now, const Vector3d& position) noexc
 void TeleoperatedHand::Inside::receive(double now) noexcept {
   const std::uint64_t newest = remote.generation();
   if (newest == generation) return;
-  const std::optional<RemoteCommand> copy = remote.command();
+  const std::optional<RemoteTarget::Command> copy = remote.command();
   if (!copy) return;
   generation = newest;
   received = now;

@@ -12,9 +12,9 @@
 #include <thread>
 #include <utility>
 
+#include "base/latest.hpp"
 #include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/latest.hpp"
 
 namespace palpate {
 namespace {

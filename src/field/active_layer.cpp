@@ -61,12 +61,12 @@ double confidence_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
                                         : lerp(start, points.end_confidences[i], layer.progress);
 }
 
-EdgePlane edge_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
+SurfacePoints::EdgePlane edge_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
   if (!has_edge(layer, i)) return {};
-  const PointEdges& edges = layer.points->edges;
-  const EdgePlane& start = edges.start[edges.of_point[i]];
+  const SurfacePoints::Edges& edges = layer.points->edges;
+  const SurfacePoints::EdgePlane& start = edges.start[edges.of_point[i]];
   if (edges.end.empty()) return start;
-  const EdgePlane& end = edges.end[edges.of_point[i]];
+  const SurfacePoints::EdgePlane& end = edges.end[edges.of_point[i]];
   const auto u = static_cast<float>(layer.progress);
   return {start.normal + u * (end.normal - start.normal),
           start.height + u * (end.height - start.height),

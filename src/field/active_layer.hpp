@@ -56,10 +56,10 @@ struct ActiveLayer {
 /// Does a layer's point lie beside an edge at any time?
 [[nodiscard]] inline bool has_edge(const ActiveLayer& layer, std::uint32_t i) noexcept {
   const std::vector<std::uint32_t>& edges = layer.points->edges.of_point;
-  return !edges.empty() && edges[i] != PointEdges::kNone;
+  return !edges.empty() && edges[i] != SurfacePoints::Edges::kNone;
 }
 /// The plane beyond it; share 0: there is none.
-[[nodiscard]] EdgePlane edge_now(const ActiveLayer& layer, std::uint32_t i) noexcept;
+[[nodiscard]] SurfacePoints::EdgePlane edge_now(const ActiveLayer& layer, std::uint32_t i) noexcept;
 
 /// Does a point count for nothing at any time (speckle)?
 [[nodiscard]] inline bool weightless(const SurfacePoints& points, std::uint32_t i) noexcept {

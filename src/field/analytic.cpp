@@ -20,7 +20,7 @@ void require_length(const char* name, double value) {
 
 }  // namespace
 
-AnalyticField::AnalyticField(const AnalyticOptions& options)
+AnalyticField::AnalyticField(const AnalyticField::Options& options)
     : options_(options), T_shape_world_(options.T_world_shape.inverse()) {
   require_positive("step_length", options.step_length);
   require_positive("resolution", options.resolution);
@@ -47,7 +47,7 @@ Surface AnalyticField::surface(const Eigen::Vector3d&) const noexcept {
   return options_.surface;
 }
 
-FieldTraits AnalyticField::traits() const noexcept {
+Field::Traits AnalyticField::traits() const noexcept {
   return {.resolution = options_.resolution,
           .revision = revision_,
           .reanchor_reach = options_.reanchor_reach};
@@ -59,13 +59,13 @@ void AnalyticField::set_pose(const Eigen::Isometry3d& T_world_shape) noexcept {
   ++revision_;
 }
 
-PlaneField::PlaneField(const AnalyticOptions& options) : AnalyticField(options) {}
+PlaneField::PlaneField(const AnalyticField::Options& options) : AnalyticField(options) {}
 
 Distance PlaneField::distance(const Eigen::Vector3d& x) const noexcept {
   return {x.z(), Eigen::Vector3d::UnitZ()};
 }
 
-SphereField::SphereField(double radius, const AnalyticOptions& options)
+SphereField::SphereField(double radius, const AnalyticField::Options& options)
     : AnalyticField(options), radius_(radius) {
   require_positive("radius", radius);
 }
@@ -76,7 +76,7 @@ Distance SphereField::distance(const Eigen::Vector3d& x) const noexcept {
   return {length - radius_, x / length};
 }
 
-BoxField::BoxField(const Eigen::Vector3d& size, const AnalyticOptions& options)
+BoxField::BoxField(const Eigen::Vector3d& size, const AnalyticField::Options& options)
     : AnalyticField(options), half_(0.5 * size) {
   for (int axis = 0; axis < 3; ++axis) require_positive("edge length", size[axis]);
 }
@@ -92,7 +92,7 @@ Distance BoxField::distance(const Eigen::Vector3d& x) const noexcept {
   return {nearest, sign[axis] * Eigen::Vector3d::Unit(axis)};
 }
 
-TorusField::TorusField(double ring, double tube, const AnalyticOptions& options)
+TorusField::TorusField(double ring, double tube, const AnalyticField::Options& options)
     : AnalyticField(options), ring_(ring), tube_(tube) {
   require_positive("tube radius", tube);
   kRequire(std::isfinite(ring) && ring > tube, "ring radius", ring, "give more than the tube's");
@@ -149,10 +149,10 @@ Surface UnionField::surface(const Eigen::Vector3d& x) const noexcept {
   return surface;
 }
 
-FieldTraits UnionField::traits() const noexcept {
-  FieldTraits all{.resolution = std::numeric_limits<double>::infinity()};
+Field::Traits UnionField::traits() const noexcept {
+  Field::Traits all{.resolution = std::numeric_limits<double>::infinity()};
   for (const Field* part : parts_) {
-    const FieldTraits traits = part->traits();
+    const Field::Traits traits = part->traits();
     all.resolution = std::min(all.resolution, traits.resolution);
     all.reanchor_reach = std::max(all.reanchor_reach, traits.reanchor_reach);
     all.revision += traits.revision;

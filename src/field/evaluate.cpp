@@ -191,7 +191,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
     value = capped(surface, place, support, *height);
   } else {
     value = as_length(options, support, level_of(surface, support));
-    if (options.gradient == GradientKind::printed) {
+    if (options.gradient == FieldOptions::Gradient::printed) {
       value.grad = printed_gradient(surface, columns, local);
     }
   }

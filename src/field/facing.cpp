@@ -85,13 +85,13 @@ std::uint32_t Facing::sheet_of(const Key& key, const Key& part, bool known) noex
 void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t> places,
                         const Stance& stance) noexcept {
   const SurfacePoints& surface = *layer.points;
-  const PointSheets& own = surface.sheets;
-  std::uint32_t last = PointSheets::kNone;
+  const SurfacePoints::Sheets& own = surface.sheets;
+  std::uint32_t last = SurfacePoints::Sheets::kNone;
   std::uint32_t slot = kMost;
   for (const std::uint32_t i : places) {
     const double confidence = surface.normals.empty() ? 0 : confidence_now(layer, i);
     const std::uint32_t sheet = own.empty() ? 0 : own.sheet[i];
-    if (confidence <= 0 || sheet == PointSheets::kNone) {
+    if (confidence <= 0 || sheet == SurfacePoints::Sheets::kNone) {
       sheet_of_place_.push_back(kMost);
       continue;
     }

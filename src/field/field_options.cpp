@@ -1,6 +1,7 @@
 #include "palpate/field/field_options.hpp"
 
 #include "base/requirement.hpp"
+#include "field/formulas.hpp"
 
 namespace palpate {
 namespace {
@@ -51,7 +52,8 @@ void check(const FieldOptions& options) {
 FieldOptions paper_field(FieldKind kind) {
   FieldOptions options;
   options.kind = kind;
-  options.gradient = kind == FieldKind::pointset ? GradientKind::normal : GradientKind::exact;
+  options.gradient =
+      kind == FieldKind::pointset ? FieldOptions::Gradient::normal : FieldOptions::Gradient::exact;
   options.threshold = 0.5;
   options.capped = false;
   options.sharp_edges = false;

@@ -4,7 +4,33 @@
 #include <algorithm>
 #include <cmath>
 
+#include "palpate/field/field_options.hpp"
+
 namespace palpate {
+
+/// A weight w and its slope g = (dw/dr) / r, both as functions of q = r^2, r = |x - p| / R.
+/// grad w = g (x - p) / R^2, which is well defined at r = 0 too. Both are 0 for r >= 1.
+struct KernelValue {
+  double w = 0;
+  double g = 0;
+};
+
+/// Eq. (1), factored: with s = 1 - q it is s^2 (5 + 4 s) / 9. No square root.
+[[nodiscard]] constexpr KernelValue wyvill(double q) noexcept {
+  const double s = std::max(0.0, 1 - q);
+  return {s * s * (5 + 4 * s) / 9, -s * (5 + 6 * s) * (4. / 9)};
+}
+
+/// Eq. (2).
+[[nodiscard]] inline KernelValue wendland(double q) noexcept {
+  const double r = std::sqrt(q);
+  const double s = std::max(0.0, 1 - r);
+  return {s * s * s * s * (4 * r + 1), -20 * s * s * s};
+}
+
+[[nodiscard]] inline KernelValue evaluate(Kernel kernel, double q) noexcept {
+  return kernel == Kernel::wyvill ? wyvill(q) : wendland(q);
+}
 
 /// How far two points' normals agree on what is outside, -1 ... 1: n_p, mirrored by the plane
 /// halfway between p and q, times n_q, as if an arc joined the two; their plain product where both

@@ -80,14 +80,14 @@ Value smooth_min(const Value& a, const Value& b, const Value& radius, double wid
 /// Are there edges here to be kept sharp?
 bool keeps_edges(const FieldOptions& options, const simd::Columns& columns) noexcept {
   return options.sharp_edges && columns.edges && options.kind == FieldKind::balanced &&
-         options.gradient == GradientKind::exact;
+         options.gradient == FieldOptions::Gradient::exact;
 }
 
 /// The surface of one label's normals, with its exact gradient.
 Value height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
   const Oriented oriented =
       options.kind == FieldKind::balanced ? balanced(place.sums()) : pointset(place.sums());
-  if (options.gradient == GradientKind::normal) return {oriented.f, oriented.base};
+  if (options.gradient == FieldOptions::Gradient::normal) return {oriented.f, oriented.base};
   return {oriented.f, oriented.base + place.gradient(oriented.b)};
 }
 
@@ -100,7 +100,7 @@ Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noex
     height = {height.f - closure.f, height.grad - closure.grad};
   }
   if (keeps_edges(options, *place.columns)) height = with_edges(place, height);
-  if (place.columns->sources > 1 && options.gradient == GradientKind::exact) {
+  if (place.columns->sources > 1 && options.gradient == FieldOptions::Gradient::exact) {
     const Value shift = united_shift(place);
     height = {height.f + shift.f, height.grad + shift.grad};
   }

@@ -220,7 +220,7 @@ void Patch::fill_edges(std::size_t k) noexcept {
   for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
     const double sign = signs_[chosen];
     const std::uint32_t at = slots_[chosen++];
-    const EdgePlane edge = edge_now(layers_[k], i);
+    const SurfacePoints::EdgePlane edge = edge_now(layers_[k], i);
     for (int axis = 0; axis < 3; ++axis) {
       column(kEdgeNormal + axis)[at] = sign * static_cast<double>(edge.normal[axis]);
     }

@@ -74,9 +74,9 @@ void check_lengths(const SurfacePoints& points) {
   require_length("cell_reach", points.cell_reach.size(), points.grid.cells().size());
 }
 
-void require_edges(const char* column, const std::vector<EdgePlane>& edges) {
+void require_edges(const char* column, const std::vector<SurfacePoints::EdgePlane>& edges) {
   for (std::size_t k = 0; k < edges.size(); ++k) {
-    const EdgePlane& edge = edges[k];
+    const SurfacePoints::EdgePlane& edge = edges[k];
     if (edge.normal.allFinite() && std::isfinite(edge.height) && std::abs(edge.share) <= 1)
       continue;
     throw Error(
@@ -86,10 +86,10 @@ void require_edges(const char* column, const std::vector<EdgePlane>& edges) {
   }
 }
 
-void check_edges(const PointEdges& edges) {
+void check_edges(const SurfacePoints::Edges& edges) {
   for (std::size_t i = 0; i < edges.of_point.size(); ++i) {
     const std::uint32_t edge = edges.of_point[i];
-    if (edge < edges.start.size() || edge == PointEdges::kNone) continue;
+    if (edge < edges.start.size() || edge == SurfacePoints::Edges::kNone) continue;
     throw Error(fmt::format("surface points: edges.of_point[{}] is {}, but there are only {} edges",
                             i, edge, edges.start.size()));
   }
@@ -98,6 +98,12 @@ void check_edges(const PointEdges& edges) {
 }
 
 }  // namespace
+
+Box SurfacePoints::bounds() const {
+  if (grid.cells().empty()) return {};
+  const CellGrid::Cell& root = grid.cells().front();
+  return {origin + root.lower.cast<double>(), origin + root.upper.cast<double>()};
+}
 
 void check(const SurfacePoints& points) {
   check_lengths(points);

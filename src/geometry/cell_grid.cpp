@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "geometry/cell_builder.hpp"
-#include "geometry/distance.hpp"
+#include "geometry/neighborhoods.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-#include "geometry/distance.hpp"
+#include "geometry/neighborhoods.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/sort_records.hpp"
 #include "geometry/weight_sums.hpp"

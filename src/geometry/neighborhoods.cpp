@@ -4,8 +4,6 @@
 #include <array>
 #include <limits>
 
-#include "geometry/distance.hpp"
-
 namespace palpate::detail {
 
 Block make_block(const CellGrid& grid, std::uint32_t begin, std::uint32_t end) {

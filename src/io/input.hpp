@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "palpate/io/read_cloud.hpp"
+#include "palpate/io/cloud_file.hpp"
 
 namespace palpate::io {
 

@@ -1,5 +1,3 @@
-#include "palpate/io/read_cloud.hpp"
-
 #include <new>
 #include <utility>
 
@@ -14,6 +12,7 @@
 #include "io/ply.hpp"
 #include "io/xyz.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/io/cloud_file.hpp"
 
 namespace palpate {
 namespace {

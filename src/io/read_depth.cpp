@@ -10,7 +10,7 @@
 #include "io/file_kind.hpp"
 #include "io/input.hpp"
 #include "palpate/depth/depth_frame.hpp"
-#include "palpate/io/read_cloud.hpp"
+#include "palpate/io/cloud_file.hpp"
 
 namespace palpate {
 namespace {

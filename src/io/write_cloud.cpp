@@ -1,5 +1,3 @@
-#include "palpate/io/write_cloud.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "io/encode_cloud.hpp"
 #include "io/input.hpp"
 #include "palpate/base/error.hpp"
 

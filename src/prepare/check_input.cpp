@@ -77,10 +77,12 @@ void check(const PrepareOptions& options, const PointCloud& cloud) {
   }
   require.not_negative("minimum_radius", options.minimum_radius, "give 0 or a length in metres");
   require.positive("normal_error", options.normal_error, "give an angle above 0, in radians");
-  if (options.orientation == Orientation::viewpoint && !options.viewpoint && !cloud.viewpoint) {
+  if (options.orientation == PrepareOptions::Orientation::viewpoint && !options.viewpoint &&
+      !cloud.viewpoint) {
     throw Error("orienting normals to the viewpoint needs one; give a viewpoint");
   }
-  if (options.orientation == Orientation::given && share_given(cloud.normals) == 0) {
+  if (options.orientation == PrepareOptions::Orientation::given &&
+      share_given(cloud.normals) == 0) {
     throw Error(
         "keeping the given normals was requested, but the cloud has none; choose another "
         "orientation");

@@ -90,7 +90,7 @@ void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts
 
 void add_twins(std::span<const Twin> twins, SurfacePoints& points) {
   if (twins.empty()) return;
-  PointSheets& sheets = points.sheets;
+  SurfacePoints::Sheets& sheets = points.sheets;
   for (const Twin& twin : twins) points.density_weights[twin.point] *= 0.5f;
   std::vector<Eigen::Vector3f> positions(points.grid.points().begin(), points.grid.points().end());
   const auto append = [&](auto& column, std::uint32_t Twin::*from) {

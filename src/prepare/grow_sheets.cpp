@@ -9,7 +9,7 @@
 
 #include "field/formulas.hpp"
 #include "geometry/neighborhoods.hpp"
-#include "geometry/signed_sets.hpp"
+#include "prepare/sheets.hpp"
 #include "prepare/snapping.hpp"
 
 namespace palpate {
@@ -123,7 +123,7 @@ class Outlook {
 
   const SheetInput& input_;
   const OwnSheets& own_;
-  PointSheets& sheets_;
+  SurfacePoints::Sheets& sheets_;
   const std::vector<std::uint8_t>& sure_;
   detail::NearPairs pairs_;
   std::array<std::vector<std::pair<float, std::uint32_t>>, simd::kQueries> others_;
@@ -259,7 +259,7 @@ Growths grow_sheets(const SheetInput& input, OwnSheets& own) {
   detail::SignedSets& sets = growth.run();
   const std::size_t count = input.grid.size();
   std::vector<std::uint32_t>& sheet = result.sheets.sheet;
-  sheet.assign(count, PointSheets::kNone);
+  sheet.assign(count, SurfacePoints::Sheets::kNone);
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (snapped.hosts[i] == kNoHost) continue;
@@ -276,7 +276,7 @@ Growths grow_sheets(const SheetInput& input, OwnSheets& own) {
   result.sheets.part.resize(sizes.size());
   std::iota(result.sheets.part.begin(), result.sheets.part.end(), 0u);
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (sheet[i] != PointSheets::kNone && sizes[sheet[i]] < kFewestOnSheet) {
+    if (sheet[i] != SurfacePoints::Sheets::kNone && sizes[sheet[i]] < kFewestOnSheet) {
       own.confidences[i] *= kTrustOfFew;
     }
   }

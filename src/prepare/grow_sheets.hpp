@@ -9,7 +9,7 @@ namespace palpate {
 
 /// Which sheet each point lies on.
 struct Growths {
-  PointSheets sheets;  ///< every sheet is a part of its own; no gaps yet
+  SurfacePoints::Sheets sheets;  ///< every sheet is a part of its own; no gaps yet
   std::vector<std::uint8_t>
       sure;                 ///< 1: its own fit put the point there; 0: a neighbour's, or none
   std::vector<Twin> twins;  ///< in rising order

@@ -8,7 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "geometry/distance.hpp"
 #include "geometry/neighborhoods.hpp"
 #include "geometry/parallel.hpp"
 #include "prepare/sheet_fit.hpp"

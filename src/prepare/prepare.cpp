@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "field/density.hpp"
 #include "geometry/normals.hpp"
 #include "geometry/weight_sums.hpp"
 #include "palpate/base/error.hpp"
@@ -207,9 +206,11 @@ class Preparation {
 
   void find_sheets() {
     KnownSigns known;
-    const Orientation how = options_.orientation;
-    if (how == Orientation::automatic || how == Orientation::given) known.given = given_;
-    const bool seen = how == Orientation::automatic || how == Orientation::viewpoint;
+    const PrepareOptions::Orientation how = options_.orientation;
+    if (how == PrepareOptions::Orientation::automatic || how == PrepareOptions::Orientation::given)
+      known.given = given_;
+    const bool seen = how == PrepareOptions::Orientation::automatic ||
+                      how == PrepareOptions::Orientation::viewpoint;
     if (seen && viewpoint_) known.eye = (*viewpoint_ - points_.origin).cast<float>();
     if (options_.viewpoint) known.given = {};
     for (std::size_t i = 0; i < points_.size(); ++i) {

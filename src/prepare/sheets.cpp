@@ -6,7 +6,6 @@
 
 #include "geometry/neighborhoods.hpp"
 #include "geometry/normals.hpp"
-#include "geometry/signed_sets.hpp"
 #include "prepare/grow_sheets.hpp"
 #include "prepare/sheet_fit.hpp"
 
@@ -105,12 +104,12 @@ class SignsOfSheets {
 };
 
 std::vector<int> known_signs(const SheetInput& input, const KnownSigns& known, const OwnSheets& own,
-                             const PointSheets& sheets) {
+                             const SurfacePoints::Sheets& sheets) {
   SignsOfSheets given(sheets.part.size());
   SignsOfSheets seen(sheets.part.size());
   for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
     const std::uint32_t sheet = sheets.sheet[i];
-    if (sheet == PointSheets::kNone) continue;
+    if (sheet == SurfacePoints::Sheets::kNone) continue;
     given.count(sheet);
     seen.count(sheet);
     if (!known.given.empty() && known.given[i].allFinite()) {
@@ -183,11 +182,11 @@ bool is_inside_out(const PartSums& part, const Vector3d& center_of_all) {
 
 /// The sign that each part's normals are to be multiplied by where nothing is known of it.
 std::vector<int> outward_signs(const SheetInput& input, const OwnSheets& own,
-                               const PointSheets& sheets, std::size_t parts) {
+                               const SurfacePoints::Sheets& sheets, std::size_t parts) {
   std::vector<PartSums> sums(parts);
   PartSums all;
   for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
-    if (sheets.sheet[i] == PointSheets::kNone) continue;
+    if (sheets.sheet[i] == SurfacePoints::Sheets::kNone) continue;
     const Vector3d p = input.grid.points()[i].cast<double>();
     const Vector3d n = own.normals[i].cast<double>();
     const double area =
@@ -207,9 +206,10 @@ std::vector<int> outward_signs(const SheetInput& input, const OwnSheets& own,
 }
 
 /// Turns the normals of whole sheets.
-void turn(const std::vector<int>& sign_of_sheet, OwnSheets& own, PointSheets& sheets) {
+void turn(const std::vector<int>& sign_of_sheet, OwnSheets& own, SurfacePoints::Sheets& sheets) {
   for (std::size_t i = 0; i < sheets.sheet.size(); ++i) {
-    if (sheets.sheet[i] == PointSheets::kNone || sign_of_sheet[sheets.sheet[i]] > 0) continue;
+    if (sheets.sheet[i] == SurfacePoints::Sheets::kNone || sign_of_sheet[sheets.sheet[i]] > 0)
+      continue;
     own.normals[i] = -own.normals[i];
     std::swap(sheets.above[i], sheets.below[i]);
   }
@@ -218,7 +218,7 @@ void turn(const std::vector<int>& sign_of_sheet, OwnSheets& own, PointSheets& sh
 /// Makes parts of linked sheets. A link that contradicts what is known of both of its sides is
 /// passed over.
 void join_parts(const SheetInput& input, const std::vector<Link>& links, std::vector<int> known,
-                OwnSheets& own, PointSheets& sheets) {
+                OwnSheets& own, SurfacePoints::Sheets& sheets) {
   const std::size_t count = sheets.part.size();
   detail::SignedSets sets(count);
   for (const Link& link : links) {
@@ -255,12 +255,12 @@ void join_parts(const SheetInput& input, const std::vector<Link>& links, std::ve
 
 }  // namespace
 
-PointSheets make_sheets(const SheetInput& input, const KnownSigns& known, OwnSheets& own,
-                        std::vector<Twin>& twins) {
+SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known, OwnSheets& own,
+                                  std::vector<Twin>& twins) {
   Growths grown = grow_sheets(input, own);
   twins = std::move(grown.twins);
   const std::vector<SheetVote> votes = look_around(input, own, grown);
-  PointSheets sheets = std::move(grown.sheets);
+  SurfacePoints::Sheets sheets = std::move(grown.sheets);
   const std::vector<int> signs = known_signs(input, known, own, sheets);
   join_parts(input, links_of(votes, signs), signs, own, sheets);
   sheets.residual = own.residuals;

@@ -12,7 +12,7 @@ constexpr double kLongest = 2;
 
 }  // namespace
 
-Moment Rhythm::next(double stamp, double start) {
+FrameTiming FrameIntervalFilter::next(double stamp, double start) {
   if (frames_ > 0) measure(stamp);
   // Two snapshots with one start are in order all the same: the newer one goes on from where the
   // older one is then.
@@ -23,7 +23,7 @@ Moment Rhythm::next(double stamp, double start) {
   return {stamp, start, interval_};
 }
 
-void Rhythm::measure(double stamp) {
+void FrameIntervalFilter::measure(double stamp) {
   const double gap = stamp - last_stamp_;
   if (!(gap > 0)) return;
   if (frames_ == 1) {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "scene/seams.hpp"
+#include "scene/source_inside.hpp"
 
 namespace palpate {
 
@@ -26,8 +26,8 @@ Source& Scene::add(std::string name, const SourceOptions& options) {
         fmt::format("the scene already has a source named '{}'; choose another name", name));
   if (!seams_) seams_ = std::make_shared<Seams>();
   Source& source = sources_.emplace_back(std::move(name), options);
-  source.seams_ = seams_;
-  source.place_ = sources_.size() - 1;
+  source.inside_->seams = seams_;
+  source.inside_->place = sources_.size() - 1;
   return source;
 }
 

@@ -13,9 +13,8 @@
 #include "field/evaluate.hpp"
 #include "field/mean_surface.hpp"
 #include "scene/patches.hpp"
-#include "scene/seams.hpp"
+#include "scene/source_inside.hpp"
 #include "scene/source_view.hpp"
-#include "scene/tool_reach.hpp"
 
 namespace palpate {
 namespace {
@@ -47,10 +46,10 @@ struct SceneField::State {
   State(Scene& scene, const FieldOptions& options, const std::string& name, double scale)
       : surface(options), fields(scene.fields_), reach(scale) {
     for (std::size_t i = 0; i < scene.size(); ++i) {
-      Source& source = scene.source(i);
-      views.emplace_back(source.handoff_, source.seams_->least_radius(i), name);
-      boards.push_back(source.reaches_.get());
-      soft.push_back(source.options().soft);
+      Source::Inside& source = *scene.source(i).inside_;
+      views.emplace_back(source.handoff, source.seams->least_radius(i), name);
+      boards.push_back(&source.reaches);
+      soft.push_back(scene.source(i).options().soft);
     }
     ++*fields;
   }
@@ -83,7 +82,7 @@ struct SceneField::State {
   ImplicitSurface surface;
   std::shared_ptr<std::atomic<int>> fields;  // of the scene
   std::deque<SourceView> views;
-  std::vector<ReachBoard*> boards;  // of the views' sources
+  std::vector<ReachTable*> boards;  // of the views' sources
   ToolReach reach;
   std::vector<SoftMaterial> soft;
   std::array<ActiveLayer, Scene::kMaxSources * Snapshot::kMaxLayers> layers;
@@ -269,7 +268,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   return felt_surface(mean, state.soft[static_cast<std::size_t>(mean.source)]);
 }
 
-FieldTraits SceneField::traits() const noexcept {
+Field::Traits SceneField::traits() const noexcept {
   const State& state = *state_;
   const bool metaball = options_.kind == FieldKind::metaball;
   // One finely sampled spot must not make sweeps fine everywhere.

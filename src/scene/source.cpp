@@ -8,12 +8,8 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "palpate/depth/depth_frame.hpp"
-#include "palpate/scene/snapshot.hpp"
 #include "prepare/check_input.hpp"
-#include "scene/intake.hpp"
-#include "scene/seams.hpp"
-#include "scene/tool_reach.hpp"
+#include "scene/source_inside.hpp"
 
 namespace palpate {
 namespace {
@@ -40,7 +36,7 @@ void check(const std::string& name, const Snapshot& snapshot) {
   }
   check_factor(name, "presence_start", snapshot.presence_start);
   check_factor(name, "presence_end", snapshot.presence_end);
-  for (const Layer& layer : snapshot.layers) {
+  for (const Snapshot::Layer& layer : snapshot.layers) {
     if (!layer.points)
       throw Error(fmt::format("source '{}': a layer has no points; give every layer some", name));
     check_factor(name, "a layer's weight_start", layer.weight_start);
@@ -78,52 +74,56 @@ auto named(const std::string& name, const Act& act) {
 }  // namespace
 
 Source::Source(std::string name, const SourceOptions& options)
-    : name_(std::move(name)),
-      options_(options),
-      pose_(options.T_world_sensor),
-      reaches_(std::make_unique<ReachBoard>()) {
-  check_factor(name_, "soft.stiffness_factor", options_.soft.stiffness_factor);
-  check_factor(name_, "soft.friction_factor", options_.soft.friction_factor);
-  named(name_, [&] { intake_ = std::make_unique<Intake>(options_); });
+    : inside_(std::make_unique<Inside>()) {
+  inside_->name = std::move(name);
+  inside_->options = options;
+  inside_->pose = options.T_world_sensor;
+  check_factor(inside_->name, "soft.stiffness_factor", options.soft.stiffness_factor);
+  check_factor(inside_->name, "soft.friction_factor", options.soft.friction_factor);
+  named(inside_->name, [&] { inside_->builder = std::make_unique<SnapshotBuilder>(options); });
 }
 
 Source::~Source() = default;
 
+const std::string& Source::name() const {
+  return inside_->name;
+}
+
 SourceOptions Source::options() const {
-  const std::lock_guard lock(mutex_);
-  return options_;
+  const std::lock_guard lock(inside_->mutex);
+  return inside_->options;
 }
 
 void Source::change(const SourceOptions& options) {
-  std::unique_ptr<Intake> changed;
-  named(name_, [&] { changed = std::make_unique<Intake>(options); });
-  const std::lock_guard lock(mutex_);
-  changed_ = std::move(changed);
-  options_.prepare = options.prepare;
-  options_.policy = options.policy;
-  options_.depth = options.depth;
-  options_.organised = options.organised;
+  std::unique_ptr<SnapshotBuilder> changed;
+  named(inside_->name, [&] { changed = std::make_unique<SnapshotBuilder>(options); });
+  const std::lock_guard lock(inside_->mutex);
+  inside_->changed = std::move(changed);
+  inside_->options.prepare = options.prepare;
+  inside_->options.policy = options.policy;
+  inside_->options.depth = options.depth;
+  inside_->options.organised = options.organised;
 }
 
-void Source::take_change() {
-  const std::lock_guard lock(mutex_);
-  if (changed_) intake_ = std::move(changed_);
+void Source::Inside::take_change() {
+  const std::lock_guard lock(mutex);
+  if (changed) builder = std::move(changed);
 }
 
 PrepareReport Source::report() const {
-  const std::lock_guard lock(mutex_);
-  return report_;
+  const std::lock_guard lock(inside_->mutex);
+  return inside_->report;
 }
 
 Eigen::Isometry3d Source::pose() const {
-  const std::lock_guard lock(mutex_);
-  return pose_;
+  const std::lock_guard lock(inside_->mutex);
+  return inside_->pose;
 }
 
 void Source::set_pose(const Eigen::Isometry3d& T_world_sensor) {
-  named(name_, [&] { check_pose(T_world_sensor); });
-  const std::lock_guard lock(mutex_);
-  pose_ = T_world_sensor;
+  named(inside_->name, [&] { check_pose(T_world_sensor); });
+  const std::lock_guard lock(inside_->mutex);
+  inside_->pose = T_world_sensor;
 }
 
 void Source::set(const PointCloud& cloud) {
@@ -137,11 +137,11 @@ void Source::set(const PointCloud& cloud) {
       return;
     }
   }
-  Prepared prepared = named(name_, [&] { return prepare(cloud, wanted.prepare, pose()); });
+  Prepared prepared = named(inside_->name, [&] { return prepare(cloud, wanted.prepare, pose()); });
   {
-    const std::lock_guard lock(mutex_);
-    report_ = prepared.report;
-    state_ = {};
+    const std::lock_guard lock(inside_->mutex);
+    inside_->report = prepared.report;
+    inside_->state = {};
   }
   auto snapshot = std::make_shared<Snapshot>();
   snapshot->layers.push_back(
@@ -155,119 +155,124 @@ void Source::set(const DepthFrame& frame) {
   const StartTime at_once = [] { return 0.0; };
   const Eigen::Isometry3d stand = frame.T_world_sensor.value_or(pose());
   auto snapshot = std::make_shared<Snapshot>();
-  named(name_, [&] {
+  named(inside_->name, [&] {
     check_pose(stand);
-    Intake intake(whole);
-    snapshot->layers = intake.take(frame, {stand, {}, at_once})->layers;
-    const std::lock_guard lock(mutex_);
-    state_ = {};
-    note(*snapshot);
-    note(intake);
+    SnapshotBuilder builder(whole);
+    snapshot->layers = builder.take(frame, {stand, {}, at_once})->layers;
+    const std::lock_guard lock(inside_->mutex);
+    inside_->state = {};
+    inside_->note(*snapshot);
+    inside_->note(builder);
   });
   publish(std::move(snapshot));
 }
 
 bool Source::push(const DepthFrame& frame, const StartTime& start) {
-  take_change();
-  if (!room_for(false)) return false;
-  reaches_->read(found_);
-  named(name_, [&] {
+  inside_->take_change();
+  if (!inside_->room_for(false)) return false;
+  inside_->reaches.read(inside_->found);
+  named(inside_->name, [&] {
     const Eigen::Isometry3d pose_now = frame.T_world_sensor ? *frame.T_world_sensor : pose();
     if (frame.T_world_sensor) check_pose(pose_now);
-    hand_over(intake_->take(frame, {pose_now, found_, start}));
+    inside_->hand_over(*this, inside_->builder->take(frame, {pose_now, inside_->found, start}));
   });
-  const std::lock_guard lock(mutex_);
-  note(*intake_);
+  const std::lock_guard lock(inside_->mutex);
+  inside_->note(*inside_->builder);
   return true;
 }
 
 bool Source::push(const PointCloud& cloud, double stamp, const StartTime& start) {
-  take_change();
-  if (!room_for(true)) return false;
-  reaches_->read(found_);
+  inside_->take_change();
+  if (!inside_->room_for(true)) return false;
+  inside_->reaches.read(inside_->found);
   PrepareReport report;
-  named(name_, [&] { hand_over(intake_->take(cloud, stamp, {pose(), found_, start}, report)); });
-  const std::lock_guard lock(mutex_);
-  report_ = report;
+  named(inside_->name, [&] {
+    inside_->hand_over(
+        *this, inside_->builder->take(cloud, stamp, {pose(), inside_->found, start}, report));
+  });
+  const std::lock_guard lock(inside_->mutex);
+  inside_->report = report;
   return true;
 }
 
 void Source::keep() {
-  const Snapshot* newest = handoff_.peek();  // nobody else publishes, so nobody frees it
+  const Snapshot* newest = inside_->handoff.peek();  // nobody else publishes, so nobody frees it
   if (newest == nullptr) return;
-  std::shared_ptr<Snapshot> kept = room_for(false) ? intake_->last_of_frames(*newest) : nullptr;
+  std::shared_ptr<Snapshot> kept =
+      inside_->room_for(false) ? inside_->builder->last_of_frames(*newest) : nullptr;
   if (!kept) kept = std::make_shared<Snapshot>(*newest);
   kept->silent_from = std::numeric_limits<double>::infinity();
   {
-    const std::lock_guard lock(mutex_);
-    points_ = kept->layers.empty() ? nullptr : kept->layers.back().points;
-    state_.silent_from = kept->silent_from;
+    const std::lock_guard lock(inside_->mutex);
+    inside_->points = kept->layers.empty() ? nullptr : kept->layers.back().points;
+    inside_->state.silent_from = kept->silent_from;
   }
-  handoff_.publish(std::move(kept));
+  inside_->handoff.publish(std::move(kept));
 }
 
 /// May one more snapshot be made? If not, says whom it waits for.
-bool Source::room_for(bool clouds) {
-  const std::size_t most = intake_->most_snapshots(clouds, handoff_.readers());
-  if (handoff_.alive() < most) return true;
-  handoff_.sweep();
-  if (handoff_.alive() < most) return true;
-  std::string slowest = handoff_.slowest();
-  const std::lock_guard lock(mutex_);
-  ++state_.dropped;
-  state_.slowest = std::move(slowest);
+bool Source::Inside::room_for(bool clouds) {
+  const std::size_t most = builder->most_snapshots(clouds, handoff.readers());
+  if (handoff.alive() < most) return true;
+  handoff.sweep();
+  if (handoff.alive() < most) return true;
+  std::string slowest = handoff.slowest();
+  const std::lock_guard lock(mutex);
+  ++state.dropped;
+  state.slowest = std::move(slowest);
   return false;
 }
 
-void Source::hand_over(std::shared_ptr<const Snapshot> snapshot) {
+void Source::Inside::hand_over(const Source& source, std::shared_ptr<const Snapshot> snapshot) {
   if (!snapshot) return;
   {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(mutex);
     note(*snapshot);
   }
-  handoff_.publish(std::move(snapshot));
-  if (state_.frames % kComparedFrames == 1) compare();
+  handoff.publish(std::move(snapshot));
+  if (state.frames % kComparedFrames == 1) compare(source);
 }
 
-void Source::compare() {
-  if (seams_) seams_->compare(place_, *this);
+void Source::Inside::compare(const Source& source) {
+  if (seams) seams->compare(place, source);
 }
 
-void Source::note(const Snapshot& snapshot) {
-  points_ = snapshot.layers.back().points;
-  ++state_.frames;
-  state_.interval = state_.frames > 1 ? intake_->interval() : 0;
-  state_.latency = snapshot.start - snapshot.stamp;
-  state_.stamp = snapshot.stamp;
-  state_.points = points_->size();
-  state_.silent_from = snapshot.silent_from;
-  state_.fade = snapshot.fade;
+void Source::Inside::note(const Snapshot& snapshot) {
+  points = snapshot.layers.back().points;
+  ++state.frames;
+  state.interval = state.frames > 1 ? builder->interval() : 0;
+  state.latency = snapshot.start - snapshot.stamp;
+  state.stamp = snapshot.stamp;
+  state.points = points->size();
+  state.silent_from = snapshot.silent_from;
+  state.fade = snapshot.fade;
 }
 
-void Source::note(const Intake& intake) {
-  state_.depth = intake.median_depth();
-  state_.noise = intake.noise().sigma(state_.depth);
-  state_.correlation = intake.noise().correlation;
+void Source::Inside::note(const SnapshotBuilder& made) {
+  state.depth = made.median_depth();
+  state.noise = made.noise().sigma(state.depth);
+  state.correlation = made.noise().correlation;
 }
 
 void Source::publish(std::shared_ptr<const Snapshot> snapshot) {
-  if (snapshot) check(name_, *snapshot);
+  if (snapshot) check(inside_->name, *snapshot);
   {
-    const std::lock_guard lock(mutex_);
-    points_ = snapshot && !snapshot->layers.empty() ? snapshot->layers.front().points : nullptr;
+    const std::lock_guard lock(inside_->mutex);
+    inside_->points =
+        snapshot && !snapshot->layers.empty() ? snapshot->layers.front().points : nullptr;
   }
-  handoff_.publish(std::move(snapshot));
-  compare();
+  inside_->handoff.publish(std::move(snapshot));
+  inside_->compare(*this);
 }
 
 std::shared_ptr<const SurfacePoints> Source::points() const {
-  const std::lock_guard lock(mutex_);
-  return points_;
+  const std::lock_guard lock(inside_->mutex);
+  return inside_->points;
 }
 
 SourceState Source::state() const {
-  const std::lock_guard lock(mutex_);
-  return state_;
+  const std::lock_guard lock(inside_->mutex);
+  return inside_->state;
 }
 
 double progress(const Snapshot& snapshot, double time) noexcept {

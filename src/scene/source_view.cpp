@@ -127,7 +127,7 @@ void SourceView::begin(const Times& before) noexcept {
 }
 
 ActiveLayer SourceView::layer(std::size_t k, int source) const noexcept {
-  const Layer& layer = current_->layers[k];
+  const Snapshot::Layer& layer = current_->layers[k];
   const double weight = layer.weight_start + progress_ * (layer.weight_end - layer.weight_start);
   return {.points = layer.points.get(),
           .source = source,

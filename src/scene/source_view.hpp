@@ -7,8 +7,8 @@
 #include <string>
 
 #include "field/patch.hpp"
-#include "palpate/scene/handoff.hpp"
-#include "palpate/scene/snapshot.hpp"
+#include "palpate/scene/source.hpp"
+#include "scene/handoff.hpp"
 
 namespace palpate {
 

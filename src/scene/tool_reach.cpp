@@ -9,7 +9,7 @@ constexpr int kTries = 8;
 
 }  // namespace
 
-void ReachBoard::write(std::size_t place, const Reach& reach) noexcept {
+void ReachTable::write(std::size_t place, const Reach& reach) noexcept {
   Place& p = places_[place];
   const std::array<double, 4> values{reach.center.x(), reach.center.y(), reach.center.z(),
                                      reach.radius};
@@ -22,7 +22,7 @@ void ReachBoard::write(std::size_t place, const Reach& reach) noexcept {
   p.version.store(version + 2, std::memory_order_release);
 }
 
-void ReachBoard::read(std::vector<Reach>& found) const {
+void ReachTable::read(std::vector<Reach>& found) const {
   found.clear();
   for (const Place& p : places_) {
     for (int i = 0; i < kTries; ++i) {

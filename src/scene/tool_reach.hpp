@@ -7,19 +7,23 @@
 #include <cstdint>
 #include <vector>
 
-#include "palpate/scene/handoff.hpp"
-#include "palpate/scene/snapshot.hpp"
+#include "palpate/geometry/shapes.hpp"
 #include "palpate/scene/source.hpp"
+#include "scene/handoff.hpp"
 
 namespace palpate {
 
+/// Where a tool can be before the next frames: around hand and proxy. World frame. Fields publish
+/// it, preparation clips to it and runs the costly fit in it.
+using Reach = Ball;
+
 /// Where fields write their reach, each in a place of its own, and preparation reads it. Without
 /// locks: a version that is odd while a place is being written tells who reads to look again.
-class ReachBoard {
+class ReachTable {
  public:
   static constexpr std::size_t kPlaces = Handoff<Snapshot>::kReaders;
 
-  ReachBoard() {
+  ReachTable() {
     for (std::size_t i = 0; i < kPlaces; ++i) clear(i);
   }
 

@@ -23,21 +23,22 @@ bool is_camera(const CameraModel& camera) {
 std::optional<Objection> check_form(const DepthFrame& frame) {
   const CameraModel& camera = frame.camera;
   if (!is_camera(camera)) {
-    return Objection{&StreamDrops::garbage, fmt::format("a frame of {} x {} pixels and a focal "
-                                                        "length of {} x {} pixels",
-                                                        camera.width, camera.height,
-                                                        camera.pinhole.fx, camera.pinhole.fy)};
+    return Objection{
+        &StreamState::Drops::garbage,
+        fmt::format("a frame of {} x {} pixels and a focal "
+                    "length of {} x {} pixels",
+                    camera.width, camera.height, camera.pinhole.fx, camera.pinhole.fy)};
   }
   const std::size_t pixels =
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   if (frame.depth.size() != pixels || (!frame.colors.empty() && frame.colors.size() != pixels)) {
     return Objection{
-        &StreamDrops::garbage,
+        &StreamState::Drops::garbage,
         fmt::format("a frame of {} x {} pixels with {} depths and {} colours", camera.width,
                     camera.height, frame.depth.size(), frame.colors.size())};
   }
   if (frame.T_world_sensor && !frame.T_world_sensor->matrix().allFinite()) {
-    return Objection{&StreamDrops::garbage, "a frame with a pose that is not finite"};
+    return Objection{&StreamState::Drops::garbage, "a frame with a pose that is not finite"};
   }
   return {};
 }
@@ -75,7 +76,8 @@ bool left_out(CameraStatus status) noexcept {
 Objection objection_to(CameraStatus status, const std::string& reason) {
   const bool unposed = status == CameraStatus::unposed;
   const std::string words = unposed ? "a frame without a pose" : "a damaged frame";
-  return {unposed ? &StreamDrops::unposed : &StreamDrops::garbage, reason.empty() ? words : reason};
+  return {unposed ? &StreamState::Drops::unposed : &StreamState::Drops::garbage,
+          reason.empty() ? words : reason};
 }
 
 std::optional<Objection> FrameCheck::examine(const DepthFrame& frame, double latest) {
@@ -89,14 +91,14 @@ std::optional<Objection> FrameCheck::examine(const DepthFrame& frame, double lat
 
 std::optional<Objection> FrameCheck::check_stamp(double stamp, double latest) const {
   if (!std::isfinite(stamp) || stamp > latest) {
-    return Objection{&StreamDrops::late,
+    return Objection{&StreamState::Drops::late,
                      fmt::format("a frame taken at {} s, which is {}", stamp,
                                  stamp > latest ? "in the future: is the camera on another clock?"
                                                 : "not a valid time")};
   }
   if (stamp_ && stamp <= *stamp_) {
     return Objection{
-        &StreamDrops::late,
+        &StreamState::Drops::late,
         fmt::format("a frame taken at {:.6f} s, not later than the previous one at {:.6f} s", stamp,
                     *stamp_)};
   }
@@ -113,7 +115,7 @@ std::optional<Objection> FrameCheck::check_size(const DepthFrame& frame) {
   candidate_seen_ = size == candidate_ ? candidate_seen_ + 1 : 1;
   candidate_ = size;
   if (candidate_seen_ < kLasts) {
-    return Objection{&StreamDrops::resized,
+    return Objection{&StreamState::Drops::resized,
                      fmt::format("a frame of {} x {} pixels after those of {} x {}", size.width,
                                  size.height, size_.width, size_.height)};
   }
@@ -125,13 +127,13 @@ std::optional<Objection> FrameCheck::check_size(const DepthFrame& frame) {
 
 std::optional<Objection> FrameCheck::check_picture(const DepthFrame& frame) {
   if (is_empty(frame.depth)) {
-    return Objection{&StreamDrops::empty,
+    return Objection{&StreamState::Drops::empty,
                      "a frame without any depth: is the lens covered, or everything out of range?"};
   }
   if (allow_repeats_) return {};
   const std::uint64_t picture = sum_of(frame.depth);
   if (picture_ == picture) {
-    return Objection{&StreamDrops::repeated, "a frame identical to the previous one"};
+    return Objection{&StreamState::Drops::repeated, "a frame identical to the previous one"};
   }
   picture_ = picture;
   return {};

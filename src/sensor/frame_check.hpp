@@ -12,7 +12,7 @@ namespace palpate::sensor {
 
 /// Why a frame is not passed on.
 struct Objection {
-  std::uint64_t StreamDrops::*cause;
+  std::uint64_t StreamState::Drops::*cause;
   std::string words;
 };
 

@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/sequence.hpp"
-#include "palpate/sensor/simulated_camera.hpp"
 #include "sensor/drivers.hpp"
+#include "sensor/sequence.hpp"
+#include "sim/simulated_camera.hpp"
 
 namespace palpate {
 namespace {

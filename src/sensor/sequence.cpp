@@ -1,4 +1,4 @@
-#include "palpate/sensor/sequence.hpp"
+#include "sensor/sequence.hpp"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/io/read_depth.hpp"
-#include "palpate/sensor/sequence.hpp"
+#include "sensor/sequence.hpp"
 
 namespace palpate::sensor {
 namespace {

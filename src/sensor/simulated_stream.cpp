@@ -9,7 +9,7 @@
 
 #include "palpate/base/error.hpp"
 #include "sensor/frame_check.hpp"
-#include "sensor/stream_log.hpp"
+#include "sensor/stream_statistics.hpp"
 
 namespace palpate {
 namespace {
@@ -71,7 +71,7 @@ struct SimulatedStream::Player {
   DepthCamera& camera;
   const FrameSink sink;
   const std::function<void()> ended;  // may be empty
-  StreamLog log;
+  StreamStatistics log;
   FrameCheck check;
   DepthFrame frame;
   std::string reason;      // why the last answer was no frame
@@ -118,7 +118,8 @@ void SimulatedStream::Player::schedule() {
 }
 
 void SimulatedStream::Player::do_without(CameraStatus status) {
-  if (left_out(status)) log.came(next, objection_to(status, reason), check.size_changes());
+  if (left_out(status))
+    log.frame_received(next, objection_to(status, reason), check.size_changes());
   if (status == CameraStatus::waiting) log.waiting(next);
   if (status == CameraStatus::failed) log.failed(next, reason, failures > 1);
   next += frame_time;
@@ -127,7 +128,7 @@ void SimulatedStream::Player::do_without(CameraStatus status) {
 void SimulatedStream::Player::take() {
   waits = false;
   const auto objection = check.examine(frame, kEver);
-  log.came(next, objection, check.size_changes());
+  log.frame_received(next, objection, check.size_changes());
   if (!objection) prepare();
 }
 

@@ -13,7 +13,7 @@
 #include "palpate/base/error.hpp"
 #include "sensor/frame_check.hpp"
 #include "sensor/frame_exchange.hpp"
-#include "sensor/stream_log.hpp"
+#include "sensor/stream_statistics.hpp"
 
 namespace palpate {
 namespace sensor {
@@ -111,7 +111,7 @@ struct Stream::Threads {
   const FrameSink sink;               // the preparing thread's
   const std::function<void()> ended;  // likewise; may be empty
   const Clock& clock;
-  StreamLog log;
+  StreamStatistics log;
   FrameCheck check;  // the reading thread's
   Retry retry;       // the reading thread's
   FrameExchange exchange;
@@ -160,7 +160,7 @@ bool Stream::Threads::take(DepthFrame& frame) {
   const bool paces = camera.info().paces;
   const double latest = paces ? now + kAhead : std::numeric_limits<double>::infinity();
   const auto objection = check.examine(frame, latest);
-  log.came(now, objection, check.size_changes());
+  log.frame_received(now, objection, check.size_changes());
   if (paces && !std::exchange(compared, true)) compare_clocks(frame.stamp, now);
   if (objection) return true;
   const auto outcome = exchange.offer(frame);
@@ -171,14 +171,14 @@ bool Stream::Threads::take(DepthFrame& frame) {
 // A device that sends damaged frames is there: it is asked for the next at once.
 void Stream::Threads::leave_out(CameraStatus status) {
   retry.succeeded();
-  log.came(clock.now(), objection_to(status, reason), check.size_changes());
+  log.frame_received(clock.now(), objection_to(status, reason), check.size_changes());
 }
 
 void Stream::Threads::compare_clocks(double stamp, double now) {
   if (!(std::abs(stamp - now) > kOtherClock)) return;
-  log.remark(now, fmt::format("the camera uses another clock: its first frame was taken at {:.6g} "
-                              "s, but it is {:.6g} s now. Open it with the stream's clock",
-                              stamp, now));
+  log.warning(now, fmt::format("the camera uses another clock: its first frame was taken at {:.6g} "
+                               "s, but it is {:.6g} s now. Open it with the stream's clock",
+                               stamp, now));
 }
 
 bool Stream::Threads::wait_to_retry() {

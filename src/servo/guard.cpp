@@ -1,11 +1,10 @@
 #include "palpate/servo/guard.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/requirement.hpp"
+#include "servo/passivity.hpp"
 
 namespace palpate {
 namespace {
@@ -23,7 +22,7 @@ void validate(const GuardOptions& options) {
   require.not_negative("soft_start (s)", options.soft_start, "give a time that is 0 or more");
   require(options.stiffness_share > 0, "stiffness_share", options.stiffness_share,
           "give a number above 0, infinity for no limit");
-  const PassivityOptions& passivity = options.passivity;
+  const GuardOptions::Passivity& passivity = options.passivity;
   require.positive("passivity.mass (kg)", passivity.mass, "give a mass above 0");
   require.not_negative("passivity.memory (J)", passivity.memory,
                        "give an energy that is 0 or more");
@@ -64,16 +63,84 @@ Vector3d tangential(const Vector3d& v, const Vector3d& normal) noexcept {
 
 }  // namespace
 
-Guard::Guard(const GuardOptions& options) : options_(options), passivity_(options.passivity) {
-  validate(options);
+/// What a guard does and what it keeps from step to step.
+class Guard::Inside {
+ public:
+  explicit Inside(const GuardOptions& options) : options_(options), passivity_(options.passivity) {
+    validate(options);
+  }
+
+  [[nodiscard]] Vector3d pass(const GuardInput& input) noexcept;
+  void reset() noexcept;
+
+  [[nodiscard]] const GuardState& state() const noexcept { return state_; }
+  [[nodiscard]] const GuardOptions& options() const noexcept { return options_; }
+
+ private:
+  /// How the hand moved against the surface since the step before.
+  struct Motion {
+    Vector3d way;       // m
+    Vector3d velocity;  // smoothed, m/s
+  };
+
+  void begin(const GuardInput& input) noexcept;
+  [[nodiscard]] Motion follow(const GuardInput& input) const noexcept;
+  [[nodiscard]] double sliding(const GuardInput& input, const Motion& motion) const noexcept;
+  [[nodiscard]] double held(const GuardInput& input) const noexcept;
+  [[nodiscard]] Vector3d damp(const GuardInput& input, const Motion& motion) const noexcept;
+  [[nodiscard]] Vector3d start(const GuardInput& input, const Vector3d& force) noexcept;
+  [[nodiscard]] double affordable_gain(const GuardInput& input) const noexcept;
+  [[nodiscard]] bool fades_unpaid(const GuardInput& input, const Motion& motion) const noexcept;
+  [[nodiscard]] Vector3d limit_change(const GuardInput& input, const Motion& motion,
+                                      const Vector3d& force) noexcept;
+  [[nodiscard]] Vector3d brake(const GuardInput& input, const Motion& motion,
+                               const Vector3d& force) noexcept;
+  [[nodiscard]] Vector3d limit_length(const Vector3d& force) noexcept;
+  [[nodiscard]] Vector3d remember(const GuardInput& input, const Motion& motion,
+                                  const Vector3d& force) noexcept;
+  [[nodiscard]] Vector3d fail(GuardFault fault) noexcept;
+  void note(GuardNote bit, std::uint64_t& count) noexcept;
+
+  GuardOptions options_;
+  Passivity passivity_;
+  GuardState state_;
+  GuardInput before_;                     // its force is the one that was let through
+  Vector3d velocity_ = Vector3d::Zero();  // smoothed, of the step before
+  Vector3d slewed_ = Vector3d::Zero();    // let through by clamp and slew then
+  double stiffness_ = 0;                  // that made a force last, N/m
+  Vector3d stretch_ = Vector3d::Zero();   // from hand to proxy in the step before, m
+  double sliding_ = 1;                    // share of its way that the proxy follows
+  double gain_ = 0;                       // of the soft start
+  bool started_ = false;
+};
+
+Guard::Guard(const GuardOptions& options) : inside_(std::make_unique<Inside>(options)) {}
+Guard::~Guard() = default;
+Guard::Guard(Guard&&) noexcept = default;
+Guard& Guard::operator=(Guard&&) noexcept = default;
+
+Vector3d Guard::pass(const GuardInput& input) noexcept {
+  return inside_->pass(input);
 }
 
 void Guard::reset() noexcept {
+  inside_->reset();
+}
+
+const GuardState& Guard::state() const noexcept {
+  return inside_->state();
+}
+
+const GuardOptions& Guard::options() const noexcept {
+  return inside_->options();
+}
+
+void Guard::Inside::reset() noexcept {
   state_.fault = GuardFault::none;
   started_ = false;
 }
 
-Vector3d Guard::pass(const GuardInput& input) noexcept {
+Vector3d Guard::Inside::pass(const GuardInput& input) noexcept {
   ++state_.counts.steps;
   state_.notes = GuardNote::none;
   if (!options_.on) return input.felt ? input.force : Vector3d::Zero();
@@ -99,7 +166,7 @@ Vector3d Guard::pass(const GuardInput& input) noexcept {
   return remember(input, motion, limit_length(brake(input, motion, slewed_)));
 }
 
-void Guard::begin(const GuardInput& input) noexcept {
+void Guard::Inside::begin(const GuardInput& input) noexcept {
   before_ = input;
   before_.force.setZero();
   velocity_ = input.velocity - input.drift;
@@ -112,21 +179,21 @@ void Guard::begin(const GuardInput& input) noexcept {
   started_ = true;
 }
 
-Guard::Motion Guard::follow(const GuardInput& input) const noexcept {
+Guard::Inside::Motion Guard::Inside::follow(const GuardInput& input) const noexcept {
   const Vector3d now = input.velocity - input.drift;
   return {input.hip - before_.hip - input.drift * input.dt,
-          velocity_ + kSmoothing * (now - velocity_)};
+          velocity_ + Guard::kSmoothing * (now - velocity_)};
 }
 
 // What the spring holds, or a force that fades after the surface has gone, as a spring let loose
 // slowly.
-double Guard::held(const GuardInput& input) const noexcept {
+double Guard::Inside::held(const GuardInput& input) const noexcept {
   return std::max(stored(input.force, input.stiffness), stored(slewed_, stiffness_));
 }
 
 // The share of the hand's way along the surface in which the proxy goes along, smoothed; 1 at the
 // first touch.
-double Guard::sliding(const GuardInput& input, const Motion& motion) const noexcept {
+double Guard::Inside::sliding(const GuardInput& input, const Motion& motion) const noexcept {
   if (before_.normal.isZero(0) || before_.stiffness == 0 || input.stiffness == 0) return 1;
   const Vector3d along = tangential(motion.way, input.normal);
   const double square = along.squaredNorm();
@@ -134,11 +201,11 @@ double Guard::sliding(const GuardInput& input, const Motion& motion) const noexc
   const Vector3d proxy_way = motion.way + stretch(input) - stretch_;
   // Of what is no number, as a spring of next to no stiffness makes it: 0.
   const double share = std::min(1.0, std::max(0.0, proxy_way.dot(along) / square));
-  return sliding_ + kSmoothing * (share - sliding_);
+  return sliding_ + Guard::kSmoothing * (share - sliding_);
 }
 
 // The part along the normal is never turned round.
-Vector3d Guard::damp(const GuardInput& input, const Motion& motion) const noexcept {
+Vector3d Guard::Inside::damp(const GuardInput& input, const Motion& motion) const noexcept {
   if (!input.felt) return Vector3d::Zero();
   if (options_.damping == 0 || input.normal.isZero(0)) return input.force;
   const double pressed = std::max(0.0, input.force.dot(input.normal));
@@ -147,7 +214,7 @@ Vector3d Guard::damp(const GuardInput& input, const Motion& motion) const noexce
   return input.force + std::max(damped, -pressed) * input.normal - options_.damping * held;
 }
 
-Vector3d Guard::start(const GuardInput& input, const Vector3d& force) noexcept {
+Vector3d Guard::Inside::start(const GuardInput& input, const Vector3d& force) noexcept {
   gain_ = input.felt ? std::max(gain_, std::min(1.0, affordable_gain(input))) : 0;
   if (gain_ == 1) return force;
   if (input.felt && !force.isZero(0)) note(GuardNote::starting, state_.counts.starting);
@@ -155,7 +222,7 @@ Vector3d Guard::start(const GuardInput& input, const Vector3d& force) noexcept {
 }
 
 // A stretched spring holds more as the gain rises: no more than the hand has put in.
-double Guard::affordable_gain(const GuardInput& input) const noexcept {
+double Guard::Inside::affordable_gain(const GuardInput& input) const noexcept {
   if (options_.soft_start == 0) return 1;
   const double risen = gain_ + input.dt / options_.soft_start;
   if (input.normal.isZero(0)) return risen;
@@ -165,8 +232,8 @@ double Guard::affordable_gain(const GuardInput& input) const noexcept {
 }
 
 // In the air there is nothing to brake against; what is owed waits for the next contact.
-Vector3d Guard::brake(const GuardInput& input, const Motion& motion,
-                      const Vector3d& force) noexcept {
+Vector3d Guard::Inside::brake(const GuardInput& input, const Motion& motion,
+                              const Vector3d& force) noexcept {
   if (!input.felt || input.normal.isZero(0)) return force;
   const Vector3d brake = passivity_.brake(force, motion.way, input.dt, options_.damping);
   if (brake.isZero(0)) return force;
@@ -176,14 +243,14 @@ Vector3d Guard::brake(const GuardInput& input, const Motion& motion,
 
 // A force that fades in the air and gives more than was paid for goes with the hand, as the spring
 // that it was.
-bool Guard::fades_unpaid(const GuardInput& input, const Motion& motion) const noexcept {
+bool Guard::Inside::fades_unpaid(const GuardInput& input, const Motion& motion) const noexcept {
   return options_.passivity.on && input.normal.isZero(0) &&
          stored(slewed_, stiffness_) > -passivity_.committed(motion.way);
 }
 
 // Leaving a surface, K of this step is 0 and the change is explained by that of the last one.
-Vector3d Guard::limit_change(const GuardInput& input, const Motion& motion,
-                             const Vector3d& force) noexcept {
+Vector3d Guard::Inside::limit_change(const GuardInput& input, const Motion& motion,
+                                     const Vector3d& force) noexcept {
   const double loose = fades_unpaid(input, motion) ? stiffness_ : 0;
   const double stiffness = std::max({input.stiffness, before_.stiffness, loose});
   const double explained = stiffness * (input.hip - before_.hip).norm() +
@@ -196,15 +263,15 @@ Vector3d Guard::limit_change(const GuardInput& input, const Motion& motion,
   return slewed_ + allowed / size * change;
 }
 
-Vector3d Guard::limit_length(const Vector3d& force) noexcept {
+Vector3d Guard::Inside::limit_length(const Vector3d& force) noexcept {
   const double length = force.norm();
   if (length <= options_.maximum_force) return force;
   note(GuardNote::clamped, state_.counts.clamped);
   return options_.maximum_force / length * force;
 }
 
-Vector3d Guard::remember(const GuardInput& input, const Motion& motion,
-                         const Vector3d& force) noexcept {
+Vector3d Guard::Inside::remember(const GuardInput& input, const Motion& motion,
+                                 const Vector3d& force) noexcept {
   before_ = input;
   stretch_ = stretch(input);
   velocity_ = motion.velocity;
@@ -213,7 +280,7 @@ Vector3d Guard::remember(const GuardInput& input, const Motion& motion,
 }
 
 // At once: a step of force is the smaller evil.
-Vector3d Guard::fail(GuardFault fault) noexcept {
+Vector3d Guard::Inside::fail(GuardFault fault) noexcept {
   if (state_.fault == GuardFault::none) ++state_.counts.faults;
   state_.fault = fault;
   state_.notes = GuardNote::fault;
@@ -221,63 +288,10 @@ Vector3d Guard::fail(GuardFault fault) noexcept {
   return Vector3d::Zero();
 }
 
-void Guard::note(GuardNote bit, std::uint64_t& count) noexcept {
+void Guard::Inside::note(GuardNote bit, std::uint64_t& count) noexcept {
   if (has(state_.notes, bit)) return;
   state_.notes = state_.notes | bit;
   ++count;
-}
-
-GuardOptions in_world(GuardOptions at_hand, double scale) noexcept {
-  at_hand.damping /= scale;
-  at_hand.passivity.mass /= scale;
-  at_hand.passivity.memory *= scale;
-  return at_hand;
-}
-
-std::string_view in_words(GuardFault fault) noexcept {
-  switch (fault) {
-    case GuardFault::none:
-      return {};
-    case GuardFault::force:
-      return "the computed force is not finite; report this with the cloud that was touched";
-    case GuardFault::hand:
-      return "the device reported a position or velocity that is not finite; check the device";
-    case GuardFault::time:
-      return "the time was not finite or went backwards; check the clock";
-    case GuardFault::proxy:
-      return "the proxy got a position or time that is not finite; check the device";
-    case GuardFault::device:
-      return "the device failed; see its message and reopen it";
-  }
-  return {};
-}
-
-std::string in_words(const GuardState& state) {
-  if (state.fault != GuardFault::none) {
-    return fmt::format("zero force until reset: {}", in_words(state.fault));
-  }
-  std::string words;
-  const auto add = [&words](std::string_view text) {
-    words += words.empty() ? "" : "; ";
-    words += text;
-  };
-  if (has(state.notes, GuardNote::silence)) {
-    add("zero force: the servo was late (watchdog); the force ramps up again");
-  }
-  if (has(state.notes, GuardNote::slewed)) {
-    add("slew limit: the force changed faster than the hand's motion explains");
-  }
-  if (has(state.notes, GuardNote::clamped)) {
-    add("the force is limited to the device's maximum");
-  }
-  if (has(state.notes, GuardNote::braked)) {
-    add("braking to dissipate energy given to the hand");
-  }
-  if (has(state.notes, GuardNote::starting)) add("soft start: the force ramps up");
-  if (has(state.notes, GuardNote::softened)) {
-    add("the surface is softer than requested: the device cannot render that stiffness");
-  }
-  return words;
 }
 
 }  // namespace palpate

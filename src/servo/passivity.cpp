@@ -1,4 +1,4 @@
-#include "palpate/servo/passivity.hpp"
+#include "servo/passivity.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,18 @@
 #include "palpate/servo/servo.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <optional>
 
+#include "base/latest.hpp"
 #include "base/requirement.hpp"
 #include "palpate/servo/z_width.hpp"
+#include "servo/clutch.hpp"
+#include "servo/passivity.hpp"
+#include "servo/records.hpp"
 
 namespace palpate {
 namespace {
@@ -79,128 +85,215 @@ GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
   return options;
 }
 
+struct Servo::Inside {
+  Inside(Device& its_device, Scene& scene, const ServoOptions& its_options)
+      : device(its_device),
+        options(options_for(device.info(), its_options)),
+        stiffness_limit(stiffness_limit_of(device.info(), options)),
+        is_softened(options.proxy.stiffness > stiffness_limit),
+        field(scene, options.field, "a field", options.workspace.scale),
+        proxy(softened(options.proxy, stiffness_limit)),
+        guard(in_world(options.guard, options.workspace.scale)),
+        wanted_field(options.field) {}
+
+  void step(const DeviceState& read, double now) noexcept;
+  void apply_pending() noexcept;
+  void place_tool(const DeviceState& read) noexcept;
+  [[nodiscard]] bool is_clutched(std::uint32_t buttons) const noexcept;
+  [[nodiscard]] Vector3d guarded() noexcept;
+
+  Device& device;
+  ServoOptions options;
+  double stiffness_limit;
+  bool is_softened;  // a stiffer surface is asked for
+  SceneField field;
+  Proxy proxy;
+  Guard guard;
+  Clutch clutch;
+  Vector3d hand = Vector3d::Zero();  // where it is without the clutch, m, world
+  ServoState state;                  // of the stepping thread; the others see what was shown
+  bool started = false;
+  bool heard = false;  // the device has known where the hand is
+  std::uint64_t contact_seen = 0;
+  std::uint64_t field_seen = 0;
+
+  Latest<ServoState> shown;
+  RecentForces recent_forces;
+  Histogram lateness;
+  Histogram computing;
+  std::mutex pending_mutex;  // between those who change what is felt; the step never takes it
+  Latest<ContactSettings> wanted_contact;
+  Latest<FieldOptions> wanted_field;
+  std::atomic<bool> paused{false};
+  std::atomic<bool> reset{false};
+};
+
 Servo::Servo(Device& device, Scene& scene, const ServoOptions& options)
-    : device_(device),
-      options_(options_for(device.info(), options)),
-      stiffness_limit_(stiffness_limit_of(device.info(), options_)),
-      softened_(options.proxy.stiffness > stiffness_limit_),
-      field_(scene, options_.field, "a field", options_.workspace.scale),
-      proxy_(softened(options_.proxy, stiffness_limit_)),
-      guard_(in_world(options_.guard, options_.workspace.scale)),
-      wanted_field_(options_.field) {}
+    : inside_(std::make_unique<Inside>(device, scene, options)) {}
+
+Servo::~Servo() = default;
 
 const ServoState& Servo::tick(double now) noexcept {
-  step(device_.read(), now);
-  device_.write(device_force());
+  step(device().read(), now);
+  device().write(device_force());
   show();
-  return state_;
+  return inside_->state;
 }
 
 const ServoState& Servo::tick() noexcept {
-  const DeviceState device = device_.read();
-  step(device, device.time);
-  device_.write(device_force());
+  const DeviceState read = device().read();
+  step(read, read.time);
+  device().write(device_force());
   show();
-  return state_;
+  return inside_->state;
 }
 
 const ServoState& Servo::step(const DeviceState& device, double now) noexcept {
-  const bool goes_on = started_ && std::isfinite(state_.time);
-  state_.dt = goes_on ? now - state_.time : first_step(device_.info());
-  state_.time = now;
-  hand_ = options_.workspace.position_to_world(device.position);
-  heard_ = heard_ || device.status != DeviceStatus::silent;
-  take_wishes();
-  place_tool(device);
-  field_.update(now, state_.hip, started_ ? proxy_.position() : state_.hip);
-  started_ = true;
-  state_.contact = proxy_.step(field_, state_.hip, state_.dt);
-  state_.force = guarded();
-  state_.guard = guard_.state();
-  state_.field_notes = field_.notes();
-  state_.patch_points = field_.patch_points();
-  ++state_.step;
-  return state_;
+  inside_->step(device, now);
+  return inside_->state;
+}
+
+void Servo::Inside::step(const DeviceState& read, double now) noexcept {
+  const bool goes_on = started && std::isfinite(state.time);
+  state.dt = goes_on ? now - state.time : first_step(device.info());
+  state.time = now;
+  hand = options.workspace.position_to_world(read.position);
+  heard = heard || read.status != DeviceStatus::silent;
+  apply_pending();
+  place_tool(read);
+  field.update(now, state.hip, started ? proxy.position() : state.hip);
+  started = true;
+  state.contact = proxy.step(field, state.hip, state.dt);
+  state.force = guarded();
+  state.guard = guard.state();
+  state.field_notes = field.notes();
+  state.patch_points = field.patch_points();
+  ++state.step;
 }
 
 // The tool rests where the proxy is: nothing is stretched when the clutch is let go.
-void Servo::place_tool(const DeviceState& device) noexcept {
-  const Workspace& workspace = options_.workspace;
-  state_.clutched = is_clutched(device.buttons);
-  state_.hip = clutch_.tool(hand_, state_.clutched, proxy_.position());
-  state_.shift = clutch_.shift();
-  state_.velocity = workspace.velocity_to_world(device.velocity);
-  state_.orientation = workspace.orientation_to_world(device.orientation);
-  state_.gripper = device.gripper;
-  state_.buttons = device.buttons;
-  state_.device = device.status;
+void Servo::Inside::place_tool(const DeviceState& read) noexcept {
+  const Workspace& workspace = options.workspace;
+  state.clutched = is_clutched(read.buttons);
+  state.hip = clutch.tool(hand, state.clutched, proxy.position());
+  state.shift = clutch.shift();
+  state.velocity = workspace.velocity_to_world(read.velocity);
+  state.orientation = workspace.orientation_to_world(read.orientation);
+  state.gripper = read.gripper;
+  state.buttons = read.buttons;
+  state.device = read.status;
 }
 
 // Before the first hand there is no place where the tool could rest.
-bool Servo::is_clutched(std::uint32_t buttons) const noexcept {
-  return started_ && heard_ && options_.clutch_button &&
-         ((buttons >> *options_.clutch_button) & 1u) != 0;
+bool Servo::Inside::is_clutched(std::uint32_t buttons) const noexcept {
+  return started && heard && options.clutch_button &&
+         ((buttons >> *options.clutch_button) & 1u) != 0;
 }
 
-void Servo::take_wishes() noexcept {
-  state_.paused = paused_.load();
-  if (reset_.exchange(false) || !heard_) {
-    clutch_ = {};
-    proxy_.reset(hand_);
-    guard_.reset();
+void Servo::Inside::apply_pending() noexcept {
+  state.paused = paused.load();
+  if (reset.exchange(false) || !heard) {
+    clutch = {};
+    proxy.reset(hand);
+    guard.reset();
   }
-  if (const std::optional<Feel> feel = news(feel_, feel_seen_)) {
-    softened_ = feel->stiffness > stiffness_limit_;
-    proxy_.change(std::min(feel->stiffness, stiffness_limit_), feel->friction, feel->texture);
+  if (const std::optional<ContactSettings> wanted = news(wanted_contact, contact_seen)) {
+    is_softened = wanted->stiffness > stiffness_limit;
+    proxy.change(std::min(wanted->stiffness, stiffness_limit), wanted->friction, wanted->texture);
   }
-  if (const std::optional<FieldOptions> field = news(wanted_field_, field_seen_)) {
-    field_.change(*field);
+  if (const std::optional<FieldOptions> wanted = news(wanted_field, field_seen)) {
+    field.change(*wanted);
   }
 }
 
-Vector3d Servo::guarded() noexcept {
+Vector3d Servo::Inside::guarded() noexcept {
   GuardInput input;
-  input.felt = !state_.paused && state_.device != DeviceStatus::silent;
-  input.softened = softened_;
-  input.hip = hand_;
-  input.velocity = state_.velocity;
-  input.dt = state_.dt;
-  if (state_.clutched) {
+  input.felt = !state.paused && state.device != DeviceStatus::silent;
+  input.softened = is_softened;
+  input.hip = hand;
+  input.velocity = state.velocity;
+  input.dt = state.dt;
+  if (state.clutched) {
     // As in the air. A hand that goes out while its force fades loses it as it would from a spring.
-    input.stiffness = proxy_.options().stiffness;
+    input.stiffness = proxy.options().stiffness;
   } else {
-    input.force = state_.contact.force;
-    input.normal = state_.contact.normal;
-    input.drift = state_.contact.drift;
-    input.stiffness = state_.contact.stiffness;
+    input.force = state.contact.force;
+    input.normal = state.contact.normal;
+    input.drift = state.contact.drift;
+    input.stiffness = state.contact.stiffness;
   }
-  input.fault = known_fault(state_);
-  return guard_.pass(input);
+  input.fault = known_fault(state);
+  return guard.pass(input);
 }
 
-void Servo::show(const StepTiming& timing) noexcept {
-  state_.timing = timing;
-  lateness_.add(timing.lateness);
-  computing_.add(timing.computing);
-  shown_.set(state_);
-  recent_forces_.add(state_.force.cast<float>());
-  if (options_.steps != nullptr) options_.steps->push(state_);
+void Servo::show(const ServoState::Timing& timing) noexcept {
+  ServoState& state = inside_->state;
+  state.timing = timing;
+  inside_->lateness.add(timing.lateness);
+  inside_->computing.add(timing.computing);
+  inside_->shown.set(state);
+  inside_->recent_forces.add(state.force.cast<float>());
+  if (inside_->options.steps != nullptr) inside_->options.steps->push(state);
 }
 
-void Servo::set_feel(const Feel& feel) {
-  ProxyOptions checked = options_.proxy;
-  checked.stiffness = feel.stiffness;
-  checked.friction = feel.friction;
-  checked.texture = feel.texture;
+Vector3d Servo::device_force() const noexcept {
+  return inside_->options.workspace.force_to_device(inside_->state.force);
+}
+
+Device& Servo::device() const noexcept {
+  return inside_->device;
+}
+
+const ServoOptions& Servo::options() const noexcept {
+  return inside_->options;
+}
+
+double Servo::stiffness_limit() const noexcept {
+  return inside_->stiffness_limit;
+}
+
+ServoState Servo::state() const noexcept {
+  return inside_->shown.get();
+}
+
+Durations Servo::lateness() const noexcept {
+  return inside_->lateness.look();
+}
+
+Durations Servo::computing() const noexcept {
+  return inside_->computing.look();
+}
+
+std::vector<Eigen::Vector3f> Servo::forces_since(std::uint64_t& seen) const {
+  return inside_->recent_forces.since(seen);
+}
+
+FieldOptions Servo::field() const noexcept {
+  return inside_->wanted_field.get();
+}
+
+void Servo::pause(bool paused) noexcept {
+  inside_->paused.store(paused);
+}
+
+void Servo::reset() noexcept {
+  inside_->reset.store(true);
+}
+
+void Servo::set_contact(const ContactSettings& contact) {
+  ProxyOptions checked = inside_->options.proxy;
+  checked.stiffness = contact.stiffness;
+  checked.friction = contact.friction;
+  checked.texture = contact.texture;
   static_cast<void>(Proxy(checked));  // throws what is out of range
-  const std::lock_guard lock(wish_mutex_);
-  feel_.set(feel);
+  const std::lock_guard lock(inside_->pending_mutex);
+  inside_->wanted_contact.set(contact);
 }
 
 void Servo::set_field(const FieldOptions& field) {
   check(field);
-  const std::lock_guard lock(wish_mutex_);
-  wanted_field_.set(field);
+  const std::lock_guard lock(inside_->pending_mutex);
+  inside_->wanted_field.set(field);
 }
 
 }  // namespace palpate

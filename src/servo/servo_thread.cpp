@@ -31,8 +31,8 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-RealtimeRequest ask_for_priority(int priority) {
-  RealtimeRequest request;
+RealtimeReport::Request ask_for_priority(int priority) {
+  RealtimeReport::Request request;
   request.what = fmt::format("real-time priority {} (SCHED_FIFO)", priority);
   sched_param parameters{};
   parameters.sched_priority = priority;
@@ -56,8 +56,8 @@ bool may_lock_all() {
   return limit.rlim_cur == RLIM_INFINITY || geteuid() == 0;
 }
 
-RealtimeRequest ask_for_memory() {
-  RealtimeRequest request;
+RealtimeReport::Request ask_for_memory() {
+  RealtimeReport::Request request;
   request.what = "memory locked (mlockall)";
   int error = EPERM;
   if (may_lock_all()) error = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
@@ -95,8 +95,8 @@ std::string allowed_processors() {
   return list;
 }
 
-RealtimeRequest answered(std::string what, int error) {
-  RealtimeRequest request{std::move(what), error == 0, {}};
+RealtimeReport::Request answered(std::string what, int error) {
+  RealtimeReport::Request request{std::move(what), error == 0, {}};
   if (!request.granted) {
     request.remedy = fmt::format(
         "{}; this thread may run on {}: give one of these, or allow others when you start the "
@@ -106,7 +106,7 @@ RealtimeRequest answered(std::string what, int error) {
   return request;
 }
 
-RealtimeRequest ask_for_processor(int processor) {
+RealtimeReport::Request ask_for_processor(int processor) {
   int error = EINVAL;
   if (is_processor(processor)) {
     cpu_set_t set;
@@ -126,19 +126,19 @@ void warm_stack() {
 }  // namespace
 
 bool RealtimeReport::all_granted() const noexcept {
-  return std::ranges::all_of(requests, &RealtimeRequest::granted);
+  return std::ranges::all_of(requests, &RealtimeReport::Request::granted);
 }
 
 std::string in_words(const RealtimeReport& report) {
   std::string words;
-  for (const RealtimeRequest& request : report.requests) {
+  for (const RealtimeReport::Request& request : report.requests) {
     words += request.granted ? fmt::format("{}: yes\n", request.what)
                              : fmt::format("{}: not granted ({})\n", request.what, request.remedy);
   }
   return words;
 }
 
-RealtimeRequest leave_processor(int processor) {
+RealtimeReport::Request leave_processor(int processor) {
   std::string what = fmt::format("processor {} reserved for the servo", processor);
   cpu_set_t set;
   int error = pthread_getaffinity_np(pthread_self(), sizeof set, &set);
@@ -234,7 +234,7 @@ bool ServoThread::step(Deadlines& deadlines) noexcept {
   const DeviceState state = device.read();
   if (state.status == DeviceStatus::finished) return false;
   const double now = clock_.now();
-  StepTiming timing;
+  ServoState::Timing timing;
   timing.lateness = deadlines.begin(now);
   if (device.info().keeps_time) deadlines.restart(now);
   skipped_.store(deadlines.skipped(), std::memory_order_relaxed);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "servo/impact.hpp"
+
 namespace palpate {
 namespace {
 
@@ -86,6 +88,23 @@ double largest(Good good) {
   return low;
 }
 
+// Let go from `stretch`, where the wall holds from both sides: the oscillation at the end over that
+// at the beginning. Above 1 the wall is unstable.
+double growth(const WallOptions& wall) {
+  SimulatedDeviceOptions options = free_device(wall);
+  options.position.z() = wall.stretch;
+  SimulatedDevice device(options);
+  double first = 0;
+  double last = 0;
+  run(device, {wall.stiffness, true}, wall, [&](double time, const Vector3d&) {
+    const double away = std::abs(device.true_position().z());
+    if (time < kPart * kTime) first = std::max(first, away);
+    if (time > (1 - kPart) * kTime) last = std::max(last, away);
+    return away < 1e3 * wall.stretch;
+  });
+  return last > 0 ? last / first : first / wall.stretch;
+}
+
 }  // namespace
 
 Impact impact(const WallOptions& wall) {
@@ -112,21 +131,6 @@ Impact impact(const WallOptions& wall) {
   });
   result.energy = device.work();
   return result;
-}
-
-double growth(const WallOptions& wall) {
-  SimulatedDeviceOptions options = free_device(wall);
-  options.position.z() = wall.stretch;
-  SimulatedDevice device(options);
-  double first = 0;
-  double last = 0;
-  run(device, {wall.stiffness, true}, wall, [&](double time, const Vector3d&) {
-    const double away = std::abs(device.true_position().z());
-    if (time < kPart * kTime) first = std::max(first, away);
-    if (time > (1 - kPart) * kTime) last = std::max(last, away);
-    return away < 1e3 * wall.stretch;
-  });
-  return last > 0 ? last / first : first / wall.stretch;
 }
 
 double stable_stiffness(WallOptions wall) {

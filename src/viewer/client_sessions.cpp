@@ -16,24 +16,24 @@ namespace palpate::viewer {
 namespace {
 
 std::string why_not(const Setting& setting, double value) {
-  if (setting.kind != SettingKind::number) return "it is not a number";
+  if (setting.kind != Setting::Kind::number) return "it is not a number";
   if (value >= setting.least && value <= setting.most) return {};
   return fmt::format("{} is not from {} to {}", value, setting.least, setting.most);
 }
 
 std::string why_not(const Setting& setting, const std::string& value) {
-  if (setting.kind != SettingKind::choice) return "it is not the number of a choice";
+  if (setting.kind != Setting::Kind::choice) return "it is not the number of a choice";
   if (std::ranges::find(setting.choices, value) != setting.choices.end()) return {};
   return fmt::format("there are only {}", fmt::join(setting.choices, ", "));
 }
 
 std::string why_not(const Setting& setting, bool) {
-  return setting.kind == SettingKind::on_off ? "" : "it is not true or false";
+  return setting.kind == Setting::Kind::on_off ? "" : "it is not true or false";
 }
 
 // Why `key` cannot be set to `value`, in words; empty: it can.
 std::string why_not(std::span<const Setting> settings, const std::string& key,
-                    const SettingValue& value) {
+                    const Setting::Value& value) {
   const auto found = std::ranges::find(settings, key, &Setting::key);
   if (found == settings.end()) return "unknown setting";
   const std::string reason =

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "palpate/base/error.hpp"
-#include "palpate/viewer/viewer_options.hpp"
+#include "palpate/viewer/viewer.hpp"
 #include "viewer/messages.hpp"
 #include "viewer/session.hpp"
 
@@ -19,7 +19,7 @@ namespace palpate::viewer {
 /// What the program lets pages do.
 struct ClientSessionsOptions {
   std::string token;
-  ViewerLimits limits = {};
+  ViewerOptions::Limits limits = {};
   ViewerControls controls = {};  ///< `pause` and `reset` are set
   std::vector<DeviceLabel> devices;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of places that pages tell

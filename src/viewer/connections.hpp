@@ -24,7 +24,7 @@ class Connection;
 
 /// What all connections of a server share; the network thread's.
 struct ServerContext {
-  ViewerLimits limits;
+  ViewerOptions::Limits limits;
   Listening listening;
   ClientSessions& sessions;
   std::unordered_set<Connection*> connections = {};

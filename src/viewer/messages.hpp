@@ -36,7 +36,7 @@ struct Release {
 };
 struct Set {
   std::string key;
-  SettingValue value;
+  Setting::Value value;
 };
 struct Preset {
   std::string name;
@@ -74,7 +74,7 @@ constexpr double kFarthestHand = 1e6;            ///< m from the origin
 
 /// Something that a person should know now.
 struct Notice {
-  NoticeLevel level = NoticeLevel::info;
+  Viewer::NoticeLevel level = Viewer::NoticeLevel::info;
   std::string text;
 
   bool operator==(const Notice&) const = default;
@@ -120,7 +120,7 @@ struct SourceReport {
   std::uint64_t dropped = 0;
   std::optional<double> disagreement;
   std::optional<Eigen::Isometry3d> pose;  ///< relative to the origin
-  std::optional<ViewerFrustum> frustum;
+  std::optional<ViewerStream::Frustum> frustum;
 };
 
 // Texts that are no UTF-8 come out with replacement characters.

@@ -36,7 +36,7 @@ std::array<float, 2> quantiles(const Durations& now, Durations& before) {
 }
 
 bool lasts(const StreamState& stream) {
-  return stream.phase == StreamPhase::stalled || stream.phase == StreamPhase::failed;
+  return stream.phase == StreamState::Phase::stalled || stream.phase == StreamState::Phase::failed;
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ double StateReporter::interval(const ServoState& state) {
 
 // What was felt after the state was read waits for the next message.
 std::vector<Eigen::Vector3f> StateReporter::forces_until(std::uint64_t step) {
-  std::vector<Eigen::Vector3f> forces = servo_.recent_forces().since(forces_seen_);
+  std::vector<Eigen::Vector3f> forces = servo_.forces_since(forces_seen_);
   if (forces_seen_ <= step) return forces;
   const std::uint64_t later = std::min<std::uint64_t>(forces_seen_ - step, forces.size());
   forces.resize(forces.size() - static_cast<std::size_t>(later));
@@ -122,7 +122,7 @@ std::vector<Eigen::Vector3f> StateReporter::forces_until(std::uint64_t step) {
 
 // What the guard did in any step since the message before, not in the last one alone.
 std::uint32_t StateReporter::flags(const ServoState& state, bool taken) {
-  const GuardCounts& counts = state.guard.counts;
+  const GuardState::Counts& counts = state.guard.counts;
   std::uint32_t flags = 0;
   const auto set = [&flags](bool is, std::uint32_t flag) { flags |= is ? flag : 0; };
   set(state.contact.touching, state_flag::kTouching);
@@ -154,7 +154,7 @@ std::vector<Notice> FaultNotices::update(std::span<const ViewerStream> streams,
   std::vector<Notice> news;
   present_.clear();
   for (const ViewerStream& stream : streams) {
-    const Notice notice{NoticeLevel::warning, stream.state.problem};
+    const Notice notice{Viewer::NoticeLevel::warning, stream.state.problem};
     if (is_new(stream.state)) news.push_back(notice);
     if (lasts(stream.state) && !notice.text.empty()) present_.push_back(notice);
   }
@@ -162,7 +162,7 @@ std::vector<Notice> FaultNotices::update(std::span<const ViewerStream> streams,
     const auto& [name, fault] = devices[i];
     const bool changed = std::exchange(faults_[i], fault) != fault;
     if (fault == GuardFault::none) continue;
-    present_.push_back({NoticeLevel::fault, fmt::format("{}: {}", name, in_words(fault))});
+    present_.push_back({Viewer::NoticeLevel::fault, fmt::format("{}: {}", name, in_words(fault))});
     if (changed) news.push_back(present_.back());
   }
   return news;

@@ -14,7 +14,7 @@
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/servo.hpp"
-#include "palpate/viewer/viewer_options.hpp"
+#include "palpate/viewer/viewer.hpp"
 #include "viewer/messages.hpp"
 
 namespace palpate::viewer {
@@ -51,7 +51,7 @@ class StateReporter {
   std::uint64_t step_ = 0;  // of the message before
   double time_ = 0;         // of it, s
   std::uint64_t forces_seen_ = 0;
-  GuardCounts counts_;
+  GuardState::Counts counts_;
   Durations computing_;
   Durations lateness_;
   std::deque<std::pair<double, std::uint64_t>> steps_;  // when which step was the newest

@@ -188,7 +188,7 @@ void Server::post(std::function<void()> act) {
   net::post(state_->io, std::move(act));
 }
 
-ViewerCounts Server::counts() const {
+Viewer::Counts Server::counts() const {
   const ServerContext& context = state_->context;
   const ClientSessions& sessions = context.sessions;
   return {.connections = context.connections.size(),

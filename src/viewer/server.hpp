@@ -32,7 +32,7 @@ class Server {
   /// Does `act` on the network thread. Any thread.
   void post(std::function<void()> act);
   /// Network thread.
-  [[nodiscard]] ViewerCounts counts() const;
+  [[nodiscard]] Viewer::Counts counts() const;
 
  private:
   struct State;

@@ -11,7 +11,7 @@
 #include <set>
 #include <string>
 
-#include "palpate/viewer/viewer_options.hpp"
+#include "palpate/viewer/viewer.hpp"
 
 namespace palpate::viewer {
 
@@ -102,7 +102,7 @@ constexpr std::uint16_t kTryAgainLater = 1013;
 
 /// One socket, as those who know nothing of sockets see it.
 struct Session {
-  Session(const ViewerLimits& limits, double time)
+  Session(const ViewerOptions::Limits& limits, double time)
       : opened(time),
         messages(limits.messages, 1),
         refusals(limits.refusals - 1, limits.refusal_time) {}

@@ -113,13 +113,13 @@ json json_of(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-json json_of(const SettingValue& value) {
+json json_of(const Setting::Value& value) {
   return std::visit([](const auto& held) { return json(held); }, value);
 }
 
-const char* name_of(SettingKind kind) {
-  if (kind == SettingKind::choice) return "choice";
-  return kind == SettingKind::on_off ? "switch" : "number";
+const char* name_of(Setting::Kind kind) {
+  if (kind == Setting::Kind::choice) return "choice";
+  return kind == Setting::Kind::on_off ? "switch" : "number";
 }
 
 json json_of(const Setting& setting) {
@@ -128,8 +128,8 @@ json json_of(const Setting& setting) {
               {"kind", name_of(setting.kind)},
               {"value", json_of(setting.value)}};
   if (!setting.unit.empty()) result["unit"] = setting.unit;
-  if (setting.kind == SettingKind::choice) result["choices"] = setting.choices;
-  if (setting.kind == SettingKind::number) {
+  if (setting.kind == Setting::Kind::choice) result["choices"] = setting.choices;
+  if (setting.kind == Setting::Kind::number) {
     result["least"] = setting.least;
     result["most"] = setting.most;
     if (setting.step > 0) result["step"] = setting.step;
@@ -155,9 +155,9 @@ json json_of(const SourceReport& source) {
   return result;
 }
 
-const char* name_of(NoticeLevel level) {
-  if (level == NoticeLevel::fault) return "fault";
-  return level == NoticeLevel::warning ? "warning" : "info";
+const char* name_of(Viewer::NoticeLevel level) {
+  if (level == Viewer::NoticeLevel::fault) return "fault";
+  return level == Viewer::NoticeLevel::warning ? "warning" : "info";
 }
 
 const char* name_of(DeviceStatus status) {

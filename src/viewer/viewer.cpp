@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/latest.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/latest.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/shapes.hpp"
 #include "viewer/access.hpp"
@@ -42,10 +42,7 @@ Box scene_box(const Scene& scene) {
   Box box;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const std::shared_ptr<const SurfacePoints> points = scene.source(i).points();
-    if (!points || points->grid.cells().empty()) continue;
-    const CellGrid::Cell& root = points->grid.cells().front();
-    box.extend(points->origin + root.lower.cast<double>());
-    box.extend(points->origin + root.upper.cast<double>());
+    if (points) box.extend(points->bounds());
   }
   return box;
 }
@@ -160,7 +157,7 @@ struct Viewer::Parts {
   std::vector<StateReporter> states;
   std::vector<double> radii;  // R around each tool, m
   FaultNotices notices;
-  Latest<ViewerCounts> counts;
+  Latest<Viewer::Counts> counts;
   SceneEncoder encoder;
   std::jthread network;
 };
@@ -233,7 +230,7 @@ void Viewer::Parts::show(const EncodedScene& encoded) {
     }
   }
   if (encoded.sources) sessions.send_to_all({Topic::Kind::sources}, {encoded.sources, true});
-  if (!encoded.complaint.empty()) sessions.send({NoticeLevel::warning, encoded.complaint});
+  if (!encoded.complaint.empty()) sessions.send({Viewer::NoticeLevel::warning, encoded.complaint});
 }
 
 Viewer::Viewer(Scene& scene, std::vector<Servo*> servos, const ViewerOptions& options,
@@ -252,11 +249,11 @@ std::uint16_t Viewer::port() const noexcept {
   return parts_->server.listening().port;
 }
 
-ViewerCounts Viewer::counts() const {
+Viewer::Counts Viewer::counts() const {
   return parts_->counts.get();
 }
 
-void Viewer::notice(NoticeLevel level, std::string text) {
+void Viewer::notice(Viewer::NoticeLevel level, std::string text) {
   Parts& parts = *parts_;
   parts.server.post(
       [&parts, notice = Notice{level, std::move(text)}] { parts.sessions.send(notice); });

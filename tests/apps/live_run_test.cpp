@@ -53,7 +53,7 @@ TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
   hands.push_back(hand_with("hand 2", 200, DeviceStatus::finished));
   app::Run run{plan.time, plan.page, loaded, hands, {}, plan.surface.proxy_of(kStiffness)};
   std::vector<std::size_t> steps(2);
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   const LiveOutcome outcome =
       run_live(run, clock, [&](std::size_t hand, const ServoState&) { ++steps[hand]; });
   const std::vector<LiveReport>& reports = outcome.hands;

@@ -13,8 +13,8 @@ using test::contains;
 
 // A second of 1 kHz: 20 us of computing, the last hundredth 80; late by 50 us.
 LiveMoment second() {
-  Histogram computing;
-  Histogram lateness;
+  Durations computing;
+  Durations lateness;
   for (int i = 0; i < 1000; ++i) {
     computing.add(i < 985 ? 20e-6 : 80e-6);
     lateness.add(50e-6);
@@ -25,11 +25,11 @@ LiveMoment second() {
   hand.name = "hand 1";
   hand.force = 1.234;
   hand.rate = 1000;
-  hand.computing = computing.look();
-  hand.lateness = lateness.look();
+  hand.computing = computing;
+  hand.lateness = lateness;
   StreamState stream;
   stream.source = "table";
-  stream.phase = StreamPhase::running;
+  stream.phase = StreamState::Phase::running;
   stream.rate = 29.97;
   stream.latency_mean = 11.4e-3;
   moment.streams = {stream};
@@ -51,7 +51,7 @@ TEST(LiveStatus, TellsPaceForceAndStreamsInOneLine) {
 TEST(LiveStatus, TellsWhatIsWrong) {
   LiveMoment moment = second();
   moment.hands[0].servo.guard.fault = GuardFault::hand;
-  moment.streams[0].phase = StreamPhase::stalled;
+  moment.streams[0].phase = StreamState::Phase::stalled;
   moment.streams[0].drops.overtaken = 2;
   moment.streams[0].drops.late = 1;
   StreamState other;
@@ -62,8 +62,8 @@ TEST(LiveStatus, TellsWhatIsWrong) {
        {"FAULT: the device reported", "table STALLED", "3 dropped", "side waiting"}) {
     EXPECT_TRUE(contains(words, part)) << part << " in " << words;
   }
-  moment.streams[0].phase = StreamPhase::failed;
-  moment.streams[1].phase = StreamPhase::ended;
+  moment.streams[0].phase = StreamState::Phase::failed;
+  moment.streams[1].phase = StreamState::Phase::ended;
   words = in_words(moment);
   EXPECT_TRUE(contains(words, "table FAILED"));
   EXPECT_TRUE(contains(words, "side ended"));

@@ -18,7 +18,7 @@ const Setting* find(const std::vector<Setting>& list, const std::string& key) {
 
 TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
   ViewSettings settings;
-  const std::vector<std::pair<std::string, SettingValue>> wanted = {
+  const std::vector<std::pair<std::string, Setting::Value>> wanted = {
       {"field", std::string("metaball")},
       {"stiffness", 320.0},
       {"friction", 0.3},
@@ -44,7 +44,7 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
 TEST(ViewSettings, PresentValuesAreWithinTheirBounds) {
   for (const std::string& name : preset_names()) {
     for (const Setting& setting : list_settings(preset({}, name, kAll), kAll)) {
-      if (setting.kind == SettingKind::number) {
+      if (setting.kind == Setting::Kind::number) {
         EXPECT_GE(std::get<double>(setting.value), setting.least) << name << ' ' << setting.key;
         EXPECT_LE(std::get<double>(setting.value), setting.most) << name << ' ' << setting.key;
       } else {
@@ -80,7 +80,7 @@ TEST(ViewSettings, AnotherKindOfThePapersSurfaceIsThePapers) {
   ViewSettings settings = preset({}, "paper", kAll);
   set(settings, "field", std::string("pointset"));
   EXPECT_EQ(settings.field.kind, FieldKind::pointset);
-  EXPECT_EQ(settings.field.gradient, GradientKind::normal);
+  EXPECT_EQ(settings.field.gradient, FieldOptions::Gradient::normal);
 }
 
 TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
@@ -96,7 +96,7 @@ TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
 }
 
 TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
-  const std::vector<std::pair<std::string, SettingValue>> felt = {
+  const std::vector<std::pair<std::string, Setting::Value>> felt = {
       {"field", std::string("metaball")},
       {"stiffness", 320.0},
       {"friction", 0.3},
@@ -105,7 +105,7 @@ TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
   for (const auto& [key, value] : felt) set(settings, key, value);
   EXPECT_TRUE(prepares_alike(settings, {}));
   EXPECT_TRUE(prepares_alike(preset({}, "glass", kAll), {}));
-  const std::vector<std::pair<std::string, SettingValue>> prepared = {
+  const std::vector<std::pair<std::string, Setting::Value>> prepared = {
       {"smoothing", 1.5}, {"policy", std::string("fusion")}, {"history", 2.0}, {"voxel", 4.0}};
   for (const auto& [key, value] : prepared) {
     ViewSettings other;

@@ -1,4 +1,4 @@
-#include "palpate/base/latest.hpp"
+#include "base/latest.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@ constexpr std::size_t kPoints = 3000;
 constexpr double kSeconds = 2;
 
 RunResult run(Beside beside) {
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   Scene scene;
   add_cloud(scene, kPoints);
   return run_servo(scene, servo_cost::hand_over(scene, kSeconds), beside, clock, {});

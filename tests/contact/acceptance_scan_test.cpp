@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "palpate/contact/proxy.hpp"
-#include "palpate/io/read_cloud.hpp"
+#include "palpate/io/cloud_file.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/effort.hpp"
 #include "support/kind_name.hpp"
@@ -140,12 +140,14 @@ TEST_F(Bunny, IsExploredWithoutEnteringIt) {
 TEST_F(Bunny, IsExploredThePapersWay) {
   SourceOptions source;
   source.prepare.paper = true;
-  for (const GradientKind gradient :
-       {GradientKind::exact, GradientKind::normal, GradientKind::printed}) {
-    FieldOptions options =
-        paper_field(gradient == GradientKind::normal ? FieldKind::pointset : FieldKind::metaball);
+  for (const FieldOptions::Gradient gradient :
+       {FieldOptions::Gradient::exact, FieldOptions::Gradient::normal,
+        FieldOptions::Gradient::printed}) {
+    FieldOptions options = paper_field(
+        gradient == FieldOptions::Gradient::normal ? FieldKind::pointset : FieldKind::metaball);
     options.gradient = gradient;
-    Touch touch(cloud_, source, options, {.method = ProxyMethod::single_step}, {0.2, 0.1, 0});
+    Touch touch(cloud_, source, options, {.method = ProxyOptions::Method::single_step},
+                {0.2, 0.1, 0});
     const int ticks = effort(10000);
     const Walk result = walk(touch, {-0.017, 0.1, 0}, 0.12, ticks, 0.3);
     record(result, ticks, "gradient_" + std::to_string(static_cast<int>(gradient)));

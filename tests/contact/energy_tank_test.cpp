@@ -1,9 +1,9 @@
+#include "contact/energy_tank.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
-
-#include "palpate/contact/proxy.hpp"
 
 namespace palpate {
 namespace {

@@ -1,8 +1,7 @@
-#include "contact/friction.hpp"
-
 #include <gtest/gtest.h>
 
 #include "contact/drive.hpp"
+#include "contact/probe.hpp"
 #include "palpate/field/analytic.hpp"
 
 namespace palpate::test {

@@ -127,8 +127,8 @@ class Wedge : public testing::TestWithParam<double> {};
 
 TEST_P(Wedge, ConvergesIntoTheCreaseAndStaysOutside) {
   const double angle = GetParam();  // between the walls, rad
-  AnalyticOptions floor_options;
-  AnalyticOptions wall_options;
+  AnalyticField::Options floor_options;
+  AnalyticField::Options wall_options;
   wall_options.T_world_shape.rotate(Eigen::AngleAxisd(M_PI - angle, Vector3d::UnitY()));
   const PlaneField floor(floor_options);
   const PlaneField wall(wall_options);
@@ -173,7 +173,7 @@ TEST(ClosestPoint, ThinBoxStopsAHandAtTwoMetresPerSecond) {
 
 TEST(ClosestPoint, SingleStepFollowsThePlane) {
   const PlaneField plane;
-  Proxy proxy{{.method = ProxyMethod::single_step}};
+  Proxy proxy{{.method = ProxyOptions::Method::single_step}};
   proxy.reset({0, 0, 0.01});
   drive(proxy, plane, {0, 0, 0.01}, {0, 0, -0.003}, 0.1);
   drive(proxy, plane, {0, 0, -0.003}, {0.05, 0.02, -0.003}, 0.2,
@@ -186,7 +186,7 @@ TEST(ClosestPoint, SingleStepFollowsThePlane) {
 
 TEST(ClosestPoint, SingleStepLagsOnASphereWhereConvergedDoesNot) {
   const SphereField sphere(0.04);
-  const auto worst = [&](ProxyMethod method) {
+  const auto worst = [&](ProxyOptions::Method method) {
     Proxy proxy{{.method = method}};
     proxy.reset({0, 0, 0.06});
     drive(proxy, sphere, {0, 0, 0.06}, {0, 0, 0.03}, 0.1);
@@ -198,8 +198,8 @@ TEST(ClosestPoint, SingleStepLagsOnASphereWhereConvergedDoesNot) {
           });
     return error;
   };
-  EXPECT_LT(worst(ProxyMethod::converged), 0.02);
-  EXPECT_GT(worst(ProxyMethod::single_step), 0.05);
+  EXPECT_LT(worst(ProxyOptions::Method::converged), 0.02);
+  EXPECT_GT(worst(ProxyOptions::Method::single_step), 0.05);
 }
 
 TEST(ClosestPoint, FreeSpaceFarFromEverythingCostsOneBallTest) {

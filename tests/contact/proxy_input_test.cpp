@@ -113,7 +113,7 @@ class HostileField final : public Field {
   [[nodiscard]] Surface surface(const Vector3d& x) const noexcept override {
     return {.stiffness_factor = broken_ && hash(x) > 0.9 ? kNaN : 3 * hash(x) - 1};
   }
-  [[nodiscard]] FieldTraits traits() const noexcept override {
+  [[nodiscard]] Field::Traits traits() const noexcept override {
     return {.resolution = 1e-7, .revision = ++revision_, .reanchor_reach = 0.01};
   }
 
@@ -166,7 +166,7 @@ class AbyssField final : public Field {
   }
   [[nodiscard]] bool is_free(const Ball&) const noexcept override { return false; }
   [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
-  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-3}; }
+  [[nodiscard]] Field::Traits traits() const noexcept override { return {.resolution = 1e-3}; }
 };
 
 TEST(Input, AProxyThatAFieldThrowsOutOfTheWorldIsAFault) {

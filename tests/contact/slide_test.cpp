@@ -46,7 +46,7 @@ class DenseField final : public Field {
     return bowl_.is_free(ball);
   }
   [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
-  [[nodiscard]] FieldTraits traits() const noexcept override { return bowl_.traits(); }
+  [[nodiscard]] Field::Traits traits() const noexcept override { return bowl_.traits(); }
   void begin_step() const noexcept override { summed_ = 0; }
   [[nodiscard]] int points_summed() const noexcept override { return summed_; }
 

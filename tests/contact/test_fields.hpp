@@ -42,7 +42,7 @@ class SheetField final : public Field {
   [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override {
     return {.source = 0};
   }
-  [[nodiscard]] FieldTraits traits() const noexcept override {
+  [[nodiscard]] Field::Traits traits() const noexcept override {
     return {.resolution = 0.01 / 16, .revision = revision, .reanchor_reach = reach};
   }
 };
@@ -62,7 +62,7 @@ class BowlField final : public Field {
     return radius_ - ball.center.norm() > ball.radius;
   }
   [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
-  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 2e-5}; }
+  [[nodiscard]] Field::Traits traits() const noexcept override { return {.resolution = 2e-5}; }
 
  private:
   double radius_;
@@ -76,7 +76,7 @@ class EmptyField final : public Field {
   }
   [[nodiscard]] bool is_free(const Ball&) const noexcept override { return true; }
   [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
-  [[nodiscard]] FieldTraits traits() const noexcept override {
+  [[nodiscard]] Field::Traits traits() const noexcept override {
     return {.resolution = 1e-4, .revision = 1u << 20};
   }
 };
@@ -89,7 +89,7 @@ class FogField final : public Field {
   }
   [[nodiscard]] bool is_free(const Ball&) const noexcept override { return false; }
   [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
-  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-4}; }
+  [[nodiscard]] Field::Traits traits() const noexcept override { return {.resolution = 1e-4}; }
 };
 
 /// Solid below `floor` and free above, but never certain of it, and blind farther than 0.1 mm away.
@@ -104,7 +104,7 @@ class DoubtfulField final : public Field {
   }
   [[nodiscard]] bool is_free(const Ball&) const noexcept override { return false; }
   [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
-  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-5}; }
+  [[nodiscard]] Field::Traits traits() const noexcept override { return {.resolution = 1e-5}; }
 };
 
 /// A plate with faces at z = 0 and z = -5 cm; while it is dull, no surface can be found near it.
@@ -125,7 +125,7 @@ class DullPlateField final : public Field {
     return sample(ball.center).value > ball.radius;
   }
   [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override { return {}; }
-  [[nodiscard]] FieldTraits traits() const noexcept override { return {.resolution = 1e-4}; }
+  [[nodiscard]] Field::Traits traits() const noexcept override { return {.resolution = 1e-4}; }
 };
 
 }  // namespace palpate::test

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "contact/drive.hpp"
-#include "contact/friction.hpp"
+#include "contact/probe.hpp"
 #include "palpate/field/analytic.hpp"
 
 namespace palpate::test {

@@ -118,7 +118,7 @@ TEST(PlainFits, AreExactOnPlanes) {
   depth::fit_plain(blocks, fine, fits);
   const Vector3d exact = normal / normal.dot(Vector3d(0, 0, 0.7));
   for (std::size_t i = 0; i < fits.size(); ++i) {
-    ASSERT_EQ(fits.states[i], BlockState::plain);
+    ASSERT_EQ(fits.states[i], FilteredDepth::State::plain);
     EXPECT_NEAR(fits.slope_x[i], exact.x(), 5e-3);
     EXPECT_NEAR(fits.slope_y[i], exact.y(), 5e-3);
     EXPECT_GT(fits.confidences[i], 0);
@@ -136,7 +136,7 @@ TEST(PlainFits, HaveNoNormalWhereNothingIsNear) {
   fits.resize(blocks.grid);
   depth::fit_plain(blocks, kMillimetre, fits);
   const std::size_t middle = blocks.grid.index(30, 15);
-  EXPECT_EQ(fits.states[middle], BlockState::plain);
+  EXPECT_EQ(fits.states[middle], FilteredDepth::State::plain);
   EXPECT_EQ(fits.confidences[middle], 0);
   EXPECT_EQ(fits.slope_x[middle], 0);
 }

@@ -82,7 +82,8 @@ TEST(DepthFilter, MakesNoPointsOfNothing) {
     EXPECT_EQ(out.rows, height / 2);
     ASSERT_EQ(out.size(),
               static_cast<std::size_t>(width / 2) * static_cast<std::size_t>(height / 2));
-    for (const BlockState state : out.states) EXPECT_EQ(state, BlockState::empty);
+    for (const FilteredDepth::State state : out.states)
+      EXPECT_EQ(state, FilteredDepth::State::empty);
   }
 }
 
@@ -99,7 +100,7 @@ TEST(DepthFilter, PutsAPlaneWhereItIs) {
   double height = 0;
   double count = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    ASSERT_EQ(out.states[i], BlockState::fitted);
+    ASSERT_EQ(out.states[i], FilteredDepth::State::fitted);
     EXPECT_NEAR(out.normals[i].norm(), 1, 1e-5);
     EXPECT_LT(out.normals[i].dot(out.positions[i]), 0);
     EXPECT_GT(out.confidences[i], 0);
@@ -136,8 +137,8 @@ TEST(DepthFilter, FitsInTheBallsOnly) {
   const FilteredDepth& all = whole.filter(frame, pose);
   int fitted = 0;
   for (std::size_t i = 0; i < some.size(); ++i) {
-    ASSERT_NE(some.states[i], BlockState::empty);
-    if (some.states[i] != BlockState::fitted) continue;
+    ASSERT_NE(some.states[i], FilteredDepth::State::empty);
+    if (some.states[i] != FilteredDepth::State::fitted) continue;
     ++fitted;
     EXPECT_LT((pose * some.positions[i].cast<double>() - balls[0].center).norm(), 0.036);
     EXPECT_EQ(some.positions[i], all.positions[i]);
@@ -172,7 +173,8 @@ TEST(DepthFilter, FitsNewBallsInARepeatedFrame) {
   const std::vector<Ball> balls = {{{0, 0, 0.7}, 0.03}};
   const FilteredDepth& out = filter.filter(frame, Isometry3d::Identity(), balls);
   EXPECT_TRUE(out.duplicate);
-  EXPECT_EQ(out.states[static_cast<std::size_t>(30 * out.columns + 40)], BlockState::fitted);
+  EXPECT_EQ(out.states[static_cast<std::size_t>(30 * out.columns + 40)],
+            FilteredDepth::State::fitted);
 }
 
 TEST(DepthFilter, SeesThroughDistortion) {
@@ -185,7 +187,7 @@ TEST(DepthFilter, SeesThroughDistortion) {
   double angle = 0;
   double count = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out.states[i] == BlockState::empty) continue;
+    if (out.states[i] == FilteredDepth::State::empty) continue;
     EXPECT_NEAR(distance(table, out.positions[i].cast<double>()), 0, 4e-3);
     angle += std::pow(std::acos(std::min(1.0, out.normals[i].cast<double>().dot(normal))), 2);
     ++count;
@@ -230,7 +232,7 @@ float any_depth(Random& random) {
 
 void expect_finite(const FilteredDepth& out) {
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out.states[i] == BlockState::empty) continue;
+    if (out.states[i] == FilteredDepth::State::empty) continue;
     ASSERT_TRUE(out.positions[i].allFinite());
     ASSERT_GT(out.positions[i].z(), 0);
     const float length = out.normals[i].norm();

@@ -61,7 +61,7 @@ void each_block(const Truth& truth, NoiseKind noise, const Visit& visit) {
     for (int row = 8; row < points.rows - 8; ++row) {
       for (int column = 8; column < points.columns - 8; ++column) {
         const std::size_t i = static_cast<std::size_t>(row) * points.columns + column;
-        if (points.states[i] == BlockState::fitted) visit(points, i, column, row);
+        if (points.states[i] == FilteredDepth::State::fitted) visit(points, i, column, row);
       }
     }
   }

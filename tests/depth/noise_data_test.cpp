@@ -10,7 +10,7 @@
 
 #include "depth/noise_tracker.hpp"
 #include "palpate/depth/depth_filter.hpp"
-#include "palpate/io/read_cloud.hpp"
+#include "palpate/io/cloud_file.hpp"
 
 namespace palpate {
 namespace {
@@ -98,7 +98,7 @@ double deviation_over_time(const std::vector<std::vector<float>>& frames, int me
     const FilteredDepth& out = filter.filter(frame, Eigen::Isometry3d::Identity());
     depths.emplace_back(out.size(), 0.0F);
     for (std::size_t i = 0; i < out.size(); ++i) {
-      if (out.states[i] == BlockState::fitted) depths.back()[i] = out.positions[i].z();
+      if (out.states[i] == FilteredDepth::State::fitted) depths.back()[i] = out.positions[i].z();
     }
   }
   std::vector<double> deviations;

@@ -9,8 +9,8 @@
 #include "base/random.hpp"
 #include "depth/noise_tracker.hpp"
 #include "depth/shapes.hpp"
-#include "palpate/sensor/simulated_depth.hpp"
-#include "palpate/sensor/simulated_noise.hpp"
+#include "sim/simulated_depth.hpp"
+#include "sim/simulated_noise.hpp"
 
 namespace palpate::test {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "palpate/sensor/simulated_depth.hpp"
+#include "sim/simulated_depth.hpp"
 
 namespace palpate::test {
 

@@ -6,8 +6,8 @@
 #include "depth/neighbors.hpp"
 #include "depth/shapes.hpp"
 #include "palpate/depth/depth_filter.hpp"
-#include "palpate/sensor/simulated_depth.hpp"
-#include "palpate/sensor/simulated_noise.hpp"
+#include "sim/simulated_depth.hpp"
+#include "sim/simulated_noise.hpp"
 
 namespace palpate::test {
 

@@ -134,7 +134,7 @@ TEST(StrongLens, KeepsTheNoiseHonest) {
     double squares = 0;
     double count = 0;
     for (std::size_t i = 0; i < out.size(); ++i) {
-      if (out.states[i] != BlockState::fitted) continue;
+      if (out.states[i] != FilteredDepth::State::fitted) continue;
       const Vector3d at = out.positions[i].cast<double>();
       const double along = distance(table, at) / std::abs(kTilted.dot(at.normalized()));
       squares += std::pow(along / static_cast<double>(out.deviations[i]), 2);

@@ -163,10 +163,10 @@ TEST_F(TemporalFilterTest, WhatIsNotMeasuredIsRememberedForAWhile) {
   const auto hide = [&](int frames) {
     for (int frame = 0; frame < frames; ++frame) {
       test::measure({}, kStill, kSd, kSlopeSd, random_, fits_);
-      fits_.states[7] = BlockState::empty;
+      fits_.states[7] = FilteredDepth::State::empty;
       fits_.rho[7] = 0;
       filter_.filter(options, kStill, fits_);
-      EXPECT_EQ(fits_.states[7], BlockState::empty);
+      EXPECT_EQ(fits_.states[7], FilteredDepth::State::empty);
       EXPECT_EQ(filter_.memory()[8].missed, 0);
     }
   };
@@ -186,7 +186,7 @@ TEST_F(TemporalFilterTest, WhatIsNotMeasuredIsRememberedForAWhile) {
 
 TEST_F(TemporalFilterTest, WhatComesBackElsewhereStartsAnew) {
   for (int frame = 0; frame < 5; ++frame) show({.plane_point = {0, 0, 0.6}});
-  std::fill(fits_.states.begin(), fits_.states.end(), BlockState::empty);
+  std::fill(fits_.states.begin(), fits_.states.end(), FilteredDepth::State::empty);
   filter_.filter({}, kStill, fits_);
   EXPECT_EQ(begun(), 0);
   show({});
@@ -196,7 +196,7 @@ TEST_F(TemporalFilterTest, WhatComesBackElsewhereStartsAnew) {
 TEST_F(TemporalFilterTest, ABlockThatBecomesFittedStartsAnew) {
   const auto show_plain = [&](double z) {
     test::measure({.plane_point = {0, 0, z}}, kStill, 20 * kSd, kSlopeSd, random_, fits_);
-    std::fill(fits_.states.begin(), fits_.states.end(), BlockState::plain);
+    std::fill(fits_.states.begin(), fits_.states.end(), FilteredDepth::State::plain);
     filter_.filter({}, kStill, fits_);
   };
   for (int frame = 0; frame < 5; ++frame) show_plain(0.8);

@@ -45,7 +45,7 @@ inline Eigen::Vector3d tangent_at(const BlockScene& scene, const Eigen::Isometry
 
 inline void set_block(depth::BlockFits& fits, std::size_t i, const Eigen::Vector3d& tangent,
                       double rho, double sd, double slope_sd) {
-  fits.states[i] = BlockState::fitted;
+  fits.states[i] = FilteredDepth::State::fitted;
   fits.rho[i] = static_cast<float>(rho);
   fits.variance[i] = static_cast<float>(sd * sd);
   fits.slope_x[i] = static_cast<float>(tangent.x());
@@ -105,7 +105,7 @@ inline BlockErrors errors_of(const depth::BlockFits& fits, const BlockScene& sce
       }
       if (edge || (ball >= 0 && here != (ball == 1))) continue;
       const std::size_t i = grid.index(column, row);
-      if (fits.states[i] == BlockState::empty) continue;
+      if (fits.states[i] == FilteredDepth::State::empty) continue;
       const double error =
           1 / static_cast<double>(fits.rho[i]) - 1 / tangent.dot(Eigen::Vector3d(x, y, 1));
       errors.mean += error;

@@ -37,11 +37,11 @@ class TemporalWarpTest : public ::testing::Test {
 
   /// An image in which nothing is measured; fits_ gets what is remembered.
   void show_nothing(const Isometry3d& pose) {
-    std::fill(fits_.states.begin(), fits_.states.end(), BlockState::empty);
+    std::fill(fits_.states.begin(), fits_.states.end(), FilteredDepth::State::empty);
     filter_.filter({}, pose, fits_);
     for (std::size_t i = 0; i < fits_.size(); ++i) {
       const BlockMemory& m = filter_.memory()[i];
-      fits_.states[i] = m.count > 0 ? m.state : BlockState::empty;
+      fits_.states[i] = m.count > 0 ? m.state : FilteredDepth::State::empty;
       fits_.rho[i] = m.rho;
       fits_.slope_x[i] = m.slope_x;
       fits_.slope_y[i] = m.slope_y;
@@ -70,7 +70,7 @@ TEST_F(TemporalWarpTest, APlaneIsTheSamePlaneInEveryView) {
   EXPECT_GT(errors.count, 8000);
   EXPECT_LT(errors.worst, 2e-6);
   for (std::size_t i = 0; i < fits_.size(); ++i) {
-    if (fits_.states[i] == BlockState::empty) continue;
+    if (fits_.states[i] == FilteredDepth::State::empty) continue;
     const Vector3d tangent = test::tangent_at(scene, after.inverse(), 0, 0);
     ASSERT_NEAR(fits_.slope_x[i], tangent.x(), 1e-5);
     ASSERT_NEAR(fits_.slope_y[i], tangent.y(), 1e-5);
@@ -144,7 +144,7 @@ TEST_F(TemporalWarpTest, TheNearerSurfaceHidesTheOther) {
         inside = inside && there;
       }
       const std::size_t i = fits_.grid.index(column, row);
-      if (!inside || fits_.states[i] == BlockState::empty) continue;
+      if (!inside || fits_.states[i] == FilteredDepth::State::empty) continue;
       const Vector3d tangent = test::tangent_at(scene, T_sensor_world, x, y);
       ASSERT_NEAR(1 / fits_.rho[i], 1 / tangent.dot(Vector3d(x, y, 1)), 0.01);
       ++ball;
@@ -171,9 +171,9 @@ TEST_F(TemporalWarpTest, WhateverComesStaysFinite) {
         turned(3 * draw(), Vector3d(draw(), draw(), 1.1).normalized(), {draw(), draw(), draw()});
     for (std::size_t i = 0; i < fits_.size(); ++i) {
       const double kind = random_.uniform();
-      fits_.states[i] = kind < 0.2   ? BlockState::empty
-                        : kind < 0.5 ? BlockState::plain
-                                     : BlockState::fitted;
+      fits_.states[i] = kind < 0.2   ? FilteredDepth::State::empty
+                        : kind < 0.5 ? FilteredDepth::State::plain
+                                     : FilteredDepth::State::fitted;
       fits_.rho[i] = static_cast<float>(0.05 + 10 * random_.uniform());
       fits_.variance[i] = static_cast<float>(random_.uniform());
       fits_.slope_x[i] = static_cast<float>(100 * draw());
@@ -183,7 +183,7 @@ TEST_F(TemporalWarpTest, WhateverComesStaysFinite) {
     }
     filter_.filter({}, pose, fits_);
     for (std::size_t i = 0; i < fits_.size(); ++i) {
-      if (fits_.states[i] == BlockState::empty) continue;
+      if (fits_.states[i] == FilteredDepth::State::empty) continue;
       ASSERT_TRUE(std::isfinite(fits_.rho[i]) && fits_.rho[i] > 0);
       ASSERT_TRUE(std::isfinite(fits_.slope_x[i]) && std::isfinite(fits_.slope_y[i]));
       ASSERT_TRUE(std::isfinite(fits_.variance[i]) && fits_.variance[i] >= 0);

@@ -8,7 +8,7 @@ namespace palpate::test {
 namespace {
 
 const CameraModel kPlain{80, 60, {60, 62, 39.5, 29.5}, {}};
-const Distortion kBarrel{-0.25, 0.08, 0.001, -0.002, -0.01};
+const CameraModel::Distortion kBarrel{-0.25, 0.08, 0.001, -0.002, -0.01};
 const NoiseModel kMillimetreNoise{{1e-3, 0, 0}, 1};
 
 TEST(Undistort, LeavesImagesWithoutDistortionAlone) {
@@ -18,7 +18,7 @@ TEST(Undistort, LeavesImagesWithoutDistortionAlone) {
 }
 
 TEST(Undistort, FollowsBrownAndConrady) {
-  const Distortion radial{0.1, 0.01, 0, 0, 0.001};
+  const CameraModel::Distortion radial{0.1, 0.01, 0, 0, 0.001};
   const depth::ImagePoint at = depth::distort(radial, 0.5, 0);
   EXPECT_NEAR(at.x, 0.5 * (1 + 0.1 * 0.25 + 0.01 * 0.0625 + 0.001 * 0.015625), 1e-12);
   EXPECT_EQ(at.y, 0);

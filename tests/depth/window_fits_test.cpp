@@ -145,7 +145,7 @@ TEST(WindowFits, AreExactOnAPlaneWithoutNoise) {
   const depth::BlockFits fits = fit_all(blocks, fine);
   for (int row = 0; row < fits.grid.rows; ++row) {
     for (int column = 0; column < fits.grid.columns; ++column) {
-      ASSERT_EQ(fits.states[fits.grid.index(column, row)], BlockState::fitted);
+      ASSERT_EQ(fits.states[fits.grid.index(column, row)], FilteredDepth::State::fitted);
       EXPECT_NEAR(distance_and_normal(table, position_of(fits, column, row)).value, 0, 5e-6);
       EXPECT_LT((normal_of(fits, column, row) - normal).norm(), 2e-3);
     }

@@ -1,8 +1,7 @@
-#include "palpate/device/device_profile.hpp"
-
 #include <gtest/gtest.h>
 
 #include "palpate/base/error.hpp"
+#include "palpate/device/device.hpp"
 #include "support/folder.hpp"
 
 namespace palpate {

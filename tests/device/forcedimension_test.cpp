@@ -9,7 +9,7 @@
 #include "device/drivers.hpp"
 #include "device/fault_trial.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/device/device_profile.hpp"
+#include "palpate/device/device.hpp"
 
 namespace palpate {
 namespace {

@@ -8,7 +8,7 @@
 #include "device/fake_haply_service.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/device/device_profile.hpp"
+#include "palpate/device/device.hpp"
 #include "palpate/device/open_device.hpp"
 
 namespace palpate {
@@ -150,7 +150,7 @@ TEST_F(Haply, AnswerThatComesLateMeetsNoForce) {
 }
 
 TEST_F(Haply, IsLostAndComesBackBehindTheServosThread) {
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   const auto device = open_device(name(), clock, {.retry_interval = 0.01});
   const auto step_until = [&](DeviceStatus wanted) {
     while (device->read().status != wanted) {

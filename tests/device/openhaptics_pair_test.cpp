@@ -165,7 +165,7 @@ class OpenHapticsHeld : public OpenHapticsPair {
     EXPECT_NO_THROW(done.get());
   }
 
-  SteadyWaitingClock steady_;
+  SteadyClock steady_;
   int opened_ = 0;
   ThreadedDevice second_{[this] {
                            ++opened_;

@@ -8,7 +8,7 @@
 
 #include "device/fault_trial.hpp"
 #include "device/openhaptics_rig.hpp"
-#include "palpate/device/device_profile.hpp"
+#include "palpate/device/device.hpp"
 
 namespace palpate {
 namespace {
@@ -216,7 +216,7 @@ TEST_F(OpenHapticsFaults, ASchedulerThatHangsIsGivenUpAndComesBack) {
 
 // With the thread of ThreadedDevice and the scheduler's, in real time; no deadline.
 TEST_F(OpenHaptics, ThreadsExchangeWithoutARace) {
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   ThreadedDevice device(
       [&clock] {
         return std::make_unique<OpenHapticsDriver>(device::parse_device_name(kTouch), clock);

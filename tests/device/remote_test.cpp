@@ -278,7 +278,7 @@ TEST_F(RemoteDeviceTest, OthersMayLookAtItWhileItSteps) {
   std::jthread watcher([&](const std::stop_token& stop) {
     std::uint64_t last = 0;
     while (!stop.stop_requested()) {
-      const RemoteCounts counts = device.counts();
+      const RemoteDevice::Counts counts = device.counts();
       EXPECT_GE(counts.taken, last);
       last = counts.taken;
       static_cast<void>(device.reason());

@@ -62,7 +62,7 @@ TEST(RemoteTarget, ListenersSeeWholePosesWhileAnotherThreadSpeaks) {
   });
   double last = 0;
   while (!done.load()) {
-    const std::optional<RemoteCommand> word = hand.command();
+    const std::optional<RemoteTarget::Command> word = hand.command();
     if (!word || !word->held) continue;
     const double x = word->target.position.x();
     ASSERT_EQ(word->target.position, Vector3d::Constant(x));

@@ -266,7 +266,7 @@ TEST_F(ThreadedDeviceTest, OptionsOutOfRangeAreRefused) {
 
 // For the thread sanitizer, and that it works and ends at all.
 TEST(ThreadedDeviceThread, FollowsFaultsAndEnds) {
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   FakeHardware hardware(clock);
   bool begun = false;
   {

@@ -20,7 +20,7 @@ Eigen::Isometry3d some_pose() {
 }
 
 struct Shapes {
-  AnalyticOptions options{.T_world_shape = some_pose(), .tool_radius = 0.002};
+  AnalyticField::Options options{.T_world_shape = some_pose(), .tool_radius = 0.002};
   PlaneField plane{options};
   SphereField sphere{0.05, options};
   BoxField box{{0.06, 0.1, 0.08}, options};
@@ -123,7 +123,7 @@ TEST(Analytic, MovingTheShapeRaisesTheRevision) {
 }
 
 TEST(Analytic, UnionTellsWhichPartIsTouched) {
-  AnalyticOptions beside;
+  AnalyticField::Options beside;
   beside.T_world_shape.translate(Vector3d(1, 0, 0));
   const SphereField left(0.1);
   const SphereField right(0.1, beside);
@@ -138,7 +138,7 @@ class SummingField final : public Field {
   [[nodiscard]] Sample sample(const Vector3d&) const noexcept override { return {.value = 1}; }
   [[nodiscard]] bool is_free(const Ball&) const noexcept override { return true; }
   [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
-  [[nodiscard]] FieldTraits traits() const noexcept override { return {}; }
+  [[nodiscard]] Field::Traits traits() const noexcept override { return {}; }
   [[nodiscard]] int points_summed() const noexcept override { return 700; }
 };
 

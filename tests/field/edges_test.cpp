@@ -220,7 +220,7 @@ TEST(Edges, GoWithTheirPointsAndByAndBy) {
     points.end_positions.push_back(place + way);
   }
   points.edges.end = points.edges.start;
-  for (EdgePlane& edge : points.edges.end) edge.share = 0;
+  for (SurfacePoints::EdgePlane& edge : points.edges.end) edge.share = 0;
   finish(points);
   check(points);
   Patch patch(16384);

@@ -202,7 +202,7 @@ TEST(Evaluate, PrintedGradientPointsInwards) {
   const Patch patch = patch_of(points);
   FieldOptions options{.kind = FieldKind::metaball};
   const ImplicitSurface exact(options);
-  options.gradient = GradientKind::printed;
+  options.gradient = FieldOptions::Gradient::printed;
   const ImplicitSurface printed(options);
   int inward = 0;
   int counted = 0;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "field/formulas.hpp"
 #include "palpate/field/field_options.hpp"
 
 namespace palpate {

@@ -34,7 +34,7 @@ SurfacePoints moving_sheet(unsigned seed) {
   points.presences.assign(points.size(), 1);
   test::draw_edges(points, seed);
   points.edges.end = points.edges.start;
-  for (EdgePlane& edge : points.edges.end) edge.share *= unit(random);
+  for (SurfacePoints::EdgePlane& edge : points.edges.end) edge.share *= unit(random);
   finish(points);
   return points;
 }

@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "geometry/clouds.hpp"
-#include "geometry/distance.hpp"
+#include "geometry/neighborhoods.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {

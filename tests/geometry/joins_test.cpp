@@ -9,11 +9,12 @@
 #include <cstring>
 
 #include "base/cpu.hpp"
-#include "field/density.hpp"
+#include "field/formulas.hpp"
 #include "geometry/clouds.hpp"
 #include "geometry/neighborhoods.hpp"
 #include "geometry/weight_sums.hpp"
 #include "palpate/field/field_options.hpp"
+#include "prepare/radii.hpp"
 
 namespace palpate {
 namespace {

@@ -1,5 +1,3 @@
-#include "palpate/io/read_cloud.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -11,6 +9,7 @@
 #include <thread>
 
 #include "io/reading.hpp"
+#include "palpate/io/cloud_file.hpp"
 
 namespace palpate {
 namespace {

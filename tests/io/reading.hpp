@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "palpate/base/error.hpp"
-#include "palpate/io/read_cloud.hpp"
+#include "palpate/io/cloud_file.hpp"
 
 namespace palpate {
 

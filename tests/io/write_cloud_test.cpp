@@ -1,5 +1,3 @@
-#include "palpate/io/write_cloud.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -8,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "io/encode_cloud.hpp"
 #include "io/reading.hpp"
 
 namespace palpate {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "field/density.hpp"
 #include "prepare/growth.hpp"
+#include "prepare/radii.hpp"
 
 namespace palpate {
 namespace {

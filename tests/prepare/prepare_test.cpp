@@ -163,8 +163,9 @@ TEST(Prepare, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)prepare(flat(), {.radius = 0.0}), Error);
   EXPECT_THROW((void)prepare(flat(), {.radius_multiple = NAN}), Error);
   EXPECT_THROW((void)prepare(flat(), {.normal_error = 0}), Error);
-  EXPECT_THROW((void)prepare(flat(), {.orientation = Orientation::viewpoint}), Error);
-  EXPECT_THROW((void)prepare(flat(), {.orientation = Orientation::given}), Error);
+  EXPECT_THROW((void)prepare(flat(), {.orientation = PrepareOptions::Orientation::viewpoint}),
+               Error);
+  EXPECT_THROW((void)prepare(flat(), {.orientation = PrepareOptions::Orientation::given}), Error);
   EXPECT_THROW((void)prepare(flat(), {.material_from_intensity = true}), Error);
   EXPECT_THROW((void)prepare(flat(), {.clip = Box{{5, 5, 5}, {6, 6, 6}}}), Error);
 }

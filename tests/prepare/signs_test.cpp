@@ -31,7 +31,7 @@ double share_right(const SurfacePoints& points, const Outward& outward) {
   double all = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector3f direction = outward(points.grid.points()[i]);
-    if (points.sheets.sheet[i] == PointSheets::kNone || direction.isZero(0)) continue;
+    if (points.sheets.sheet[i] == SurfacePoints::Sheets::kNone || direction.isZero(0)) continue;
     ++all;
     if (points.normals[i].dot(direction) > 0) ++right;
   }
@@ -124,8 +124,12 @@ TEST(Signs, OfAViewAreTowardsTheViewpoint) {
   view.viewpoint = Eigen::Vector3d(0.2, 0.2, -1);  // from below
   const auto up = [](const Vector3f&) { return Vector3f(0, 0, 1); };
   EXPECT_EQ(share_right(prepare(view).points, up), 0);
-  EXPECT_EQ(share_right(prepare(view, {.orientation = Orientation::viewpoint}).points, up), 0);
-  EXPECT_EQ(share_right(prepare(view, {.orientation = Orientation::outward}).points, up), 1);
+  EXPECT_EQ(share_right(
+                prepare(view, {.orientation = PrepareOptions::Orientation::viewpoint}).points, up),
+            0);
+  EXPECT_EQ(
+      share_right(prepare(view, {.orientation = PrepareOptions::Orientation::outward}).points, up),
+      1);
   for (std::size_t i = 0; i < view.size(); ++i) view.normals.emplace_back(0, 0, 1);
   EXPECT_EQ(share_right(prepare(view).points, up), 1) << "given signs come first";
   const PrepareOptions asked{.viewpoint = Eigen::Vector3d(0.2, 0.2, -2)};
@@ -149,7 +153,7 @@ TEST(GivenSigns, MissingOnesFollowTheirSheet) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (i % 8 != 0) cloud.normals[i].setZero();
   }
-  EXPECT_EQ(share_outward(cloud, {.orientation = Orientation::given}), 0);
+  EXPECT_EQ(share_outward(cloud, {.orientation = PrepareOptions::Orientation::given}), 0);
 }
 
 TEST(GivenSigns, ThatContradictEachOtherSayNothing) {
@@ -158,7 +162,7 @@ TEST(GivenSigns, ThatContradictEachOtherSayNothing) {
   EXPECT_EQ(share_outward(cloud), 1);
   for (Vector3f& n : cloud.normals) n.setZero();
   EXPECT_EQ(share_outward(cloud), 1);
-  EXPECT_THROW((void)prepare(cloud, {.orientation = Orientation::given}), Error);
+  EXPECT_THROW((void)prepare(cloud, {.orientation = PrepareOptions::Orientation::given}), Error);
 }
 
 TEST(GivenSigns, DoNotReachOtherObjects) {

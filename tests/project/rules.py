@@ -18,7 +18,8 @@ FLOORS = {
     "prepare": {"base", "geometry", "field"},
     "align": {"base", "geometry", "field"},
     "scene": {"base", "geometry", "depth", "field", "prepare"},
-    "sensor": {"base", "geometry", "depth", "io", "field", "prepare", "scene"},
+    "sim": {"base", "geometry", "depth", "field"},  # and the camera that it is: see ALLOWED
+    "sensor": {"base", "geometry", "depth", "io", "field", "prepare", "scene", "sim"},
     "device": {"base", "geometry", "io", "field", "contact", "prepare", "scene"},
     "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "device"},
     "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
@@ -30,7 +31,7 @@ FLOORS = {
 ROOMS = [{"align", "devices", "doctor", "info", "paper", "touch", "zwidth"}, {"view"}, {"report"},
          {"run"}, {"sources"}, {"options"}, {"plot"}, {"cli"}]
 # Single headers that a floor may include of a floor that it may not see otherwise.
-ALLOWED = {("contact", "palpate/field/field.hpp")}
+ALLOWED = {("contact", "palpate/field/field.hpp"), ("sim", "palpate/sensor/depth_camera.hpp")}
 
 # The one file that asks what machine it is compiled for.
 PLATFORM_FILES = {"src/base/cpu.cpp"}

@@ -80,7 +80,8 @@ std::vector<Case> cases() {
                            plain("pointset", FieldKind::pointset),
                            plain("metaball", FieldKind::metaball)};
   all.push_back({"wendland", FieldOptions{.kernel = Kernel::wendland}, {}});
-  all.push_back({"paper", paper_field(), ProxyOptions{.method = ProxyMethod::single_step}});
+  all.push_back(
+      {"paper", paper_field(), ProxyOptions{.method = ProxyOptions::Method::single_step}});
   ProxyOptions rough;
   rough.friction = {.static_coefficient = 0.5, .dynamic_coefficient = 0.3, .viscous = 2};
   rough.texture = {.amplitude = 5e-5, .wavelength = 4e-3};

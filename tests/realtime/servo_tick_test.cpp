@@ -106,7 +106,7 @@ TEST_F(ServoTick, KeepsTheContractWhileOthersWatchAndChangeIt) {
     for (int i = 0; !stop.stop_requested(); ++i) {
       static_cast<void>(servo_->state());
       static_cast<void>(servo_->lateness());
-      servo_->set_feel({.stiffness = 200.0 + i % 100, .texture = {.amplitude = 1e-5 * (i % 3)}});
+      servo_->set_contact({.stiffness = 200.0 + i % 100, .texture = {.amplitude = 1e-5 * (i % 3)}});
       servo_->set_field({.kind = i % 200 < 100 ? FieldKind::balanced : FieldKind::metaball});
       servo_->pause(i % 50 == 0);
     }

@@ -169,7 +169,7 @@ class Ordeal {
         break;
       case Fault::another_stiffness:
         stiffness_ = 500 * std::abs(uniform());
-        servo_.set_feel({.stiffness = stiffness_});
+        servo_.set_contact({.stiffness = stiffness_});
         break;
       case Fault::another_field:
         servo_.set_field({.kind = static_cast<FieldKind>(random_() % 3)});

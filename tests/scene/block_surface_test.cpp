@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "field/density.hpp"
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/geometry/cell_grid.hpp"
+#include "prepare/radii.hpp"
 #include "support/depth_frames.hpp"
 
 namespace palpate {
@@ -26,7 +26,7 @@ std::vector<float> searched_weights(const FilteredDepth& depth, const BlockSurfa
                                     std::vector<std::size_t>& blocks) {
   std::vector<Eigen::Vector3f> positions;
   for (std::size_t b = 0; b < depth.size(); ++b) {
-    if (depth.states[b] == BlockState::empty) continue;
+    if (depth.states[b] == FilteredDepth::State::empty) continue;
     positions.push_back(depth.positions[b]);
     blocks.push_back(b);
   }
@@ -99,7 +99,7 @@ TEST(BlockSurface, NoRadiusIsBelowTheMinimum) {
   wide.measure(depth);
   bool larger = false;
   for (std::size_t b = 0; b < depth.size(); ++b) {
-    if (depth.states[b] == BlockState::empty) continue;
+    if (depth.states[b] == FilteredDepth::State::empty) continue;
     EXPECT_GE(wide.radius(b), 9e-3f);
     EXPECT_GE(wide.radius(b), plain.radius(b));
     larger = larger || wide.radius(b) > 9.01e-3f;
@@ -120,7 +120,8 @@ TEST(BlockSurface, RadiiGrowByHalfTheDistanceAtMost) {
   for (int v = 0; v < depth.rows; ++v) {
     for (int u = 1; u < depth.columns; ++u) {
       const auto b = static_cast<std::size_t>(v * depth.columns + u);
-      if (depth.states[b] == BlockState::empty || depth.states[b - 1] == BlockState::empty) {
+      if (depth.states[b] == FilteredDepth::State::empty ||
+          depth.states[b - 1] == FilteredDepth::State::empty) {
         continue;
       }
       const float way = (depth.positions[b] - depth.positions[b - 1]).norm();

@@ -63,18 +63,23 @@ struct Found {
   }
 
   /// Calls visit(place, R, edge) for all blocks in the middle of the image with a fit.
-  void each(const std::function<void(const Vector3d&, double, const EdgePlane&)>& visit) const {
+  void each(const std::function<void(const Vector3d&, double, const SurfacePoints::EdgePlane&)>&
+                visit) const {
     for (std::size_t b = 0; b < depth.size(); ++b) {
       const int row = static_cast<int>(b) / depth.columns;
-      if (depth.states[b] != BlockState::fitted || row < 10 || row >= depth.rows - 10) continue;
+      if (depth.states[b] != FilteredDepth::State::fitted || row < 10 || row >= depth.rows - 10)
+        continue;
       const std::uint32_t number = finder.number(b);
-      const EdgePlane edge = number == EdgeFinder::kNone ? EdgePlane() : finder.plane(number);
+      const SurfacePoints::EdgePlane edge =
+          number == EdgeFinder::kNone ? SurfacePoints::EdgePlane() : finder.plane(number);
       visit(depth.positions[b].cast<double>(), surface.radius(b), edge);
     }
   }
   [[nodiscard]] int told() const {
     int count = 0;
-    each([&](const Vector3d&, double, const EdgePlane& edge) { count += edge.share != 0 ? 1 : 0; });
+    each([&](const Vector3d&, double, const SurfacePoints::EdgePlane& edge) {
+      count += edge.share != 0 ? 1 : 0;
+    });
     return count;
   }
 };
@@ -86,7 +91,7 @@ TEST_P(TwoFaces, AreToldToTheBlocksOfEachOther) {
   const Found found(filtered(convex ? roof : valley));
   int near = 0;
   int told = 0;
-  found.each([&](const Vector3d& place, double radius, const EdgePlane& edge) {
+  found.each([&](const Vector3d& place, double radius, const SurfacePoints::EdgePlane& edge) {
     const double x = place.x();
     if (std::abs(x) < 0.7 * radius * std::cos(kLean)) ++near;
     if (edge.share == 0) return;
@@ -151,10 +156,11 @@ std::shared_ptr<SurfacePoints> show_frame(Morph& morph, double stamp, FilteredDe
 
 /// Calls visit(edge at the start, at the end, i) for all points with an edge.
 void each_edge(const SurfacePoints& points,
-               const std::function<void(const EdgePlane&, const EdgePlane&, std::size_t)>& visit) {
+               const std::function<void(const SurfacePoints::EdgePlane&,
+                                        const SurfacePoints::EdgePlane&, std::size_t)>& visit) {
   for (std::size_t i = 0; i < points.edges.of_point.size(); ++i) {
     const std::uint32_t edge = points.edges.of_point[i];
-    if (edge == PointEdges::kNone) continue;
+    if (edge == SurfacePoints::Edges::kNone) continue;
     visit(points.edges.start[edge], points.edges.end[edge], i);
   }
 }
@@ -164,20 +170,22 @@ TEST(EdgesOfAStream, ComeAndGoByAndByOnPointsThatAreThere) {
   Morph morph{{}};
   ASSERT_TRUE(show_frame(morph, 0, filtered(flat))->edges.start.empty());
   int coming = 0;
-  each_edge(*show_frame(morph, kFrame, filtered(shallow)),
-            [&](const EdgePlane& start, const EdgePlane& end, std::size_t) {
-              ++coming;
-              EXPECT_TRUE(start.share == 0 || start.share == 1) << "nor a point that appears";
-              EXPECT_EQ(end.share, start.share == 0 ? 0.25f : 1.0f);
-            });
+  each_edge(
+      *show_frame(morph, kFrame, filtered(shallow)),
+      [&](const SurfacePoints::EdgePlane& start, const SurfacePoints::EdgePlane& end, std::size_t) {
+        ++coming;
+        EXPECT_TRUE(start.share == 0 || start.share == 1) << "nor a point that appears";
+        EXPECT_EQ(end.share, start.share == 0 ? 0.25f : 1.0f);
+      });
   EXPECT_GT(coming, 100);
   for (int k = 2; k < 20; ++k) (void)show_frame(morph, k * kFrame, filtered(shallow, kNoise, 2));
   int going = 0;
-  each_edge(*show_frame(morph, 20 * kFrame, filtered(flat)),
-            [&](const EdgePlane& start, const EdgePlane& end, std::size_t) {
-              going += start.share > 0.9f && end.share == 0.75f * start.share ? 1 : 0;
-              EXPECT_LE(end.share, start.share);
-            });
+  each_edge(
+      *show_frame(morph, 20 * kFrame, filtered(flat)),
+      [&](const SurfacePoints::EdgePlane& start, const SurfacePoints::EdgePlane& end, std::size_t) {
+        going += start.share > 0.9f && end.share == 0.75f * start.share ? 1 : 0;
+        EXPECT_LE(end.share, start.share);
+      });
   EXPECT_GT(going, 100);
 }
 
@@ -188,7 +196,8 @@ TEST(EdgesOfAStream, AreSteadyWhereNoiseHardlyLetsThemBeFound) {
   for (unsigned k = 0; k < 20; ++k) {
     const auto points = show_frame(morph, k * kFrame, filtered(shallow, 2e-3, k + 1));
     if (k < 5) continue;
-    each_edge(*points, [&](const EdgePlane& start, const EdgePlane& end, std::size_t i) {
+    each_edge(*points, [&](const SurfacePoints::EdgePlane& start,
+                           const SurfacePoints::EdgePlane& end, std::size_t i) {
       if (!points->presences.empty() && points->presences[i] == 0) return;
       change += std::abs(static_cast<double>(end.share - start.share));
       ++count;
@@ -206,7 +215,8 @@ TEST(EdgesOfAStream, StayWhereTheyAreWhenTheOriginMoves) {
   const auto points = show_frame(morph, kFrame, depth, camera);
   // The line of the ridge is at x = 0 and x = 20, at height 0.
   int checked = 0;
-  each_edge(*points, [&](const EdgePlane& start, const EdgePlane&, std::size_t i) {
+  each_edge(*points, [&](const SurfacePoints::EdgePlane& start, const SurfacePoints::EdgePlane&,
+                         std::size_t i) {
     const Vector3d place = points->origin + points->grid.points()[i].cast<double>();
     const Vector3d ridge(place.x() > 10 ? 20 : 0, place.y(), 0);
     const double at_ridge = start.normal.cast<double>().dot(ridge - place);
@@ -221,7 +231,8 @@ TEST(EdgesOfAStream, CreasesOfWhatNobodySeesGo) {
   for (int k = 0; k < 3; ++k) (void)show_frame(morph, k * kFrame, filtered(valley));
   const auto points = show_frame(morph, 3 * kFrame, filtered([](double, double) { return 0.4; }));
   int hidden = 0;
-  each_edge(*points, [&](const EdgePlane& start, const EdgePlane& end, std::size_t) {
+  each_edge(*points, [&](const SurfacePoints::EdgePlane& start, const SurfacePoints::EdgePlane& end,
+                         std::size_t) {
     hidden += start.share < 0 ? 1 : 0;
     EXPECT_EQ(end.share, 0);
   });

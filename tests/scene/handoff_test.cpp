@@ -1,4 +1,4 @@
-#include "palpate/scene/handoff.hpp"
+#include "scene/handoff.hpp"
 
 #include <gtest/gtest.h>
 

@@ -19,9 +19,9 @@ std::shared_ptr<const SurfacePoints> cloud() {
   return std::make_shared<const SurfacePoints>();
 }
 
-double sum_at(const std::vector<Layer>& layers, double u) {
+double sum_at(const std::vector<Snapshot::Layer>& layers, double u) {
   double sum = 0;
-  for (const Layer& layer : layers) {
+  for (const Snapshot::Layer& layer : layers) {
     sum += layer.weight_start + u * (layer.weight_end - layer.weight_start);
   }
   return sum;
@@ -29,7 +29,7 @@ double sum_at(const std::vector<Layer>& layers, double u) {
 
 TEST(LayerHistory, ReplaceKeepsTheNewestAlone) {
   LayerHistory history(Policy::replace, 1);
-  std::vector<Layer> layers;
+  std::vector<Snapshot::Layer> layers;
   for (int k = 0; k < 5; ++k) {
     const auto newest = cloud();
     history.add(newest, {k * kFrame, k * kFrame, kFrame}, layers);
@@ -42,7 +42,7 @@ TEST(LayerHistory, ReplaceKeepsTheNewestAlone) {
 
 TEST(LayerHistory, AverageWeighsTheNewestAlike) {
   LayerHistory history(Policy::average, 4);
-  std::vector<Layer> layers;
+  std::vector<Snapshot::Layer> layers;
   std::vector<std::shared_ptr<const SurfacePoints>> clouds;
   for (std::size_t k = 0; k < 9; ++k) {
     clouds.push_back(cloud());
@@ -59,7 +59,7 @@ TEST(LayerHistory, AverageWeighsTheNewestAlike) {
 
 TEST(LayerHistory, CrossfadeMovesTheWeightsOfTheNewestAndTheOldest) {
   LayerHistory history(Policy::crossfade, 4);
-  std::vector<Layer> layers;
+  std::vector<Snapshot::Layer> layers;
   for (int k = 0; k < 9; ++k) history.add(cloud(), {k * kFrame, k * kFrame, kFrame}, layers);
   ASSERT_EQ(layers.size(), 5u);
   EXPECT_NEAR(layers.front().weight_start, 0.25, 1e-12);
@@ -78,7 +78,7 @@ TEST(LayerHistory, CrossfadeNeverSteps) {
   for (const int n : {1, 2, 4, 6}) {
     std::uniform_real_distribution<double> gap(0.5 * kFrame, 1.9 * kFrame);
     LayerHistory history(Policy::crossfade, n);
-    std::vector<Layer> layers;
+    std::vector<Snapshot::Layer> layers;
     std::map<const SurfacePoints*, double> before;
     double start = 0;
     double last_start = 0;
@@ -86,14 +86,14 @@ TEST(LayerHistory, CrossfadeNeverSteps) {
       start += gap(random);
       const double u = std::min((start - last_start) / kFrame, 1.0);
       before.clear();
-      for (const Layer& layer : layers) {
+      for (const Snapshot::Layer& layer : layers) {
         before[layer.points.get()] =
             layer.weight_start + u * (layer.weight_end - layer.weight_start);
       }
       const auto held = layers;  // addresses stay theirs
       history.add(cloud(), {start, start, kFrame}, layers);
       ASSERT_LE(layers.size(), Snapshot::kMaxLayers);
-      for (const Layer& layer : layers) {
+      for (const Snapshot::Layer& layer : layers) {
         const auto found = before.find(layer.points.get());
         const double expected = k == 0 ? 1 : found == before.end() ? 0 : found->second;
         EXPECT_NEAR(layer.weight_start, expected, n < 6 ? 5e-3 : 0.03);
@@ -106,7 +106,7 @@ TEST(LayerHistory, CrossfadeNeverSteps) {
 
 TEST(LayerHistory, ForgetsWhatWas) {
   LayerHistory history(Policy::average, 4);
-  std::vector<Layer> layers;
+  std::vector<Snapshot::Layer> layers;
   for (int k = 0; k < 3; ++k) history.add(cloud(), {k * kFrame, k * kFrame, kFrame}, layers);
   history.forget();
   history.add(cloud(), {1, 1, kFrame}, layers);

@@ -31,7 +31,7 @@ FilteredDepth filtered(int k, const test::DepthOf& depth_of,
 /// A slope whose blocks are as they are whatever is beside them.
 FilteredDepth slope(int k) {
   FilteredDepth depth = filtered(k, [](double x, double) { return 0.5 + 0.3 * x; });
-  for (BlockState& state : depth.states) state = BlockState::plain;
+  for (FilteredDepth::State& state : depth.states) state = FilteredDepth::State::plain;
   return depth;
 }
 
@@ -43,7 +43,7 @@ Shown show(const std::vector<FilteredDepth>& frames) {
   Shown last;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const MorphInput input{.depth = frames[k], .pinhole = {}, .everywhere = false};
-    const Moment moment{frames[k].stamp, 0.7 * static_cast<double>(k) * kFrame, kFrame};
+    const FrameTiming moment{frames[k].stamp, 0.7 * static_cast<double>(k) * kFrame, kFrame};
     auto points = std::make_shared<SurfacePoints>();
     morph.look(input);
     morph.fill(input, moment, points);
@@ -74,7 +74,8 @@ TEST(MorphPieces, FourTogetherGoAsEachAlone) {
   for (FilteredDepth& frame : frames) {  // the last of every four along the curve
     for (std::size_t b = 0; b < frame.size(); ++b) {
       const std::size_t columns = static_cast<std::size_t>(frame.columns);
-      if (b % columns % 2 == 1 && b / columns % 2 == 1) frame.states[b] = BlockState::empty;
+      if (b % columns % 2 == 1 && b / columns % 2 == 1)
+        frame.states[b] = FilteredDepth::State::empty;
     }
   }
   const Shown alone = show(frames);
@@ -94,7 +95,8 @@ TEST(MorphPieces, FourTogetherGoAsEachAlone) {
 TEST(MorphPieces, WhatAnEmptyBlockHeldBeforeIsNotSeenAgain) {
   std::vector<FilteredDepth> frames = {slope(0), slope(0)};
   frames[1].stamp = kFrame;
-  for (BlockState& state : frames[1].states) state = BlockState::empty;  // and nothing else
+  for (FilteredDepth::State& state : frames[1].states)
+    state = FilteredDepth::State::empty;  // and nothing else
   const Shown shown = show(frames);
   ASSERT_EQ(shown->size(), frames[0].size());
   EXPECT_TRUE(same(shown->radii, shown->end_radii));

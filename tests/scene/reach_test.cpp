@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(ReachBoard, TellsWhatWasWritten) {
-  ReachBoard board;
+TEST(ReachTable, TellsWhatWasWritten) {
+  ReachTable board;
   std::vector<Reach> found{{Vector3d::Ones(), 5}};
   board.read(found);
   EXPECT_TRUE(found.empty());
@@ -31,8 +31,8 @@ TEST(ReachBoard, TellsWhatWasWritten) {
   EXPECT_EQ(found[0].center, Vector3d(4, 5, 6));
 }
 
-TEST(ReachBoard, NeverGivesHalfOfTwo) {
-  ReachBoard board;
+TEST(ReachTable, NeverGivesHalfOfTwo) {
+  ReachTable board;
   std::atomic<bool> done{false};
   const std::jthread writer([&] {
     for (int i = 0; !done; ++i) {

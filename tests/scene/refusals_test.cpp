@@ -4,6 +4,7 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/scene/scene_field.hpp"
+#include "scene/handoff.hpp"
 #include "support/snapshots.hpp"
 
 namespace palpate {

@@ -10,8 +10,8 @@
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_camera.hpp"
 #include "palpate/sensor/simulated_stream.hpp"
+#include "sim/simulated_camera.hpp"
 #include "support/rates.hpp"
 
 namespace palpate {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kEver = std::numeric_limits<double>::infinity();
 
-std::uint64_t StreamDrops::*cause(FrameCheck& check, const DepthFrame& frame,
-                                  double latest = kEver) {
+std::uint64_t StreamState::Drops::*cause(FrameCheck& check, const DepthFrame& frame,
+                                         double latest = kEver) {
   const auto objection = check.examine(frame, latest);
   if (!objection) return nullptr;
   EXPECT_FALSE(objection->words.empty());
@@ -31,39 +31,39 @@ TEST(FrameCheck, FindsWhatContradictsItself) {
   FrameCheck check(false);
   DepthFrame frame = frame_at(1);
   frame.depth.pop_back();
-  EXPECT_EQ(cause(check, frame), &StreamDrops::garbage);
+  EXPECT_EQ(cause(check, frame), &StreamState::Drops::garbage);
   frame = frame_at(1);
   frame.colors.resize(3);
-  EXPECT_EQ(cause(check, frame), &StreamDrops::garbage);
+  EXPECT_EQ(cause(check, frame), &StreamState::Drops::garbage);
   frame = frame_at(1);
   frame.camera.pinhole.fx = 0;
-  EXPECT_EQ(cause(check, frame), &StreamDrops::garbage);
+  EXPECT_EQ(cause(check, frame), &StreamState::Drops::garbage);
   frame.camera.pinhole.fx = std::nan("");
-  EXPECT_EQ(cause(check, frame), &StreamDrops::garbage);
+  EXPECT_EQ(cause(check, frame), &StreamState::Drops::garbage);
   frame = frame_at(1);
   frame.camera.width = -4;
-  EXPECT_EQ(cause(check, frame), &StreamDrops::garbage);
+  EXPECT_EQ(cause(check, frame), &StreamState::Drops::garbage);
   frame = frame_at(1);
   frame.T_world_sensor = Eigen::Isometry3d::Identity();
   frame.T_world_sensor->translation().x() = std::nan("");
-  EXPECT_EQ(cause(check, frame), &StreamDrops::garbage);
-  EXPECT_EQ(cause(check, DepthFrame{}), &StreamDrops::garbage);
+  EXPECT_EQ(cause(check, frame), &StreamState::Drops::garbage);
+  EXPECT_EQ(cause(check, DepthFrame{}), &StreamState::Drops::garbage);
 }
 
 TEST(FrameCheck, FindsStampsThatDoNotGrow) {
   FrameCheck check(false);
   EXPECT_EQ(cause(check, frame_at(1, 1)), nullptr);
-  EXPECT_EQ(cause(check, frame_at(1, 2)), &StreamDrops::late);
-  EXPECT_EQ(cause(check, frame_at(0.5, 2)), &StreamDrops::late);
-  EXPECT_EQ(cause(check, frame_at(std::nan(""), 2)), &StreamDrops::late);
-  EXPECT_EQ(cause(check, frame_at(9, 2), 5), &StreamDrops::late);
+  EXPECT_EQ(cause(check, frame_at(1, 2)), &StreamState::Drops::late);
+  EXPECT_EQ(cause(check, frame_at(0.5, 2)), &StreamState::Drops::late);
+  EXPECT_EQ(cause(check, frame_at(std::nan(""), 2)), &StreamState::Drops::late);
+  EXPECT_EQ(cause(check, frame_at(9, 2), 5), &StreamState::Drops::late);
   EXPECT_EQ(cause(check, frame_at(2, 2), 5), nullptr) << "a stamp from the future was remembered";
 }
 
 TEST(FrameCheck, FindsPicturesWithoutDepth) {
   FrameCheck check(false);
-  EXPECT_EQ(cause(check, frame_at(1, 0)), &StreamDrops::empty);
-  EXPECT_EQ(cause(check, frame_at(2, std::nanf(""))), &StreamDrops::empty);
+  EXPECT_EQ(cause(check, frame_at(1, 0)), &StreamState::Drops::empty);
+  EXPECT_EQ(cause(check, frame_at(2, std::nanf(""))), &StreamState::Drops::empty);
   DepthFrame frame = frame_at(3, 0);
   frame.depth.back() = 1;
   EXPECT_EQ(cause(check, frame), nullptr);
@@ -74,7 +74,7 @@ TEST(FrameCheck, FindsRepeatsAndNoOtherPicture) {
   DepthFrame frame = frame_at(1, 1, 5, 5);
   EXPECT_EQ(cause(check, frame), nullptr);
   frame.stamp = 2;
-  EXPECT_EQ(cause(check, frame), &StreamDrops::repeated);
+  EXPECT_EQ(cause(check, frame), &StreamState::Drops::repeated);
   for (std::size_t i = 0; i < frame.depth.size(); ++i) {
     frame.stamp += 1;
     frame.depth[i] = std::nextafter(frame.depth[i], 2.0F);
@@ -94,14 +94,14 @@ TEST(FrameCheck, AllowsRepeatsWhereTold) {
 TEST(FrameCheck, BelievesAnotherSizeOnceItLasts) {
   FrameCheck check(true);
   EXPECT_EQ(cause(check, frame_at(1)), nullptr);
-  EXPECT_EQ(cause(check, frame_at(2, 1, 8, 6)), &StreamDrops::resized);
+  EXPECT_EQ(cause(check, frame_at(2, 1, 8, 6)), &StreamState::Drops::resized);
   EXPECT_EQ(cause(check, frame_at(3)), nullptr) << "one odd frame";
-  EXPECT_EQ(cause(check, frame_at(4, 1, 8, 6)), &StreamDrops::resized);
-  EXPECT_EQ(cause(check, frame_at(5, 1, 8, 6)), &StreamDrops::resized);
+  EXPECT_EQ(cause(check, frame_at(4, 1, 8, 6)), &StreamState::Drops::resized);
+  EXPECT_EQ(cause(check, frame_at(5, 1, 8, 6)), &StreamState::Drops::resized);
   EXPECT_EQ(check.size_changes(), 0u);
   EXPECT_EQ(cause(check, frame_at(6, 1, 8, 6)), nullptr);
   EXPECT_EQ(check.size_changes(), 1u);
-  EXPECT_EQ(cause(check, frame_at(7)), &StreamDrops::resized);
+  EXPECT_EQ(cause(check, frame_at(7)), &StreamState::Drops::resized);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(OpenCamera, ListsEveryDriverAndWhatIsMissing) {
     }
   }
   EXPECT_EQ(drivers[0].name, "simulated");
-  for (const FoundDevice& device : drivers[0].devices) {
+  for (const DriverInfo::Device& device : drivers[0].devices) {
     DepthFrame frame;
     EXPECT_EQ(open_camera(device.name)->read(frame, 0), CameraStatus::frame) << device.name;
   }

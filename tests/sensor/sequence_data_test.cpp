@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "palpate/sensor/sequence.hpp"
+#include "sensor/sequence.hpp"
 
 namespace palpate {
 namespace {

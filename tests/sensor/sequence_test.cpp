@@ -1,4 +1,4 @@
-#include "palpate/sensor/sequence.hpp"
+#include "sensor/sequence.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "palpate/sensor/simulated_camera.hpp"
+#include "sim/simulated_camera.hpp"
 
 #include <gtest/gtest.h>
 

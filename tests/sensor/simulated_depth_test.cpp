@@ -1,11 +1,11 @@
-#include "palpate/sensor/simulated_depth.hpp"
+#include "sim/simulated_depth.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_scene.hpp"
+#include "sim/simulated_scene.hpp"
 #include "support/effort.hpp"
 
 namespace palpate {
@@ -81,7 +81,7 @@ TEST(DepthRenderer, SeesNothingBehindItBeyondItsReachOrFromWithin) {
 TEST(DepthRenderer, BendsRaysAsTheLensDoes) {
   CameraModel camera = kSmallCamera;
   camera.distortion = {0.1, -0.05, 0.002, -0.001, 0.01};
-  const Distortion& d = camera.distortion;
+  const CameraModel::Distortion& d = camera.distortion;
   Solid ball{SolidKind::ball, Eigen::Isometry3d::Identity(), Vector3d::Constant(0.3)};
   ball.T_world_solid.translation() = Vector3d(0.1, 0, 1);
   const std::vector<Solid> solids = {ball};

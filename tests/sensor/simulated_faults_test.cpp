@@ -5,7 +5,7 @@
 #include <set>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_noise.hpp"
+#include "sim/simulated_noise.hpp"
 
 // What sensors do besides noise: each fault alone, on a plane or a step of depth.
 

@@ -1,4 +1,4 @@
-#include "palpate/sensor/simulated_noise.hpp"
+#include "sim/simulated_noise.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "palpate/sensor/simulated_scene.hpp"
+#include "sim/simulated_scene.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_camera.hpp"
-#include "palpate/sensor/simulated_scene.hpp"
+#include "sim/simulated_camera.hpp"
+#include "sim/simulated_scene.hpp"
 
 // Keys of what sensors do besides noise, and the scenes that show it.
 

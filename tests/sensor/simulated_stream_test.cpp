@@ -65,7 +65,7 @@ TEST_F(SimulatedStreamTest, FramesAreFeltAtTheirStampPlusLatency) {
   EXPECT_EQ(camera_.begun(), 0) << "all cameras of a run begin at its t = 0";
   stream.advance(0.0099);
   EXPECT_TRUE(taken_.empty());
-  EXPECT_EQ(stream.state().phase, StreamPhase::starting);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::starting);
   stream.advance(0.0101);
   ASSERT_EQ(taken_.size(), 1u);
   EXPECT_EQ(taken_[0].start, 0.01);
@@ -99,7 +99,7 @@ TEST_F(SimulatedStreamTest, TellsOfTheEndAfterTheLastFrame) {
   play(stream, 0.05);
   EXPECT_TRUE(ended_at_.empty());
   play(stream, 9);
-  EXPECT_EQ(stream.state().phase, StreamPhase::ended);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::ended);
   EXPECT_EQ(stream.state().stalls, 0u) << "the end is no stall";
   EXPECT_NEAR(stream.state().rate, 10, 1e-9) << "nor does its rate fall";
   ASSERT_EQ(ended_at_.size(), 1u);
@@ -133,14 +133,15 @@ TEST_F(SimulatedStreamTest, ObjectsToWhatAStreamObjectsTo) {
   const Stream live(camera, "table",
                     [](const DepthFrame&, const StartTime& start) { (void)start(); }, clock,
                     {.stall = 1e9});
-  ASSERT_TRUE(eventually([&] { return live.state().phase == StreamPhase::ended; }));
+  ASSERT_TRUE(eventually([&] { return live.state().phase == StreamState::Phase::ended; }));
   const StreamState state = stream.state();
-  EXPECT_EQ(state.phase, StreamPhase::ended);
+  EXPECT_EQ(state.phase, StreamState::Phase::ended);
   EXPECT_EQ(state.frames, live.state().frames);
   EXPECT_EQ(state.touchable, live.state().touchable);
-  for (const auto cause : {&StreamDrops::overtaken, &StreamDrops::repeated, &StreamDrops::late,
-                           &StreamDrops::empty, &StreamDrops::garbage, &StreamDrops::unposed,
-                           &StreamDrops::resized, &StreamDrops::refused}) {
+  for (const auto cause :
+       {&StreamState::Drops::overtaken, &StreamState::Drops::repeated, &StreamState::Drops::late,
+        &StreamState::Drops::empty, &StreamState::Drops::garbage, &StreamState::Drops::unposed,
+        &StreamState::Drops::resized, &StreamState::Drops::refused}) {
     EXPECT_EQ(state.drops.*cause, live.state().drops.*cause);
   }
   EXPECT_EQ(state.drops.late, 2u);
@@ -157,12 +158,12 @@ TEST_F(SimulatedStreamTest, NoticesAFrozenPictureAndThatItMovesAgain) {
   play(stream, 0.95);
   EXPECT_EQ(taken_.size(), 1u);
   StreamState state = stream.state();
-  EXPECT_EQ(state.phase, StreamPhase::stalled);
+  EXPECT_EQ(state.phase, StreamState::Phase::stalled);
   EXPECT_EQ(state.drops.repeated, 9u);
   EXPECT_NE(state.problem.find("identical"), std::string::npos) << state.problem;
   give({1});
   play(stream, 1.1);
-  EXPECT_EQ(stream.state().phase, StreamPhase::running);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::running);
   EXPECT_EQ(stream.state().stalls, 1u);
   FakeCamera still(script_, false, true);
   for (int i = 0; i <= 9; ++i) give(frame_at(0.1 * i, 2));
@@ -189,7 +190,7 @@ TEST_F(SimulatedStreamTest, DamagedFramesTakeTheirTimeAndTheNextIsAsGoodAsEver) 
   give({kDamaged / 30.0});
   SimulatedStream stream = this->stream();
   play(stream, 5);
-  EXPECT_EQ(stream.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::stalled);
   play(stream, 10.2);
   ASSERT_EQ(taken_.size(), 1u);
   EXPECT_NEAR(taken_[0].at, kDamaged / 30.0, 1.1e-3) << "in time";
@@ -203,7 +204,7 @@ TEST_F(SimulatedStreamTest, ACameraThatFailsIsNamedAndNeverGivenUp) {
   SimulatedStream stream = this->stream();
   play(stream, 2);
   StreamState state = stream.state();
-  EXPECT_EQ(state.phase, StreamPhase::failed);
+  EXPECT_EQ(state.phase, StreamState::Phase::failed);
   EXPECT_EQ(state.problem, "table (fake): the cable is loose");
   EXPECT_NEAR(state.problem_at, 2, 1 / 30.0);
   EXPECT_NEAR(static_cast<double>(state.failures), 2 * 30, 2) << "once in a frame's time";
@@ -214,7 +215,7 @@ TEST_F(SimulatedStreamTest, ACameraThatFailsIsNamedAndNeverGivenUp) {
   play(stream, 6.2);
   state = stream.state();
   EXPECT_EQ(state.touchable, 2u);
-  EXPECT_EQ(state.phase, StreamPhase::running);
+  EXPECT_EQ(state.phase, StreamState::Phase::running);
   EXPECT_EQ(state.failures, 150u);
 }
 
@@ -222,7 +223,7 @@ TEST_F(SimulatedStreamTest, ACameraThatIsSilentHasStalled) {
   give({0});
   SimulatedStream stream = this->stream();
   play(stream, 3);
-  EXPECT_EQ(stream.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::stalled);
   EXPECT_EQ(stream.state().stalls, 1u);
   EXPECT_NE(stream.state().problem.find("table (fake): no frame for"), std::string::npos);
   EXPECT_LT(script_->reads(), 3 * 30 + 5);
@@ -249,7 +250,7 @@ TEST_F(SimulatedStreamTest, CountsWhatPreparationRefuses) {
   EXPECT_EQ(stream.state().drops.refused, 3u);
   EXPECT_EQ(stream.state().touchable, 0u);
   EXPECT_EQ(stream.state().problem, "table (fake): a frame could not be prepared: no end");
-  EXPECT_EQ(stream.state().phase, StreamPhase::ended);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::ended);
 }
 
 TEST_F(SimulatedStreamTest, TakesAThrowingCameraForAFailingOne) {

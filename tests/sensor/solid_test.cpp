@@ -5,8 +5,8 @@
 
 #include "base/random.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_depth.hpp"
-#include "palpate/sensor/simulated_scene.hpp"
+#include "sim/simulated_depth.hpp"
+#include "sim/simulated_scene.hpp"
 
 namespace palpate {
 namespace {

@@ -38,7 +38,7 @@ TEST(StreamSource, MakesFramesASurface) {
   EXPECT_TRUE(has(field.notes(), FieldNote::no_surface));
   const auto camera = open_camera("sequence:" + folder.path().string());
   const Stream stream(*camera, source, clock);
-  ASSERT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
+  ASSERT_TRUE(eventually([&] { return stream.state().phase == StreamState::Phase::ended; }));
   const StreamState state = stream.state();
   EXPECT_EQ(state.frames, 6u);
   EXPECT_EQ(state.touchable, 6u);
@@ -65,7 +65,7 @@ TEST(StreamSource, MakesFramesTheSameSurfaceInSimulatedTime) {
     field.update(now, hand, hand);
     EXPECT_EQ(has(field.notes(), FieldNote::no_surface), now < 0.01) << now;
   }
-  EXPECT_EQ(stream.state().phase, StreamPhase::ended);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::ended);
   EXPECT_EQ(stream.state().touchable, 6u);
   EXPECT_EQ(field.surface({0, 0, 1.0}).source, 0);
   EXPECT_EQ(source.state().silent_from, std::numeric_limits<double>::infinity());
@@ -80,7 +80,7 @@ TEST(StreamSource, KeepsWhatARecordingShowedLast) {
   Source& source = scene.add("camera");
   const auto camera = open_camera("sequence:" + folder.path().string());
   const Stream stream(*camera, source, clock);
-  ASSERT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
+  ASSERT_TRUE(eventually([&] { return stream.state().phase == StreamState::Phase::ended; }));
   EXPECT_EQ(source.state().silent_from, std::numeric_limits<double>::infinity());
 }
 

@@ -82,7 +82,7 @@ class StreamSurfaceTest : public testing::Test {
       script_->give({.status = status, .reason = "unplugged"});
       const auto noted = [&] {
         const StreamState now = stream_.state();
-        return now.failures > failures_ || now.phase == StreamPhase::ended;
+        return now.failures > failures_ || now.phase == StreamState::Phase::ended;
       };
       EXPECT_TRUE(eventually(noted)) << t;
       failures_ = stream_.state().failures;
@@ -171,7 +171,7 @@ TEST_F(StreamSurfaceTest, IsSteadyWhileFramesCome) {
 TEST_F(StreamSurfaceTest, FadesWhenTheCameraStops) {
   deliver_planes(0, kGood);
   expect_fading_after(kTrouble);
-  EXPECT_EQ(stream_.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream_.state().phase, StreamState::Phase::stalled);
   EXPECT_EQ(stream_.state().stalls, 1u);
 }
 
@@ -183,7 +183,7 @@ TEST_F(StreamSurfaceTest, FadesWhenThePictureFreezes) {
     deliver(frozen.stamp, frozen);
   }
   expect_fading_after(kTrouble + kFrame / 2);
-  EXPECT_EQ(stream_.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream_.state().phase, StreamState::Phase::stalled);
   EXPECT_GT(stream_.state().drops.repeated, 20u);
 }
 
@@ -192,13 +192,13 @@ TEST_F(StreamSurfaceTest, FadesWhenTheCameraIsUnpluggedAndComesBackWithIt) {
   for (int i = 0; i < 20; ++i) answer(kTrouble + 0.01 + 0.05 * i, CameraStatus::failed);
   deliver_planes(67, 99);
   expect_fading_after(kTrouble);
-  EXPECT_NE(stream_.state().phase, StreamPhase::running);
+  EXPECT_NE(stream_.state().phase, StreamState::Phase::running);
   // Whichever was noticed last: that it is unplugged, or that no frame came for so long.
   EXPECT_EQ(stream_.state().problem.find("camera (fake): "), 0u) << stream_.state().problem;
   press(3.3, 2.6);
   EXPECT_NEAR(least_, kForce, 0.01 * kForce) << "it is back";
   EXPECT_LT(step_, kNoStep);
-  EXPECT_EQ(stream_.state().phase, StreamPhase::running);
+  EXPECT_EQ(stream_.state().phase, StreamState::Phase::running);
 }
 
 TEST_F(StreamSurfaceTest, FadesWhenOnlyGarbageComes) {
@@ -211,7 +211,7 @@ TEST_F(StreamSurfaceTest, FadesWhenOnlyGarbageComes) {
     deliver(k * kFrame, frame);
   }
   expect_fading_after(kTrouble);
-  EXPECT_EQ(stream_.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream_.state().phase, StreamState::Phase::stalled);
   EXPECT_GT(stream_.state().drops.garbage, 10u);
   EXPECT_GT(stream_.state().drops.empty, 5u);
 }

@@ -17,7 +17,7 @@ using namespace sensor;
 
 TEST_F(StreamTest, MakesFramesTouchableWithALead) {
   const Stream stream = this->stream({.lead = 0.25, .stall = kNever});
-  EXPECT_EQ(stream.state().phase, StreamPhase::starting);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::starting);
   give(stream, 1);
   expect_touchable(stream, 1);
   give(stream, 1.5, frame_at(1.25, 7));
@@ -27,7 +27,7 @@ TEST_F(StreamTest, MakesFramesTouchableWithALead) {
   const StreamState state = stream.state();
   EXPECT_EQ(state.source, "table");
   EXPECT_EQ(state.camera, "fake");
-  EXPECT_EQ(state.phase, StreamPhase::running);
+  EXPECT_EQ(state.phase, StreamState::Phase::running);
   EXPECT_EQ(state.frames, 2u);
   EXPECT_EQ(state.drops.total(), 0u);
   EXPECT_DOUBLE_EQ(state.latency_mean, (0.25 + 0.5) / 2);
@@ -55,7 +55,7 @@ TEST_F(StreamTest, LosesNothingOfACameraThatDoesNotPace) {
     script_->give({.frame = frame_at(i, static_cast<float>(i))});
   }
   script_->give({.status = CameraStatus::ended});
-  EXPECT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
+  EXPECT_TRUE(eventually([&] { return stream.state().phase == StreamState::Phase::ended; }));
   EXPECT_EQ(touchable_.stamps(), stamps);
   EXPECT_EQ(stream.state().drops.total(), 0u);
 }
@@ -96,12 +96,12 @@ TEST_F(StreamTest, EndsWhenTheLastFrameIsPrepared) {
   give(stream, 1);
   script_->give({.status = CameraStatus::ended});
   ASSERT_TRUE(eventually([&] { return script_->pending() == 0; }));
-  EXPECT_NE(stream.state().phase, StreamPhase::ended);
+  EXPECT_NE(stream.state().phase, StreamState::Phase::ended);
   touchable_.open();
-  EXPECT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
+  EXPECT_TRUE(eventually([&] { return stream.state().phase == StreamState::Phase::ended; }));
   EXPECT_EQ(touchable_.stamps(), std::vector{1.0});
   clock_.set(100);
-  EXPECT_EQ(stream.state().phase, StreamPhase::ended) << "the end is no stall";
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::ended) << "the end is no stall";
 }
 
 TEST_F(StreamTest, TellsOfTheEndAfterTheLastFrame) {
@@ -110,7 +110,7 @@ TEST_F(StreamTest, TellsOfTheEndAfterTheLastFrame) {
                       [&] { pushed_at_end = touchable_.stamps().size(); });
   give(stream, 0.1);
   script_->give({.status = CameraStatus::ended});
-  ASSERT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
+  ASSERT_TRUE(eventually([&] { return stream.state().phase == StreamState::Phase::ended; }));
   EXPECT_EQ(pushed_at_end, 1u);
 }
 
@@ -125,7 +125,7 @@ TEST_F(StreamTest, StopsInEveryState) {
   {
     const Stream ended = this->stream();
     script_->give({.status = CameraStatus::ended});
-    ASSERT_TRUE(eventually([&] { return ended.state().phase == StreamPhase::ended; }));
+    ASSERT_TRUE(eventually([&] { return ended.state().phase == StreamState::Phase::ended; }));
   }
   {
     Stream moved = this->stream();
@@ -154,7 +154,7 @@ TEST_F(StreamTest, ManyLookOnWhileItRuns) {
   std::vector<std::thread> observers;
   for (int i = 0; i < 3; ++i) {
     observers.emplace_back([&] {
-      while (stream.state().phase != StreamPhase::ended) std::this_thread::yield();
+      while (stream.state().phase != StreamState::Phase::ended) std::this_thread::yield();
     });
   }
   for (int i = 1; i <= 200; ++i) script_->give({.frame = frame_at(i, static_cast<float>(i))});

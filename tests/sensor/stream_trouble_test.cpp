@@ -14,21 +14,21 @@ TEST_F(StreamTest, NoticesSilence) {
   const Stream stream = this->stream({.stall = 0.5});
   give(stream, 0.1);
   pass(stream, 0.4);
-  EXPECT_EQ(stream.state().phase, StreamPhase::running);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::running);
   pass(stream, 0.2);
-  EXPECT_EQ(stream.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::stalled);
   pass(stream, 5);
   EXPECT_EQ(stream.state().stalls, 1u) << "one silence, one stall";
   EXPECT_EQ(stream.state().problem, "table (fake): no frame for 0.6 s");
   EXPECT_DOUBLE_EQ(stream.state().problem_at, 0.7);
   give(stream, 7);
-  EXPECT_EQ(stream.state().phase, StreamPhase::running);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::running);
 }
 
 TEST_F(StreamTest, NoticesACameraThatNeverDelivers) {
   const Stream stream = this->stream({.stall = 0.5});
   pass(stream, 0.6);
-  EXPECT_EQ(stream.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::stalled);
 }
 
 TEST_F(StreamTest, NoticesAFrozenPicture) {
@@ -36,7 +36,7 @@ TEST_F(StreamTest, NoticesAFrozenPicture) {
   for (int i = 0; i <= 8; ++i) give(stream, 0.125 * i, frame_at(0.125 * i, 2));
   expect_touchable(stream, 1);
   const StreamState state = stream.state();
-  EXPECT_EQ(state.phase, StreamPhase::stalled);
+  EXPECT_EQ(state.phase, StreamState::Phase::stalled);
   EXPECT_EQ(state.stalls, 1u);
   EXPECT_EQ(state.drops.repeated, 8u);
   EXPECT_NE(state.problem.find("identical"), std::string::npos) << state.problem;
@@ -54,7 +54,7 @@ TEST_F(StreamTest, CountsGarbageAndGoesOn) {
   give(stream, 5, frame_at(1, 5));
   give(stream, 6);
   expect_touchable(stream, 2);
-  const StreamDrops drops = stream.state().drops;
+  const StreamState::Drops drops = stream.state().drops;
   EXPECT_EQ(drops.garbage, 1u);
   EXPECT_EQ(drops.empty, 1u);
   EXPECT_EQ(drops.resized, 1u);
@@ -95,11 +95,11 @@ TEST_F(StreamTest, AsksACameraThatFailsEverMoreRarely) {
   };
   ASSERT_TRUE(fail(1));
   ASSERT_TRUE(retried(1)) << "at once: one frame may be broken";
-  EXPECT_EQ(stream.state().phase, StreamPhase::starting);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::starting);
   std::uint64_t count = 1;
   for (const double wait : {1.0, 2.0, 3.0, 3.0}) {
     ASSERT_TRUE(fail(++count));
-    EXPECT_EQ(stream.state().phase, StreamPhase::failed);
+    EXPECT_EQ(stream.state().phase, StreamState::Phase::failed);
     clock_.set(clock_.now() + wait - 1e-3);
     EXPECT_EQ(stream.state().retries, count - 1);
     clock_.set(clock_.now() + 2e-3);
@@ -107,7 +107,7 @@ TEST_F(StreamTest, AsksACameraThatFailsEverMoreRarely) {
   }
   EXPECT_EQ(stream.state().problem, "table (fake): unplugged");
   give(stream, clock_.now() + 1);
-  EXPECT_EQ(stream.state().phase, StreamPhase::running);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::running);
   ASSERT_TRUE(fail(++count));
   ASSERT_TRUE(retried(count)) << "a good frame begins anew";
 }
@@ -120,11 +120,11 @@ TEST_F(StreamTest, AsksADeviceThatSendsDamagedFramesAgainAtOnce) {
     script_->give({.status = CameraStatus::damaged, .reason = "cut off"});
     ASSERT_TRUE(eventually([&] { return stream.state().drops.garbage == i; })) << i;
   }
-  EXPECT_EQ(stream.state().phase, StreamPhase::running);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::running);
   EXPECT_EQ(stream.state().problem, "table (fake): cut off");
   EXPECT_EQ(stream.state().failures, 0u) << "the device is there";
   clock_.set(0.7);
-  EXPECT_EQ(stream.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::stalled);
   EXPECT_EQ(stream.state().problem, "table (fake): no usable frame for 0.6 s; the last: cut off");
   give(stream, 0.8);
   expect_touchable(stream, 2);
@@ -140,7 +140,7 @@ TEST_F(StreamTest, BeginsAnewWithItsWaitsAfterADamagedFrame) {
     script_->give({.status = CameraStatus::damaged, .reason = "cut off"});
     ASSERT_TRUE(eventually([&] { return stream.state().drops.garbage == i; }));
   }
-  EXPECT_EQ(stream.state().phase, StreamPhase::starting);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::starting);
 }
 
 TEST_F(StreamTest, TakesAThrowingCameraForAFailingOne) {
@@ -159,11 +159,11 @@ TEST_F(StreamTest, TakesACameraThatWaitsAfterItFailedForAStalledOne) {
     script_->give({.status = CameraStatus::failed, .reason = "unplugged"});
     ASSERT_TRUE(eventually([&] { return stream.state().failures == i; }));
   }
-  EXPECT_EQ(stream.state().phase, StreamPhase::failed);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::failed);
   pass(stream, 0.2);
   EXPECT_EQ(stream.state().problem, "table (fake): unplugged") << "it is asked again, and waits";
   pass(stream, 0.3);
-  EXPECT_EQ(stream.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::stalled);
   EXPECT_EQ(stream.state().problem, "table (fake): no frame for 0.5 s");
 }
 
@@ -192,13 +192,13 @@ TEST_F(StreamTest, TellsOfADriverThatHangs) {
   const Stream stream(camera, "table", touchable_.sink(), clock_, {.stall = 0.5});
   expect_touchable(stream, 1);
   clock_.set(0.5);
-  EXPECT_EQ(stream.state().phase, StreamPhase::running);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::running);
   clock_.set(0.7);
-  EXPECT_EQ(stream.state().phase, StreamPhase::stalled);
+  EXPECT_EQ(stream.state().phase, StreamState::Phase::stalled);
   EXPECT_EQ(stream.state().stalls, 1u);
   EXPECT_EQ(stream.state().problem, "table (hanging): no frame for 0.6 s");
   let_go.set_value();
-  EXPECT_TRUE(eventually([&] { return stream.state().phase == StreamPhase::ended; }));
+  EXPECT_TRUE(eventually([&] { return stream.state().phase == StreamState::Phase::ended; }));
 }
 
 TEST_F(StreamTest, TellsOfACameraOnAnotherClock) {

@@ -1,9 +1,9 @@
-#include "palpate/servo/histogram.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <thread>
+
+#include "servo/records.hpp"
 
 namespace palpate {
 namespace {

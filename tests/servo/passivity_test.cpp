@@ -1,5 +1,5 @@
 // The brake of the passivity controller by itself: a damper that is sampled and delayed.
-#include "palpate/servo/passivity.hpp"
+#include "servo/passivity.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ constexpr double kOwed = 10;    // J: more than there is to be braked, so the br
 constexpr int kSteps = 3000;
 
 // A ledger that owes so much that it brakes as hard as it may.
-Passivity deeply_in_debt(const PassivityOptions& options) {
+Passivity deeply_in_debt(const GuardOptions::Passivity& options) {
   Passivity ledger(options);
   for (int i = 0; i <= options.delay; ++i) {
     ledger.account(Vector3d::UnitX(), kOwed * Vector3d::UnitX(), 0, kStep);

@@ -102,7 +102,7 @@ TEST(Realtime, KeepsTheLastProcessor) {
     ASSERT_TRUE(
         make_realtime({.realtime_priority = false, .lock_memory = false, .processor = processor})
             .all_granted());
-    const RealtimeRequest last = leave_processor(processor);
+    const RealtimeReport::Request last = leave_processor(processor);
     EXPECT_FALSE(last.granted);
     EXPECT_NE(last.remedy.find("only one"), std::string::npos);
     EXPECT_FALSE(leave_processor(-1).granted);

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <thread>
 
-#include "palpate/servo/servo_state.hpp"
+#include "servo/records.hpp"
 #include "support/effort.hpp"
 
 namespace palpate {

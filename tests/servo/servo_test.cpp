@@ -224,7 +224,7 @@ TEST(Servo, ChangesWhatIsFeltWithoutAStep) {
   servo.tick(0);
   device.state().position = kPressedAt;
   double before = servo.tick(1e-3).force.norm();
-  servo.set_feel({.stiffness = 100});
+  servo.set_contact({.stiffness = 100});
   for (int i = 2; i < 200; ++i) {
     const double force = servo.tick(1e-3 * i).force.norm();
     ASSERT_LE(force, before + 1e-12);
@@ -246,13 +246,13 @@ TEST(Servo, NotesAStiffnessThatWaitsForMotion) {
     return has(servo.tick(time).contact.notes, ContactNote::softer);
   };
   EXPECT_FALSE(softer_at(kPressedAt, 1e-3));
-  servo.set_feel({.stiffness = 1000});
+  servo.set_contact({.stiffness = 1000});
   EXPECT_TRUE(softer_at(kPressedAt, 2e-3));
   EXPECT_TRUE(softer_at(kPressedAt, 3e-3));
   EXPECT_FALSE(softer_at({0, 0, 15e-3}, 4e-3)) << "in the air";
   EXPECT_FALSE(softer_at(kPressedAt, 5e-3));
   EXPECT_EQ(servo.state().contact.stiffness, 1000);
-  servo.set_feel({.stiffness = 100});
+  servo.set_contact({.stiffness = 100});
   EXPECT_FALSE(softer_at(kPressedAt, 6e-3)) << "it is stiffer";
 }
 
@@ -288,11 +288,10 @@ TEST(Servo, RefusesWhatCannotBeFelt) {
   FreeDevice device;
   Servo servo(device, scene, test::first_links());
   EXPECT_THROW(servo.set_field({.threshold = -1}), Error);
-  EXPECT_THROW(servo.set_feel({.texture = {.amplitude = kNan}}), Error);
-  EXPECT_THROW(servo.set_feel({.stiffness = -1}), Error);
-  EXPECT_THROW(servo.set_feel({.stiffness = kNan}), Error);
-  EXPECT_THROW(servo.set_feel({.friction = {.static_coefficient = 0.1, .dynamic_coefficient = 1}}),
-               Error);
+  EXPECT_THROW(servo.set_contact({.texture = {.amplitude = kNan}}), Error);
+  EXPECT_THROW(servo.set_contact({.stiffness = -1}), Error);
+  EXPECT_THROW(servo.set_contact({.stiffness = kNan}), Error);
+  EXPECT_THROW(servo.set_contact({.friction = {.dynamic_coefficient = 1}}), Error);
   EXPECT_THROW(Servo(device, scene, {.guard = {.slew = -1}}), Error);
 }
 

@@ -135,7 +135,7 @@ TEST(ServoThread, MayBeWatchedAndChangedWhileItRuns) {
   const ServoThread thread(servo, clock, modest());
   std::uint64_t before = 0;
   for (int i = 0; i < 200; ++i) {
-    servo.set_feel({.stiffness = 100.0 + i});
+    servo.set_contact({.stiffness = 100.0 + i});
     servo.pause(i % 7 == 0);
     if (i % 10 == 0) servo.reset();
     if (i % 20 == 0) source.publish(test::still(test::plane(1e-4 * i), clock.now()));
@@ -163,8 +163,8 @@ TEST(ServoThread, RefusesRatesThatNoServoHas) {
   EXPECT_THROW(ServoThread(servo, clock, modest()), Error) << "too slow to feel anything by";
 }
 
-TEST(SteadyWaitingClock, WaitsAndNeverWakesEarly) {
-  SteadyWaitingClock clock;
+TEST(SteadyClock, WaitsAndNeverWakesEarly) {
+  SteadyClock clock;
   EXPECT_NEAR(clock.now(), SteadyClock().now(), 60) << "the same time of day";
   const double start = clock.now();
   clock.wait_until(start + 2e-3);

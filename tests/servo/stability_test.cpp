@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/servo/z_width.hpp"
+#include "servo/impact.hpp"
 
 namespace palpate {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "palpate/servo/servo_state.hpp"
+#include "palpate/servo/servo.hpp"
 #include "support/effort.hpp"
 
 namespace palpate {

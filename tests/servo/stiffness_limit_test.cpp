@@ -36,11 +36,11 @@ TEST(StiffnessLimit, IsWhatTheDeviceBears) {
   device.state().position = 0.5 * kPressedHip;
   EXPECT_NEAR(servo.tick(1e-3).contact.stiffness, 150, 1e-9);
   EXPECT_TRUE(has(servo.state().guard.notes, GuardNote::softened));
-  servo.set_feel({.stiffness = 100});
+  servo.set_contact({.stiffness = 100});
   for (int i = 2; i < 200; ++i) servo.tick(1e-3 * i);
   EXPECT_NEAR(servo.state().contact.stiffness, 100, 1);
   EXPECT_FALSE(has(servo.state().guard.notes, GuardNote::softened));
-  servo.set_feel({.stiffness = 1000});
+  servo.set_contact({.stiffness = 1000});
   for (int i = 200; i < 210; ++i) servo.tick(1e-3 * i);
   EXPECT_TRUE(has(servo.state().guard.notes, GuardNote::softened));
 }

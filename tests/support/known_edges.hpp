@@ -9,7 +9,7 @@ namespace palpate::test {
 
 inline void add_edge(SurfacePoints& points, std::uint32_t i, const Eigen::Vector3f& normal,
                      const Eigen::Vector3f& place, float share) {
-  points.edges.of_point.resize(points.size(), PointEdges::kNone);
+  points.edges.of_point.resize(points.size(), SurfacePoints::Edges::kNone);
   points.edges.of_point[i] = static_cast<std::uint32_t>(points.edges.start.size());
   points.edges.start.push_back({normal, normal.dot(points.grid.points()[i] - place), share});
 }

@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include "field/formulas.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/point_cloud.hpp"
-#include "palpate/sensor/simulated_depth.hpp"
+#include "sim/simulated_depth.hpp"
 
 namespace palpate::test {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "field/formulas.hpp"
 #include "palpate/field/field.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
@@ -19,7 +20,7 @@ struct ReferencePoint {
   double weight = 1;      // C_k a_i
   double confidence = 1;  // c_i
   int source = 0;
-  EdgePlane edge;
+  SurfacePoints::EdgePlane edge;
 };
 
 /// The field of docs/method.md 2 over all
@@ -79,7 +80,7 @@ class ReferenceField final : public Field {
     return {.source = 0};
   }
 
-  [[nodiscard]] FieldTraits traits() const noexcept override {
+  [[nodiscard]] Field::Traits traits() const noexcept override {
     const bool metaball = options_.kind == FieldKind::metaball;
     return {.resolution = (metaball ? 0.002 : 1.0 / 16) * typical_radius()};
   }
@@ -116,10 +117,10 @@ class ReferenceField final : public Field {
     return all;
   }
 
-  static EdgePlane edge_of(const SurfacePoints& from, std::size_t i) {
+  static SurfacePoints::EdgePlane edge_of(const SurfacePoints& from, std::size_t i) {
     const std::vector<std::uint32_t>& edges = from.edges.of_point;
-    const bool none = edges.empty() || edges[i] == PointEdges::kNone;
-    return none ? EdgePlane{} : from.edges.start[edges[i]];
+    const bool none = edges.empty() || edges[i] == SurfacePoints::Edges::kNone;
+    return none ? SurfacePoints::EdgePlane{} : from.edges.start[edges[i]];
   }
 
   [[nodiscard]] double typical_radius() const {

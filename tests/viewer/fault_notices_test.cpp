@@ -5,7 +5,8 @@
 namespace palpate::viewer {
 namespace {
 
-ViewerStream stream(StreamPhase phase, const std::string& problem = "", double problem_at = 0) {
+ViewerStream stream(StreamState::Phase phase, const std::string& problem = "",
+                    double problem_at = 0) {
   ViewerStream stream;
   stream.state.source = "table";
   stream.state.phase = phase;
@@ -15,14 +16,15 @@ ViewerStream stream(StreamPhase phase, const std::string& problem = "", double p
 }
 
 using Notices = std::vector<Notice>;
-const Notice kDark{NoticeLevel::warning, "table (simulated): dark"};
+const Notice kDark{Viewer::NoticeLevel::warning, "table (simulated): dark"};
 
 TEST(FaultNotices, AStreamsProblemIsToldOnceInItsOwnWordsAndAgainWhenItComesBack) {
   FaultNotices faults;
   const auto look = [&](double problem_at) {
-    return faults.update(std::vector{stream(StreamPhase::running, kDark.text, problem_at)}, {});
+    return faults.update(std::vector{stream(StreamState::Phase::running, kDark.text, problem_at)},
+                         {});
   };
-  EXPECT_TRUE(faults.update(std::vector{stream(StreamPhase::running)}, {}).empty());
+  EXPECT_TRUE(faults.update(std::vector{stream(StreamState::Phase::running)}, {}).empty());
   EXPECT_EQ(look(5), Notices{kDark});
   EXPECT_TRUE(look(5).empty());
   for (double time = 6; time < 60; time += 1) EXPECT_TRUE(look(time).empty()) << "it goes on";
@@ -32,11 +34,11 @@ TEST(FaultNotices, AStreamsProblemIsToldOnceInItsOwnWordsAndAgainWhenItComesBack
 
 TEST(FaultNotices, WhatLastsIsPresentUntilItEnds) {
   FaultNotices faults;
-  const std::vector stalled{stream(StreamPhase::stalled, kDark.text, 5)};
+  const std::vector stalled{stream(StreamState::Phase::stalled, kDark.text, 5)};
   EXPECT_EQ(faults.update(stalled, {}), Notices{kDark});
   EXPECT_TRUE(faults.update(stalled, {}).empty());
   EXPECT_EQ(faults.present(), Notices{kDark});
-  const std::vector runs{stream(StreamPhase::running, kDark.text, 5)};
+  const std::vector runs{stream(StreamState::Phase::running, kDark.text, 5)};
   EXPECT_TRUE(faults.update(runs, {}).empty());
   EXPECT_TRUE(faults.present().empty());
 }
@@ -45,11 +47,11 @@ TEST(FaultNotices, ADeviceOfASourcesNameAndOneOfAnotherDevicesAreKeptApart) {
   FaultNotices faults;
   const std::vector<DeviceFault> devices{{"table", GuardFault::none},
                                          {"table", GuardFault::device}};
-  const std::vector stalled{stream(StreamPhase::stalled, kDark.text, 5)};
+  const std::vector stalled{stream(StreamState::Phase::stalled, kDark.text, 5)};
   EXPECT_EQ(faults.update(stalled, devices).size(), 2u);
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(faults.update(stalled, devices).empty());
   EXPECT_EQ(faults.present().size(), 2u);
-  EXPECT_EQ(faults.present().back().level, NoticeLevel::fault);
+  EXPECT_EQ(faults.present().back().level, Viewer::NoticeLevel::fault);
   EXPECT_TRUE(faults.present().back().text.starts_with("table: "));
 }
 

@@ -42,7 +42,7 @@ TEST(HostileClient, WhatCannotBeReadIsRefusedAndCountedAndThenClosed) {
   EXPECT_FALSE(client->receive_json("refused")["text"].get<std::string>().empty());
   client->send_frame(2, std::string("\0\1\2", 3));
   client->receive_json("refused");
-  rig.wait([](const ViewerCounts& counts) { return counts.refused == 2; });
+  rig.wait([](const Viewer::Counts& counts) { return counts.refused == 2; });
   for (int i = 0; i < 18; ++i) client->send_text("nonsense");
   EXPECT_EQ(client->receive_close(), 1008);
   expect_served(*good);
@@ -116,7 +116,7 @@ TEST(HostileClient, TheNinthIsRefusedWithWordsAndThereIsRoomAgainAfterwards) {
   EXPECT_FALSE(ninth->receive_json("refused")["text"].get<std::string>().empty());
   EXPECT_EQ(ninth->receive_close(), 1013);
   clients.pop_back();
-  rig.wait([](const ViewerCounts& counts) { return counts.clients == 7; });
+  rig.wait([](const Viewer::Counts& counts) { return counts.clients == 7; });
   expect_served(*rig.enter());
 }
 
@@ -127,10 +127,10 @@ TEST(HostileClient, MoreConnectionsThanThereMayBeAreClosedAtOnce) {
   auto good = rig.enter();
   std::vector<std::unique_ptr<RawClient>> idle;
   for (int i = 0; i < 3; ++i) idle.push_back(std::make_unique<RawClient>(rig.viewer->port()));
-  rig.wait([](const ViewerCounts& counts) { return counts.connections == 4; });
+  rig.wait([](const Viewer::Counts& counts) { return counts.connections == 4; });
   RawClient late(rig.viewer->port());
   EXPECT_TRUE(late.ends());
-  rig.wait([](const ViewerCounts& counts) { return counts.turned_away == 1; });
+  rig.wait([](const Viewer::Counts& counts) { return counts.turned_away == 1; });
   expect_served(*good);
 }
 
@@ -146,7 +146,7 @@ TEST(HostileClient, WhoNeverReadsIsClosedAndCostsOthersNothing) {
     good->receive_until([](const Frame& f) { return f.binary(1); });
   }
   expect_served(*good);
-  rig.wait([](const ViewerCounts& counts) { return counts.clients == 1; });
+  rig.wait([](const Viewer::Counts& counts) { return counts.clients == 1; });
 }
 
 TEST(HostileClient, FloodsOfMessagesAndPingsAreClosed) {
@@ -162,7 +162,7 @@ TEST(HostileClient, FloodsOfMessagesAndPingsAreClosed) {
   for (int i = 0; i < 1000; ++i) frames += std::string("\x89\x80\0\0\0\0", 6);
   pinger->flood(frames);
   pinger->receive_close();
-  rig.wait([](const ViewerCounts& counts) { return counts.clients == 1; });
+  rig.wait([](const Viewer::Counts& counts) { return counts.clients == 1; });
   expect_served(*good);
 }
 
@@ -185,14 +185,14 @@ void expect_nothing_left(int connections) {
   ViewerRig rig;
   for (int i = 0; i < 8; ++i) connect_and_leave(rig, i);
   rig.wait(
-      [](const ViewerCounts& counts) { return counts.connections == 0 && counts.accepted == 8; });
+      [](const Viewer::Counts& counts) { return counts.connections == 0 && counts.accepted == 8; });
   const std::size_t open_before = descriptors();
   const std::size_t threads_before = threads();
   for (int i = 0; i < connections; ++i) {
     connect_and_leave(rig, i);
-    if (i % 16 == 0) rig.wait([](const ViewerCounts& counts) { return counts.connections < 32; });
+    if (i % 16 == 0) rig.wait([](const Viewer::Counts& counts) { return counts.connections < 32; });
   }
-  rig.wait([&](const ViewerCounts& counts) {
+  rig.wait([&](const Viewer::Counts& counts) {
     return counts.connections == 0 &&
            counts.accepted == static_cast<std::uint64_t>(connections) + 8;
   });

@@ -40,14 +40,14 @@ TEST(Pages, AreToldWhyADeviceIsSilent) {
 TEST(Pages, NobodyHearsOfAProblemThatIsOver) {
   StreamState stream;
   stream.source = "sheet";
-  stream.phase = StreamPhase::running;
+  stream.phase = StreamState::Phase::running;
   stream.problem = "sheet (a camera): one bad frame";
   ViewerOptions options;
   options.streams = [&] { return std::vector{ViewerStream{stream}}; };
   ViewerRig rig(options);
   auto client = rig.enter();
   for (int i = 0; i < 3; ++i) client->receive_json("sources");
-  rig.viewer->notice(NoticeLevel::info, "the first");
+  rig.viewer->notice(Viewer::NoticeLevel::info, "the first");
   EXPECT_EQ(client->receive_json("notice")["text"], "the first");
 }
 

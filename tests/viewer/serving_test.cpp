@@ -29,7 +29,7 @@ TEST(Serving, NoProgramThatIsStartedInheritsItsSockets) {
   ViewerRig rig;
   const auto client = rig.enter();
   RawClient idle(rig.viewer->port());
-  rig.wait([](const ViewerCounts& counts) { return counts.connections == 2; });
+  rig.wait([](const Viewer::Counts& counts) { return counts.connections == 2; });
   EXPECT_EQ(inherited(), before);
 }
 

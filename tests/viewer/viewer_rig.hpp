@@ -53,7 +53,7 @@ struct ViewerRig {
     return client;
   }
   /// Returns once the counts are so; hangs otherwise, until the test's time is over.
-  void wait(const std::function<bool(const ViewerCounts&)>& so) const {
+  void wait(const std::function<bool(const Viewer::Counts&)>& so) const {
     while (!so(viewer->counts())) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 

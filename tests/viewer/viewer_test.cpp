@@ -80,7 +80,7 @@ TEST(Viewer, AnswersToItsOwnNamesAlone) {
   EXPECT_EQ(status(foreign.upgrade(rig.host(), "http://evil.example")), 403);
   RawClient misnamed(port);
   EXPECT_EQ(status(misnamed.upgrade("evil.example", "http://evil.example")), 403);
-  rig.wait([](const ViewerCounts& counts) { return counts.forbidden == 6; });
+  rig.wait([](const Viewer::Counts& counts) { return counts.forbidden == 6; });
 }
 
 TEST(Viewer, WelcomesWhoKnowsTheToken) {
@@ -126,7 +126,7 @@ TEST(Viewer, TellsThatAStiffnessWaitsForMotion) {
   auto client = rig.enter();
   const Frame before = client->receive_until([](const Frame& f) { return f.binary(1); });
   EXPECT_EQ(test::u32(before.payload, 4) & 256, 0u);
-  rig.servo->set_feel({.stiffness = 2000});
+  rig.servo->set_contact({.stiffness = 2000});
   rig.press(0.021);
   client->receive_until(
       [](const Frame& f) { return f.binary(1) && (test::u32(f.payload, 4) & 256) != 0; });
@@ -197,7 +197,7 @@ TEST(Viewer, ASettingReachesTheProgram) {
     const std::lock_guard lock(mutex);
     return std::vector{setting};
   };
-  controls.set = [&](const std::string& key, const SettingValue& value) {
+  controls.set = [&](const std::string& key, const Setting::Value& value) {
     const std::lock_guard lock(mutex);
     EXPECT_EQ(key, "k");
     setting.value = value;
@@ -211,7 +211,7 @@ TEST(Viewer, ASettingReachesTheProgram) {
   EXPECT_NE(client->receive_json("refused")["text"].get<std::string>().find("Stiffness"),
             std::string::npos);
   const std::lock_guard lock(mutex);
-  EXPECT_EQ(setting.value, SettingValue{750.0});
+  EXPECT_EQ(setting.value, Setting::Value{750.0});
 }
 
 TEST(Viewer, PausesAndResetsItsServosByItself) {
@@ -251,13 +251,13 @@ TEST(Viewer, AHandIsReleasedWhenItsPageGoesAway) {
   EXPECT_EQ(height, 1.5);
   EXPECT_EQ(released, 0);
   client.reset();
-  rig.wait([&](const ViewerCounts&) { return released == 1; });
+  rig.wait([&](const Viewer::Counts&) { return released == 1; });
 }
 
 TEST(Viewer, NoticesReachEveryPage) {
   ViewerRig rig;
   const std::array clients{rig.enter(), rig.enter()};
-  rig.viewer->notice(NoticeLevel::warning, "the lens is covered");
+  rig.viewer->notice(Viewer::NoticeLevel::warning, "the lens is covered");
   for (const auto& client : clients) {
     const auto notice = client->receive_json("notice");
     EXPECT_EQ(notice["level"], "warning");

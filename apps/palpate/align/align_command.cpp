@@ -116,7 +116,7 @@ std::string setup_text(const CLI::App& command, const AlignOptions& options,
   return text.str();
 }
 
-std::string fit_in_words(const Fit& fit) {
+std::string fit_in_words(const AlignedSource::Fit& fit) {
   return fmt::format("residual {}, {:.0f} % overlap with the others", length(fit.residual),
                      100 * fit.overlap);
 }
@@ -137,7 +137,7 @@ void print_source(const SourcePlan& source, const AlignedSource& aligned, std::F
 }
 
 nlohmann::ordered_json json_of(const SourcePlan& source, const AlignedSource& aligned) {
-  const auto fit = [](const Fit& f) {
+  const auto fit = [](const AlignedSource::Fit& f) {
     return nlohmann::ordered_json{{"residual_m", f.residual}, {"overlap", f.overlap}};
   };
   return {{"name", source.argument.name},

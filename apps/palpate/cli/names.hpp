@@ -31,10 +31,10 @@ inline constexpr std::array<Named<FieldKind>, 3> kFields = {{{"balanced", FieldK
 inline constexpr std::array<Named<Kernel>, 2> kKernels = {
     {{"wyvill", Kernel::wyvill}, {"wendland", Kernel::wendland}}};
 
-inline constexpr std::array<Named<GradientKind>, 3> kGradients = {
-    {{"exact", GradientKind::exact},
-     {"normal", GradientKind::normal},
-     {"printed", GradientKind::printed}}};
+inline constexpr std::array<Named<FieldOptions::Gradient>, 3> kGradients = {
+    {{"exact", FieldOptions::Gradient::exact},
+     {"normal", FieldOptions::Gradient::normal},
+     {"printed", FieldOptions::Gradient::printed}}};
 
 /// The choice of that name, if there is one.
 template <class Choice, std::size_t N>

@@ -26,7 +26,8 @@ void print_drivers(const std::vector<DriverInfo>& drivers, std::FILE* stream,
   const Style style(stream);
   std::size_t width = 0;
   for (const DriverInfo& driver : drivers) {
-    for (const FoundDevice& device : driver.devices) width = std::max(width, device.name.size());
+    for (const DriverInfo::Device& device : driver.devices)
+      width = std::max(width, device.name.size());
   }
   for (const DriverInfo& driver : drivers) {
     fmt::print(stream, "{}  {}\n", style.heading(driver.name), driver.description);
@@ -35,7 +36,7 @@ void print_drivers(const std::vector<DriverInfo>& drivers, std::FILE* stream,
     } else {
       fmt::print(stream, "  {}\n", style.warning("not available: " + driver.missing));
     }
-    for (const FoundDevice& device : driver.devices) {
+    for (const DriverInfo::Device& device : driver.devices) {
       fmt::print(stream, "  {:<{}}  {}\n", device.name, width, device.description);
     }
   }
@@ -52,7 +53,7 @@ void write_drivers(const std::vector<DriverInfo>& drivers, const std::string& pa
   Json list = Json::array();
   for (const DriverInfo& driver : drivers) {
     Json devices = Json::array();
-    for (const FoundDevice& device : driver.devices) {
+    for (const DriverInfo::Device& device : driver.devices) {
       devices.push_back({{"name", device.name}, {"description", device.description}});
     }
     list.push_back({{"name", driver.name},

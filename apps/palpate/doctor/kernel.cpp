@@ -144,7 +144,7 @@ Answer jitter(const Machine& machine) {
   return answer;
 }
 
-Answer granted(const System& system, const RealtimeRequest& request) {
+Answer granted(const System& system, const RealtimeReport::Request& request) {
   if (request.granted) return good("granted");
   std::string hint = "; takes effect after a new login";
   if (in_container(system)) {
@@ -207,7 +207,7 @@ void check_kernel(const Machine& machine, Findings& findings) {
   if (machine.trial.lateness.count > 0) {
     findings.push_back({jitter(machine), kKernel, "jitter at 1 kHz"});
   }
-  for (const RealtimeRequest& request : machine.trial.report.requests) {
+  for (const RealtimeReport::Request& request : machine.trial.report.requests) {
     findings.push_back({granted(machine.system, request), kRights, request.what});
   }
   ask(kRightsChecks, machine, findings);

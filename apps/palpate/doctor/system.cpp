@@ -74,15 +74,15 @@ fs::path share() {
 }
 
 void keep_time(double seconds, RealtimeTrial& trial) {
-  SteadyWaitingClock clock;
-  Histogram lateness;
+  SteadyClock clock;
+  Durations lateness;
   const double start = clock.now();
   Deadlines deadlines(start, kJitterPeriod);
   while (deadlines.next() < start + seconds) {
     clock.wait_until(deadlines.next());
     lateness.add(deadlines.begin(clock.now()));
   }
-  trial.lateness = lateness.look();
+  trial.lateness = lateness;
   trial.left_out = deadlines.skipped();
 }
 

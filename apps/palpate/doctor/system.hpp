@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "palpate/base/driver_info.hpp"
-#include "palpate/servo/histogram.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app::doctor {

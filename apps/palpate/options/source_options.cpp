@@ -144,7 +144,7 @@ void add_source_options(OptionTable& table, SourcePlan& s) {
           "--viewpoint", KeyKind::numbers, "X,Y,Z",
           [&prepare](const std::string& text) {
             prepare.viewpoint = parse_point(text, "--viewpoint");
-            prepare.orientation = Orientation::viewpoint;
+            prepare.orientation = PrepareOptions::Orientation::viewpoint;
           },
           "sensor position in the cloud's frame; orients the normals")
       .only_for(kCloud);

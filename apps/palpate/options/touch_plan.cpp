@@ -34,15 +34,15 @@ SurfacePlan surface_of(const TouchChoices& choices) {
   surface.field = field_of(choices);
   Friction& friction = surface.proxy.friction;
   friction.static_coefficient = choices.friction_static.value_or(friction.dynamic_coefficient);
-  if (surface.paper) surface.proxy.method = ProxyMethod::single_step;
+  if (surface.paper) surface.proxy.method = ProxyOptions::Method::single_step;
   return surface;
 }
 
 void check_surface(const TouchChoices& choices, const SurfacePlan& surface) {
   const bool metaball = surface.field.kind == FieldKind::metaball;
-  require(metaball || choices.gradient != GradientKind::printed,
+  require(metaball || choices.gradient != FieldOptions::Gradient::printed,
           "--gradient printed applies only to the metaball (eq. 4); add --field metaball");
-  require(!metaball || choices.gradient != GradientKind::normal,
+  require(!metaball || choices.gradient != FieldOptions::Gradient::normal,
           "--gradient normal needs normals, which the metaball does not use; give --field pointset "
           "or balanced");
   require(!surface.paper || surface.field.tool_radius == 0,

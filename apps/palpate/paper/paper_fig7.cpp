@@ -160,7 +160,7 @@ class Feelers {
 
   void add_paper(FieldKind kind, int n) {
     ProxyOptions proxy;
-    proxy.method = ProxyMethod::single_step;
+    proxy.method = ProxyOptions::Method::single_step;
     feelers_.emplace_back(clouds_[static_cast<std::size_t>(n) - 1], paper_field(kind), proxy);
     feelers_.back().press.name = kind == FieldKind::metaball ? "metaball" : "point-set";
     feelers_.back().press.clouds = n;
@@ -218,14 +218,15 @@ void sum_up(Press& press) {
 
 // Every way feels every frame of the press, or they could not be compared.
 void check(const StreamState& stream, double time, double whole) {
-  if (stream.phase == StreamPhase::ended) {
+  if (stream.phase == StreamState::Phase::ended) {
     throw Error(
         fmt::format("{} ended after {} frames, before the press of {} s; give a shorter --duration "
                     "or a longer recording{}",
                     stream.camera, stream.frames, whole,
                     stream.problem.empty() ? "" : " (" + stream.problem + ")"));
   }
-  if (stream.phase != StreamPhase::failed && stream.phase != StreamPhase::stalled) return;
+  if (stream.phase != StreamState::Phase::failed && stream.phase != StreamState::Phase::stalled)
+    return;
   throw Error(
       fmt::format("the press failed after {:.3g} of {} s: {}", time, whole, stream.problem));
 }

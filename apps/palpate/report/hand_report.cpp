@@ -17,7 +17,7 @@ double share(std::size_t part, std::size_t whole) {
 }
 
 // "12 steps slew-limited, 3 steps force-limited"; empty: it never intervened.
-std::string guard_words(const GuardCounts& counts) {
+std::string guard_words(const GuardState::Counts& counts) {
   std::string words;
   const auto add = [&words](std::uint64_t count, std::string_view text) {
     if (count == 0) return;
@@ -34,7 +34,7 @@ std::string guard_words(const GuardCounts& counts) {
 }
 
 Json add_guard(Report& report, const GuardOptions& limits, const GuardState& guard) {
-  const GuardCounts& counts = guard.counts;
+  const GuardState::Counts& counts = guard.counts;
   const std::string words = guard_words(counts);
   const std::string most = std::isfinite(limits.maximum_force)
                                ? fmt::format("at most {:.3g} N", limits.maximum_force)
@@ -60,9 +60,9 @@ Json add_guard(Report& report, const GuardOptions& limits, const GuardState& gua
           {"fault", fault}};
 }
 
-Json add_requests(Report& report, const std::vector<RealtimeRequest>& requests) {
+Json add_requests(Report& report, const std::vector<RealtimeReport::Request>& requests) {
   Json data = Json::array();
-  for (const RealtimeRequest& each : requests) {
+  for (const RealtimeReport::Request& each : requests) {
     data.push_back({{"what", each.what}, {"granted", each.granted}, {"remedy", each.remedy}});
     if (each.granted) {
       report.line("real time", fmt::format("{}: granted", each.what));
@@ -103,7 +103,7 @@ Json add_live(Report& report, const LiveReport& live) {
 }
 
 Json add_unguarded(Report& report, const Unguarded& run) {
-  const GuardCounts& counts = run.counts();
+  const GuardState::Counts& counts = run.counts();
   std::string words;
   if (counts.slewed > 0) {
     words += fmt::format("; it would have slew-limited {} steps (largest {:.2g} N in a step)",
@@ -159,7 +159,7 @@ void add_device(Report& report, const Hand& hand) {
     add_scale(report, hand);
     device.update({{"explored_m", hand.plan->patch}, {"depth_m", hand.plan->depth}});
   }
-  RemoteCounts counts;
+  RemoteDevice::Counts counts;
   if (hand.socket != nullptr) {
     counts = hand.socket->counts();
     report.line("socket", fmt::format("{}: {} of {} packets accepted", hand.socket->path(),

@@ -8,7 +8,7 @@
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/run/touch_statistics.hpp"
 #include "palpate/servo/guard.hpp"
-#include "palpate/servo/histogram.hpp"
+#include "palpate/servo/servo.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {

@@ -9,7 +9,7 @@
 
 #include "apps/palpate/cli/output.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/servo/servo_state.hpp"
+#include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
 

@@ -31,13 +31,10 @@ Box view(const std::vector<ServoState>& steps, const Scene& scene) {
   Box all;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const std::shared_ptr<const SurfacePoints> source = scene.source(i).points();
-    if (!source || source->size() == 0) continue;
-    all.extend(source->origin + source->grid.cells().front().lower.cast<double>());
-    all.extend(source->origin + source->grid.cells().front().upper.cast<double>());
+    if (source) all.extend(source->bounds());
   }
   if (!all.empty() && all.size().maxCoeff() < kWhole * box.size().maxCoeff()) {
-    box.extend(all.lower);
-    box.extend(all.upper);
+    box.extend(all);
   }
   const double margin = 0.35 * box.size().maxCoeff() + 1e-3;
   box.extend(box.lower - Vector3d::Constant(margin));

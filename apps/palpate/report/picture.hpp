@@ -5,7 +5,7 @@
 
 #include "apps/palpate/cli/output.hpp"
 #include "palpate/scene/scene.hpp"
-#include "palpate/servo/servo_state.hpp"
+#include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
 

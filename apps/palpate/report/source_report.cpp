@@ -17,31 +17,31 @@ namespace palpate::app {
 namespace {
 
 // What is said of a phase at the end of a run.
-std::string_view phase_words(StreamPhase phase) {
-  if (phase == StreamPhase::starting) return "no frame arrived";
-  if (phase == StreamPhase::ended) return "ended; its last surface was kept";
+std::string_view phase_words(StreamState::Phase phase) {
+  if (phase == StreamState::Phase::starting) return "no frame arrived";
+  if (phase == StreamState::Phase::ended) return "ended; its last surface was kept";
   return name_of(phase);
 }
 
 // A cause for which frames are dropped: its name in data, and what is said of it.
 struct DropText {
-  std::uint64_t StreamDrops::*count;
+  std::uint64_t StreamState::Drops::*count;
   const char* name;
   const char* words;
 };
 
 constexpr std::array<DropText, 8> kDrops = {
-    {{&StreamDrops::overtaken, "overtaken", "overtaken"},
-     {&StreamDrops::repeated, "repeated", "repeated"},
-     {&StreamDrops::late, "late", "late"},
-     {&StreamDrops::empty, "empty", "empty"},
-     {&StreamDrops::garbage, "garbage", "garbage"},
-     {&StreamDrops::unposed, "unposed", "without a pose"},
-     {&StreamDrops::resized, "resized", "of a different size"},
-     {&StreamDrops::refused, "refused", "refused"}}};
+    {{&StreamState::Drops::overtaken, "overtaken", "overtaken"},
+     {&StreamState::Drops::repeated, "repeated", "repeated"},
+     {&StreamState::Drops::late, "late", "late"},
+     {&StreamState::Drops::empty, "empty", "empty"},
+     {&StreamState::Drops::garbage, "garbage", "garbage"},
+     {&StreamState::Drops::unposed, "unposed", "without a pose"},
+     {&StreamState::Drops::resized, "resized", "of a different size"},
+     {&StreamState::Drops::refused, "refused", "refused"}}};
 
 // "overtaken 3, late 1".
-std::string drop_words(const StreamDrops& drops) {
+std::string drop_words(const StreamState::Drops& drops) {
   std::string words;
   for (const DropText& each : kDrops) {
     const std::uint64_t count = drops.*each.count;
@@ -50,7 +50,7 @@ std::string drop_words(const StreamDrops& drops) {
   return words.empty() ? "none" : words;
 }
 
-Json json_drops(const StreamDrops& drops) {
+Json json_drops(const StreamState::Drops& drops) {
   Json json;
   for (const DropText& each : kDrops) json[each.name] = drops.*each.count;
   return json;

@@ -37,7 +37,7 @@ Setting choice(const char* key, const char* label, std::vector<std::string> choi
   Setting setting;
   setting.key = key;
   setting.label = label;
-  setting.kind = SettingKind::choice;
+  setting.kind = Setting::Kind::choice;
   setting.choices = std::move(choices);
   setting.value = std::string(value);
   return setting;
@@ -52,7 +52,7 @@ std::vector<std::string> policies(const ViewScope& scope) {
   return names;
 }
 
-void set_feel(Feel& feel, const std::string& key, double value) {
+void set_contact(ContactSettings& feel, const std::string& key, double value) {
   if (key == "stiffness") feel.stiffness = value;
   if (key == "texture") feel.texture.amplitude = value * kMillimetre;
   if (key != "friction") return;
@@ -82,12 +82,12 @@ constexpr std::array<Preset, 4> kPresets = {{
     {"soft",
      [](ViewSettings& settings) {
        settings.feel.stiffness *= 0.3;
-       set_feel(settings.feel, "friction", 0.4);
+       set_contact(settings.feel, "friction", 0.4);
      }},
     {"glass",
      [](ViewSettings& settings) {
        settings.feel.stiffness *= 2.4;
-       set_feel(settings.feel, "friction", 0);
+       set_contact(settings.feel, "friction", 0);
      }},
 }};
 
@@ -133,7 +133,7 @@ ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other) 
   return settings;
 }
 
-void set(ViewSettings& settings, const std::string& key, const SettingValue& value) {
+void set(ViewSettings& settings, const std::string& key, const Setting::Value& value) {
   if (key == "field") {
     settings.field = other_kind(settings.field, *choice_of(kFields, std::get<std::string>(value)));
   } else if (key == "policy") {
@@ -146,7 +146,7 @@ void set(ViewSettings& settings, const std::string& key, const SettingValue& val
     const double voxel = std::get<double>(value) * kMillimetre;
     settings.voxel = voxel > 0 ? std::optional<double>(voxel) : std::nullopt;
   } else if (key == "stiffness" || key == "friction" || key == "texture") {
-    set_feel(settings.feel, key, std::get<double>(value));
+    set_contact(settings.feel, key, std::get<double>(value));
   } else {
     throw Error(fmt::format("unknown setting '{}'", key));
   }
@@ -163,7 +163,7 @@ ViewSettings preset(const ViewSettings& initial, const std::string& name, const 
     if (name != each.name) continue;
     ViewSettings result = initial;
     each.apply(result);
-    Feel& feel = result.feel;
+    ContactSettings& feel = result.feel;
     feel.stiffness = std::min(feel.stiffness, scope.stiffest);
     feel.texture.amplitude = std::min(feel.texture.amplitude, scope.deepest_texture);
     return result;

@@ -12,14 +12,14 @@
 #include "palpate/field/field_options.hpp"
 #include "palpate/scene/source.hpp"
 #include "palpate/servo/servo.hpp"
-#include "palpate/viewer/viewer_options.hpp"
+#include "palpate/viewer/viewer.hpp"
 
 namespace palpate::app {
 
 /// What a viewer's page may change while the tool feels.
 struct ViewSettings {
   FieldOptions field;
-  Feel feel;
+  ContactSettings feel;
   std::optional<Policy> policy;  ///< unset: as each kind of source has it
   int history = 4;
   double smoothing = 1;         ///< of what the noise asks for: windows and radii grow with it
@@ -46,7 +46,7 @@ struct ViewScope {
 [[nodiscard]] ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other);
 
 /// @throws Error when there is no such key.
-void set(ViewSettings& settings, const std::string& key, const SettingValue& value);
+void set(ViewSettings& settings, const std::string& key, const Setting::Value& value);
 
 /// The names that preset() knows.
 [[nodiscard]] std::vector<std::string> preset_names();

@@ -65,9 +65,8 @@ void check_range(const DepthFrame& frame, const DepthFilterOptions& range) {
 // Farther away the proxy would fault in every step.
 void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
   if (points.size() == 0) return;
-  const CellGrid::Cell& root = points.grid.cells().front();
-  const double far = std::max((points.origin + root.lower.cast<double>()).cwiseAbs().maxCoeff(),
-                              (points.origin + root.upper.cast<double>()).cwiseAbs().maxCoeff());
+  const Box box = points.bounds();
+  const double far = std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
   if (far <= Proxy::kLargestCoordinate) return;
   throw Error(fmt::format(
       "{} extends {:.4g} m from the origin; surfaces beyond {:.0e} m cannot be resolved: {} right?",

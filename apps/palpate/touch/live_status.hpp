@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "palpate/sensor/stream.hpp"
-#include "palpate/servo/histogram.hpp"
-#include "palpate/servo/servo_state.hpp"
+#include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
 

@@ -64,7 +64,7 @@ LiveOutcome play(Run& run, WaitingClock* clock, TouchOutputs& outputs) {
 }
 
 // Cameras and preparation, whose threads are started later, stay off the servo's processor.
-std::optional<RealtimeRequest> leave_to_servo(const TimePlan& time) {
+std::optional<RealtimeReport::Request> leave_to_servo(const TimePlan& time) {
   if (!time.real_time || !time.realtime.processor) return {};
   return leave_processor(*time.realtime.processor);
 }
@@ -123,13 +123,13 @@ void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
 void touch(const TouchPlan& plan) {
   const Trajectory trajectory = trajectory_of(plan.motion, plan.devices);
   TouchOutputs outputs(plan.outputs, plan.devices.size());
-  SteadyWaitingClock steady;
+  SteadyClock steady;
   WaitingClock* clock = plan.time.real_time ? &steady : nullptr;
   std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, clock);
   const SurfacePlan& surface = plan.surface;
   const double texture = surface.proxy.texture.amplitude;
   const bool explored = trajectory.empty() || hands.size() > 1 || texture > 0;
-  const std::optional<RealtimeRequest> left = leave_to_servo(plan.time);
+  const std::optional<RealtimeReport::Request> left = leave_to_servo(plan.time);
   LoadedScene loaded = load_sources(plan.sources, {explored, plan.page.served, clock});
   check_texture(texture, loaded.scene);
   place_hands(hands, {plan.motion, surface, plan.page}, trajectory, loaded.scene);

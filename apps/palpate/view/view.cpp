@@ -84,11 +84,12 @@ ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
   return scope;
 }
 
-std::optional<ViewerFrustum> frustum_of(const LoadedSource& source, const SourceState& state) {
+std::optional<ViewerStream::Frustum> frustum_of(const LoadedSource& source,
+                                                const SourceState& state) {
   if (!source.camera) return std::nullopt;
   const CameraModel& lens = source.lens;
-  return ViewerFrustum{0.5 * lens.width / lens.pinhole.fx, 0.5 * lens.height / lens.pinhole.fy,
-                       kFar * state.depth};
+  return ViewerStream::Frustum{0.5 * lens.width / lens.pinhole.fx,
+                               0.5 * lens.height / lens.pinhole.fy, kFar * state.depth};
 }
 
 std::vector<ViewerStream> streams_of(const Run& run, const LiveFeed& feed) {
@@ -136,7 +137,7 @@ struct View::Parts {
   ViewerControls controls() {
     ViewerControls controls;
     controls.settings = [this] { return list_settings(present(), scope_of(run, servos)); };
-    controls.set = [this](const std::string& key, const SettingValue& value) {
+    controls.set = [this](const std::string& key, const Setting::Value& value) {
       ViewSettings wanted = present();
       set(wanted, key, value);
       apply(wanted);
@@ -162,7 +163,7 @@ struct View::Parts {
   void apply(const ViewSettings& wanted) {
     check(wanted.field);  // before anything changes
     for (Servo* servo : servos) {
-      servo->set_feel(wanted.feel);
+      servo->set_contact(wanted.feel);
       servo->set_field(wanted.field);
     }
     const std::lock_guard lock(settings_mutex);
@@ -178,12 +179,12 @@ struct View::Parts {
       settings = with_preparation(settings, held);
     }
     viewer.settings_changed();
-    viewer.notice(NoticeLevel::warning, why);
+    viewer.notice(Viewer::NoticeLevel::warning, why);
   }
 
   void recording_broke(const std::string& why) {
     viewer.record_ended();
-    viewer.notice(NoticeLevel::warning, "the recording ended: " + why);
+    viewer.notice(Viewer::NoticeLevel::warning, "the recording ended: " + why);
   }
 
   Run& run;

@@ -16,7 +16,6 @@
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/zwidth/zwidth_command.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/base/latest.hpp"
 #include "palpate/device/open_device.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
@@ -29,13 +28,12 @@ constexpr auto kLookAtTrial = std::chrono::milliseconds(100);
 // The trial beside a device, on a thread of its own.
 class TrialThread {
  public:
-  TrialThread(Device& device, WaitingClock& clock, const WallTrialOptions& options)
+  TrialThread(Device& device, WaitingClock& clock, const StiffnessTestOptions& options)
       : device_(device), clock_(clock), trial_(device.info(), options) {
-    shown_.set(trial_.state());
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
 
-  [[nodiscard]] WallTrialState state() const { return shown_.get(); }
+  [[nodiscard]] StiffnessTest::State state() const { return trial_.state(); }
   [[nodiscard]] bool runs() const { return runs_.load(); }
   void stop() {
     thread_.request_stop();
@@ -53,7 +51,6 @@ class TrialThread {
       const DeviceState hand = device_.read();
       deadlines.begin(clock_.now());
       device_.write(trial_.step(hand, clock_.now()));
-      shown_.set(trial_.state());
       if (trial_.is_over()) --after;
     }
     device_.write(Eigen::Vector3d::Zero());
@@ -62,8 +59,7 @@ class TrialThread {
 
   Device& device_;
   WaitingClock& clock_;
-  WallTrial trial_;
-  Latest<WallTrialState> shown_;
+  StiffnessTest trial_;
   std::atomic<bool> runs_{true};
   std::jthread thread_;
 };
@@ -89,39 +85,40 @@ void ask(const WallTrialRunOptions& options) {
 }
 
 // What the hand is to do, whenever that changes.
-WallTrialState lead(TrialThread& thread, const Interruption& interruption) {
+StiffnessTest::State lead(TrialThread& thread, const Interruption& interruption) {
   std::string said;
   while (thread.runs() && !interruption.asked()) {
-    const WallTrialState state = thread.state();
+    const StiffnessTest::State state = thread.state();
     std::string words = fmt::format("{:4.0f} N/m: {}", state.wall, in_words(state.phase));
     if (words != said) fmt::print(stderr, "{}\n", words);
     said = std::move(words);
     std::this_thread::sleep_for(kLookAtTrial);
   }
   thread.stop();
-  const WallTrialState state = thread.state();
+  const StiffnessTest::State state = thread.state();
   fmt::print(stderr, "finished: {}\n", in_words(state.phase));
   return state;
 }
 
 std::string found(const WallTrialRunOptions& options, const DeviceInfo& info,
-                  const WallTrialState& state) {
-  const Json facts = {{"device", info.name},
-                      {"rate_Hz", info.rate},
-                      {"wall_damping_Ns_per_m", options.trial.damping},
-                      {"stable_N_per_m", state.stable},
-                      {"shook_at_N_per_m", state.phase == WallTrialPhase::shook ? state.wall : 0},
-                      {"end", in_words(state.phase)}};
+                  const StiffnessTest::State& state) {
+  const Json facts = {
+      {"device", info.name},
+      {"rate_Hz", info.rate},
+      {"wall_damping_Ns_per_m", options.trial.damping},
+      {"stable_N_per_m", state.stable},
+      {"shook_at_N_per_m", state.phase == StiffnessTest::Phase::unstable ? state.wall : 0},
+      {"end", in_words(state.phase)}};
   return facts.dump(2) + "\n";
 }
 
-void tell(const WallTrialState& state, double damping, std::FILE* out) {
+void tell(const StiffnessTest::State& state, double damping, std::FILE* out) {
   const Style style(out);
   fmt::print(
       out,
       "{} walls up to {:.0f} N/m were stable in this hand, with a wall damping of {:.3g} N s/m\n",
       style.heading("z-width"), state.stable, damping);
-  if (state.phase == WallTrialPhase::shook) {
+  if (state.phase == StiffnessTest::Phase::unstable) {
     fmt::print(out, "a wall of {:.0f} N/m vibrated by {:.2f} mm\n", state.wall,
                1e3 * state.amplitude);
   }
@@ -139,14 +136,14 @@ void run_wall_trial(const WallTrialRunOptions& options) {
   ask(options);
   std::optional<OutputFile> json;
   if (!options.json.empty()) json.emplace(options.json);
-  SteadyWaitingClock clock;
+  SteadyClock clock;
   const Interruption interruption;
   ThreadedDeviceOptions link;
   link.begin = [] { static_cast<void>(make_realtime({})); };
   const std::unique_ptr<ThreadedDevice> device = open_device(options.device, clock, link);
   fmt::print(stderr, "using {}\n", device->info().name);
   TrialThread thread(*device, clock, options.trial);
-  const WallTrialState state = lead(thread, interruption);
+  const StiffnessTest::State state = lead(thread, interruption);
   if (json) write_whole(json, found(options, device->info(), state));
   if (state.stable > 0)
     return tell(state, options.trial.damping, options.json == "-" ? stderr : stdout);

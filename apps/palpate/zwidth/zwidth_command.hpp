@@ -14,7 +14,7 @@ namespace palpate::app {
 struct WallTrialRunOptions {
   std::string device;      ///< what open_device() takes
   bool confirmed = false;  ///< somebody holds the device and knows what comes
-  WallTrialOptions trial = {};
+  StiffnessTestOptions trial = {};
   std::string json;  ///< file for what was found; "-": standard output; empty: none
 };
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/device/device_profile.hpp"
+#include "palpate/device/device.hpp"
 
 namespace palpate::app {
 

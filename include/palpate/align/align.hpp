@@ -15,14 +15,14 @@ struct RoughSource {
   std::shared_ptr<const SurfacePoints> points;  ///< where it roughly stands
 };
 
-/// How one surface lies on the others.
-struct Fit {
-  double residual = 0;  ///< median distance along the normals where both are there, m
-  double overlap = 0;   ///< share of its points that lie on another surface, 0-1
-};
-
 /// Where one source belongs.
 struct AlignedSource {
+  /// How one surface lies on the others.
+  struct Fit {
+    double residual = 0;  ///< median distance along the normals where both are there, m
+    double overlap = 0;   ///< share of its points that lie on another surface, 0-1
+  };
+
   Eigen::Isometry3d T_aligned_rough = Eigen::Isometry3d::Identity();  ///< both in the world frame
   Fit before;
   Fit after;

@@ -16,12 +16,6 @@ class Clock {
   Clock& operator=(const Clock&) = default;
 };
 
-/// The host's monotonic clock.
-class SteadyClock final : public Clock {
- public:
-  [[nodiscard]] double now() const noexcept override;
-};
-
 /// A clock that can be waited for.
 class WaitingClock : public Clock {
  public:
@@ -34,15 +28,12 @@ class WaitingClock : public Clock {
   WaitingClock& operator=(const WaitingClock&) = default;
 };
 
-/// The host's monotonic clock, the same time as SteadyClock's. Waits for absolute times, so that
-/// what happens between reading the clock and going to sleep adds no lateness.
-class SteadyWaitingClock final : public WaitingClock {
+/// The host's monotonic clock. Waits for absolute times, so that what happens between reading the
+/// clock and going to sleep adds no lateness.
+class SteadyClock final : public WaitingClock {
  public:
-  [[nodiscard]] double now() const noexcept override { return clock_.now(); }
+  [[nodiscard]] double now() const noexcept override;
   void wait_until(double time) noexcept override;
-
- private:
-  SteadyClock clock_;
 };
 
 /// Computing time that the calling thread has used, s: time in which other threads had the

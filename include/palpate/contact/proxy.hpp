@@ -2,71 +2,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <optional>
+#include <memory>
 
 #include "palpate/field/field.hpp"
 
 namespace palpate {
-
-/// Lets the stiffness of a contact change without ever giving energy to the hand.
-///
-/// A spring of stiffness K stretched by d holds K d^2 / 2. When K rises by dK during contact,
-/// dK d^2 / 2 is created from nothing and the hand gets it back on its way out: a ramp of 30 ms was
-/// measured to turn a rebound of 1.05 into 1.49 (docs/method.md 3.5). So a rise is paid for out
-/// of a tank, and only what a fall of K or sliding friction took away goes into it. A fall costs
-/// nothing; it takes kTime only to spare the hand a step of force. Rises take that time as well.
-///
-/// While the wanted stiffness stays what it is, the tank changes nothing, bit for bit.
-class EnergyTank {
- public:
-  static constexpr double kCapacity = 0.02;  ///< J; what was dissipated long ago hides nothing
-  static constexpr double kTime = 0.02;      ///< s, in which K falls to 1/e, or rises by itself
-
-  /// A new contact begins with an empty tank and this stiffness (N/m).
-  void restart(double stiffness) noexcept;
-
-  /// A spring of this stiffness (N/m) takes over from one that ended: the tank stays as full.
-  void take_over(double stiffness) noexcept { stiffness_ = stiffness; }
-
-  /// Takes in what a FadingSpring gave up, J.
-  void fill(double energy) noexcept;
-
-  /// Moves the stiffness towards `wanted` (N/m) over a step of `dt` (s) in which the spring is
-  /// stretched by `stretch` (m) and friction took `dissipated` (J, >= 0). Returns the new
-  /// stiffness. Finite for finite arguments; never above max(wanted, what it was).
-  double follow(double wanted, double stretch, double dissipated, double dt) noexcept;
-
-  [[nodiscard]] double stiffness() const noexcept { return stiffness_; }  ///< N/m
-  [[nodiscard]] double energy() const noexcept { return energy_; }        ///< J in the tank
-
- private:
-  void fall(double wanted, double half_square, double dt) noexcept;
-  void rise(double wanted, double half_square, double dt) noexcept;
-
-  double stiffness_ = 0;
-  double energy_ = 0;
-};
-
-/// What is left of springs that ended though no hand let them go: it stays where they were and
-/// loses its stiffness as a contact does, in EnergyTank::kTime. Rests at 0 N/m.
-class FadingSpring {
- public:
-  /// Takes over a spring from `place` (m) of this stiffness (N/m). Two springs pull like one.
-  void take(const Eigen::Vector3d& place, double stiffness) noexcept;
-
-  /// A step of `dt` (s) with the hand at `hip` (m). Returns the energy that it gave up, J.
-  double fade(const Eigen::Vector3d& hip, double dt) noexcept;
-
-  [[nodiscard]] Eigen::Vector3d force(const Eigen::Vector3d& hip) const noexcept {
-    return stiffness_ * (place_ - hip);
-  }
-  [[nodiscard]] double stiffness() const noexcept { return stiffness_; }  ///< N/m
-
- private:
-  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
-  double stiffness_ = 0;
-  double gone_ = 0;  // stiffness at which it ends
-};
 
 /// Things that a proxy reports of a step, as bits.
 enum class ContactNote : std::uint32_t {
@@ -76,10 +16,11 @@ enum class ContactNote : std::uint32_t {
   not_converged = 1u << 2,    ///< the step's iterations ran out before the closest point
   reanchored = 1u << 3,       ///< the surface moved over the proxy and took it along
   fault = 1u << 4,            ///< an input was not finite: zero force until reset()
-  softer = 1u << 5,           ///< stiffness is much below what is wanted: EnergyTank lets it grow
-                              ///< only as motion pays for it
-  fell = 1u << 6,  ///< what held the proxy gave way: it went, in contact or out of it, farther than
-                   ///< twice the hand's way and the surface's by half of |proxy - HIP| before
+  softer = 1u << 5,  ///< stiffness is much below what is wanted: the energy tank lets it grow
+                     ///< only as motion pays for it
+  fell =
+      1u << 6,  ///< what held the proxy gave way: it went, in contact or out of it, farther than
+                ///< twice the hand's displacement and the surface's by half of |proxy - HIP| before
 };
 
 [[nodiscard]] constexpr ContactNote operator|(ContactNote a, ContactNote b) noexcept {
@@ -109,16 +50,6 @@ struct Contact {
   ContactNote notes = ContactNote::none;
 };
 
-class Probe;
-struct Slide;
-struct SurfacePoint;
-
-/// How the proxy follows the hand along the surface.
-enum class ProxyMethod {
-  converged,    ///< to the closest point in every step (docs/method.md 3.3)
-  single_step,  ///< one tangent-plane step a tick (Salisbury and Tarr 1997; the paper)
-};
-
 /// A cone on the proxy, with a viscous term that is implicit in time (docs/method.md 4.1).
 struct Friction {
   double static_coefficient = 0;   ///< mu_s; at least mu_d
@@ -136,10 +67,16 @@ struct Texture {
 };
 
 struct ProxyOptions {
+  /// How the proxy follows the hand along the surface.
+  enum class Method {
+    converged,    ///< to the closest point in every step (docs/method.md 3.3)
+    single_step,  ///< one tangent-plane step a tick (Salisbury and Tarr 1997; the paper)
+  };
+
   double stiffness = 500;  ///< K, N/m
   Friction friction = {};
   Texture texture = {};
-  ProxyMethod method = ProxyMethod::converged;
+  Method method = Method::converged;
   int max_iterations = 20;  ///< constrained sub-steps a step; 1 to 1000
   double tangent_tolerance =
       1e-3;  ///< closest-point iteration stops below this many R; 1e-6 to 0.1
@@ -157,6 +94,9 @@ class Proxy {
 
   /// @throws Error when an option is not finite or out of its range.
   explicit Proxy(const ProxyOptions& options = {});
+  ~Proxy();
+  Proxy(Proxy&&) noexcept;
+  Proxy& operator=(Proxy&&) noexcept;
 
   /// Moves the proxy towards the hand at `hip` (m, world). `dt` is the time since the last step
   /// (s); friction and fading use it. 0 is taken as 1 ns; a negative one is a fault.
@@ -167,56 +107,24 @@ class Proxy {
   [[nodiscard]] Contact step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept;
 
   /// Where the proxy is, m, world. The origin until the first step or reset().
-  [[nodiscard]] const Eigen::Vector3d& position() const noexcept { return position_; }
-  [[nodiscard]] const ProxyOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const Eigen::Vector3d& position() const noexcept;
+  [[nodiscard]] const ProxyOptions& options() const noexcept;
 
   /// What a step spends at most: 1000 in sweeps (and what the last interval of one takes), 20 for
   /// each constrained sub-step allowed (and what a Newton takes), and recovery.
-  [[nodiscard]] int max_evaluations() const noexcept { return 1100 + 20 * options_.max_iterations; }
+  [[nodiscard]] int max_evaluations() const noexcept;
 
-  /// Feels stiffness (N/m), friction and texture like this from the next step on; in contact,
-  /// stiffness goes there as EnergyTank allows. False, and nothing changes, where a number is out
-  /// of its range.
+  /// Sets stiffness (N/m), friction and texture from the next step on; in contact,
+  /// stiffness goes there as the energy tank allows (docs/method.md 3.5). False, and nothing
+  /// changes, where a number is out of its range.
   bool change(double stiffness, const Friction& friction, const Texture& texture) noexcept;
 
   /// Puts the proxy at `position`, in free space, and forgets contact and faults.
   void reset(const Eigen::Vector3d& position) noexcept;
 
  private:
-  void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
-  void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
-  void release(const Eigen::Vector3d& place) noexcept;
-  void hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
-  [[nodiscard]] std::optional<SurfacePoint> find_surface(Probe& probe, const Eigen::Vector3d& hip,
-                                                         Contact& contact) noexcept;
-  [[nodiscard]] bool settle(const Slide& motion, Contact& contact) noexcept;
-  void pull(const Eigen::Vector3d& hip, double dissipated, double dt, Contact& contact) noexcept;
-  void keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
-  void cut_short(Contact& contact) noexcept;
-  void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
-  [[nodiscard]] double wanted_stiffness() const noexcept;
-  [[nodiscard]] double begun_stiffness(const Eigen::Vector3d& place,
-                                       const Eigen::Vector3d& hip) const noexcept;
-  [[nodiscard]] double unexplained(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
-                                   double dt) const noexcept;
-  void take_over(const EnergyTank& before, const Eigen::Vector3d& hip, Contact& contact) noexcept;
-  [[nodiscard]] Contact faulted() noexcept;
-
-  ProxyOptions options_;
-  EnergyTank tank_;
-  FadingSpring fading_;  // of contacts that a change of the surface ended
-  Surface surface_;      // where the proxy touches
-  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of the last contact; zero: none
-  Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();    // that the proxy last caught up with
-  double step_length_ = 0;                            // R where it was last known, m
-  double lost_time_ = 0;                              // s since the surface was lost
-  std::optional<std::uint64_t> revision_;             // of the field in the last step
-  bool started_ = false;
-  bool touching_ = false;
-  bool sliding_ = false;
-  bool cut_short_ = false;  // the last step's search, by its budget
-  bool fault_ = false;
+  class Inside;
+  std::unique_ptr<Inside> inside_;
 };
 
 }  // namespace palpate

@@ -64,7 +64,7 @@ struct ExplorationPlanOptions {
   double stiffness = 0;              ///< N/m in the world; 0: 500 at the hand
   double tool_radius = 0;            ///< m
   std::uint64_t seed = 1;
-  SimulatedHand hand = {};
+  SimulatedDeviceOptions::Hand hand = {};
   double rate = 1000;                         ///< steps a second
   std::function<void(double)> progress = {};  ///< called with the share (0 to 1) that is planned
 };

@@ -20,13 +20,6 @@ struct RemoteDeviceOptions {
   double soft_start = 0.5;        ///< s in which the largest force comes back
 };
 
-/// Packets since construction.
-struct RemoteCounts {
-  std::uint64_t received = 0;  ///< datagrams
-  std::uint64_t taken = 0;     ///< that were valid and new
-  std::uint64_t unsent = 0;    ///< forces that the client did not take
-};
-
 /// Any program as a device: it sends where the hand is and receives the force, in datagrams over a
 /// UNIX socket that only its user may open (docs/remote_device.md).
 ///
@@ -40,6 +33,13 @@ struct RemoteCounts {
 /// grows from zero. A force that is not finite, or a socket that breaks, latches `failed`.
 class RemoteDevice final : public Device {
  public:
+  /// Packets since construction.
+  struct Counts {
+    std::uint64_t received = 0;  ///< datagrams
+    std::uint64_t taken = 0;     ///< that were valid and new
+    std::uint64_t unsent = 0;    ///< forces that the client did not take
+  };
+
   static constexpr int kMostPackets = 64;
 
   /// Opens the socket. `clock` outlives the device; DeviceState::time is its time.
@@ -57,7 +57,7 @@ class RemoteDevice final : public Device {
 
   [[nodiscard]] const std::string& path() const noexcept;
   /// Any thread.
-  [[nodiscard]] RemoteCounts counts() const noexcept;
+  [[nodiscard]] Counts counts() const noexcept;
 
  private:
   struct Inside;

@@ -39,15 +39,15 @@ class TargetSource {
   TargetSource& operator=(const TargetSource&) = default;
 };
 
-/// A hand as a spring and a damper that pull the device towards the hand's target. The defaults are
-/// a light grip (docs/method.md 8.1).
-struct SimulatedHand {
-  double stiffness = 300;    ///< N/m; 0 and no damping: nobody holds the device
-  double damping = 3;        ///< N s/m
-  double maximum_force = 8;  ///< N; a hand that is held back harder yields: it pulls no more
-};
-
 struct SimulatedDeviceOptions {
+  /// A hand as a spring and a damper that pull the device towards the hand's target. The defaults
+  /// are a light grip (docs/method.md 8.1).
+  struct Hand {
+    double stiffness = 300;    ///< N/m; 0 and no damping: nobody holds the device
+    double damping = 3;        ///< N s/m
+    double maximum_force = 8;  ///< N; a hand that is held back harder yields: it pulls no more
+  };
+
   double mass = 0.1;          ///< moved by the hand, kg; > 0
   double damping = 0.5;       ///< viscous, N s/m
   double coulomb = 0.05;      ///< dry friction, N; holds a resting device against smaller forces
@@ -56,7 +56,7 @@ struct SimulatedDeviceOptions {
   double rate = 1000;         ///< steps per second, Hz
   double maximum_force = 20;  ///< N; longer forces are shortened to it
   double workspace_radius = 0.1;  ///< m; only reported, never enforced
-  SimulatedHand hand = {};
+  Hand hand = {};
   /// at time 0, m; a trajectory's start and a source's first target take precedence
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< at time 0, m/s

@@ -4,23 +4,25 @@
 #include <memory>
 #include <optional>
 
-#include "palpate/base/latest.hpp"
 #include "palpate/device/simulated.hpp"
 
 namespace palpate {
-
-/// The newest command to a tool.
-struct RemoteCommand {
-  HandTarget target;
-  double stamp = 0;         ///< of the target, s, on the sender's clock
-  bool held = false;        ///< somebody holds the tool
-  std::uint64_t moves = 0;  ///< targets that were sent so far
-};
 
 /// A tool that is taken, moved and released from outside: by a page's mouse, over a network, by
 /// another program. One thread at a time sends; any number of others read, without locks.
 class RemoteTarget {
  public:
+  /// The newest command to a tool.
+  struct Command {
+    HandTarget target;
+    double stamp = 0;         ///< of the target, s, on the sender's clock
+    bool held = false;        ///< somebody holds the tool
+    std::uint64_t moves = 0;  ///< targets that were sent so far
+  };
+
+  RemoteTarget();
+  ~RemoteTarget();
+
   /// Takes the tool, unless it is held already, and moves it. `stamp`: s, on the sender's clock;
   /// grows from call to call. False: ignored, since it is not finite. Wait-free, as all that
   /// follows.
@@ -33,13 +35,13 @@ class RemoteTarget {
   void release() noexcept;
 
   /// The newest command; none when the sender was too fast for a consistent copy.
-  [[nodiscard]] std::optional<RemoteCommand> command() const noexcept { return shared_.look(); }
+  [[nodiscard]] std::optional<Command> command() const noexcept;
   /// Grows with every call above that had an effect.
-  [[nodiscard]] std::uint64_t generation() const noexcept { return shared_.generation(); }
+  [[nodiscard]] std::uint64_t generation() const noexcept;
 
  private:
-  RemoteCommand newest_;  // of the sender
-  Latest<RemoteCommand> shared_;
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
 };
 
 struct TeleoperatedHandOptions {

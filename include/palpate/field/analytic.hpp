@@ -7,16 +7,6 @@
 
 namespace palpate {
 
-/// What all analytic fields share.
-struct AnalyticOptions {
-  Eigen::Isometry3d T_world_shape = Eigen::Isometry3d::Identity();  ///< pose of the shape's frame
-  double step_length = 0.01;        ///< what Sample::radius says everywhere, m
-  double resolution = 2e-5;         ///< FieldTraits::resolution, m
-  double tool_radius = 0;           ///< radius of the proxy's ball: pushes the surface out, m
-  double reanchor_reach = 0;        ///< FieldTraits::reanchor_reach, m
-  Surface surface = {.source = 0};  ///< what every place is made of
-};
-
 /// A distance to a shape and its gradient, in the shape's own frame.
 struct Distance {
   double value = 0;                                     ///< m; negative inside
@@ -27,12 +17,22 @@ struct Distance {
 /// machine precision; also good as a wall or a floor beside scanned clouds.
 class AnalyticField : public Field {
  public:
+  /// What all analytic fields share.
+  struct Options {
+    Eigen::Isometry3d T_world_shape = Eigen::Isometry3d::Identity();  ///< pose of the shape's frame
+    double step_length = 0.01;        ///< what Sample::radius says everywhere, m
+    double resolution = 2e-5;         ///< Field::Traits::resolution, m
+    double tool_radius = 0;           ///< radius of the proxy's ball: pushes the surface out, m
+    double reanchor_reach = 0;        ///< Field::Traits::reanchor_reach, m
+    Surface surface = {.source = 0};  ///< what every place is made of
+  };
+
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
-  [[nodiscard]] FieldTraits traits() const noexcept override;
+  [[nodiscard]] Traits traits() const noexcept override;
 
-  [[nodiscard]] const AnalyticOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const Options& options() const noexcept { return options_; }
 
   /// Moves the shape; the revision grows.
   void set_pose(const Eigen::Isometry3d& T_world_shape) noexcept;
@@ -40,12 +40,12 @@ class AnalyticField : public Field {
 
  protected:
   /// @throws Error when an option is not finite or out of its range.
-  explicit AnalyticField(const AnalyticOptions& options);
+  explicit AnalyticField(const Options& options);
 
  private:
   [[nodiscard]] virtual Distance distance(const Eigen::Vector3d& x) const noexcept = 0;
 
-  AnalyticOptions options_;
+  Options options_;
   Eigen::Isometry3d T_shape_world_;
   std::uint64_t revision_ = 0;
 };
@@ -53,7 +53,7 @@ class AnalyticField : public Field {
 /// The half-space z <= 0.
 class PlaneField final : public AnalyticField {
  public:
-  explicit PlaneField(const AnalyticOptions& options = {});
+  explicit PlaneField(const AnalyticField::Options& options = {});
 
  private:
   [[nodiscard]] Distance distance(const Eigen::Vector3d& x) const noexcept override;
@@ -63,7 +63,7 @@ class PlaneField final : public AnalyticField {
 class SphereField final : public AnalyticField {
  public:
   /// @throws Error unless radius (m) > 0.
-  explicit SphereField(double radius, const AnalyticOptions& options = {});
+  explicit SphereField(double radius, const AnalyticField::Options& options = {});
 
  private:
   [[nodiscard]] Distance distance(const Eigen::Vector3d& x) const noexcept override;
@@ -74,7 +74,7 @@ class SphereField final : public AnalyticField {
 class BoxField final : public AnalyticField {
  public:
   /// @throws Error unless every edge length (m) > 0.
-  explicit BoxField(const Eigen::Vector3d& size, const AnalyticOptions& options = {});
+  explicit BoxField(const Eigen::Vector3d& size, const AnalyticField::Options& options = {});
 
  private:
   [[nodiscard]] Distance distance(const Eigen::Vector3d& x) const noexcept override;
@@ -85,7 +85,7 @@ class BoxField final : public AnalyticField {
 class TorusField final : public AnalyticField {
  public:
   /// @throws Error unless 0 < tube < ring (m).
-  TorusField(double ring, double tube, const AnalyticOptions& options = {});
+  TorusField(double ring, double tube, const AnalyticField::Options& options = {});
 
  private:
   [[nodiscard]] Distance distance(const Eigen::Vector3d& x) const noexcept override;
@@ -105,7 +105,7 @@ class UnionField final : public Field {
   /// Of the part that is nearest; `source` is its index.
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
   /// The finest resolution, the longest reach, the sum of the revisions.
-  [[nodiscard]] FieldTraits traits() const noexcept override;
+  [[nodiscard]] Traits traits() const noexcept override;
   void begin_step() const noexcept override;
   [[nodiscard]] int points_summed() const noexcept override;
   void end_step(const Eigen::Vector3d& proxy,

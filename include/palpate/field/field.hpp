@@ -24,20 +24,20 @@ struct Surface {
   int source = -1;  ///< index of the source that contributes most; -1: none
 };
 
-/// Facts that hold for the whole field between two changes of it.
-struct FieldTraits {
-  double resolution = 0;       ///< sweeps look for solid chords longer than this, m
-  std::uint64_t revision = 0;  ///< grows when the surface may have moved since the last tick
-  double reanchor_reach = 0;   ///< how far the surface may have stepped over the proxy, m; a
-                               ///< spring that it takes farther, and more than 1 m/s, ends
-};
-
 /// All that a proxy knows of a scene: an implicit surface with its exact gradient.
 ///
 /// Every member is noexcept, allocation-free, bounded in time, and gives finite results for finite
 /// arguments. A Field belongs to one thread: implementations may cache what they gathered.
 class Field {
  public:
+  /// Facts that hold for the whole field between two changes of it.
+  struct Traits {
+    double resolution = 0;       ///< sweeps look for solid chords longer than this, m
+    std::uint64_t revision = 0;  ///< grows when the surface may have moved since the last tick
+    double reanchor_reach = 0;   ///< how far the surface may have stepped over the proxy, m; a
+                                 ///< spring that it takes farther, and more than 1 m/s, ends
+  };
+
   virtual ~Field() = default;
 
   /// The function at x. A surface that can be touched from both sides is as it looks from where the
@@ -50,7 +50,7 @@ class Field {
   /// What is touched at x.
   [[nodiscard]] virtual Surface surface(const Eigen::Vector3d& x) const noexcept = 0;
 
-  [[nodiscard]] virtual FieldTraits traits() const noexcept = 0;
+  [[nodiscard]] virtual Traits traits() const noexcept = 0;
 
   /// A proxy's step begins and ends. What is asked in between is bounded together: a field that has
   /// spent its work answers on the safe side, which is that all it does not know is solid.

@@ -7,41 +7,9 @@
 
 #include "palpate/field/field_options.hpp"
 #include "palpate/geometry/cell_grid.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate {
-
-/// Smooth pieces of surface, as preparation found them. Columns are in sorted order and all as long
-/// as the grid, or all empty: then the points are one sheet, whose normals' signs agree.
-struct PointSheets {
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
-  std::vector<std::uint32_t> sheet;  ///< of each point; kNone: on none, and without confidence
-  std::vector<std::uint32_t> part;   ///< of each sheet: normals of one part agree in their signs
-  std::vector<std::uint8_t> known;   ///< of each part: 1: its normals are known to point outward
-  std::vector<float> residual;       ///< rms distance of the sheet's points from their plane, m
-  std::vector<float> above;          ///< along +n to the next other sheet, m; infinity: none near
-  std::vector<float> below;          ///< along -n, likewise
-
-  [[nodiscard]] bool empty() const { return sheet.empty(); }
-};
-
-/// What a point's surface meets at an edge nearby: the plane of the face beyond.
-struct EdgePlane {
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< outward, unit; between two planes, a mean
-  float height = 0;                                  ///< of the point above the plane, m
-  /// 0-1: how sure it is. Below 0, down to -1, in a crease: there free is what is above both
-  /// planes; otherwise solid is what is below both. So an edge that becomes a crease is none first.
-  float share = 0;
-};
-
-/// Edges that points lie beside. `end` is as long as `start`, or empty: then it is as `start`.
-struct PointEdges {
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
-  std::vector<std::uint32_t> of_point;  ///< which one, or kNone; as long as the grid, or empty
-  std::vector<EdgePlane> start;
-  std::vector<EdgePlane> end;
-};
 
 /// Indexed points with all that a field needs of them, immutable once made. Every column is in the
 /// grid's sorted order and either as long as the grid or, where it says so, empty.
@@ -49,6 +17,41 @@ struct PointEdges {
 /// A point may move in a straight line while a snapshot lasts: `grid` and the columns hold its
 /// start (A), the `end_` columns its end (B), empty when A = B.
 struct SurfacePoints {
+  /// What a point's surface meets at an edge nearby: the plane of the face beyond.
+  struct EdgePlane {
+    Eigen::Vector3f normal =
+        Eigen::Vector3f::Zero();  ///< outward, unit; between two planes, a mean
+    float height = 0;             ///< of the point above the plane, m
+    /// 0-1: how sure it is. Below 0, down to -1, in a crease: there free is what is above both
+    /// planes; otherwise solid is what is below both. So an edge that becomes a crease is none
+    /// first.
+    float share = 0;
+  };
+
+  /// Edges that points lie beside. `end` is as long as `start`, or empty: then it is as `start`.
+  struct Edges {
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+    std::vector<std::uint32_t> of_point;  ///< which one, or kNone; as long as the grid, or empty
+    std::vector<EdgePlane> start;
+    std::vector<EdgePlane> end;
+  };
+
+  /// Smooth pieces of surface, as preparation found them. Columns are in sorted order and all as
+  /// long as the grid, or all empty: then the points are one sheet, whose normals' signs agree.
+  struct Sheets {
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+    std::vector<std::uint32_t> sheet;  ///< of each point; kNone: on none, and without confidence
+    std::vector<std::uint32_t> part;   ///< of each sheet: normals of one part agree in their signs
+    std::vector<std::uint8_t> known;   ///< of each part: 1: its normals are known to point outward
+    std::vector<float> residual;       ///< rms distance of the sheet's points from their plane, m
+    std::vector<float> above;          ///< along +n to the next other sheet, m; infinity: none near
+    std::vector<float> below;          ///< along -n, likewise
+
+    [[nodiscard]] bool empty() const { return sheet.empty(); }
+  };
+
   Eigen::Vector3d origin =
       Eigen::Vector3d::Zero();  ///< world frame; grid points are relative to it, m
   CellGrid grid;
@@ -56,7 +59,7 @@ struct SurfacePoints {
   std::vector<float> density_weights;    ///< a_i of docs/method.md 2.2
   std::vector<float> radii;              ///< R_i, m
   std::vector<float> confidences;        ///< c_i, 0-1
-  PointSheets sheets;
+  Sheets sheets;
   std::vector<float> materials;  ///< 0-1; empty: all 1
   std::vector<float> presences;  ///< 0-1: is the sensor still sure of this point? Empty: all 1
   /// Red, green, blue, for those who draw; empty: not known.
@@ -69,7 +72,7 @@ struct SurfacePoints {
   std::vector<float> end_presences;
 
   /// Edges and creases that stay sharp (FieldOptions::sharp_edges); of organised depth.
-  PointEdges edges;
+  Edges edges;
 
   /// Was all of it seen from the side that its normals point to, and from nowhere else? Then it
   /// holds no tool that comes from behind. Only without sheets.
@@ -83,6 +86,9 @@ struct SurfacePoints {
   double smallest_radius = 0;     ///< smallest R_i, m
 
   [[nodiscard]] std::size_t size() const { return grid.size(); }
+
+  /// Around the points and where they are going, m, world frame; empty where there are none.
+  [[nodiscard]] Box bounds() const;
 };
 
 /// Fills `cell_reach`, `radius` and `smallest_radius` from the other columns, which must be whole.

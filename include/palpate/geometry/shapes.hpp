@@ -20,6 +20,10 @@ struct Box {
     lower = lower.cwiseMin(point);
     upper = upper.cwiseMax(point);
   }
+  void extend(const Box& other) {
+    lower = lower.cwiseMin(other.lower);
+    upper = upper.cwiseMax(other.upper);
+  }
   [[nodiscard]] bool empty() const { return (lower.array() > upper.array()).any(); }
   [[nodiscard]] bool contains(const Eigen::Vector3d& point) const {
     return (point.array() >= lower.array()).all() && (point.array() <= upper.array()).all();

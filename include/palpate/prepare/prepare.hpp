@@ -10,17 +10,18 @@
 
 namespace palpate {
 
-/// What tells the signs of normals. They help sheets to form parts whose signs agree; the free side
-/// of each is the one that the tool comes from. Parts that nothing is known of point outward.
-enum class Orientation {
-  automatic,  ///< what is given; else a viewpoint where one is known
-  viewpoint,  ///< towards PrepareOptions::viewpoint or the cloud's own
-  outward,    ///< nothing: outward, or up where points bound nothing
-  given,      ///< the cloud's normals alone
-};
-
 /// How a cloud becomes surface points. What is not set is chosen from the data.
 struct PrepareOptions {
+  /// What tells the signs of normals. They help sheets to form parts whose signs agree; the free
+  /// side of each is the one that the tool comes from. Parts that nothing is known of point
+  /// outward.
+  enum class Orientation {
+    automatic,  ///< what is given; else a viewpoint where one is known
+    viewpoint,  ///< towards PrepareOptions::viewpoint or the cloud's own
+    outward,    ///< nothing: outward, or up where points bound nothing
+    given,      ///< the cloud's normals alone
+  };
+
   std::optional<double> voxel = {};            ///< leaf of the voxel filter, m; 0: keep every point
   std::optional<double> radius = {};           ///< one support radius R for all points, m; of depth
                                                ///< frames the smallest

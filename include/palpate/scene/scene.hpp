@@ -10,6 +10,8 @@
 
 namespace palpate {
 
+class Seams;
+
 /// The sources that are touched together. Knows no camera and owns no thread. Outlives every
 /// SceneField made of it; sources are added before the first of them.
 class Scene {
@@ -21,7 +23,7 @@ class Scene {
   /// would never see the new source.
   Source& add(std::string name, const SourceOptions& options = {});
 
-  /// Adds a cloud that stands still, and prepares it here.
+  /// Adds a static cloud, and prepares it here.
   /// @throws Error likewise, and as prepare() does.
   Source& add(std::string name, const PointCloud& cloud, const SourceOptions& options = {});
 
@@ -29,7 +31,7 @@ class Scene {
   [[nodiscard]] Source& source(std::size_t i) { return sources_[i]; }
   [[nodiscard]] const Source& source(std::size_t i) const { return sources_[i]; }
 
-  /// How the i-th source fares, and how badly it disagrees with the others. Takes milliseconds; any
+  /// State of the i-th source with its disagreement with the others. Takes milliseconds; any
   /// thread but a servo's.
   [[nodiscard]] SourceState state(std::size_t i) const;
 

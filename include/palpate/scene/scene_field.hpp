@@ -42,8 +42,8 @@ class SceneField final : public Field {
   /// Cells and points of the index that update() looks at, and likewise a proxy's step.
   static constexpr int kStepVisits = 40960;
 
-  /// `name`: for reports of fields that stand still. `scale`: metres that the tool goes for one of
-  /// the hand (Workspace::scale), which tells how fast it can be.
+  /// `name`: for reports of stalled fields. `scale`: metres that the tool goes for one of
+  /// the hand (Workspace::scale), which bounds how fast it can be.
   /// @throws Error when an option is out of range or the scene has too many readers.
   explicit SceneField(Scene& scene, const FieldOptions& options = {},
                       const std::string& name = "a field", double scale = 1);
@@ -52,14 +52,14 @@ class SceneField final : public Field {
   SceneField& operator=(const SceneField&) = delete;
 
   /// Picks up new snapshots, brings the surface to time `now` (s) and gathers the points around
-  /// the proxy and its way to the hand (m, world). Tells the sources where the tool can be next.
+  /// the proxy and its path to the hand (m, world). Tells the sources where the tool can be next.
   /// Wait-free, allocation-free.
   void update(double now, const Eigen::Vector3d& hip, const Eigen::Vector3d& proxy) noexcept;
 
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
-  [[nodiscard]] FieldTraits traits() const noexcept override;
+  [[nodiscard]] Traits traits() const noexcept override;
 
   /// Is another surface of the same points from the next update() on. Real-time. `checked`: check()
   /// has passed it. How the force changes with it is for a Guard to soften.

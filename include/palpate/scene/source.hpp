@@ -4,17 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "palpate/depth/depth_filter.hpp"
-#include "palpate/geometry/shapes.hpp"
+#include "palpate/field/surface_points.hpp"
 #include "palpate/prepare/prepare.hpp"
-#include "palpate/scene/handoff.hpp"
-#include "palpate/scene/snapshot.hpp"
 
 namespace palpate {
 
@@ -34,22 +32,18 @@ inline constexpr Policy kCloudPolicy = Policy::crossfade;  ///< of clouds
 struct PolicyOptions {
   std::optional<Policy> policy = {};  ///< unset: kDepthPolicy or kCloudPolicy
   int history = 4;       ///< N of `average` and `crossfade`, 1 to 7; unset by `replace`, `morph`
-  double silence = 0.3;  ///< a surface that nothing confirmed for so long begins to fade, s
-  double fade = 0.5;     ///< in which it fades away, s
+  double silence = 0.3;  ///< fade a surface after this long without new data, s
+  double fade = 0.5;     ///< duration of that fade, s
   bool fit_everywhere = false;  ///< run the depth filter's fit outside the fields' reach as well
   bool clip_to_reach = false;   ///< leave out points of clouds that no tool can come to before the
                                 ///< next ones (the paper's section IV-B)
 };
 
-/// Where a tool can be before the next frames: around hand and proxy. World frame. Fields publish
-/// it, preparation clips to it and runs the costly fit in it.
-using Reach = Ball;
-
-/// How a source fares, for those who show or log it.
+/// State of a source, for display and logs.
 struct SourceState {
   std::uint64_t frames = 0;   ///< frames and clouds that became a surface
-  std::uint64_t dropped = 0;  ///< that did not, because fields that stand still held all snapshots
-  std::string slowest = {};   ///< name of such a field, when the last drop was; empty: never
+  std::uint64_t dropped = 0;  ///< dropped because stalled fields held all snapshots
+  std::string slowest = {};   ///< name of a stalled field at the last drop; empty: never
   double interval = 0;        ///< time between frames, smoothed, s; 0: none yet
   double latency = 0;         ///< of the last one, from its stamp to the start of its surface, s
   double stamp = 0;           ///< of the last one, s
@@ -66,10 +60,6 @@ struct SourceState {
   [[nodiscard]] double rate() const { return interval > 0 ? 1 / interval : 0; }  ///< Hz
 };
 
-class Intake;
-class ReachBoard;
-class Seams;
-
 /// What points of material 0 feel like. Material 1 is as stiff and rough as the proxy's options
 /// say, and between the two it goes in a straight line.
 struct SoftMaterial {
@@ -80,15 +70,48 @@ struct SoftMaterial {
 struct SourceOptions {
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();  ///< pose of the sensor's frame
   PrepareOptions prepare = {};
-  SoftMaterial soft = {};         ///< felt where preparation was told to make materials
+  SoftMaterial soft = {};         ///< applies where preparation makes materials
   PolicyOptions policy = {};      ///< for what is pushed
   DepthFilterOptions depth = {};  ///< for depth frames
-  /// Does set() feel an organised cloud as the depth frame that it was made of? Not where that
-  /// camera cannot be told (depth_frame_of()), half of its depths are out of the filter's range, or
-  /// `prepare` asks for what loose points alone have: voxel, clip, viewpoint, materials, the
+  /// Does set() treat an organised cloud as the depth frame that it was made of? Not where that
+  /// camera cannot be found (depth_frame_of()), half of its depths are out of the filter's range,
+  /// or `prepare` asks for what loose points alone have: voxel, clip, viewpoint, materials, the
   /// paper's way.
   bool organised = true;
 };
+
+/// What crosses from preparation to the servo: one source's surface over a stretch of time.
+/// Immutable, in the world frame. Between start and end everything goes in straight lines; before
+/// and after that nothing moves. The weights of a source's layers sum to 1 at every time.
+struct Snapshot {
+  /// Shared points and how much they count: a weight at the snapshot's start and one at its end.
+  struct Layer {
+    std::shared_ptr<const SurfacePoints> points;
+    double weight_start = 1;
+    double weight_end = 1;
+  };
+
+  static constexpr std::size_t kMaxLayers = 8;
+
+  double start = 0;           ///< s, on the clock that SceneField::update is given
+  double end = 0;             ///< s; not before start
+  double presence_start = 1;  ///< 0-1: is the sensor still sure of what it saw?
+  double presence_end = 1;
+  /// From this time on presence fades to 0 in `fade` s, unless a newer snapshot comes: a silent
+  /// sensor's surface fades without another publish(). Infinite: never.
+  double silent_from = std::numeric_limits<double>::infinity();
+  double fade = 0.5;           ///< s
+  double interval = 0;         ///< time between its source's frames, s; 0: nothing follows
+  double stamp = 0;            ///< when the newest data in it was taken, s, same clock
+  std::uint64_t sequence = 0;  ///< counts a source's snapshots
+  std::vector<Layer> layers;
+};
+
+/// How far `snapshot` has gone at `time` (s): 0 at its start and before, 1 at its end and after.
+[[nodiscard]] double progress(const Snapshot& snapshot, double time) noexcept;
+
+/// How sure its sensor is of it at `time` (s), 0-1.
+[[nodiscard]] double presence(const Snapshot& snapshot, double time) noexcept;
 
 /// Asked once, when of a pushed frame or cloud all is done that can be done before: when its
 /// surface is to start being felt, s, on the clock that SceneField::update is given. Live: now plus
@@ -107,7 +130,7 @@ class Source {
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
 
-  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& name() const;
   /// Any thread but a servo's.
   [[nodiscard]] SourceOptions options() const;
   /// Of the newest cloud that was prepared here. Any thread but a servo's.
@@ -124,7 +147,7 @@ class Source {
   /// @throws Error when an option is out of its range.
   void change(const SourceOptions& options);
 
-  /// Prepares a cloud that stands still and makes it this source's surface. Not real-time.
+  /// Prepares a static cloud and makes it this source's surface. Not real-time.
   /// @throws Error as prepare() does.
   void set(const PointCloud& cloud);
 
@@ -137,7 +160,7 @@ class Source {
   /// size have come for a while, nothing is allocated, but where sources are compared, once in 32
   /// frames. Not real-time; one thread pushes.
   ///
-  /// False when the frame was dropped, because fields that stand still hold all snapshots that
+  /// False when the frame was dropped, because stalled fields hold all snapshots that
   /// there may be; state() names one of them.
   /// @throws Error as DepthFilter::filter does, and when a time is not finite or the pose not
   /// rigid.
@@ -149,10 +172,9 @@ class Source {
   /// frames.
   bool push(const PointCloud& cloud, double stamp, const StartTime& start);
 
-  /// Lets the newest surface stay however long nothing confirms it: a recording has come to its
-  /// end. Of a depth frame, what was out of every tool's reach is fitted first. Points that were
-  /// fading by themselves go on to. Not real-time; the thread that pushes calls it, after the last
-  /// push.
+  /// Keeps the last surface without fading. Call at the end of a recording. Of a depth frame, what
+  /// was out of every tool's reach is fitted first. Points that were fading by themselves go on to.
+  /// Not real-time; the thread that pushes calls it, after the last push.
   void keep();
 
   /// Makes `snapshot` the newest; nullptr: there is no surface any more. Not real-time.
@@ -164,35 +186,15 @@ class Source {
   /// servo's.
   [[nodiscard]] std::shared_ptr<const SurfacePoints> points() const;
 
-  /// How it fares. Any thread but a servo's. Scene::state() knows how it agrees with others, too.
+  /// Its state. Any thread but a servo's. Scene::state() adds the disagreement with other sources.
   [[nodiscard]] SourceState state() const;
 
  private:
   friend class Scene;
   friend class SceneField;
 
-  void take_change();
-  [[nodiscard]] bool room_for(bool clouds);
-  void hand_over(std::shared_ptr<const Snapshot> snapshot);
-  void note(const Snapshot& snapshot);
-  void note(const Intake& intake);
-  void compare();
-
-  std::string name_;
-  mutable std::mutex mutex_;  // of what follows; whoever draws, and the preparing thread
-  SourceOptions options_;
-  std::unique_ptr<Intake> changed_;  // for the next push
-  Eigen::Isometry3d pose_;
-  PrepareReport report_;
-  std::shared_ptr<const SurfacePoints> points_;
-  SourceState state_;
-
-  std::unique_ptr<Intake> intake_;  // the preparing thread's
-  std::vector<Reach> found_;        // likewise
-  std::unique_ptr<ReachBoard> reaches_;
-  std::shared_ptr<Seams> seams_;  // of the scene
-  std::size_t place_ = 0;         // in it
-  Handoff<Snapshot> handoff_;
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
 };
 
 }  // namespace palpate

@@ -34,7 +34,7 @@ class DepthCamera {
   [[nodiscard]] virtual const CameraInfo& info() const noexcept = 0;
 
   /// What can begin does so again with its first frame, which is taken at `start`, s on the clock
-  /// that stamps are told by: recordings, and simulations that wait for no clock. Cameras that see
+  /// of the stamps: recordings, and simulations that wait for no clock. Cameras that see
   /// what happens now go on. Streams call it, so that what was read before takes nothing from them.
   /// @throws Error when a recording cannot be opened again.
   virtual void begin(double /*start*/) {}

@@ -11,16 +11,16 @@
 namespace palpate {
 
 struct CameraOptions {
-  /// What stamps are told by; outlives the camera. Recordings and simulated cameras also wait for
+  /// Clock of the stamps; outlives the camera. Recordings and simulated cameras also wait for
   /// it; null: they are as fast as they are asked, and real cameras stamp by the host's clock.
   const Clock* clock = nullptr;
   bool loop = false;  ///< recordings begin again at the end
 };
 
-/// Opens a camera by name: "simulated[:SCENE[,KEY=VALUE]...]" (open_simulated), "sequence:DIR"
-/// (open_sequence), "openni2[:URI]" (PrimeSense, Xtion; without URI the first that is there),
-/// "openni2:FILE.oni" or just "FILE.oni", "freenect[:NUMBER]" (Kinect v1; the first is 0).
-/// Set-up: one thread at a time.
+/// Opens a camera by name: "simulated[:SCENE[,KEY=VALUE]...]" (docs/simulated_cameras.md),
+/// "sequence:DIR" (docs/sequences.md), "openni2[:URI]" (PrimeSense, Xtion; without URI the first
+/// that is there), "openni2:FILE.oni" or just "FILE.oni", "freenect[:NUMBER]" (Kinect v1; the first
+/// is 0). Set-up: one thread at a time.
 /// @throws Error when the name is none of these, when the build lacks the driver, when there is no
 ///   such camera, it is in use or may not be used; says what to do.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_camera(const std::string& name,

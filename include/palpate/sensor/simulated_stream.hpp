@@ -31,7 +31,7 @@ class SimulatedStream {
  public:
   /// Lets the camera begin. Camera and source outlive the stream, and nobody else reads or pushes.
   /// @throws Error when an option is out of range, when the camera keeps its own time
-  /// (CameraInfo::paces) or tells no rate, or cannot begin.
+  /// (CameraInfo::paces) or gives no rate, or cannot begin.
   SimulatedStream(DepthCamera& camera, Source& source, const SimulatedStreamOptions& options = {});
 
   /// The same into any sink; `name` stands for it in messages. `ended`, if any, is called after the
@@ -46,7 +46,7 @@ class SimulatedStream {
   /// Prepares what is ready by `now` (s, never less than before). Calls the sink; may allocate.
   void advance(double now);
 
-  /// How it fares, in simulated time.
+  /// Its state, in simulated time.
   [[nodiscard]] StreamState state() const;
 
  private:

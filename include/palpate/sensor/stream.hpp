@@ -13,43 +13,40 @@
 
 namespace palpate {
 
-/// What a stream is doing.
-enum class StreamPhase {
-  starting,  ///< no frame has come yet
-  running,   ///< frames come
-  stalled,   ///< no frame of use came for some time: silence, one picture again and again, garbage
-  failed,    ///< the camera says that it cannot; it is asked again, ever more rarely
-  ended,     ///< the recording is over and its last frame is prepared
-};
-
-/// "starting", "running", ... : its name in data.
-[[nodiscard]] std::string_view name_of(StreamPhase phase) noexcept;
-
-/// Frames that came and were not made touchable, by cause.
-struct StreamDrops {
-  std::uint64_t overtaken = 0;  ///< a newer one came before preparation was ready for it
-  std::uint64_t repeated = 0;   ///< bit for bit the one before
-  std::uint64_t late = 0;       ///< taken no later than the one before, or at no sensible time
-  std::uint64_t empty = 0;      ///< not one pixel with a depth: a covered lens
-  std::uint64_t garbage = 0;    ///< damaged, or contradicts itself
-  std::uint64_t unposed = 0;    ///< without a pose, in a recording that has poses
-  std::uint64_t resized = 0;    ///< of another size than those before, until that size lasts
-  std::uint64_t refused = 0;    ///< preparation threw
-
-  [[nodiscard]] std::uint64_t total() const {
-    return overtaken + repeated + late + empty + garbage + unposed + resized + refused;
-  }
-};
-
-/// How a stream fares, for whoever looks on.
+/// State of a stream, for display and logs.
 struct StreamState {
+  /// Frames that came and were not made touchable, by cause.
+  struct Drops {
+    std::uint64_t overtaken = 0;  ///< a newer one came before preparation was ready for it
+    std::uint64_t repeated = 0;   ///< bit for bit the one before
+    std::uint64_t late = 0;       ///< taken no later than the one before, or at no sensible time
+    std::uint64_t empty = 0;      ///< not one pixel with a depth: a covered lens
+    std::uint64_t garbage = 0;    ///< damaged, or contradicts itself
+    std::uint64_t unposed = 0;    ///< without a pose, in a recording that has poses
+    std::uint64_t resized = 0;    ///< of another size than those before, until that size lasts
+    std::uint64_t refused = 0;    ///< preparation threw
+
+    [[nodiscard]] std::uint64_t total() const {
+      return overtaken + repeated + late + empty + garbage + unposed + resized + refused;
+    }
+  };
+
+  /// What a stream is doing.
+  enum class Phase {
+    starting,  ///< no frame has come yet
+    running,   ///< frames come
+    stalled,  ///< no frame of use came for some time: silence, one picture again and again, garbage
+    failed,   ///< the camera says that it cannot; it is asked again, ever more rarely
+    ended,    ///< the recording is over and its last frame is prepared
+  };
+
   std::string source;  ///< name of the source that is fed
   std::string camera;  ///< CameraInfo::name
-  StreamPhase phase = StreamPhase::starting;
+  Phase phase = Phase::starting;
   double rate = 0;           ///< of the last 8 frames, Hz; falls in silence, but not after the end
   std::uint64_t frames = 0;  ///< that the camera delivered, whatever became of them
   std::uint64_t touchable = 0;  ///< of them prepared and published
-  StreamDrops drops;
+  Drops drops;
   std::uint64_t stalls = 0;        ///< times that it stalled
   std::uint64_t failures = 0;      ///< reads that failed
   std::uint64_t retries = 0;       ///< of them followed by another read
@@ -60,6 +57,9 @@ struct StreamState {
   std::string problem;             ///< the last one, in words, naming the source; empty: none yet
   double problem_at = 0;           ///< s on the stream's clock
 };
+
+/// "starting", "running", ... : its name in data.
+[[nodiscard]] std::string_view name_of(StreamState::Phase phase) noexcept;
 
 struct StreamOptions {
   double lead = 2e-3;      ///< a surface is felt from so long after it is ready, as far as that can
@@ -86,7 +86,7 @@ using FrameSink = std::function<void(const DepthFrame&, const StartTime&)>;
 /// (CameraInfo::paces) is read when preparation is ready, and loses nothing.
 ///
 /// No frame of a camera, and nothing that it or preparation throws, ends a stream: it is counted
-/// and told by state(). What stops coming fades as the source's PolicyOptions say; but what the
+/// and reported by state(). What stops coming fades as the source's PolicyOptions say; but what the
 /// last frames of a recording showed stays (Source::keep).
 class Stream {
  public:
@@ -106,7 +106,7 @@ class Stream {
   Stream(Stream&&) noexcept;
   Stream& operator=(Stream&&) noexcept;
 
-  /// How it fares. Any thread; takes a lock, so not for a servo's.
+  /// Its state. Any thread; takes a lock, so not for a servo's.
   [[nodiscard]] StreamState state() const;
 
  private:

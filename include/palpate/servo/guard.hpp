@@ -3,10 +3,9 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
-
-#include "palpate/servo/passivity.hpp"
 
 namespace palpate {
 
@@ -19,7 +18,7 @@ enum class GuardNote : std::uint32_t {
   fault = 1u << 3,     ///< latched: zero until reset(); GuardState::fault says why
   braked = 1u << 4,    ///< the hand had been given energy; a brake takes it back
   starting = 1u << 5,  ///< a force comes up softly: after a start, a pause, a silence or a fault
-  softened = 1u << 6,  ///< felt less stiff than was asked for: the device could not hold that
+  softened = 1u << 6,  ///< rendered softer than requested: the device could not hold that
 };
 
 [[nodiscard]] constexpr GuardNote operator|(GuardNote a, GuardNote b) noexcept {
@@ -33,24 +32,33 @@ enum class GuardNote : std::uint32_t {
 enum class GuardFault : std::uint8_t {
   none,
   force,   ///< force or stiffness were not finite, or absurdly large
-  hand,    ///< the hand's place or velocity was
+  hand,    ///< hand position or velocity not finite, or absurdly large
   time,    ///< the time since the last step was not finite, or negative
   proxy,   ///< the proxy has latched a fault (ContactNote::fault)
   device,  ///< the device has failed
 };
 
 struct GuardOptions {
+  /// Of the brake that takes back what the hand was given.
+  struct Passivity {
+    bool on = true;
+    double mass = 0.1;     ///< moved with the hand, kg: bounds the brake
+    double memory = 0.02;  ///< J: what was taken from the hand beyond this hides nothing later
+    double forget = 1;     ///< s in which that memory falls to 1/e
+    int delay = 1;         ///< steps from a force's being sent to its effect, 0-16
+  };
+
   bool on = true;  ///< off: what is felt goes out as it is, and any stiffness is felt
   double maximum_force = std::numeric_limits<double>::infinity();  ///< N; > 0
   double slew = 300;        ///< S: how fast a force may change that the hand does not explain, N/s
   double damping = 1;       ///< B of a damper between surface and hand, in contact, N s/m; 0: none
   double silence = 5e-3;    ///< steps further apart than this trip the watchdog, s; infinite: none
   double soft_start = 0.5;  ///< s in which forces come up after a start; 0: at once
-  double stiffness_share = 0.8;  ///< of the passive stiffness, that is felt at most; infinite: any
-  PassivityOptions passivity = {};
+  double stiffness_share = 0.8;  ///< most stiffness, as a share of the passive one; infinite: any
+  Passivity passivity = {};
 };
 
-/// What the guard is told of a step. World frame.
+/// Input of one step. World frame.
 struct GuardInput {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< the proxy's, on the hand, N
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the touched surface; 0: none is
@@ -60,26 +68,26 @@ struct GuardInput {
   double dt = 0;                                       ///< since the last step, s
   double stiffness = 0;                                ///< K that made the force, N/m
   bool felt = true;                     ///< false: the force goes to zero and starts softly again
-  bool softened = false;                ///< a stiffer surface was asked for
+  bool softened = false;                ///< a stiffer surface was requested
   GuardFault fault = GuardFault::none;  ///< known already
 };
 
-/// How often each link stepped in, since construction.
-struct GuardCounts {
-  std::uint64_t steps = 0;
-  std::uint64_t slewed = 0;
-  std::uint64_t clamped = 0;
-  std::uint64_t silences = 0;
-  std::uint64_t faults = 0;  ///< times that one was latched, not steps spent in it
-  std::uint64_t braked = 0;
-  std::uint64_t starting = 0;
-  std::uint64_t softened = 0;
-};
-
 struct GuardState {
+  /// How often each link stepped in, since construction.
+  struct Counts {
+    std::uint64_t steps = 0;
+    std::uint64_t slewed = 0;
+    std::uint64_t clamped = 0;
+    std::uint64_t silences = 0;
+    std::uint64_t faults = 0;  ///< times that one was latched, not steps spent in it
+    std::uint64_t braked = 0;
+    std::uint64_t starting = 0;
+    std::uint64_t softened = 0;
+  };
+
   GuardNote notes = GuardNote::none;  ///< of the last step
   GuardFault fault = GuardFault::none;
-  GuardCounts counts;
+  Counts counts;
   /// Of the passivity ledger, J: above zero was given to the hand. Work in the world, which is
   /// Workspace::scale times that on the hand.
   double energy = 0;
@@ -93,7 +101,7 @@ struct GuardState {
 ///  3. Damper: in contact, beside the spring: -B (n (n . v) + (1 - s) v_t), v the hand's velocity
 ///     against the surface, smoothed, v_t the part of it along the surface, and s the share of that
 ///     in which the proxy goes along: what is held is damped, what slides is hardly dragged (in a
-///     bowl, where the proxy's way is shorter than the hand's, by that share). It never makes the
+///     bowl, where the proxy's path is shorter than the hand's, by that share). It never makes the
 ///     surface attract.
 ///  4. Soft start: the force comes up from zero while nothing is touched; in contact only as far as
 ///     the hand has paid for, since a spring that grows stiffer while stretched gives energy.
@@ -115,6 +123,9 @@ class Guard {
 
   /// @throws Error when an option is out of its range.
   explicit Guard(const GuardOptions& options = {});
+  ~Guard();
+  Guard(Guard&&) noexcept;
+  Guard& operator=(Guard&&) noexcept;
 
   /// The force that may go to the device, N. Finite, whatever the input.
   [[nodiscard]] Eigen::Vector3d pass(const GuardInput& input) noexcept;
@@ -122,46 +133,12 @@ class Guard {
   /// Forgets a fault and where the hand was; the next force comes up from zero.
   void reset() noexcept;
 
-  [[nodiscard]] const GuardState& state() const noexcept { return state_; }
-  [[nodiscard]] const GuardOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const GuardState& state() const noexcept;
+  [[nodiscard]] const GuardOptions& options() const noexcept;
 
  private:
-  /// How the hand moved against the surface since the step before.
-  struct Motion {
-    Eigen::Vector3d way;       // m
-    Eigen::Vector3d velocity;  // smoothed, m/s
-  };
-
-  void begin(const GuardInput& input) noexcept;
-  [[nodiscard]] Motion follow(const GuardInput& input) const noexcept;
-  [[nodiscard]] double sliding(const GuardInput& input, const Motion& motion) const noexcept;
-  [[nodiscard]] double held(const GuardInput& input) const noexcept;
-  [[nodiscard]] Eigen::Vector3d damp(const GuardInput& input, const Motion& motion) const noexcept;
-  [[nodiscard]] Eigen::Vector3d start(const GuardInput& input,
-                                      const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] double affordable_gain(const GuardInput& input) const noexcept;
-  [[nodiscard]] bool fades_unpaid(const GuardInput& input, const Motion& motion) const noexcept;
-  [[nodiscard]] Eigen::Vector3d limit_change(const GuardInput& input, const Motion& motion,
-                                             const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] Eigen::Vector3d brake(const GuardInput& input, const Motion& motion,
-                                      const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] Eigen::Vector3d limit_length(const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] Eigen::Vector3d remember(const GuardInput& input, const Motion& motion,
-                                         const Eigen::Vector3d& force) noexcept;
-  [[nodiscard]] Eigen::Vector3d fail(GuardFault fault) noexcept;
-  void note(GuardNote bit, std::uint64_t& count) noexcept;
-
-  GuardOptions options_;
-  Passivity passivity_;
-  GuardState state_;
-  GuardInput before_;                                   // its force is the one that was let through
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  // smoothed, of the step before
-  Eigen::Vector3d slewed_ = Eigen::Vector3d::Zero();    // let through by clamp and slew then
-  double stiffness_ = 0;                                // that made a force last, N/m
-  Eigen::Vector3d stretch_ = Eigen::Vector3d::Zero();   // from hand to proxy in the step before, m
-  double sliding_ = 1;                                  // share of its way that the proxy follows
-  double gain_ = 0;                                     // of the soft start
-  bool started_ = false;
+  class Inside;
+  std::unique_ptr<Inside> inside_;
 };
 
 /// The same guard for a hand whose motion is magnified `scale` times (Workspace::scale): in the

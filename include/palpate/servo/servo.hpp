@@ -1,21 +1,107 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
-#include <mutex>
+#include <limits>
+#include <memory>
 #include <optional>
+#include <vector>
 
-#include "palpate/base/latest.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/device/workspace.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
-#include "palpate/servo/histogram.hpp"
-#include "palpate/servo/servo_state.hpp"
 
 namespace palpate {
+
+/// All that a servo knows of its last step, for those who watch. World frame.
+struct ServoState {
+  /// What whoever paces a servo measured of a step, s. Not a number: not measured.
+  struct Timing {
+    double lateness = std::numeric_limits<double>::quiet_NaN();   ///< after it was due
+    double computing = std::numeric_limits<double>::quiet_NaN();  ///< of the thread, without others
+  };
+
+  std::uint64_t step = 0;                         ///< counts from 1; 0: there was none yet
+  double time = 0;                                ///< s, on the clock that snapshots are stamped on
+  double dt = 0;                                  ///< since the step before, s
+  Eigen::Vector3d hip = Eigen::Vector3d::Zero();  ///< where the hand has the tool, m
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();               ///< of the hand, m/s
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< of the tool
+  double gripper = 0;                                               ///< its opening at the hand, m
+  Contact contact;                                  ///< its force is the proxy's own
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< what the guard let through, N
+  GuardState guard;
+  FieldNote field_notes = FieldNote::none;
+  DeviceStatus device = DeviceStatus::ok;
+  std::uint32_t buttons = 0;
+  std::size_t patch_points = 0;
+  bool paused = false;
+  bool clutched = false;  ///< the hand moves freely; the tool rests (ServoOptions::clutch_button)
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< from the hand to the tool, by the clutch, m
+  Timing timing;
+};
+
+/// How long things took, counted in bins that grow geometrically: eight to an octave, from 1/8 us
+/// to 17 s. What lies outside counts in the first or the last.
+struct Durations {
+  static constexpr std::size_t kPerOctave = 8;
+  static constexpr std::size_t kBins = 27 * kPerOctave;
+
+  std::array<std::uint64_t, kBins> counts{};
+  std::uint64_t count = 0;
+  double sum = 0;      ///< s
+  double longest = 0;  ///< s
+
+  /// s; what is negative counts as 0, what is not a number is left out.
+  void add(double duration) noexcept;
+
+  /// The duration that a share `p` (0-1) of all stays below, to 5 %: the middle of its bin, and
+  /// never above the longest. 0 when there are none.
+  [[nodiscard]] double quantile(double p) const noexcept;
+  [[nodiscard]] double mean() const noexcept {
+    return count > 0 ? sum / static_cast<double>(count) : 0;
+  }
+
+  /// What came after `earlier` was taken. `longest` stays that of all.
+  [[nodiscard]] Durations since(const Durations& earlier) const noexcept;
+};
+
+/// Every step of a servo, in order, for one thread that records them. Lock-free; all memory is
+/// taken at construction. Where the recorder falls behind by more than there is room for, steps are
+/// left out and counted: the servo never waits.
+class StepQueue {
+ public:
+  /// Room for `capacity` steps, rounded up to a power of two.
+  explicit StepQueue(std::size_t capacity);
+  ~StepQueue();
+  StepQueue(const StepQueue&) = delete;
+  StepQueue& operator=(const StepQueue&) = delete;
+
+  /// The servo's: puts a step in. Real-time. False: there was no room.
+  bool push(const ServoState& state) noexcept;
+
+  /// The recorder's: takes the oldest step out; none: empty.
+  [[nodiscard]] std::optional<ServoState> pop() noexcept;
+
+  /// Steps that were left out. Any thread.
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(); }
+
+ private:
+  static constexpr std::size_t kCacheLine = 64;
+
+  // Threads that write into one cache line wait for each other.
+  std::size_t size_;
+  std::unique_ptr<ServoState[]> steps_;
+  alignas(kCacheLine) std::atomic<std::uint64_t> pushed_{0};  // the servo writes it, and the next
+  std::atomic<std::uint64_t> dropped_{0};
+  alignas(kCacheLine) std::atomic<std::uint64_t> popped_{0};  // the recorder writes it
+};
 
 struct ServoOptions {
   FieldOptions field = {};
@@ -28,36 +114,37 @@ struct ServoOptions {
 };
 
 /// What may change while a servo runs.
-struct Feel {
+struct ContactSettings {
   double stiffness = 500;  ///< K, N/m
   Friction friction = {};
   Texture texture = {};
 };
 
-/// One hand in a scene: SceneField, Proxy and Guard between a device's place and its force.
+/// One hand in a scene: SceneField, Proxy and Guard between a device's position and its
+/// force.
 ///
-/// Owns no thread: a device's callback calls tick(), or a ServoThread does, or whoever owns the
-/// loop makes a step of its parts. One thread steps; all that is marked so may be called by others
-/// meanwhile. Device and scene outlive it. While the device is silent the hand feels nothing: the
-/// force fades and comes back at the guard's rate, and the contact begins with the first hand
-/// heard.
+/// Owns no thread: a device's callback or a ServoThread calls tick(), or the owner of a loop calls
+/// step() and show(). One thread steps; functions marked "any thread" may be called meanwhile.
+/// Device and scene outlive it. While the device is silent the force fades to zero at the guard's
+/// rate; it returns the same way, and contact begins with the first known position.
 ///
-/// While the clutch is held the tool rests at the proxy, and goes where a surface takes that. So
-/// nothing is stretched when it is let go: no force comes until the hand pushes, and none that it
-/// did not pay for. What the force is worth until it is gone counts in the guard's ledger, which is
-/// told of the hand's own way.
+/// While the clutch is held the tool stays at the proxy, which a moving surface may take along. The
+/// spring is not stretched when the clutch is released, so force returns only as the hand pushes.
+/// The guard's ledger counts the fading force on the hand's own displacement.
 class Servo {
  public:
   /// Of a device's continuous maximum: what it is asked to hold (docs/method.md 8.6).
   static constexpr double kForceShare = 0.8;
+  static constexpr std::size_t kRecentForces = 1024;  ///< steps that forces_since() remembers
 
   /// @throws Error when an option is out of its range or the scene has too many readers.
   Servo(Device& device, Scene& scene, const ServoOptions& options = {});
+  ~Servo();
   Servo(const Servo&) = delete;
   Servo& operator=(const Servo&) = delete;
 
   /// One step: reads the device, computes, writes the force, shows the state. `now`: s, on the
-  /// clock that snapshots are stamped on; it never goes back. noexcept, allocation-free, lock-free;
+  /// clock of the snapshots' times; it never decreases. noexcept, allocation-free, lock-free;
   /// what the device does in read() and write() is the device's.
   const ServoState& tick(double now) noexcept;
 
@@ -65,85 +152,59 @@ class Servo {
   const ServoState& tick() noexcept;
 
   /// The computing part of a step alone: the force for the device is in state().force, world frame.
-  /// Shows nothing yet. Real-time (docs/architecture.md, contract 1).
+  /// Publishes nothing yet. Real-time (docs/architecture.md, contract 1).
   const ServoState& step(const DeviceState& device, double now) noexcept;
 
-  /// Shows the last step to those who watch, with what was measured of it. Real-time.
-  void show(const StepTiming& timing = {}) noexcept;
+  /// Publishes the last step to other threads, with its measured timing. Real-time.
+  void show(const ServoState::Timing& timing = {}) noexcept;
 
   /// `state.force` in the device's frame.
-  [[nodiscard]] Eigen::Vector3d device_force() const noexcept {
-    return options_.workspace.force_to_device(state_.force);
-  }
+  [[nodiscard]] Eigen::Vector3d device_force() const noexcept;
 
-  [[nodiscard]] Device& device() const noexcept { return device_; }
-  [[nodiscard]] const ServoOptions& options() const noexcept { return options_; }
+  [[nodiscard]] Device& device() const noexcept;
+  [[nodiscard]] const ServoOptions& options() const noexcept;
 
-  /// The stiffest surface that this device can hold in this workspace, N/m in the world; what is
-  /// asked for beyond it is felt as this (docs/method.md 8.1). Infinite where it renders none.
-  [[nodiscard]] double stiffness_limit() const noexcept { return stiffness_limit_; }
+  /// The stiffest surface that this device can hold in this workspace, N/m in the world; stiffer
+  /// settings are reduced to it (docs/method.md 8.1). Infinite for devices without force.
+  [[nodiscard]] double stiffness_limit() const noexcept;
 
   /// The newest state. Any thread.
-  [[nodiscard]] ServoState state() const noexcept { return shown_.get(); }
+  [[nodiscard]] ServoState state() const noexcept;
   /// How late steps began and what they took to compute, where it was measured. Any thread.
-  [[nodiscard]] Durations lateness() const noexcept { return lateness_.look(); }
-  [[nodiscard]] Durations computing() const noexcept { return computing_.look(); }
+  [[nodiscard]] Durations lateness() const noexcept;
+  [[nodiscard]] Durations computing() const noexcept;
 
-  /// What the guard let through in every step of late, N, world frame. Any thread.
-  [[nodiscard]] const RecentForces& recent_forces() const noexcept { return recent_forces_; }
+  /// What the guard let through in the steps after the first `seen`, oldest first, N, world frame;
+  /// `seen` becomes the number of steps shown. Holds the last kRecentForces steps: who asks more
+  /// rarely misses some. Any thread; allocates.
+  [[nodiscard]] std::vector<Eigen::Vector3f> forces_since(std::uint64_t& seen) const;
 
-  /// Lets the hand feel nothing: the force goes to zero at the guard's rate, and back. Any thread.
-  void pause(bool paused) noexcept { paused_.store(paused); }
-  /// Forgets faults, the contact and what the clutch moved in the next step; tool and proxy are put
-  /// to the hand. Any thread.
-  void reset() noexcept { reset_.store(true); }
+  /// Fades the force to zero at the guard's rate, and back. Any thread.
+  void pause(bool paused) noexcept;
+  /// In the next step, clears faults, contact and clutch shift; tool and proxy move to the hand.
+  /// Any thread.
+  void reset() noexcept;
 
-  /// Changes what is felt from the next step on. In contact, stiffness changes as EnergyTank
-  /// allows: the hand is given no energy. Any thread; not real-time.
+  /// Changes stiffness, friction and texture from the next step on. In contact, stiffness changes
+  /// as the energy tank allows (docs/method.md 3.5): the hand is given no energy. Any thread; not
+  /// real-time.
   /// @throws Error when a value is out of its range.
-  void set_feel(const Feel& feel);
+  void set_contact(const ContactSettings& contact);
 
-  /// Makes another surface of the same points from the next step on; the guard sees to it that the
-  /// force goes there softly. Any thread; not real-time.
+  /// Renders another surface of the same points from the next step on; the guard smooths the change
+  /// of force. Any thread; not real-time.
   /// @throws Error when an option is out of its range.
   void set_field(const FieldOptions& field);
-  /// The surface that is felt, from the next step on at the latest. Any thread.
-  [[nodiscard]] FieldOptions field() const noexcept { return wanted_field_.get(); }
+  /// The field options in use, from the next step on at the latest. Any thread.
+  [[nodiscard]] FieldOptions field() const noexcept;
 
  private:
-  void take_wishes() noexcept;
-  void place_tool(const DeviceState& device) noexcept;
-  [[nodiscard]] bool is_clutched(std::uint32_t buttons) const noexcept;
-  [[nodiscard]] Eigen::Vector3d guarded() noexcept;
-
-  Device& device_;
-  ServoOptions options_;
-  double stiffness_limit_;
-  bool softened_;  // a stiffer surface is asked for
-  SceneField field_;
-  Proxy proxy_;
-  Guard guard_;
-  Clutch clutch_;
-  Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();  // where it is without the clutch, m, world
-  ServoState state_;  // of the stepping thread; the others see what was shown
-  bool started_ = false;
-  bool heard_ = false;  // the device has known where the hand is
-  std::uint64_t feel_seen_ = 0;
-  std::uint64_t field_seen_ = 0;
-
-  Latest<ServoState> shown_;
-  RecentForces recent_forces_;
-  Histogram lateness_;
-  Histogram computing_;
-  std::mutex wish_mutex_;  // between those who change what is felt; the step never takes it
-  Latest<Feel> feel_;
-  Latest<FieldOptions> wanted_field_;
-  std::atomic<bool> paused_{false};
-  std::atomic<bool> reset_{false};
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
 };
 
 /// `options` at the hand of a device: maximum_force is lowered to Servo::kForceShare of what it can
-/// hold, silence raised to 2.5 periods of slow ones, mass and delay are what it tells.
+/// hold, silence raised to 2.5 periods of slow ones, mass and delay taken from DeviceInfo.
 [[nodiscard]] GuardOptions guard_for(const DeviceInfo& device, GuardOptions options);
 
 }  // namespace palpate

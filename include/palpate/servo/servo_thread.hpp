@@ -20,16 +20,16 @@ struct RealtimeOptions {
   std::optional<int> processor = {};  ///< pin the thread to this one, from 0
 };
 
-/// One thing that was asked for.
-struct RealtimeRequest {
-  std::string what;  ///< "real-time priority 80 (SCHED_FIFO)"
-  bool granted = false;
-  std::string remedy;  ///< why it was not granted and how to permit it; empty when it was
-};
-
 /// What came of asking; nothing in it is needed for a servo to run, all of it is to run on time.
 struct RealtimeReport {
-  std::vector<RealtimeRequest> requests;
+  /// One thing that was asked for.
+  struct Request {
+    std::string what;  ///< "real-time priority 80 (SCHED_FIFO)"
+    bool granted = false;
+    std::string remedy;  ///< why it was not granted and how to permit it; empty when it was
+  };
+
+  std::vector<Request> requests;
 
   [[nodiscard]] bool all_granted() const noexcept;
 };
@@ -44,7 +44,7 @@ struct RealtimeReport {
 /// Leaves a processor to the servo that is pinned there: the calling thread and those that it
 /// starts from now on run on the others, and never sweep out the caches of a step. Refused where
 /// there is no other.
-[[nodiscard]] RealtimeRequest leave_processor(int processor);
+[[nodiscard]] RealtimeReport::Request leave_processor(int processor);
 
 /// When the steps of a clock-paced loop are due: on a grid of whole periods. A step that comes late
 /// does not move the grid, and those that it made impossible are left out: after a gap there is one

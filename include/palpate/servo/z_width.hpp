@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string_view>
 
 #include "palpate/device/device.hpp"
@@ -12,67 +13,26 @@ namespace palpate {
 /// The stiffest wall, N/m, that gives no energy to a free device whatever the hand does
 /// (Colgate and Schenkel 1997, with a delay): K = 2 b / (T + 2 T_d).
 ///
-/// `damping`: of device and wall, N s/m. `period`: between steps, s. `delay`: from reading a place
-/// to its force's effect, s, the hold of the force not counted.
+/// `damping`: of device and wall, N s/m. `period`: between steps, s. `delay`: from reading a
+/// position to its force's effect, s, the hold of the force not counted.
 [[nodiscard]] constexpr double passive_stiffness(double damping, double period,
                                                  double delay) noexcept {
   return 2 * damping / (period + 2 * delay);
 }
 
-/// The same of a device with a wall that damps with `damping` (N s/m). What a device does not tell
-/// is taken on the safe side: no damping, a delay of a step. Infinite where it renders no force.
+/// The same of a device with a wall that damps with `damping` (N s/m). Unknown values are
+/// assumed on the safe side: no damping, a delay of a step. Infinite where it renders no force.
 [[nodiscard]] double passive_stiffness(const DeviceInfo& device, double damping) noexcept;
 
-/// Does something go to and fro faster than a hand does by itself? The swing between two turning
-/// points that lie less than 100 ms apart (5 Hz). Real-time.
-class Shaking {
- public:
-  static constexpr double kSlowest = 0.1;    ///< s from one turning point to the next
-  static constexpr double kSmallest = 5e-5;  ///< m that it comes back where it has turned
-
-  /// A place (m), `dt` seconds after the one before. Returns the swing of late, m; 0: it does not
-  /// shake.
-  double add(double place, double dt) noexcept;
-
- private:
-  double turned_at_ = 0;   // place of the last turning point, m
-  double farthest_ = 0;    // since then, m
-  double since_turn_ = 0;  // from that turning point to the farthest place, s
-  double since_farthest_ = 0;
-  double swing_ = 0;
-  int direction_ = 0;
-  bool started_ = false;
-};
-
-struct WallTrialOptions {
+struct StiffnessTestOptions {
   double softest = 100;      ///< stiffness of the first wall, N/m; > 0
   double stiffest = 5000;    ///< the last one that is tried, N/m; no more than the maker allows
   double factor = 1.15;      ///< from a wall to the next; > 1
   double damping = 0;        ///< B of the walls, N s/m
   double hold = 1;           ///< s that a wall is pressed without shaking
-  double patience = 30;      ///< s without progress after which the trial ends
+  double patience = 30;      ///< s without progress after which the test ends
   double maximum_force = 2;  ///< N, lowered to what the device holds
-  double fastest = 0.5;      ///< m/s; a device that moves faster ends the trial
-};
-
-/// What the hand is to do, or why the trial is over.
-enum class WallTrialPhase {
-  rest,         ///< hold the device still: the wall is put under it; after a silence, again
-  press,        ///< press down on the wall
-  lift,         ///< lift it off the wall, which then becomes stiffer
-  shook,        ///< over: a wall made the device shake
-  held,         ///< over: the stiffest wall stood still
-  gave_up,      ///< over: nobody did what was asked
-  too_fast,     ///< over: the device moved faster than any hand that presses
-  device_lost,  ///< over: the device failed, or fell silent for good
-};
-
-struct WallTrialState {
-  WallTrialPhase phase = WallTrialPhase::rest;
-  double wall = 0;       ///< stiffness now, N/m
-  double stable = 0;     ///< of the stiffest wall that was pressed without shaking, N/m; 0: none
-  double amplitude = 0;  ///< of the shaking now (Shaking), m
-  double pressed = 0;    ///< s for which this wall has been pressed
+  double fastest = 0.5;      ///< m/s; a device that moves faster ends the test
 };
 
 /// How stiff may a wall be on this device with this hand? Walls under a hand, each stiffer than the
@@ -80,66 +40,59 @@ struct WallTrialState {
 /// but those that would hide shaking (stiffness limit, passivity) stand between wall and hand.
 ///
 /// Pure: a step's force out of a step's state, no clock, no device. Real-time.
-class WallTrial {
+class StiffnessTest {
  public:
+  /// What the hand is to do, or why the test is over.
+  enum class Phase {
+    rest,         ///< hold the device still: the wall is put under it; after a silence, again
+    press,        ///< press down on the wall
+    lift,         ///< lift it off the wall, which then becomes stiffer
+    unstable,     ///< over: a wall made the device shake
+    held,         ///< over: the stiffest wall stood still
+    timed_out,    ///< over: nobody did what was asked
+    too_fast,     ///< over: the device moved faster than any hand that presses
+    device_lost,  ///< over: the device failed, or fell silent for good
+  };
+
+  struct State {
+    Phase phase = Phase::rest;
+    double wall = 0;       ///< stiffness now, N/m
+    double stable = 0;     ///< of the stiffest wall that was pressed without shaking, N/m; 0: none
+    double amplitude = 0;  ///< of the shaking now, m
+    double pressed = 0;    ///< s for which this wall has been pressed
+  };
+
   /// A swing, m, that counts as shaking when it lasts.
   static constexpr double kShaking = 0.3e-3;
 
   /// @throws Error when an option is out of its range or the device renders no force.
-  explicit WallTrial(const DeviceInfo& device, const WallTrialOptions& options = {});
+  explicit StiffnessTest(const DeviceInfo& device, const StiffnessTestOptions& options = {});
+  ~StiffnessTest();
 
   /// The force for the hand, N, device frame, z up. `now`: s; it never goes back.
   [[nodiscard]] Eigen::Vector3d step(const DeviceState& hand, double now) noexcept;
 
-  [[nodiscard]] const WallTrialState& state() const noexcept { return state_; }
-  [[nodiscard]] bool is_over() const noexcept { return state_.phase >= WallTrialPhase::shook; }
+  /// After the last step. Any thread.
+  [[nodiscard]] State state() const noexcept;
+  [[nodiscard]] bool is_over() const noexcept { return state().phase >= Phase::unstable; }
 
  private:
-  void advance(const DeviceState& hand, double now, double dt) noexcept;
-  void press(double dt, double now) noexcept;
-  void go_to(WallTrialPhase phase, double now) noexcept;
-  [[nodiscard]] GuardInput felt(const DeviceState& hand, double dt) const noexcept;
-
-  WallTrialOptions options_;
-  Guard guard_;
-  Shaking shaking_;
-  WallTrialState state_;
-  double top_ = 0;     // z of the wall, m
-  double since_ = 0;   // when the phase began, s
-  double time_ = 0;    // of the step before, s
-  double still_ = 0;   // s for which the hand has rested
-  double shaken_ = 0;  // s for which the wall has shaken
-  double force_ = 0;   // of the step before, N
-  bool started_ = false;
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
 };
 
 /// What the hand is to do, or why it is over.
-[[nodiscard]] std::string_view in_words(WallTrialPhase phase) noexcept;
+[[nodiscard]] std::string_view in_words(StiffnessTest::Phase phase) noexcept;
 
 /// A flat virtual wall that is rendered through a guard on a simulated device that nobody holds:
 /// how stiff may it be? (Colgate and Brown 1994: the Z-width.)
 struct WallOptions {
-  SimulatedDeviceOptions device = {};  ///< its hand and place are left out of account
-  GuardOptions guard = {};             ///< of which the stiffness limit is left out of account
+  SimulatedDeviceOptions device = {};  ///< its hand and position are ignored
+  GuardOptions guard = {};             ///< its stiffness limit is ignored
   double stiffness = 500;              ///< K, N/m
   double speed = 0.1;                  ///< with which the device meets the wall, m/s
   double stretch = 5e-3;               ///< of the spring from which oscillations begin, m
 };
-
-/// What a device that flew into the wall came out with.
-struct Impact {
-  double rebound = 0;  ///< speed out over speed in; 0: it stayed within the wall for 2 s
-  double energy = 0;   ///< that the forces gave to the device in all, J; below zero: took
-};
-
-/// A free flight into the wall and out again.
-/// @throws Error when an option is out of its range.
-[[nodiscard]] Impact impact(const WallOptions& wall);
-
-/// Let go from `stretch`, where the wall holds from both sides: the oscillation after 2 s over that
-/// at the beginning. Above 1 the wall is unstable.
-/// @throws Error when an option is out of its range.
-[[nodiscard]] double growth(const WallOptions& wall);
 
 /// The largest stiffness, N/m, within a percent, at which oscillations do not grow.
 /// `wall.stiffness` is not looked at; at most kStiffestWall.

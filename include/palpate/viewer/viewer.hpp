@@ -1,27 +1,121 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "palpate/scene/scene.hpp"
+#include "palpate/sensor/stream.hpp"
 #include "palpate/servo/servo.hpp"
-#include "palpate/viewer/viewer_options.hpp"
 
 namespace palpate {
 
-enum class NoticeLevel { info, warning, fault };
+/// Something that a viewer's page may change. The viewer knows no setting of its own: a program
+/// offers them (ViewerControls).
+struct Setting {
+  /// A number, a choice or a switch.
+  using Value = std::variant<double, std::string, bool>;
 
-/// What came of those who connected, since construction.
-struct ViewerCounts {
-  std::size_t connections = 0;      ///< open now, clients among them
-  std::size_t clients = 0;          ///< that said hello, now
-  std::uint64_t accepted = 0;       ///< connections
-  std::uint64_t turned_away = 0;    ///< connections and hellos beyond the limits
-  std::uint64_t forbidden = 0;      ///< requests with a foreign Host or Origin, and wrong tokens
-  std::uint64_t refused = 0;        ///< messages
-  std::uint64_t closed_silent = 0;  ///< clients that took nothing for too long
+  enum class Kind {
+    number,  ///< from `least` to `most`
+    choice,  ///< one of `choices`
+    on_off,  ///< a switch
+  };
+
+  std::string key;    ///< "stiffness"; unique
+  std::string label;  ///< for people
+  std::string unit = {};
+  Kind kind = Kind::number;
+  double least = 0;  ///< of a number
+  double most = 1;
+  double step = 0;  ///< that its slider should take; 0: any
+  std::vector<std::string> choices = {};
+  Value value = 0.0;  ///< the present one, of the kind
+};
+
+/// What a viewer's page may do to the program. All are called on the viewer's network thread, one
+/// at a time, and should return within a millisecond or so. An Error that they throw is reported to
+/// the page and changes nothing. Those that are empty are refused with words, unless it says
+/// otherwise.
+struct ViewerControls {
+  /// What can be set, with present values.
+  std::function<std::vector<Setting>()> settings = {};
+  /// `value` is of the setting's kind and in its range already.
+  std::function<void(const std::string& key, const Setting::Value& value)> set = {};
+
+  /// Names of several settings at once.
+  std::vector<std::string> presets = {};
+  std::function<void(const std::string& name)> preset = {};
+
+  std::function<void(bool on)> pause = {};  ///< empty: Servo::pause of every servo
+  std::function<void()> reset = {};         ///< empty: Servo::reset of every servo
+
+  /// Begins or ends a log of steps. Returns the file's name.
+  std::function<std::string(bool on)> record = {};
+
+  /// Can a page move this device's hand? Empty: where `hand` is there, all.
+  std::function<bool(std::size_t device)> takeable = {};
+  /// Where a page's hand wants the tool to be (m, world), with buttons as bits.
+  std::function<void(std::size_t device, const Eigen::Vector3d& position, std::uint32_t buttons)>
+      hand = {};
+  /// The page let go of the tool, or went away.
+  std::function<void(std::size_t device)> release = {};
+};
+
+/// A stream as the page shows it.
+struct ViewerStream {
+  /// What a camera sees: a pyramid along +z of its pose.
+  struct Frustum {
+    double tan_half_width = 0;
+    double tan_half_height = 0;
+    double far = 0;  ///< m
+  };
+
+  StreamState state;                                     ///< `state.source` names the source
+  std::optional<Frustum> frustum = {};                   ///< unset: no camera
+  std::optional<Eigen::Isometry3d> T_world_sensor = {};  ///< unset: Source::pose()
+};
+
+struct ViewerOptions {
+  /// What a viewer bears from those who connect (docs/viewer_protocol.md). Times in s.
+  struct Limits {
+    std::size_t clients = 8;
+    std::size_t connections = 64;     ///< open at a time, of clients and of others; more are closed
+    std::size_t message = 64 * 1024;  ///< bytes of a client's message
+    int messages = 250;               ///< a second and client
+    std::uint32_t header = 8 * 1024;  ///< bytes of a request's header
+    double header_time = 10;          ///< for a request to come, and for its answer to go
+    double hello_time = 5;
+    double silence = 10;      ///< a client that reads nothing for this long is closed
+    double hand_silence = 5;  ///< a client that sends nothing for this long releases its tool
+    int refusals = 20;        ///< after so many in `refusal_time` a client is closed
+    double refusal_time = 10;
+  };
+
+  /// An address of this machine, v4 or v6. 0.0.0.0 and :: listen to every network: whoever knows
+  /// the token may then move the hand, and nothing is encrypted.
+  std::string address = "127.0.0.1";
+  /// 0: any that is free. Unset: the first free one of kFirstPort and the nine after it.
+  std::optional<std::uint16_t> port = {};
+  /// 1 to 256 letters, digits and any of -._~; empty: 128 random bits of the system.
+  std::string token = {};
+  std::string scene = "palpate";  ///< the scene's name, for people
+  /// m, world; unset: the middle of all points, or of where the sensors stand. What is shown is
+  /// sent in single precision relative to it.
+  std::optional<Eigen::Vector3d> origin = {};
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  /// How the streams fare; called about four times a second by two threads of the viewer, perhaps
+  /// at the same time.
+  std::function<std::vector<ViewerStream>()> streams = {};
+  Limits limits = {};
+
+  static constexpr std::uint16_t kFirstPort = 8420;
 };
 
 /// Shows a scene and its servos on a page in browsers, and lets the page act on the program.
@@ -31,6 +125,19 @@ struct ViewerCounts {
 /// servo ever waits for either. While somebody looks, each servo's scene has one more SceneField.
 class Viewer {
  public:
+  enum class NoticeLevel { info, warning, fault };
+
+  /// What came of those who connected, since construction.
+  struct Counts {
+    std::size_t connections = 0;      ///< open now, clients among them
+    std::size_t clients = 0;          ///< that said hello, now
+    std::uint64_t accepted = 0;       ///< connections
+    std::uint64_t turned_away = 0;    ///< connections and hellos beyond the limits
+    std::uint64_t forbidden = 0;      ///< requests with a foreign Host or Origin, and wrong tokens
+    std::uint64_t refused = 0;        ///< messages
+    std::uint64_t closed_silent = 0;  ///< clients that took nothing for too long
+  };
+
   /// Listens when it returns. Scene and servos outlive it; sources are added before.
   /// @throws Error when the address, the port or the token cannot be had, or there are too many
   /// servos.
@@ -45,7 +152,7 @@ class Viewer {
   /// What a person opens: "http://127.0.0.1:8420/#token".
   [[nodiscard]] std::string url() const;
   [[nodiscard]] std::uint16_t port() const noexcept;
-  [[nodiscard]] ViewerCounts counts() const;
+  [[nodiscard]] Counts counts() const;
 
   /// Tells every page something that a person should know now. Any thread but a servo's.
   void notice(NoticeLevel level, std::string text);

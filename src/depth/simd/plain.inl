@@ -197,7 +197,7 @@ struct Sums {
 void fit(const float* rho, const std::uint8_t* counts, std::ptrdiff_t stride, int columns,
          const BlockLimits& limits, float per_x, float per_y, const FitRow& out) noexcept {
   constexpr float kOnOneLine = .3F;
-  constexpr std::uint8_t kPlain = 1;  // BlockState::plain
+  constexpr std::uint8_t kPlain = 1;  // FilteredDepth::State::plain
   const float spread = per_x * per_x > per_y * per_y ? per_x * per_x : per_y * per_y;
   for (int column = 0; column < columns; column += kLanes) {
     const int count = columns - column < kLanes ? columns - column : kLanes;

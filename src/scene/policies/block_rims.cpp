@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field/formulas.hpp"
 #include "scene/policies/block_surface.hpp"
 #include "scene/policies/lanes.hpp"
 

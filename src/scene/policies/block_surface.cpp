@@ -26,7 +26,8 @@ float whole_sum(Kernel kernel) {
 
 // Is there a point to build on? A filter that is fed garbage may put one behind the camera.
 bool present(const FilteredDepth& depth, std::size_t block) {
-  if (depth.states[block] == BlockState::empty || !(depth.positions[block].z() > 0)) return false;
+  if (depth.states[block] == FilteredDepth::State::empty || !(depth.positions[block].z() > 0))
+    return false;
   const float all = depth.positions[block].sum() + depth.normals[block].sum() +
                     depth.spacings[block] + depth.confidences[block];
   return std::isfinite(all);
@@ -199,7 +200,7 @@ void BlockSurface::trust_row(const FilteredDepth& depth, std::size_t v) {
     }
     const Floats trust = sum > 0 ? own * count / sum : Floats{} + 1;
     for (int l = 0; l < std::min(kLanes, depth.columns - u); ++l) {
-      const bool fitted = depth.states[first + u + l] == BlockState::fitted;
+      const bool fitted = depth.states[first + u + l] == FilteredDepth::State::fitted;
       trusts_[first + u + l] = fitted ? std::min(1.0f, trust[l]) : 1.0f;
     }
   }

@@ -29,7 +29,7 @@ struct EdgeFinder::Faces {
   const BlockSurface& surface;
 
   [[nodiscard]] bool fitted(std::size_t block) const {
-    return depth.states[block] == BlockState::fitted && depth.confidences[block] > 0 &&
+    return depth.states[block] == FilteredDepth::State::fitted && depth.confidences[block] > 0 &&
            surface.radius(block) > 0;
   }
 
@@ -97,7 +97,8 @@ void EdgeFinder::look_at(const Faces& faces, int v) {
   const std::size_t first = static_cast<std::size_t>(v) * static_cast<std::size_t>(depth.columns);
   const auto row = depth.states.begin() + static_cast<std::ptrdiff_t>(first);
   std::fill_n(meets_.begin() + static_cast<std::ptrdiff_t>(first), depth.columns, 0);
-  if (std::find(row, row + depth.columns, BlockState::fitted) == row + depth.columns) return;
+  if (std::find(row, row + depth.columns, FilteredDepth::State::fitted) == row + depth.columns)
+    return;
   // Most of an image is flat: there is nothing to look at.
   const auto flat = [&](std::size_t block, std::size_t by) {
     const Vector3f* const normals = depth.normals.data() + block;
@@ -179,7 +180,8 @@ void EdgeFinder::tell(const Faces& faces, const Meeting& meeting, int x, int y) 
     number = static_cast<std::uint32_t>(told_.size());
     told_.emplace_back();
   }
-  const EdgePlane plane{depth.normals[other], faces.height(block, other), meeting.share};
+  const SurfacePoints::EdgePlane plane{depth.normals[other], faces.height(block, other),
+                                       meeting.share};
   told_[number] = {plane, block, away};
 }
 

@@ -26,7 +26,9 @@ class EdgeFinder {
   void prefetch(std::size_t block) const { __builtin_prefetch(&of_block_[block]); }
 
   /// Of an edge, in the sensor's frame.
-  [[nodiscard]] const EdgePlane& plane(std::uint32_t number) const { return told_[number].plane; }
+  [[nodiscard]] const SurfacePoints::EdgePlane& plane(std::uint32_t number) const {
+    return told_[number].plane;
+  }
 
  private:
   struct Faces;
@@ -38,7 +40,7 @@ class EdgeFinder {
     float share;
   };
   struct Told {
-    EdgePlane plane;
+    SurfacePoints::EdgePlane plane;
     std::size_t block;
     float away;  // squared, of the block from where its faces meet, m^2
   };

@@ -17,8 +17,8 @@ constexpr double kNoWeight = 1e-9;
 
 }  // namespace
 
-void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const Moment& moment,
-                       std::vector<Layer>& layers) {
+void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const FrameTiming& moment,
+                       std::vector<Snapshot::Layer>& layers) {
   age(moment);
   layers_.push_back({std::move(newest), 0, 0});
   const auto most =
@@ -30,12 +30,12 @@ void LayerHistory::add(std::shared_ptr<const SurfacePoints> newest, const Moment
 }
 
 /// Weights as they are at the new start; what has faded away is dropped.
-void LayerHistory::age(const Moment& moment) {
+void LayerHistory::age(const FrameTiming& moment) {
   const double u = progress(last_, moment.start);
-  for (Layer& layer : layers_) {
+  for (Snapshot::Layer& layer : layers_) {
     layer.weight_start += u * (layer.weight_end - layer.weight_start);
   }
-  std::erase_if(layers_, [](const Layer& layer) {
+  std::erase_if(layers_, [](const Snapshot::Layer& layer) {
     return layer.weight_start <= kNoWeight && layer.weight_end <= kNoWeight;
   });
 }
@@ -45,7 +45,7 @@ void LayerHistory::age(const Moment& moment) {
 void LayerHistory::drop() {
   const auto least = policy_ == Policy::crossfade
                          ? std::min_element(layers_.begin(), layers_.end() - 1,
-                                            [](const Layer& a, const Layer& b) {
+                                            [](const Snapshot::Layer& a, const Snapshot::Layer& b) {
                                               return a.weight_start < b.weight_start;
                                             })
                          : layers_.begin();
@@ -60,12 +60,12 @@ void LayerHistory::weigh() {
     layers_[k].weight_end = counts ? share : 0;
     if (policy_ != Policy::crossfade) layers_[k].weight_start = layers_[k].weight_end;
   }
-  const double sum =
-      std::accumulate(layers_.begin(), layers_.end(), 0.0,
-                      [](double total, const Layer& layer) { return total + layer.weight_start; });
+  const double sum = std::accumulate(
+      layers_.begin(), layers_.end(), 0.0,
+      [](double total, const Snapshot::Layer& layer) { return total + layer.weight_start; });
   if (sum <= 0) layers_.back().weight_start = 1;
   // One had to go early, or the sum is off by rounding.
-  for (Layer& layer : layers_) layer.weight_start /= sum > 0 ? sum : 1;
+  for (Snapshot::Layer& layer : layers_) layer.weight_start /= sum > 0 ? sum : 1;
 }
 
 namespace {
@@ -98,7 +98,7 @@ void Fusion::add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_senso
   prepared_ = prepare(means(), options);
 }
 
-SurfacePoints Fusion::surface(const Moment& moment) {
+SurfacePoints Fusion::surface(const FrameTiming& moment) {
   age(moment);
   last_ = moment;
   show();
@@ -125,7 +125,7 @@ void Fusion::choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_wor
 }
 
 /// Brings what is shown to the new start.
-void Fusion::age(const Moment& moment) {
+void Fusion::age(const FrameTiming& moment) {
   const auto u = static_cast<float>(progress(last_, moment.start));
   const auto between = [u](const auto& a, const auto& b) { return a + u * (b - a); };
   for (auto& [key, voxel] : voxels_) {

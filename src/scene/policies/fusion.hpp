@@ -10,7 +10,6 @@
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/prepare/prepare.hpp"
-#include "palpate/scene/snapshot.hpp"
 #include "palpate/scene/source.hpp"
 #include "scene/frame_timing.hpp"
 
@@ -25,20 +24,20 @@ class LayerHistory {
 
   /// Fills `layers` with the newest cloud and those before it. Weights sum to 1 at every time, and
   /// under crossfade they go on from what they are at the moment's start.
-  void add(std::shared_ptr<const SurfacePoints> newest, const Moment& moment,
-           std::vector<Layer>& layers);
+  void add(std::shared_ptr<const SurfacePoints> newest, const FrameTiming& moment,
+           std::vector<Snapshot::Layer>& layers);
 
   void forget() { layers_.clear(); }
 
  private:
-  void age(const Moment& moment);
+  void age(const FrameTiming& moment);
   void drop();
   void weigh();
 
   Policy policy_;
   int history_;
-  Moment last_;
-  std::vector<Layer> layers_;  // oldest first
+  FrameTiming last_;
+  std::vector<Snapshot::Layer> layers_;  // oldest first
 };
 
 /// The policy for clouds of a scene that stands still: a running mean in each voxel, over about
@@ -54,7 +53,7 @@ class Fusion {
   void add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor);
 
   /// The surface from that cloud on.
-  [[nodiscard]] SurfacePoints surface(const Moment& moment);
+  [[nodiscard]] SurfacePoints surface(const FrameTiming& moment);
 
   [[nodiscard]] const PrepareReport& report() const { return prepared_.report; }
 
@@ -88,7 +87,7 @@ class Fusion {
 
   [[nodiscard]] std::vector<Eigen::Vector3d> usable(const PointCloud& cloud,
                                                     const Eigen::Isometry3d& T_world_sensor) const;
-  void age(const Moment& moment);
+  void age(const FrameTiming& moment);
   void choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor);
   void mix(const std::vector<Eigen::Vector3d>& points);
   [[nodiscard]] PointCloud means() const;
@@ -98,7 +97,7 @@ class Fusion {
   PrepareOptions prepare_;
   double leaf_ = 0;  // m; 0: no cloud yet
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
-  Moment last_;
+  FrameTiming last_;
   Prepared prepared_;            // of the running means
   std::map<Key, Voxel> voxels_;  // in a fixed order
 };

@@ -42,7 +42,7 @@ void Morph::forget() {
   entries_.clear();
 }
 
-void Morph::fill_still(const MorphInput& input, const Moment& moment,
+void Morph::fill_still(const MorphInput& input, const FrameTiming& moment,
                        const std::shared_ptr<SurfacePoints>& points) {
   forget();
   still_ = true;
@@ -68,7 +68,7 @@ void Morph::look(const MorphInput& input) {
   edges_.look(depth, surface_);
 }
 
-void Morph::fill(const MorphInput& input, const Moment& moment,
+void Morph::fill(const MorphInput& input, const FrameTiming& moment,
                  const std::shared_ptr<SurfacePoints>& points) {
   start(input, moment, *points);
   if (moved_) follow_camera(input);
@@ -179,7 +179,7 @@ void Morph::write_unseen() {
   }
 }
 
-void Morph::start(const MorphInput& input, const Moment& moment, SurfacePoints& points) {
+void Morph::start(const MorphInput& input, const FrameTiming& moment, SurfacePoints& points) {
   const FilteredDepth& depth = input.depth;
   const Eigen::Isometry3d& T_world_sensor = depth.T_world_sensor;
   const bool far = (T_world_sensor.translation() - origin_).norm() > kFarFromOrigin;
@@ -263,14 +263,14 @@ PointState Morph::old_point(std::uint32_t i) const {
           fades ? between(p.presences[i], p.end_presences[i]) : 1.0f};
 }
 
-EdgePlane Morph::old_edge(std::uint32_t i) const {
+SurfacePoints::EdgePlane Morph::old_edge(std::uint32_t i) const {
   return edge_now({.points = last_.get(), .progress = std::min(progress_, 1.0)}, i);
 }
 
 /// Of what the block shows that is looked at.
-EdgePlane Morph::new_edge(const Point& point) const {
+SurfacePoints::EdgePlane Morph::new_edge(const Point& point) const {
   if (point.edge == kNone) return {};
-  const EdgePlane& edge = edges_.plane(point.edge);
+  const SurfacePoints::EdgePlane& edge = edges_.plane(point.edge);
   return {turn_ * edge.normal, edge.height, edge.share};
 }
 

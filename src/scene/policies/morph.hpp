@@ -13,7 +13,6 @@
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/shapes.hpp"
 #include "scene/frame_timing.hpp"
-#include "scene/policies/block_entries.hpp"
 #include "scene/policies/block_surface.hpp"
 #include "scene/policies/edge_finder.hpp"
 #include "scene/policies/point_writer.hpp"
@@ -55,11 +54,11 @@ class Morph {
 
   /// The rest: fills `points`, keeping it as what the next frame starts from. Allocates only to
   /// grow.
-  void fill(const MorphInput& input, const Moment& moment,
+  void fill(const MorphInput& input, const FrameTiming& moment,
             const std::shared_ptr<SurfacePoints>& points);
 
   /// Likewise, with nothing before the frame and no motion.
-  void fill_still(const MorphInput& input, const Moment& moment,
+  void fill_still(const MorphInput& input, const FrameTiming& moment,
                   const std::shared_ptr<SurfacePoints>& points);
 
   /// There is no surface any more.
@@ -116,7 +115,7 @@ class Morph {
     PointWriter::Extremes extremes;
   };
 
-  void start(const MorphInput& input, const Moment& moment, SurfacePoints& points);
+  void start(const MorphInput& input, const FrameTiming& moment, SurfacePoints& points);
   void measure(const MorphInput& input);
   void follow_camera(const MorphInput& input);
   void settle(const FilteredDepth& depth, std::size_t begin, std::size_t end);
@@ -163,8 +162,8 @@ class Morph {
   [[nodiscard]] Way leave(std::uint32_t i) const;
   static void leave(Way& way);
   void add(Way way, const Point& at, Piece& to) const;
-  [[nodiscard]] EdgePlane old_edge(std::uint32_t i) const;
-  [[nodiscard]] EdgePlane new_edge(const Point& point) const;
+  [[nodiscard]] SurfacePoints::EdgePlane old_edge(std::uint32_t i) const;
+  [[nodiscard]] SurfacePoints::EdgePlane new_edge(const Point& point) const;
 
   MorphOptions options_;
   BlockOrder order_;
@@ -175,14 +174,14 @@ class Morph {
 
   // What was shown last.
   std::shared_ptr<const SurfacePoints> last_;
-  Moment last_moment_;
+  FrameTiming last_moment_;
   std::vector<Entry> entries_;  // of its points
   BlockEntries by_block_;
   std::vector<std::uint32_t> place_of_block_;
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
 
   // What is being made.
-  Moment moment_;
+  FrameTiming moment_;
   float comes_ = 1;       // presence that what is seen gains
   float doubt_ = 1;       // by which variances of what is known grow
   bool ends_ = false;     // no frame follows

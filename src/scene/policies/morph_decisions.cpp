@@ -121,7 +121,7 @@ Way Morph::appear(const Point& point) const {
     from.presence = 0;
     to.presence = std::min(1.0f, comes_);
   }
-  const EdgePlane edge = new_edge(point);
+  const SurfacePoints::EdgePlane edge = new_edge(point);
   return {from, to, EdgeWay{edge, edge}, Entry{moment_.stamp, point.variance}};
 }
 
@@ -162,8 +162,8 @@ Way Morph::keep(std::uint32_t i, const PointState& from, float presence, EntryKi
   PointState to = from;
   to.presence = std::clamp(presence, 0.0f, 1.0f);
   to.weight = last_->end_density_weights[i];
-  const EdgePlane was = old_edge(i);
-  EdgePlane edge = was;
+  const SurfacePoints::EdgePlane was = old_edge(i);
+  SurfacePoints::EdgePlane edge = was;
   if (kind != EntryKind::live && edge.share < 0)
     edge.share = 0;  // what it meets may not be there any more
   return {from, to, EdgeWay{was, edge}, Entry{confirmed, entries_[i].variance, 0, kind}};

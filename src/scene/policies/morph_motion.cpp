@@ -127,9 +127,9 @@ Way Morph::follow(const Point& seen, std::uint32_t i, const PointState& from) co
 
 /// What an old point that is seen again meets: most meet nothing.
 EdgeWay Morph::edge_of(const Point& seen, std::uint32_t i) const {
-  if (seen.edge == kNone && last_->edges.of_point[i] == PointEdges::kNone) return {};
-  const EdgePlane was = old_edge(i);
-  EdgePlane edge = new_edge(seen);
+  if (seen.edge == kNone && last_->edges.of_point[i] == SurfacePoints::Edges::kNone) return {};
+  const SurfacePoints::EdgePlane was = old_edge(i);
+  SurfacePoints::EdgePlane edge = new_edge(seen);
   const float share = was.share + kShare * (edge.share - was.share);
   if (edge.share == 0) edge = was;
   edge.share = std::abs(share) > kLeastShare ? share : 0;

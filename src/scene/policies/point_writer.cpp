@@ -2,12 +2,58 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "geometry/parallel.hpp"
 
 namespace palpate {
+
+namespace {
+
+// Puts a zero bit between any two of the lower 16 bits.
+std::uint32_t spread(std::uint32_t v) {
+  v = (v | (v << 8)) & 0x00FF00FF;
+  v = (v | (v << 4)) & 0x0F0F0F0F;
+  v = (v | (v << 2)) & 0x33333333;
+  return (v | (v << 1)) & 0x55555555;
+}
+
+}  // namespace
+
+BlockOrder make_block_order(int columns, int rows) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // code, block
+  places.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for (int v = 0; v < rows; ++v) {
+    for (int u = 0; u < columns; ++u) {
+      const std::uint32_t code =
+          spread(static_cast<std::uint32_t>(v)) << 1 | spread(static_cast<std::uint32_t>(u));
+      places.emplace_back(code, static_cast<std::uint32_t>(v * columns + u));
+    }
+  }
+  std::sort(places.begin(), places.end());
+  BlockOrder order{.columns = columns, .rows = rows, .blocks = {}, .codes = {}};
+  for (const auto& [code, block] : places) {
+    order.blocks.push_back(block);
+    order.codes.push_back(code);
+  }
+  return order;
+}
+
+void BlockEntries::sort(std::span<const Entry> entries, std::size_t blocks) {
+  begin_.resize(blocks + 2);
+  std::fill(begin_.begin(), begin_.end(), 0u);
+  for (const Entry& entry : entries) ++begin_[entry.place + 2];
+  for (std::size_t place = 2; place < begin_.size(); ++place) begin_[place] += begin_[place - 1];
+  sorted_.resize(entries.size());
+  // begin_[place + 1] runs from where the place's entries begin to where they end.
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    sorted_[begin_[entries[i].place + 1]++] = static_cast<std::uint32_t>(i);
+  }
+}
+
 namespace {
 
 // A typical radius is the median of so many points or more.
@@ -66,7 +112,7 @@ void PointWriter::write(std::size_t at, const Way& way, Extremes& extremes) {
   p.end_radii[at] = way.to.radius;
   p.end_confidences[at] = way.to.confidence;
   p.end_presences[at] = way.to.presence;
-  p.edges.of_point[at] = PointEdges::kNone;
+  p.edges.of_point[at] = SurfacePoints::Edges::kNone;
   extremes.add({Floats{} + std::min(way.from.radius, way.to.radius),
                 Floats{} + std::min(way.from.presence, way.to.presence)});
 }
@@ -94,10 +140,10 @@ void PointWriter::write(std::size_t at, const std::uint32_t* codes, const PointS
 /// Where there is none, there is the other end's plane.
 void PointWriter::add_edge(std::size_t at, const EdgeWay& edge) {
   if (edge.start.share == 0 && edge.end.share == 0) return;
-  PointEdges& edges = points_->edges;
+  SurfacePoints::Edges& edges = points_->edges;
   edges.of_point[at] = static_cast<std::uint32_t>(edges.start.size());
-  const EdgePlane& start = edge.start.share != 0 ? edge.start : edge.end;
-  const EdgePlane& end = edge.end.share != 0 ? edge.end : edge.start;
+  const SurfacePoints::EdgePlane& start = edge.start.share != 0 ? edge.start : edge.end;
+  const SurfacePoints::EdgePlane& end = edge.end.share != 0 ? edge.end : edge.start;
   edges.start.push_back({start.normal, start.height, edge.start.share});
   edges.end.push_back({end.normal, end.height, edge.end.share});
 }

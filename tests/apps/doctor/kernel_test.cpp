@@ -24,11 +24,11 @@ Finding jitter(MadeUp& machine, const RealtimeTrial& trial) {
 }
 
 RealtimeTrial late_by(double usual, double longest) {
-  Histogram lateness;
+  Durations lateness;
   for (int i = 0; i < 1999; ++i) lateness.add(usual);
   lateness.add(longest);
   RealtimeTrial trial;
-  trial.lateness = lateness.look();
+  trial.lateness = lateness;
   trial.left_out = longest < 1e-3 ? 0 : 1;
   return trial;
 }

@@ -78,9 +78,9 @@ TEST(DoctorChecks, MeasureJitterWhenTold) {
   MadeUp machine;
   machine.system.try_realtime = [](double seconds) {
     RealtimeTrial trial;
-    Histogram lateness;
+    Durations lateness;
     for (double t = 0; t < seconds; t += 0.25) lateness.add(1e-5);
-    trial.lateness = lateness.look();
+    trial.lateness = lateness;
     return trial;
   };
   const Finding jitter = about("jitter at 1 kHz", check_all(machine.system, 1));

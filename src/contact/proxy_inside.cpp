@@ -1,0 +1,260 @@
+#include "contact/proxy_inside.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/sweep.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double kLeastTime = 1e-9;    // s
+constexpr double kKeepLost = 0.02;     // s, for which the spring of a lost contact stays
+constexpr double kTextureStep = 0.25;  // of the wavelength, the longest sub-step
+constexpr double kMuchSofter = 0.95;   // of the stiffness that is wanted
+constexpr double kFaded = 0.01;        // of the stiffness: a spring that is gone
+constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
+constexpr double kFastest = 1;       // m/s: what moves faster has jumped
+constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall
+constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
+
+bool in_range(const Eigen::Vector3d& place) {
+  return place.allFinite() && place.cwiseAbs().maxCoeff() <= Proxy::kLargestCoordinate;
+}
+
+// What a field says may be rounded, or wrong.
+double factor(double value) {
+  return value >= 0 ? std::min(value, 1.0) : 0.0;
+}
+
+}  // namespace
+
+void Proxy::Inside::reset(const Eigen::Vector3d& position) noexcept {
+  fault_ = !in_range(position);
+  started_ = !fault_;
+  step_length_ = 0;
+  fading_ = {};
+  revision_.reset();
+  release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
+  hand_ = position_;
+}
+
+Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept {
+  if (!in_range(hip) || !std::isfinite(dt) || dt < 0) fault_ = true;
+  if (fault_) return faulted();
+  if (!started_) reset(hip);
+  Contact contact;
+  Probe probe{field, options_.texture, step_length_};
+  const bool held = touching_;
+  const Eigen::Vector3d before = position_;
+  const EnergyTank tank = tank_;
+  if (!touching_) follow(probe, hip, contact);
+  if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
+  step_length_ = probe.step_length();
+  const bool first = !revision_;  // since a reset, which may be into a solid
+  const bool changed = !first && probe.traits().revision != *revision_;
+  revision_ = probe.traits().revision;
+  field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
+  contact.proxy = position_;
+  contact.touching = touching_;
+  contact.evaluations = probe.evaluations();
+  const double jump = unexplained(before, hip, dt);
+  if (held && jump > kFall * (before - hand_).norm()) contact.notes |= ContactNote::fell;
+  if (changed && jump > std::max(probe.traits().reanchor_reach, kFastest * dt)) {
+    if (held) fading_.take(before, tank.stiffness());
+    take_over(held ? tank : tank_, hip, contact);
+  } else if (!held && touching_ && !first && !changed) {
+    // The surface may have come to the hand, and not the hand to it.
+    if (begun_stiffness(position_, hip) < tank_.stiffness()) take_over(tank_, hip, contact);
+  }
+  tank_.fill(fading_.fade(hip, dt));
+  contact.force += fading_.force(hip);
+  contact.stiffness += fading_.stiffness();
+  if (!has(contact.notes, kBehind)) hand_ = hip;
+  if (contact.force.allFinite() && in_range(position_)) return contact;
+  fault_ = true;
+  release(hip);
+  return faulted();
+}
+
+// How far the proxy went beyond what motion of the hand and the surface explains, m. On a plane it
+// goes no farther than the hand, on a bulge twice as far, up to half of its radius deep.
+double Proxy::Inside::unexplained(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
+                                  double dt) const noexcept {
+  const double explained = 2 * (hip - hand_).norm() + surface_.velocity.norm() * dt;
+  const double jump = (position_ - before).norm() - explained;
+  return jump > kLeastFall * step_length_ ? jump : 0;
+}
+
+// Nothing that a surface does gives a hand energy, or takes its force at once: what the spring that
+// it ended gives up while it fades pays for the one that takes over.
+void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
+                              Contact& contact) noexcept {
+  tank_ = before;
+  tank_.take_over(touching_ ? begun_stiffness(position_, hip) : 0);
+  contact.stiffness = tank_.stiffness();
+  if (contact.stiffness < kMuchSofter * wanted_stiffness()) contact.notes |= ContactNote::softer;
+  contact.force = contact.stiffness * (position_ - hip);
+}
+
+Contact Proxy::Inside::faulted() noexcept {
+  touching_ = false;
+  Contact contact;
+  contact.proxy = position_;
+  contact.notes = ContactNote::fault;
+  return contact;
+}
+
+// Free space: to the hand, or to the first contact on the way.
+void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept {
+  if (way_is_free(probe, position_, hip)) return release(hip);
+  if (probe.inside(position_)) return touch(probe, position_, hip);
+  const Sweep way = sweep(probe, position_, hip);
+  if (way.end == Sweep::End::hit) return touch(probe, way.position, hip);
+  if (way.end == Sweep::End::truncated) contact.notes |= ContactNote::sweep_truncated;
+  release(way.position);
+}
+
+// A spring that begins stretched by more than the hand has moved begins as much softer: what held
+// the hand before, or where it was, is not its doing.
+double Proxy::Inside::begun_stiffness(const Eigen::Vector3d& place,
+                                      const Eigen::Vector3d& hip) const noexcept {
+  const double stretch = (place - hip).norm();
+  const double moved = (hip - hand_).norm() + kLeastFall * step_length_;
+  return wanted_stiffness() * (stretch > moved ? moved / stretch : 1);
+}
+
+void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& place,
+                          const Eigen::Vector3d& hip) noexcept {
+  release(place);
+  touching_ = true;
+  surface_ = probe.field().surface(place);
+  step_length_ = probe.step_length();
+  tank_.restart(begun_stiffness(place, hip));
+}
+
+void Proxy::Inside::release(const Eigen::Vector3d& place) noexcept {
+  position_ = place;
+  normal_.setZero();
+  lost_time_ = 0;
+  touching_ = false;
+  sliding_ = false;
+  cut_short_ = false;
+}
+
+// The next step has the whole budget for where this one stopped: it does not re-anchor first.
+void Proxy::Inside::cut_short(Contact& contact) noexcept {
+  cut_short_ = true;
+  contact.notes |= ContactNote::sweep_truncated;
+}
+
+void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
+                         Contact& contact) noexcept {
+  const std::optional<SurfacePoint> at = find_surface(probe, hip, contact);
+  if (!at) {
+    if (touching_) keep(probe, hip, dt, contact);
+    return;
+  }
+  lost_time_ = 0;
+  const FrictionLaw law =
+      friction_law(options_.friction, factor(surface_.friction_factor), tank_.stiffness(), dt);
+  const SlideOptions options{.method = options_.method,
+                             .max_iterations = options_.max_iterations,
+                             .tangent_tolerance = options_.tangent_tolerance,
+                             .longest_step = options_.texture.amplitude > 0
+                                                 ? kTextureStep * options_.texture.wavelength
+                                                 : 0,
+                             .friction = law};
+  const Slide motion = slide(probe, *at, hip, sliding_, options);
+  contact.iterations = motion.iterations;
+  if (!settle(motion, contact)) return;
+  surface_ = probe.field().surface(position_);
+  pull(hip, motion.dissipated, dt, contact);
+}
+
+// Where the surface is now, near where the proxy touched it. Empty: the contact ended, or is lost.
+std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eigen::Vector3d& hip,
+                                                        Contact& contact) noexcept {
+  const Sample here = probe.sample(position_);
+  std::optional<SurfacePoint> at;
+  const bool changed = probe.traits().revision != revision_;
+  if (!cut_short_ && surface_moved(probe, here, normal_, changed)) {
+    at = reanchor(probe, position_, normal_);
+    if (at) contact.notes |= ContactNote::reanchored;
+  }
+  if (!at) at = project(probe, position_, here);
+  if (!at) at = recover(probe, position_, normal_);
+  cut_short_ = false;
+  if (at || !(here.value > 0)) return at;
+  const Sweep way = first_contact(probe, position_, hip);
+  if (way.end == Sweep::End::hit) return project(probe, way.position);
+  if (way.end == Sweep::End::clear) {
+    release(hip);
+  } else {
+    cut_short(contact);
+    position_ = way.position;
+  }
+  return std::nullopt;
+}
+
+// Takes over where the motion ended. True while the proxy still touches.
+bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
+  if (motion.end == Slide::End::interrupted || motion.end == Slide::End::postponed) {
+    cut_short(contact);
+  }
+  if (motion.end == Slide::End::released || motion.end == Slide::End::interrupted) {
+    release(motion.at.position);
+    return false;
+  }
+  if (motion.end == Slide::End::unfinished) {
+    contact.notes |= ContactNote::not_converged;
+  }
+  position_ = motion.at.position;
+  normal_ = motion.at.normal;
+  sliding_ = motion.sliding;
+  contact.normal = normal_;
+  contact.sliding = sliding_;
+  return true;
+}
+
+void Proxy::Inside::pull(const Eigen::Vector3d& hip, double dissipated, double dt,
+                         Contact& contact) noexcept {
+  const Eigen::Vector3d stretch = position_ - hip;
+  const double wanted = wanted_stiffness();
+  contact.stiffness = tank_.follow(wanted, stretch.norm(), dissipated, dt);
+  if (contact.stiffness < kMuchSofter * wanted) contact.notes |= ContactNote::softer;
+  contact.force = contact.stiffness * stretch;
+  contact.drift = surface_.velocity;
+  contact.source = surface_.source;
+}
+
+double Proxy::Inside::wanted_stiffness() const noexcept {
+  if (lost_time_ > kKeepLost) return 0;
+  const double wanted =
+      options_.stiffness * factor(surface_.stiffness_factor) * factor(surface_.presence);
+  return std::max(0.0, wanted - fading_.stiffness());
+}
+
+// A contact whose surface was not found in this step. The spring goes on from as far as the proxy
+// came; where the search was not only cut short, it fades after a moment.
+void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
+                         Contact& contact) noexcept {
+  contact.normal = normal_;
+  if (!cut_short_) {
+    contact.notes |= ContactNote::lost;
+    lost_time_ += dt;
+  }
+  pull(hip, 0, dt, contact);
+  if (contact.stiffness <= kFaded * options_.stiffness) let_go(probe, hip);
+}
+
+// Never through what cannot be found: from a free place to the first contact; from inside, only
+// when the hand has come out again in front of where it went in. Until then the proxy waits there,
+// without force.
+void Proxy::Inside::let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept {
+  if (lost_time_ <= kKeepLost) return;
+  if (!probe.inside(position_)) return release(first_contact(probe, position_, hip).position);
+  if ((hip - position_).dot(normal_) >= 0 && !probe.inside(hip)) release(hip);
+}
+
+}  // namespace palpate

@@ -1,0 +1,222 @@
+#include "scene/snapshot_builder.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "palpate/base/error.hpp"
+#include "palpate/geometry/filters.hpp"
+
+namespace palpate {
+namespace {
+
+// A cloud is clipped this far outside the fields' reach, of their radius: supports reach further
+// than points, and normals look around.
+constexpr double kClipMargin = 0.3;
+
+// A sensor is silent no sooner than after so many intervals.
+constexpr double kSilentIntervals = 3;
+
+void check(const SourceOptions& source) {
+  for (const double radius : {source.prepare.minimum_radius, source.prepare.radius.value_or(0)}) {
+    if (radius >= 0 && std::isfinite(radius)) continue;
+    throw Error(fmt::format("invalid support radius of {} m; give a length in metres", radius));
+  }
+  const PolicyOptions& options = source.policy;
+  if (options.history < 1 || options.history > static_cast<int>(Snapshot::kMaxLayers) - 1) {
+    throw Error(fmt::format("policy: invalid history of {} clouds; give 1 to {}", options.history,
+                            Snapshot::kMaxLayers - 1));
+  }
+  const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
+  if (!positive(options.silence) || !positive(options.fade)) {
+    throw Error(fmt::format("policy: invalid silence of {} s or fade of {} s; give times above 0",
+                            options.silence, options.fade));
+  }
+}
+
+/// A filtered frame as a cloud, seen from its origin.
+PointCloud points_of(const FilteredDepth& depth) {
+  PointCloud cloud;
+  cloud.viewpoint = Eigen::Vector3d::Zero();
+  for (std::size_t b = 0; b < depth.size(); ++b) {
+    if (depth.states[b] != FilteredDepth::State::empty)
+      cloud.positions.push_back(depth.positions[b]);
+  }
+  return cloud;
+}
+
+double time_of(const char* what, double time) {
+  if (std::isfinite(time)) return time;
+  throw Error(fmt::format("the {} of a frame or cloud is {}; give seconds", what, time));
+}
+
+}  // namespace
+
+SnapshotBuilder::SnapshotBuilder(const SourceOptions& options)
+    : options_((check(options), options)),
+      frames_(options.policy.policy.value_or(kDepthPolicy)),
+      clouds_(options.policy.policy.value_or(kCloudPolicy)),
+      filter_(options.depth),
+      morph_({.silence = options.policy.silence,
+              .fade = options.policy.fade,
+              .kernel = options.prepare.kernel,
+              .minimum_radius =
+                  std::max(options.prepare.minimum_radius, options.prepare.radius.value_or(0))}),
+      layers_(clouds_, clouds_ == Policy::replace ? 1 : options.policy.history),
+      fusion_(options.prepare) {
+  last_.presence_end = 0;  // there is none
+}
+
+std::size_t SnapshotBuilder::most_snapshots(bool clouds, std::size_t fields) const {
+  const Policy policy = clouds ? clouds_ : frames_;
+  const bool weighs = policy == Policy::average || policy == Policy::crossfade;
+  return (weighs ? static_cast<std::size_t>(options_.policy.history) : 1) + 2 + fields;
+}
+
+std::shared_ptr<const Snapshot> SnapshotBuilder::take(const DepthFrame& frame,
+                                                      const Arrival& arrival) {
+  time_of("stamp", frame.stamp);
+  const bool everywhere = options_.policy.fit_everywhere;
+  const FilteredDepth& depth = everywhere
+                                   ? filter_.filter(frame, arrival.T_world_sensor)
+                                   : filter_.filter(frame, arrival.T_world_sensor, arrival.reach);
+  note_noise(depth);
+  if (frames_ == Policy::fusion) {
+    fusion_.add(points_of(depth), arrival.T_world_sensor);
+    return fused(next_timing(frame.stamp, arrival.start));
+  }
+  pinhole_ = frame.camera.pinhole;
+  const MorphInput input{depth, pinhole_, arrival.reach, everywhere};
+  morph_.look(input);
+  const FrameTiming moment = next_timing(frame.stamp, arrival.start);
+  if (frames_ == Policy::morph) return morphed(input, moment);
+  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, frames_);
+  std::shared_ptr<SurfacePoints> points = points_.take();
+  morph_.fill_still(input, moment, points);
+  layers_.add(std::move(points), moment, snapshot->layers);
+  return snapshot;
+}
+
+std::shared_ptr<Snapshot> SnapshotBuilder::morphed(const MorphInput& input,
+                                                   const FrameTiming& moment) {
+  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, Policy::morph);
+  std::shared_ptr<SurfacePoints> points = points_.take();
+  morph_.fill(input, moment, points);
+  snapshot->layers.push_back({std::move(points), 1, 1});
+  return snapshot;
+}
+
+std::shared_ptr<Snapshot> SnapshotBuilder::last_of_frames(const Snapshot& newest) {
+  constexpr double kLeast = 0.1;  // s, in which a surface goes to where the fit has it
+  const bool own = newest.sequence > 0 && newest.sequence == last_.sequence;
+  if (frames_ != Policy::morph || !own) return nullptr;
+  const FilteredDepth* const depth = filter_.fit_all();
+  if (depth == nullptr) return nullptr;
+  const MorphInput input{.depth = *depth, .pinhole = pinhole_, .last = true};
+  morph_.look(input);
+  return morphed(input, {last_.stamp, last_.end, std::max(kLeast, last_.end - last_.start)});
+}
+
+std::shared_ptr<const Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double stamp,
+                                                      const Arrival& arrival,
+                                                      PrepareReport& report) {
+  time_of("stamp", stamp);
+  if (clouds_ == Policy::morph) {
+    throw Error(
+        "policy morph works only with depth frames; give replace, average, crossfade or fusion for "
+        "clouds");
+  }
+  const bool clips = options_.policy.clip_to_reach && !arrival.reach.empty();
+  const PointCloud clipped = clips ? within_reach(cloud, arrival) : PointCloud();
+  const PointCloud& wanted = clips ? clipped : cloud;
+  if (clips && wanted.empty()) return nullptr;
+  if (clouds_ == Policy::fusion) {
+    fusion_.add(wanted, arrival.T_world_sensor);
+    report = fusion_.report();
+    return fused(next_timing(stamp, arrival.start));
+  }
+  Prepared prepared = prepare(wanted, options_.prepare, arrival.T_world_sensor);
+  report = prepared.report;
+  std::shared_ptr<SurfacePoints> points = points_.take();
+  *points = std::move(prepared.points);
+  const FrameTiming moment = next_timing(stamp, arrival.start);
+  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
+  layers_.add(std::move(points), moment, snapshot->layers);
+  return snapshot;
+}
+
+std::shared_ptr<const Snapshot> SnapshotBuilder::fused(const FrameTiming& moment) {
+  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, Policy::fusion);
+  std::shared_ptr<SurfacePoints> points = points_.take();
+  *points = fusion_.surface(moment);
+  snapshot->layers.push_back({std::move(points), 1, 1});
+  return snapshot;
+}
+
+FrameTiming SnapshotBuilder::next_timing(double stamp, const StartTime& start) {
+  const FrameTiming moment = interval_filter_.next(stamp, time_of("start", start()));
+  if (presence_at(moment.start) <= 0) forget();
+  return moment;
+}
+
+/// A snapshot without layers. Presence goes on from where the last one's is at its start.
+std::shared_ptr<Snapshot> SnapshotBuilder::next_snapshot(const FrameTiming& moment, Policy policy) {
+  const bool moving = policy != Policy::replace && policy != Policy::average;
+  const double fade = options_.policy.fade;
+  const bool first = presence_at(moment.start) <= 0;
+  std::shared_ptr<Snapshot> snapshot = snapshots_.take();
+  Snapshot& s = *snapshot;
+  s.start = moment.start;
+  s.end = moment.start + (moving ? moment.duration : 0);
+  // Under morph and fusion what was not there before fades in point by point.
+  s.presence_start = first ? (policy == Policy::crossfade ? 0 : 1) : presence_at(moment.start);
+  s.presence_end = first ? 1 : std::min(1.0, s.presence_start + moment.duration / fade);
+  s.silent_from =
+      moment.start + std::max(options_.policy.silence, kSilentIntervals * moment.duration);
+  s.fade = fade;
+  s.interval = moment.duration;
+  s.stamp = moment.stamp;
+  s.sequence = last_.sequence + 1;
+  last_ = s;
+  return snapshot;
+}
+
+double SnapshotBuilder::presence_at(double time) const {
+  return last_.sequence == 0 ? 0 : presence(last_, time);
+}
+
+void SnapshotBuilder::forget() {
+  morph_.forget();
+  layers_.forget();
+  fusion_.forget();
+}
+
+PointCloud SnapshotBuilder::within_reach(const PointCloud& cloud, const Arrival& arrival) const {
+  std::vector<std::uint32_t> inside;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d p = arrival.T_world_sensor * cloud.point(i);
+    const bool near = std::ranges::any_of(arrival.reach, [&](const Reach& reach) {
+      return (p - reach.center).norm() <= (1 + kClipMargin) * reach.radius;
+    });
+    if (near) inside.push_back(i);
+  }
+  return select(cloud, inside);
+}
+
+/// What the noise is at the median depth of the image.
+void SnapshotBuilder::note_noise(const FilteredDepth& depth) {
+  constexpr std::size_t kStep = 37;  // a sample is enough
+  noise_ = depth.noise;
+  depths_.clear();
+  for (std::size_t b = 0; b < depth.size(); b += kStep) {
+    if (depth.states[b] != FilteredDepth::State::empty) depths_.push_back(depth.positions[b].z());
+  }
+  if (depths_.empty()) return;
+  const auto middle = depths_.begin() + static_cast<std::ptrdiff_t>(depths_.size() / 2);
+  std::nth_element(depths_.begin(), middle, depths_.end());
+  median_depth_ = static_cast<double>(*middle);
+}
+
+}  // namespace palpate

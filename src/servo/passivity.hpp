@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "palpate/servo/guard.hpp"
+
+namespace palpate {
+
+/// The ledger of what forces gave to the hand, and the brake that takes it back: passivity observer
+/// and controller (Hannaford and Ryu 2002, in the impedance form; docs/method.md 8.5).
+///
+///   E += F . (dh - v_surface dt);   E > 0: F -= min(E / (|v|^2 dt), M / (2 n dt) - B) v
+///
+/// F is what acted then, sent some steps before: a ledger that leaves the delay out misses just the
+/// energy that a delay makes. Work that a moving surface does on the hand is its own and is not
+/// counted. n = max(2, delay + 1) steps: dampers that are sampled and delayed shake what they are
+/// to brake when they are stronger than about M / (n dt) together; half of that bears a mass that
+/// was guessed too large by half. B is the one that acts beside the brake. Real-time.
+class Passivity {
+ public:
+  static constexpr int kMaximumDelay = 16;
+
+  /// Options in their ranges.
+  explicit Passivity(const GuardOptions::Passivity& options) noexcept : options_(options) {
+    reset();
+  }
+
+  /// `force` (N, on the hand) was sent at the step before; over the last `dt` (s) the hand went
+  /// `way` (m) against the surface. `stored` (J): what the stretched spring holds and will give
+  /// back; that is never forgotten. What was taken is forgotten in `forget`, and when no force acts
+  /// any more: no contact pays for the next one.
+  void account(const Eigen::Vector3d& force, const Eigen::Vector3d& way, double stored,
+               double dt) noexcept;
+
+  /// What has to be added to `force` (N), which is about to be sent, if the hand goes on by `way`
+  /// in each step: what is on its way to the hand counts already. Zero while nothing was given.
+  /// `damping` (N s/m): B, of a damper that is part of `force`.
+  [[nodiscard]] Eigen::Vector3d brake(const Eigen::Vector3d& force, const Eigen::Vector3d& way,
+                                      double dt, double damping = 0) const noexcept;
+
+  /// The ledger, J, when what is on its way has acted, if the hand goes on by `way` (m) a step.
+  [[nodiscard]] double committed(const Eigen::Vector3d& way) const noexcept;
+
+  /// J; above zero: given to the hand, below: taken from it of late.
+  [[nodiscard]] double energy() const noexcept { return energy_; }
+  void reset() noexcept;
+
+ private:
+  [[nodiscard]] const Eigen::Vector3d& sent(int steps_ago) const noexcept;
+  [[nodiscard]] bool rests() const noexcept;
+  [[nodiscard]] double strongest(double dt, double damping) const noexcept;
+
+  GuardOptions::Passivity options_;
+  std::array<Eigen::Vector3d, kMaximumDelay + 1> sent_;  // ring
+  std::size_t newest_ = 0;
+  double energy_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,68 @@
+#include "scene/frame_timing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace palpate {
+namespace {
+
+void advance(FrameIntervalFilter& filter, double& stamp, double gap) {
+  stamp += gap;
+  static_cast<void>(filter.next(stamp, stamp));
+}
+
+TEST(FrameIntervalFilter, LearnsTheIntervalFromTwoFrames) {
+  FrameIntervalFilter filter;
+  EXPECT_NEAR(filter.next(5, 5.01).duration, 1. / 30, 1e-12);
+  EXPECT_NEAR(filter.next(5.1, 5.11).duration, 0.1, 1e-12);
+}
+
+TEST(FrameIntervalFilter, SmoothsIrregularStamps) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> jitter(-0.015, 0.015);
+  FrameIntervalFilter filter;
+  for (int k = 0; k < 300; ++k) {
+    const double stamp = k / 30.0 + jitter(random);
+    const FrameTiming moment = filter.next(stamp, stamp + 0.01);
+    if (k < 20) continue;
+    EXPECT_GT(moment.duration, 0.022);
+    EXPECT_LT(moment.duration, 0.048);
+  }
+}
+
+TEST(FrameIntervalFilter, FollowsAnotherRate) {
+  FrameIntervalFilter filter;
+  double stamp = 0;
+  for (int k = 0; k < 30; ++k) advance(filter, stamp, 1. / 90);
+  EXPECT_NEAR(filter.interval(), 1. / 90, 1e-6);
+  for (int k = 0; k < 60; ++k) advance(filter, stamp, 0.2);
+  EXPECT_NEAR(filter.interval(), 0.2, 1e-3);
+}
+
+TEST(FrameIntervalFilter, OneLongGapIsNoNewRate) {
+  FrameIntervalFilter filter;
+  double stamp = 0;
+  for (int k = 0; k < 30; ++k) advance(filter, stamp, 1. / 30);
+  advance(filter, stamp, 3);
+  EXPECT_LT(filter.interval(), 0.038);
+}
+
+TEST(FrameIntervalFilter, StartsNeverGoBack) {
+  FrameIntervalFilter filter;
+  EXPECT_EQ(filter.next(0, 0.02).start, 0.02);
+  EXPECT_EQ(filter.next(0.01, 0.015).start, 0.02);
+  EXPECT_EQ(filter.next(0.02, 0.03).start, 0.03);
+}
+
+TEST(FrameIntervalFilter, AClockThatIsSetBackChangesNothing) {
+  FrameIntervalFilter filter;
+  double stamp = 10;
+  for (int k = 0; k < 30; ++k) advance(filter, stamp, 1. / 30);
+  stamp = 0;
+  for (int k = 0; k < 3; ++k) static_cast<void>(filter.next(stamp, 20));
+  EXPECT_NEAR(filter.interval(), 1. / 30, 1e-9);
+}
+
+}  // namespace
+}  // namespace palpate
