@@ -30,7 +30,7 @@ TEST(HardwareProgram, RunsInTheMakersScheduler) {
       "touch synthetic:torus --duration 0.5 --json report.json --device "
       "openhaptics,library=" PALPATE_FAKE_HD);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "holds openhaptics:Default Device (Touch)")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "using openhaptics:Default Device (Touch)")) << outcome.err;
   EXPECT_TRUE(contains(shell.read("report.json"), "openhaptics:Default Device (Touch)"));
 }
 

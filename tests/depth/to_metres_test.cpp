@@ -52,7 +52,7 @@ TEST(ToMetres, RefusesUnitsThatAreNone) {
   for (const double unit : {0.0, -1e-3, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     EXPECT_THAT(refusal(unit, 4, 4), HasSubstr("0.001 for millimetres")) << unit;
   }
-  EXPECT_THAT(refusal(-2, 4, 4), HasSubstr("a unit of -2 m"));
+  EXPECT_THAT(refusal(-2, 4, 4), HasSubstr("unit of -2 m"));
 }
 
 TEST(ToMetres, RefusesOtherSizes) {

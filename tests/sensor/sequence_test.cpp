@@ -60,7 +60,7 @@ TEST(Sequence, HonoursFolderAndStamps) {
   folder.write("sequence.json", described(R"(, "images": "d", "stamps": [5, 5.5])"));
   EXPECT_THAT(refusal(folder.path()), HasSubstr("2 times for 3 images"));
   folder.write("sequence.json", described(R"(, "images": "d", "stamps": [5, 5, 6])"));
-  EXPECT_THAT(refusal(folder.path()), HasSubstr("do not grow"));
+  EXPECT_THAT(refusal(folder.path()), HasSubstr("do not increase"));
 }
 
 TEST(Sequence, KnowsTheTumLayout) {

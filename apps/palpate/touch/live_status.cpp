@@ -42,17 +42,17 @@ std::string hand_words(const HandMoment& moment) {
 std::string stream_words(const StreamState& stream) {
   std::string words = stream.source;
   switch (stream.phase) {
-    case StreamState::Phase::starting:
+    case StreamPhase::starting:
       return words + " waiting";
-    case StreamState::Phase::ended:
+    case StreamPhase::ended:
       return words + " ended";
-    case StreamState::Phase::stalled:
+    case StreamPhase::stalled:
       words += " STALLED";
       break;
-    case StreamState::Phase::failed:
+    case StreamPhase::failed:
       words += " FAILED";
       break;
-    case StreamState::Phase::running:
+    case StreamPhase::running:
       break;
   }
   words += fmt::format(" {:.1f} Hz, {:.0f} ms", stream.rate, 1e3 * stream.latency_mean);
