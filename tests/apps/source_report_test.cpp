@@ -7,15 +7,15 @@
 namespace palpate::app {
 namespace {
 
-TouchedSource fed(double rate, double prepare_ms, bool simulated) {
-  TouchedSource source;
+LoadedSource fed(double rate, double prepare_ms, bool simulated) {
+  LoadedSource source;
   source.feed.state.rate = rate;
   source.feed.prepare_ms = {prepare_ms, prepare_ms};
   source.feed.simulated = simulated;
   return source;
 }
 
-std::string printed(const TouchedSource& source) {
+std::string printed(const LoadedSource& source) {
   std::FILE* file = std::tmpfile();
   camera_report(source).print(file);
   std::rewind(file);
@@ -26,7 +26,7 @@ std::string printed(const TouchedSource& source) {
 }
 
 TEST(SourceReport, SimulatedTimeSaysWhatLiveWouldBeDropped) {
-  const TouchedSource slow = fed(30, 570, true);
+  const LoadedSource slow = fed(30, 570, true);
   const std::string text = printed(slow);
   EXPECT_NE(text.find("preparing a frame takes 570 ms, but frames arrive every 33.3 ms: live, 95 % "
                       "would be dropped"),
@@ -34,7 +34,7 @@ TEST(SourceReport, SimulatedTimeSaysWhatLiveWouldBeDropped) {
       << text;
   EXPECT_NEAR(camera_report(slow).data["would_drop_live"].get<double>(), 1 - 1 / (30 * 0.57),
               1e-12);
-  const auto expect_silence = [](const TouchedSource& quick) {
+  const auto expect_silence = [](const LoadedSource& quick) {
     EXPECT_EQ(printed(quick).find("would be dropped"), std::string::npos);
     EXPECT_EQ(camera_report(quick).data["would_drop_live"], 0.0);
   };

@@ -42,17 +42,17 @@ std::string hand_words(const HandMoment& moment) {
 std::string stream_words(const StreamState& stream) {
   std::string words = stream.source;
   switch (stream.phase) {
-    case StreamPhase::starting:
+    case StreamState::Phase::starting:
       return words + " waiting";
-    case StreamPhase::ended:
+    case StreamState::Phase::ended:
       return words + " ended";
-    case StreamPhase::stalled:
+    case StreamState::Phase::stalled:
       words += " STALLED";
       break;
-    case StreamPhase::failed:
+    case StreamState::Phase::failed:
       words += " FAILED";
       break;
-    case StreamPhase::running:
+    case StreamState::Phase::running:
       break;
   }
   words += fmt::format(" {:.1f} Hz, {:.0f} ms", stream.rate, 1e3 * stream.latency_mean);
