@@ -18,7 +18,7 @@ FLOORS = {
     "prepare": {"base", "geometry", "field"},
     "align": {"base", "geometry", "field"},
     "scene": {"base", "geometry", "depth", "field", "prepare"},
-    "sim": {"base", "geometry", "depth", "field"},  # and the camera that it is: see ALLOWED
+    "sim": {"base", "geometry", "depth", "io", "field"},  # and the camera that it is: see ALLOWED
     "sensor": {"base", "geometry", "depth", "io", "field", "prepare", "scene", "sim"},
     "device": {"base", "geometry", "io", "field", "contact", "prepare", "scene"},
     "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "device"},
