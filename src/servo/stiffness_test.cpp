@@ -53,7 +53,7 @@ constexpr double kShakenFor = 0.25;   // s
 constexpr double kMostForce = 4;      // N that a trial may ask for
 
 void validate(const StiffnessTestOptions& options) {
-  const Requirement require{"wall trial"};
+  const Requirement require{"stiffness test"};
   require.positive("softest (N/m)", options.softest, "give a stiffness above 0");
   require(options.stiffest >= options.softest && std::isfinite(options.stiffest), "stiffest (N/m)",
           options.stiffest, "give at least the softest");
@@ -69,7 +69,7 @@ void validate(const StiffnessTestOptions& options) {
 StiffnessTestOptions for_device(StiffnessTestOptions options, const DeviceInfo& device) {
   validate(options);
   if (device.maximum_force <= 0) {
-    throw Error("wall trial: " + device.name + " renders no force; nothing can be measured");
+    throw Error("stiffness test: " + device.name + " renders no force; nothing can be measured");
   }
   if (device.maximum_stiffness > 0) {
     options.stiffest = std::min(options.stiffest, device.maximum_stiffness);

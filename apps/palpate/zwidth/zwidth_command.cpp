@@ -77,7 +77,7 @@ void add_simulation_options(CLI::App& command, ZWidthOptions& o) {
 }
 
 // With --device, which excludes what is of simulated walls alone.
-void add_hardware_options(CLI::App& command, WallTrialRunOptions& trial) {
+void add_hardware_options(CLI::App& command, StiffnessTestRunOptions& trial) {
   CLI::Option* const device =
       command
           .add_option(
@@ -118,10 +118,10 @@ void add_zwidth_options(CLI::App& command, ZWidthChoices& choices) {
 void zwidth(const ZWidthChoices& choices) {
   const ZWidthOptions& options = choices.map;
   if (!choices.trial.device.empty()) {
-    WallTrialRunOptions trial = choices.trial;
+    StiffnessTestRunOptions trial = choices.trial;
     trial.trial.damping = options.wall_damping;
     trial.json = options.json;
-    return run_wall_trial(trial);
+    return run_stiffness_test(trial);
   }
   ZWidthOutputs outputs(options);
   const ZWidthMap map = [&] {

@@ -11,7 +11,7 @@ class App;
 
 namespace palpate::app {
 
-struct WallTrialRunOptions {
+struct StiffnessTestRunOptions {
   std::string device;      ///< what open_device() takes
   bool confirmed = false;  ///< somebody holds the device and knows what comes
   StiffnessTestOptions trial = {};
@@ -22,11 +22,11 @@ struct WallTrialRunOptions {
 /// leads the hand step by step.
 /// @throws UsageError when nobody has confirmed, Error when there is no such device, when it failed
 ///   or nothing was measured.
-void run_wall_trial(const WallTrialRunOptions& options);
+void run_stiffness_test(const StiffnessTestRunOptions& options);
 
 struct ZWidthChoices {
   ZWidthOptions map;
-  WallTrialRunOptions trial;  ///< on hardware, where a device is named
+  StiffnessTestRunOptions trial;  ///< on hardware, where a device is named
 };
 
 void add_zwidth_options(CLI::App& command, ZWidthChoices& choices);

@@ -64,7 +64,7 @@ class TrialThread {
   std::jthread thread_;
 };
 
-void ask(const WallTrialRunOptions& options) {
+void ask(const StiffnessTestRunOptions& options) {
   fmt::print(stderr,
              "This moves the device: you press on simulated walls, each {:.0f} % stiffer than the "
              "last, until one\nmakes the device vibrate. No force exceeds {:.1f} N; the guard's "
@@ -100,7 +100,7 @@ StiffnessTest::State lead(TrialThread& thread, const Interruption& interruption)
   return state;
 }
 
-std::string found(const WallTrialRunOptions& options, const DeviceInfo& info,
+std::string found(const StiffnessTestRunOptions& options, const DeviceInfo& info,
                   const StiffnessTest::State& state) {
   const Json facts = {
       {"device", info.name},
@@ -126,7 +126,7 @@ void tell(const StiffnessTest::State& state, double damping, std::FILE* out) {
 
 }  // namespace
 
-void run_wall_trial(const WallTrialRunOptions& options) {
+void run_stiffness_test(const StiffnessTestRunOptions& options) {
   if (!names_hardware(options.device)) {
     throw UsageError(
         fmt::format("{} is not a hardware device; give forcedimension, openhaptics or haply, or "
