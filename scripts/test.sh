@@ -57,7 +57,7 @@ say "the program without optional libraries"
 bare 'palpate [0-9]' --version
 bare 'this build has no OpenNI2' cameras
 bare 'this build has no libfreenect' cameras
-bare 'this build cannot speak to Haply' devices
+bare 'this build cannot connect to Haply' devices
 bare 'contacts  *1' touch synthetic:sphere --duration 1
 bare 'frames  *30' touch camera:simulated --simulated-time --duration 1
 

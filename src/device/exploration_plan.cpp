@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/device/exploration.hpp"
@@ -100,6 +101,16 @@ double choose_scale(double patch, double stiffness) {
   return std::min(scale, std::max(1.0, kSteadyStiffness / stiffness));
 }
 
+void validate(const ExplorationPlanOptions& options) {
+  const Requirement require{"exploration"};
+  require.positive("scale", options.scale.value_or(1), "give a scale above 0, or none");
+  require.not_negative("stiffness (N/m)", options.stiffness, "give one of 0 or more");
+  require.not_negative("tool_radius (m)", options.tool_radius, "give one of 0 or more");
+  require.positive("rate (1/s)", options.rate, "give a rate above 0");
+  require(options.hand.stiffness > 0, "hand.stiffness (N/m)", options.hand.stiffness,
+          "give one above 0; infinite: a hand that does not yield");
+}
+
 // What exploring and placing have in common.
 struct Extent {
   double patch = 0;  // m across
@@ -160,6 +171,7 @@ double workspace_scale(double extent) {
 
 ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
                                  const ExplorationPlanOptions& options) {
+  validate(options);
   const Union all = unite(scene);
   ExplorationPlan plan;
   const Extent extent = extent_of(all, options);
@@ -195,6 +207,7 @@ ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
 
 Placement place_device(const Scene& scene, const FieldOptions& field,
                        const ExplorationPlanOptions& options) {
+  validate(options);
   const Union all = unite(scene);
   const ExploredSurface surface = all.view();
   const Extent extent = extent_of(all, options);

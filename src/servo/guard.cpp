@@ -143,9 +143,9 @@ void Guard::Inside::reset() noexcept {
 Vector3d Guard::Inside::pass(const GuardInput& input) noexcept {
   ++state_.counts.steps;
   state_.notes = GuardNote::none;
-  if (!options_.on) return input.felt ? input.force : Vector3d::Zero();
   if (state_.fault != GuardFault::none) return fail(state_.fault);
   if (const GuardFault found = judge(input); found != GuardFault::none) return fail(found);
+  if (!options_.on) return input.felt ? input.force : Vector3d::Zero();
   if (!started_) begin(input);
   const Motion motion = follow(input);
   sliding_ = sliding(input, motion);

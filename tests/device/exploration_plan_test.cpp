@@ -43,6 +43,16 @@ TEST(ExplorationPlan, StiffnessThatWasAskedForIsKeptAndHeldStable) {
   EXPECT_LE(plan.workspace.felt_stiffness(plan.stiffness), 2000);
 }
 
+TEST(ExplorationPlan, RefusesOptionsOutOfRange) {
+  Scene scene;
+  scene.add("cloud", scaled(1));
+  EXPECT_THROW((void)place_device(scene, {}, {.scale = 0}), Error);
+  EXPECT_THROW((void)place_device(scene, {}, {.stiffness = -1}), Error);
+  EXPECT_THROW((void)place_device(scene, {}, {.tool_radius = -1e-3}), Error);
+  EXPECT_THROW((void)plan_exploration(scene, {}, {.rate = 0}), Error);
+  EXPECT_THROW((void)plan_exploration(scene, {}, {.hand = {.stiffness = 0}}), Error);
+}
+
 TEST(ExplorationPlan, ADeviceThatNobodyLeadsStandsJustOutsideTheMiddleOfTheSurface) {
   for (const double factor : {1.0, 1000.0}) {
     PointCloud plane;

@@ -152,10 +152,10 @@ void add_device_option(OptionTable& table, std::vector<DevicePlan>& devices) {
       "device with mass and friction that is pulled along it; remote: another program, over a "
       "socket (docs/remote_device.md); forcedimension[:N], openhaptics[:NAME], haply[:ID]: "
       "hardware ('palpate devices' lists it; docs/devices.md). Options after the name: ,scale=S "
-      "scales its motion; ,offset=X/Y/Z (m) moves its origin; ,frame=CAMERA aligns its axes with "
-      "that camera; ,clutch=BUTTON: while held, the hand moves without the tool. Repeat for each "
-      "hand, up to four; several hands run in real time. Default: scripted with --trajectory, else "
-      "simulated");
+      "scales its motion; ,offset=X/Y/Z (m) moves its origin; ,frame=CAMERA turns its axes to "
+      "that camera (x right, y away from it, z up); ,clutch=BUTTON: while held, the hand moves "
+      "without the tool. Repeat for each hand, up to four; several hands run in real time. "
+      "Default: scripted with --trajectory, else simulated");
 }
 
 bool need_real_time(const std::vector<DevicePlan>& devices) {

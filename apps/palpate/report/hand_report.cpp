@@ -139,9 +139,10 @@ void add_placement(Report& report, const Hand& hand) {
   Json& device = report.data["device"];
   const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
   const PlacementOptions& placement = hand.chosen.placement;
-  report.line("origin",
-              fmt::format("{:.4g}, {:.4g}, {:.4g} m, axes aligned with {}", origin.x(), origin.y(),
-                          origin.z(), placement.frame.empty() ? "the world" : placement.frame));
+  report.line(
+      "origin",
+      fmt::format("{:.4g}, {:.4g}, {:.4g} m, axes {}", origin.x(), origin.y(), origin.z(),
+                  placement.frame.empty() ? "of the world" : "as " + placement.frame + " looks"));
   add_scale(report, hand);
   device["origin_m"] = {origin.x(), origin.y(), origin.z()};
   if (!placement.frame.empty()) device["frame"] = placement.frame;

@@ -140,11 +140,11 @@ void add_seen(Report& report, const SourceState& state) {
       fmt::format("{} felt", grouped(state.points)) +
           (state.depth > 0 ? fmt::format(", image centre {} away", length(state.depth)) : ""));
   if (state.depth > 0) {
-    report.line("noise",
-                fmt::format("{} per pixel there", length(state.noise)) +
-                    (state.correlation > 1.01
-                         ? fmt::format(", correlation {:.2f} between neighbours", state.correlation)
-                         : ""));
+    report.line("noise", fmt::format("{} per pixel there", length(state.noise)) +
+                             (state.correlation > 1.01
+                                  ? fmt::format(", correlation {:.2f} (1: independent pixels)",
+                                                state.correlation)
+                                  : ""));
   }
   report.data.update({{"points_felt", state.points},
                       {"depth_m", state.depth},

@@ -70,7 +70,7 @@ struct ExplorationPlanOptions {
 };
 
 /// Chooses scale, patch, depth and speeds from the scene's extent and support radius, and plans the
-/// hand's way. @throws Error when the scene has no points.
+/// hand's trajectory. @throws Error when the scene has no points or an option is out of its range.
 [[nodiscard]] ExplorationPlan plan_exploration(const Scene& scene, const FieldOptions& field,
                                                const ExplorationPlanOptions& options);
 
@@ -83,7 +83,7 @@ struct Placement {
 /// The device's origin is just outside the surface, 2 mm of the hand in front of it, where it looks
 /// up (+z) and is nearest to the vertical through the middle (mean) of all points or, where it
 /// looks up nowhere, where it is nearest to that middle; its axes are the world's. Scale and
-/// stiffness are those of plan_exploration(). @throws Error when the scene has no points.
+/// stiffness are those of plan_exploration(), and so are the errors.
 [[nodiscard]] Placement place_device(const Scene& scene, const FieldOptions& field,
                                      const ExplorationPlanOptions& options);
 

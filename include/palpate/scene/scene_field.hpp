@@ -34,7 +34,7 @@ enum class FieldNote : std::uint32_t {
 }
 
 /// The scene as one servo sees it: points near the tool, gathered into a contiguous patch, made
-/// into an implicit surface. One thread uses it; up to Handoff::kReaders fields may look at one
+/// into an implicit surface. One thread uses it; up to 16 fields may look at one
 /// scene.
 class SceneField final : public Field {
  public:

@@ -48,7 +48,9 @@ struct GuardOptions {
     int delay = 1;         ///< steps from a force's being sent to its effect, 0-16
   };
 
-  bool on = true;  ///< off: what is felt goes out as it is, and any stiffness is felt
+  /// Off, for simulated time: finite forces go out as they are, of any stiffness. Faults still end
+  /// in zero force.
+  bool on = true;
   double maximum_force = std::numeric_limits<double>::infinity();  ///< N; > 0
   double slew = 300;        ///< S: how fast a force may change that the hand does not explain, N/s
   double damping = 1;       ///< B of a damper between surface and hand, in contact, N s/m; 0: none

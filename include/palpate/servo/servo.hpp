@@ -108,7 +108,7 @@ struct ServoOptions {
   ProxyOptions proxy = {};
   GuardOptions guard = {};  ///< at the hand; fitted to the device by guard_for()
   Workspace workspace = {};
-  /// While this button of the device is down, 0 to 31, the hand moves freely (Clutch).
+  /// While this button of the device is down, 0 to 31, the hand moves without the tool.
   std::optional<int> clutch_button = {};
   StepQueue* steps = nullptr;  ///< every step is put into it; outlives the servo
 };
