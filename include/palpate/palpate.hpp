@@ -1,6 +1,7 @@
 #pragma once
 
-/// Everything that most programs need.
+/// What a program needs whose loop is its own. For devices: device/device.hpp and
+/// servo/servo_thread.hpp.
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/geometry/point_cloud.hpp"

@@ -26,10 +26,11 @@ constexpr int kButtons = 32;
 constexpr double kFirstStep = 1e-3;
 
 ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
-  if (options.clutch_button) {
-    Requirement{"servo"}(*options.clutch_button >= 0 && *options.clutch_button < kButtons,
-                         "clutch_button", *options.clutch_button, "give a button from 0 to 31");
-  }
+  Requirement{"device"}(device.maximum_force >= 0, "maximum_force (N)", device.maximum_force,
+                        "give what it can hold, 0 for none");
+  const int button = options.clutch_button.value_or(0);
+  Requirement{"servo"}(button >= 0 && button < kButtons, "clutch_button", button,
+                       "give a button from 0 to 31");
   options.guard = guard_for(device, options.guard);
   return options;
 }
@@ -69,7 +70,6 @@ GuardFault known_fault(const ServoState& state) noexcept {
 
 }  // namespace
 
-// A device that renders no force is given what would be felt.
 GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
   if (device.maximum_force > 0) {
     options.maximum_force =
@@ -237,6 +237,7 @@ void Servo::show(const ServoState::Timing& timing) noexcept {
 }
 
 Vector3d Servo::device_force() const noexcept {
+  if (inside_->device.info().maximum_force == 0) return Vector3d::Zero();
   return inside_->options.workspace.force_to_device(inside_->state.force);
 }
 

@@ -130,7 +130,7 @@ TEST(Ply, RefusesCountsThatTheBytesCannotHoldWithoutAskingForMemory) {
   EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement face 1\nproperty list int int v\n"
                       "element vertex 1\n" +
                       std::string(kXyz) + "end_header\n-3 1 2 3\n"),
-              HasSubstr("a list of -3 items"));
+              HasSubstr("invalid list length -3"));
 }
 
 TEST(Ply, NamesTheLineOfWhatIsWrong) {

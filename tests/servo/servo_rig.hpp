@@ -47,7 +47,7 @@ inline Trajectory visit() {
   return rows;
 }
 
-/// A device without any force limit or time of its own, wherever it is told to be.
+/// A device that renders no force and has no time of its own, wherever it is told to be.
 class FreeDevice final : public Device {
  public:
   explicit FreeDevice(const Eigen::Vector3d& position = Eigen::Vector3d::Zero()) {

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
 #include "servo/servo_rig.hpp"
 
@@ -43,6 +44,15 @@ TEST(StiffnessLimit, IsWhatTheDeviceBears) {
   servo.set_contact({.stiffness = 1000});
   for (int i = 200; i < 210; ++i) servo.tick(1e-3 * i);
   EXPECT_TRUE(has(servo.state().guard.notes, GuardNote::softened));
+}
+
+TEST(StiffnessLimit, AForceBelowZeroIsRefused) {
+  Scene scene;
+  FreeDevice device({0, 0, 5e-3});
+  for (const double force : {-3.0, std::numeric_limits<double>::quiet_NaN()}) {
+    device.info().maximum_force = force;
+    EXPECT_THROW(Servo(device, scene), Error) << force;
+  }
 }
 
 }  // namespace

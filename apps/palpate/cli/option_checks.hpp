@@ -8,7 +8,7 @@
 
 namespace palpate::app {
 
-/// A check that says which numbers an option takes.
+/// Takes finite numbers that are `good`. `range` ends the message: "'x' is not RANGE".
 [[nodiscard]] CLI::Validator number(const std::string& range, std::function<bool(double)> good);
 [[nodiscard]] CLI::Validator positive();
 [[nodiscard]] CLI::Validator not_negative();

@@ -40,7 +40,7 @@ struct SurfacePlan {
   [[nodiscard]] SoftMaterial soft_material(double hardest) const;
 };
 
-/// How hands move that nobody leads.
+/// How hands move, and for how long.
 struct MotionPlan {
   std::string trajectory = {};          ///< file; empty: they explore
   std::optional<double> duration = {};  ///< s

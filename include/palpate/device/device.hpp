@@ -14,7 +14,8 @@ enum class DeviceStatus {
   ok,
   silent,  ///< not latched: no data from the hand, so no force may be applied; the position is the
            ///< last that was known, or the first after the silence
-  finished,  ///< a recording or a simulation has ended; the last state is repeated
+  finished,  ///< a recording or a simulation has ended, and with it the loop; the last state is
+             ///< repeated
   failed,    ///< latched: no force is applied any more; reason() says why
 };
 
@@ -25,8 +26,9 @@ enum class DeviceStatus {
 
 /// What one device can do.
 struct DeviceInfo {
-  std::string name;              ///< for messages
-  double maximum_force = 0;      ///< N, continuous; 0: it renders no force
+  std::string name;  ///< for messages
+  /// N, continuous; infinite: any. 0: it renders no force, and a Servo sends it none.
+  double maximum_force = 0;
   double maximum_stiffness = 0;  ///< N/m at the hand that its maker allows; 0: unknown
   double damping = 0;            ///< viscous, of the device by itself, N s/m; 0: unknown
   double mass = 0;               ///< that the hand moves with it, kg; 0: unknown
@@ -35,7 +37,7 @@ struct DeviceInfo {
   /// unset: unknown
   std::optional<double> delay = {};
   double workspace_radius = 0;   ///< of the largest ball in reach, m; 0: unknown
-  bool keeps_time = false;       ///< read() waits for the next step, or defines it
+  bool keeps_time = false;       ///< read() blocks until the next step: nothing else paces the loop
   bool has_orientation = false;  ///< it measures the orientation of its tool
   bool has_gripper = false;      ///< it measures the opening of a gripper
 };
@@ -43,10 +45,11 @@ struct DeviceInfo {
 /// A device at the beginning of a step, in its own frame.
 struct DeviceState {
   DeviceStatus status = DeviceStatus::ok;
-  double time = 0;                                     ///< s, on the device's clock
+  double time = 0;  ///< s, on the device's clock; a ServoThread uses its own
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
-  std::uint32_t buttons = 0;                           ///< bit k: button k is down
+  /// m/s; damping and brake depend on it. Estimate it from positions where it is not measured.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  std::uint32_t buttons = 0;  ///< bit k: button k is down
   /// From the tool's axes to the device's, of unit length; the identity while the tool is held
   /// straight, along the device's axes, and where the device does not measure it.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();

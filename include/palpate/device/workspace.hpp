@@ -11,8 +11,7 @@ namespace palpate {
 ///  - the hand feels a surface of K N/m in the world as scale * K N/m (felt_stiffness()); for it to
 ///    feel K, give the surface K / scale;
 ///  - work done on the hand is the world's work F . dh divided by `scale`; its sign, which
-///  passivity
-///    depends on, is the same in both.
+///    passivity depends on, is the same in both.
 struct Workspace {
   Eigen::Isometry3d T_world_device = Eigen::Isometry3d::Identity();  ///< pose of the device's frame
   double scale = 1;  ///< metres in the world for one metre of the device; > 0

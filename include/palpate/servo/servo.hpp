@@ -120,8 +120,8 @@ struct ContactSettings {
   Texture texture = {};
 };
 
-/// One hand in a scene: SceneField, Proxy and Guard between a device's position and its
-/// force.
+/// One hand in a scene: SceneField, Proxy and Guard between a device's position and its force. In
+/// palpate::live.
 ///
 /// Owns no thread: a device's callback or a ServoThread calls tick(), or the owner of a loop calls
 /// step() and show(). One thread steps; functions marked "any thread" may be called meanwhile.
@@ -158,7 +158,7 @@ class Servo {
   /// Publishes the last step to other threads, with its measured timing. Real-time.
   void show(const ServoState::Timing& timing = {}) noexcept;
 
-  /// `state.force` in the device's frame.
+  /// `state.force` in the device's frame; zero for a device without force.
   [[nodiscard]] Eigen::Vector3d device_force() const noexcept;
 
   [[nodiscard]] Device& device() const noexcept;
