@@ -146,13 +146,13 @@ std::vector<DeviceProfile> read_device_profiles(const std::string& path) {
 }
 
 const std::vector<DeviceProfile>& device_profiles() {
-  static const std::vector<DeviceProfile> profiles = [] {
+  static const std::vector<DeviceProfile> kProfiles = [] {
     std::vector<DeviceProfile> all = parse_device_profiles(device::profiles_text(), "profiles");
     std::stable_partition(all.begin(), all.end(),
                           [](const DeviceProfile& each) { return each.name == "unknown"; });
     return all;
   }();
-  return profiles;
+  return kProfiles;
 }
 
 DeviceProfile device_profile(std::string_view name, const std::vector<DeviceProfile>& among) {
