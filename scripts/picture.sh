@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws the picture of the README anew, with the program as it is.
+# Redraws the picture of the README, with the program as it is.
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
 

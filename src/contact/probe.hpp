@@ -95,7 +95,7 @@ struct SurfacePoint {
 /// square, about 4e-8 R, and the normal is that of the place before it.
 [[nodiscard]] std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x) noexcept;
 
-/// Likewise where the first sample is known already: at most 10 more.
+/// The same where the first sample is known already: at most 10 more.
 [[nodiscard]] std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
                                                   const Sample& first) noexcept;
 

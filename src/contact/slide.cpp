@@ -78,8 +78,8 @@ class Slider {
   }
 
   // A sweep that only had what others left of the budget proves nothing when it is truncated: the
-  // proxy stays, lest the force drop for one step, and the next step looks again. One that had most
-  // of the budget goes on from where it ended. `swept`: what was spent before it.
+  // proxy stays, so that the force does not drop for one step, and the next step looks again. One
+  // that had most of the budget goes on from where it ended. `swept`: what was spent before it.
   [[nodiscard]] Turn leave(const Sweep& way, int swept) noexcept {
     const bool clear = way.end == Sweep::End::clear;
     if (!clear && swept >= kSweepWork / 2) {

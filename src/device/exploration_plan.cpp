@@ -36,7 +36,7 @@ struct Union {
   std::vector<Vector3f> normals;
   Box box;
   double radius = 0;   // of the source with most points
-  double spacing = 0;  // likewise; 0: not known
+  double spacing = 0;  // of the same source; 0: not known
 
   [[nodiscard]] ExploredSurface view() const {
     if (sources.size() > 1) return {origin, points, normals};

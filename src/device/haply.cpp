@@ -138,7 +138,7 @@ class HaplyDriver final : public DeviceDriver {
     if (!socket_.wait(before, kQuick)) {
       socket_.send(haply_command(id_, Vector3d::Zero()), kPatience);
       if (!socket_.wait(before, kPatience)) throw Error("the service stopped answering");
-      (void)socket_.wait(before + 1, kPatience);  // of the zero, lest it be taken for a later one
+      (void)socket_.wait(before + 1, kPatience);  // the zero's: no later answer
     }
     socket_.poll();
     return parse_haply_frame(socket_.newest());

@@ -47,7 +47,7 @@ const char* touch_opening_remedy(unsigned code) {
          "user access (udev rules; 'palpate doctor' explains)";
 }
 
-// What all devices of a program share. The mutex is for whoever opens or closes a device; frames
+// What all devices of a program share. The mutex is for threads that open or close a device; frames
 // never take it, and use only `errors`.
 struct Shared {
   struct Running {
@@ -100,8 +100,8 @@ class Rest {
   }
 
  private:
-  // Whether callbacks outlast a stop is not documented, so all are scheduled anew. Errors are found
-  // by the first frame, or by whoever misses it.
+  // Whether callbacks outlast a stop is not documented, so all are scheduled again. Errors are
+  // found by the first frame, or by the thread that misses it.
   void start() {
     for (auto& each : shared_.running) {
       each.handle = library_.schedule(call_tick, each.frames, hd::kDefaultPriority);

@@ -25,7 +25,7 @@ class Wakeup {
   Wakeup(const Wakeup&) = delete;
   Wakeup& operator=(const Wakeup&) = delete;
 
-  /// Wakes whoever waits now, or next. Takes no lock. Any thread.
+  /// Wakes the thread that waits now, or the next one. Takes no lock. Any thread.
   void post() noexcept { ::sem_post(&semaphore_); }
   /// Returns at a post, at `end`, or after a signal.
   void wait_until(std::chrono::steady_clock::time_point end) noexcept {
@@ -72,7 +72,7 @@ class OpenHapticsFrames {
   /// Waits for the frame that takes what was asked last, no longer than `patience` (s) while the
   /// device is not at rest.
   [[nodiscard]] std::optional<Answer> answer(double patience) noexcept;
-  /// The next frame calibrates the device anew, in one of the styles that it knows.
+  /// The next frame calibrates the device again, in one of the styles that it knows.
   void calibrate(int styles) noexcept { calibrate_ = styles; }
 
   // Whoever stops the scheduler.

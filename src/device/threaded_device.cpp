@@ -111,7 +111,7 @@ struct ThreadedDevice::Inside {
   WaitingClock& clock;
   ThreadedDeviceOptions options;
 
-  // Of whoever calls service().
+  // Of the thread that calls service().
   std::unique_ptr<DeviceDriver> driver;  // null: lost
   DeviceInfo info;                       // does not change; both read it
   Reading newest;

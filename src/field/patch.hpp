@@ -52,7 +52,7 @@ class Patch {
   /// Takes over what another has decided.
   void follow_sides(const Patch& other) noexcept { facing_.follow(other.facing_); }
 
-  /// Gathers anew at the same place after advance() was refused, and looks for points in those
+  /// Gathers again at the same place after advance() was refused, and looks for points in those
   /// layers alone that are others. False as gather() says it.
   bool renew(std::span<const ActiveLayer> layers, int sources, int most_visits,
              const Stance* stance = nullptr) noexcept;

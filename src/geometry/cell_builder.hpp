@@ -14,7 +14,7 @@ namespace palpate::detail {
 /// Sorts points along a Morton curve and cuts them into cells.
 ///
 /// Keys have a few levels only, in a box around the points; cells that stay too full, because
-/// density varies more than these levels resolve, are sorted anew with keys in their own box.
+/// density varies more than these levels resolve, are sorted again with keys in their own box.
 class CellBuilder {
  public:
   /// @throws Error when a position is not finite.

@@ -25,10 +25,10 @@ struct DepthImage {
 /// @throws Error when options.intrinsics or depth_unit are absent or senseless.
 [[nodiscard]] CloudFile cloud_of(const Input& input, const DepthImage& image);
 
-/// The camera that options.intrinsics describes. @throws Error likewise.
+/// The camera that options.intrinsics describes. @throws Error as above.
 [[nodiscard]] Pinhole intrinsics_of(const Input& input, const DepthImage& image);
 
-/// options.depth_unit, m. @throws Error likewise.
+/// options.depth_unit, m. @throws Error as above.
 [[nodiscard]] double unit_of(const Input& input);
 
 /// Is it a depth rather than a mark for "nothing measured"?

@@ -16,7 +16,7 @@ using Eigen::Vector3f;
 constexpr float kPlanarFit = 0.5f;  // confidence from which on a fit is a plane
 constexpr float kSmoothBend =
     0.03f;                          // of R that a quadric may leave: curvature passes, a crease not
-constexpr float kNoisyBend = 1.6f;  // of the noise, likewise
+constexpr float kNoisyBend = 1.6f;  // of the noise, as above
 constexpr float kNoiseReach = 2.5f;  // R within which noise is looked for
 constexpr float kNoisier = 2.5f;     // than typical that noise may be in places
 

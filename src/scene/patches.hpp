@@ -37,7 +37,7 @@ class Patches {
   /// later.
   void show(std::span<const ActiveLayer> layers, int sources, bool same) noexcept;
 
-  /// Gathers everything anew: the surface is another one.
+  /// Gathers everything again: the surface is another one.
   void forget() noexcept;
 
   /// The paper's section III-D: from now on the radius of the point nearest to x is that of all.

@@ -236,7 +236,7 @@ bool SceneField::is_free(const Ball& ball) const noexcept {
 }
 
 void SceneField::change(const FieldOptions& checked) noexcept {
-  if (checked == options_) return;  // nothing to gather anew
+  if (checked == options_) return;  // nothing to gather again
   options_ = checked;
   state_->surface.change(checked);
   state_->list_layers();

@@ -52,7 +52,7 @@ constexpr double kStartSpeed = 0.5;  // m/s
 constexpr double kSpeedUp = 2;
 constexpr double kFastest = 5;  // m/s
 
-constexpr double kForget = 0.2;    // s in which a speed of late is forgotten
+constexpr double kForget = 0.2;    // s in which a recent speed is forgotten
 constexpr double kLongStep = 0.1;  // s; over a longer gap a speed says nothing
 
 }  // namespace

@@ -63,7 +63,7 @@ class ToolReach {
   double scale_;
   double last_time_ = 0;
   Eigen::Vector3d last_hip_ = Eigen::Vector3d::Zero();
-  double speed_ = 0;  // of late, m/s
+  double speed_ = 0;  // recent, m/s
   bool started_ = false;
 };
 

@@ -37,7 +37,7 @@ float kinect_metres(std::uint16_t raw) {
 namespace {
 
 constexpr double kDrift = 2e-4;  // s per s; crystals differ by less
-constexpr double kJump = 1;      // s; a device whose clock jumped so far was started anew
+constexpr double kJump = 1;      // s; a device whose clock jumped so far was restarted
 
 }  // namespace
 

@@ -24,7 +24,7 @@ namespace palpate::sensor {
 /// taken, so the smallest difference between arrival and the device's time is the best guess of how
 /// the clocks differ; it may grow slowly, as clocks drift. What every frame takes at least to
 /// arrive is not known, and stays in the stamps. A device's time that goes back or jumps by a
-/// second begins anew.
+/// second starts again.
 class HostStamps {
  public:
   /// The host's time of a frame taken at `device` (s, the device's clock) that came at `arrival`
@@ -62,7 +62,7 @@ using Connect = std::function<std::unique_ptr<Connection>()>;
 
 /// What becomes of a device that is lost.
 enum class Lost {
-  opened_again,  ///< when it is asked for the next frame; likewise when it is silent for long
+  opened_again,  ///< when it is asked for the next frame; also when it is silent for long
   ended,         ///< a recording: opened again, it plays from its beginning
 };
 

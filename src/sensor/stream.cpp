@@ -109,7 +109,7 @@ struct Stream::Threads {
   const StreamOptions options;
   DepthCamera& camera;                // the reading thread's
   const FrameSink sink;               // the preparing thread's
-  const std::function<void()> ended;  // likewise; may be empty
+  const std::function<void()> ended;  // may be empty
   const Clock& clock;
   StreamStatistics log;
   FrameCheck check;  // the reading thread's
@@ -117,7 +117,7 @@ struct Stream::Threads {
   FrameExchange exchange;
   bool compared = false;  // the first frame's stamp with the clock; the reading thread's
   std::string reason;     // why the last answer was no frame; the reading thread's
-  double tail = 0;        // s from asking for a start to the end, of late; the preparing thread's
+  double tail = 0;        // s from asking for a start to the end, recent; the preparing thread's
   std::thread preparing;
   std::thread reading;
 };

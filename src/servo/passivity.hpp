@@ -43,7 +43,7 @@ class Passivity {
   /// The ledger, J, when what is on its way has acted, if the hand goes on by `way` (m) a step.
   [[nodiscard]] double committed(const Eigen::Vector3d& way) const noexcept;
 
-  /// J; above zero: given to the hand, below: taken from it of late.
+  /// J; above zero: given to the hand, below: taken from it recently.
   [[nodiscard]] double energy() const noexcept { return energy_; }
   void reset() noexcept;
 

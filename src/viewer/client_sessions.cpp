@@ -59,7 +59,7 @@ void ClientSessions::leave(Session& session) {
     try {
       release(device);
     } catch (const std::exception&) {
-      continue;  // whoever would have to know is gone
+      continue;  // the client that would have to know is gone
     }
   }
 }

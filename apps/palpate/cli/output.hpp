@@ -27,7 +27,7 @@ class OutputFile {
   OutputFile& operator=(OutputFile&&) = delete;
   /// @throws Error when it cannot be written.
   void write(std::string_view text);
-  /// Brings everything to the disk and to its place. @throws Error likewise.
+  /// Brings everything to the disk and to its place. @throws Error as the constructor does.
   void close();
 
   /// Where it grows, for a program that this one starts; what it writes there comes to its place as

@@ -19,10 +19,10 @@ namespace palpate::app {
 /// A length in metres with a fitting unit: "2.54 mm", "0.8 um", "1.42 km".
 [[nodiscard]] std::string length(double metres);
 
-/// An energy in joules likewise: "-12.3 mJ".
+/// An energy in joules in the same way: "-12.3 mJ".
 [[nodiscard]] std::string energy(double joules);
 
-/// A time in seconds likewise: "0.35 s", "12 ms".
+/// A time in seconds in the same way: "0.35 s", "12 ms".
 [[nodiscard]] std::string duration(double seconds);
 
 /// By nearest rank: the smallest of `sorted` that a share (0 to 1) of them is no larger than; 0 of

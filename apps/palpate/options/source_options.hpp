@@ -22,7 +22,7 @@ struct SourcePlan {
   SourceOptions options;                ///< with its pose
   std::optional<double> farthest = {};  ///< depth, m; unset: chosen by the first frame
   bool as_cloud = false;                ///< depths are taken as points, not by the depth filter
-  bool loop = false;                    ///< a sequence begins anew at its end
+  bool loop = false;                    ///< a sequence starts again at its end
 };
 
 /// Registers the options that say how the bytes of a file become points.

@@ -64,7 +64,7 @@ void set(ViewSettings& settings, const std::string& key, const Setting::Value& v
 /// infinite where it has none.
 [[nodiscard]] double deepest_texture(const Scene& scene);
 
-/// Prepares the sources of a run anew, on a thread of its own, as somebody who watches wants them.
+/// Prepares the sources of a run again, on a thread of its own, with the settings of the page.
 /// Of wishes that come faster than it works the last one counts. What fails is taken back.
 class Preparer {
  public:

@@ -58,7 +58,7 @@ struct LoadedScene {
 
 struct LoadOptions {
   bool explored = false;         ///< the surface has to be there before the run
-  bool keep_clouds = false;      ///< somebody may want them prepared anew
+  bool keep_clouds = false;      ///< the page may ask to prepare them again
   const Clock* clock = nullptr;  ///< of cameras, which it outlives; null: simulated time
 };
 

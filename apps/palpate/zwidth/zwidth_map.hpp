@@ -30,7 +30,7 @@ struct ZWidthRow {
   double colgate = 0;  ///< 2 (b + B) / (T + 2 T_d)
   double stable = 0;   ///< oscillations do not grow
   double passive = 0;  ///< no impact comes out faster than it went in
-  double braked = 0;   ///< likewise, with the guard's brake
+  double braked = 0;   ///< the same, with the guard's brake
 };
 
 struct ZWidthMap {

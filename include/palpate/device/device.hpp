@@ -88,7 +88,7 @@ class Device {
 };
 
 /// The numbers of a kind of device. Makers seldom publish all of them: unset means unknown, and
-/// whoever uses it assumes a safe value.
+/// its user assumes a safe value.
 struct DeviceProfile {
   std::string name;                         ///< "omega": for profile=NAME
   std::string title;                        ///< "Force Dimension omega.3"

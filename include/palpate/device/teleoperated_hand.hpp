@@ -28,7 +28,7 @@ class RemoteTarget {
   /// follows.
   bool move(const HandTarget& target, double stamp) noexcept;
 
-  /// Whoever holds the tool is still connected and keeps it still: a mouse that rests sends
+  /// The user of the tool is still connected and keeps it still: a mouse that rests sends
   /// nothing, so its connection calls this, more often than the reader's command_timeout.
   void keep_alive() noexcept;
 

@@ -46,7 +46,7 @@ class CellGrid {
   /// @throws Error when there are more points than that, or one is not finite.
   explicit CellGrid(std::span<const Eigen::Vector3f> positions);
 
-  /// Builds the index anew, in the memory of the last one, of points that stand along a curve
+  /// Builds the index again, in the memory of the last one, of points that stand along a curve
   /// already, as those of a depth image do: `codes`, which never fall, say where on it, two bits a
   /// level. A cell's points agree in their leading bits; those that agree in all of them stay
   /// together, however many. Their order is kept. Allocates only to grow. Positions are finite.

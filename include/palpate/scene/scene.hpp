@@ -24,7 +24,7 @@ class Scene {
   Source& add(std::string name, const SourceOptions& options = {});
 
   /// Adds a static cloud, and prepares it here.
-  /// @throws Error likewise, and as prepare() does.
+  /// @throws Error as above, and as prepare() does.
   Source& add(std::string name, const PointCloud& cloud, const SourceOptions& options = {});
 
   [[nodiscard]] std::size_t size() const { return sources_.size(); }

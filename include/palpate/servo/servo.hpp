@@ -21,7 +21,7 @@ namespace palpate {
 
 /// All that a servo knows of its last step, for those who watch. World frame.
 struct ServoState {
-  /// What whoever paces a servo measured of a step, s. Not a number: not measured.
+  /// Times of a step, measured by the loop that paces the servo, s. Not a number: not measured.
   struct Timing {
     double lateness = std::numeric_limits<double>::quiet_NaN();   ///< after it was due
     double computing = std::numeric_limits<double>::quiet_NaN();  ///< of the thread, without others

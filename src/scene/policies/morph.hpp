@@ -57,7 +57,7 @@ class Morph {
   void fill(const MorphInput& input, const FrameTiming& moment,
             const std::shared_ptr<SurfacePoints>& points);
 
-  /// Likewise, with nothing before the frame and no motion.
+  /// The same with nothing before the frame and no motion.
   void fill_still(const MorphInput& input, const FrameTiming& moment,
                   const std::shared_ptr<SurfacePoints>& points);
 

@@ -1,5 +1,5 @@
 // The part of the address after '#': the program's token, then settings as key=value.
-// Whoever has such a link may steer the program: it says so where it is copied.
+// A person with such a link may steer the program: it says so where it is copied.
 
 import type { Setting, SettingValue } from "./messages";
 
