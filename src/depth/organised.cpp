@@ -1,3 +1,4 @@
+// The camera that saw an organised cloud: its lens and orientation, from points and their pixels.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>

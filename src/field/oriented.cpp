@@ -1,3 +1,4 @@
+// Values and gradients of surfaces from normals; notation in oriented.hpp, derivation in method.md.
 #include "field/oriented.hpp"
 
 namespace palpate {

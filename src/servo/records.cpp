@@ -1,3 +1,4 @@
+// What a servo records: durations of steps, recent forces, the steps themselves.
 #include "servo/records.hpp"
 
 #include <algorithm>
