@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -50,6 +51,8 @@ struct DepthFrame {
       T_world_sensor;        ///< at the stamp; unset: where the source stands
   std::vector<float> depth;  ///< along the optical axis, m, row by row; 0: nothing measured
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< of the same pixels; may be empty
+  /// Of a sensor that delivers points: these, in its frame, in place of depths and camera.
+  std::shared_ptr<const PointCloud> cloud;
 };
 
 /// 16-bit depth, as cameras, drivers and files give it, in metres, as a DepthFrame holds it:

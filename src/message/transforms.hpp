@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "message/geometry_types.hpp"
+
+namespace palpate::message {
+
+[[nodiscard]] double to_seconds(const Time& time);
+/// `seconds` from 0 to 2^31; what is not becomes 0.
+[[nodiscard]] Time to_time(double seconds);
+
+/// A pose as messages have it. Nothing when it is not finite, or its rotation not of unit length to
+/// 1 %.
+[[nodiscard]] std::optional<Eigen::Isometry3d> isometry(const Vector3& translation,
+                                                        const Quaternion& rotation);
+[[nodiscard]] std::optional<Eigen::Isometry3d> isometry(const Pose& pose);
+[[nodiscard]] Pose pose_of(const Eigen::Isometry3d& pose);
+[[nodiscard]] Transform transform_of(const Eigen::Isometry3d& pose);
+[[nodiscard]] Vector3 vector_of(const Eigen::Vector3d& vector);
+[[nodiscard]] Eigen::Vector3d eigen(const Vector3& vector);
+
+/// Where frames of reference are in one another, from /tf and /tf_static: a tree, each frame with a
+/// parent. Keeps the last 10 s of what moves. Not thread-safe.
+class Transforms {
+ public:
+  /// Those that are no pose, or make no tree, are left out.
+  void add(const TFMessage& message, bool is_static);
+
+  /// From the axes of `from` to those of `to` at `stamp` (s): straight and by slerp between two
+  /// known poses. Nothing when they are not connected, or a part of the way is not known at that
+  /// time (what moves: up to 0.25 s from the nearest pose on either side); `why` then says which.
+  [[nodiscard]] std::optional<Eigen::Isometry3d> find(const std::string& to,
+                                                      const std::string& from, double stamp,
+                                                      std::string* why = nullptr) const;
+
+ private:
+  struct Known {
+    double stamp = 0;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  };
+  struct Link {
+    std::string parent;
+    bool is_static = false;
+    std::deque<Known> poses;  // in the order of time
+  };
+
+  [[nodiscard]] static std::optional<Eigen::Isometry3d> at(const Link& link, double stamp);
+  [[nodiscard]] std::vector<std::string> ancestors(const std::string& frame) const;
+  [[nodiscard]] std::optional<Eigen::Isometry3d> climb(const std::string& frame,
+                                                       const std::string& root, double stamp,
+                                                       std::string* why) const;
+
+  std::map<std::string, Link> links_;  // by the child's name
+};
+
+}  // namespace palpate::message

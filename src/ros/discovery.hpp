@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ros/domain.hpp"
+
+namespace palpate::ros {
+
+/// A writer or reader of a ROS topic that somebody has, this process included.
+struct Endpoint {
+  std::string topic;  ///< "/camera/depth"
+  std::string type;   ///< "sensor_msgs/Image"; a type that is none of ROS's as it is named on DDS
+  std::string hash;   ///< "RIHS01_..."; empty: it tells none
+  bool writes = false;
+  bool reliable = false;
+  bool stays = false;  ///< transient local
+};
+
+/// What is known by now, by topic: a participant learns it in the first second or so. Topics of
+/// ROS's services and actions are left out. Any thread but a servo's.
+[[nodiscard]] std::vector<Endpoint> endpoints(const Participant& participant);
+
+}  // namespace palpate::ros

@@ -1,0 +1,254 @@
+#include "ros/ros_camera.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <thread>
+#include <variant>
+
+#include "message/depth_images.hpp"
+#include "message/point_clouds.hpp"
+#include "message/transforms.hpp"
+#include "palpate/base/error.hpp"
+#include "ros/discovery.hpp"
+#include "ros/endpoint.hpp"
+
+namespace palpate::ros {
+namespace {
+
+using namespace message;
+
+constexpr double kOtherClock = 10;      // s: stamps so far from now are of another clock
+constexpr double kTransformWait = 0.1;  // s that a frame waits for its transform
+constexpr double kLook = 0.05;          // s between looks for a publisher
+constexpr Quality kSensor{.reliable = false, .depth = 2};
+constexpr Quality kTf{.reliable = true, .depth = 100};
+constexpr Quality kTfStatic{.reliable = true, .depth = 100, .stays = true};
+
+std::optional<std::string> variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+}
+
+double system_now() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+// A topic and where its images are to be placed.
+struct CameraName {
+  std::string topic;
+  std::string frame;  // empty: nowhere
+};
+
+CameraName parse(const std::string& name) {
+  const std::size_t comma = std::min(name.find(','), name.size());
+  CameraName parsed{name.substr(0, comma), {}};
+  if (comma == name.size()) return parsed;
+  const std::string option = name.substr(comma + 1);
+  if (!option.starts_with("frame=") || option.size() == 6 ||
+      option.find(',') != std::string::npos) {
+    throw Error(
+        fmt::format("ros:{}: '{}' is not an option; write ros:TOPIC,frame=FRAME", name, option));
+  }
+  parsed.frame = option.substr(6);
+  return parsed;
+}
+
+// What /tf and /tf_static have said so far.
+class TransformListener {
+ public:
+  explicit TransformListener(const Participant& participant)
+      : moving_(participant, "/tf", kTf), static_(participant, "/tf_static", kTfStatic) {}
+
+  const Transforms& newest() {
+    take(static_, true);
+    take(moving_, false);
+    return transforms_;
+  }
+
+  void wait(double timeout) const { moving_.wait(timeout); }
+
+ private:
+  void take(Reader<TFMessage>& reader, bool is_static) {
+    TFMessage message;
+    for (bool more = true; more;) {
+      try {
+        more = reader.take(message);
+        if (more) transforms_.add(message, is_static);
+      } catch (const Error&) {
+        // A damaged message says nothing of where frames are; the next one comes soon.
+      }
+    }
+  }
+
+  Reader<TFMessage> moving_;
+  Reader<TFMessage> static_;
+  Transforms transforms_;
+};
+
+class RosCamera final : public DepthCamera {
+ public:
+  RosCamera(const std::string& name, const Clock* clock)
+      : name_(parse(name)),
+        info_{.name = "ros:" + name_.topic, .rate = 30, .paces = true, .repeats = true},
+        clock_(clock != nullptr ? *clock : host_),
+        participant_(options_from(variable)) {
+    if (!name_.frame.empty()) transforms_.emplace(participant_);
+    // Says at once when the topic's name is none.
+    infos_.emplace(participant_, info_topic(name_.topic), kSensor);
+  }
+
+  [[nodiscard]] const palpate::CameraInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] std::string reason() const override { return reason_; }
+  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override;
+
+ private:
+  using Images =
+      std::variant<std::monostate, std::unique_ptr<Reader<Image>>,
+                   std::unique_ptr<Reader<CompressedImage>>, std::unique_ptr<Reader<PointCloud2>>>;
+
+  bool connect(double timeout);
+  void take_infos();
+  template <class Message>
+  CameraStatus take(Reader<Message>& reader, DepthFrame& frame, double timeout);
+  void fill(const Image& message, DepthFrame& frame) { fill_image(message, frame); }
+  void fill(const CompressedImage& message, DepthFrame& frame) { fill_image(message, frame); }
+  void fill(const PointCloud2& message, DepthFrame& frame) const;
+  void fill_image(const auto& message, DepthFrame& frame);
+  [[nodiscard]] double stamp_of(const Header& header) const;
+  bool place(const Header& header, DepthFrame& frame);
+
+  CameraName name_;
+  palpate::CameraInfo info_;
+  SteadyClock host_;
+  const Clock& clock_;
+  Participant participant_;
+  std::optional<TransformListener> transforms_;
+  std::optional<Reader<message::CameraInfo>> infos_;
+  Images images_;
+  std::optional<CameraModel> camera_;
+  std::string no_camera_ = "no CameraInfo has come yet";
+  std::string reason_;
+};
+
+// Once there is a publisher, its type decides what is read.
+bool RosCamera::connect(double timeout) {
+  if (!std::holds_alternative<std::monostate>(images_)) return true;
+  std::string other;
+  for (const Endpoint& there : endpoints(participant_)) {
+    if (!there.writes || there.topic != name_.topic) continue;
+    const auto make = [&]<class Message>(std::unique_ptr<Reader<Message>> none) {
+      if (there.type != Message::kName) return false;
+      none = std::make_unique<Reader<Message>>(participant_, name_.topic, kSensor);
+      images_ = std::move(none);
+      return true;
+    };
+    if (make(std::unique_ptr<Reader<Image>>()) ||
+        make(std::unique_ptr<Reader<CompressedImage>>()) ||
+        make(std::unique_ptr<Reader<PointCloud2>>())) {
+      return true;
+    }
+    other = there.type;
+  }
+  reason_ = other.empty()
+                ? fmt::format("nobody publishes {}; 'palpate ros' lists what is there", name_.topic)
+                : fmt::format(
+                      "{} has type {}; depth comes as sensor_msgs Image, CompressedImage or "
+                      "PointCloud2",
+                      name_.topic, other);
+  std::this_thread::sleep_for(std::chrono::duration<double>(std::min(timeout, kLook)));
+  return false;
+}
+
+CameraStatus RosCamera::read(DepthFrame& frame, double timeout) {
+  reason_.clear();
+  if (!connect(timeout)) return CameraStatus::waiting;
+  return std::visit(
+      [&](auto& reader) {
+        if constexpr (std::is_same_v<decltype(reader), std::monostate&>) {
+          return CameraStatus::waiting;
+        } else {
+          return take(*reader, frame, timeout);
+        }
+      },
+      images_);
+}
+
+template <class Message>
+CameraStatus RosCamera::take(Reader<Message>& reader, DepthFrame& frame, double timeout) {
+  if (!reader.wait(timeout)) return CameraStatus::waiting;
+  take_infos();
+  try {
+    Message message;
+    if (!reader.take(message)) return CameraStatus::waiting;
+    fill(message, frame);
+    frame.stamp = stamp_of(message.header);
+    return place(message.header, frame) ? CameraStatus::frame : CameraStatus::unposed;
+  } catch (const Error& error) {
+    reason_ = error.what();
+    return CameraStatus::damaged;
+  }
+}
+
+void RosCamera::take_infos() {
+  message::CameraInfo told;
+  for (bool more = true; more;) {
+    try {
+      more = infos_->take(told);
+      if (more) camera_ = camera_of(told, is_rectified(name_.topic));
+    } catch (const Error& error) {
+      camera_.reset();
+      no_camera_ = error.what();
+    }
+  }
+}
+
+void RosCamera::fill_image(const auto& message, DepthFrame& frame) {
+  if (!camera_) throw Error(fmt::format("{}: {}", infos_->topic(), no_camera_));
+  frame.camera = *camera_;
+  read_depth(message, frame);
+  if (frame.camera.width != camera_->width || frame.camera.height != camera_->height) {
+    throw Error(fmt::format("an image of {} x {} pixels, but {} tells of {} x {}",
+                            frame.camera.width, frame.camera.height, infos_->topic(),
+                            camera_->width, camera_->height));
+  }
+}
+
+void RosCamera::fill(const PointCloud2& message, DepthFrame& frame) const {
+  frame.depth.clear();
+  frame.colors.clear();
+  frame.cloud = std::make_shared<const PointCloud>(cloud_of(message));
+}
+
+double RosCamera::stamp_of(const Header& header) const {
+  const double now = clock_.now();
+  const double age = system_now() - to_seconds(header.stamp);
+  return std::abs(age) < kOtherClock ? now - age : now;
+}
+
+bool RosCamera::place(const Header& header, DepthFrame& frame) {
+  frame.T_world_sensor.reset();
+  if (!transforms_) return true;
+  const double stamp = to_seconds(header.stamp);
+  for (const double end = clock_.now() + kTransformWait; !frame.T_world_sensor;) {
+    frame.T_world_sensor =
+        transforms_->newest().find(name_.frame, header.frame_id, stamp, &reason_);
+    const double left = end - clock_.now();
+    if (frame.T_world_sensor || left <= 0) break;
+    transforms_->wait(std::min(left, 0.01));
+  }
+  if (frame.T_world_sensor) reason_.clear();
+  return frame.T_world_sensor.has_value();
+}
+
+}  // namespace
+
+std::unique_ptr<DepthCamera> open_ros_camera(const std::string& name, const Clock* clock) {
+  return std::make_unique<RosCamera>(name, clock);
+}
+
+}  // namespace palpate::ros
