@@ -21,6 +21,7 @@ bool is_camera(const CameraModel& camera) {
 }
 
 std::optional<Objection> check_form(const DepthFrame& frame) {
+  if (frame.cloud) return {};
   const CameraModel& camera = frame.camera;
   if (!is_camera(camera)) {
     return Objection{
@@ -106,6 +107,7 @@ std::optional<Objection> FrameCheck::check_stamp(double stamp, double latest) co
 }
 
 std::optional<Objection> FrameCheck::check_size(const DepthFrame& frame) {
+  if (frame.cloud) return {};  // clouds have as many points as there happen to be
   const Size size{frame.camera.width, frame.camera.height};
   if (size_ == Size{}) size_ = size;
   if (size == size_) {
@@ -126,6 +128,7 @@ std::optional<Objection> FrameCheck::check_size(const DepthFrame& frame) {
 }
 
 std::optional<Objection> FrameCheck::check_picture(const DepthFrame& frame) {
+  if (frame.cloud) return {};
   if (is_empty(frame.depth)) {
     return Objection{&StreamState::Drops::empty,
                      "a frame without any depth: is the lens covered, or everything out of range?"};

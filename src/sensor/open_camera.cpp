@@ -44,15 +44,16 @@ std::unique_ptr<DepthCamera> open_camera(const std::string& name, const CameraOp
   }
   if (driver == "openni2") return open_openni2(device, options);
   if (driver == "freenect") return open_freenect(device, options);
+  if (driver == "ros") return open_ros(device, options);
   if (name.ends_with(".oni")) return open_openni2(name, options);
-  throw Error(
-      fmt::format("{}: no such camera. Cameras are simulated[:SCENE], sequence:DIR, openni2[:URI], "
-                  "FILE.oni and freenect[:NUMBER]; 'palpate cameras' lists those connected.",
-                  name));
+  throw Error(fmt::format(
+      "{}: no such camera. Cameras are simulated[:SCENE], sequence:DIR, openni2[:URI], "
+      "FILE.oni, freenect[:NUMBER] and ros:TOPIC; 'palpate cameras' lists those connected.",
+      name));
 }
 
 std::vector<DriverInfo> list_cameras() {
-  return {simulated_driver(), sequence_driver(), openni2_driver(), freenect_driver()};
+  return {simulated_driver(), sequence_driver(), openni2_driver(), freenect_driver(), ros_driver()};
 }
 
 }  // namespace palpate

@@ -156,7 +156,8 @@ CloudArgument split_argument(const std::string& text) {
 }
 
 bool lives(const std::string& path) {
-  return path.starts_with(kCamera) || path.starts_with(kSequence) || path.ends_with(".oni");
+  return path.starts_with(kCamera) || path.starts_with(kSequence) || path.starts_with(kRos) ||
+         path.ends_with(".oni");
 }
 
 bool names_something(const std::string& path) {

@@ -14,6 +14,7 @@ namespace palpate::app {
 inline constexpr std::string_view kSynthetic = "synthetic:";
 inline constexpr std::string_view kCamera = "camera:";
 inline constexpr std::string_view kSequence = "sequence:";
+inline constexpr std::string_view kRos = "ros:";
 
 /// A source as named on the command line: NAME=PATH, or PATH alone.
 struct CloudArgument {

@@ -177,7 +177,8 @@ void add_facts(RunFacts& facts, const SourcePlan& source) {
   const bool cloud = !depth || organised || source.as_cloud;
   facts.stream |= stream;
   facts.is_static |= !stream;
-  facts.recorded |= stream && (!path.starts_with(kCamera) || path.ends_with(".oni"));
+  facts.recorded |=
+      stream && !path.starts_with(kRos) && (!path.starts_with(kCamera) || path.ends_with(".oni"));
   facts.image |= !stream && may_be_image(path);
   facts.depth |= depth;
   facts.filtered |= depth && !source.as_cloud;

@@ -249,13 +249,13 @@ void begin_run(LoadedScene& loaded, const SoftMaterial& soft) {
 
 void push_frame(const LoadedSource& from, Source& to, const DepthFrame& frame,
                 const StartTime& start) {
-  if (!from.plan.as_cloud) {
+  if (!from.plan.as_cloud && !frame.cloud) {
     check_range(frame, from.plan.options.depth);
     to.push(frame, start);
     return;
   }
   if (frame.T_world_sensor) to.set_pose(*frame.T_world_sensor);
-  to.push(cloud_of(frame), frame.stamp, start);
+  to.push(frame.cloud ? *frame.cloud : cloud_of(frame), frame.stamp, start);
 }
 
 }  // namespace palpate::app

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "ros/domain.hpp"
+#include "dds/domain.hpp"
 
-namespace palpate::ros {
+namespace palpate::dds {
 
 /// A writer or reader of a ROS topic that somebody has, this process included.
 struct Endpoint {
@@ -21,4 +21,4 @@ struct Endpoint {
 /// ROS's services and actions are left out. Any thread but a servo's.
 [[nodiscard]] std::vector<Endpoint> endpoints(const Participant& participant);
 
-}  // namespace palpate::ros
+}  // namespace palpate::dds

@@ -1,4 +1,4 @@
-#include "ros/domain.hpp"
+#include "dds/domain.hpp"
 
 #include <dds/dds.h>
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 
 #include "palpate/base/error.hpp"
 
-namespace palpate::ros {
+namespace palpate::dds {
 namespace {
 
 constexpr std::uint32_t kLargestDomain = 232;    // whose ports are below 65536
@@ -119,4 +119,4 @@ Participant::~Participant() {
   dds_delete(participant_);
 }
 
-}  // namespace palpate::ros
+}  // namespace palpate::dds

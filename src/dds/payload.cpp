@@ -1,11 +1,11 @@
-#include "ros/payload.hpp"
+#include "dds/payload.hpp"
 
 #include <dds/ddsi/q_radmin.h>
 
 #include <algorithm>
 #include <cstring>
 
-namespace palpate::ros {
+namespace palpate::dds {
 namespace {
 
 struct Payload : ddsi_serdata {
@@ -146,4 +146,4 @@ std::span<const std::uint8_t> bytes_of(const ddsi_serdata* value) {
   return payload(value).bytes;
 }
 
-}  // namespace palpate::ros
+}  // namespace palpate::dds

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::ros {
+namespace palpate::dds {
 
 /// The DDS type of that name whose values are encoded bytes that nobody looks into: one code for
 /// every message, without a description of types on the wire, so that types match by name as they
@@ -23,4 +23,4 @@ namespace palpate::ros {
 /// The bytes of a value that was received, as long as it is held.
 [[nodiscard]] std::span<const std::uint8_t> bytes_of(const ddsi_serdata* value);
 
-}  // namespace palpate::ros
+}  // namespace palpate::dds

@@ -1,4 +1,4 @@
-#include "ros/endpoint.hpp"
+#include "dds/endpoint.hpp"
 
 #include <dds/dds.h>
 #include <fmt/format.h>
@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 
+#include "dds/payload.hpp"
 #include "palpate/base/error.hpp"
-#include "ros/payload.hpp"
 
-namespace palpate::ros {
+namespace palpate::dds {
 namespace {
 
 // A writer that waits for slow readers does not wait longer.
@@ -136,4 +136,4 @@ std::size_t RawWriter::readers() const {
   return matched.current_count;
 }
 
-}  // namespace palpate::ros
+}  // namespace palpate::dds

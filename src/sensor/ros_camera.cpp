@@ -1,5 +1,4 @@
-#include "ros/ros_camera.hpp"
-
+// Depth images and clouds of ROS 2, over DDS.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,16 +9,18 @@
 #include <thread>
 #include <variant>
 
+#include "dds/discovery.hpp"
+#include "dds/endpoint.hpp"
 #include "message/depth_images.hpp"
 #include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
 #include "palpate/base/error.hpp"
-#include "ros/discovery.hpp"
-#include "ros/endpoint.hpp"
+#include "sensor/drivers.hpp"
 
-namespace palpate::ros {
+namespace palpate::sensor {
 namespace {
 
+using namespace dds;
 using namespace message;
 
 constexpr double kOtherClock = 10;      // s: stamps so far from now are of another clock
@@ -247,8 +248,15 @@ bool RosCamera::place(const Header& header, DepthFrame& frame) {
 
 }  // namespace
 
-std::unique_ptr<DepthCamera> open_ros_camera(const std::string& name, const Clock* clock) {
-  return std::make_unique<RosCamera>(name, clock);
+DriverInfo ros_driver() {
+  return {.name = "ros",
+          .description = "topics of ROS 2: ros:TOPIC[,frame=FRAME] ('palpate ros' lists them)",
+          .missing = {},
+          .devices = {}};
 }
 
-}  // namespace palpate::ros
+std::unique_ptr<DepthCamera> open_ros(const std::string& name, const CameraOptions& options) {
+  return std::make_unique<RosCamera>(name, options.clock);
+}
+
+}  // namespace palpate::sensor

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "dds/domain.hpp"
 #include "message/cdr.hpp"
 #include "message/schema.hpp"
-#include "ros/domain.hpp"
 
-namespace palpate::ros {
+namespace palpate::dds {
 
 /// What an endpoint asks of, or offers to, those at the other end (docs/ros2.md).
 struct Quality {
@@ -100,4 +100,4 @@ class Writer : public RawWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-}  // namespace palpate::ros
+}  // namespace palpate::dds

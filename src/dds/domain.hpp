@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace palpate::ros {
+namespace palpate::dds {
 
 /// Who is told of what palpate publishes and wants.
 enum class Range {
@@ -47,4 +47,4 @@ class Participant {
   std::int32_t participant_ = 0;
 };
 
-}  // namespace palpate::ros
+}  // namespace palpate::dds

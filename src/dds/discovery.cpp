@@ -1,4 +1,4 @@
-#include "ros/discovery.hpp"
+#include "dds/discovery.hpp"
 
 #include <dds/dds.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <memory>
 
-namespace palpate::ros {
+namespace palpate::dds {
 namespace {
 
 // "sensor_msgs/Image" of "sensor_msgs::msg::dds_::Image_".
@@ -78,4 +78,4 @@ std::vector<Endpoint> endpoints(const Participant& participant) {
   return found;
 }
 
-}  // namespace palpate::ros
+}  // namespace palpate::dds
