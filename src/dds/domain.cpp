@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdlib>
 #include <fstream>
 
 #include "palpate/base/error.hpp"
@@ -80,6 +81,15 @@ DomainOptions options_from(
   const auto settings = environment("CYCLONEDDS_URI");
   options.own_settings = !settings || settings->empty();
   return options;
+}
+
+DomainOptions environment_options(std::optional<Range> range) {
+  return options_from(
+      [](const char* name) {
+        const char* value = std::getenv(name);
+        return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+      },
+      range);
 }
 
 std::string settings_of(const DomainOptions& options, std::size_t receive_buffer) {

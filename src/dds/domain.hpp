@@ -27,6 +27,9 @@ struct DomainOptions {
     const std::function<std::optional<std::string>(const char*)>& environment,
     std::optional<Range> range = {});
 
+/// The same of this process's environment.
+[[nodiscard]] DomainOptions environment_options(std::optional<Range> range = {});
+
 /// Cyclone DDS's settings for them. `receive_buffer`: the largest that the system allows, bytes.
 [[nodiscard]] std::string settings_of(const DomainOptions& options, std::size_t receive_buffer);
 

@@ -46,6 +46,11 @@ void check_options(const DeviceName& name, std::initializer_list<std::string_vie
 /// Device: its id; options: url=ws://HOST:PORT, profile=NAME.
 [[nodiscard]] std::unique_ptr<DeviceDriver> open_haply(const DeviceName& name, const Clock& clock);
 
+[[nodiscard]] DriverInfo list_ros();
+/// Device: a preset of topics (docs/ros2.md); options: ns=, pose=, wrench=, twist=, joy= (topics),
+/// delay=MS, profile=NAME.
+[[nodiscard]] std::unique_ptr<DeviceDriver> open_ros(const DeviceName& name, const Clock& clock);
+
 [[nodiscard]] DriverInfo list_openhaptics();
 /// Device: its name in the maker's set-up; options: library=PATH, profile=NAME.
 [[nodiscard]] std::unique_ptr<DeviceDriver> open_openhaptics(const DeviceName& name,

@@ -66,10 +66,11 @@ struct Driver {
   DriverInfo (*list)();
 };
 
-constexpr std::array<Driver, 3> kDrivers = {
+constexpr std::array<Driver, 4> kDrivers = {
     {{"forcedimension", device::open_forcedimension, device::list_forcedimension},
      {"openhaptics", device::open_openhaptics, device::list_openhaptics},
-     {"haply", device::open_haply, device::list_haply}}};
+     {"haply", device::open_haply, device::list_haply},
+     {"ros", device::open_ros, device::list_ros}}};
 
 }  // namespace
 
@@ -79,8 +80,8 @@ std::unique_ptr<ThreadedDevice> open_device(const std::string& name, WaitingCloc
   const auto* const driver = std::ranges::find(kDrivers, parsed.driver, &Driver::name);
   if (driver == kDrivers.end()) {
     throw Error(
-        fmt::format("{}: no such device. Devices are forcedimension[:N], openhaptics[:NAME] and "
-                    "haply[:ID]; 'palpate devices' lists those connected",
+        fmt::format("{}: no such device. Devices are forcedimension[:N], openhaptics[:NAME], "
+                    "haply[:ID] and ros:PRESET; 'palpate devices' lists those connected",
                     name));
   }
   return std::make_unique<ThreadedDevice>(

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <thread>
 #include <variant>
@@ -20,8 +19,14 @@
 namespace palpate::sensor {
 namespace {
 
-using namespace dds;
-using namespace message;
+using dds::Quality;
+using dds::Reader;
+using message::CompressedImage;
+using message::Header;
+using message::Image;
+using message::PointCloud2;
+using message::TFMessage;
+using message::Transforms;
 
 constexpr double kOtherClock = 10;      // s: stamps so far from now are of another clock
 constexpr double kTransformWait = 0.1;  // s that a frame waits for its transform
@@ -29,11 +34,6 @@ constexpr double kLook = 0.05;          // s between looks for a publisher
 constexpr Quality kSensor{.reliable = false, .depth = 2};
 constexpr Quality kTf{.reliable = true, .depth = 100};
 constexpr Quality kTfStatic{.reliable = true, .depth = 100, .stays = true};
-
-std::optional<std::string> variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? std::nullopt : std::optional<std::string>(value);
-}
 
 double system_now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -62,7 +62,7 @@ CameraName parse(const std::string& name) {
 // What /tf and /tf_static have said so far.
 class TransformListener {
  public:
-  explicit TransformListener(const Participant& participant)
+  explicit TransformListener(const dds::Participant& participant)
       : moving_(participant, "/tf", kTf), static_(participant, "/tf_static", kTfStatic) {}
 
   const Transforms& newest() {
@@ -97,10 +97,10 @@ class RosCamera final : public DepthCamera {
       : name_(parse(name)),
         info_{.name = "ros:" + name_.topic, .rate = 30, .paces = true, .repeats = true},
         clock_(clock != nullptr ? *clock : host_),
-        participant_(options_from(variable)) {
+        participant_(dds::environment_options()) {
     if (!name_.frame.empty()) transforms_.emplace(participant_);
     // Says at once when the topic's name is none.
-    infos_.emplace(participant_, info_topic(name_.topic), kSensor);
+    infos_.emplace(participant_, message::info_topic(name_.topic), kSensor);
   }
 
   [[nodiscard]] const palpate::CameraInfo& info() const noexcept override { return info_; }
@@ -127,7 +127,7 @@ class RosCamera final : public DepthCamera {
   palpate::CameraInfo info_;
   SteadyClock host_;
   const Clock& clock_;
-  Participant participant_;
+  dds::Participant participant_;
   std::optional<TransformListener> transforms_;
   std::optional<Reader<message::CameraInfo>> infos_;
   Images images_;
@@ -140,7 +140,7 @@ class RosCamera final : public DepthCamera {
 bool RosCamera::connect(double timeout) {
   if (!std::holds_alternative<std::monostate>(images_)) return true;
   std::string other;
-  for (const Endpoint& there : endpoints(participant_)) {
+  for (const dds::Endpoint& there : dds::endpoints(participant_)) {
     if (!there.writes || there.topic != name_.topic) continue;
     const auto make = [&]<class Message>(std::unique_ptr<Reader<Message>> none) {
       if (there.type != Message::kName) return false;
@@ -200,7 +200,7 @@ void RosCamera::take_infos() {
   for (bool more = true; more;) {
     try {
       more = infos_->take(told);
-      if (more) camera_ = camera_of(told, is_rectified(name_.topic));
+      if (more) camera_ = camera_of(told, message::is_rectified(name_.topic));
     } catch (const Error& error) {
       camera_.reset();
       no_camera_ = error.what();

@@ -101,6 +101,7 @@ struct Servo::Inside {
   void place_tool(const DeviceState& read) noexcept;
   [[nodiscard]] bool is_clutched(std::uint32_t buttons) const noexcept;
   [[nodiscard]] Vector3d guarded() noexcept;
+  [[nodiscard]] Vector3d added_force() noexcept;
 
   Device& device;
   ServoOptions options;
@@ -116,6 +117,8 @@ struct Servo::Inside {
   bool heard = false;  // the device has known where the hand is
   std::uint64_t contact_seen = 0;
   std::uint64_t field_seen = 0;
+  std::uint64_t added_seen = 0;
+  double added_at = -std::numeric_limits<double>::infinity();  // s
 
   Latest<ServoState> shown;
   RecentForces recent_forces;
@@ -124,6 +127,7 @@ struct Servo::Inside {
   std::mutex pending_mutex;  // between those who change what is felt; the step never takes it
   Latest<ContactSettings> wanted_contact;
   Latest<FieldOptions> wanted_field;
+  Latest<Vector3d> added{Vector3d::Zero()};
   std::atomic<bool> paused{false};
   std::atomic<bool> reset{false};
 };
@@ -222,8 +226,15 @@ Vector3d Servo::Inside::guarded() noexcept {
     input.drift = state.contact.drift;
     input.stiffness = state.contact.stiffness;
   }
+  input.force += added_force();
   input.fault = known_fault(state);
   return guard.pass(input);
+}
+
+Vector3d Servo::Inside::added_force() noexcept {
+  if (news(added, added_seen)) added_at = state.time;
+  const double share = 1 - (state.time - added_at) / kAddedForceFade;
+  return share > 0 ? Vector3d(share * added.get()) : Vector3d::Zero();
 }
 
 void Servo::show(const ServoState::Timing& timing) noexcept {
@@ -289,6 +300,12 @@ void Servo::set_contact(const ContactSettings& contact) {
   static_cast<void>(Proxy(checked));  // throws what is out of range
   const std::lock_guard lock(inside_->pending_mutex);
   inside_->wanted_contact.set(contact);
+}
+
+void Servo::add_force(const Vector3d& force) {
+  if (!force.allFinite()) throw Error("a force from outside is not finite; find out who sent it");
+  const std::lock_guard lock(inside_->pending_mutex);
+  inside_->added.set(force);
 }
 
 void Servo::set_field(const FieldOptions& field) {

@@ -18,6 +18,9 @@ namespace palpate {
 ///    maker's set-up, "Default Device" without. Options: library=PATH of libHD.so.
 ///  - "haply[:ID]": Haply's Inverse3; without an id the first one found. Options:
 ///    url=ws://HOST:PORT of its Inverse Service.
+///  - "ros:PRESET": a device that a node of ROS 2 owns (docs/ros2.md). Options: ns=NAMESPACE,
+///  delay=MS; of ros:generic
+///    pose=TOPIC, wrench=TOPIC, twist=TOPIC, joy=TOPIC.
 /// Options follow as ",KEY=VALUE". All take profile=NAME (device_profile()), in place of the
 /// kind that the device reports. `clock` outlives the device.
 /// @throws Error when the name is none of these, or there is no such device; says what to do.

@@ -135,6 +135,7 @@ class Servo {
  public:
   /// Of a device's continuous maximum: what it is asked to hold (docs/method.md 8.6).
   static constexpr double kForceShare = 0.8;
+  static constexpr double kAddedForceFade = 0.1;  ///< s in which add_force()'s force fades
   static constexpr std::size_t kRecentForces = 1024;  ///< steps that forces_since() remembers
 
   /// @throws Error when an option is out of its range or the scene has too many readers.
@@ -190,6 +191,11 @@ class Servo {
   /// real-time.
   /// @throws Error when a value is out of its range.
   void set_contact(const ContactSettings& contact);
+
+  /// A force from outside, such as what a robot's sensor feels, N, world frame: it goes through the guard with the
+  /// surface's and fades in kAddedForceFade unless the next one comes. Any thread; not real-time.
+  /// @throws Error when it is not finite.
+  void add_force(const Eigen::Vector3d& force);
 
   /// Renders another surface of the same points from the next step on; the guard smooths the change
   /// of force. Any thread; not real-time.

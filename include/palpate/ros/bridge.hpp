@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/scene/scene.hpp"
+#include "palpate/sensor/stream.hpp"
+#include "palpate/servo/servo.hpp"
+
+namespace palpate {
+
+/// Where a robot is told to go, as a target that it follows (docs/ros2.md).
+struct RobotOptions {
+  /// "crisp", "cartesian", "servo", "crtk" or "generic": which topic takes the target.
+  std::string preset;
+  std::string ns = {};          ///< its namespace; empty: the preset's usual one
+  std::string topic = {};       ///< in place of the preset's
+  std::string frame = "world";  ///< frame of reference that targets are told in
+  /// The hand's own position instead of the proxy's: it enters what the camera sees.
+  bool hand = false;
+  double rate = 250;  ///< targets a second, Hz; 1 to 1000
+  /// From the world to the robot's frame of reference: T * (scale * position).
+  Eigen::Isometry3d T_robot_world = Eigen::Isometry3d::Identity();
+  double scale = 1;
+  std::optional<int> dead_man =
+      {};  ///< targets are told only while this button of the hand is down, 0 to 31
+};
+
+struct RosBridgeOptions {
+  std::string ns = "/palpate";  ///< of all topics below
+  std::string frame = "world";  ///< what palpate's world frame is called
+  double rate = 250;            ///< poses, twists, wrenches of each hand a second, Hz; 1 to 1000
+  /// Other names for topics, by their whole usual name.
+  std::map<std::string, std::string> remap = {};
+  std::optional<RobotOptions> robot = {};  ///< what the first hand drives
+  bool subnet = false;                     ///< tells the whole network, not this machine alone
+};
+
+/// Tells ROS 2 what hands do and feel, and takes contact forces from robots, on a thread of its own
+/// that no servo waits for. Topics of each hand are listed in docs/ros2.md.
+///
+/// In palpate::ros; where the build has no DDS, construction throws Error that says so.
+class RosBridge {
+ public:
+  struct Hand {
+    std::string name;  ///< letters, digits and '_'
+    Servo* servo = nullptr;
+  };
+
+  /// Scene and servos outlive it. `streams` tells how cameras fare, on the bridge's thread; may be
+  /// empty.
+  /// @throws Error when an option is out of range, or DDS fails.
+  RosBridge(std::vector<Hand> hands, const Scene& scene,
+            std::function<std::vector<StreamState>()> streams,
+            const RosBridgeOptions& options = {});
+  ~RosBridge();
+  RosBridge(const RosBridge&) = delete;
+  RosBridge& operator=(const RosBridge&) = delete;
+
+  /// What went wrong while it ran, if anything did: the last, in words. Any thread but a servo's.
+  [[nodiscard]] std::string problem() const;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+}  // namespace palpate

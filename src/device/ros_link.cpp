@@ -1,0 +1,165 @@
+#include "device/ros_link.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include "message/sensor_types.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::device {
+namespace {
+
+using namespace message;
+using Eigen::Vector3d;
+
+// Force Dimension's: x towards the operator, y to the right.
+const RosAxes kForceDimension{(Eigen::Matrix3d() << 0, 1, 0, -1, 0, 0, 0, 0, 1).finished()};
+
+void put_pose(const PoseStamped& message, RosReading& told) {
+  const auto pose = isometry(message.pose);
+  if (!pose) throw Error("a pose that is not one: not finite, or a quaternion not of unit length");
+  told.state.position = pose->translation();
+  told.state.orientation = Eigen::Quaterniond(pose->linear());
+  told.stamp = to_seconds(message.header.stamp);
+}
+
+void put_velocity(const TwistStamped& message, RosReading& told) {
+  told.state.velocity = eigen(message.twist.linear);
+  told.has_velocity = true;
+}
+
+void put_button(std::uint32_t bit, bool down, RosReading& told) {
+  told.state.buttons = (told.state.buttons & ~(1U << bit)) | (down ? 1U << bit : 0U);
+}
+
+void put_wrench(const Vector3d& force, WrenchStamped& message) {
+  message.wrench.force = vector_of(force);
+}
+
+// The presets: docs/ros2.md names the packages.
+void crtk(RosLink& link, const DeviceName& name) {
+  const std::string ns = name.option("ns", "/arm");
+  link.axes = kForceDimension;
+  link.on_pose<PoseStamped>(ns + "/measured_cp", put_pose);
+  link.on<TwistStamped>(ns + "/measured_cv", put_velocity);
+  link.on<JointState>(ns + "/gripper/measured_js", [](const JointState& message, RosReading& told) {
+    if (!message.position.empty()) told.state.gripper = message.position.front();
+  });
+  link.force_to<WrenchStamped>(ns + "/body/servo_cf", put_wrench);
+}
+
+void fd(RosLink& link, const DeviceName& name) {
+  const std::string ns = name.option("ns", "/fd");
+  link.axes = kForceDimension;
+  link.on_pose<PoseStamped>(ns + "/ee_pose", put_pose);
+  link.on<Bool>(ns + "/button_state",
+                [](const Bool& message, RosReading& told) { put_button(0, message.data, told); });
+  link.force_to<Float64MultiArray>(ns + "/fd_controller/commands",
+                                   [](const Vector3d& force, Float64MultiArray& message) {
+                                     message.data.assign(force.data(), force.data() + 3);
+                                   });
+}
+
+void ros_force_dimension(RosLink& link, const DeviceName& name) {
+  const std::string ns = name.option("ns", "/robot");
+  link.axes = kForceDimension;
+  link.on_pose<Point>(ns + "/feedback/position", [](const Point& message, RosReading& told) {
+    told.state.position = {message.x, message.y, message.z};
+  });
+  link.on<Vector3>(ns + "/feedback/velocity", [](const Vector3& message, RosReading& told) {
+    told.state.velocity = eigen(message);
+    told.has_velocity = true;
+  });
+  link.on<Int32>(ns + "/feedback/button", [](const Int32& message, RosReading& told) {
+    put_button(0, message.data != 0, told);
+  });
+  link.on<Float64>(ns + "/feedback/gripper_gap", [](const Float64& message, RosReading& told) {
+    told.state.gripper = message.data;
+  });
+  link.force_to<Vector3>(ns + "/command/force", [](const Vector3d& force, Vector3& message) {
+    message = vector_of(force);
+  });
+}
+
+void omni(RosLink& link, const DeviceName& name) {
+  const std::string ns = name.option("ns", "/phantom");
+  link.axes.unit = 1e-3;
+  link.on_pose<PoseStamped>(ns + "/pose", put_pose);
+  link.on<OmniButtonEvent>(ns + "/button", [](const OmniButtonEvent& message, RosReading& told) {
+    put_button(0, message.grey_button != 0, told);
+    put_button(1, message.white_button != 0, told);
+  });
+  link.force_to<OmniFeedback>(
+      ns + "/force_feedback",
+      [](const Vector3d& force, OmniFeedback& message) { message.force = vector_of(force); });
+}
+
+void haply_isir(RosLink& link, const DeviceName& name) {
+  const std::string ns = name.option("ns", "");
+  link.on_pose<Float32MultiArray>(ns + "/haply_pos_vel", [](const Float32MultiArray& message,
+                                                            RosReading& told) {
+    if (message.data.size() < 6)
+      throw Error(
+          fmt::format("{} numbers where a position and a velocity have six", message.data.size()));
+    told.state.position = Eigen::Map<const Eigen::Vector3f>(message.data.data()).cast<double>();
+    told.state.velocity = Eigen::Map<const Eigen::Vector3f>(message.data.data() + 3).cast<double>();
+    told.has_velocity = true;
+  });
+  link.force_to<Float32MultiArray>(ns + "/haply_forces",
+                                   [](const Vector3d& force, Float32MultiArray& message) {
+                                     const Eigen::Vector3f numbers = force.cast<float>();
+                                     message.data.assign(numbers.data(), numbers.data() + 3);
+                                   });
+}
+
+void generic(RosLink& link, const DeviceName& name) {
+  const std::string pose = name.option("pose");
+  const std::string wrench = name.option("wrench");
+  if (pose.empty() || wrench.empty()) {
+    throw Error("device ros:generic needs the topics: ros:generic,pose=TOPIC,wrench=TOPIC");
+  }
+  link.on_pose<PoseStamped>(pose, put_pose);
+  if (const std::string twist = name.option("twist"); !twist.empty())
+    link.on<TwistStamped>(twist, put_velocity);
+  if (const std::string joy = name.option("joy"); !joy.empty()) {
+    link.on<Joy>(joy, [](const Joy& message, RosReading& told) {
+      for (std::uint32_t i = 0; i < std::min<std::size_t>(message.buttons.size(), 32); ++i) {
+        put_button(i, message.buttons[i] != 0, told);
+      }
+    });
+  }
+  link.force_to<WrenchStamped>(wrench, put_wrench);
+}
+
+struct RosPreset {
+  std::string_view name;
+  void (*apply)(RosLink&, const DeviceName&);
+};
+constexpr std::array<RosPreset, 6> kPresets = {{{"crtk", crtk},
+                                                {"fd", fd},
+                                                {"ros_force_dimension", ros_force_dimension},
+                                                {"omni", omni},
+                                                {"haply_isir", haply_isir},
+                                                {"generic", generic}}};
+
+}  // namespace
+
+double system_now() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+void set_up(RosLink& link, const DeviceName& name) {
+  const auto preset = std::ranges::find(kPresets, name.device, &RosPreset::name);
+  if (preset == kPresets.end()) {
+    throw Error(fmt::format(
+        "device ros:{}: no such preset; there are crtk, fd, ros_force_dimension, omni, haply_isir "
+        "and generic",
+        name.device));
+  }
+  preset->apply(link, name);
+}
+
+}  // namespace palpate::device

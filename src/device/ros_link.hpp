@@ -1,0 +1,108 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dds/endpoint.hpp"
+#include "device/drivers.hpp"
+#include "message/transforms.hpp"
+
+namespace palpate::device {
+
+/// Now on the clock of ROS's stamps, s.
+[[nodiscard]] double system_now();
+
+// From a node's axes to ours (x right, y away from the operator, z up), and their unit.
+struct RosAxes {
+  Eigen::Matrix3d to_ours = Eigen::Matrix3d::Identity();
+  double unit = 1;  // m
+};
+
+/// Where the hand is, in the node's axes.
+struct RosReading {
+  DeviceState state;
+  std::optional<double> stamp;  // s, system time; unset: the message has none
+  bool has_velocity = false;
+};
+
+class RosInput {
+ public:
+  virtual ~RosInput() = default;
+  // Takes what is new; false: nothing was.
+  virtual bool take(RosReading& told) = 0;
+  virtual bool wait(double timeout) = 0;
+  [[nodiscard]] virtual bool connected() const = 0;
+};
+
+template <message::Message T>
+class RosTopicInput final : public RosInput {
+ public:
+  using Put = std::function<void(const T&, RosReading&)>;
+
+  RosTopicInput(const dds::Participant& participant, const std::string& topic, Put put)
+      : reader_(participant, topic, dds::Quality{.reliable = false, .depth = 1}),
+        put_(std::move(put)) {}
+
+  bool take(RosReading& told) override {
+    bool any = false;
+    while (reader_.take(message_)) {
+      put_(message_, told);
+      any = true;
+    }
+    return any;
+  }
+  bool wait(double timeout) override { return reader_.wait(timeout); }
+  [[nodiscard]] bool connected() const override { return reader_.writers() > 0; }
+
+ private:
+  dds::Reader<T> reader_;
+  Put put_;
+  T message_;
+};
+
+/// The topics by which a device that a node of ROS 2 owns is spoken to.
+struct RosLink {
+  explicit RosLink(const dds::DomainOptions& options) : participant(options) {}
+
+  template <message::Message T>
+  void on_pose(const std::string& topic, typename RosTopicInput<T>::Put put) {
+    pose = std::make_unique<RosTopicInput<T>>(participant, topic, std::move(put));
+    pose_topic = topic;
+  }
+  template <message::Message T>
+  void on(const std::string& topic, typename RosTopicInput<T>::Put put) {
+    others.push_back(std::make_unique<RosTopicInput<T>>(participant, topic, std::move(put)));
+  }
+  template <message::Message T>
+  void force_to(const std::string& topic, std::function<void(const Eigen::Vector3d&, T&)> put) {
+    auto writer = std::make_shared<dds::Writer<T>>(participant, topic,
+                                                   dds::Quality{.reliable = true, .depth = 1});
+    write = [writer, put = std::move(put), message = T{}](const Eigen::Vector3d& force) mutable {
+      put(force, message);
+      if constexpr (requires { message.header; })
+        message.header.stamp = message::to_time(system_now());
+      return writer->write(message);
+    };
+    listened = [writer] { return writer->readers() > 0; };
+    force_topic = topic;
+  }
+
+  dds::Participant participant;
+  std::unique_ptr<RosInput> pose;
+  std::vector<std::unique_ptr<RosInput>> others;
+  std::function<bool(const Eigen::Vector3d&)> write;
+  std::function<bool()> listened;
+  std::string pose_topic;
+  std::string force_topic;
+  RosAxes axes;
+};
+
+/// Subscribes and publishes as the preset `name.device` says (docs/ros2.md).
+/// @throws Error when there is none of that name, or an option is missing.
+void set_up(RosLink& link, const DeviceName& name);
+
+}  // namespace palpate::device

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+
+#include "dds/endpoint.hpp"
+#include "palpate/ros/bridge.hpp"
+
+namespace palpate::ros {
+
+/// Is something that is to happen `rate` times a second due?
+class Every {
+ public:
+  explicit Every(double rate) : period_(1 / rate) {}
+
+  bool due(double now) {
+    if (now < next_) return false;
+    next_ = std::max(next_ + period_, now);
+    return true;
+  }
+
+ private:
+  double period_;
+  double next_ = 0;
+};
+
+/// Tells a robot where to go. While the hand is not known, or its button is up, it is told nothing,
+/// and stops by its own controller's watchdog.
+class RobotTarget {
+ public:
+  /// @throws Error when the preset is none.
+  RobotTarget(const dds::Participant& participant, const RobotOptions& options);
+
+  /// `now`: s. Tells the target where one is due.
+  void look(const ServoState& state, double now, const message::Time& stamp);
+
+ private:
+  [[nodiscard]] bool may_go(const ServoState& state) const;
+
+  RobotOptions options_;
+  dds::Writer<message::PoseStamped> target_;
+  Every due_;
+};
+
+}  // namespace palpate::ros
