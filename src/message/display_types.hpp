@@ -68,6 +68,7 @@ struct MeshFile {
 
 struct Marker {
   static constexpr auto kName = "visualization_msgs/Marker";
+  static constexpr auto kHash = "45b13ccf791f225962bf74e746f9644518855d783a6f42ba0cc14fde2b4f3ce0";
   Header header;
   std::string ns;
   std::int32_t id = 0;

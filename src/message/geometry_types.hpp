@@ -118,7 +118,7 @@ struct Float64MultiArray {
 
 struct Float32MultiArray {
   static constexpr auto kName = "std_msgs/Float32MultiArray";
-  static constexpr auto kHash = "";
+  static constexpr auto kHash = "0599f6f85b4bfca379873a0b4375a0aca022156bd2d7021275d116ed1fa8bfe0";
   MultiArrayLayout layout;
   std::vector<float> data;
 
