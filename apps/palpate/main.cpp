@@ -87,6 +87,8 @@ std::vector<Command> add_commands(CLI::App& p) {
                              [](const CLI::App&, const auto& options) { return examine(options); }),
       command(p, "devices", "List haptic devices, and what is missing to use others",
               add_devices_options, devices),
+      command(p, "ros", "List topics of ROS 2 that can be touched, held or driven", add_ros_options,
+              ros),
       command(p, "paper", "Reproduce the experiments of Leeper, Chan and Salisbury 2012",
               add_paper_options, paper),
       command(p, "demo", "Touch a simulated scene in the browser with a mouse", add_demo_options,
@@ -129,7 +131,8 @@ int run(int argc, char** argv) {
     if (each.app->parsed()) return each.run();
   }
   throw UsageError(
-      "no command given; use touch, align, info, cameras, devices, doctor, paper, demo or zwidth "
+      "no command given; use touch, align, info, cameras, devices, ros, doctor, paper, demo or "
+      "zwidth "
       "(see 'palpate --help')");
 }
 

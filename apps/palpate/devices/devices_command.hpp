@@ -28,4 +28,16 @@ void add_cameras_options(CLI::App& command, CamerasOptions& options);
 /// `palpate cameras`. @throws Error.
 void cameras(const CamerasOptions& options);
 
+/// The command line of `palpate ros`.
+struct RosOptions {
+  std::string json;
+  double seconds = 3;
+  std::string range = "localhost";
+};
+
+void add_ros_options(CLI::App& command, RosOptions& options);
+
+/// `palpate ros`. @throws Error.
+void ros(const RosOptions& options);
+
 }  // namespace palpate::app

@@ -1,18 +1,28 @@
 #include "palpate/base/error.hpp"
 #include "palpate/ros/bridge.hpp"
+#include "palpate/ros/survey.hpp"
 
 namespace palpate {
+namespace {
+
+constexpr const char* kNoDds =
+    "this build of palpate has no ROS 2; install Cyclone DDS (cyclonedds-dev) and build again";
+
+}  // namespace
 
 struct RosBridge::Inside {};
 
 RosBridge::RosBridge(std::vector<Hand> /*hands*/, const Scene& /*scene*/,
                      std::function<std::vector<StreamState>()> /*streams*/,
                      const RosBridgeOptions& /*options*/) {
-  throw Error(
-      "this build of palpate has no ROS 2; install Cyclone DDS (cyclonedds-dev) and build again");
+  throw Error(kNoDds);
 }
 
 RosBridge::~RosBridge() = default;
+
+std::vector<RosTopic> survey_ros(double /*seconds*/, bool /*subnet*/) {
+  throw Error(kNoDds);
+}
 
 std::string RosBridge::problem() const {
   return {};
