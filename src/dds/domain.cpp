@@ -68,28 +68,24 @@ Error failure(const char* what, std::uint32_t id, std::int32_t code) {
 }  // namespace
 
 DomainOptions options_from(
-    const std::function<std::optional<std::string>(const char*)>& environment,
-    std::optional<Range> range) {
+    const std::function<std::optional<std::string>(const char*)>& environment) {
   DomainOptions options;
   if (const auto id = environment("ROS_DOMAIN_ID"); id && !id->empty()) options.id = domain_id(*id);
   if (const auto wide = environment("ROS_AUTOMATIC_DISCOVERY_RANGE"); wide && !wide->empty()) {
     options.range = range_from(*wide);
   }
-  if (range) options.range = *range;
-  if (!range && environment("ROS_LOCALHOST_ONLY") == "1") options.range = Range::localhost;
+  if (environment("ROS_LOCALHOST_ONLY") == "1") options.range = Range::localhost;
   options.peers = environment("ROS_STATIC_PEERS").value_or("");
   const auto settings = environment("CYCLONEDDS_URI");
   options.own_settings = !settings || settings->empty();
   return options;
 }
 
-DomainOptions environment_options(std::optional<Range> range) {
-  return options_from(
-      [](const char* name) {
-        const char* value = std::getenv(name);
-        return value == nullptr ? std::nullopt : std::optional<std::string>(value);
-      },
-      range);
+DomainOptions environment_options() {
+  return options_from([](const char* name) {
+    const char* value = std::getenv(name);
+    return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+  });
 }
 
 std::string settings_of(const DomainOptions& options, std::size_t receive_buffer) {

@@ -21,14 +21,13 @@ struct DomainOptions {
 };
 
 /// As the environment says: ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE,
-/// ROS_STATIC_PEERS, CYCLONEDDS_URI. `range`, where it is set, is what the user said.
+/// ROS_STATIC_PEERS, CYCLONEDDS_URI.
 /// @throws Error that names a variable whose value makes no sense.
 [[nodiscard]] DomainOptions options_from(
-    const std::function<std::optional<std::string>(const char*)>& environment,
-    std::optional<Range> range = {});
+    const std::function<std::optional<std::string>(const char*)>& environment);
 
 /// The same of this process's environment.
-[[nodiscard]] DomainOptions environment_options(std::optional<Range> range = {});
+[[nodiscard]] DomainOptions environment_options();
 
 /// Cyclone DDS's settings for them. `receive_buffer`: the largest that the system allows, bytes.
 [[nodiscard]] std::string settings_of(const DomainOptions& options, std::size_t receive_buffer);

@@ -93,11 +93,6 @@ const RosBridgeOptions& checked(const RosBridgeOptions& options) {
   return options;
 }
 
-dds::DomainOptions domain_of(const RosBridgeOptions& options) {
-  return dds::environment_options(options.subnet ? std::optional(dds::Range::subnet)
-                                                 : std::nullopt);
-}
-
 double extent_of(const Scene& scene) {
   Box box;
   for (std::size_t i = 0; i < scene.size(); ++i) {
@@ -116,7 +111,7 @@ struct RosBridge::Inside {
         hands(std::move(the_hands)),
         scene(the_scene),
         streams(std::move(the_streams)),
-        participant(domain_of(options)),
+        participant(dds::environment_options()),
         markers(participant, topic(options.ns + "/markers"), kTold),
         diagnostics(participant, topic("/diagnostics"), kTold),
         frames(participant, topic("/tf"), kTf) {

@@ -20,7 +20,7 @@ RosBridge::RosBridge(std::vector<Hand> /*hands*/, const Scene& /*scene*/,
 
 RosBridge::~RosBridge() = default;
 
-std::vector<RosTopic> survey_ros(double /*seconds*/, bool /*subnet*/) {
+std::vector<RosTopic> survey_ros(double /*seconds*/) {
   throw Error(kNoDds);
 }
 

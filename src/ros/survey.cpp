@@ -121,9 +121,8 @@ void listen(const dds::Participant& participant, std::vector<RosTopic>& topics, 
 
 }  // namespace
 
-std::vector<RosTopic> survey_ros(double seconds, bool subnet) {
-  const dds::Participant participant(
-      dds::environment_options(subnet ? std::optional(dds::Range::subnet) : std::nullopt));
+std::vector<RosTopic> survey_ros(double seconds) {
+  const dds::Participant participant(dds::environment_options());
   SteadyClock clock;
   clock.wait_until(clock.now() + std::min(kDiscovery, seconds / 2));
   std::vector<RosTopic> topics;

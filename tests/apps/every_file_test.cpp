@@ -70,8 +70,13 @@ TouchStatistics touch(const TouchPlan& plan) {
   LoadedScene loaded = load_sources(plan.sources, {.explored = true});
   std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, nullptr);
   place_hands(hands, {plan.motion, plan.surface, plan.page}, {}, loaded.scene);
-  Run run{plan.time, plan.page,          loaded,
-          hands,     plan.surface.field, plan.surface.proxy_of(hands[0].stiffness)};
+  Run run{plan.time,
+          plan.page,
+          plan.ros,
+          loaded,
+          hands,
+          plan.surface.field,
+          plan.surface.proxy_of(hands[0].stiffness)};
   TouchStatistics statistics;
   std::size_t bad = 0;
   run_simulated(run, [&](std::size_t, const ServoState& step) {

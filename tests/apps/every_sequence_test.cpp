@@ -35,8 +35,13 @@ Felt play(const TouchPlan& plan, const Trajectory& way, const Scene& seen, Loade
   std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, nullptr);
   place_hands(hands, {plan.motion, plan.surface, plan.page}, way, seen);
   begin_run(loaded, {});
-  Run run{plan.time, plan.page,          loaded,
-          hands,     plan.surface.field, plan.surface.proxy_of(hands[0].stiffness)};
+  Run run{plan.time,
+          plan.page,
+          plan.ros,
+          loaded,
+          hands,
+          plan.surface.field,
+          plan.surface.proxy_of(hands[0].stiffness)};
   Felt result;
   run_simulated(run, [&](std::size_t, const ServoState& step) {
     const Contact& contact = step.contact;

@@ -51,7 +51,8 @@ TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
   std::vector<Hand> hands;
   hands.push_back(hand_with("hand 1", 20, DeviceStatus::failed));
   hands.push_back(hand_with("hand 2", 200, DeviceStatus::finished));
-  app::Run run{plan.time, plan.page, loaded, hands, {}, plan.surface.proxy_of(kStiffness)};
+  app::Run run{
+      plan.time, plan.page, plan.ros, loaded, hands, {}, plan.surface.proxy_of(kStiffness)};
   std::vector<std::size_t> steps(2);
   SteadyClock clock;
   const LiveOutcome outcome =

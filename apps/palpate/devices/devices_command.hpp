@@ -32,7 +32,7 @@ void cameras(const CamerasOptions& options);
 struct RosOptions {
   std::string json;
   double seconds = 3;
-  std::string range = "localhost";
+  std::string range;
 };
 
 void add_ros_options(CLI::App& command, RosOptions& options);

@@ -8,6 +8,7 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/devices/devices_command.hpp"
+#include "apps/palpate/options/ros_options.hpp"
 #include "palpate/ros/survey.hpp"
 
 namespace palpate::app {
@@ -66,18 +67,19 @@ void add_ros_options(CLI::App& command, RosOptions& options) {
       ->check(CLI::Range(0.5, 60.0));
   command
       .add_option("--ros-range", options.range,
-                  "localhost: this machine; subnet: the whole network")
+                  "localhost: this machine; subnet: the whole network (default: "
+                  "ROS_AUTOMATIC_DISCOVERY_RANGE, else localhost)")
       ->type_name("RANGE")
-      ->capture_default_str()
       ->check(CLI::IsMember({"localhost", "subnet"}));
   add_json_option(command, options.json)->group("Output");
   command.footer(kFooter);
 }
 
 void ros(const RosOptions& options) {
+  use_range(options.range);
   const std::vector<RosTopic> topics = [&] {
     const Waiting waiting("listening to ROS 2");
-    return survey_ros(options.seconds, options.range == "subnet");
+    return survey_ros(options.seconds);
   }();
   std::FILE* const stream = options.json == "-" ? stderr : stdout;
   const Style style(stream);

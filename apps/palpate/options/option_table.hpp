@@ -52,6 +52,11 @@ struct Scope {
   const char* words;  ///< behind the option's name: what it applies to, and what to do
 };
 
+/// For what a run in real time has.
+inline constexpr Scope kGuarded{&RunFacts::guarded,
+                                "applies only to real-time runs; remove it: static sources and "
+                                "--simulated-time use no guard or servo thread"};
+
 /// What a key of a set-up file holds.
 enum class KeyKind { text, texts, path, number, integer, flag, numbers, numbers_or_text };
 

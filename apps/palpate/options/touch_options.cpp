@@ -13,9 +13,6 @@ constexpr std::int64_t kLargestSeed = 1'000'000'000'000'000;
 
 constexpr std::array<Named<bool>, 2> kPresets = {{{"default", false}, {"paper", true}}};
 
-constexpr Scope kGuarded{&RunFacts::guarded,
-                         "applies only to real-time runs; remove it: static sources and "
-                         "--simulated-time use no guard or servo thread"};
 constexpr Scope kPage{&RunFacts::page, "applies only to the page; add --view"};
 
 void check_address(const std::string& text) {
@@ -231,6 +228,7 @@ void add_touch_options(OptionTable& table, TouchChoices& o) {
   add_time_options(table, o);
   add_live_options(table, o.plan.time);
   add_view_options(table, o);
+  add_bridge_options(table, o.plan.ros);
   add_output_options(table, o.plan.outputs);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/palpate/options/device_options.hpp"
+#include "apps/palpate/options/ros_options.hpp"
 #include "apps/palpate/options/source_options.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/field/field_options.hpp"
@@ -82,6 +83,7 @@ struct TouchPlan {
   MotionPlan motion = {};
   TimePlan time = {};
   PagePlan page = {};
+  RosPlan ros = {};
   OutputPlan outputs = {};
 };
 

@@ -36,6 +36,7 @@ struct Hand {
 struct Run {
   const TimePlan& time;
   const PagePlan& page;
+  const RosPlan& ros;
   LoadedScene& loaded;
   std::vector<Hand>& hands;
   FieldOptions field;

@@ -14,6 +14,7 @@
 #include "apps/palpate/touch/live_status.hpp"
 #include "apps/palpate/view/view.hpp"
 #include "palpate/device/simulated.hpp"
+#include "palpate/ros/bridge.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
@@ -190,6 +191,16 @@ class FailureWatch {
   std::vector<bool> told_;
 };
 
+// Topics are named hand, or hand1, hand2, ... where there are several.
+std::vector<RosBridge::Hand> told_hands(LiveHands& hands) {
+  std::vector<RosBridge::Hand> told;
+  for (LiveHand& hand : hands) {
+    const std::string number = hands.size() > 1 ? std::to_string(told.size() + 1) : "";
+    told.push_back({"hand" + number, &hand.servo()});
+  }
+  return told;
+}
+
 LiveOutcome outcome_of(const LiveHands& hands, bool interrupted) {
   LiveOutcome outcome;
   for (const LiveHand& hand : hands) outcome.hands.push_back(hand.report());
@@ -208,6 +219,11 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   const double start = start_hands(run, clock, hands);
   LiveFeed feed(run.loaded, clock, start);
   std::optional<View> view;
+  std::optional<RosBridge> bridge;
+  if (run.ros.wanted()) {
+    bridge.emplace(
+        told_hands(hands), run.loaded.scene, [&] { return feed.states(); }, run.ros.bridge);
+  }
   if (run.page.served) view.emplace(run, servos_of(hands), feed);
   const EachStep keep = [&](std::size_t hand, const ServoState& step) {
     each(hand, step);
@@ -223,7 +239,9 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   }
   for (LiveHand& hand : hands) hand.stop();
   for (LiveHand& hand : hands) hand.take_steps(keep);
-  view.reset();  // it looks at what the feed takes down
+  if (bridge && !bridge->problem().empty()) status.tell("ROS 2: " + bridge->problem());
+  bridge.reset();  // these look at what the feed takes down
+  view.reset();
   feed.finish();
   return outcome_of(hands, interruption.asked());
 }

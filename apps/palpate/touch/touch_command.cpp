@@ -121,6 +121,7 @@ void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
 }  // namespace
 
 void touch(const TouchPlan& plan) {
+  use_range(plan.ros.range);
   const Trajectory trajectory = trajectory_of(plan.motion, plan.devices);
   TouchOutputs outputs(plan.outputs, plan.devices.size());
   SteadyClock steady;
@@ -135,7 +136,8 @@ void touch(const TouchPlan& plan) {
   place_hands(hands, {plan.motion, surface, plan.page}, trajectory, loaded.scene);
   const double stiffness = hands.front().stiffness;
   begin_run(loaded, surface.soft_material(stiffness));
-  Run run{plan.time, plan.page, loaded, hands, surface.field, surface.proxy_of(stiffness)};
+  Run run{
+      plan.time, plan.page, plan.ros, loaded, hands, surface.field, surface.proxy_of(stiffness)};
   LiveOutcome outcome = play(run, clock, outputs);
   for (LiveReport& each : outcome.hands) {
     if (left) each.realtime.requests.push_back(*left);

@@ -38,7 +38,6 @@ struct RosBridgeOptions {
   /// Other names for topics, by their whole usual name.
   std::map<std::string, std::string> remap = {};
   std::optional<RobotOptions> robot = {};  ///< what the first hand drives
-  bool subnet = false;                     ///< tells the whole network, not this machine alone
 };
 
 /// Tells ROS 2 what hands do and feel, and takes contact forces from robots, on a thread of its own

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "palpate/ros/bridge.hpp"
+
+namespace palpate::app {
+
+class OptionTable;
+
+/// What a run has to do with ROS 2 besides its sources and devices.
+struct RosPlan {
+  bool published =
+      false;  ///< what hands do and feel is told; a robot is told, too, where there is one
+  std::string range = {};  ///< "localhost" or "subnet"; empty: as the environment says
+  RosBridgeOptions bridge = {};
+
+  [[nodiscard]] bool wanted() const { return published || bridge.robot; }
+};
+
+/// "PRESET[,KEY=VALUE]...", as --robot has it.
+/// @throws UsageError when an option is not one.
+[[nodiscard]] RobotOptions parse_robot(const std::string& text);
+
+void add_bridge_options(OptionTable& table, RosPlan& plan);
+
+/// Lets all of this process's ROS 2 have a range; empty: as the environment says. Before anything
+/// is opened.
+void use_range(const std::string& range);
+
+}  // namespace palpate::app
