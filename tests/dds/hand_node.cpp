@@ -1,0 +1,77 @@
+// A simulated device that a node of ROS 2 owns, in real time, with the preset fd's topics:
+// hand_node RATE DELAY_MS SECONDS DAMPING. Its hand presses 10 mm below z = 0. What it measured is
+// sent DELAY_MS later. Prints, of the last third of the time, how far the device moved up and down
+// (mm).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <string>
+
+#include "dds/endpoint.hpp"
+#include "message/sensor_types.hpp"
+#include "message/transforms.hpp"
+#include "palpate/base/clock.hpp"
+#include "palpate/device/simulated.hpp"
+#include "palpate/servo/servo_thread.hpp"
+
+namespace {
+
+using namespace palpate;
+using Eigen::Vector3d;
+
+double system_now() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+struct Waiting {
+  double due = 0;
+  message::PoseStamped pose;
+};
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 5) return 2;
+  const double rate = std::stod(arguments[1]);
+  const double delay = std::stod(arguments[2]) / 1e3;
+  const double seconds = std::stod(arguments[3]);
+  SimulatedDeviceOptions options{.mass = 0.1,
+                                 .damping = std::stod(arguments[4]),
+                                 .coulomb = 0,
+                                 .delay = 0,
+                                 .rate = rate,
+                                 .hand = {.stiffness = 100, .damping = 0}};
+  SimulatedDevice device(options,
+                         {{0, {0, 0, 0.01}}, {1, {0, 0, -0.01}}, {seconds, {0, 0, -0.01}}});
+  const dds::Participant participant(dds::environment_options());
+  dds::Writer<message::PoseStamped> poses(participant, "/fd/ee_pose", {.reliable = true});
+  dds::Reader<message::Float64MultiArray> forces(participant, "/fd/fd_controller/commands",
+                                                 {.reliable = true});
+  static_cast<void>(make_realtime({.priority = 70}));
+  SteadyClock clock;
+  std::deque<Waiting> waiting;
+  message::Float64MultiArray force;
+  double lowest = 1;
+  double highest = -1;
+  const double start = clock.now();
+  for (std::uint64_t step = 0; static_cast<double>(step) < seconds * rate; ++step) {
+    clock.wait_until(start + static_cast<double>(step) / rate);
+    const DeviceState state = device.read();
+    const Vector3d& at = state.position;
+    message::PoseStamped pose{{message::to_time(system_now()), "fd_base"},
+                              {{-at.y(), at.x(), at.z()}, {}}};
+    waiting.push_back({clock.now() + delay, pose});
+    for (; !waiting.empty() && waiting.front().due <= clock.now() + 0.5e-3 * (delay > 0 ? 1 : 0);
+         waiting.pop_front()) {
+      poses.write(waiting.front().pose);
+    }
+    forces.take(force);
+    if (force.data.size() >= 3) device.write({force.data[1], -force.data[0], force.data[2]});
+    if (static_cast<double>(step) < seconds * rate * 2 / 3) continue;
+    lowest = std::min(lowest, device.true_position().z());
+    highest = std::max(highest, device.true_position().z());
+  }
+  fmt::print("moved {:.3f} mm around {:.3f}\n", 1e3 * (highest - lowest), 500 * (highest + lowest));
+}

@@ -1,0 +1,150 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+
+#include "dds/endpoint.hpp"
+#include "message/depth_images.hpp"
+#include "message/point_clouds.hpp"
+#include "message/transforms.hpp"
+#include "palpate/sensor/open_camera.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace message;
+
+double system_now() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+// A node with a camera, in a domain of the test's own.
+struct Node {
+  Node() : participant((set_domain(), dds::environment_options())) {}
+
+  static void set_domain() {
+    setenv("ROS_DOMAIN_ID", std::to_string(100 + getpid() % 100).c_str(), 1);
+  }
+
+  void send(const Header& header, const std::string& encoding = "32FC1") {
+    message::CameraInfo info =
+        info_of({.width = 4, .height = 3, .pinhole = {5, 5, 2, 1.5}, .distortion = {}});
+    info.header = header;
+    infos.write(info);
+    DepthFrame frame;
+    frame.camera = {.width = 4, .height = 3, .pinhole = {}, .distortion = {}};
+    frame.depth.assign(12, 1.5F);
+    Image image = image_of(frame);
+    image.header = header;
+    image.encoding = encoding;
+    images.write(image);
+  }
+
+  dds::Participant participant;
+  dds::Writer<Image> images{participant, "/cam/image", {.reliable = true}};
+  dds::Writer<message::CameraInfo> infos{participant, "/cam/camera_info", {.reliable = true}};
+  dds::Writer<PointCloud2> clouds{participant, "/points", {.reliable = true}};
+  dds::Writer<TFMessage> frames{participant, "/tf", {.reliable = true, .depth = 10}};
+};
+
+Header now(const std::string& frame = "camera") {
+  return {to_time(system_now()), frame};
+}
+
+// The first answer that is not `waiting`, while `send` is called.
+CameraStatus answer(DepthCamera& camera, DepthFrame& frame, const std::function<void()>& send) {
+  for (int i = 0; i < 200; ++i) {
+    send();
+    const CameraStatus status = camera.read(frame, 0.05);
+    if (status != CameraStatus::waiting) return status;
+  }
+  return CameraStatus::waiting;
+}
+
+// The first frame.
+bool gets_frame(DepthCamera& camera, DepthFrame& frame, const std::function<void()>& send) {
+  for (int i = 0; i < 200; ++i) {
+    if (answer(camera, frame, send) == CameraStatus::frame) return true;
+  }
+  return false;
+}
+
+TEST(RosCamera, GivesFramesInMetresOnTheStreamsClock) {
+  Node node;
+  SteadyClock clock;
+  const auto camera = open_camera("ros:/cam/image", {.clock = &clock});
+  DepthFrame frame;
+  ASSERT_TRUE(gets_frame(*camera, frame, [&] { node.send(now()); })) << camera->reason();
+  EXPECT_EQ(frame.camera.width, 4);
+  EXPECT_EQ(frame.camera.pinhole.fx, 5);
+  EXPECT_EQ(frame.depth.front(), 1.5F);
+  EXPECT_FALSE(frame.T_world_sensor);
+  EXPECT_LE(frame.stamp, clock.now());
+  EXPECT_GT(frame.stamp, clock.now() - 10);
+}
+
+TEST(RosCamera, TakesTheTimeOfArrivalOfAnotherClocksStamps) {
+  Node node;
+  SteadyClock clock;
+  const auto camera = open_camera("ros:/cam/image", {.clock = &clock});
+  DepthFrame frame;
+  const double begin = clock.now();
+  ASSERT_TRUE(gets_frame(*camera, frame, [&] { node.send({{77, 0}, "camera"}); }));
+  EXPECT_GE(frame.stamp, begin);
+}
+
+TEST(RosCamera, SaysWhatItWaitsForOrCannotUse) {
+  Node node;
+  const auto nobody = open_camera("ros:/nobody/image");
+  DepthFrame frame;
+  EXPECT_EQ(nobody->read(frame, 0.01), CameraStatus::waiting);
+  EXPECT_THAT(nobody->reason(), testing::HasSubstr("nobody publishes /nobody/image"));
+  const auto camera = open_camera("ros:/cam/image");
+  EXPECT_EQ(answer(*camera, frame, [&] { node.send(now(), "rgb8"); }), CameraStatus::damaged);
+  EXPECT_THAT(camera->reason(),
+              testing::AnyOf(testing::HasSubstr("rgb8"), testing::HasSubstr("CameraInfo")));
+  EXPECT_THROW(static_cast<void>(open_camera("ros:cam")), std::exception);
+  EXPECT_THROW(static_cast<void>(open_camera("ros:/cam/image,frame=")), std::exception);
+}
+
+TEST(RosCamera, PlacesFramesByTheirTransform) {
+  Node node;
+  const auto camera = open_camera("ros:/cam/image,frame=world");
+  DepthFrame frame;
+  bool placed = false;
+  const auto send = [&] {
+    const Header header = now();
+    if (placed) {
+      node.frames.write({{{{header.stamp, "world"}, "camera", {{1, 2, 3}, {}}}}});
+    }
+    node.send(header);
+  };
+  CameraStatus status = CameraStatus::waiting;
+  for (int i = 0; i < 100 && status != CameraStatus::unposed; ++i)
+    status = answer(*camera, frame, send);
+  EXPECT_EQ(status, CameraStatus::unposed);
+  EXPECT_THAT(camera->reason(), testing::HasSubstr("/tf"));
+  placed = true;
+  ASSERT_TRUE(gets_frame(*camera, frame, send)) << camera->reason();
+  EXPECT_EQ(frame.T_world_sensor->translation(), Eigen::Vector3d(1, 2, 3));
+}
+
+TEST(RosCamera, GivesTheCloudOfASensorThatDeliversPoints) {
+  Node node;
+  const auto camera = open_camera("ros:/points");
+  PointCloud cloud;
+  cloud.positions = {{1, 2, 3}, {4, 5, 6}};
+  DepthFrame frame;
+  ASSERT_TRUE(gets_frame(*camera, frame, [&] {
+    PointCloud2 message = message_of(cloud);
+    message.header = now();
+    node.clouds.write(message);
+  })) << camera->reason();
+  ASSERT_TRUE(frame.cloud);
+  EXPECT_EQ(frame.cloud->positions, cloud.positions);
+}
+
+}  // namespace
+}  // namespace palpate
