@@ -1,7 +1,7 @@
 # Install rules and the package config that find_package(palpate) finds.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS palpate_core palpate_sim palpate_live EXPORT palpateTargets
+install(TARGETS palpate_core palpate_sim palpate_bag palpate_live EXPORT palpateTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(PALPATE_BUILD_VIEWER)
   install(TARGETS palpate_viewer EXPORT palpateTargets
