@@ -219,7 +219,8 @@ void Walk::take_chunk(std::uint64_t at, std::uint64_t length) {
     if (op == Op::message) count(message_of(content), place);
   });
   std::ranges::sort(place.channels);
-  place.channels.erase(std::ranges::unique(place.channels).begin(), place.channels.end());
+  place.channels.erase(std::unique(place.channels.begin(), place.channels.end()),
+                       place.channels.end());
   if (place.start <= place.end) contents_.chunks.push_back(std::move(place));
 }
 
