@@ -18,7 +18,7 @@ def seed(target, name, data):
     folder.mkdir(parents=True, exist_ok=True)
     data = data.encode() if isinstance(data, str) else data
     (folder / name).write_bytes(data)
-    if target not in ("any", "client_message", "depth", "frame_list", "haply_frame", "poses",
+    if target not in ("any", "client_message", "depth", "frame_list", "haply_frame", "mcap", "poses",
                       "remote_state", "sequence", "trajectory"):
         seed("any", f"{target}-{name}", data)
 
@@ -224,5 +224,59 @@ def haply():
     seed("haply_frame", "cut", frame()[:100])
 
 
-for make in (ply, pcd, las, depth, text, packed, sequences, remote, client_messages, haply):
+def mcap():
+    magic = b"\x89MCAP0\r\n"
+
+    def text(words):
+        return struct.pack("<I", len(words)) + words
+
+    def record(op, content):
+        return struct.pack("<BQ", op, len(content)) + content
+
+    def zstd(data):  # one block that is not compressed
+        return (b"\x28\xb5\x2f\xfd\xa0" + struct.pack("<I", len(data))
+                + (len(data) << 3 | 1).to_bytes(3, "little") + data)
+
+    def lz4(data):  # the same
+        return (b"\x04\x22\x4d\x18\x60\x40\x82" + struct.pack("<I", len(data) | 1 << 31) + data
+                + bytes(4))
+    schema = record(3, struct.pack("<H", 1) + text(b"std_msgs/msg/Float64") + text(b"ros2msg")
+                    + text(b"float64 data\n"))
+    channel = record(4, struct.pack("<HH", 1, 1) + text(b"/a") + text(b"cdr")
+                     + text(text(b"offered_qos_profiles") + text(b"")))
+    messages = [record(5, struct.pack("<HIQQ", 1, i, 1000 * i, 1000 * i) + b"\0\1\0\0" + bytes(8))
+                for i in (2, 1, 4)]
+    head = magic + record(1, text(b"ros2") + text(b"seed"))
+
+    def end(data, indexes=b"", chunks=0):
+        data += record(15, bytes(4))
+        statistics = record(11, struct.pack("<QHIIIIQQ", 3, 1, 1, 0, 0, chunks, 1000, 4000)
+                            + text(struct.pack("<HQ", 1, 3)))
+        summary = schema + channel + statistics + indexes
+        foot = struct.pack("<BQQQ", 2, 20, len(data), 0)
+        return data + summary + foot + struct.pack("<I", zlib.crc32(summary + foot)) + magic
+
+    def chunked(kind, pack):
+        records = schema + channel + b"".join(messages)
+        packed = pack(records)
+        times = struct.pack("<QQ", 1000, 4000)
+        chunk = record(6, times + struct.pack("<QI", len(records), zlib.crc32(records)) + text(kind)
+                       + struct.pack("<Q", len(packed)) + packed)
+        index = record(7, struct.pack("<H", 1) + text(b"".join(
+            struct.pack("<QQ", 1000 * i, len(schema + channel) + 43 * k)
+            for k, i in enumerate((2, 1, 4)))))
+        place = record(8, times + struct.pack("<QQ", len(head), len(chunk))
+                       + text(struct.pack("<HQ", 1, len(head + chunk)))
+                       + struct.pack("<Q", len(index)) + text(kind)
+                       + struct.pack("<QQ", len(packed), len(records)))
+        return end(head + chunk + index, place, 1)
+    for name, pack in (("zstd", zstd), ("lz4", lz4), ("", bytes)):
+        seed("mcap", name or "plain", chunked(name.encode(), pack))
+    seed("mcap", "loose", end(head + schema + channel + b"".join(messages)))
+    notes = struct.pack("<QQ", 1, 2) + text(b"a.txt") + text(b"text/plain") + struct.pack("<Q", 3) + b"abc"
+    seed("mcap", "attached", head + record(9, notes + struct.pack("<I", zlib.crc32(notes)))
+         + record(12, text(b"made") + text(text(b"by") + text(b"hand"))) + schema + channel + messages[0])
+
+
+for make in (ply, pcd, las, depth, text, packed, sequences, remote, client_messages, haply, mcap):
     make()

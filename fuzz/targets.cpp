@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "bag/mcap_reader.hpp"
 #include "device/haply_message.hpp"
 #include "device/remote_protocol.hpp"
 #include "io/depth_image.hpp"
@@ -29,8 +30,8 @@
 namespace palpate::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 16> kNames{
-    "any", "depth", "frame_list", "gzip",  "haply_frame",  "las",      "obj",        "pcd",
+constexpr std::array<std::string_view, 17> kNames{
+    "any", "depth", "frame_list", "gzip",  "haply_frame",  "las",      "mcap",       "obj", "pcd",
     "pgm", "ply",   "png",        "poses", "remote_state", "sequence", "trajectory", "xyz"};
 
 void expect(bool promise, const char* name) {
@@ -123,6 +124,26 @@ void check_haply_frame(std::string_view text) {
   }
 }
 
+void check_mcap(std::span<const std::byte> bytes) {
+  const io::MemoryFile file(bytes);
+  bag::McapReader reader(file.path());
+  const bag::Contents& contents = reader.contents();
+  std::size_t zeros = 0;  // so that every byte is read
+  for (bag::Message message; reader.next(message);) {
+    (void)reader.channel_of(message);  // it is known
+    zeros += static_cast<std::size_t>(std::ranges::count(message.data, 0));
+  }
+  expect(zeros < std::size_t{1} << 40, "messages without end");
+  expect(contents.closed || !contents.losses.empty(), "a loss that is not told");
+  for (std::size_t i = 0; i < contents.attachments.size(); ++i) {
+    try {
+      expect(reader.attachment(i).data.size() <= bytes.size(), "an attachment");
+    } catch (const Error&) {
+      continue;
+    }
+  }
+}
+
 // True when `name` is one of the parts of a sequence.
 bool run_sequence_target(std::string_view name, const io::Input& input) {
   if (name == "depth") {
@@ -166,6 +187,8 @@ void run_target(std::string_view name, std::span<const std::byte> bytes) {
       check_remote_state(bytes);
     } else if (name == "haply_frame") {
       check_haply_frame(input.text());
+    } else if (name == "mcap") {
+      check_mcap(bytes);
     } else if (name == "gzip") {
       (void)io::gunzip(input);
     } else if (name == "trajectory") {

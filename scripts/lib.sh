@@ -84,6 +84,18 @@ need_npm() {
   fi
 }
 
+# need_modules FOLDER: what its lock names, asked for anew only when that is newer. Tests that use it are skipped
+# without.
+need_modules() {
+  local installed=$1/node_modules/.package-lock.json # npm writes it when it is done
+  if [ -e "$installed" ] && [ ! "$1/package-lock.json" -nt "$installed" ]; then return; fi
+  if command -v npm >/dev/null && (cd "$1" && npm ci --no-audit --no-fund --ignore-scripts) >build/npm.log 2>&1; then
+    note "$1: npm has installed what its lock names"
+  else
+    note "$1: npm could not install what its lock names (build/npm.log); tests that need it are skipped"
+  fi
+}
+
 # The browser of the page's tests, where the distribution has one that is no snap.
 need_browser() {
   if grep -q '^ID=debian$' /etc/os-release; then

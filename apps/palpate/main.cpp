@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/palpate/align/align_command.hpp"
+#include "apps/palpate/bag/bag_command.hpp"
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/manual.hpp"
 #include "apps/palpate/cli/terminal.hpp"
@@ -79,6 +80,8 @@ std::vector<Command> add_commands(CLI::App& p) {
       command(p, "align", "Find the poses of cameras and clouds by aligning their surfaces",
               add_align_options, align_sources),
       command(p, "info", "Describe clouds, cameras and sequences", add_info_options, info),
+      command(p, "bag", "Describe recordings, and recover what can be read of damaged ones",
+              add_bag_options, bag),
       command(p, "cameras", "List cameras, and what is missing to use others", add_cameras_options,
               cameras),
       command<DoctorOptions>(p, "doctor",
@@ -131,7 +134,7 @@ int run(int argc, char** argv) {
     if (each.app->parsed()) return each.run();
   }
   throw UsageError(
-      "no command given; use touch, align, info, cameras, devices, ros, doctor, paper, demo or "
+      "no command given; use touch, align, info, bag, cameras, devices, ros, doctor, paper, demo or "
       "zwidth "
       "(see 'palpate --help')");
 }

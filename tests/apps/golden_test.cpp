@@ -129,7 +129,7 @@ TEST_P(GoldenHelp, SaysWhatItDid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, GoldenHelp,
-                         testing::Values("", "touch", "align", "info", "cameras", "doctor",
+                         testing::Values("", "touch", "align", "info", "bag", "cameras", "doctor",
                                          "devices", "paper", "demo", "zwidth"),
                          [](const auto& command) {
                            return *command.param ? std::string(command.param) : "palpate";

@@ -13,23 +13,26 @@ FLOORS = {
     "geometry": {"base"},
     "depth": {"base", "geometry"},
     "io": {"base", "geometry", "depth"},
+    "message": {"base", "geometry", "depth", "io"},
+    "bag": {"base", "geometry", "depth", "io", "message"},
     "field": {"base", "geometry"},
     "contact": {"base", "geometry"},  # and field/field.hpp: see ALLOWED
     "prepare": {"base", "geometry", "field"},
     "align": {"base", "geometry", "field"},
     "scene": {"base", "geometry", "depth", "field", "prepare"},
     "sim": {"base", "geometry", "depth", "io", "field"},  # and the camera that it is: see ALLOWED
-    "sensor": {"base", "geometry", "depth", "io", "field", "prepare", "scene", "sim"},
+    "sensor": {"base", "geometry", "depth", "io", "message", "bag", "field", "prepare", "scene",
+               "sim"},
     "device": {"base", "geometry", "io", "field", "contact", "prepare", "scene"},
     "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "device"},
     "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
                "servo"},
-    "apps": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "align", "scene",
+    "apps": {"base", "geometry", "depth", "io", "message", "bag", "field", "contact", "prepare", "align", "scene",
              "sensor", "device", "servo", "viewer"},
 }
 # The rooms of the program, from the top down: what stands in one line sees what stands below it.
-ROOMS = [{"align", "devices", "doctor", "info", "paper", "touch", "zwidth"}, {"view"}, {"report"},
-         {"run"}, {"sources"}, {"options"}, {"plot"}, {"cli"}]
+ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "touch", "zwidth"}, {"view"},
+         {"report"}, {"run"}, {"sources"}, {"options"}, {"plot"}, {"cli"}]
 # Single headers that a floor may include of a floor that it may not see otherwise.
 ALLOWED = {("contact", "palpate/field/field.hpp"), ("sim", "palpate/sensor/depth_camera.hpp")}
 

@@ -1,0 +1,181 @@
+#include "apps/palpate/bag/bag_command.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/option_checks.hpp"
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/report/report.hpp"
+#include "bag/mcap_reader.hpp"
+#include "bag/mcap_writer.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr const char* kBagFooter = R"(Examples:
+  palpate bag info run.mcap
+  palpate bag info run.mcap --check --json -
+  palpate bag recover cut.mcap whole.mcap
+
+Files are MCAP bags, of palpate, ROS 2 or any other program.
+
+Exit codes: 0 done, 1 the file cannot be read or written, 2 the command line is wrong.)";
+
+constexpr double kNanoseconds = 1e-9;  // s
+
+double seconds_of(const bag::Contents& contents) {
+  return contents.messages > 0 && contents.end > contents.start
+             ? kNanoseconds * static_cast<double>(contents.end - contents.start)
+             : 0;
+}
+
+std::string date(std::uint64_t time) {
+  const auto seconds = static_cast<std::time_t>(time / 1'000'000'000);
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(seconds));
+}
+
+// Messages a second; 0: there is no time between them.
+double rate_of(const bag::Channel& channel, double seconds) {
+  return channel.count > 1 && seconds > 0 ? static_cast<double>(channel.count - 1) / seconds : 0;
+}
+
+void add_losses(Report& report, const bag::Contents& contents) {
+  report.data["losses"] = contents.losses;
+  for (const std::string& loss : contents.losses) report.line("damaged", loss, Mark::warning);
+}
+
+void add_topics(Report& report, const bag::Contents& contents) {
+  const double seconds = seconds_of(contents);
+  Json topics = Json::array();
+  for (const auto& [number, channel] : contents.channels) {
+    const double rate = rate_of(channel, seconds);
+    report.line(topics.empty() ? "topics" : "",
+                fmt::format("{} ({}): {} messages{}", channel.topic, channel.schema.name,
+                            grouped(channel.count),
+                            rate > 0 ? fmt::format(", {:.4g} a second", rate) : ""));
+    topics.push_back({{"topic", channel.topic},
+                      {"type", channel.schema.name},
+                      {"encoding", channel.message_encoding},
+                      {"schema_encoding", channel.schema.encoding},
+                      {"messages", channel.count},
+                      {"rate_hz", rate}});
+  }
+  report.data["topics"] = topics;
+}
+
+Report report_of(const std::string& path, const bag::Contents& contents, bool checked) {
+  Report report(path, fmt::format("MCAP, profile '{}', written by {}", contents.profile,
+                                  contents.library.empty() ? "?" : contents.library));
+  report.data = {{"file", path},
+                 {"profile", contents.profile},
+                 {"library", contents.library},
+                 {"closed", contents.closed},
+                 {"checked", checked},
+                 {"chunks", contents.chunks.size()},
+                 {"messages", contents.messages},
+                 {"start_ns", contents.messages > 0 ? Json(contents.start) : Json()},
+                 {"duration_s", seconds_of(contents)}};
+  report.line("messages", fmt::format("{} in {} chunks", grouped(contents.messages),
+                                      grouped(contents.chunks.size())));
+  if (contents.messages > 0) {
+    report.line("time",
+                fmt::format("{}, {} long", date(contents.start), duration(seconds_of(contents))));
+  }
+  add_topics(report, contents);
+  Json attached = Json::array();
+  for (const bag::AttachmentPlace& place : contents.attachments) {
+    report.line("attached", fmt::format("{}, {} bytes", place.head.name, grouped(place.size)));
+    attached.push_back({{"name", place.head.name}, {"bytes", place.size}});
+  }
+  report.data["attachments"] = attached;
+  add_losses(report, contents);
+  if (contents.losses.empty()) {
+    report.line("damaged", checked ? "nothing" : "nothing seen; --check reads all messages");
+  }
+  return report;
+}
+
+void tell(const BagCommand& command) {
+  check_distinct({{"the bag", command.input}}, {{"--json", command.json}});
+  std::optional<OutputFile> json;
+  if (!command.json.empty()) json.emplace(command.json);
+  bag::McapReader reader(command.input);
+  if (command.check) {
+    const Waiting waiting("reading " + command.input);
+    for (bag::Message message; reader.next(message);) continue;
+  }
+  const Report report = report_of(command.input, reader.contents(), command.check);
+  report.print(command.json == "-" ? stderr : stdout);
+  write_whole(json, text_of(report.data));
+}
+
+void recover(const BagCommand& command) {
+  if (std::filesystem::exists(command.output)) {
+    throw UsageError(
+        fmt::format("{} already exists and is not overwritten; name another file or remove it",
+                    command.output));
+  }
+  const Waiting waiting("reading " + command.input);
+  bag::McapReader reader(command.input);
+  const bag::Contents& contents = reader.contents();
+  bag::McapWriter writer(command.output, {.profile = contents.profile});
+  std::map<std::uint16_t, std::uint16_t> numbers;
+  for (const auto& [number, channel] : contents.channels) {
+    numbers[number] = writer.add_channel(channel);
+  }
+  std::size_t messages = 0;
+  for (bag::Message message; reader.next(message); ++messages) {
+    writer.write(numbers.at(message.channel), message.stamp, message.data);
+  }
+  std::vector<std::string> unread;
+  for (std::size_t i = 0; i < contents.attachments.size(); ++i) {
+    try {
+      writer.attach(reader.attachment(i));
+    } catch (const Error& error) {
+      unread.emplace_back(error.what());
+    }
+  }
+  for (const bag::Metadata& each : contents.metadata) writer.add(each);
+  writer.close();
+  Report report(command.output, "");
+  report.line("messages", grouped(messages));
+  add_losses(report, contents);
+  for (const std::string& each : unread) report.line("damaged", each, Mark::warning);
+  report.print(stdout);
+}
+
+}  // namespace
+
+void add_bag_options(CLI::App& command, BagCommand& bag) {
+  command.require_subcommand(0, 1);
+  command.footer(kBagFooter);
+  bag.info = command.add_subcommand("info", "Topics, types, counts and rates, and what is damaged");
+  bag.recover = command.add_subcommand(
+      "recover", "Write what can be read of a damaged or unfinished bag to a new one");
+  for (CLI::App* each : {bag.info, bag.recover}) {
+    each->add_option("file", bag.input, "an MCAP file")->required()->type_name("FILE");
+  }
+  bag.info->add_flag("--check", bag.check, "read all messages and check their CRCs");
+  add_json_option(*bag.info, bag.json);
+  bag.recover->add_option("output", bag.output, "the new file; never overwrites one")
+      ->required()
+      ->type_name("OUTPUT");
+}
+
+void bag(const BagCommand& bag) {
+  if (bag.info->parsed()) return tell(bag);
+  if (bag.recover->parsed()) return recover(bag);
+  throw UsageError(
+      "nothing to do with a bag is given; use info or recover (see 'palpate bag --help')");
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,297 @@
+#include "bag/mcap_walk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "bag/chunk.hpp"
+
+namespace palpate::bag {
+
+namespace {
+
+constexpr std::uint64_t kLargestNote = 16 << 20;  // bytes of a schema, a channel, metadata
+constexpr std::uint64_t kLargestRun = 1 << 20;    // bytes of messages without chunk, read at once
+constexpr std::uint64_t kAttachmentHead = 64 << 10;  // bytes, of names mostly
+constexpr std::size_t kMostLosses = 20;
+
+class Walk {
+ public:
+  explicit Walk(const RandomFile& file) : file_(file) {}
+  Contents run();
+
+ private:
+  void read_summary();
+  void take_summary(View summary);
+  void take_chunk_index(Fields fields);
+  void take_statistics(Fields fields);
+  void sort_known();
+  void search(std::uint64_t begin, std::uint64_t end);
+  void take(Op op, std::uint64_t at, std::uint64_t length);
+  void take_chunk(std::uint64_t at, std::uint64_t length);
+  void take_message(std::uint64_t at, std::uint64_t length);
+  void take_attachment(std::uint64_t at, std::uint64_t length);
+  void count(const Message& message, ChunkPlace& place);
+
+  struct Known {
+    ChunkPlace place;
+    std::uint64_t behind = 0;  // the chunk and its index
+  };
+
+  const RandomFile& file_;
+  Contents contents_;
+  std::vector<Known> known_;
+  std::uint64_t data_end_ = 0;
+  bool counted_ = false;  // the file's end told how many messages there are
+};
+
+Contents Walk::run() {
+  const Bytes magic = file_.read(0, std::min<std::uint64_t>(file_.size(), kMagic.size()));
+  if (!std::ranges::equal(magic, kMagic)) {
+    throw Error(file_.path() + ": is no MCAP file; name one that ROS 2 or palpate recorded");
+  }
+  read_summary();
+  std::uint64_t at = kMagic.size();
+  for (Known& known : known_) {
+    search(at, known.place.offset);
+    contents_.chunks.push_back(std::move(known.place));
+    at = known.behind;
+  }
+  search(at, data_end_);
+  if (!contents_.closed) {
+    contents_.lose(fmt::format("the file was not closed; its {} bytes were searched for messages",
+                               file_.size()));
+  }
+  return std::move(contents_);
+}
+
+// Uses what the file's end says, if all of it is there.
+void Walk::read_summary() {
+  data_end_ = file_.size();
+  constexpr std::uint64_t kEnd = kFooter + kMagic.size();
+  if (file_.size() < kEnd + kMagic.size()) return;
+  const std::uint64_t footer_at = file_.size() - kEnd;
+  const Bytes end = file_.read(footer_at, kEnd);
+  Fields fields(end);
+  const bool is_footer = fields.number<std::uint8_t>() == static_cast<std::uint8_t>(Op::footer) &&
+                         fields.number<std::uint64_t>() == kFooter - kRecordHead;
+  const auto start = fields.number<std::uint64_t>();
+  fields.number<std::uint64_t>();
+  const auto crc = fields.number<std::uint32_t>();
+  if (!is_footer || !std::ranges::equal(fields.left(), kMagic)) return;
+  contents_.closed = true;
+  data_end_ = footer_at;
+  if (start == 0) return;  // it has none
+  try {
+    if (start < kMagic.size() || start > footer_at) throw Error("it begins outside of the file");
+    const Bytes summary = file_.read(start, file_.size() - start);
+    const std::size_t checked = summary.size() - kMagic.size() - sizeof(crc);
+    if (crc != 0 && crc_of(View(summary).first(checked)) != crc) throw Error("its CRC differs");
+    data_end_ = start;
+    take_summary(View(summary).first(footer_at - start));
+  } catch (const Error& error) {
+    contents_ = {};
+    contents_.closed = true;
+    contents_.lose(fmt::format("the summary at byte {} is damaged: {}", start, error.what()));
+    data_end_ = footer_at;
+    known_.clear();
+  }
+}
+
+void Walk::take_summary(View summary) {
+  std::optional<Fields> statistics;
+  each_record(summary, [&](Op op, View content, std::size_t) {
+    if (op == Op::schema) contents_.describe(op, content);
+  });
+  each_record(summary, [&](Op op, View content, std::size_t) {
+    if (op == Op::channel) contents_.describe(op, content);
+    if (op == Op::chunk_index) take_chunk_index(Fields(content));
+    if (op == Op::statistics) statistics = Fields(content);
+  });
+  if (statistics) take_statistics(*statistics);
+  // What nobody counted or described has to be looked at.
+  if (!counted_) known_.clear();
+  sort_known();
+}
+
+void Walk::take_chunk_index(Fields fields) {
+  Known known;
+  ChunkPlace& place = known.place;
+  place.start = fields.number<std::uint64_t>();
+  place.end = fields.number<std::uint64_t>();
+  place.offset = fields.number<std::uint64_t>();
+  place.length = fields.number<std::uint64_t>();
+  Fields offsets(fields.bytes(fields.number<std::uint32_t>()));
+  while (!offsets.left().empty()) {
+    place.channels.push_back(offsets.number<std::uint16_t>());
+    offsets.number<std::uint64_t>();
+  }
+  const auto indexes = fields.number<std::uint64_t>();
+  const std::uint64_t size = file_.size();
+  if (place.offset > size || place.length > size || indexes > size) return;  // not to be believed
+  known.behind = place.offset + place.length + indexes;
+  known_.push_back(std::move(known));
+}
+
+void Walk::take_statistics(Fields fields) {
+  const auto messages = fields.number<std::uint64_t>();
+  fields.number<std::uint16_t>();
+  const auto channels = fields.number<std::uint32_t>();
+  fields.bytes(3 * sizeof(std::uint32_t));
+  const auto start = fields.number<std::uint64_t>();
+  const auto end = fields.number<std::uint64_t>();
+  Fields counts(fields.bytes(fields.number<std::uint32_t>()));
+  if (channels > contents_.channels.size() || (known_.empty() && messages > 0)) return;
+  while (!counts.left().empty()) {
+    const auto found = contents_.channels.find(counts.number<std::uint16_t>());
+    const auto number = counts.number<std::uint64_t>();
+    if (found != contents_.channels.end()) found->second.count = number;
+  }
+  counted_ = true;
+  contents_.messages = messages;
+  if (messages > 0) contents_.start = start;
+  contents_.end = end;
+}
+
+// Those that lie one behind the other in the data. Others, which cannot all be true, are searched
+// for.
+void Walk::sort_known() {
+  std::ranges::stable_sort(known_, {}, [](const Known& known) { return known.place.offset; });
+  std::uint64_t at = kMagic.size();
+  const auto wrong = [&](const Known& known) {
+    if (known.place.offset < at || known.place.length < kRecordHead || known.behind > data_end_) {
+      contents_.lose(fmt::format("the index of a chunk at byte {} is wrong", known.place.offset));
+      return true;
+    }
+    at = known.behind;
+    return false;
+  };
+  std::erase_if(known_, wrong);
+}
+
+void Walk::search(std::uint64_t begin, std::uint64_t end) {
+  while (begin < end) {
+    std::uint64_t length = end - begin;  // until it is known
+    try {
+      const Bytes head = file_.read(begin, std::min<std::uint64_t>(kRecordHead, length));
+      Fields fields(head);
+      const auto op = static_cast<Op>(fields.number<std::uint8_t>());
+      const auto content = fields.number<std::uint64_t>();
+      if (content > length - kRecordHead || op == Op{0}) throw Error("a record is cut or damaged");
+      if (op == Op::data_end || op == Op::footer) return;
+      length = kRecordHead + content;
+      take(op, begin + kRecordHead, content);
+    } catch (const Error& error) {
+      contents_.lose(
+          fmt::format("bytes {} to {} are lost: {}", begin, begin + length - 1, error.what()));
+    }
+    begin += length;
+  }
+}
+
+void Walk::take(Op op, std::uint64_t at, std::uint64_t length) {
+  if (op == Op::chunk) return take_chunk(at, length);
+  if (op == Op::message) return take_message(at, length);
+  if (op == Op::attachment) return take_attachment(at, length);
+  const bool wanted =
+      op == Op::header || op == Op::schema || op == Op::channel || op == Op::metadata;
+  if (!wanted) return;
+  if (length > kLargestNote) throw Error("a record is longer than any honest one");
+  const Bytes content = file_.read(at, length);
+  Fields fields(content);
+  if (op == Op::header) {
+    contents_.profile = fields.text();
+    contents_.library = fields.text();
+  } else if (op == Op::metadata) {
+    std::string name = fields.text();
+    contents_.metadata.push_back({std::move(name), fields.words()});
+  } else {
+    contents_.describe(op, content);
+  }
+}
+
+void Walk::take_chunk(std::uint64_t at, std::uint64_t length) {
+  ChunkPlace place{.offset = at - kRecordHead, .length = kRecordHead + length, .channels = {}};
+  const Bytes records = unpack(file_.read(at, length));
+  each_record(records, [&](Op op, View content, std::size_t) {
+    if (op == Op::schema || op == Op::channel) contents_.describe(op, content);
+    if (op == Op::message) count(message_of(content), place);
+  });
+  std::ranges::sort(place.channels);
+  place.channels.erase(std::unique(place.channels.begin(), place.channels.end()),
+                       place.channels.end());
+  if (place.start <= place.end) contents_.chunks.push_back(std::move(place));
+}
+
+// Messages without chunk that follow one another become one place.
+void Walk::take_message(std::uint64_t at, std::uint64_t length) {
+  if (length > kLargestChunk) throw Error("a message is longer than any honest one");
+  const Message message = message_of(file_.read(at, std::min<std::uint64_t>(length, kMessageHead)));
+  const std::uint64_t offset = at - kRecordHead;
+  std::vector<ChunkPlace>& places = contents_.chunks;
+  const bool goes_on = !places.empty() && places.back().loose &&
+                       places.back().offset + places.back().length == offset &&
+                       places.back().length + length < kLargestRun;
+  if (!goes_on) places.push_back({.offset = offset, .channels = {}, .loose = true});
+  places.back().length += kRecordHead + length;
+  count(message, places.back());
+}
+
+void Walk::take_attachment(std::uint64_t at, std::uint64_t length) {
+  const Bytes content = file_.read(at, std::min(length, kAttachmentHead));
+  Fields fields(content);
+  AttachmentPlace place{.head = {}, .offset = at, .length = length};
+  place.head.log_time = fields.number<std::uint64_t>();
+  place.head.create_time = fields.number<std::uint64_t>();
+  place.head.name = fields.text();
+  place.head.media_type = fields.text();
+  place.size = fields.number<std::uint64_t>();
+  if (place.size > length) throw Error("an attachment is shorter than it says");
+  contents_.attachments.push_back(std::move(place));
+}
+
+void Walk::count(const Message& message, ChunkPlace& place) {
+  place.start = std::min(place.start, message.stamp.log);
+  place.end = std::max(place.end, message.stamp.log);
+  std::vector<std::uint16_t>& channels = place.channels;
+  if (!place.loose && (channels.empty() || channels.back() != message.channel)) {
+    channels.push_back(message.channel);
+  }
+  const auto channel = contents_.channels.find(message.channel);
+  if (counted_ || channel == contents_.channels.end()) return;
+  ++channel->second.count;
+  ++contents_.messages;
+  contents_.start = std::min(contents_.start, message.stamp.log);
+  contents_.end = std::max(contents_.end, message.stamp.log);
+}
+
+}  // namespace
+
+void Contents::lose(const std::string& what) {
+  if (losses.size() > kMostLosses || std::ranges::find(losses, what) != losses.end()) return;
+  losses.push_back(losses.size() < kMostLosses ? what : "there are more losses");
+}
+
+void Contents::describe(Op op, View content) {
+  Fields fields(content);
+  const auto number = fields.number<std::uint16_t>();
+  if (op == Op::schema) {
+    Schema schema{fields.text(), fields.text(), fields.text()};
+    schemas.try_emplace(number, std::move(schema));
+    return;
+  }
+  const auto schema = schemas.find(fields.number<std::uint16_t>());
+  Channel channel;
+  channel.topic = fields.text();
+  channel.message_encoding = fields.text();
+  channel.metadata = fields.words();
+  if (schema != schemas.end()) channel.schema = schema->second;
+  channels.try_emplace(number, std::move(channel));
+}
+
+Contents walk(const RandomFile& file) {
+  return Walk(file).run();
+}
+
+}  // namespace palpate::bag

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bag/mcap_format.hpp"
+#include "message/schema.hpp"
+
+namespace palpate::bag {
+
+/// What a topic offers its readers when a bag is played.
+struct Qos {
+  bool reliable = true;
+  bool transient_local = false;  ///< who comes late gets the last messages
+  std::uint32_t depth = 1;       ///< messages that are kept
+};
+
+/// The same as rosbag2 writes it in YAML, in the numbers that all its versions read.
+[[nodiscard]] std::string offered_qos(const Qos& qos);
+
+/// Writes a bag (profile ros2). After each chunk the file is closed with all that a reader wants to
+/// find at its end, and what follows replaces that: if the program or the machine stops, no more
+/// than what was not in a chunk is lost. Where that end has grown beyond 256 KiB (some two thousand
+/// chunks), it is written at every sync only; a file without it is read all the same.
+///
+/// One thread at a time. write() may take as long as the disk does: not for a servo's thread. Reads
+/// no clock: time is what messages and advance() say. Every function that writes throws Error that
+/// names the file and the reason (a full disk); the file then ends with the last chunk that was
+/// written whole, and takes no more.
+class McapWriter {
+ public:
+  struct Options {
+    std::size_t chunk_size = 1 << 20;          ///< bytes; a chunk that reaches it is written
+    std::uint64_t chunk_time = 1'000'000'000;  ///< ns; so is one that began that long ago
+    std::uint64_t sync_time = 5'000'000'000;   ///< ns between two waits for the disk
+    bool compressed = true;                    ///< by zstd, level 1
+    std::string profile = "ros2";
+  };
+
+  /// Makes the file; one that was there is replaced.
+  McapWriter(std::string path, const Options& options);
+  explicit McapWriter(std::string path) : McapWriter(std::move(path), Options{}) {}
+  /// close(), but what goes wrong is not told.
+  ~McapWriter();
+  McapWriter(const McapWriter&) = delete;
+  McapWriter& operator=(const McapWriter&) = delete;
+
+  /// The channel's number, for write(). It is in the file from its first message on.
+  [[nodiscard]] std::uint16_t add_channel(const Channel& channel);
+
+  /// The same for messages of one of our types.
+  template <message::Message T>
+  [[nodiscard]] std::uint16_t add_topic(const std::string& topic, const Qos& qos = {}) {
+    Channel channel{topic, {message::ros_name(T::kName), "ros2msg", message::schema_of<T>()}};
+    channel.metadata["offered_qos_profiles"] = offered_qos(qos);
+    if (T::kHash[0] != '\0')
+      channel.metadata["topic_type_hash"] = std::string("RIHS01_") + T::kHash;
+    return add_channel(channel);
+  }
+
+  /// A message of a channel, already encoded. Its sequence number counts those of the channel.
+  void write(std::uint16_t channel, const Stamp& stamp, View data);
+
+  template <message::Message T>
+  void write(std::uint16_t channel, const Stamp& stamp, const T& message) {
+    message::encode(message, encoded_);
+    write(channel, stamp, View(encoded_));
+  }
+
+  /// Files and notes that belong to the recording; written at once.
+  void attach(const Attachment& attachment);
+  void add(const Metadata& metadata);
+
+  /// Says how late it is (ns), when no message does: writes and syncs what is due.
+  void advance(std::uint64_t now);
+
+  /// Writes what is left, waits for the disk, closes the file.
+  void close();
+
+ private:
+  struct State {
+    Channel channel;
+    std::uint16_t schema = 0;
+    std::uint64_t since = UINT64_MAX;  // the chunk that holds it
+    std::uint32_t sequence = 0;
+    // Of the chunk that grows: log times and offsets of messages.
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;
+  };
+
+  // What the file holds; of index_, so many bytes.
+  struct Totals {
+    std::uint64_t messages = 0;
+    std::uint64_t start = UINT64_MAX;
+    std::uint64_t end = 0;
+    std::uint32_t chunks = 0;
+    std::uint32_t attachments = 0;
+    std::uint32_t metadata = 0;
+    std::vector<std::uint64_t> counts;  // of each channel
+    std::array<std::size_t, 3> indexed{};
+  };
+
+  std::uint16_t schema_number(const Schema& schema);
+  void describe(State& state, std::uint16_t number);
+  void write_chunk();
+  void append_chunk(Bytes& out, std::uint64_t start, std::uint64_t end);
+  void commit(Bytes& data, Totals after);
+  // The end of a file whose data end at byte `at`.
+  [[nodiscard]] Bytes ending(const Totals& totals, std::uint64_t at) const;
+  void append_schema(Bytes& out, std::uint16_t number) const;
+  void append_channel(Bytes& out, std::uint16_t number) const;
+  void append_statistics(Bytes& out, const Totals& totals) const;
+  [[nodiscard]] bool put(std::uint64_t at, const Bytes& data) const;
+  void sync();
+  void check_open() const;
+  [[noreturn]] void give_up(int reason);
+
+  std::string path_;
+  Options options_;
+  int file_ = -1;
+  bool failed_ = false;
+  bool ended_ = false;           // the file is closed as it is
+  std::uint64_t end_ = 0;        // of its data
+  std::uint64_t synced_ = 0;     // when
+  bool began_ = false;           // there is a time
+  std::vector<Schema> schemas_;  // the first is number 1
+  std::vector<State> channels_;  // as well
+  Totals totals_;
+  std::array<Bytes, 3> index_;  // records of chunks, attachments, metadata
+
+  Bytes chunk_;  // that grows
+  std::uint64_t chunk_began_ = 0;
+  Bytes encoded_;
+};
+
+}  // namespace palpate::bag
