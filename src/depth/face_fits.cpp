@@ -1,10 +1,9 @@
-#include "depth/face_fits.hpp"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
 #include <utility>
 
+#include "depth/window_fits.hpp"
 #include "geometry/parallel.hpp"
 
 namespace palpate::depth {

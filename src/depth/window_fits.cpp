@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "depth/neighbors.hpp"
+#include "depth/blocks.hpp"
 #include "geometry/parallel.hpp"
 
 namespace palpate::depth {
@@ -58,13 +58,6 @@ BlockRange united(const BlockRange& a, const BlockRange& b) {
 }
 
 }  // namespace
-
-BlockRange BlockRange::grown(int border, const BlockGrid& grid) const {
-  const int left = std::max(first_column - border, 0);
-  const int top = std::max(first_row - border, 0);
-  return {left, top, std::min(first_column + columns + border, grid.columns) - left,
-          std::min(first_row + rows + border, grid.rows) - top};
-}
 
 void FitRegion::set(const BlockGrid& grid) {
   everything_ = true;

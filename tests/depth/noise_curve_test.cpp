@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "depth/noise_fit.hpp"
+#include "depth/noise_tracker.hpp"
 
 namespace palpate::depth {
 namespace {

@@ -8,7 +8,7 @@
 #include "base/angle.hpp"
 #include "base/cpu.hpp"
 #include "depth/metric_fit.hpp"
-#include "depth/simd/plain.hpp"
+#include "depth/simd/fits.hpp"
 #include "depth/small_frames.hpp"
 
 namespace palpate::test {

@@ -101,7 +101,7 @@ Pinhole parse_intrinsics(const std::string& text) {
 NoiseModel parse_noise(const std::string& text) {
   if (std::ranges::none_of(text, [](char c) { return c == ','; })) {
     try {
-      return sensor_profile(text).noise;
+      return sensor_noise(text);
     } catch (const Error& error) {
       throw UsageError(fmt::format("--noise: {}", error.what()));
     }
