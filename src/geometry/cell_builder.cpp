@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "geometry/parallel.hpp"
-#include "geometry/sort_records.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::detail {

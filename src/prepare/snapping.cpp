@@ -1,5 +1,3 @@
-#include "prepare/snapping.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,7 @@
 
 #include "geometry/parallel.hpp"
 #include "prepare/sheet_fit.hpp"
+#include "prepare/sheets.hpp"
 
 namespace palpate {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/filters.hpp"
+#include "palpate/geometry/point_cloud.hpp"
 
 namespace palpate {
 namespace {

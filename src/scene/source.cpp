@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "prepare/check_input.hpp"
+#include "prepare/columns.hpp"
 #include "scene/source_inside.hpp"
 
 namespace palpate {

@@ -8,7 +8,7 @@
 #include "apps/palpate/paper/paper_figures.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/filters.hpp"
+#include "palpate/geometry/point_cloud.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::app {

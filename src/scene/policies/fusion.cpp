@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/filters.hpp"
-#include "prepare/columns.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "field/active_layer.hpp"
 #include "geometry/parallel.hpp"
-#include "geometry/sort_records.hpp"
 
 namespace palpate {
 namespace {

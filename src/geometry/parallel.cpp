@@ -1,10 +1,8 @@
-#include "geometry/sort_records.hpp"
+#include "geometry/parallel.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-
-#include "geometry/parallel.hpp"
 
 namespace palpate::detail {
 namespace {
