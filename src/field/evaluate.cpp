@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "field/formulas.hpp"
-#include "field/joined_height.hpp"
 #include "field/oriented.hpp"
 
 // Notation as in docs/method.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,

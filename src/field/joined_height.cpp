@@ -1,10 +1,9 @@
-#include "field/joined_height.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "field/facing.hpp"
 #include "field/formulas.hpp"
+#include "field/oriented.hpp"
 
 namespace palpate {
 

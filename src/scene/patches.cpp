@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "field/mean_surface.hpp"
+#include "field/evaluate.hpp"
 
 namespace palpate {
 

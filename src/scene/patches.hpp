@@ -6,7 +6,6 @@
 #include <span>
 
 #include "field/evaluate.hpp"
-#include "field/mean_surface.hpp"
 #include "field/patch.hpp"
 #include "palpate/field/field.hpp"
 #include "palpate/scene/scene_field.hpp"

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "field/evaluate.hpp"
-#include "field/mean_surface.hpp"
 #include "scene/patches.hpp"
 #include "scene/source_inside.hpp"
 #include "scene/source_view.hpp"

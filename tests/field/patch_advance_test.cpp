@@ -5,7 +5,6 @@
 #include <random>
 
 #include "field/evaluate.hpp"
-#include "field/mean_surface.hpp"
 #include "field/patch.hpp"
 #include "support/known_edges.hpp"
 #include "support/make_points.hpp"

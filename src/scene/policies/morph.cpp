@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "field/active_layer.hpp"
+#include "field/selection.hpp"
 #include "geometry/parallel.hpp"
 
 namespace palpate {
