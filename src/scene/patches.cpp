@@ -1,9 +1,8 @@
-#include "scene/patches.hpp"
-
 #include <algorithm>
 #include <utility>
 
 #include "field/evaluate.hpp"
+#include "scene/scene_view.hpp"
 
 namespace palpate {
 

@@ -11,9 +11,8 @@
 #include <utility>
 
 #include "field/evaluate.hpp"
-#include "scene/patches.hpp"
+#include "scene/scene_view.hpp"
 #include "scene/source_inside.hpp"
-#include "scene/source_view.hpp"
 
 namespace palpate {
 namespace {

@@ -1,5 +1,3 @@
-#include "scene/snapshot_builder.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/point_cloud.hpp"
+#include "scene/source_inside.hpp"
 
 namespace palpate {
 namespace {

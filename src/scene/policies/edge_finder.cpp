@@ -1,9 +1,8 @@
-#include "scene/policies/edge_finder.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/parallel.hpp"
+#include "scene/policies/block_surface.hpp"
 #include "scene/policies/lanes.hpp"
 
 namespace palpate {

@@ -1,17 +1,84 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <string>
 
 #include "field/evaluate.hpp"
 #include "field/patch.hpp"
 #include "palpate/field/field.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/scene/source.hpp"
+#include "scene/handoff.hpp"
 
 namespace palpate {
+
+/// One source's snapshots as one reader sees them: the current one and, while its start lies ahead,
+/// the next. Everything but construction and destruction is real-time.
+class SourceView {
+ public:
+  /// `least_radius`: of all its layers' points, m; may change. `name`: of the reader.
+  /// @throws Error when the source has no reader's place left.
+  SourceView(Handoff<Snapshot>& handoff, const std::atomic<double>& least_radius,
+             const std::string& name);
+  ~SourceView();
+  SourceView(const SourceView&) = delete;
+  SourceView& operator=(const SourceView&) = delete;
+
+  /// Looks for a new snapshot and brings everything to time `now`, s, which is finite. True when
+  /// that moved or changed the surface. A snapshot that waits for its start is replaced by a newer
+  /// one only when it starts unreasonably late; one that came after its start makes up for it.
+  bool advance(double now) noexcept;
+
+  /// nullptr: no surface now; one that has faded away is none.
+  [[nodiscard]] const Snapshot* current() const noexcept { return share_ > 0 ? current_ : nullptr; }
+
+  /// How sure the current snapshot is now, 0-1; 0 without one. Rises no faster than it would fade.
+  [[nodiscard]] double presence() const noexcept { return presence_; }
+
+  /// The current snapshot's k-th layer as it counts now. Once presence has come to 0 the weights
+  /// fade as well: what other sources see there goes over to them gradually.
+  [[nodiscard]] ActiveLayer layer(std::size_t k, int source) const noexcept;
+
+  /// The reader's place at the source.
+  [[nodiscard]] std::size_t reader() const noexcept { return reader_; }
+
+ private:
+  /// What is remembered of a snapshot that is let go.
+  struct Times {
+    double start = 0;
+    double end = 0;
+    std::uint64_t sequence = 0;
+  };
+
+  void look(double now) noexcept;
+  void forget() noexcept;
+  void change_over(double now) noexcept;
+  void begin(const Times& before) noexcept;
+  void move(double now) noexcept;
+  void fade(double now, double dt) noexcept;
+
+  Handoff<Snapshot>* handoff_;
+  const std::atomic<double>* wanted_radius_;
+  std::size_t reader_;
+  std::size_t slot_ = 0;  // that holds `current_`; the other holds `next_`
+  const Snapshot* current_ = nullptr;
+  const Snapshot* next_ = nullptr;
+  double shown_ = -std::numeric_limits<double>::infinity();  // time of the last advance(), s
+  double begun_ = 0;     // when the current one began to be shown, s
+  double behind_ = 0;    // how far its surface was behind then, in durations, ...
+  double catch_up_ = 1;  // ... and in which time it makes up for that, s
+  double least_radius_ = 0;
+  double progress_ = 0;
+  double rate_ = 0;  // of progress, 1/s
+  double presence_ = 0;
+  double share_ = 0;  // of the weights
+  double faded_ = 0;  // time since presence came to 0, s
+};
 
 /// What a place of a source's surface feels like.
 [[nodiscard]] inline Surface felt_surface(const PatchSurface& mean,
