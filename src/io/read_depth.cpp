@@ -7,7 +7,6 @@
 
 #include "io/depth_image.hpp"
 #include "io/file_bytes.hpp"
-#include "io/file_kind.hpp"
 #include "io/input.hpp"
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/io/cloud_file.hpp"
