@@ -16,7 +16,7 @@
 #include "io/formats.hpp"
 #include "io/input.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/io/read_depth.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "sensor/pose_track.hpp"
 #include "sensor/sequence_description.hpp"

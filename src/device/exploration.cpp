@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "device/surface_map.hpp"
 #include "palpate/base/error.hpp"
 

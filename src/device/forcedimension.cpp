@@ -7,7 +7,6 @@
 #include <charconv>
 #include <string_view>
 
-#include "base/listed.hpp"
 #include "base/shared_library.hpp"
 #include "device/drivers.hpp"
 #include "palpate/base/error.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/listed.hpp"
+#include "base/shared_library.hpp"
 #include "device/drivers.hpp"
 #include "device/haply_message.hpp"
 #include "device/text_socket.hpp"

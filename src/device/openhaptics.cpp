@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "base/listed.hpp"
+#include "base/shared_library.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::device {

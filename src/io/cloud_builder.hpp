@@ -11,7 +11,7 @@
 
 #include "io/input.hpp"
 #include "palpate/geometry/point_cloud.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate::io {
 

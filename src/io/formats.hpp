@@ -10,7 +10,7 @@
 
 #include "io/input.hpp"
 #include "io/text_scanner.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate::io {
 

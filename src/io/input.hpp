@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate::io {
 

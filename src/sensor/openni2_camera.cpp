@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "base/listed.hpp"
+#include "base/shared_library.hpp"
 #include "palpate/base/error.hpp"
 #include "sensor/drivers.hpp"
 #include "sensor/live_camera.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "palpate/io/read_depth.hpp"
+#include "palpate/io/files.hpp"
 #include "sensor/sequence.hpp"
 
 namespace palpate::sensor {

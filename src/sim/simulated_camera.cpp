@@ -8,7 +8,7 @@
 #include <numbers>
 #include <thread>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 
 namespace palpate::sim {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "base/angle.hpp"
+#include "base/numbers.hpp"
 #include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
 #include "sim/simulated_faults.hpp"
 

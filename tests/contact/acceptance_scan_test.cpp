@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "palpate/contact/proxy.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/effort.hpp"
 #include "support/kind_name.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "depth/noise_tracker.hpp"
 
 namespace palpate::depth {

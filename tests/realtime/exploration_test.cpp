@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "realtime/build.hpp"
 #include "realtime/rig.hpp"

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "palpate/device/exploration.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "safety/given_energy.hpp"
 #include "support/effort.hpp"

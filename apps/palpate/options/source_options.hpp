@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/palpate/cli/arguments.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/scene/source.hpp"
 
 namespace palpate::app {

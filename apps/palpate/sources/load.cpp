@@ -7,7 +7,7 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/io/read_depth.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/sensor/open_camera.hpp"
 

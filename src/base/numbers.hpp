@@ -6,6 +6,8 @@
 
 namespace palpate {
 
+inline constexpr double kDegree = std::numbers::pi / 180;  ///< rad
+
 /// SplitMix64 (Steele, Lea, Flood 2014). The standard library's distributions differ from one
 /// implementation to another; the same seed has to give the same numbers everywhere.
 class Random {
