@@ -12,7 +12,7 @@ Felt play(const Event& event) {
   Source& source = scene.add("camera");
   SimulatedStream stream(
       camera, "camera",
-      [&](const DepthFrame& frame, const StartTime& start) { source.push(frame, start); },
+      [&](const DepthFrame& frame, const Source::StartTime& start) { source.push(frame, start); },
       {.latency = 0.01, .lead = 0.002}, [&] { source.keep(); });
   SceneField field(scene);
   Proxy proxy({.stiffness = kK});

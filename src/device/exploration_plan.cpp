@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/requirement.hpp"
+#include "field/formulas.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/device/exploration.hpp"

@@ -177,7 +177,7 @@ std::vector<float> materials_of(const CellGrid& grid, const std::vector<float>& 
   return materials;
 }
 
-void tell_trust(const SurfacePoints& points, PrepareReport& report) {
+void tell_trust(const SurfacePoints& points, Prepared::Report& report) {
   std::vector<float> felt;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points.density_weights[i] > 0) felt.push_back(points.confidences[i]);

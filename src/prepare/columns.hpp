@@ -50,7 +50,7 @@ template <class T>
                                               const std::vector<float>& intensities);
 
 /// How far the normals of what is felt are trusted.
-void tell_trust(const SurfacePoints& points, PrepareReport& report);
+void tell_trust(const SurfacePoints& points, Prepared::Report& report);
 
 /// The same points in the world frame.
 [[nodiscard]] PointCloud placed(PointCloud cloud, const Eigen::Isometry3d& T_world_sensor);

@@ -262,7 +262,7 @@ class Preparation {
   const PointCloud* cloud_;  // that, or what was given
   std::optional<Eigen::Vector3d> viewpoint_;
   SurfacePoints points_;
-  PrepareReport report_;
+  Prepared::Report report_;
   std::vector<float> spacings_;
   std::vector<std::uint32_t> counts_;   // points that each voxel's stands for; empty: one each
   std::vector<Eigen::Vector3f> given_;  // in sorted order; empty: none

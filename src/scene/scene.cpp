@@ -47,8 +47,8 @@ Source& Scene::add(std::string name, const PointCloud& cloud, const SourceOption
   return source;
 }
 
-SourceState Scene::state(std::size_t i) const {
-  SourceState state = source(i).state();
+Source::State Scene::state(std::size_t i) const {
+  Source::State state = source(i).state();
   const auto own = source(i).points();
   for (std::size_t k = 0; own && k < size(); ++k) {
     const auto other = k == i ? nullptr : source(k).points();

@@ -82,7 +82,7 @@ struct SceneField::State {
   std::deque<SourceView> views;
   std::vector<ReachTable*> boards;  // of the views' sources
   ToolReach reach;
-  std::vector<SoftMaterial> soft;
+  std::vector<SourceOptions::SoftMaterial> soft;
   std::array<ActiveLayer, Scene::kMaxSources * Snapshot::kMaxLayers> layers;
   std::size_t layer_count = 0;
   std::array<const Snapshot*, Scene::kMaxSources> shown{};  // of the views

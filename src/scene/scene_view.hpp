@@ -82,7 +82,7 @@ class SourceView {
 
 /// What a place of a source's surface feels like.
 [[nodiscard]] inline Surface felt_surface(const PatchSurface& mean,
-                                          const SoftMaterial& soft) noexcept {
+                                          const SourceOptions::SoftMaterial& soft) noexcept {
   Surface result;
   result.source = mean.source;
   result.presence = mean.presence;

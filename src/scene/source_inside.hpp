@@ -56,7 +56,7 @@ class Seams {
 struct Arrival {
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
   std::span<const Reach> reach;  ///< of all fields, world frame
-  const StartTime& start;
+  const Source::StartTime& start;
 };
 
 /// Makes a source's snapshots out of what is pushed into it, as its policy says. One thread uses
@@ -73,7 +73,8 @@ class SnapshotBuilder {
   /// nullptr: no point of the cloud is within reach. `report`: of its preparation.
   /// @throws Error as prepare() does, when a time is not finite, and when the policy is morph.
   [[nodiscard]] std::shared_ptr<const Snapshot> take(const PointCloud& cloud, double stamp,
-                                                     const Arrival& arrival, PrepareReport& report);
+                                                     const Arrival& arrival,
+                                                     Prepared::Report& report);
 
   /// A surface that stays: the newest frame's, all of it fitted, from where the last snapshot ends.
   /// nullptr: `newest` was not made here.
@@ -95,7 +96,7 @@ class SnapshotBuilder {
   [[nodiscard]] std::shared_ptr<Snapshot> morphed(const MorphInput& input,
                                                   const FrameTiming& moment);
   [[nodiscard]] std::shared_ptr<const Snapshot> fused(const FrameTiming& moment);
-  [[nodiscard]] FrameTiming next_timing(double stamp, const StartTime& start);
+  [[nodiscard]] FrameTiming next_timing(double stamp, const Source::StartTime& start);
   [[nodiscard]] std::shared_ptr<Snapshot> next_snapshot(const FrameTiming& moment, Policy policy);
   [[nodiscard]] double presence_at(double time) const;
   void forget();
@@ -133,9 +134,9 @@ struct Source::Inside {
   SourceOptions options;
   std::unique_ptr<SnapshotBuilder> changed;  // for the next push
   Eigen::Isometry3d pose;
-  PrepareReport report;
+  Prepared::Report report;
   std::shared_ptr<const SurfacePoints> points;
-  SourceState state;
+  Source::State state;
 
   std::unique_ptr<SnapshotBuilder> builder;  // the preparing thread's
   std::vector<Reach> found;                  // likewise

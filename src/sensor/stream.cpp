@@ -209,7 +209,7 @@ void Stream::Threads::finish() {
 
 void Stream::Threads::prepare(const DepthFrame& frame) {
   std::optional<double> asked;
-  const StartTime ask_start = [&] {
+  const Source::StartTime ask_start = [&] {
     asked = clock.now();
     return *asked + tail + options.lead;
   };

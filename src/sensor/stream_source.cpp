@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 FrameSink sink_of(Source& source) {
-  return [&source](const DepthFrame& frame, const StartTime& start) {
+  return [&source](const DepthFrame& frame, const Source::StartTime& start) {
     if (source.push(frame, start)) return;
     throw Error(
         fmt::format("all snapshots are held by fields that are not updated, e.g. that of {}. "

@@ -58,7 +58,7 @@ std::vector<SourceReport> source_reports(const Scene& scene, std::span<const Vie
   std::vector<SourceReport> reports;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const Source& source = scene.source(i);
-    const SourceState state = scene.state(i);
+    const Source::State state = scene.state(i);
     const ViewerStream* stream = stream_of(streams, source.name());
     const auto points = source.points();
     SourceReport report;

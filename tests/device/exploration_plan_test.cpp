@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "field/formulas.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/exploration.hpp"
 #include "palpate/io/synthetic.hpp"

@@ -5,6 +5,7 @@
 #include <array>
 #include <random>
 
+#include "field/formulas.hpp"
 #include "palpate/base/error.hpp"
 #include "support/known_edges.hpp"
 #include "support/make_points.hpp"

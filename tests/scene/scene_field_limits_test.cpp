@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "field/formulas.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/snapshots.hpp"

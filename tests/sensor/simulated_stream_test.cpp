@@ -27,7 +27,7 @@ class SimulatedStreamTest : public testing::Test {
  protected:
   [[nodiscard]] SimulatedStream stream(const SimulatedStreamOptions& options = kAtOnce) {
     return {camera_, "table",
-            [this](const DepthFrame& frame, const StartTime& start) {
+            [this](const DepthFrame& frame, const Source::StartTime& start) {
               taken_.push_back({frame.stamp, start(), now_});
             },
             options, [this] { ended_at_.push_back(now_); }};
@@ -131,7 +131,7 @@ TEST_F(SimulatedStreamTest, ObjectsToWhatAStreamObjectsTo) {
   FakeCamera camera(script, false);
   const SteadyClock clock;
   const Stream live(camera, "table",
-                    [](const DepthFrame&, const StartTime& start) { (void)start(); }, clock,
+                    [](const DepthFrame&, const Source::StartTime& start) { (void)start(); }, clock,
                     {.stall = 1e9});
   ASSERT_TRUE(eventually([&] { return live.state().phase == StreamState::Phase::ended; }));
   const StreamState state = stream.state();
@@ -168,7 +168,7 @@ TEST_F(SimulatedStreamTest, NoticesAFrozenPictureAndThatItMovesAgain) {
   FakeCamera still(script_, false, true);
   for (int i = 0; i <= 9; ++i) give(frame_at(0.1 * i, 2));
   SimulatedStream allowed(
-      still, "table", [](const DepthFrame&, const StartTime&) {}, kAtOnce);
+      still, "table", [](const DepthFrame&, const Source::StartTime&) {}, kAtOnce);
   allowed.advance(2);
   EXPECT_EQ(allowed.state().drops.total(), 0u);
 }
@@ -243,8 +243,9 @@ TEST_F(SimulatedStreamTest, StampsThatStandStillDoNotHoldUpTime) {
 TEST_F(SimulatedStreamTest, CountsWhatPreparationRefuses) {
   give({0, 0.1});
   SimulatedStream stream(
-      camera_, "table", [](const DepthFrame&, const StartTime&) { throw Error("all too much"); },
-      kAtOnce, [] { throw Error("no end"); });
+      camera_, "table",
+      [](const DepthFrame&, const Source::StartTime&) { throw Error("all too much"); }, kAtOnce,
+      [] { throw Error("no end"); });
   give(CameraStatus::ended);
   stream.advance(1);
   EXPECT_EQ(stream.state().drops.refused, 3u);
@@ -269,7 +270,7 @@ TEST_F(SimulatedStreamTest, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)stream({.stall = 0}), Error);
   EXPECT_THROW((void)stream({.patience = std::nan("")}), Error);
   FakeCamera paces(script_, true);
-  const auto sink = [](const DepthFrame&, const StartTime&) {};
+  const auto sink = [](const DepthFrame&, const Source::StartTime&) {};
   EXPECT_THROW(SimulatedStream(paces, "table", sink), Error);
 }
 

@@ -20,7 +20,7 @@ namespace palpate::sensor {
 class Touchable {
  public:
   [[nodiscard]] FrameSink sink() {
-    return [this](const DepthFrame& frame, const StartTime& start) { push(frame, start); };
+    return [this](const DepthFrame& frame, const Source::StartTime& start) { push(frame, start); };
   }
   void close() { open(false); }
   void open(bool is_open = true) {
@@ -46,7 +46,7 @@ class Touchable {
   }
 
  private:
-  void push(const DepthFrame& frame, const StartTime& start) {
+  void push(const DepthFrame& frame, const Source::StartTime& start) {
     std::unique_lock lock(mutex_);
     ++entered_;
     changed_.wait(lock, [this] { return open_; });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "field/formulas.hpp"
 #include "palpate/field/field_options.hpp"
 #include "support/dual.hpp"
 

@@ -159,7 +159,7 @@ Json json_of(const LiveFacts& facts) {
 Report report_of(const InfoReport& info) {
   const CloudArgument& argument = info.loaded.argument;
   const std::string& format = info.loaded.file.format;
-  const PrepareReport& r = info.prepared;
+  const Prepared::Report& r = info.prepared;
   Report report(argument.name, fmt::format("{} ({}), read in {}", argument.path, format,
                                            duration(info.loaded.seconds)));
   report.data = {{"name", argument.name}, {"file", argument.path}, {"format", format}};
@@ -175,7 +175,7 @@ Report report_of(const InfoReport& info) {
 }
 
 Report advice_of(const InfoReport& info) {
-  const PrepareReport& r = info.prepared;
+  const Prepared::Report& r = info.prepared;
   Report report("touch would use", "");
   if (info.image.depth > 0) {
     report.line("the depth filter",

@@ -18,11 +18,11 @@ struct InfoReport {
   Box core;  ///< without stray points
   UnitsGuess units;
   SpacingFacts spacing;
-  PrepareReport prepared;  ///< with the defaults: the advice
-  double rim = 0;          ///< share of points at a border or a hole
+  Prepared::Report prepared;  ///< with the defaults: the advice
+  double rim = 0;             ///< share of points at a border or a hole
 
   OrganisedFrame organised;  ///< of a cloud with rows and columns
-  SourceState image;         ///< felt as that frame; depth 0: it is not
+  Source::State image;       ///< felt as that frame; depth 0: it is not
   double image_radius = 0;   ///< R then, median, m
 };
 

@@ -150,8 +150,8 @@ ProxyOptions SurfacePlan::proxy_of(double hardest) const {
   return result;
 }
 
-SoftMaterial SurfacePlan::soft_material(double hardest) const {
-  SoftMaterial soft;
+SourceOptions::SoftMaterial SurfacePlan::soft_material(double hardest) const {
+  SourceOptions::SoftMaterial soft;
   soft.friction_factor = soft_friction.value_or(1);
   if (!soft_stiffness) return soft;
   if (*soft_stiffness > hardest) {

@@ -61,7 +61,7 @@ Fig5Row measure(const PointCloud& cloud, std::size_t size, const PrepareTimes& p
   std::vector<double> spacing;
   std::vector<double> weights;
   for (int i = 0; i < repeats; ++i) {
-    const PrepareReport report = prepare(thinned, options).report;
+    const Prepared::Report report = prepare(thinned, options).report;
     index.push_back(1e3 * report.seconds_index);
     normals.push_back(1e3 * report.seconds_normals);
     spacing.push_back(1e3 * report.seconds_spacing);

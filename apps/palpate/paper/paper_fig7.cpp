@@ -121,7 +121,7 @@ class Feelers {
     feelers_.back().press.name = "palpate";
   }
 
-  void push(const DepthFrame& frame, const StartTime& start) {
+  void push(const DepthFrame& frame, const Source::StartTime& start) {
     const PointCloud cloud = cloud_of(frame);
     for (Scene& scene : clouds_) {
       if (frame.T_world_sensor) scene.source(0).set_pose(*frame.T_world_sensor);
@@ -246,9 +246,9 @@ Fig7 measure_fig7(DepthCamera& camera, const Fig7Options& options) {
   const double whole = kSettled + options.duration;
   const int steps = static_cast<int>(std::lround(whole / kPeriod));
   Progress progress("pressing");
-  SimulatedStream stream(camera, "the press", [&](const DepthFrame& next, const StartTime& start) {
-    feelers.push(next, start);
-  });
+  SimulatedStream stream(
+      camera, "the press",
+      [&](const DepthFrame& next, const Source::StartTime& start) { feelers.push(next, start); });
   for (int i = 0; i < steps; ++i) {
     const double time = i * kPeriod;
     stream.advance(time);

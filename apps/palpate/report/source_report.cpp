@@ -87,7 +87,7 @@ Report file_report(const LoadedSource& source) {
 }
 
 void add_times(Report& report, const LoadedSource& cloud) {
-  const PrepareReport& r = cloud.prepared;
+  const Prepared::Report& r = cloud.prepared;
   report.line("prepared",
               fmt::format("{} after {} of reading: filter {}, index {}, spacing {}, normals {}, "
                           "weights {}",
@@ -102,7 +102,7 @@ void add_times(Report& report, const LoadedSource& cloud) {
 }
 
 Report cloud_report(const LoadedSource& cloud) {
-  const PrepareReport& r = cloud.prepared;
+  const Prepared::Report& r = cloud.prepared;
   Report report = file_report(cloud);
   report.line("points", fmt::format("{} read, {} felt{}{}{}", grouped(r.points_in),
                                     grouped(r.points_out), and_some(r.duplicates, "duplicates"),
@@ -134,7 +134,7 @@ Report cloud_report(const LoadedSource& cloud) {
   return report;
 }
 
-void add_seen(Report& report, const SourceState& state) {
+void add_seen(Report& report, const Source::State& state) {
   report.line(
       "points",
       fmt::format("{} felt", grouped(state.points)) +
@@ -244,7 +244,7 @@ Report source_report(const LoadedSource& source) {
   return source.depth_image ? image_report(source) : cloud_report(source);
 }
 
-void add_trust(Report& report, const PrepareReport& prepared) {
+void add_trust(Report& report, const Prepared::Report& prepared) {
   report.data["trust"] = {{"low", prepared.trust_low}, {"untrusted_share", prepared.untrusted}};
   if (prepared.untrusted < 0.01) return;
   report.line("trust",

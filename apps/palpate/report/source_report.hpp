@@ -15,7 +15,7 @@ namespace palpate::app {
 
 /// Says how much of a cloud is no surface that its points agree on, where it is a hundredth or
 /// more.
-void add_trust(Report& report, const PrepareReport& prepared);
+void add_trust(Report& report, const Prepared::Report& prepared);
 
 /// "640 x 480 pixels of a camera of 525 px".
 [[nodiscard]] std::string in_words(const CameraModel& camera);

@@ -5,7 +5,7 @@
 namespace palpate::app {
 
 FrameSink feeding(LoadedSource& from, Source& to, double (*computing)()) {
-  return [&from, &to, computing](const DepthFrame& frame, const StartTime& start) {
+  return [&from, &to, computing](const DepthFrame& frame, const Source::StartTime& start) {
     FeedReport& feed = from.feed;
     feed.width = frame.camera.width;
     feed.height = frame.camera.height;

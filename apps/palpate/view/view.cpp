@@ -85,7 +85,7 @@ ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
 }
 
 std::optional<ViewerStream::Frustum> frustum_of(const LoadedSource& source,
-                                                const SourceState& state) {
+                                                const Source::State& state) {
   if (!source.camera) return std::nullopt;
   const CameraModel& lens = source.lens;
   return ViewerStream::Frustum{0.5 * lens.width / lens.pinhole.fx,

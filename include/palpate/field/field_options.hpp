@@ -5,17 +5,6 @@ namespace palpate {
 /// The paper's two compactly supported weights (section III-A).
 enum class Kernel { wyvill, wendland };
 
-/// The level at which the density-normalised weight sum of a plane stands at a height of `eta`
-/// support radii, 1 at 0 and 0 from 1 on: the metaball's threshold for an offset of eta R
-/// (docs/method.md 2.1).
-[[nodiscard]] double plane_threshold(Kernel kernel, double eta) noexcept;
-
-/// d plane_threshold / d eta.
-[[nodiscard]] double plane_threshold_slope(Kernel kernel, double eta) noexcept;
-
-/// The inverse of plane_threshold, by bisection. Not for the servo step.
-[[nodiscard]] double plane_offset(Kernel kernel, double threshold) noexcept;
-
 /// The implicit surfaces that points can be turned into.
 enum class FieldKind {
   balanced,  ///< mean of point-set surface and IMLS; our default (docs/method.md 2.4)

@@ -78,7 +78,7 @@ struct StreamOptions {
 
 /// Takes a frame and makes it touchable, asking its second argument for the time from which on.
 /// Called on a thread of the stream.
-using FrameSink = std::function<void(const DepthFrame&, const StartTime&)>;
+using FrameSink = std::function<void(const DepthFrame&, const Source::StartTime&)>;
 
 /// From a camera to a source: one thread reads, another prepares. A frame that comes while the one
 /// before is being prepared waits, and the next takes its place: frames are dropped, never queued,
