@@ -88,7 +88,7 @@ double raw_weight(Kernel kernel, double multiple) {
 
 // How far the felt surface lies above the points.
 double offset(const FieldOptions& field, const Union& all, double tool_radius) {
-  if (field.kind != FieldKind::metaball) return tool_radius;
+  if (field.kind != FieldOptions::Kind::metaball) return tool_radius;
   double level = field.threshold;
   if (field.raw_weights) {
     level /= raw_weight(field.kernel, all.spacing > 0 ? all.radius / all.spacing : kPaperMultiple);

@@ -22,7 +22,8 @@ constexpr double kWorthIt = 0.1;
 // Between the support at which capped solids end behind their surface and that of the surface
 // itself.
 double least_support_of(const FieldOptions& options) {
-  const bool ends = options.capped && options.kind != FieldKind::metaball && !options.raw_weights;
+  const bool ends =
+      options.capped && options.kind != FieldOptions::Kind::metaball && !options.raw_weights;
   return ends ? 0.5 * (options.minimum_support + options.threshold) : 0;
 }
 

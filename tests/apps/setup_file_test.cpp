@@ -67,7 +67,7 @@ TEST(SetupFile, TheDocumentedOneRunsAsItIs) {
 TEST(SetupFile, FillsInWhatTheCommandLineDoesNotSay) {
   const Shell shell;
   const TouchPlan plan = planned(shell, kDesk, "");
-  EXPECT_EQ(plan.surface.field.kind, FieldKind::pointset);
+  EXPECT_EQ(plan.surface.field.kind, FieldOptions::Kind::pointset);
   EXPECT_EQ(plan.surface.field.tool_radius, 0.002);
   EXPECT_EQ(plan.surface.stiffness, 700);
   EXPECT_EQ(plan.motion.seed, 9u);
@@ -250,7 +250,7 @@ TEST(SetupFile, CommandLineWins) {
   const TouchPlan plan = planned(
       shell, kDesk,
       "left=sequence:monday other.ply --policy average --field metaball --pose mug=1,0,0,0,0,0,1");
-  EXPECT_EQ(plan.surface.field.kind, FieldKind::metaball);
+  EXPECT_EQ(plan.surface.field.kind, FieldOptions::Kind::metaball);
   const std::vector<SourcePlan>& sources = plan.sources;
   ASSERT_EQ(sources.size(), 3u);
   const auto x = [](const SourcePlan& source) {

@@ -35,7 +35,7 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
     ASSERT_NE(setting, nullptr) << key;
     EXPECT_EQ(setting->value, value) << key;
   }
-  EXPECT_EQ(settings.field.kind, FieldKind::metaball);
+  EXPECT_EQ(settings.field.kind, FieldOptions::Kind::metaball);
   EXPECT_EQ(settings.feel.stiffness, 320);
   EXPECT_DOUBLE_EQ(settings.feel.texture.amplitude, 0.5e-3);
   EXPECT_EQ(settings.feel.friction.static_coefficient, 0.3);
@@ -79,7 +79,7 @@ TEST(ViewSettings, PresetsStartFromWhatTheRunBeganWith) {
 TEST(ViewSettings, AnotherKindOfThePapersSurfaceIsThePapers) {
   ViewSettings settings = preset({}, "paper", kAll);
   set(settings, "field", std::string("pointset"));
-  EXPECT_EQ(settings.field.kind, FieldKind::pointset);
+  EXPECT_EQ(settings.field.kind, FieldOptions::Kind::pointset);
   EXPECT_EQ(settings.field.gradient, FieldOptions::Gradient::normal);
 }
 

@@ -110,7 +110,7 @@ TEST(ExplorationPlan, HandStopsHigherOverASurfaceThatLiesHigher) {
     }
     return z;
   };
-  FieldOptions field{.kind = FieldKind::metaball, .threshold = 0.4};
+  FieldOptions field{.kind = FieldOptions::Kind::metaball, .threshold = 0.4};
   const double usual = lowest(field);
   field.threshold = 0.05;
   EXPECT_NEAR(lowest(field) - usual,

@@ -107,7 +107,8 @@ TEST_F(ServoTick, KeepsTheContractWhileOthersWatchAndChangeIt) {
       static_cast<void>(servo_->state());
       static_cast<void>(servo_->lateness());
       servo_->set_contact({.stiffness = 200.0 + i % 100, .texture = {.amplitude = 1e-5 * (i % 3)}});
-      servo_->set_field({.kind = i % 200 < 100 ? FieldKind::balanced : FieldKind::metaball});
+      servo_->set_field(
+          {.kind = i % 200 < 100 ? FieldOptions::Kind::balanced : FieldOptions::Kind::metaball});
       servo_->pause(i % 50 == 0);
     }
   });

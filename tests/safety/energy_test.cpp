@@ -81,7 +81,7 @@ std::vector<EnergyFuzzScene> energy_fuzz_scenes() {
           {"corner", wedge(noisy, std::numbers::pi / 2, 0.03)}};
 }
 
-using EnergyFuzzCase = std::tuple<int, FieldKind>;
+using EnergyFuzzCase = std::tuple<int, FieldOptions::Kind>;
 class EnergyFuzz : public testing::TestWithParam<EnergyFuzzCase> {};
 
 TEST_P(EnergyFuzz, NoSurfaceGivesMoreThanWasPutIn) {
@@ -112,8 +112,9 @@ std::string energy_fuzz_name(const testing::TestParamInfo<EnergyFuzzCase>& teste
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EnergyFuzz,
                          testing::Combine(testing::Range(0, 5),
-                                          testing::Values(FieldKind::metaball, FieldKind::pointset,
-                                                          FieldKind::balanced)),
+                                          testing::Values(FieldOptions::Kind::metaball,
+                                                          FieldOptions::Kind::pointset,
+                                                          FieldOptions::Kind::balanced)),
                          energy_fuzz_name);
 
 TEST(Energy, WithoutTheGuardAStiffBallGivesWhatNobodyPutIn) {

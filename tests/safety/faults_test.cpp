@@ -172,7 +172,7 @@ class Ordeal {
         servo_.set_contact({.stiffness = stiffness_});
         break;
       case Fault::another_field:
-        servo_.set_field({.kind = static_cast<FieldKind>(random_() % 3)});
+        servo_.set_field({.kind = static_cast<FieldOptions::Kind>(random_() % 3)});
         break;
       case Fault::clutch:
         state.buttons = 1u << kClutch;

@@ -32,7 +32,7 @@ inline ServoOptions first_links() {
 /// The same at a metaball, which pushes a hand that starts in it out.
 inline ServoOptions pushed_out() {
   ServoOptions options = first_links();
-  options.field.kind = FieldKind::metaball;
+  options.field.kind = FieldOptions::Kind::metaball;
   return options;
 }
 

@@ -265,9 +265,9 @@ TEST(Servo, ChangesTheSurfaceWithoutPushingAndLetsItsForceFade) {
   servo.tick(0);
   device.state().position = {0, 0, 2e-3};
   EXPECT_EQ(servo.tick(1e-3).force.norm(), 0) << "above the sheet";
-  EXPECT_EQ(servo.field().kind, FieldKind::balanced);
-  servo.set_field({.kind = FieldKind::metaball});  // stands 0.49 R = 4.9 mm before its points
-  EXPECT_EQ(servo.field().kind, FieldKind::metaball);
+  EXPECT_EQ(servo.field().kind, FieldOptions::Kind::balanced);
+  servo.set_field({.kind = FieldOptions::Kind::metaball});  // 0.49 R = 4.9 mm before its points
+  EXPECT_EQ(servo.field().kind, FieldOptions::Kind::metaball);
   for (int i = 2; i < 100; ++i) EXPECT_LE(servo.tick(1e-3 * i).force.norm(), 0.06);
   EXPECT_NEAR(servo.state().contact.proxy.z(), 4.9e-3, 2e-4);
   const auto go_to = [&](double z, int tick) {

@@ -23,7 +23,7 @@ struct TouchChoices {
   std::vector<PoseArgument> poses = {};
   std::vector<DescribedSource> described_sources = {};  ///< of the set-up file
   SourcePlan every_source = {};  ///< what holds for sources that the set-up file says no more of
-  std::optional<FieldKind> field = {};
+  std::optional<FieldOptions::Kind> field = {};
   std::optional<FieldOptions::Gradient> gradient = {};
   std::optional<double> threshold = {};        ///< of the metaball
   std::optional<double> friction_static = {};  ///< the dynamic one unless given

@@ -19,7 +19,7 @@ FieldOptions field_of(const TouchChoices& choices) {
   const SurfacePlan& surface = choices.plan.surface;
   FieldOptions field = surface.field;
   if (surface.paper) {
-    field = paper_field(choices.field.value_or(FieldKind::metaball));
+    field = paper_field(choices.field.value_or(FieldOptions::Kind::metaball));
     field.kernel = surface.field.kernel;
     field.tool_radius = surface.field.tool_radius;
   }
@@ -39,7 +39,7 @@ SurfacePlan surface_of(const TouchChoices& choices) {
 }
 
 void check_surface(const TouchChoices& choices, const SurfacePlan& surface) {
-  const bool metaball = surface.field.kind == FieldKind::metaball;
+  const bool metaball = surface.field.kind == FieldOptions::Kind::metaball;
   require(metaball || choices.gradient != FieldOptions::Gradient::printed,
           "--gradient printed applies only to the metaball (eq. 4); add --field metaball");
   require(!metaball || choices.gradient != FieldOptions::Gradient::normal,

@@ -114,7 +114,8 @@ class Feelers {
   Feelers(const Place& place, const Fig7Options& options) : place_(place) {
     for (int n = 1; n <= kMostClouds; ++n) add_clouds(n, options);
     ours_.add("camera");
-    for (const FieldKind kind : {FieldKind::metaball, FieldKind::pointset}) {
+    for (const FieldOptions::Kind kind :
+         {FieldOptions::Kind::metaball, FieldOptions::Kind::pointset}) {
       for (int n = 1; n <= kMostClouds; ++n) add_paper(kind, n);
     }
     feelers_.emplace_back(ours_, FieldOptions{}, ProxyOptions{});
@@ -158,11 +159,11 @@ class Feelers {
     clouds_.emplace_back().add("clouds", options);
   }
 
-  void add_paper(FieldKind kind, int n) {
+  void add_paper(FieldOptions::Kind kind, int n) {
     ProxyOptions proxy;
     proxy.method = ProxyOptions::Method::single_step;
     feelers_.emplace_back(clouds_[static_cast<std::size_t>(n) - 1], paper_field(kind), proxy);
-    feelers_.back().press.name = kind == FieldKind::metaball ? "metaball" : "point-set";
+    feelers_.back().press.name = kind == FieldOptions::Kind::metaball ? "metaball" : "point-set";
     feelers_.back().press.clouds = n;
   }
 

@@ -60,7 +60,7 @@ void set_contact(ContactSettings& feel, const std::string& key, double value) {
   feel.friction.static_coefficient = value;
 }
 
-FieldOptions other_kind(FieldOptions field, FieldKind kind) {
+FieldOptions other_kind(FieldOptions field, FieldOptions::Kind kind) {
   if (field.raw_weights) return paper_field(kind);
   field.kind = kind;
   return field;

@@ -5,15 +5,15 @@ namespace palpate {
 /// The paper's two compactly supported weights (section III-A).
 enum class Kernel { wyvill, wendland };
 
-/// The implicit surfaces that points can be turned into.
-enum class FieldKind {
-  balanced,  ///< mean of point-set surface and IMLS; our default (docs/method.md 2.4)
-  pointset,  ///< the paper's point-set surface, eqs. (5)-(7)
-  metaball,  ///< the paper's metaball surface, eq. (3), on density-normalised weights
-};
-
 /// How points become a surface. The defaults are ours; paper_field() gives the paper's.
 struct FieldOptions {
+  /// The implicit surfaces that points can be turned into.
+  enum class Kind {
+    balanced,  ///< mean of point-set surface and IMLS; our default (docs/method.md 2.4)
+    pointset,  ///< the paper's point-set surface, eqs. (5)-(7)
+    metaball,  ///< the paper's metaball surface, eq. (3), on density-normalised weights
+  };
+
   /// Which vector stands for the gradient.
   enum class Gradient {
     exact,    ///< of the function as evaluated
@@ -21,7 +21,7 @@ struct FieldOptions {
     printed,  ///< eq. (4) as printed, which points inward: to show that, never to be felt
   };
 
-  FieldKind kind = FieldKind::balanced;
+  Kind kind = Kind::balanced;
   Kernel kernel = Kernel::wyvill;
   Gradient gradient = Gradient::exact;
   double threshold = 0.4;        ///< metaball level T', of the (united) weight sum
@@ -42,6 +42,6 @@ struct FieldOptions {
 void check(const FieldOptions& options);
 
 /// The paper's field: raw weights, T = 0.5, R of the nearest point, no cap.
-[[nodiscard]] FieldOptions paper_field(FieldKind kind = FieldKind::metaball);
+[[nodiscard]] FieldOptions paper_field(FieldOptions::Kind kind = FieldOptions::Kind::metaball);
 
 }  // namespace palpate
