@@ -62,10 +62,8 @@ struct BlockRange {
 template <class Body>
 void for_rows(const BlockGrid& grid, const Body& body) {
   constexpr std::size_t kRowsAtATime = 8;
-  detail::parallel_ranges(static_cast<std::size_t>(grid.rows), kRowsAtATime,
-                          [&](std::size_t row, std::size_t end) {
-                            for (; row < end; ++row) body(static_cast<int>(row));
-                          });
+  detail::parallel_each(static_cast<std::size_t>(grid.rows), kRowsAtATime,
+                        [&](std::size_t row) { body(static_cast<int>(row)); });
 }
 
 /// What depths of one surface may differ by: three deviations of a pixel, and what `pixels` between

@@ -176,11 +176,9 @@ void WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double norma
   functions_->table(in.table, rows_of(filled_));
   list_columns(blocks, region);
   const auto count = static_cast<std::size_t>(region.range().rows);
-  detail::parallel_ranges(count, kRowsAtATime, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) {
-      fit_row(in, region.range().first_row + static_cast<int>(r),
-              std::span(columns_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]), fits);
-    }
+  detail::parallel_each(count, kRowsAtATime, [&](std::size_t r) {
+    fit_row(in, region.range().first_row + static_cast<int>(r),
+            std::span(columns_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]), fits);
   });
   faces_.refit(in, filled_, noise, fits);
 }

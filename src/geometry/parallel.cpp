@@ -58,12 +58,10 @@ std::vector<std::uint32_t> block_offsets(std::span<const Record> records, int sh
   const std::size_t blocks = (records.size() + kSortBlock - 1) / kSortBlock;
   const std::size_t digits = std::size_t{1} << kPartitionBits;
   std::vector<std::uint32_t> offsets(blocks * digits, 0);
-  parallel_ranges(blocks, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      const auto block =
-          records.subspan(b * kSortBlock, std::min(kSortBlock, records.size() - b * kSortBlock));
-      for (const Record record : block) ++offsets[b * digits + digit(record, shift, digits - 1)];
-    }
+  parallel_each(blocks, 1, [&](std::size_t b) {
+    const auto block =
+        records.subspan(b * kSortBlock, std::min(kSortBlock, records.size() - b * kSortBlock));
+    for (const Record record : block) ++offsets[b * digits + digit(record, shift, digits - 1)];
   });
   std::uint32_t sum = 0;
   for (std::size_t d = 0; d < digits; ++d) {
@@ -90,24 +88,20 @@ void sort_records(std::span<Record> records, std::span<Record> scratch, int bits
   std::vector<std::uint32_t> offsets = block_offsets(records, shift);
   const std::vector<std::uint32_t> starts(offsets.begin(),
                                           offsets.begin() + static_cast<std::ptrdiff_t>(digits));
-  parallel_ranges(offsets.size() / digits, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      const auto block =
-          records.subspan(b * kSortBlock, std::min(kSortBlock, records.size() - b * kSortBlock));
-      for (const Record record : block) {
-        scratch[offsets[b * digits + digit(record, shift, digits - 1)]++] = record;
-      }
+  parallel_each(offsets.size() / digits, 1, [&](std::size_t b) {
+    const auto block =
+        records.subspan(b * kSortBlock, std::min(kSortBlock, records.size() - b * kSortBlock));
+    for (const Record record : block) {
+      scratch[offsets[b * digits + digit(record, shift, digits - 1)]++] = record;
     }
   });
-  parallel_ranges(digits, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t d = begin; d < end; ++d) {
-      const std::size_t first = starts[d];
-      const std::size_t count = (d + 1 < digits ? starts[d + 1] : records.size()) - first;
-      const auto part = scratch.subspan(first, count);
-      const auto out = records.subspan(first, count);
-      sort_by_digits(part, out, lowest, bits - kPartitionBits);
-      std::copy(part.begin(), part.end(), out.begin());
-    }
+  parallel_each(digits, 1, [&](std::size_t d) {
+    const std::size_t first = starts[d];
+    const std::size_t count = (d + 1 < digits ? starts[d + 1] : records.size()) - first;
+    const auto part = scratch.subspan(first, count);
+    const auto out = records.subspan(first, count);
+    sort_by_digits(part, out, lowest, bits - kPartitionBits);
+    std::copy(part.begin(), part.end(), out.begin());
   });
 }
 

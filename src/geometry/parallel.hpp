@@ -24,6 +24,23 @@ void parallel_ranges(std::size_t count, std::size_t grain, const Body& body) {
                     [&](const auto& range) { body(range.begin(), range.end()); });
 }
 
+/// Calls body(i) for each of [0, count), likewise.
+template <class Body>
+void parallel_each(std::size_t count, std::size_t grain, const Body& body) {
+  parallel_ranges(count, grain, [&](std::size_t i, std::size_t end) {
+    for (; i < end; ++i) body(i);
+  });
+}
+
+/// Calls body(i, memory): each piece has a `Memory`, which keeps its room from one i to the next.
+template <class Memory, class Body>
+void parallel_each_with(std::size_t count, std::size_t grain, const Body& body) {
+  parallel_ranges(count, grain, [&](std::size_t i, std::size_t end) {
+    Memory memory;
+    for (; i < end; ++i) body(i, memory);
+  });
+}
+
 /// A place on a Morton curve through cells numbered along each axis, of which the lower 11 bits
 /// count.
 inline std::uint64_t morton_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {

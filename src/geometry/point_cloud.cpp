@@ -112,11 +112,9 @@ template <class PlaceOf>
 std::vector<Record> sort_by(const PointCloud& cloud, const Lattice& lattice, int shift, int bits,
                             const PlaceOf& place_of) {
   std::vector<Record> records(cloud.size());
-  detail::parallel_ranges(records.size(), kVoxelGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint64_t key = lattice.key(cloud.positions[place_of(i)]) >> shift;
-      records[i] = key << (kPlaceBits + kKeyBits - bits) | i;
-    }
+  detail::parallel_each(records.size(), kVoxelGrain, [&](std::size_t i) {
+    const std::uint64_t key = lattice.key(cloud.positions[place_of(i)]) >> shift;
+    records[i] = key << (kPlaceBits + kKeyBits - bits) | i;
   });
   std::vector<Record> scratch(records.size());
   detail::sort_records(records, scratch, bits);
@@ -215,11 +213,9 @@ PointCloud voxel_downsample(const PointCloud& cloud, double leaf,
   result.normals.resize(cloud.normals.empty() ? 0 : cubes);
   result.colors.resize(cloud.colors.empty() ? 0 : cubes);
   result.intensities.resize(cloud.intensities.empty() ? 0 : cubes);
-  detail::parallel_ranges(cubes, kVoxelGrain / 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t cube = begin; cube < end; ++cube) {
-      const auto inside = std::span(places).subspan(starts[cube], starts[cube + 1] - starts[cube]);
-      average(cloud, inside, cube, result);
-    }
+  detail::parallel_each(cubes, kVoxelGrain / 16, [&](std::size_t cube) {
+    const auto inside = std::span(places).subspan(starts[cube], starts[cube + 1] - starts[cube]);
+    average(cloud, inside, cube, result);
   });
   return result;
 }

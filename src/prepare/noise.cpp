@@ -48,13 +48,10 @@ std::size_t step_for(const CellGrid& grid, std::size_t samples) {
 double noise_in_windows(const CellGrid& grid, double spacing, const Window& window) {
   const std::size_t step = step_for(grid, kSamples);
   std::vector<float> residuals((grid.size() - step / 2 + step - 1) / step, -1);
-  detail::parallel_ranges(residuals.size(), 64, [&](std::size_t begin, std::size_t end) {
-    SheetFitter fitter;
-    for (std::size_t k = begin; k < end; ++k) {
-      const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
-      const SheetFit fit = fitter.fit(grid, at, window.reach * spacing, spacing);
-      if (fit.points >= window.fewest) residuals[k] = static_cast<float>(fit.bend);
-    }
+  detail::parallel_each_with<SheetFitter>(residuals.size(), 64, [&](std::size_t k, auto& fitter) {
+    const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
+    const SheetFit fit = fitter.fit(grid, at, window.reach * spacing, spacing);
+    if (fit.points >= window.fewest) residuals[k] = static_cast<float>(fit.bend);
   });
   std::erase(residuals, -1.f);
   if (residuals.empty()) return 0;
@@ -80,24 +77,21 @@ struct Widths {
 std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
   const std::size_t step = step_for(grid, kWideSamples);
   std::vector<Widths> all((grid.size() + step - 1) / step);
-  detail::parallel_ranges(all.size(), 16, [&](std::size_t begin, std::size_t end) {
-    SheetFitter fitter;
-    for (std::size_t k = begin; k < end; ++k) {
-      const Eigen::Vector3f& at = grid.points()[std::min(k * step + step / 2, grid.size() - 1)];
-      const SheetFit narrow = fitter.fit(grid, at, kNarrow.reach * spacing, spacing);
-      const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, 0);
-      const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
-      if (!(narrow.bend > 0 && map.bend > 0 && middle.bend > 0)) continue;
-      const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, 0);
-      double together = wide.bend;  // looked at where shape does not count
-      if (wide.bend <= kShapeGrowth * middle.bend) {
-        const double tiles = fitter.tile_variance(kWideReach * spacing, kTile * spacing);
-        together = std::max(together, std::sqrt(tiles));
-      }
-      all[k] = {static_cast<float>(wide.bend / middle.bend),
-                static_cast<float>(wide.bend / narrow.bend), static_cast<float>(wide.bend),
-                static_cast<float>(together / map.bend)};
+  detail::parallel_each_with<SheetFitter>(all.size(), 16, [&](std::size_t k, auto& fitter) {
+    const Eigen::Vector3f& at = grid.points()[std::min(k * step + step / 2, grid.size() - 1)];
+    const SheetFit narrow = fitter.fit(grid, at, kNarrow.reach * spacing, spacing);
+    const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, 0);
+    const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
+    if (!(narrow.bend > 0 && map.bend > 0 && middle.bend > 0)) return;
+    const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, 0);
+    double together = wide.bend;  // looked at where shape does not count
+    if (wide.bend <= kShapeGrowth * middle.bend) {
+      const double tiles = fitter.tile_variance(kWideReach * spacing, kTile * spacing);
+      together = std::max(together, std::sqrt(tiles));
     }
+    all[k] = {static_cast<float>(wide.bend / middle.bend),
+              static_cast<float>(wide.bend / narrow.bend), static_cast<float>(wide.bend),
+              static_cast<float>(together / map.bend)};
   });
   std::erase_if(all, [](const Widths& w) { return w.growth == 0; });
   return all;
@@ -153,11 +147,8 @@ bool is_stray(const SheetInput& input, std::size_t i, double typical, SheetFitte
 
 std::vector<std::uint8_t> find_strays(const SheetInput& input, double typical) {
   std::vector<std::uint8_t> strays(input.grid.size());
-  detail::parallel_ranges(strays.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    SheetFitter fitter;
-    for (std::size_t i = begin; i < end; ++i) {
-      strays[i] = is_stray(input, i, typical, fitter) ? 1 : 0;
-    }
+  detail::parallel_each_with<SheetFitter>(strays.size(), 4096, [&](std::size_t i, auto& fitter) {
+    strays[i] = is_stray(input, i, typical, fitter) ? 1 : 0;
   });
   return strays;
 }
@@ -177,15 +168,12 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
   const std::size_t step = std::max(kRawPerSample, raw.size() / kMostSamples);
   const std::size_t count = raw.size() / step;
   std::vector<float> found(count);
-  detail::parallel_ranges(count, 64, [&](std::size_t begin, std::size_t end) {
-    SheetFitter fitter;
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t i = k * step + step / 2;
-      const SheetFit fit =
-          fitter.fit(raw, raw.points()[i], static_cast<double>(kWindow * spacings[i]),
-                     static_cast<double>(spacings[i]));
-      found[k] = static_cast<float>(fit.bend * fit.footprint);
-    }
+  detail::parallel_each_with<SheetFitter>(count, 64, [&](std::size_t k, auto& fitter) {
+    const std::size_t i = k * step + step / 2;
+    const SheetFit fit =
+        fitter.fit(raw, raw.points()[i], static_cast<double>(kWindow * spacings[i]),
+                   static_cast<double>(spacings[i]));
+    found[k] = static_cast<float>(fit.bend * fit.footprint);
   });
   std::vector<Eigen::Vector3f> places;
   std::vector<float> values;
@@ -259,16 +247,14 @@ void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
     small[i] = std::max(floors[i], radii[i] * (1 - kShrink * std::clamp(bend, 0.0f, 1.0f)));
   }
   // Averaged, so that noise in the residuals does not make R flicker from point to point.
-  detail::parallel_ranges(radii.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> near;
-    for (std::size_t i = begin; i < end; ++i) {
-      near.clear();
-      grid.within(grid.points()[i], kSmoothing * radii[i], near);
-      float sum = 0;
-      for (const std::uint32_t k : near) sum += small[k];
-      if (!near.empty()) radii[i] = std::max(floors[i], sum / static_cast<float>(near.size()));
-    }
-  });
+  detail::parallel_each_with<std::vector<std::uint32_t>>(
+      radii.size(), 1024, [&](std::size_t i, auto& near) {
+        near.clear();
+        grid.within(grid.points()[i], kSmoothing * radii[i], near);
+        float sum = 0;
+        for (const std::uint32_t k : near) sum += small[k];
+        if (!near.empty()) radii[i] = std::max(floors[i], sum / static_cast<float>(near.size()));
+      });
 }
 
 }  // namespace palpate

@@ -80,9 +80,8 @@ WeightSums::WeightSums(const CellGrid& grid, std::span<const float> radii, Kerne
   const Input input = make_input(grid, radii);
   own = sums_of(input, sum, {});
   around = sums_of(input, sum, own);
-  detail::parallel_ranges(grid.size(), std::size_t{1} << 16, [&](auto begin, auto end) {
-    for (std::size_t i = begin; i < end; ++i) around[i] /= own[i];
-  });
+  detail::parallel_each(grid.size(), std::size_t{1} << 16,
+                        [&](std::size_t i) { around[i] /= own[i]; });
 }
 
 std::vector<float> density_weights(const WeightSums& sums) {
@@ -98,32 +97,28 @@ void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts
                      std::span<const float> radii, std::vector<float>& weights) {
   constexpr float kLeast = 0.2f;  // a lone point still holds the surface together
   constexpr float kMost = 3;
-  detail::parallel_ranges(weights.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> near;
-    for (std::size_t i = begin; i < end; ++i) {
-      near.clear();
-      grid.within(grid.points()[i], radii[i], near);
-      float sum = 0;
-      for (const std::uint32_t k : near) sum += static_cast<float>(counts[k]);
-      const float mean = near.empty() ? 0 : sum / static_cast<float>(near.size());
-      if (!(mean > 0)) continue;
-      weights[i] *= std::clamp(static_cast<float>(counts[i]) / mean, kLeast, kMost);
-    }
-  });
+  detail::parallel_each_with<std::vector<std::uint32_t>>(
+      weights.size(), 1024, [&](std::size_t i, auto& near) {
+        near.clear();
+        grid.within(grid.points()[i], radii[i], near);
+        float sum = 0;
+        for (const std::uint32_t k : near) sum += static_cast<float>(counts[k]);
+        const float mean = near.empty() ? 0 : sum / static_cast<float>(near.size());
+        if (!(mean > 0)) return;
+        weights[i] *= std::clamp(static_cast<float>(counts[i]) / mean, kLeast, kMost);
+      });
 }
 
 std::vector<std::uint8_t> speckle_mask(const CellGrid& grid, std::span<const float> radii,
                                        const WeightSums& sums) {
   constexpr float kShareOfAround = 0.35f;
   std::vector<std::uint8_t> mask(grid.size());
-  detail::parallel_ranges(grid.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> near;
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto i = static_cast<std::uint32_t>(k);
-      const bool faint = sums.own[i] < kShareOfAround * sums.around[i];
-      mask[i] = faint || !has_company(grid, radii, sums.own[i], i, near) ? 1 : 0;
-    }
-  });
+  detail::parallel_each_with<std::vector<std::uint32_t>>(
+      grid.size(), 4096, [&](std::size_t k, auto& near) {
+        const auto i = static_cast<std::uint32_t>(k);
+        const bool faint = sums.own[i] < kShareOfAround * sums.around[i];
+        mask[i] = faint || !has_company(grid, radii, sums.own[i], i, near) ? 1 : 0;
+      });
   return mask;
 }
 

@@ -61,10 +61,8 @@ class BlockSurface {
   template <class Visit>
   static void each_row(const FilteredDepth& depth, const Visit& visit) {
     constexpr std::size_t kRowsAtATime = 8;
-    detail::parallel_ranges(static_cast<std::size_t>(depth.rows), kRowsAtATime,
-                            [&](std::size_t v, std::size_t end) {
-                              for (; v < end; ++v) visit(v);
-                            });
+    detail::parallel_each(static_cast<std::size_t>(depth.rows), kRowsAtATime,
+                          [&](std::size_t v) { visit(v); });
   }
 
   void measure(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact);
