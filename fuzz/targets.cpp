@@ -24,7 +24,7 @@
 #include "palpate/io/read_depth.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "sensor/pose_track.hpp"
-#include "sensor/sequence_description.hpp"
+#include "sensor/sequence.hpp"
 
 namespace palpate::fuzz {
 namespace {

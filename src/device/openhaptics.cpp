@@ -1,5 +1,3 @@
-#include "device/openhaptics.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <string_view>
 
 #include "base/listed.hpp"
+#include "device/openhaptics_scheduler.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::device {

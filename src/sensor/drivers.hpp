@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 
 // The optional drivers. Each has two sources, of which the build takes one: DRIVER_camera.cpp where
 // its library is there, DRIVER_absent.cpp where it is not.

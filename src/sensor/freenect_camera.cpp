@@ -88,20 +88,20 @@ class FreenectConnection final : public Connection {
     start();
   }
 
-  [[nodiscard]] CameraStatus fetch(DepthFrame& frame, double& device_time,
-                                   double timeout) override {
+  [[nodiscard]] DepthCamera::Status fetch(DepthFrame& frame, double& device_time,
+                                          double timeout) override {
     fresh_ = false;
     timeval wait{};
     wait.tv_usec = static_cast<suseconds_t>(1e6 * std::clamp(timeout, 0.0, 0.9));
     check(freenect_process_events_timeout(context_.get(), &wait), "stopped delivering");
-    if (!fresh_) return CameraStatus::waiting;
+    if (!fresh_) return DepthCamera::Status::waiting;
     device_time = seconds_;
     frame.camera = {mode_.width, mode_.height, kinect_pinhole(mode_.width, mode_.height), {}};
     frame.depth.resize(static_cast<std::size_t>(mode_.width) *
                        static_cast<std::size_t>(mode_.height));
     convert(frame.depth);
     frame.colors.clear();
-    return CameraStatus::frame;
+    return DepthCamera::Status::frame;
   }
 
  private:

@@ -1,10 +1,9 @@
-#include "palpate/sensor/open_camera.hpp"
-
 #include <fmt/format.h>
 
 #include <string_view>
 
 #include "palpate/base/error.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 #include "sensor/drivers.hpp"
 #include "sensor/sequence.hpp"
 #include "sim/simulated_camera.hpp"

@@ -2,13 +2,12 @@
 #include <fmt/format.h>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
 #include "palpate/sensor/stream.hpp"
 
 namespace palpate {
 namespace {
 
-FrameSink sink_of(Source& source) {
+Stream::Sink sink_of(Source& source) {
   return [&source](const DepthFrame& frame, const StartTime& start) {
     if (source.push(frame, start)) return;
     throw Error(

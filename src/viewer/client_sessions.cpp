@@ -13,28 +13,55 @@
 
 namespace palpate::viewer {
 
+void Outbox::put(Topic topic, Message message) {
+  if (topic.kind == Topic::Kind::answer) {
+    if (answers_.size() == kMostAnswers) answers_.pop_front();
+    answers_.push_back(std::move(message));
+    return;
+  }
+  const auto same = std::ranges::find(row_, topic, &Waiting::topic);
+  if (same == row_.end()) {
+    row_.push_back({topic, std::move(message)});
+  } else {
+    same->message = std::move(message);
+  }
+}
+
+std::optional<Message> Outbox::take() {
+  std::optional<Message> message;
+  if (!answers_.empty()) {
+    message = std::move(answers_.front());
+    answers_.pop_front();
+  } else if (!row_.empty()) {
+    message = std::move(row_.front().message);
+    row_.pop_front();
+  }
+  return message;
+}
+
 namespace {
 
-std::string why_not(const Setting& setting, double value) {
-  if (setting.kind != Setting::Kind::number) return "it is not a number";
+std::string why_not(const ViewerControls::Setting& setting, double value) {
+  if (setting.kind != ViewerControls::Setting::Kind::number) return "it is not a number";
   if (value >= setting.least && value <= setting.most) return {};
   return fmt::format("{} is not from {} to {}", value, setting.least, setting.most);
 }
 
-std::string why_not(const Setting& setting, const std::string& value) {
-  if (setting.kind != Setting::Kind::choice) return "it is not the number of a choice";
+std::string why_not(const ViewerControls::Setting& setting, const std::string& value) {
+  if (setting.kind != ViewerControls::Setting::Kind::choice)
+    return "it is not the number of a choice";
   if (std::ranges::find(setting.choices, value) != setting.choices.end()) return {};
   return fmt::format("there are only {}", fmt::join(setting.choices, ", "));
 }
 
-std::string why_not(const Setting& setting, bool) {
-  return setting.kind == Setting::Kind::on_off ? "" : "it is not true or false";
+std::string why_not(const ViewerControls::Setting& setting, bool) {
+  return setting.kind == ViewerControls::Setting::Kind::on_off ? "" : "it is not true or false";
 }
 
 // Why `key` cannot be set to `value`, in words; empty: it can.
-std::string why_not(std::span<const Setting> settings, const std::string& key,
-                    const Setting::Value& value) {
-  const auto found = std::ranges::find(settings, key, &Setting::key);
+std::string why_not(std::span<const ViewerControls::Setting> settings, const std::string& key,
+                    const ViewerControls::Setting::Value& value) {
+  const auto found = std::ranges::find(settings, key, &ViewerControls::Setting::key);
   if (found == settings.end()) return "unknown setting";
   const std::string reason =
       std::visit([&](const auto& given) { return why_not(*found, given); }, value);
@@ -197,7 +224,7 @@ void ClientSessions::act(Session&, const Record& record) {
   send_to_all({Topic::Kind::record}, text_message(record_text(record.on, file)));
 }
 
-void ClientSessions::send_to_all(Topic topic, Message message) {
+void ClientSessions::send_to_all(Topic topic, const Message& message) {
   for (Session* session : greeted()) {
     session->outbox.put(topic, message);
     if (session->wake) session->wake();
@@ -252,8 +279,9 @@ void ClientSessions::close(Session& session, std::uint16_t code, std::string rea
   if (session.wake) session.wake();
 }
 
-std::vector<Setting> ClientSessions::settings() const {
-  return options_.controls.settings ? options_.controls.settings() : std::vector<Setting>{};
+std::vector<ViewerControls::Setting> ClientSessions::settings() const {
+  return options_.controls.settings ? options_.controls.settings()
+                                    : std::vector<ViewerControls::Setting>{};
 }
 
 }  // namespace palpate::viewer

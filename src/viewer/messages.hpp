@@ -36,7 +36,7 @@ struct Release {
 };
 struct Set {
   std::string key;
-  Setting::Value value;
+  ViewerControls::Setting::Value value;
 };
 struct Preset {
   std::string name;
@@ -98,14 +98,14 @@ struct Welcome {
   double radius = 0;
   std::vector<DeviceLabel> devices;
   std::vector<SourceLabel> sources;
-  std::vector<Setting> settings;
+  std::vector<ViewerControls::Setting> settings;
   std::vector<std::string> presets;
   std::vector<Notice> notices;  ///< what is wrong already; messages of their own
 };
 
 /// How a device is doing; `reason`: why it is silent or has failed, and what to do.
 struct DeviceReport {
-  DeviceStatus status = DeviceStatus::ok;
+  DeviceState::Status status = DeviceState::Status::ok;
   std::string reason;
 };
 
@@ -120,12 +120,12 @@ struct SourceReport {
   std::uint64_t dropped = 0;
   std::optional<double> disagreement;
   std::optional<Eigen::Isometry3d> pose;  ///< relative to the origin
-  std::optional<ViewerStream::Frustum> frustum;
+  std::optional<ViewerOptions::Stream::Frustum> frustum;
 };
 
 // Texts that are no UTF-8 come out with replacement characters.
 [[nodiscard]] std::string welcome_text(const Welcome& welcome);
-[[nodiscard]] std::string settings_text(std::span<const Setting> settings);
+[[nodiscard]] std::string settings_text(std::span<const ViewerControls::Setting> settings);
 [[nodiscard]] std::string devices_text(std::span<const DeviceReport> devices);
 [[nodiscard]] std::string sources_text(std::span<const SourceReport> sources);
 [[nodiscard]] std::string notice_text(const Notice& notice);

@@ -9,7 +9,7 @@
 
 #include "apps/palpate/options/touch_options.hpp"
 #include "apps/palpate/run/touch_statistics.hpp"
-#include "apps/palpate/touch/simulated_run.hpp"
+#include "apps/palpate/touch/touch.hpp"
 #include "apps/program.hpp"
 #include "palpate/base/error.hpp"
 #include "support/effort.hpp"

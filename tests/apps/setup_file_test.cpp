@@ -1,10 +1,9 @@
-#include "apps/palpate/options/setup_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <iterator>
 
+#include "apps/palpate/options/touch_options.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 #include "support/effort.hpp"

@@ -11,14 +11,15 @@ namespace {
 
 constexpr ViewScope kAll = {.deepest_texture = 1e-3, .lives = true, .depth = true, .clouds = true};
 
-const Setting* find(const std::vector<Setting>& list, const std::string& key) {
-  const auto found = std::ranges::find(list, key, &Setting::key);
+const ViewerControls::Setting* find(const std::vector<ViewerControls::Setting>& list,
+                                    const std::string& key) {
+  const auto found = std::ranges::find(list, key, &ViewerControls::Setting::key);
   return found == list.end() ? nullptr : &*found;
 }
 
 TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
   ViewSettings settings;
-  const std::vector<std::pair<std::string, Setting::Value>> wanted = {
+  const std::vector<std::pair<std::string, ViewerControls::Setting::Value>> wanted = {
       {"field", std::string("metaball")},
       {"stiffness", 320.0},
       {"friction", 0.3},
@@ -28,10 +29,10 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
       {"history", 2.0},
       {"voxel", 4.0}};
   for (const auto& [key, value] : wanted) set(settings, key, value);
-  const std::vector<Setting> list = list_settings(settings, kAll);
+  const std::vector<ViewerControls::Setting> list = list_settings(settings, kAll);
   EXPECT_EQ(list.size(), wanted.size());
   for (const auto& [key, value] : wanted) {
-    const Setting* const setting = find(list, key);
+    const ViewerControls::Setting* const setting = find(list, key);
     ASSERT_NE(setting, nullptr) << key;
     EXPECT_EQ(setting->value, value) << key;
   }
@@ -43,8 +44,8 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
 
 TEST(ViewSettings, PresentValuesAreWithinTheirBounds) {
   for (const std::string& name : preset_names()) {
-    for (const Setting& setting : list_settings(preset({}, name, kAll), kAll)) {
-      if (setting.kind == Setting::Kind::number) {
+    for (const ViewerControls::Setting& setting : list_settings(preset({}, name, kAll), kAll)) {
+      if (setting.kind == ViewerControls::Setting::Kind::number) {
         EXPECT_GE(std::get<double>(setting.value), setting.least) << name << ' ' << setting.key;
         EXPECT_LE(std::get<double>(setting.value), setting.most) << name << ' ' << setting.key;
       } else {
@@ -56,7 +57,7 @@ TEST(ViewSettings, PresentValuesAreWithinTheirBounds) {
 }
 
 TEST(ViewSettings, OfCloudsThatStandStillThereIsNoTimeToSet) {
-  const std::vector<Setting> list = list_settings({}, {.clouds = true});
+  const std::vector<ViewerControls::Setting> list = list_settings({}, {.clouds = true});
   EXPECT_EQ(find(list, "policy"), nullptr);
   EXPECT_EQ(find(list, "history"), nullptr);
   EXPECT_EQ(find(list, "texture"), nullptr) << "nothing is known that could carry one";
@@ -96,7 +97,7 @@ TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
 }
 
 TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
-  const std::vector<std::pair<std::string, Setting::Value>> felt = {
+  const std::vector<std::pair<std::string, ViewerControls::Setting::Value>> felt = {
       {"field", std::string("metaball")},
       {"stiffness", 320.0},
       {"friction", 0.3},
@@ -105,7 +106,7 @@ TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
   for (const auto& [key, value] : felt) set(settings, key, value);
   EXPECT_TRUE(prepares_alike(settings, {}));
   EXPECT_TRUE(prepares_alike(preset({}, "glass", kAll), {}));
-  const std::vector<std::pair<std::string, Setting::Value>> prepared = {
+  const std::vector<std::pair<std::string, ViewerControls::Setting::Value>> prepared = {
       {"smoothing", 1.5}, {"policy", std::string("fusion")}, {"history", 2.0}, {"voxel", 4.0}};
   for (const auto& [key, value] : prepared) {
     ViewSettings other;

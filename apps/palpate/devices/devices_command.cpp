@@ -7,13 +7,13 @@
 #include <functional>
 #include <string_view>
 
+#include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/json.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/driver_info.hpp"
-#include "palpate/device/open_device.hpp"
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/device/hardware.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 
 namespace palpate::app {
 

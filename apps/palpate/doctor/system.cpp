@@ -29,7 +29,7 @@
 #include "apps/palpate/cli/process.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app::doctor {

@@ -5,11 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/paper/paper_figures.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/sources/load.hpp"
 

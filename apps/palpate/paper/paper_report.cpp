@@ -6,7 +6,7 @@
 
 #include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/paper/paper_figures.hpp"
+#include "apps/palpate/paper/paper_command.hpp"
 
 namespace palpate::app {
 

@@ -19,9 +19,9 @@ namespace {
 constexpr double kMillimetre = 1e-3;
 constexpr const char* kAutomatic = "automatic";
 
-Setting number(const char* key, const char* label, const char* unit, double least, double most,
-               double step, double value) {
-  Setting setting;
+ViewerControls::Setting number(const char* key, const char* label, const char* unit, double least,
+                               double most, double step, double value) {
+  ViewerControls::Setting setting;
   setting.key = key;
   setting.label = label;
   setting.unit = unit;
@@ -32,12 +32,12 @@ Setting number(const char* key, const char* label, const char* unit, double leas
   return setting;
 }
 
-Setting choice(const char* key, const char* label, std::vector<std::string> choices,
-               const char* value) {
-  Setting setting;
+ViewerControls::Setting choice(const char* key, const char* label, std::vector<std::string> choices,
+                               const char* value) {
+  ViewerControls::Setting setting;
   setting.key = key;
   setting.label = label;
-  setting.kind = Setting::Kind::choice;
+  setting.kind = ViewerControls::Setting::Kind::choice;
   setting.choices = std::move(choices);
   setting.value = std::string(value);
   return setting;
@@ -93,8 +93,9 @@ constexpr std::array<Preset, 4> kPresets = {{
 
 }  // namespace
 
-std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope& scope) {
-  std::vector<Setting> list;
+std::vector<ViewerControls::Setting> list_settings(const ViewSettings& settings,
+                                                   const ViewScope& scope) {
+  std::vector<ViewerControls::Setting> list;
   list.push_back(
       choice("field", "Surface", names_of(kFields), name_in(kFields, settings.field.kind)));
   list.push_back(
@@ -133,7 +134,8 @@ ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other) 
   return settings;
 }
 
-void set(ViewSettings& settings, const std::string& key, const Setting::Value& value) {
+void set(ViewSettings& settings, const std::string& key,
+         const ViewerControls::Setting::Value& value) {
   if (key == "field") {
     settings.field = other_kind(settings.field, *choice_of(kFields, std::get<std::string>(value)));
   } else if (key == "policy") {

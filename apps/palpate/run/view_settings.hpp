@@ -36,8 +36,8 @@ struct ViewScope {
 };
 
 /// As a page shows them, with their bounds.
-[[nodiscard]] std::vector<Setting> list_settings(const ViewSettings& settings,
-                                                 const ViewScope& scope);
+[[nodiscard]] std::vector<ViewerControls::Setting> list_settings(const ViewSettings& settings,
+                                                                 const ViewScope& scope);
 
 /// Are sources prepared alike by both?
 [[nodiscard]] bool prepares_alike(const ViewSettings& one, const ViewSettings& other);
@@ -46,7 +46,8 @@ struct ViewScope {
 [[nodiscard]] ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other);
 
 /// @throws Error when there is no such key.
-void set(ViewSettings& settings, const std::string& key, const Setting::Value& value);
+void set(ViewSettings& settings, const std::string& key,
+         const ViewerControls::Setting::Value& value);
 
 /// The names that preset() knows.
 [[nodiscard]] std::vector<std::string> preset_names();

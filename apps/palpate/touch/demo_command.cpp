@@ -1,9 +1,7 @@
-#include "apps/palpate/touch/demo_command.hpp"
-
 #include <array>
 #include <vector>
 
-#include "apps/palpate/touch/touch_command.hpp"
+#include "apps/palpate/touch/touch.hpp"
 
 namespace palpate::app {
 

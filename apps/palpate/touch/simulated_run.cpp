@@ -1,14 +1,13 @@
-#include "apps/palpate/touch/simulated_run.hpp"
-
 #include <fmt/format.h>
 
 #include <vector>
 
 #include "apps/palpate/cli/process.hpp"
-#include "apps/palpate/run/feed.hpp"
+#include "apps/palpate/run/run.hpp"
+#include "apps/palpate/touch/touch.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
+#include "palpate/sensor/stream.hpp"
 #include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
@@ -41,8 +40,8 @@ bool run_simulated(Run& run, const EachStep& each) {
   std::vector<SimulatedStream> streams = make_streams(run);
   const Interruption interruption;
   DeviceState state = device.read();
-  for (; state.status != DeviceStatus::finished; state = device.read()) {
-    if (state.status == DeviceStatus::failed) {
+  for (; state.status != DeviceState::Status::finished; state = device.read()) {
+    if (state.status == DeviceState::Status::failed) {
       throw Error(fmt::format("device '{}' failed: {}", device.info().name, device.reason()));
     }
     for (SimulatedStream& stream : streams) stream.advance(state.time);

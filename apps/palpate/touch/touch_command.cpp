@@ -1,5 +1,3 @@
-#include "apps/palpate/touch/touch_command.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +10,7 @@
 #include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/run/view_settings.hpp"
-#include "apps/palpate/touch/live_run.hpp"
-#include "apps/palpate/touch/simulated_run.hpp"
+#include "apps/palpate/touch/touch.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/servo/servo_thread.hpp"
 

@@ -84,18 +84,18 @@ ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
   return scope;
 }
 
-std::optional<ViewerStream::Frustum> frustum_of(const LoadedSource& source,
-                                                const SourceState& state) {
+std::optional<ViewerOptions::Stream::Frustum> frustum_of(const LoadedSource& source,
+                                                         const SourceState& state) {
   if (!source.camera) return std::nullopt;
   const CameraModel& lens = source.lens;
-  return ViewerStream::Frustum{0.5 * lens.width / lens.pinhole.fx,
-                               0.5 * lens.height / lens.pinhole.fy, kFar * state.depth};
+  return ViewerOptions::Stream::Frustum{0.5 * lens.width / lens.pinhole.fx,
+                                        0.5 * lens.height / lens.pinhole.fy, kFar * state.depth};
 }
 
-std::vector<ViewerStream> streams_of(const Run& run, const LiveFeed& feed) {
-  std::vector<ViewerStream> streams;
+std::vector<ViewerOptions::Stream> streams_of(const Run& run, const LiveFeed& feed) {
+  std::vector<ViewerOptions::Stream> streams;
   for (StreamState& state : feed.states()) {
-    ViewerStream& stream = streams.emplace_back();
+    ViewerOptions::Stream& stream = streams.emplace_back();
     for (std::size_t i = 0; i < run.loaded.scene.size(); ++i) {
       if (run.loaded.scene.source(i).name() != state.source) continue;
       stream.frustum = frustum_of(run.loaded.sources[i], run.loaded.scene.source(i).state());
@@ -137,7 +137,7 @@ struct View::Parts {
   ViewerControls controls() {
     ViewerControls controls;
     controls.settings = [this] { return list_settings(present(), scope_of(run, servos)); };
-    controls.set = [this](const std::string& key, const Setting::Value& value) {
+    controls.set = [this](const std::string& key, const ViewerControls::Setting::Value& value) {
       ViewSettings wanted = present();
       set(wanted, key, value);
       apply(wanted);

@@ -16,7 +16,7 @@
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/zwidth/zwidth_command.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/device/open_device.hpp"
+#include "palpate/device/hardware.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {

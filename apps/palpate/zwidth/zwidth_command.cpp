@@ -5,11 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "apps/palpate/cli/option_checks.hpp"
+#include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
-#include "apps/palpate/zwidth/zwidth_map.hpp"
 
 namespace palpate::app {
 

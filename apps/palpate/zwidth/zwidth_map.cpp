@@ -1,5 +1,3 @@
-#include "apps/palpate/zwidth/zwidth_map.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/zwidth/zwidth_command.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/servo/z_width.hpp"
 

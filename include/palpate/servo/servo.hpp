@@ -13,7 +13,6 @@
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/device/workspace.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
 
@@ -36,9 +35,9 @@ struct ServoState {
   double gripper = 0;                                               ///< its opening at the hand, m
   Contact contact;                                  ///< its force is the proxy's own
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< what the guard let through, N
-  GuardState guard;
+  Guard::State guard;
   FieldNote field_notes = FieldNote::none;
-  DeviceStatus device = DeviceStatus::ok;
+  DeviceState::Status device = DeviceState::Status::ok;
   std::uint32_t buttons = 0;
   std::size_t patch_points = 0;
   bool paused = false;

@@ -75,13 +75,6 @@ class Deadlines {
   std::uint64_t skipped_ = 0;
 };
 
-struct ServoThreadOptions {
-  /// Steps a second, 500 to 10000 Hz; unset: what the device is made for. Devices that keep time
-  /// (DeviceInfo::keeps_time) pace the thread themselves; theirs is then the rate.
-  std::optional<double> rate = {};
-  RealtimeOptions realtime = {};
-};
-
 /// A thread that steps a servo until it is destroyed, the device finishes, or it fails.
 ///
 /// A device that keeps time paces it; any other is stepped by the clock, at absolute deadlines. A
@@ -93,9 +86,12 @@ class ServoThread {
   static constexpr double kMostRate = 10'000;  // Hz
 
   /// Starts, and returns when the system has answered what was asked for. Servo and clock outlive
-  /// it, and nobody else steps the servo meanwhile.
+  /// it, and nobody else steps the servo meanwhile. `rate`: steps a second, 500 to 10000 Hz; unset:
+  /// what the device is made for. Devices that keep time (DeviceInfo::keeps_time) pace the thread
+  /// themselves; theirs is then the rate.
   /// @throws Error when the rate is out of range or there is no thread to be had.
-  ServoThread(Servo& servo, WaitingClock& clock, const ServoThreadOptions& options = {});
+  ServoThread(Servo& servo, WaitingClock& clock, const RealtimeOptions& realtime = {},
+              std::optional<double> rate = {});
   ~ServoThread();
   ServoThread(const ServoThread&) = delete;
   ServoThread& operator=(const ServoThread&) = delete;

@@ -1,5 +1,5 @@
 // What a servo records: durations of steps, recent forces, the steps themselves.
-#include "servo/records.hpp"
+#include "servo/servo_inside.hpp"
 
 #include <algorithm>
 #include <bit>
