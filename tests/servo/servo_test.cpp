@@ -22,8 +22,7 @@ const Vector3d kPressedAt(0.3e-3, 0.4e-3, -4e-3);  // m: 2 N at 500 N/m
 std::vector<Vector3d> by_servo(Device& device, Scene& scene, const ServoOptions& options) {
   Servo servo(device, scene, options);
   std::vector<Vector3d> forces;
-  for (ServoState state = servo.tick(); state.device == DeviceState::Status::ok;
-       state = servo.tick()) {
+  for (auto state = servo.tick(); state.device == DeviceState::Status::ok; state = servo.tick()) {
     forces.push_back(state.force);
     EXPECT_EQ(state.guard.notes, GuardNote::none) << "at " << state.time << " s";
   }

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/options/source_options.hpp"
+#include "apps/palpate/options/touch_options.hpp"
 
 namespace palpate::app {
 
