@@ -5,8 +5,8 @@
 
 #include "palpate/sensor/depth_camera.hpp"
 
-// The optional drivers. Each has two sources, of which the build takes one: DRIVER_camera.cpp where
-// its library is there, DRIVER_absent.cpp where it is not.
+// The optional drivers. The build takes DRIVER_camera.cpp where its library is there, and what it
+// makes of absent_camera.cpp.in where it is not.
 namespace palpate::sensor {
 
 [[nodiscard]] DriverInfo openni2_driver();

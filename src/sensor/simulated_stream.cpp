@@ -158,6 +158,11 @@ SimulatedStream::SimulatedStream(DepthCamera& camera, const std::string& name, S
                                  const SimulatedStreamOptions& options, std::function<void()> ended)
     : player_(std::make_unique<Player>(camera, name, std::move(sink), options, std::move(ended))) {}
 
+SimulatedStream::SimulatedStream(DepthCamera& camera, Source& source,
+                                 const SimulatedStreamOptions& options)
+    : SimulatedStream(camera, source.name(), sink_of(source), options,
+                      [&source] { source.keep(); }) {}
+
 SimulatedStream::~SimulatedStream() = default;
 SimulatedStream::SimulatedStream(SimulatedStream&&) noexcept = default;
 SimulatedStream& SimulatedStream::operator=(SimulatedStream&&) noexcept = default;

@@ -43,6 +43,16 @@ class Retry {
   int failures_ = 0;  // in a row
 };
 
+Stream::Sink sink_of(Source& source) {
+  return [&source](const DepthFrame& frame, const StartTime& start) {
+    if (source.push(frame, start)) return;
+    throw Error(
+        fmt::format("all snapshots are held by fields that are not updated, e.g. that of {}. "
+                    "Update or close it",
+                    source.state().slowest));
+  };
+}
+
 }  // namespace sensor
 namespace {
 
@@ -228,6 +238,11 @@ Stream::Stream(DepthCamera& camera, const std::string& name, Stream::Sink sink, 
                const StreamOptions& options, std::function<void()> ended)
     : threads_(std::make_unique<Threads>(camera, name, std::move(sink), clock, options,
                                          std::move(ended))) {}
+
+Stream::Stream(DepthCamera& camera, Source& source, const Clock& clock,
+               const StreamOptions& options)
+    : Stream(camera, source.name(), sink_of(source), clock, options, [&source] { source.keep(); }) {
+}
 
 Stream::~Stream() = default;
 Stream::Stream(Stream&&) noexcept = default;

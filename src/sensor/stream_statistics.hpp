@@ -70,6 +70,9 @@ inline void require_time(bool good, double seconds, const char* what, const std:
 [[nodiscard]] DepthCamera::Status ask(DepthCamera& camera, DepthFrame& frame, double timeout,
                                       std::string& reason);
 
+/// Pushes into `source`, which outlives it. Throws Error when no snapshot is free.
+[[nodiscard]] Stream::Sink sink_of(Source& source);
+
 /// Keeps a stream's books. Any thread; times are s on the stream's clock.
 class StreamStatistics {
  public:

@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"

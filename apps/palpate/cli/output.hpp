@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -70,5 +71,14 @@ struct NamedFile {
 /// @throws UsageError when an output is a file that is read, or that another output goes to as
 /// well, links followed. What is no plain file may be written by several.
 void check_distinct(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
+
+/// Reports keep their keys in the order in which they are written.
+using Json = nlohmann::ordered_json;
+
+/// Indented, with a line's end. Bytes that are not UTF-8, as names of files may have, become
+/// U+FFFD.
+[[nodiscard]] inline std::string text_of(const Json& data) {
+  return data.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 }  // namespace palpate::app

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "apps/palpate/cli/arguments.hpp"
-#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/driver_info.hpp"

@@ -8,7 +8,6 @@
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 

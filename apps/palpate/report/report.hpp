@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/palpate/cli/json.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
 
 namespace palpate::app {

@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/cli/terminal.hpp"
