@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostWaiting = 1 << 17;  // steps
 
-ServoOptions noted_by(StepQueue& steps) {
+ServoOptions noted_by(ServoState::Queue& steps) {
   ServoOptions options;
   options.steps = &steps;
   return options;

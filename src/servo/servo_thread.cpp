@@ -164,7 +164,7 @@ RealtimeReport make_realtime(const RealtimeOptions& options) {
   return report;
 }
 
-double Deadlines::begin(double now) noexcept {
+double ServoThread::Deadlines::begin(double now) noexcept {
   const double late = std::max(now - next(), 0.0);
   const auto missed = static_cast<std::uint64_t>(std::floor(late / period_));
   index_ += missed + 1;
@@ -176,7 +176,7 @@ double Deadlines::begin(double now) noexcept {
   return late;
 }
 
-void Deadlines::restart(double now) noexcept {
+void ServoThread::Deadlines::restart(double now) noexcept {
   start_ = now;
   index_ = 1;
 }
@@ -221,7 +221,7 @@ void ServoThread::stop() {
 }
 
 void ServoThread::run(const std::stop_token& stop) noexcept {
-  Deadlines deadlines(clock_.now(), 1 / rate_);
+  ServoThread::Deadlines deadlines(clock_.now(), 1 / rate_);
   while (!stop.stop_requested() && step(deadlines)) {
   }
   servo_.device().write(Eigen::Vector3d::Zero());
@@ -229,7 +229,7 @@ void ServoThread::run(const std::stop_token& stop) noexcept {
 }
 
 // False when the device has come to its end.
-bool ServoThread::step(Deadlines& deadlines) noexcept {
+bool ServoThread::step(ServoThread::Deadlines& deadlines) noexcept {
   Device& device = servo_.device();
   if (!device.info().keeps_time) clock_.wait_until(deadlines.next());
   const DeviceState state = device.read();

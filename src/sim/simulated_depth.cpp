@@ -179,9 +179,6 @@ double distance(const Solid& solid, const Vector3d& x) {
 
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-
 constexpr int kUndistortSteps = 50;
 constexpr double kUndistorted = 1e-12;  // error of a ray, of a unit of depth
 

@@ -77,7 +77,7 @@ void keep_time(double seconds, RealtimeTrial& trial) {
   SteadyClock clock;
   Durations lateness;
   const double start = clock.now();
-  Deadlines deadlines(start, kJitterPeriod);
+  ServoThread::Deadlines deadlines(start, kJitterPeriod);
   while (deadlines.next() < start + seconds) {
     clock.wait_until(deadlines.next());
     lateness.add(deadlines.begin(clock.now()));

@@ -37,7 +37,7 @@ struct HandReport {
   bool scales = true;                    ///< is there a file, whose units --scale can mend?
 };
 
-/// Work done on the hand, J: in its own metres, where the cloud is magnified (workspace.hpp).
+/// Work done on the hand, J: in its own metres, where the cloud is magnified (Workspace).
 struct HandEnergy {
   double given = 0;  ///< TouchStatistics::given_energy()
   double path = 0;   ///< TouchStatistics::path_energy()

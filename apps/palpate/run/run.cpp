@@ -159,7 +159,7 @@ void check(const Trajectory& trajectory, const std::string& file, bool simulated
 
 }  // namespace
 
-ServoOptions servo_options(const Run& run, const Hand& hand, StepQueue* steps) {
+ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* steps) {
   ServoOptions options;
   options.field = run.field;
   options.proxy = run.proxy;

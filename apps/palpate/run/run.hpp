@@ -44,7 +44,7 @@ struct Run {
 
 /// What the servo of one of the hands is made with; `steps`: who records its steps, if anybody.
 [[nodiscard]] ServoOptions servo_options(const Run& run, const Hand& hand,
-                                         StepQueue* steps = nullptr);
+                                         ServoState::Queue* steps = nullptr);
 
 /// Is handed every step of every hand, by its index, as soon as it is done.
 using EachStep = std::function<void(std::size_t hand, const ServoState&)>;

@@ -69,7 +69,7 @@ class LiveHand {
   std::size_t index_;
   double rate_;
   std::optional<PacedDevice> paced_;  // of a device that defines its own time
-  StepQueue steps_;
+  ServoState::Queue steps_;
   Servo servo_;
   double start_ = 0;
   double looked_ = 0;

@@ -42,7 +42,7 @@ class TrialThread {
  private:
   void run(const std::stop_token& stop) {
     static_cast<void>(make_realtime({}));
-    Deadlines deadlines(clock_.now(), 1 / device_.info().rate);
+    ServoThread::Deadlines deadlines(clock_.now(), 1 / device_.info().rate);
     // The force has gone when the guard had a tenth of a second for it.
     int after = static_cast<int>(0.1 * device_.info().rate);
     while (!stop.stop_requested() && after > 0) {
