@@ -152,9 +152,7 @@ DriverInfo list_openhaptics() {
   DriverInfo driver{.name = "openhaptics",
                     .description =
                         "3D Systems Touch, Touch X; SensAble Phantom Omni, Desktop, "
-                        "Premium",
-                    .missing = {},
-                    .devices = {}};
+                        "Premium"};
   return listed(driver, [](DriverInfo& found) {
     const OpenHapticsLibrary library;
     std::error_code none;

@@ -9,7 +9,6 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_frame.hpp"
-#include "sensor/drivers.hpp"
 #include "sensor/live_camera.hpp"
 
 namespace palpate::sensor {
@@ -156,7 +155,7 @@ class FreenectConnection final : public Connection {
 }  // namespace
 
 DriverInfo freenect_driver() {
-  DriverInfo driver{.name = "freenect", .description = "Kinect v1", .missing = {}, .devices = {}};
+  DriverInfo driver{.name = "freenect", .description = "Kinect v1"};
   const Context context = make_context();
   driver.available = context != nullptr;
   if (!context) {

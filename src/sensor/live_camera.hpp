@@ -12,6 +12,18 @@
 
 namespace palpate::sensor {
 
+// The optional drivers. The build takes DRIVER_camera.cpp where its library is there, and what it
+// makes of absent_camera.cpp.in where it is not.
+[[nodiscard]] DriverInfo openni2_driver();
+/// `device`: empty, a URI, or the path of an .oni file.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_openni2(const std::string& device,
+                                                        const CameraOptions& options);
+
+[[nodiscard]] DriverInfo freenect_driver();
+/// `device`: empty or a number.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_freenect(const std::string& device,
+                                                         const CameraOptions& options);
+
 /// The depth camera of a Kinect v1 (and its PrimeSense relatives) by its maker's nominal values;
 /// single devices differ from them by about a percent.
 [[nodiscard]] Pinhole kinect_pinhole(int width, int height);

@@ -13,7 +13,6 @@
 
 #include "base/listed.hpp"
 #include "palpate/base/error.hpp"
-#include "sensor/drivers.hpp"
 #include "sensor/live_camera.hpp"
 #include "sensor/openni2_library.hpp"
 
@@ -250,9 +249,7 @@ void list_devices(DriverInfo& driver) {
 
 DriverInfo openni2_driver() {
   DriverInfo driver{.name = "openni2",
-                    .description = "PrimeSense and Asus Xtion cameras, and .oni recordings",
-                    .missing = {},
-                    .devices = {}};
+                    .description = "PrimeSense and Asus Xtion cameras, and .oni recordings"};
   return listed(driver, list_devices);
 }
 

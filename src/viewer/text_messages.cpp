@@ -101,8 +101,6 @@ ClientMessage read_object(const json& object) {
   throw Unread{"unknown message type"};
 }
 
-using nlohmann::json;
-
 constexpr int kVersion = 1;
 
 std::string text_of(const json& message) {

@@ -212,16 +212,14 @@ void add_align_options(CLI::App& command, AlignOptions& options) {
 void align_sources(const CLI::App& command, const AlignOptions& options) {
   const TouchPlan plan = plan_touch(command, options.touch);
   check_outputs(options.output, plan.outputs);
-  std::optional<OutputFile> output, json;
-  if (!options.output.empty()) output.emplace(options.output);
-  if (!plan.outputs.json.empty()) json.emplace(plan.outputs.json);
-  std::optional<OutputFile> picture;
-  if (!plan.outputs.picture.empty()) picture.emplace(plan.outputs.picture);
+  std::optional<OutputFile> output = output_at(options.output);
+  std::optional<OutputFile> json = output_at(plan.outputs.json);
+  std::optional<OutputFile> picture = output_at(plan.outputs.picture);
   std::vector<SourcePlan> sources = plan.sources;
   require(sources.size() > 1, "align needs at least two sources; name another one");
   const LoadedScene loaded = load_sources(sources, {.explored = true});
   const std::vector<AlignedSource> aligned = solve(loaded);
-  nlohmann::ordered_json report = nlohmann::ordered_json::array();
+  Json report = Json::array();
   std::FILE* out = options.output == "-" || plan.outputs.json == "-" ? stderr : stdout;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     Eigen::Isometry3d& pose = sources[i].options.T_world_sensor;
@@ -229,7 +227,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
     print_source(sources[i], aligned[i], out);
     report.push_back(json_of(sources[i], aligned[i]));
   }
-  if (json) write_whole(json, text_of(report));
+  write_whole(json, text_of(report));
   write_whole(output, setup_text(command, options, sources));
   if (picture) draw_alignment(loaded, aligned, plan.outputs.picture, *picture);
 }

@@ -52,8 +52,13 @@ class OutputFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
+/// The file that was asked for; none where `path` is empty. @throws Error as OutputFile does.
+[[nodiscard]] std::optional<OutputFile> output_at(const std::string& path);
+
 /// Writes all of a file that was asked for, if any. @throws Error as OutputFile does.
 void write_whole(std::optional<OutputFile>& file, std::string_view text);
+/// The same of the file at `path`; none where that is empty.
+void write_whole(const std::string& path, std::string_view text);
 
 /// Where a file goes that each hand or cloud has: "forces.csv" of the first (0), then
 /// "forces-2.csv", "forces-3.csv"; empty where it is.

@@ -113,12 +113,6 @@ Examples:
 Exit codes: 0 no problems (notes list what is missing), 1 a problem (something does not work) or the
 list could not be written, 2 the command line is wrong, 3 warnings.)";
 
-void write_json(const doctor::Findings& findings, const std::string& path) {
-  OutputFile file(path);
-  file.write(text_of(doctor::as_json(findings)));
-  file.close();
-}
-
 }  // namespace
 
 void add_doctor_options(CLI::App& command, DoctorOptions& options) {
@@ -139,7 +133,7 @@ int examine(const DoctorOptions& options) {
     return doctor::check_all(doctor::this_system(), options.jitter);
   }();
   doctor::print(findings, options.json == "-" ? stderr : stdout);
-  if (!options.json.empty()) write_json(findings, options.json);
+  write_whole(options.json, text_of(doctor::as_json(findings)));
   const doctor::Severity severity = doctor::worst(findings);
   if (severity == doctor::Severity::problem) return kFailure;
   return severity == doctor::Severity::warning ? kWarnings : kSuccess;

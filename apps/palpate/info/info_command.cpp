@@ -238,11 +238,7 @@ void info(const InfoOptions& options) {
     print_map(info.loaded.file.cloud, out);
     clouds.push_back(report.data);
   }
-  if (!options.json.empty()) {
-    OutputFile file(options.json);
-    file.write(text_of(clouds));
-    file.close();
-  }
+  write_whole(options.json, text_of(clouds));
   for (TrustPicture& picture : pictures) picture.draw();
 }
 

@@ -216,29 +216,10 @@ std::unique_ptr<DepthCamera> open_paper_source(const std::string& source) {
   return open_stream(chosen, nullptr);
 }
 
-// Every file is made before the work: a place that does not exist is told at once.
-struct Outputs {
-  std::optional<OutputFile> csv;
-  std::optional<OutputFile> picture;
-
-  explicit Outputs(const PaperOptions& options) {
-    check_distinct({}, {{"--csv", options.csv}, {"--picture", options.picture}});
-    check_picture(options.picture);
-    if (!options.csv.empty()) csv.emplace(options.csv);
-    if (!options.picture.empty()) picture.emplace(options.picture);
-  }
-};
-
 template <class Figure>
-void tell(const Figure& figure, const PaperOptions& options, Outputs& outputs) {
+void tell(const Figure& figure, const PaperOptions& options, FigureFiles& files) {
   print_figure(figure, options.source, options.csv == "-" ? stderr : stdout);
-  const std::string table = csv(figure);
-  write_whole(outputs.csv, table);
-  if (!outputs.picture) return;
-  const Waiting waiting("drawing the picture");
-  draw_by_python(figures_script(),
-                 {{"facts.json", facts(figure, options.source)}, {"table.csv", table}},
-                 options.picture, *outputs.picture);
+  files.write(csv(figure), facts(figure, options.source));
 }
 
 }  // namespace
@@ -256,16 +237,16 @@ void paper(const PaperCommand& paper) {
   }
   PaperOptions options = paper.options;
   if (options.source.empty()) options.source = kPaperSource;
-  Outputs outputs(options);
+  FigureFiles files(options.csv, "", options.picture);
   const std::unique_ptr<DepthCamera> camera = open_paper_source(options.source);
   if (paper.fig5->parsed()) {
-    tell(measure_fig5(*camera, options.repeats), options, outputs);
+    tell(measure_fig5(*camera, options.repeats), options, files);
   } else {
     Fig7Options press;
     press.duration = options.duration;
     press.voxel = options.voxel.value_or(press.voxel);
     press.radius = options.radius;
-    tell(measure_fig7(*camera, press), options, outputs);
+    tell(measure_fig7(*camera, press), options, files);
   }
 }
 

@@ -10,14 +10,65 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/run/view_settings.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/sensor/stream.hpp"
+#include "palpate/servo/servo.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {
+namespace {
+
+std::vector<SimulatedStream> make_streams(Run& run) {
+  SimulatedStreamOptions options;
+  options.latency = run.time.latency.value_or(options.latency);
+  std::vector<SimulatedStream> streams;
+  for (std::size_t i = 0; i < run.loaded.sources.size(); ++i) {
+    LoadedSource& from = run.loaded.sources[i];
+    if (!from.camera) continue;
+    from.feed.simulated = true;
+    Source& to = run.loaded.scene.source(i);
+    streams.emplace_back(*from.camera, to.name(), feeding(from, to, thread_cpu_seconds), options,
+                         [&to] { to.keep(); });
+  }
+  return streams;
+}
+
+}  // namespace
+
+bool run_simulated(Run& run, const EachStep& each) {
+  const Hand& hand = run.hands.front();
+  Device& device = *hand.device;
+  ServoOptions options = servo_options(run, hand);
+  options.guard.on = false;
+  Servo servo(device, run.loaded.scene, options);
+  std::vector<SimulatedStream> streams = make_streams(run);
+  const Interruption interruption;
+  DeviceState state = device.read();
+  for (; state.status != DeviceState::Status::finished; state = device.read()) {
+    if (state.status == DeviceState::Status::failed) {
+      throw Error(fmt::format("device '{}' failed: {}", device.info().name, device.reason()));
+    }
+    for (SimulatedStream& stream : streams) stream.advance(state.time);
+    if (interruption.asked()) break;
+    const double start = thread_cpu_seconds();
+    const ServoState& step = servo.step(state, state.time);
+    const double computing = thread_cpu_seconds() - start;
+    device.write(servo.device_force());
+    servo.show({.computing = computing});
+    each(0, step);
+  }
+  std::vector<StreamState> states;
+  for (const SimulatedStream& stream : streams) states.push_back(stream.state());
+  keep_states(run.loaded, states);
+  return !interruption.asked();
+}
+
 namespace {
 
 // Every file is made before the work: a place that does not exist is told at once.
@@ -110,7 +161,7 @@ void check_hands(const std::vector<HandReport>& hands) {
 // The pictures come last: everything else is there if they cannot be drawn.
 void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
   const Json data = report_on(report, stream);
-  if (outputs.json) write_whole(outputs.json, text_of(data));
+  write_whole(outputs.json, text_of(data));
   for (std::size_t i = 0; i < report.hands.size(); ++i) {
     outputs.hands[i].draw(report.loaded.scene, title_of(report.loaded), report.hands[i]);
   }

@@ -133,8 +133,7 @@ void run_stiffness_test(const StiffnessTestRunOptions& options) {
                     options.device));
   }
   ask(options);
-  std::optional<OutputFile> json;
-  if (!options.json.empty()) json.emplace(options.json);
+  std::optional<OutputFile> json = output_at(options.json);
   SteadyClock clock;
   const Interruption interruption;
   ThreadedDeviceOptions link;
@@ -143,7 +142,7 @@ void run_stiffness_test(const StiffnessTestRunOptions& options) {
   fmt::print(stderr, "using {}\n", device->info().name);
   TrialThread thread(*device, clock, options.trial);
   const StiffnessTest::State state = lead(thread, interruption);
-  if (json) write_whole(json, found(options, device->info(), state));
+  write_whole(json, found(options, device->info(), state));
   if (state.stable > 0)
     return tell(state, options.trial.damping, options.json == "-" ? stderr : stdout);
   const std::string reason = device->reason();

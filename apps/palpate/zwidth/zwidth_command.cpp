@@ -182,22 +182,6 @@ By default the walls are simulated and nothing moves: a mass with friction, quan
 a sampled, delayed force. With --device, a person presses on walls that the device renders, each
 stiffer than the last, until one makes it vibrate; palpate explains this and asks before it starts.)";
 
-// Every file is made before the work: a place that does not exist is told at once.
-struct ZWidthOutputs {
-  std::optional<OutputFile> csv;
-  std::optional<OutputFile> json;
-  std::optional<OutputFile> picture;
-
-  explicit ZWidthOutputs(const ZWidthOptions& options) {
-    check_distinct(
-        {}, {{"--csv", options.csv}, {"--json", options.json}, {"--picture", options.picture}});
-    check_picture(options.picture);
-    if (!options.csv.empty()) csv.emplace(options.csv);
-    if (!options.json.empty()) json.emplace(options.json);
-    if (!options.picture.empty()) picture.emplace(options.picture);
-  }
-};
-
 void add_simulation_options(CLI::App& command, ZWidthOptions& o) {
   command
       .add_option("--device-profile", o.profile,
@@ -276,18 +260,13 @@ void zwidth(const ZWidthChoices& choices) {
     trial.json = options.json;
     return run_stiffness_test(trial);
   }
-  ZWidthOutputs outputs(options);
+  FigureFiles files(options.csv, options.json, options.picture);
   const ZWidthMap map = [&] {
     Progress progress("simulating walls");
     return measure_zwidth(options, [&](double done) { progress.update(done); });
   }();
   print_zwidth(map, options.csv == "-" || options.json == "-" ? stderr : stdout);
-  write_whole(outputs.csv, csv(map));
-  write_whole(outputs.json, facts(map) + "\n");
-  if (!outputs.picture) return;
-  const Waiting waiting("drawing the picture");
-  draw_by_python(figures_script(), {{"facts.json", facts(map)}, {"table.csv", csv(map)}},
-                 options.picture, *outputs.picture);
+  files.write(csv(map), facts(map));
 }
 
 }  // namespace palpate::app
