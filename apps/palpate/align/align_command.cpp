@@ -17,7 +17,11 @@
 #include "palpate/align/align.hpp"
 
 namespace palpate::app {
+namespace {
 
+namespace fs = std::filesystem;
+
+// Draws sources before and after they were aligned, into `picture` (`path` in messages).
 void draw_alignment(const LoadedScene& loaded, const std::vector<AlignedSource>& aligned,
                     const std::string& path, OutputFile& picture) {
   constexpr std::size_t kShown = 60'000;  // points of a source
@@ -43,10 +47,6 @@ void draw_alignment(const LoadedScene& loaded, const std::vector<AlignedSource>&
   draw_by_python(align_script(), {{"cloud.f32", float_bytes(rows)}, {"facts.json", facts.dump()}},
                  path, picture);
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 

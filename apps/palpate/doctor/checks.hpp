@@ -10,6 +10,10 @@
 
 #include "apps/palpate/doctor/system.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace palpate::app::doctor {
 
 /// A device on USB, as the kernel tells in /sys/bus/usb/devices.
@@ -134,10 +138,6 @@ void print(const Findings& findings, std::FILE* stream);
 [[nodiscard]] nlohmann::ordered_json as_json(const Findings& findings);
 
 }  // namespace palpate::app::doctor
-
-namespace CLI {
-class App;
-}
 
 namespace palpate::app {
 

@@ -35,8 +35,6 @@ const char* radius_text(const Fig7& figure) {
   return figure.radius_given ? "R given" : "R = 2.5 s";
 }
 
-}  // namespace
-
 void print_figure(const Fig5& figure, const std::string& source, std::FILE* out) {
   const Style style(out);
   fmt::print(out,
@@ -84,6 +82,7 @@ void print_figure(const Fig7& figure, const std::string& source, std::FILE* out)
              radius_text(figure), length(figure.voxel));
 }
 
+// A row a size; ms.
 std::string csv(const Fig5& figure) {
   std::string text =
       "points,points_here,voxel_m,paper_index_ms,index_ms,paper_normals_ms,normals_ms,"
@@ -96,6 +95,7 @@ std::string csv(const Fig5& figure) {
   return text;
 }
 
+// A row a servo step: t (s), then height (m), nx, ny and force (N) of each way of feeling.
 std::string csv(const Fig7& figure) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
@@ -115,7 +115,8 @@ std::string csv(const Fig7& figure) {
   return fmt::to_string(text);
 }
 
-std::string facts(const Fig5& figure, const std::string& source) {
+// What figures.py is told.
+Json facts(const Fig5& figure, const std::string& source) {
   Json rows = Json::array();
   for (const Fig5Row& row : figure.rows) {
     const auto times = [](const PrepareTimes& t) { return Json{t.index, t.normals, t.spacing}; };
@@ -128,11 +129,10 @@ std::string facts(const Fig5& figure, const std::string& source) {
               {"source", source},
               {"cores", std::thread::hardware_concurrency()},
               {"everywhere_ms", figure.everywhere},
-              {"rows", rows}}
-      .dump();
+              {"rows", rows}};
 }
 
-std::string facts(const Fig7& figure, const std::string& source) {
+Json facts(const Fig7& figure, const std::string& source) {
   Json presses = Json::array();
   for (const Press& press : figure.presses) {
     presses.push_back({{"name", press.name},
@@ -147,11 +147,8 @@ std::string facts(const Fig7& figure, const std::string& source) {
   return Json{{"figure", "fig7"},        {"source", source},
               {"depth_m", figure.depth}, {"angle_degrees", degrees(figure.angle)},
               {"voxel_m", figure.voxel}, {"radius", radius_text(figure)},
-              {"presses", presses}}
-      .dump();
+              {"presses", presses}};
 }
-
-namespace {
 
 constexpr const char* kPaperFooter = R"(Examples:
   palpate paper fig5 --picture fig5.png
@@ -203,7 +200,7 @@ CLI::App* add_fig7(CLI::App& command, PaperOptions& o) {
 
 // What the paper's figures are made of unless another source is named: a table seen from 0.7 m,
 // 27 degrees from above, with the noise of a Kinect.
-inline constexpr const char* kPaperSource = "camera:simulated:still";
+constexpr const char* kPaperSource = "camera:simulated:still";
 
 // To be read as fast as it goes.
 std::unique_ptr<DepthCamera> open_paper_source(const std::string& source) {

@@ -115,17 +115,4 @@ struct Fig7Options {
 /// @throws Error when the camera ends or fails before the press does.
 [[nodiscard]] Fig7 measure_fig7(DepthCamera& camera, const Fig7Options& options);
 
-/// A table for a person.
-void print_figure(const Fig5& figure, const std::string& source, std::FILE* out);
-void print_figure(const Fig7& figure, const std::string& source, std::FILE* out);
-
-/// A row a size; ms.
-[[nodiscard]] std::string csv(const Fig5& figure);
-/// A row a servo step: t (s), then height (m), nx, ny and force (N) of each way of feeling.
-[[nodiscard]] std::string csv(const Fig7& figure);
-
-/// What figures.py is told.
-[[nodiscard]] std::string facts(const Fig5& figure, const std::string& source);
-[[nodiscard]] std::string facts(const Fig7& figure, const std::string& source);
-
 }  // namespace palpate::app

@@ -130,13 +130,13 @@ FigureFiles::FigureFiles(const std::string& csv, const std::string& json,
   if (!picture.empty()) picture_.emplace(picture);
 }
 
-void FigureFiles::write(const std::string& table, const std::string& facts) {
+void FigureFiles::write(const std::string& table, const Json& facts) {
   write_whole(csv_, table);
-  write_whole(json_, facts + "\n");
+  write_whole(json_, text_of(facts));
   if (!picture_) return;
   const Waiting waiting("drawing the picture");
-  draw_by_python(figures_script(), {{"facts.json", facts}, {"table.csv", table}}, picture_path_,
-                 *picture_);
+  draw_by_python(figures_script(), {{"facts.json", text_of(facts)}, {"table.csv", table}},
+                 picture_path_, *picture_);
 }
 
 }  // namespace palpate::app

@@ -44,9 +44,9 @@ class FigureFiles {
   /// @throws UsageError, Error as check_distinct(), check_picture() and OutputFile do.
   FigureFiles(const std::string& csv, const std::string& json, const std::string& picture);
 
-  /// The table, the facts as a JSON text, and the picture that figures.py draws of both.
+  /// The table, the facts, and the picture that figures.py draws of both.
   /// @throws Error as OutputFile and draw_by_python() do.
-  void write(const std::string& table, const std::string& facts);
+  void write(const std::string& table, const Json& facts);
 
  private:
   std::string picture_path_;

@@ -142,7 +142,7 @@ void run_stiffness_test(const StiffnessTestRunOptions& options) {
   fmt::print(stderr, "using {}\n", device->info().name);
   TrialThread thread(*device, clock, options.trial);
   const StiffnessTest::State state = lead(thread, interruption);
-  write_whole(json, found(options, device->info(), state));
+  if (json) write_whole(json, found(options, device->info(), state));
   if (state.stable > 0)
     return tell(state, options.trial.damping, options.json == "-" ? stderr : stdout);
   const std::string reason = device->reason();

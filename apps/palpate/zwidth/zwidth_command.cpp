@@ -13,10 +13,31 @@
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/device/device.hpp"
 #include "palpate/servo/z_width.hpp"
 
 namespace palpate::app {
 namespace {
+
+// How stiff a wall may be on one device at one pace; N/m.
+struct ZWidthRow {
+  double rate = 0;     // Hz
+  int delay = 0;       // steps
+  double damping = 0;  // of the device, N s/m
+  double colgate = 0;  // 2 (b + B) / (T + 2 T_d)
+  double stable = 0;   // oscillations do not grow
+  double passive = 0;  // no impact comes out faster than it went in
+  double braked = 0;   // the same, with the guard's brake
+};
+
+struct ZWidthMap {
+  DeviceProfile profile;
+  double mass = 0;        // kg, as simulated
+  double resolution = 0;  // m
+  double coulomb = 0;     // N
+  double wall_damping = 0;
+  std::vector<ZWidthRow> rows;
+};
 
 DeviceProfile find_profile(const ZWidthOptions& options) {
   const std::vector<DeviceProfile> among =
@@ -73,8 +94,7 @@ std::string stiffness(double newtons_per_metre) {
   return fmt::format("{:.0f}", newtons_per_metre);
 }
 
-}  // namespace
-
+// Simulates every combination of rate, delay and damping. `progress` is told 0 to 1.
 ZWidthMap measure_zwidth(const ZWidthOptions& options,
                          const std::function<void(double)>& progress) {
   ZWidthMap map;
@@ -143,7 +163,8 @@ std::string csv(const ZWidthMap& map) {
   return text;
 }
 
-std::string facts(const ZWidthMap& map) {
+// As data, and what figures.py is told.
+Json facts(const ZWidthMap& map) {
   Json rows = Json::array();
   for (const ZWidthRow& row : map.rows) {
     rows.push_back({{"rate_Hz", row.rate},
@@ -162,11 +183,8 @@ std::string facts(const ZWidthMap& map) {
               {"resolution_m", map.resolution},
               {"wall_damping_Ns_per_m", map.wall_damping},
               {"stiffest_N_per_m", kStiffestWall},
-              {"rows", rows}}
-      .dump(2);
+              {"rows", rows}};
 }
-
-namespace {
 
 constexpr const char* kZWidthFooter = R"(Examples:
   palpate zwidth
