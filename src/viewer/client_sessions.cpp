@@ -41,27 +41,26 @@ std::optional<Message> Outbox::take() {
 
 namespace {
 
-std::string why_not(const ViewerControls::Setting& setting, double value) {
-  if (setting.kind != ViewerControls::Setting::Kind::number) return "it is not a number";
+std::string why_not(const Setting& setting, double value) {
+  if (setting.kind != Setting::Kind::number) return "it is not a number";
   if (value >= setting.least && value <= setting.most) return {};
   return fmt::format("{} is not from {} to {}", value, setting.least, setting.most);
 }
 
-std::string why_not(const ViewerControls::Setting& setting, const std::string& value) {
-  if (setting.kind != ViewerControls::Setting::Kind::choice)
-    return "it is not the number of a choice";
+std::string why_not(const Setting& setting, const std::string& value) {
+  if (setting.kind != Setting::Kind::choice) return "it is not the number of a choice";
   if (std::ranges::find(setting.choices, value) != setting.choices.end()) return {};
   return fmt::format("there are only {}", fmt::join(setting.choices, ", "));
 }
 
-std::string why_not(const ViewerControls::Setting& setting, bool) {
-  return setting.kind == ViewerControls::Setting::Kind::on_off ? "" : "it is not true or false";
+std::string why_not(const Setting& setting, bool) {
+  return setting.kind == Setting::Kind::on_off ? "" : "it is not true or false";
 }
 
 // Why `key` cannot be set to `value`, in words; empty: it can.
-std::string why_not(std::span<const ViewerControls::Setting> settings, const std::string& key,
-                    const ViewerControls::Setting::Value& value) {
-  const auto found = std::ranges::find(settings, key, &ViewerControls::Setting::key);
+std::string why_not(std::span<const Setting> settings, const std::string& key,
+                    const Setting::Value& value) {
+  const auto found = std::ranges::find(settings, key, &Setting::key);
   if (found == settings.end()) return "unknown setting";
   const std::string reason =
       std::visit([&](const auto& given) { return why_not(*found, given); }, value);
@@ -279,9 +278,8 @@ void ClientSessions::close(Session& session, std::uint16_t code, std::string rea
   if (session.wake) session.wake();
 }
 
-std::vector<ViewerControls::Setting> ClientSessions::settings() const {
-  return options_.controls.settings ? options_.controls.settings()
-                                    : std::vector<ViewerControls::Setting>{};
+std::vector<Setting> ClientSessions::settings() const {
+  return options_.controls.settings ? options_.controls.settings() : std::vector<Setting>{};
 }
 
 }  // namespace palpate::viewer

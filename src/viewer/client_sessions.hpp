@@ -191,7 +191,7 @@ class ClientSessions {
   void close(Session& session, std::uint16_t code, std::string reason);
   void release(std::size_t device);
   void lose(std::size_t device, std::string_view why);
-  [[nodiscard]] std::vector<ViewerControls::Setting> settings() const;
+  [[nodiscard]] std::vector<Setting> settings() const;
 
   ClientSessionsOptions options_;
   std::vector<Session*> sessions_;

@@ -18,6 +18,9 @@
 
 namespace palpate::viewer {
 
+using Setting = ViewerControls::Setting;
+using ViewedStream = ViewerOptions::Stream;
+
 struct Mesh;  // local_surface.hpp
 
 // What a page says. JSON.
@@ -36,7 +39,7 @@ struct Release {
 };
 struct Set {
   std::string key;
-  ViewerControls::Setting::Value value;
+  Setting::Value value;
 };
 struct Preset {
   std::string name;
@@ -98,7 +101,7 @@ struct Welcome {
   double radius = 0;
   std::vector<DeviceLabel> devices;
   std::vector<SourceLabel> sources;
-  std::vector<ViewerControls::Setting> settings;
+  std::vector<Setting> settings;
   std::vector<std::string> presets;
   std::vector<Notice> notices;  ///< what is wrong already; messages of their own
 };
@@ -120,12 +123,12 @@ struct SourceReport {
   std::uint64_t dropped = 0;
   std::optional<double> disagreement;
   std::optional<Eigen::Isometry3d> pose;  ///< relative to the origin
-  std::optional<ViewerOptions::Stream::Frustum> frustum;
+  std::optional<ViewedStream::Frustum> frustum;
 };
 
 // Texts that are no UTF-8 come out with replacement characters.
 [[nodiscard]] std::string welcome_text(const Welcome& welcome);
-[[nodiscard]] std::string settings_text(std::span<const ViewerControls::Setting> settings);
+[[nodiscard]] std::string settings_text(std::span<const Setting> settings);
 [[nodiscard]] std::string devices_text(std::span<const DeviceReport> devices);
 [[nodiscard]] std::string sources_text(std::span<const SourceReport> sources);
 [[nodiscard]] std::string notice_text(const Notice& notice);

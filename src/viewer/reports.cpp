@@ -11,15 +11,14 @@ namespace palpate::viewer {
 
 namespace {
 
-const ViewerOptions::Stream* stream_of(std::span<const ViewerOptions::Stream> streams,
-                                       const std::string& source) {
+const ViewedStream* stream_of(std::span<const ViewedStream> streams, const std::string& source) {
   const auto found = std::ranges::find_if(
-      streams, [&](const ViewerOptions::Stream& stream) { return stream.state.source == source; });
+      streams, [&](const ViewedStream& stream) { return stream.state.source == source; });
   return found == streams.end() ? nullptr : &*found;
 }
 
-void add_stream(const ViewerOptions::Stream& stream, const Source& source,
-                const Eigen::Vector3d& origin, SourceReport& report) {
+void add_stream(const ViewedStream& stream, const Source& source, const Eigen::Vector3d& origin,
+                SourceReport& report) {
   report.rate = stream.state.rate;
   report.dropped += stream.state.drops.total();
   report.frustum = stream.frustum;
@@ -54,14 +53,13 @@ std::vector<std::string> tool_names(const std::vector<Servo*>& servos) {
   return names;
 }
 
-std::vector<SourceReport> source_reports(const Scene& scene,
-                                         std::span<const ViewerOptions::Stream> streams,
+std::vector<SourceReport> source_reports(const Scene& scene, std::span<const ViewedStream> streams,
                                          const Eigen::Vector3d& origin, double now) {
   std::vector<SourceReport> reports;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const Source& source = scene.source(i);
     const SourceState state = scene.state(i);
-    const ViewerOptions::Stream* stream = stream_of(streams, source.name());
+    const ViewedStream* stream = stream_of(streams, source.name());
     const auto points = source.points();
     SourceReport report;
     report.name = source.name();
@@ -151,11 +149,11 @@ double StateReporter::rate(double now, std::uint64_t step) {
   return time > 0 ? static_cast<double>(step - steps_.front().second) / time : 0;
 }
 
-std::vector<Notice> FaultNotices::update(std::span<const ViewerOptions::Stream> streams,
+std::vector<Notice> FaultNotices::update(std::span<const ViewedStream> streams,
                                          std::span<const DeviceFault> devices) {
   std::vector<Notice> news;
   present_.clear();
-  for (const ViewerOptions::Stream& stream : streams) {
+  for (const ViewedStream& stream : streams) {
     const Notice notice{Viewer::NoticeLevel::warning, stream.state.problem};
     if (is_new(stream.state)) news.push_back(notice);
     if (lasts(stream.state) && !notice.text.empty()) present_.push_back(notice);

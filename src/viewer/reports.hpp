@@ -25,9 +25,9 @@ namespace palpate::viewer {
 
 /// How every source of `scene` fares at `now` (s, on the snapshots' clock). Takes milliseconds; any
 /// thread but a servo's.
-[[nodiscard]] std::vector<SourceReport> source_reports(
-    const Scene& scene, std::span<const ViewerOptions::Stream> streams,
-    const Eigen::Vector3d& origin, double now);
+[[nodiscard]] std::vector<SourceReport> source_reports(const Scene& scene,
+                                                       std::span<const ViewedStream> streams,
+                                                       const Eigen::Vector3d& origin, double now);
 
 /// Makes the messages of one servo's state: of what happened since the message before. One thread
 /// uses it.
@@ -71,7 +71,7 @@ class FaultNotices {
   static constexpr double kPeace = 10;
 
   /// What is new since the call before. Each index stands for the same device in every call.
-  [[nodiscard]] std::vector<Notice> update(std::span<const ViewerOptions::Stream> streams,
+  [[nodiscard]] std::vector<Notice> update(std::span<const ViewedStream> streams,
                                            std::span<const DeviceFault> devices);
 
   /// What was wrong at the last call and goes on, for those who come later.

@@ -176,8 +176,8 @@ void SceneEncoder::join_scene() {
 
 void SceneEncoder::report(EncodedScene& encoded) {
   reported_ = host_time();
-  const std::vector<ViewerOptions::Stream> streams =
-      options_.streams ? options_.streams() : std::vector<ViewerOptions::Stream>{};
+  const std::vector<ViewedStream> streams =
+      options_.streams ? options_.streams() : std::vector<ViewedStream>{};
   encoded.sources = std::make_shared<const std::string>(
       sources_text(source_reports(scene_, streams, options_.origin, now())));  // painting took time
 }

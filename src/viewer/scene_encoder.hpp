@@ -115,7 +115,7 @@ struct EncodedScene {
 struct SceneEncoderOptions {
   std::vector<Servo*> servos;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::function<std::vector<ViewerOptions::Stream>()> streams = {};
+  std::function<std::vector<ViewedStream>()> streams = {};
   std::function<void(EncodedScene)> show;  ///< called on the encoder's thread
 };
 

@@ -111,23 +111,23 @@ json json_of(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-json json_of(const ViewerControls::Setting::Value& value) {
+json json_of(const Setting::Value& value) {
   return std::visit([](const auto& held) { return json(held); }, value);
 }
 
-const char* name_of(ViewerControls::Setting::Kind kind) {
-  if (kind == ViewerControls::Setting::Kind::choice) return "choice";
-  return kind == ViewerControls::Setting::Kind::on_off ? "switch" : "number";
+const char* name_of(Setting::Kind kind) {
+  if (kind == Setting::Kind::choice) return "choice";
+  return kind == Setting::Kind::on_off ? "switch" : "number";
 }
 
-json json_of(const ViewerControls::Setting& setting) {
+json json_of(const Setting& setting) {
   json result{{"key", setting.key},
               {"label", setting.label},
               {"kind", name_of(setting.kind)},
               {"value", json_of(setting.value)}};
   if (!setting.unit.empty()) result["unit"] = setting.unit;
-  if (setting.kind == ViewerControls::Setting::Kind::choice) result["choices"] = setting.choices;
-  if (setting.kind == ViewerControls::Setting::Kind::number) {
+  if (setting.kind == Setting::Kind::choice) result["choices"] = setting.choices;
+  if (setting.kind == Setting::Kind::number) {
     result["least"] = setting.least;
     result["most"] = setting.most;
     if (setting.step > 0) result["step"] = setting.step;
@@ -190,15 +190,13 @@ std::string welcome_text(const Welcome& welcome) {
     sources.push_back({{"name", source.name}, {"camera", source.camera}});
   }
   json& settings = message["settings"] = json::array();
-  for (const ViewerControls::Setting& setting : welcome.settings)
-    settings.push_back(json_of(setting));
+  for (const Setting& setting : welcome.settings) settings.push_back(json_of(setting));
   return text_of(message);
 }
 
-std::string settings_text(std::span<const ViewerControls::Setting> settings) {
+std::string settings_text(std::span<const Setting> settings) {
   json values = json::object();
-  for (const ViewerControls::Setting& setting : settings)
-    values[setting.key] = json_of(setting.value);
+  for (const Setting& setting : settings) values[setting.key] = json_of(setting.value);
   return text_of({{"type", "settings"}, {"values", std::move(values)}});
 }
 

@@ -11,15 +11,14 @@ namespace {
 
 constexpr ViewScope kAll = {.deepest_texture = 1e-3, .lives = true, .depth = true, .clouds = true};
 
-const ViewerControls::Setting* find(const std::vector<ViewerControls::Setting>& list,
-                                    const std::string& key) {
-  const auto found = std::ranges::find(list, key, &ViewerControls::Setting::key);
+const Setting* find(const std::vector<Setting>& list, const std::string& key) {
+  const auto found = std::ranges::find(list, key, &Setting::key);
   return found == list.end() ? nullptr : &*found;
 }
 
 TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
   ViewSettings settings;
-  const std::vector<std::pair<std::string, ViewerControls::Setting::Value>> wanted = {
+  const std::vector<std::pair<std::string, Setting::Value>> wanted = {
       {"field", std::string("metaball")},
       {"stiffness", 320.0},
       {"friction", 0.3},
@@ -29,10 +28,10 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
       {"history", 2.0},
       {"voxel", 4.0}};
   for (const auto& [key, value] : wanted) set(settings, key, value);
-  const std::vector<ViewerControls::Setting> list = list_settings(settings, kAll);
+  const std::vector<Setting> list = list_settings(settings, kAll);
   EXPECT_EQ(list.size(), wanted.size());
   for (const auto& [key, value] : wanted) {
-    const ViewerControls::Setting* const setting = find(list, key);
+    const Setting* const setting = find(list, key);
     ASSERT_NE(setting, nullptr) << key;
     EXPECT_EQ(setting->value, value) << key;
   }
@@ -44,8 +43,8 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
 
 TEST(ViewSettings, PresentValuesAreWithinTheirBounds) {
   for (const std::string& name : preset_names()) {
-    for (const ViewerControls::Setting& setting : list_settings(preset({}, name, kAll), kAll)) {
-      if (setting.kind == ViewerControls::Setting::Kind::number) {
+    for (const Setting& setting : list_settings(preset({}, name, kAll), kAll)) {
+      if (setting.kind == Setting::Kind::number) {
         EXPECT_GE(std::get<double>(setting.value), setting.least) << name << ' ' << setting.key;
         EXPECT_LE(std::get<double>(setting.value), setting.most) << name << ' ' << setting.key;
       } else {
@@ -57,7 +56,7 @@ TEST(ViewSettings, PresentValuesAreWithinTheirBounds) {
 }
 
 TEST(ViewSettings, OfCloudsThatStandStillThereIsNoTimeToSet) {
-  const std::vector<ViewerControls::Setting> list = list_settings({}, {.clouds = true});
+  const std::vector<Setting> list = list_settings({}, {.clouds = true});
   EXPECT_EQ(find(list, "policy"), nullptr);
   EXPECT_EQ(find(list, "history"), nullptr);
   EXPECT_EQ(find(list, "texture"), nullptr) << "nothing is known that could carry one";
@@ -72,7 +71,7 @@ TEST(ViewSettings, PresetsStartFromWhatTheRunBeganWith) {
   EXPECT_GT(preset(initial, "glass", kAll).feel.stiffness, 200);
   const ViewSettings paper = preset(initial, "paper", kAll);
   EXPECT_TRUE(paper.field.raw_weights);
-  EXPECT_EQ(paper.policy, Policy::average);
+  EXPECT_EQ(paper.preparation.policy, Policy::average);
   EXPECT_NO_THROW(check(paper.field));
   EXPECT_THROW((void)preset(initial, "stone", kAll), Error);
 }
@@ -89,7 +88,7 @@ TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
   set(settings, "smoothing", 2.0);
   set(settings, "voxel", 5.0);
   set(settings, "policy", std::string("replace"));
-  const SourceOptions options = prepared_by(settings, {}, {});
+  const SourceOptions options = prepared_by(settings.preparation, {}, {});
   EXPECT_DOUBLE_EQ(options.depth.normal_error, DepthFilterOptions().normal_error / 2);
   EXPECT_DOUBLE_EQ(*options.prepare.radius_multiple, 5);
   EXPECT_DOUBLE_EQ(*options.prepare.voxel, 5e-3);
@@ -97,23 +96,21 @@ TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
 }
 
 TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
-  const std::vector<std::pair<std::string, ViewerControls::Setting::Value>> felt = {
+  const std::vector<std::pair<std::string, Setting::Value>> felt = {
       {"field", std::string("metaball")},
       {"stiffness", 320.0},
       {"friction", 0.3},
       {"texture", 0.5}};
   ViewSettings settings;
   for (const auto& [key, value] : felt) set(settings, key, value);
-  EXPECT_TRUE(prepares_alike(settings, {}));
-  EXPECT_TRUE(prepares_alike(preset({}, "glass", kAll), {}));
-  const std::vector<std::pair<std::string, ViewerControls::Setting::Value>> prepared = {
+  EXPECT_EQ(settings.preparation, ViewSettings::Preparation{});
+  EXPECT_EQ(preset({}, "glass", kAll).preparation, ViewSettings::Preparation{});
+  const std::vector<std::pair<std::string, Setting::Value>> prepared = {
       {"smoothing", 1.5}, {"policy", std::string("fusion")}, {"history", 2.0}, {"voxel", 4.0}};
   for (const auto& [key, value] : prepared) {
     ViewSettings other;
     set(other, key, value);
-    EXPECT_FALSE(prepares_alike(other, {})) << key;
-    EXPECT_TRUE(prepares_alike(with_preparation(settings, other), other)) << key;
-    EXPECT_EQ(with_preparation(settings, other).feel.stiffness, 320) << key;
+    EXPECT_NE(other.preparation, ViewSettings::Preparation{}) << key;
   }
 }
 
@@ -140,7 +137,7 @@ TEST(ViewSettings, WhatASourceHasOfItsOwnStaysUnlessThePageChangesIt) {
   own.policy.history = 6;
   const ViewSettings initial;
   ViewSettings settings = preset(initial, "glass", kAll);
-  SourceOptions options = prepared_by(settings, initial, own);
+  SourceOptions options = prepared_by(settings.preparation, initial.preparation, own);
   EXPECT_EQ(options.depth.normal_error, 0.01);
   EXPECT_EQ(options.prepare.radius, 0.02);
   EXPECT_FALSE(options.prepare.radius_multiple);
@@ -149,7 +146,7 @@ TEST(ViewSettings, WhatASourceHasOfItsOwnStaysUnlessThePageChangesIt) {
   EXPECT_EQ(options.policy.history, 6);
   set(settings, "smoothing", 2.0);
   set(settings, "policy", std::string("average"));
-  options = prepared_by(settings, initial, own);
+  options = prepared_by(settings.preparation, initial.preparation, own);
   EXPECT_DOUBLE_EQ(options.depth.normal_error, 0.005);
   EXPECT_DOUBLE_EQ(*options.prepare.radius, 0.04);
   EXPECT_EQ(options.prepare.voxel, 3e-3);

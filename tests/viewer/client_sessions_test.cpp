@@ -42,7 +42,7 @@ TEST(ClientSessions, WhatComesBeforeHelloIsRefusedAndChangesNothing) {
   rig.expect_refused(session, R"({"type":"set","key":"k","value":50})");
   rig.expect_refused(session, R"({"type":"hand","device":0,"position":[1,2,3],"buttons":0})");
   rig.expect_refused(session, R"({"type":"ping","id":1})");
-  EXPECT_EQ(rig.setting.value, ViewerControls::Setting::Value{20.0});
+  EXPECT_EQ(rig.setting.value, Setting::Value{20.0});
   EXPECT_EQ(rig.hand, Eigen::Vector3d::Zero());
 }
 
@@ -80,7 +80,7 @@ TEST(ClientSessions, ASettingThatChangesIsToldToAll) {
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_EQ(messages[0], expected);
   EXPECT_EQ(SessionsRig::said(other), std::vector{expected});
-  EXPECT_EQ(rig.setting.value, ViewerControls::Setting::Value{50.0});
+  EXPECT_EQ(rig.setting.value, Setting::Value{50.0});
 }
 
 TEST(ClientSessions, ASettingOutOfRangeOrUnknownOrThatTheProgramRefusesStays) {
@@ -92,7 +92,7 @@ TEST(ClientSessions, ASettingOutOfRangeOrUnknownOrThatTheProgramRefusesStays) {
   rig.expect_refused(session, R"({"type":"set","key":"other","value":1})");
   rig.expect_refused(session, R"({"type":"preset","name":"other"})");
   rig.expect_refused(session, R"({"type":"record","on":true})");
-  EXPECT_EQ(rig.setting.value, ViewerControls::Setting::Value{20.0});
+  EXPECT_EQ(rig.setting.value, Setting::Value{20.0});
 }
 
 TEST(ClientSessions, PresetPauseResetPointsAndPingDoWhatTheySay) {

@@ -24,8 +24,8 @@ struct SessionsRig {
     options.token = "secret";
     options.limits = limits;
     options.controls.settings = [this] { return std::vector{setting}; };
-    options.controls.set = [this](const std::string&, const ViewerControls::Setting::Value& value) {
-      if (value == ViewerControls::Setting::Value{13.0}) throw Error("not thirteen");
+    options.controls.set = [this](const std::string&, const Setting::Value& value) {
+      if (value == Setting::Value{13.0}) throw Error("not thirteen");
       setting.value = value;
     };
     options.controls.presets = {"soft"};
@@ -71,8 +71,7 @@ struct SessionsRig {
 
   double now = 50;
   ViewerOptions::Limits limits = {};
-  ViewerControls::Setting setting{
-      .key = "k", .label = "Stiffness", .least = 0, .most = 100, .value = 20.0};
+  Setting setting{.key = "k", .label = "Stiffness", .least = 0, .most = 100, .value = 20.0};
   std::string preset;
   bool paused = false;
   int resets = 0;

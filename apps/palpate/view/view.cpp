@@ -59,9 +59,9 @@ ViewSettings initial_settings(const Run& run) {
   settings.field = run.field;
   settings.feel = {run.proxy.stiffness, run.proxy.friction, run.proxy.texture};
   const SourceOptions first = run.loaded.scene.source(0).options();
-  settings.policy = first.policy.policy;
-  settings.history = first.policy.history;
-  settings.voxel = first.prepare.voxel;
+  settings.preparation.policy = first.policy.policy;
+  settings.preparation.history = first.policy.history;
+  settings.preparation.voxel = first.prepare.voxel;
   return settings;
 }
 
@@ -116,8 +116,8 @@ struct View::Parts {
         settings(initial),
         holds(r.hands.begin(), r.hands.end()),
         recording(r.hands.size(), [this](const std::string& why) { recording_broke(why); }),
-        preparer(r, initial,
-                 [this](const std::string& why, const ViewSettings& held) { go_back(why, held); }),
+        preparer(r, initial.preparation,
+                 [this](const std::string& why, const auto& held) { go_back(why, held); }),
         viewer(r.loaded.scene, servos, viewer_options(), controls()) {}
 
   ~Parts() { preparer.stop(); }  // what it tells, it tells the viewer
@@ -137,7 +137,7 @@ struct View::Parts {
   ViewerControls controls() {
     ViewerControls controls;
     controls.settings = [this] { return list_settings(present(), scope_of(run, servos)); };
-    controls.set = [this](const std::string& key, const ViewerControls::Setting::Value& value) {
+    controls.set = [this](const std::string& key, const Setting::Value& value) {
       ViewSettings wanted = present();
       set(wanted, key, value);
       apply(wanted);
@@ -167,16 +167,16 @@ struct View::Parts {
       servo->set_field(wanted.field);
     }
     const std::lock_guard lock(settings_mutex);
-    const bool prepares = !prepares_alike(wanted, settings);
+    const bool prepares = wanted.preparation != settings.preparation;
     settings = wanted;
-    if (prepares) preparer.want(settings);
+    if (prepares) preparer.want(settings.preparation);
   }
 
   // The preparer's thread.
-  void go_back(const std::string& why, const ViewSettings& held) {
+  void go_back(const std::string& why, const ViewSettings::Preparation& held) {
     {
       const std::lock_guard lock(settings_mutex);
-      settings = with_preparation(settings, held);
+      settings.preparation = held;
     }
     viewer.settings_changed();
     viewer.notice(Viewer::NoticeLevel::warning, why);
