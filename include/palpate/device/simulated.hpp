@@ -197,9 +197,9 @@ struct TeleoperatedHandOptions {
   double return_after = 3;       ///< s from the release until the trajectory goes on; 0 or more
 };
 
-/// A hand that plays a trajectory again and again, such as that of explore(), until somebody takes
-/// the tool; then it follows the commands, and some time after the release it returns to the
-/// trajectory.
+/// A hand that plays a trajectory again and again, such as that of plan_exploration(), until
+/// somebody takes the tool; then it follows the commands, and some time after the release it
+/// returns to the trajectory.
 ///
 ///  - To the trajectory's beginning, and back to where it was interrupted, the target moves at
 ///    `speed`; the trajectory waits for it.
