@@ -32,8 +32,8 @@ struct DeviceState {
   /// How a device is doing.
   enum class Status {
     ok,
-    silent,  ///< not latched: no data from the hand, so no force may be applied; the position is
-             ///< the last that was known, or the first after the silence
+    silent,    ///< not latched: no data from the hand, so no force may be applied; the position is
+               ///< the last that was known, or the first after the silence
     finished,  ///< a recording or a simulation has ended, and with it the loop; the last state is
                ///< repeated
     failed,    ///< latched: no force is applied any more; reason() says why
