@@ -19,7 +19,7 @@
 #include "palpate/io/files.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "sensor/pose_track.hpp"
-#include "sensor/sequence_description.hpp"
+#include "sensor/sequence.hpp"
 
 namespace palpate::fuzz {
 namespace {

@@ -33,7 +33,7 @@ std::vector<DepthFrame> frames_of(const RecordedOptions& options) {
   std::vector<DepthFrame> frames;
   DepthFrame frame;
   for (std::size_t i = 0; i < options.first + options.count; ++i) {
-    if (camera->read(frame, 0) != CameraStatus::frame) {
+    if (camera->read(frame, 0) != DepthCamera::Status::frame) {
       throw Error(fmt::format("{} has no frame {}; ask for fewer", options.folder.string(), i));
     }
     frame.T_world_sensor.reset();  // the camera is the world

@@ -2,7 +2,7 @@
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate::events {
 

@@ -9,7 +9,7 @@
 #include "accuracy/truth_frame.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate::streams {
 namespace {

@@ -153,9 +153,7 @@ class HaplyDriver final : public DeviceDriver {
 
 DriverInfo list_haply() {
   DriverInfo driver{.name = "haply",
-                    .description = "Haply Inverse3, through Haply's Inverse Service",
-                    .missing = {},
-                    .devices = {}};
+                    .description = "Haply Inverse3, through Haply's Inverse Service"};
   return listed(driver, [](DriverInfo& found) {
     TextSocket socket = connect(kService);
     for (const HaplyDevice& each : greet(socket)) {

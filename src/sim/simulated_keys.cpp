@@ -1,5 +1,3 @@
-#include "sim/simulated_keys.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "base/numbers.hpp"
 #include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
+#include "sim/simulated_camera.hpp"
 
 namespace palpate {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
-#include "sim/simulated_faults.hpp"
 
 namespace palpate {
 namespace {

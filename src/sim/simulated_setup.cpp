@@ -7,7 +7,6 @@
 #include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
 #include "sim/simulated_camera.hpp"
-#include "sim/simulated_keys.hpp"
 #include "sim/simulated_scene.hpp"
 
 namespace palpate {

@@ -1,5 +1,3 @@
-#include "viewer/cloud_encoder.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "field/formulas.hpp"
+#include "viewer/scene_encoder.hpp"
 
 namespace palpate::viewer {
 

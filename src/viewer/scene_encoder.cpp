@@ -8,7 +8,6 @@
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "viewer/local_surface.hpp"
 #include "viewer/messages.hpp"
 #include "viewer/reports.hpp"
 
@@ -178,8 +177,8 @@ void SceneEncoder::join_scene() {
 
 void SceneEncoder::report(EncodedScene& encoded) {
   reported_ = host_time();
-  const std::vector<ViewerStream> streams =
-      options_.streams ? options_.streams() : std::vector<ViewerStream>{};
+  const std::vector<ViewedStream> streams =
+      options_.streams ? options_.streams() : std::vector<ViewedStream>{};
   encoded.sources = std::make_shared<const std::string>(
       sources_text(source_reports(scene_, streams, options_.origin, now())));  // painting took time
 }

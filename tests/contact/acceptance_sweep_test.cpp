@@ -1,7 +1,7 @@
 // docs/method.md 10: sweeps against brute-force sampling, 0 missed contacts.
 #include <gtest/gtest.h>
 
-#include "contact/sweep.hpp"
+#include "contact/probe.hpp"
 #include "support/effort.hpp"
 #include "support/point_field.hpp"
 #include "support/point_shapes.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "device/explore.hpp"
 #include "palpate/contact/proxy.hpp"
-#include "palpate/device/exploration.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/effort.hpp"

@@ -1,6 +1,4 @@
 // The real-time contract over a whole exploration of each data set.
-#include "palpate/device/exploration.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "device/explore.hpp"
 #include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "realtime/build.hpp"

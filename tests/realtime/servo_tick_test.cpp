@@ -87,18 +87,18 @@ TEST_F(ServoTick, KeepsTheContractOnFaultsGapsAndReset) {
     tick(-2e-3, 0.1);  // the watchdog's
     tick(bad);
     tick(-2e-3);
-    EXPECT_NE(servo_->state().guard.fault, GuardFault::none);
+    EXPECT_NE(servo_->state().guard.fault, Guard::Fault::none);
     servo_->reset();
     tick(5e-3);
-    EXPECT_EQ(servo_->state().guard.fault, GuardFault::none);
+    EXPECT_EQ(servo_->state().guard.fault, Guard::Fault::none);
   }
   tick(0, nan);
   now_ = 10;
   servo_->reset();
   press();
-  device_.state().status = DeviceStatus::failed;
+  device_.state().status = DeviceState::Status::failed;
   tick(-2e-3);
-  EXPECT_EQ(servo_->state().guard.fault, GuardFault::device);
+  EXPECT_EQ(servo_->state().guard.fault, Guard::Fault::device);
 }
 
 TEST_F(ServoTick, KeepsTheContractWhileOthersWatchAndChangeIt) {

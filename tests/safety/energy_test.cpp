@@ -58,7 +58,7 @@ void expect_paid(const GivenEnergy& given, const MostOwed& owed, const std::stri
 class RandomGuide final : public TargetSource {
  public:
   explicit RandomGuide(const RandomHand& hand) : hand_(hand) {}
-  [[nodiscard]] HandTarget target(double, const Vector3d&) noexcept override {
+  [[nodiscard]] TargetSource::Target target(double, const Vector3d&) noexcept override {
     return {hand_.next(), 0};
   }
 
@@ -179,8 +179,7 @@ void expect_exploration_is_paid(const PointCloud& cloud) {
   Scene scene;
   scene.add("cloud", cloud);
   ServoOptions options;
-  const ExplorationPlan plan =
-      plan_exploration(scene, options.field, {.duration = 1e-3 * kExplored});
+  const Placement plan = plan_exploration(scene, options.field, {.duration = 1e-3 * kExplored});
   options.workspace = plan.workspace;
   options.proxy.stiffness = plan.stiffness;
   SimulatedDevice device({}, plan.target);

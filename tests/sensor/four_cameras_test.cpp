@@ -10,7 +10,7 @@
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
+#include "palpate/sensor/stream.hpp"
 #include "sim/simulated_camera.hpp"
 #include "support/rates.hpp"
 

@@ -19,7 +19,7 @@ namespace palpate::sensor {
 /// What is pushed, with a gate before it.
 class Touchable {
  public:
-  [[nodiscard]] FrameSink sink() {
+  [[nodiscard]] Stream::Sink sink() {
     return [this](const DepthFrame& frame, const Source::StartTime& start) { push(frame, start); };
   }
   void close() { open(false); }

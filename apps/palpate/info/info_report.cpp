@@ -1,12 +1,11 @@
-#include "apps/palpate/info/info_report.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <vector>
 
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/report/source_report.hpp"
+#include "apps/palpate/info/info_command.hpp"
+#include "apps/palpate/report/report.hpp"
 #include "palpate/depth/depth_filter.hpp"
 
 namespace palpate::app {
@@ -211,9 +210,10 @@ LiveFacts study_live(const CloudArgument& argument) {
   facts.posed = frame.T_world_sensor.has_value();
   look_at_depths(frame, facts);
   DepthFilter filter;
-  CameraStatus status = CameraStatus::frame;
-  for (int i = 0; i < kTries && facts.frames < kFrames && status != CameraStatus::ended; ++i) {
-    if (status == CameraStatus::frame) {
+  DepthCamera::Status status = DepthCamera::Status::frame;
+  for (int i = 0; i < kTries && facts.frames < kFrames && status != DepthCamera::Status::ended;
+       ++i) {
+    if (status == DepthCamera::Status::frame) {
       const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());
       const FilteredDepth& depth = filter.filter(frame, pose, {});
       facts.noise = depth.noise;
@@ -222,9 +222,10 @@ LiveFacts study_live(const CloudArgument& argument) {
       last = frame.stamp;
     }
     status = camera->read(frame, kWait);
-    const bool failed = status == CameraStatus::damaged || status == CameraStatus::failed;
+    const bool failed =
+        status == DepthCamera::Status::damaged || status == DepthCamera::Status::failed;
     facts.failures += failed ? 1 : 0;
-    facts.unposed += status == CameraStatus::unposed ? 1 : 0;
+    facts.unposed += status == DepthCamera::Status::unposed ? 1 : 0;
   }
   if (last > start) facts.rate = static_cast<double>(facts.frames - 1) / (last - start);
   return facts;

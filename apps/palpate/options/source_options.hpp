@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "palpate/io/files.hpp"
@@ -33,5 +34,11 @@ void add_source_options(OptionTable& table, SourcePlan& source);
 
 /// What a command takes as sources, for its help.
 [[nodiscard]] std::string cloud_help();
+
+/// What becomes of a source's frames or clouds in time.
+[[nodiscard]] Policy policy_of(const SourcePlan& source);
+
+/// Is --history a policy's?
+[[nodiscard]] bool keeps_history(Policy policy);
 
 }  // namespace palpate::app

@@ -7,8 +7,8 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/options/setup_file.hpp"
-#include "apps/palpate/options/source_choice.hpp"
+#include "apps/palpate/options/source_options.hpp"
+#include "apps/palpate/options/touch_options.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 
 namespace palpate::app {

@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/paper/paper_figures.hpp"
+#include "apps/palpate/paper/paper_command.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/point_cloud.hpp"
@@ -85,7 +85,7 @@ double measure_frames(DepthCamera& camera, DepthFrame frame, int repeats) {
     source.push(frame, [&] { return frame.stamp; });
     if (i >= kWarm || times.empty()) times.push_back(1e3 * (computing_seconds() - begin));
     if (i == kWarm) times.erase(times.begin());
-    if (camera.read(frame, 0) != CameraStatus::frame) break;
+    if (camera.read(frame, 0) != DepthCamera::Status::frame) break;
   }
   return fastest(times);
 }

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/paper/paper_figures.hpp"
+#include "apps/palpate/paper/paper_command.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate::app {
 

@@ -1,5 +1,5 @@
 // What a servo records: durations of steps, recent forces, the steps themselves.
-#include "servo/records.hpp"
+#include "servo/servo_inside.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -104,12 +104,12 @@ std::vector<Eigen::Vector3f> RecentForces::since(std::uint64_t& seen) const {
   return forces;
 }
 
-StepQueue::StepQueue(std::size_t capacity)
+ServoState::Queue::Queue(std::size_t capacity)
     : size_(std::bit_ceil(capacity)), steps_(std::make_unique<ServoState[]>(size_)) {}
 
-StepQueue::~StepQueue() = default;
+ServoState::Queue::~Queue() = default;
 
-bool StepQueue::push(const ServoState& state) noexcept {
+bool ServoState::Queue::push(const ServoState& state) noexcept {
   const std::uint64_t at = pushed_.load(std::memory_order_relaxed);
   if (at - popped_.load(std::memory_order_acquire) == size_) {
     dropped_.fetch_add(1, std::memory_order_relaxed);
@@ -120,7 +120,7 @@ bool StepQueue::push(const ServoState& state) noexcept {
   return true;
 }
 
-std::optional<ServoState> StepQueue::pop() noexcept {
+std::optional<ServoState> ServoState::Queue::pop() noexcept {
   const std::uint64_t at = popped_.load(std::memory_order_relaxed);
   if (at == pushed_.load(std::memory_order_acquire)) return std::nullopt;
   std::optional<ServoState> oldest = steps_[at % size_];

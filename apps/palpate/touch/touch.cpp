@@ -1,23 +1,73 @@
-#include "apps/palpate/touch/touch_command.hpp"
+#include "apps/palpate/touch/touch.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <optional>
+#include <vector>
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/run/view_settings.hpp"
-#include "apps/palpate/touch/live_run.hpp"
-#include "apps/palpate/touch/simulated_run.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/sensor/stream.hpp"
+#include "palpate/servo/servo.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {
+namespace {
+
+std::vector<SimulatedStream> make_streams(Run& run) {
+  SimulatedStreamOptions options;
+  options.latency = run.time.latency.value_or(options.latency);
+  std::vector<SimulatedStream> streams;
+  for (std::size_t i = 0; i < run.loaded.sources.size(); ++i) {
+    LoadedSource& from = run.loaded.sources[i];
+    if (!from.camera) continue;
+    from.feed.simulated = true;
+    Source& to = run.loaded.scene.source(i);
+    streams.emplace_back(*from.camera, to.name(), feeding(from, to, thread_cpu_seconds), options,
+                         [&to] { to.keep(); });
+  }
+  return streams;
+}
+
+}  // namespace
+
+bool run_simulated(Run& run, const EachStep& each) {
+  const Hand& hand = run.hands.front();
+  Device& device = *hand.device;
+  ServoOptions options = servo_options(run, hand);
+  options.guard.on = false;
+  Servo servo(device, run.loaded.scene, options);
+  std::vector<SimulatedStream> streams = make_streams(run);
+  const Interruption interruption;
+  DeviceState state = device.read();
+  for (; state.status != DeviceState::Status::finished; state = device.read()) {
+    if (state.status == DeviceState::Status::failed) {
+      throw Error(fmt::format("device '{}' failed: {}", device.info().name, device.reason()));
+    }
+    for (SimulatedStream& stream : streams) stream.advance(state.time);
+    if (interruption.asked()) break;
+    const double start = thread_cpu_seconds();
+    const ServoState& step = servo.step(state, state.time);
+    const double computing = thread_cpu_seconds() - start;
+    device.write(servo.device_force());
+    servo.show({.computing = computing});
+    each(0, step);
+  }
+  std::vector<StreamState> states;
+  for (const SimulatedStream& stream : streams) states.push_back(stream.state());
+  keep_states(run.loaded, states);
+  return !interruption.asked();
+}
 
 namespace {
 
@@ -111,7 +161,7 @@ void check_hands(const std::vector<HandReport>& hands) {
 // The pictures come last: everything else is there if they cannot be drawn.
 void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
   const Json data = report_on(report, stream);
-  if (outputs.json) write_whole(outputs.json, text_of(data));
+  write_whole(outputs.json, text_of(data));
   for (std::size_t i = 0; i < report.hands.size(); ++i) {
     outputs.hands[i].draw(report.loaded.scene, title_of(report.loaded), report.hands[i]);
   }
@@ -142,6 +192,79 @@ void touch(const TouchPlan& plan) {
   }
   tell({loaded, surface.paper, surface.field, run.proxy, hand_reports(run, outputs, outcome)},
        plan.outputs.takes_stdout() ? stderr : stdout, outputs);
+}
+
+namespace {
+
+struct DemoScene {
+  const char* name;
+  const char* description;
+  std::array<const char*, 2> sources;  // null: none
+};
+
+constexpr std::array<DemoScene, 5> kScenes = {{
+    {"desk",
+     "a depth camera over a table-top with a wire and other objects, one of them moving",
+     {"desk=camera:simulated:desk", nullptr}},
+    {"arm",
+     "a table-top seen by a structured-light sensor, with an arm moving back and forth over it",
+     {"arm=camera:simulated:arm,noise=structured", nullptr}},
+    {"scan", "a rabbit, like a laser scan", {"rabbit=synthetic:rabbit", nullptr}},
+    {"two",
+     "two depth cameras that see one scene from two sides, misaligned by 2 mm",
+     {"left=camera:simulated:table,view=40,phase=0.011,seed=2,error=0.002",
+      "right=camera:simulated:table,view=-40"}},
+    {"room", "a room of 4 x 3 m, 300 000 points", {"room=synthetic:room", nullptr}},
+}};
+
+std::vector<std::string> names() {
+  std::vector<std::string> result;
+  for (const DemoScene& scene : kScenes) result.emplace_back(scene.name);
+  return result;
+}
+
+std::string list() {
+  std::string text = "scene to touch (desk):";
+  for (const DemoScene& scene : kScenes) {
+    text += std::string("\n") + scene.name + ": " + scene.description;
+  }
+  return text;
+}
+
+std::vector<std::string> sources_of(const std::string& name) {
+  std::vector<std::string> sources;
+  for (const DemoScene& scene : kScenes) {
+    if (scene.name != name) continue;
+    for (const char* source : scene.sources) {
+      if (source != nullptr) sources.emplace_back(source);
+    }
+  }
+  return sources;
+}
+
+}  // namespace
+
+void add_demo_options(CLI::App& command, DemoOptions& o) {
+  TouchPlan& plan = o.touch.plan;
+  command.add_option("scene", o.scene, list())->check(one_of(names()))->type_name("SCENE");
+  OptionTable table(command);
+  table.under("Options");
+  table.add("--duration", plan.motion.duration, "SECONDS",
+            number("from 0.1 to 86400 s", [](double x) { return x >= 0.1 && x <= 86'400; }),
+            "stop after this time (default: at Ctrl-C)");
+  table.add_flag("--headless", o.headless, "do not open a browser");
+  table.under("OPTIONS");
+  add_device_option(table, plan.devices);
+  add_live_options(table, plan.time);
+  add_page_options(table, plan.page);
+}
+
+void demo(const CLI::App& command, const DemoOptions& options) {
+  TouchChoices choices = options.touch;
+  choices.sources = sources_of(options.scene);
+  choices.plan.page.wanted = true;
+  choices.plan.page.open_browser = !options.headless;
+  touch(plan_touch(command, choices));
 }
 
 }  // namespace palpate::app
