@@ -25,7 +25,7 @@ std::vector<DepthFrame> record_frames() {
   const auto camera = open_simulated("still,noise=a,frames=" + std::to_string(kFrames), nullptr);
   std::vector<DepthFrame> frames;
   DepthFrame frame;
-  while (camera->read(frame, 1) == CameraStatus::frame) frames.push_back(frame);
+  while (camera->read(frame, 1) == DepthCamera::Status::frame) frames.push_back(frame);
   return frames;
 }
 

@@ -139,8 +139,8 @@ void palpate_sum(benchmark::State& state) {
 }
 
 /// A whole sample of a field.
-void palpate_sample(benchmark::State& state, FieldKind kind) {
-  Walk walk(static_cast<std::size_t>(state.range(0)), kind != FieldKind::metaball);
+void palpate_sample(benchmark::State& state, FieldOptions::Kind kind) {
+  Walk walk(static_cast<std::size_t>(state.range(0)), kind != FieldOptions::Kind::metaball);
   const ImplicitSurface surface{FieldOptions{.kind = kind}};
   const auto places = path();
   std::size_t k = 0;
@@ -160,9 +160,9 @@ void add_rows(std::size_t count) {
   row("metaball_sum/palpate", palpate_sum);
   row("metaball_sum/nanoflann", nanoflann_sum);
   row("sample_metaball/palpate",
-      [](benchmark::State& state) { palpate_sample(state, FieldKind::metaball); });
+      [](benchmark::State& state) { palpate_sample(state, FieldOptions::Kind::metaball); });
   row("sample_balanced/palpate",
-      [](benchmark::State& state) { palpate_sample(state, FieldKind::balanced); });
+      [](benchmark::State& state) { palpate_sample(state, FieldOptions::Kind::balanced); });
 }
 
 }  // namespace

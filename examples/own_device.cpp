@@ -25,7 +25,7 @@ class Prodding final : public palpate::Device {
     state.time = t;
     state.position = {0, 0, t < 1 ? 0.09 + speed * t : 0.04 + speed * (t - 1)};
     state.velocity = {0, 0, speed};
-    if (t > 2) state.status = palpate::DeviceStatus::finished;  // ends the loop
+    if (t > 2) state.status = palpate::DeviceState::Status::finished;  // ends the loop
     return state;
   }
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <memory>
 #include <palpate/palpate.hpp>
-#include <palpate/sensor/open_camera.hpp>
+#include <palpate/sensor/depth_camera.hpp>
 #include <palpate/sensor/stream.hpp>
 #include <thread>
 

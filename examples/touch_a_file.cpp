@@ -28,7 +28,7 @@ Target middle_of(const palpate::SurfacePoints& points) {
 void touch(const char* file) {
   palpate::Scene scene;
   const palpate::Source& source = scene.add("file", palpate::read_cloud(file));
-  const palpate::PrepareReport& report = source.report();
+  const palpate::Prepared::Report& report = source.report();
   std::printf("%zu points, spacing %.4g m, R %.4g m\n", report.points_out, report.spacing,
               report.radius);
 

@@ -1,6 +1,6 @@
 // Touches a file with a haptic device: touch_with_a_device forcedimension bunny.ply
 #include <cstdio>
-#include <palpate/device/open_device.hpp>
+#include <palpate/device/hardware.hpp>
 #include <palpate/palpate.hpp>
 #include <palpate/servo/servo_thread.hpp>
 

@@ -13,19 +13,14 @@
 #include "device/haply_message.hpp"
 #include "device/remote_protocol.hpp"
 #include "io/depth_image.hpp"
-#include "io/encode_cloud.hpp"
 #include "io/file_bytes.hpp"
+#include "io/formats.hpp"
 #include "io/input.hpp"
-#include "io/las.hpp"
-#include "io/obj.hpp"
-#include "io/pcd.hpp"
-#include "io/ply.hpp"
-#include "io/xyz.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/io/read_depth.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "sensor/pose_track.hpp"
-#include "sensor/sequence_description.hpp"
+#include "sensor/sequence.hpp"
 
 namespace palpate::fuzz {
 namespace {

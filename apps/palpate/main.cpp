@@ -12,12 +12,11 @@
 #include "apps/palpate/cli/manual.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/devices/devices_command.hpp"
-#include "apps/palpate/doctor/doctor_command.hpp"
+#include "apps/palpate/doctor/checks.hpp"
 #include "apps/palpate/info/info_command.hpp"
 #include "apps/palpate/paper/paper_command.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
-#include "apps/palpate/touch/demo_command.hpp"
-#include "apps/palpate/touch/touch_command.hpp"
+#include "apps/palpate/touch/touch.hpp"
 #include "apps/palpate/zwidth/zwidth_command.hpp"
 
 namespace palpate::app {
@@ -134,7 +133,8 @@ int run(int argc, char** argv) {
     if (each.app->parsed()) return each.run();
   }
   throw UsageError(
-      "no command given; use touch, align, info, bag, cameras, devices, ros, doctor, paper, demo or "
+      "no command given; use touch, align, info, bag, cameras, devices, ros, doctor, paper, demo "
+      "or "
       "zwidth "
       "(see 'palpate --help')");
 }

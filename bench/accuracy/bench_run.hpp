@@ -35,8 +35,8 @@ struct Result {
 struct Preparation {
   std::uint64_t seed = 0;
   std::string contender;
-  PrepareReport report;
-  SourceState state;
+  Prepared::Report report;
+  Source::State state;
 };
 
 struct BenchResults {

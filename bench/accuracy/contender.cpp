@@ -14,13 +14,13 @@ ProxyOptions proxy_options(ProxyOptions::Method method) {
   return options;
 }
 
-Contender ours(std::string name, FieldKind kind, const PrepareOptions& prepare) {
+Contender ours(std::string name, FieldOptions::Kind kind, const PrepareOptions& prepare) {
   FieldOptions field;
   field.kind = kind;
   return {std::move(name), false, prepare, field, proxy_options(ProxyOptions::Method::converged)};
 }
 
-Contender papers(std::string name, FieldKind kind) {
+Contender papers(std::string name, FieldOptions::Kind kind) {
   PrepareOptions prepare;
   prepare.paper = true;
   return {std::move(name), false, prepare, paper_field(kind),
@@ -28,7 +28,7 @@ Contender papers(std::string name, FieldKind kind) {
 }
 
 Contender organised() {
-  Contender contender = ours(kOrganised, FieldKind::balanced, {});
+  Contender contender = ours(kOrganised, FieldOptions::Kind::balanced, {});
   contender.organised = true;
   return contender;
 }
@@ -43,11 +43,11 @@ void record(Trace& trace, const Contact& contact, const Eigen::Vector3d& hip) {
 
 std::vector<Contender> all_contenders(const PrepareOptions& prepare) {
   return {organised(),
-          ours(kUnorganised, FieldKind::balanced, prepare),
-          ours("pointset", FieldKind::pointset, prepare),
-          ours("metaball", FieldKind::metaball, prepare),
-          papers("paper pointset", FieldKind::pointset),
-          papers("paper metaball", FieldKind::metaball)};
+          ours(kUnorganised, FieldOptions::Kind::balanced, prepare),
+          ours("pointset", FieldOptions::Kind::pointset, prepare),
+          ours("metaball", FieldOptions::Kind::metaball, prepare),
+          papers("paper pointset", FieldOptions::Kind::pointset),
+          papers("paper metaball", FieldOptions::Kind::metaball)};
 }
 
 std::unique_ptr<Scene> make_scene(const DepthFrame& frame, const TruthScene& truth,

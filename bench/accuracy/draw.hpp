@@ -2,8 +2,7 @@
 
 #include <cstdint>
 
-#include "base/angle.hpp"
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 
 namespace palpate::accuracy {
 

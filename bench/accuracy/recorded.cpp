@@ -33,7 +33,7 @@ std::vector<DepthFrame> frames_of(const RecordedOptions& options) {
   std::vector<DepthFrame> frames;
   DepthFrame frame;
   for (std::size_t i = 0; i < options.first + options.count; ++i) {
-    if (camera->read(frame, 0) != CameraStatus::frame) {
+    if (camera->read(frame, 0) != DepthCamera::Status::frame) {
       throw Error(fmt::format("{} has no frame {}; ask for fewer", options.folder.string(), i));
     }
     frame.T_world_sensor.reset();  // the camera is the world
@@ -110,7 +110,7 @@ struct Noise {
   std::vector<double> pixel, mean;
 
   void add(const std::vector<DepthFrame>& frames, const DepthFrame& average, const Patch& patch,
-           const SourceState& told) {
+           const Source::State& told) {
     const double sigma = told.noise * std::pow(patch.center.z() / told.depth, 2);
     const double rest = static_cast<double>(frames.size()) /
                         std::max<double>(1, static_cast<double>(frames.size()) - 1);
@@ -205,7 +205,7 @@ std::string plane_row(const Recording& recording) {
 
 // Each frame in a scene of its own.
 std::string contender_row(const Recording& recording, const RecordedOptions& options,
-                          const Contender& contender, SourceState& told) {
+                          const Contender& contender, Source::State& told) {
   TruthScene camera;
   camera.camera.model = recording.mean.camera;
   Touched touched;
@@ -227,7 +227,7 @@ std::string contender_row(const Recording& recording, const RecordedOptions& opt
   return row(contender.name, touched, fmt::format("{} of {}", all.felt, all.gone));
 }
 
-std::string noise_line(const Recording& recording, const SourceState& told) {
+std::string noise_line(const Recording& recording, const Source::State& told) {
   if (recording.frames.size() < 2 || !(told.noise > 0)) return "";
   Noise noise;
   for (const Patch& patch : recording.patches) {
@@ -246,7 +246,7 @@ std::string recorded_report(const RecordedOptions& options,
   recording.patches = flat_patches(recording.mean, options);
   std::vector<double> distances;
   for (const Patch& patch : recording.patches) distances.push_back(patch.center.z());
-  SourceState told;
+  Source::State told;
   std::string rows = recording.frames.size() > 1 ? plane_row(recording) : "";
   for (const Contender& contender : contenders) {
     rows += contender_row(recording, options, contender, told);

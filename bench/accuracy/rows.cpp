@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "accuracy/strokes.hpp"
-#include "base/angle.hpp"
+#include "base/numbers.hpp"
 
 namespace palpate::accuracy {
 namespace {

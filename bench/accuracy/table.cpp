@@ -103,10 +103,10 @@ std::string markdown_preparation(const BenchResults& results) {
       "| prepared for | points | spacing, mm | noise, mm | voxel, mm | R, mm (smallest-largest) |\n"
       "|---|---|---|---|---|---|\n";
   for (const Preparation& prepared : results.preparations) {
-    const PrepareReport& r = prepared.report;
+    const Prepared::Report& r = prepared.report;
     if (prepared.seed != results.preparations.front().seed) break;
     if (r.points_out == 0) {  // a depth frame
-      const SourceState& s = prepared.state;
+      const Source::State& s = prepared.state;
       text += fmt::format("| {} | {} | | {:.2f} at {:.2f} m, correlation {:.2f} | | |\n",
                           prepared.contender, s.points, 1e3 * s.noise, s.depth, s.correlation);
       continue;

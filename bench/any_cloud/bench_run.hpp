@@ -18,7 +18,7 @@ struct Trace {
 /// The cloud as a program would touch it: a Scene with one source, all defaults but the field's.
 struct Rendered {
   Trace trace;
-  PrepareReport report;
+  Prepared::Report report;
 };
 /// @throws Error as prepare() does.
 [[nodiscard]] Rendered touch(const HostileScene& scene, const FieldOptions& field);

@@ -5,7 +5,7 @@
 
 #include "any_cloud/hand.hpp"
 #include "any_cloud/shape.hpp"
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 
 namespace palpate::any_cloud {
 

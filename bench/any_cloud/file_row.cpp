@@ -9,7 +9,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate::any_cloud {
 namespace {

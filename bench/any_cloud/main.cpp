@@ -41,8 +41,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
 
 palpate::FieldOptions field_options(const std::string& name) {
   palpate::FieldOptions options;
-  if (name == "pointset") options.kind = palpate::FieldKind::pointset;
-  if (name == "metaball") options.kind = palpate::FieldKind::metaball;
+  if (name == "pointset") options.kind = palpate::FieldOptions::Kind::pointset;
+  if (name == "metaball") options.kind = palpate::FieldOptions::Kind::metaball;
   return options;
 }
 

@@ -71,7 +71,7 @@ void step(benchmark::State& state, const std::string& cloud) {
   Scene scene;
   scene.add(cloud, synthetic_cloud(cloud));
   ServoOptions options;
-  const ExplorationPlan plan = plan_exploration(scene, options.field, {.duration = 60});
+  const Placement plan = plan_exploration(scene, options.field, {.duration = 60});
   options.workspace = plan.workspace;
   options.proxy.stiffness = plan.stiffness;
   std::vector<double> times;

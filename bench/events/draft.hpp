@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "events/event.hpp"
 
 namespace palpate::events {

@@ -5,7 +5,7 @@
 
 #include "events/draft.hpp"
 #include "events/rows.hpp"
-#include "sim/simulated_keys.hpp"
+#include "sim/simulated_camera.hpp"
 
 // What nobody arranges for: other sensors and rates, what touches the table at the hand, cameras
 // that look away, regions that are hidden when a hand comes to them.

@@ -2,7 +2,7 @@
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate::events {
 
@@ -12,7 +12,7 @@ Felt play(const Event& event) {
   Source& source = scene.add("camera");
   SimulatedStream stream(
       camera, "camera",
-      [&](const DepthFrame& frame, const StartTime& start) { source.push(frame, start); },
+      [&](const DepthFrame& frame, const Source::StartTime& start) { source.push(frame, start); },
       {.latency = 0.01, .lead = 0.002}, [&] { source.keep(); });
   SceneField field(scene);
   Proxy proxy({.stiffness = kK});

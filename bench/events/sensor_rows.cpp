@@ -2,7 +2,7 @@
 
 #include "events/draft.hpp"
 #include "events/rows.hpp"
-#include "sim/simulated_keys.hpp"
+#include "sim/simulated_camera.hpp"
 
 // What is thin, slanted or has a rim, as families of sensors see it.
 

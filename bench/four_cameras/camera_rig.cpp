@@ -44,7 +44,7 @@ void CameraRig::show_once(Scene& scene) {
   DepthFrame frame;
   for (int k = 0; k < kCameras; ++k) {
     int tries = 0;
-    while (camera(k).read(frame, 0.1) != CameraStatus::frame) {
+    while (camera(k).read(frame, 0.1) != DepthCamera::Status::frame) {
       if (++tries == 100) throw Error(fmt::format("camera {} gives no frame", k + 1));
     }
     scene.source(static_cast<std::size_t>(k)).push(frame, [] { return 0.0; });

@@ -20,7 +20,7 @@ struct Lane {
   std::vector<std::array<double, 2>> felt;
   std::optional<Stream> stream;
 
-  void take(const DepthFrame& frame, const StartTime& start) {
+  void take(const DepthFrame& frame, const Source::StartTime& start) {
     double from = 0;
     source->push(frame, [&] { return from = start(); });
     felt.push_back({from, frame.stamp});
@@ -34,7 +34,9 @@ std::deque<Lane> start_cameras(CameraRig& rig, Scene& scene, const Clock& clock)
     lane.source = &scene.source(static_cast<std::size_t>(k));
     lane.stream.emplace(
         rig.camera(k), lane.source->name(),
-        [&lane](const DepthFrame& frame, const StartTime& start) { lane.take(frame, start); },
+        [&lane](const DepthFrame& frame, const Source::StartTime& start) {
+          lane.take(frame, start);
+        },
         clock);
   }
   return lanes;

@@ -1,6 +1,6 @@
 #include "servo_cost/hand_over.hpp"
 
-#include "palpate/device/exploration.hpp"
+#include "device/explore.hpp"
 
 namespace palpate::servo_cost {
 
@@ -13,7 +13,7 @@ constexpr double kDepth = 3e-3;  // m
 
 Trajectory hand_over(const Scene& scene, double seconds) {
   const auto points = scene.source(0).points();
-  ExplorationOptions options;
+  StrokeOptions options;
   options.duration = seconds;
   options.radius = points->radius;
   options.depth = kDepth;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostWaiting = 1 << 17;  // steps
 
-ServoOptions noted_by(StepQueue& steps) {
+ServoOptions noted_by(ServoState::Queue& steps) {
   ServoOptions options;
   options.steps = &steps;
   return options;
@@ -34,8 +34,7 @@ PacedServo::PacedServo(Scene& scene, const Trajectory& hand, WaitingClock& clock
 ServoRun PacedServo::run(std::optional<int> processor) {
   ServoRun result;
   {
-    const ServoThread thread(servo_, clock_,
-                             {.rate = kServoRate, .realtime = {.processor = processor}});
+    const ServoThread thread(servo_, clock_, {.processor = processor}, kServoRate);
     result.realtime = thread.realtime();
     while (thread.running()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -45,7 +45,7 @@ class PacedServo {
   ScriptedDevice script_;
   PacedDevice paced_;
   CountingDevice device_;
-  StepQueue steps_;
+  ServoState::Queue steps_;
   Servo servo_;
 };
 

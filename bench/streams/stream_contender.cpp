@@ -16,13 +16,13 @@ ProxyOptions proxy_options(ProxyOptions::Method method) {
   return options;
 }
 
-Tool ours(std::string name, FieldKind kind) {
+Tool ours(std::string name, FieldOptions::Kind kind) {
   FieldOptions field;
   field.kind = kind;
   return {std::move(name), field, proxy_options(ProxyOptions::Method::converged)};
 }
 
-Tool papers(std::string name, FieldKind kind) {
+Tool papers(std::string name, FieldOptions::Kind kind) {
   return {std::move(name), paper_field(kind), proxy_options(ProxyOptions::Method::single_step)};
 }
 
@@ -33,12 +33,14 @@ std::string with_history(const std::string& name, int history) {
 }  // namespace
 
 std::vector<Tool> our_tools() {
-  return {ours("metaball", FieldKind::metaball), ours("pointset", FieldKind::pointset),
-          ours("balanced", FieldKind::balanced)};
+  return {ours("metaball", FieldOptions::Kind::metaball),
+          ours("pointset", FieldOptions::Kind::pointset),
+          ours("balanced", FieldOptions::Kind::balanced)};
 }
 
 std::vector<Tool> paper_tools() {
-  return {papers("metaball", FieldKind::metaball), papers("pointset", FieldKind::pointset)};
+  return {papers("metaball", FieldOptions::Kind::metaball),
+          papers("pointset", FieldOptions::Kind::pointset)};
 }
 
 Contender morph() {

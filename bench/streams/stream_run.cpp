@@ -9,7 +9,7 @@
 #include "accuracy/truth_frame.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate::streams {
 namespace {
@@ -46,7 +46,7 @@ PointCloud cut(const DepthFrame& frame, const Ball& ball) {
   return cloud;
 }
 
-void push(Source& source, const DepthFrame& frame, const StartTime& start, bool as_cloud,
+void push(Source& source, const DepthFrame& frame, const Source::StartTime& start, bool as_cloud,
           const Ball& ball) {
   if (as_cloud) {
     source.set_pose(*frame.T_world_sensor);
@@ -80,7 +80,8 @@ struct Feed {
         camera(setup.scene, setup.cameras[i]),
         source(scene.add("camera " + std::to_string(i), contender.source)),
         stream(camera, source.name(),
-               [&, as_cloud = contender.clouds](const DepthFrame& frame, const StartTime& start) {
+               [&, as_cloud = contender.clouds](const DepthFrame& frame,
+                                                const Source::StartTime& start) {
                  push(source, frame, start, as_cloud, ball);
                  swaps.push_back(tick_of(start()));
                },

@@ -215,12 +215,10 @@ void Aligner::place(Poses& poses, std::size_t source) const {
   std::vector<Poses> found(around.size(), poses);
   std::vector<double> scores(found.size());
   const Moving moving{source, source + 1};
-  parallel_ranges(found.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      found[i][source] = turned(around[i], middles_[source]);
-      refine(found[i], moving, size_, kStride);
-      scores[i] = score(found[i], moving);
-    }
+  parallel_each(found.size(), 1, [&](std::size_t i) {
+    found[i][source] = turned(around[i], middles_[source]);
+    refine(found[i], moving, size_, kStride);
+    scores[i] = score(found[i], moving);
   });
   poses = found[static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin())];
   refine(poses, moving, radius_);

@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "palpate/base/driver_info.hpp"
+#include "palpate/base/error.hpp"
+
 namespace palpate {
 
 /// A library that is loaded at run time, so that palpate builds and runs without it. Copies share
@@ -33,5 +36,18 @@ class SharedLibrary {
   std::string remedy_;
   std::shared_ptr<void> handle_;
 };
+
+/// `driver` with what `list(driver)` adds to it. Where that throws an Error, the driver is not
+/// available, and misses what the error says.
+template <class List>
+[[nodiscard]] DriverInfo listed(DriverInfo driver, const List& list) {
+  try {
+    list(driver);
+  } catch (const Error& error) {
+    driver.available = false;
+    driver.missing = error.what();
+  }
+  return driver;
+}
 
 }  // namespace palpate

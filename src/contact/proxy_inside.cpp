@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/sweep.hpp"
+#include "contact/probe.hpp"
 
 namespace palpate {
 namespace {

@@ -4,12 +4,71 @@
 #include <cstdint>
 #include <optional>
 
-#include "contact/energy_tank.hpp"
 #include "contact/probe.hpp"
 #include "contact/slide.hpp"
 #include "palpate/contact/proxy.hpp"
 
 namespace palpate {
+
+/// Lets the stiffness of a contact change without ever giving energy to the hand.
+///
+/// A spring of stiffness K stretched by d holds K d^2 / 2. When K rises by dK during contact,
+/// dK d^2 / 2 is created from nothing and the hand gets it back on its way out: a ramp of 30 ms was
+/// measured to turn a rebound of 1.05 into 1.49 (docs/method.md 3.5). So a rise is paid for out
+/// of a tank, and only what a fall of K or sliding friction took away goes into it. A fall costs
+/// nothing; it takes kTime only to spare the hand a step of force. Rises take that time as well.
+///
+/// While the wanted stiffness stays what it is, the tank changes nothing, bit for bit.
+class EnergyTank {
+ public:
+  static constexpr double kCapacity = 0.02;  ///< J; what was dissipated long ago hides nothing
+  static constexpr double kTime = 0.02;      ///< s, in which K falls to 1/e, or rises by itself
+
+  /// A new contact begins with an empty tank and this stiffness (N/m).
+  void restart(double stiffness) noexcept;
+
+  /// A spring of this stiffness (N/m) takes over from one that ended: the tank stays as full.
+  void take_over(double stiffness) noexcept { stiffness_ = stiffness; }
+
+  /// Takes in what a FadingSpring gave up, J.
+  void fill(double energy) noexcept;
+
+  /// Moves the stiffness towards `wanted` (N/m) over a step of `dt` (s) in which the spring is
+  /// stretched by `stretch` (m) and friction took `dissipated` (J, >= 0). Returns the new
+  /// stiffness. Finite for finite arguments; never above max(wanted, what it was).
+  double follow(double wanted, double stretch, double dissipated, double dt) noexcept;
+
+  [[nodiscard]] double stiffness() const noexcept { return stiffness_; }  ///< N/m
+  [[nodiscard]] double energy() const noexcept { return energy_; }        ///< J in the tank
+
+ private:
+  void fall(double wanted, double half_square, double dt) noexcept;
+  void rise(double wanted, double half_square, double dt) noexcept;
+
+  double stiffness_ = 0;
+  double energy_ = 0;
+};
+
+/// What is left of springs that ended though no hand let them go: it stays where they were and
+/// loses its stiffness as a contact does, in EnergyTank::kTime. Rests at 0 N/m.
+class FadingSpring {
+ public:
+  /// Takes over a spring from `place` (m) of this stiffness (N/m). Two springs pull like one.
+  void take(const Eigen::Vector3d& place, double stiffness) noexcept;
+
+  /// A step of `dt` (s) with the hand at `hip` (m). Returns the energy that it gave up, J.
+  double fade(const Eigen::Vector3d& hip, double dt) noexcept;
+
+  [[nodiscard]] Eigen::Vector3d force(const Eigen::Vector3d& hip) const noexcept {
+    return stiffness_ * (place_ - hip);
+  }
+  [[nodiscard]] double stiffness() const noexcept { return stiffness_; }  ///< N/m
+
+ private:
+  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
+  double stiffness_ = 0;
+  double gone_ = 0;  // stiffness at which it ends
+};
 
 /// What a proxy does and what it keeps from step to step. Real-time.
 class Proxy::Inside {

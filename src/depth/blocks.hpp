@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "depth/simd/fits.hpp"
-#include "depth/simd/plain.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/depth/depth_frame.hpp"
@@ -41,14 +40,30 @@ struct BlockGrid {
           (0.5 - p.cy) / p.fy, 2 / p.fx,          2 / p.fy};
 }
 
+/// A rectangle of blocks.
+struct BlockRange {
+  int first_column = 0;
+  int first_row = 0;
+  int columns = 0;
+  int rows = 0;
+
+  bool operator==(const BlockRange&) const = default;
+  [[nodiscard]] bool empty() const { return columns <= 0 || rows <= 0; }
+  /// Larger by `border` on all sides, as far as the grid goes.
+  [[nodiscard]] BlockRange grown(int border, const BlockGrid& grid) const {
+    const int left = std::max(first_column - border, 0);
+    const int top = std::max(first_row - border, 0);
+    return {left, top, std::min(first_column + columns + border, grid.columns) - left,
+            std::min(first_row + rows + border, grid.rows) - top};
+  }
+};
+
 /// Calls body(row) for each row, on several threads: see parallel_ranges().
 template <class Body>
 void for_rows(const BlockGrid& grid, const Body& body) {
   constexpr std::size_t kRowsAtATime = 8;
-  detail::parallel_ranges(static_cast<std::size_t>(grid.rows), kRowsAtATime,
-                          [&](std::size_t row, std::size_t end) {
-                            for (; row < end; ++row) body(static_cast<int>(row));
-                          });
+  detail::parallel_each(static_cast<std::size_t>(grid.rows), kRowsAtATime,
+                        [&](std::size_t row) { body(static_cast<int>(row)); });
 }
 
 /// What depths of one surface may differ by: three deviations of a pixel, and what `pixels` between
@@ -165,5 +180,36 @@ struct BlockFits {
             &reach_v[i]};
   }
 };
+
+/// How far a neighbouring block's inverse depth may differ on the same surface.
+struct SameSurface {
+  static constexpr float kClose = 4.3F;  ///< 3 sigma of the difference of two blocks
+
+  NoiseModel noise;
+  float steep = 0;  ///< relative change of depth from block to block
+
+  SameSurface(const NoiseModel& noise_model, const BlockGrid& grid);
+  /// `distance` in blocks.
+  [[nodiscard]] float limit(float rho, float distance = 1) const {
+    return kClose * block_sigma(noise, rho) + steep * distance * rho;
+  }
+};
+
+/// Empties blocks that stand between surfaces: those that fewer than two of their eight neighbours
+/// continue, be it by lying close or by lying on a line with the block and its opposite neighbour.
+/// `scratch` is kept for its memory.
+void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& scratch);
+
+/// Plain fits: each block's own mean, its slopes by least squares over those of its eight
+/// neighbours that show the same surface.
+void fit_plain(const Blocks& blocks, const NoiseModel& noise, BlockFits& fits);
+
+inline constexpr int kLongestGap = 3;  ///< blocks
+
+/// Blocks of `range` without small holes: `filled` gets a copy in which gaps in rows, then in
+/// columns, of up to kLongestGap blocks between two ends that may be one surface are bridged.
+/// Filled blocks have a count of 0. One hole would otherwise cost all windows around it.
+void fill_gaps(const Blocks& blocks, const NoiseModel& noise, const BlockRange& range,
+               Blocks& filled);
 
 }  // namespace palpate::depth

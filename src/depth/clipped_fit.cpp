@@ -1,8 +1,8 @@
-#include "depth/clipped_fit.hpp"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+
+#include "depth/window_fits.hpp"
 
 namespace palpate::depth {
 namespace {

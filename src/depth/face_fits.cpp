@@ -1,10 +1,9 @@
-#include "depth/face_fits.hpp"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
 #include <utility>
 
+#include "depth/window_fits.hpp"
 #include "geometry/parallel.hpp"
 
 namespace palpate::depth {
@@ -247,12 +246,11 @@ void FaceFits::refit(const simd::FitInput& input, const Blocks& filled, const No
   faces_.resize(static_cast<std::size_t>(tiles_) * tile_rows_);
   constexpr std::size_t kAtATime = 4;
   const auto rows = static_cast<std::size_t>(tile_rows_);
-  detail::parallel_ranges(rows, kAtATime, [&](std::size_t row, std::size_t end) {
-    for (; row < end; ++row) find(input, filled, noise, fits, static_cast<int>(row));
+  detail::parallel_each(rows, kAtATime, [&](std::size_t row) {
+    find(input, filled, noise, fits, static_cast<int>(row));
   });
-  detail::parallel_ranges(rows, kAtATime, [&](std::size_t row, std::size_t end) {
-    for (; row < end; ++row) share(input, noise, static_cast<int>(row), fits);
-  });
+  detail::parallel_each(rows, kAtATime,
+                        [&](std::size_t row) { share(input, noise, static_cast<int>(row), fits); });
 }
 
 }  // namespace palpate::depth

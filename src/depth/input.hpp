@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "depth/simd/plain.hpp"
+#include "depth/simd/fits.hpp"
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/depth/depth_frame.hpp"
 

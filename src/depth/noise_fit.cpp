@@ -1,9 +1,9 @@
-#include "depth/noise_fit.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "depth/noise_tracker.hpp"
 
 namespace palpate::depth {
 namespace {

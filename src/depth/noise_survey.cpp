@@ -1,7 +1,7 @@
-#include "depth/noise_survey.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "depth/noise_tracker.hpp"
 
 namespace palpate::depth {
 namespace {

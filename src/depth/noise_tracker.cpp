@@ -8,9 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "depth/noise_fit.hpp"
-#include "depth/noise_survey.hpp"
-
 namespace palpate::depth {
 namespace {
 

@@ -202,16 +202,14 @@ void TemporalFilter::filter(const TemporalOptions& options, const Eigen::Isometr
                             BlockFits& fits) {
   prepare(fits.grid, T_world_sensor);
   const auto gate2 = static_cast<float>(options.gate * options.gate);
-  detail::parallel_ranges(memory_.size(), kBlocksAtATime, [&](std::size_t i, std::size_t end) {
-    for (; i < end; ++i) {
-      BlockMemory& m = memory_[i];
-      if (fits.states[i] == FilteredDepth::State::empty) {
-        miss(options.hold, m);
-        continue;
-      }
-      step(measured(fits, i), options, gate2, m);
-      write(m, i, fits);
+  detail::parallel_each(memory_.size(), kBlocksAtATime, [&](std::size_t i) {
+    BlockMemory& m = memory_[i];
+    if (fits.states[i] == FilteredDepth::State::empty) {
+      miss(options.hold, m);
+      return;
     }
+    step(measured(fits, i), options, gate2, m);
+    write(m, i, fits);
   });
 }
 

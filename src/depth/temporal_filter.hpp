@@ -1,13 +1,75 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "depth/blocks.hpp"
-#include "depth/temporal_warp.hpp"
+#include "palpate/depth/depth_filter.hpp"
 
 namespace palpate::depth {
+
+/// What the filter over time remembers of one block; see BlockFits for the columns.
+struct BlockMemory {
+  float rho = 0;             ///< mean inverse depth, 1/m
+  float variance = 0;        ///< of one frame's rho, 1/m^2: of the mean it is variance / count
+  float extra = 0;           ///< variance that moving into other views has added, 1/m^2
+  float slope_x = 0;         ///< 1/m
+  float slope_y = 0;         ///< 1/m
+  float slope_variance = 0;  ///< of one frame's slopes, 1/m^2
+  float confidence = 0;
+  float calm_since = 0;     ///< rho of the last frame that was not calm, 1/m
+  float last[3] = {};       ///< rho, slope_x and slope_y of the last frame, 1/m
+  float moves[3] = {};      ///< from the frame before to the last, 1/m
+  float scatter = 0;        ///< variance of one frame's rho that the frames themselves show, 1/m^2
+  float slope_scatter = 0;  ///< the same of its slopes
+  std::uint8_t count = 0;   ///< frames in the mean; 0: nothing is remembered
+  std::uint8_t calm = 0;    ///< frames in a row that a moving block stood still
+  std::uint8_t missed = 0;
+  bool moving = false;
+  FilteredDepth::State state = FilteredDepth::State::empty;
+};
+
+/// A change of inverse depth beyond this is another surface, not one that moves: 30 mm, what a
+/// hand's 1 m/s covers in a frame.
+[[nodiscard]] inline float another_surface(float rho) {
+  return 0.03F * rho * rho;
+}
+
+/// Puts what is remembered of blocks into the view of a camera that has moved: each block's piece
+/// of plane into the blocks of the new view that its middle falls next to. The nearer of two
+/// surfaces hides the other one; of one surface, the piece whose middle is nearest is taken. It
+/// is then cut with the new block's ray, bent as its neighbours say.
+class TemporalWarp {
+ public:
+  /// Takes memory when there are more blocks than ever, and no more.
+  void resize(std::size_t blocks);
+
+  /// `T_now_before` takes coordinates of the old sensor frame to the new one's.
+  void warp(const BlockGrid& grid, const Eigen::Isometry3d& T_now_before,
+            std::vector<BlockMemory>& memory);
+
+ private:
+  /// The piece that a block of the new view has been given.
+  struct Claim {
+    std::int32_t from = -1;  // block of the old view
+    float rho = 0;           // of the piece's middle, in the new view
+    float dc = 0;            // from the block to the piece's middle, in blocks
+    float dr = 0;
+  };
+
+  void claim(const BlockGrid& grid, const Eigen::Isometry3d& T_now_before,
+             const std::vector<BlockMemory>& memory);
+  void offer_around(const BlockGrid& grid, std::int32_t from, float rho, float c, float r);
+  void offer(const Claim& claim, std::size_t block);
+  [[nodiscard]] bool put(const BlockGrid& grid, const std::vector<BlockMemory>& memory,
+                         const Claim& claim, float x, float y, BlockMemory& to) const;
+
+  std::vector<Claim> claims_;
+  std::vector<Eigen::Vector3f> planes_;  // of the old view's blocks, in the new view
+  std::vector<BlockMemory> warped_;
+};
 
 struct TemporalOptions {
   int memory = 8;           ///< frames that a still block averages, 1 to 255; 1: none

@@ -1,7 +1,7 @@
-#include "depth/temporal_warp.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "depth/temporal_filter.hpp"
 
 namespace palpate::depth {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "depth/neighbors.hpp"
+#include "depth/blocks.hpp"
 #include "geometry/parallel.hpp"
 
 namespace palpate::depth {
@@ -58,13 +58,6 @@ BlockRange united(const BlockRange& a, const BlockRange& b) {
 }
 
 }  // namespace
-
-BlockRange BlockRange::grown(int border, const BlockGrid& grid) const {
-  const int left = std::max(first_column - border, 0);
-  const int top = std::max(first_row - border, 0);
-  return {left, top, std::min(first_column + columns + border, grid.columns) - left,
-          std::min(first_row + rows + border, grid.rows) - top};
-}
 
 void FitRegion::set(const BlockGrid& grid) {
   everything_ = true;
@@ -183,11 +176,9 @@ void WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double norma
   functions_->table(in.table, rows_of(filled_));
   list_columns(blocks, region);
   const auto count = static_cast<std::size_t>(region.range().rows);
-  detail::parallel_ranges(count, kRowsAtATime, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) {
-      fit_row(in, region.range().first_row + static_cast<int>(r),
-              std::span(columns_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]), fits);
-    }
+  detail::parallel_each(count, kRowsAtATime, [&](std::size_t r) {
+    fit_row(in, region.range().first_row + static_cast<int>(r),
+            std::span(columns_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]), fits);
   });
   faces_.refit(in, filled_, noise, fits);
 }

@@ -1,28 +1,97 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "depth/blocks.hpp"
-#include "depth/face_fits.hpp"
 #include "depth/simd/fits.hpp"
 #include "palpate/geometry/shapes.hpp"
 
 namespace palpate::depth {
 
-/// A rectangle of blocks.
-struct BlockRange {
-  int first_column = 0;
-  int first_row = 0;
-  int columns = 0;
-  int rows = 0;
+/// A half of the image as seen from a block: the blocks (u, v) away with at + x u + y v >= 0.
+struct HalfImage {
+  double at, x, y;
 
-  bool operator==(const BlockRange&) const = default;
-  [[nodiscard]] bool empty() const { return columns <= 0 || rows <= 0; }
-  /// Larger by `border` on all sides, as far as the grid goes.
-  [[nodiscard]] BlockRange grown(int border, const BlockGrid& grid) const;
+  [[nodiscard]] double above(int u, int v) const { return at + x * u + y * v; }
+  /// By how much that changes across a block.
+  [[nodiscard]] double block() const { return std::abs(x) + std::abs(y); }
+};
+
+/// A plane as seen from a block: (u, v) blocks away its inverse depth is rho + x u + y v, 1/m.
+struct FacePlane {
+  int column, row;  ///< of the block
+  double rho, x, y;
+  double variance, slope_variance;  ///< 1/m^2
+  double lean_x = 0, lean_y = 0;    ///< covariances of rho with x and y, 1/m^2
+  int reach_u = 0, reach_v = 0;     ///< blocks to each side that it was fitted to
+  bool straight = false;            ///< bent by no more than noise does on average
+
+  [[nodiscard]] double at(int u, int v) const { return rho + x * u + y * v; }
+  [[nodiscard]] double variance_at(int u, int v) const {
+    const double lean = 2 * (lean_x * u + lean_y * v);
+    return std::max(variance, variance + lean + slope_variance * (u * u + v * v));
+  }
+};
+
+/// `near` made better: the plane through all blocks up to `reach_u` columns and `reach_v` rows away
+/// that lie in all halves, by least squares. None where they are few, have a hole, or noise does
+/// not explain what the plane leaves of them.
+[[nodiscard]] std::optional<FacePlane> clipped_fit(const simd::FitInput& input,
+                                                   const NoiseModel& noise, const FacePlane& near,
+                                                   int reach_u, int reach_v,
+                                                   std::span<const HalfImage> halves);
+
+/// What the paraboloid through all blocks up to `reach` around the middle of `near` leaves of them:
+/// a sum of squares, 1/m^2. None where one is a hole.
+[[nodiscard]] std::optional<double> left_by_paraboloid(const simd::FitInput& input,
+                                                       const FacePlane& near, int reach);
+
+/// Fits faces beside edges and creases again, each from its own blocks alone, and tells which face
+/// a block lies on.
+///
+/// Windows reach over an edge by as much as noise hides, and their planes lean by that; or they
+/// show what is hidden at their block. Where the planes of two faces meet is known better than what
+/// one window spans. So one block of each tile looks eight ways for where its face ends, at a plane
+/// that meets its own or at anything else, and fits all that is inside, up to twice a window's
+/// reach away: what is straight needs no smaller windows. Blocks of its tile and of those around
+/// take the nearest plane whose face holds them. What one bent surface explains better than two
+/// planes is no edge. Up to some sixteen blocks from the rim of what is fitted, such planes may be
+/// missing. Threads share the rows; results do not depend on how.
+class FaceFits {
+ public:
+  /// `input`: what the fits were made from; `filled`: the blocks that its table sums.
+  void refit(const simd::FitInput& input, const Blocks& filled, const NoiseModel& noise,
+             BlockFits& fits);
+
+ private:
+  struct Face {
+    bool found;
+    FacePlane plane;
+    int count;  // of borders
+    HalfImage borders[8];
+
+    [[nodiscard]] std::span<const HalfImage> sides() const {
+      return {borders, static_cast<std::size_t>(count)};
+    }
+  };
+  struct Search;
+
+  void find(const simd::FitInput& input, const Blocks& filled, const NoiseModel& noise,
+            const BlockFits& fits, int tile_row);
+  void share(const simd::FitInput& input, const NoiseModel& noise, int tile_row,
+             BlockFits& fits) const;
+  static void give(std::span<const Face* const> faces, float rho, float sigma, int column, int row,
+                   BlockFits& fits);
+
+  int tiles_ = 0;  // in a row
+  int tile_rows_ = 0;
+  std::vector<Face> faces_;
 };
 
 /// Which blocks are to be fitted: all, or those whose points lie in one of a few balls.

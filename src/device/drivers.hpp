@@ -9,7 +9,7 @@
 #include "palpate/base/clock.hpp"
 #include "palpate/base/driver_info.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/device/threaded_device.hpp"
+#include "palpate/device/hardware.hpp"
 
 namespace palpate::device {
 

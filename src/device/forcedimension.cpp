@@ -7,7 +7,6 @@
 #include <charconv>
 #include <string_view>
 
-#include "base/listed.hpp"
 #include "base/shared_library.hpp"
 #include "device/drivers.hpp"
 #include "palpate/base/error.hpp"
@@ -263,9 +262,7 @@ class ForceDimensionDriver final : public DeviceDriver {
 
 DriverInfo list_forcedimension() {
   DriverInfo driver{.name = "forcedimension",
-                    .description = "Force Dimension omega, delta, sigma, lambda; Novint Falcon",
-                    .missing = {},
-                    .devices = {}};
+                    .description = "Force Dimension omega, delta, sigma, lambda; Novint Falcon"};
   return listed(driver, [](DriverInfo& found) {
     const ForceDimensionLibrary library;
     for (int i = 0; i < library.count(); ++i) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/listed.hpp"
+#include "base/shared_library.hpp"
 #include "device/drivers.hpp"
 #include "device/haply_message.hpp"
 #include "device/text_socket.hpp"
@@ -153,9 +153,7 @@ class HaplyDriver final : public DeviceDriver {
 
 DriverInfo list_haply() {
   DriverInfo driver{.name = "haply",
-                    .description = "Haply Inverse3, through Haply's Inverse Service",
-                    .missing = {},
-                    .devices = {}};
+                    .description = "Haply Inverse3, through Haply's Inverse Service"};
   return listed(driver, [](DriverInfo& found) {
     TextSocket socket = connect(kService);
     for (const HaplyDevice& each : greet(socket)) {

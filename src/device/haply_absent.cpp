@@ -9,8 +9,7 @@ DriverInfo list_haply() {
           .available = false,
           .missing =
               "this build cannot connect to Haply's Inverse Service. Install libboost-dev (Debian, "
-              "Ubuntu) and rebuild palpate",
-          .devices = {}};
+              "Ubuntu) and rebuild palpate"};
 }
 
 std::unique_ptr<DeviceDriver> open_haply(const DeviceName& /*name*/, const Clock& /*clock*/) {

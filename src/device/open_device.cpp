@@ -1,5 +1,3 @@
-#include "palpate/device/open_device.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,7 @@
 
 #include "device/drivers.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/device/hardware.hpp"
 
 namespace palpate {
 namespace device {

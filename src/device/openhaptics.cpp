@@ -1,5 +1,3 @@
-#include "device/openhaptics.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +7,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "base/listed.hpp"
+#include "base/shared_library.hpp"
+#include "device/openhaptics_scheduler.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::device {
@@ -153,9 +152,7 @@ DriverInfo list_openhaptics() {
   DriverInfo driver{.name = "openhaptics",
                     .description =
                         "3D Systems Touch, Touch X; SensAble Phantom Omni, Desktop, "
-                        "Premium",
-                    .missing = {},
-                    .devices = {}};
+                        "Premium"};
   return listed(driver, [](DriverInfo& found) {
     const OpenHapticsLibrary library;
     std::error_code none;

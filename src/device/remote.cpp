@@ -61,7 +61,7 @@ struct RemoteDevice::Inside {
   struct Shown {
     RemoteDevice::Counts counts;
     PacketFlaw refused = PacketFlaw::none;  // the newest one
-    DeviceStatus status = DeviceStatus::silent;
+    DeviceState::Status status = DeviceState::Status::silent;
     int error = 0;  // errno of a broken socket; 0: a force that was not finite, where it failed
   };
 
@@ -81,7 +81,7 @@ struct RemoteDevice::Inside {
   DeviceInfo info;
   DatagramSocket socket;
   RemoteProtocol protocol;
-  DeviceState state{.status = DeviceStatus::silent};
+  DeviceState state{.status = DeviceState::Status::silent};
   Shown shown;
   Latest<Shown> for_others;
 };
@@ -110,7 +110,7 @@ void RemoteDevice::Inside::send(const std::optional<ForcePacket>& packet) noexce
 
 void RemoteDevice::Inside::fail(int error) noexcept {
   send(protocol.farewell());
-  state.status = DeviceStatus::failed;
+  state.status = DeviceState::Status::failed;
   shown.error = error;
   shown.status = state.status;
   for_others.set(shown);
@@ -120,7 +120,8 @@ RemoteDevice::RemoteDevice(const Clock& clock, const RemoteDeviceOptions& option
     : inside_(std::make_unique<Inside>(clock, options)) {}
 
 RemoteDevice::~RemoteDevice() {
-  if (inside_->state.status != DeviceStatus::failed) inside_->send(inside_->protocol.farewell());
+  if (inside_->state.status != DeviceState::Status::failed)
+    inside_->send(inside_->protocol.farewell());
 }
 
 const DeviceInfo& RemoteDevice::info() const noexcept {
@@ -129,10 +130,10 @@ const DeviceInfo& RemoteDevice::info() const noexcept {
 
 DeviceState RemoteDevice::read() noexcept {
   Inside& in = *inside_;
-  if (in.state.status == DeviceStatus::failed) return in.state;
+  if (in.state.status == DeviceState::Status::failed) return in.state;
   const double now = in.clock.now();
   in.receive(now);
-  if (in.state.status == DeviceStatus::failed) return in.state;
+  if (in.state.status == DeviceState::Status::failed) return in.state;
   in.state = in.protocol.state(now);
   in.shown.status = in.state.status;
   in.for_others.set(in.shown);
@@ -141,15 +142,15 @@ DeviceState RemoteDevice::read() noexcept {
 
 void RemoteDevice::write(const Vector3d& force) noexcept {
   Inside& in = *inside_;
-  if (in.state.status == DeviceStatus::failed) return;
+  if (in.state.status == DeviceState::Status::failed) return;
   if (!force.allFinite()) return in.fail(0);
   in.send(in.protocol.answer(force));
 }
 
 std::string RemoteDevice::reason() const {
   const Inside::Shown shown = inside_->for_others.get();
-  if (shown.status == DeviceStatus::ok) return {};
-  if (shown.status == DeviceStatus::failed) {
+  if (shown.status == DeviceState::Status::ok) return {};
+  if (shown.status == DeviceState::Status::failed) {
     if (shown.error != 0) {
       return fmt::format("receiving on '{}' failed: {}; open the device again", path(),
                          std::system_category().message(shown.error));

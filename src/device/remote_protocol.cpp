@@ -192,7 +192,7 @@ void RemoteProtocol::begin(const StatePacket& packet, const SocketAddress& from)
   client_ = from;
   newest_ = packet;
   state_.velocity = packet.velocity;
-  state_.status = DeviceStatus::silent;
+  state_.status = DeviceState::Status::silent;
   limit_ = 0;
   connected_ = true;
   confirmed_ = false;
@@ -218,7 +218,8 @@ DeviceState RemoteProtocol::state(double now) noexcept {
   now_ = now;
   const bool lost = is_silent(now);
   state_.time = now;
-  state_.status = !lost && confirmed_ && located_ ? DeviceStatus::ok : DeviceStatus::silent;
+  state_.status =
+      !lost && confirmed_ && located_ ? DeviceState::Status::ok : DeviceState::Status::silent;
   located_ = !lost;
   if (lost) {
     state_.velocity.setZero();
@@ -232,7 +233,7 @@ void RemoteProtocol::move_limit(double now) noexcept {
   const double change = options_.maximum_force * (now - now_);
   if (is_silent(now)) {
     limit_ -= change / options_.fade;
-  } else if (state_.status == DeviceStatus::ok) {
+  } else if (state_.status == DeviceState::Status::ok) {
     limit_ += change / options_.soft_start;
   }
   limit_ = std::clamp(limit_, 0.0, options_.maximum_force);
@@ -247,7 +248,7 @@ ForcePacket RemoteProtocol::next_packet() noexcept {
 }
 
 std::optional<ForcePacket> RemoteProtocol::answer(const Vector3d& force) noexcept {
-  const bool live = state_.status == DeviceStatus::ok;
+  const bool live = state_.status == DeviceState::Status::ok;
   if (client_.size == 0 || (!live && sent_zero_)) return std::nullopt;
   ForcePacket packet = next_packet();
   const double length = force.norm();

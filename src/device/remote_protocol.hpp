@@ -106,7 +106,7 @@ class RemoteProtocol {
   RemoteDeviceOptions options_;
   SocketAddress client_;  // kept a while after it fell silent
   StatePacket newest_;
-  DeviceState state_{.status = DeviceStatus::silent};
+  DeviceState state_{.status = DeviceState::Status::silent};
   double received_ = 0;         // when the newest packet came
   double now_ = 0;              // of the last state()
   double limit_ = 0;            // of the force, N

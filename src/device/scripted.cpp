@@ -38,7 +38,7 @@ ScriptedDevice::ScriptedDevice(Trajectory trajectory) : rows_(std::move(trajecto
 DeviceState ScriptedDevice::read() noexcept {
   if (failed_) return state_;
   if (next_ == rows_.size()) {
-    state_.status = DeviceStatus::finished;
+    state_.status = DeviceState::Status::finished;
     state_.velocity.setZero();
     return state_;
   }
@@ -57,7 +57,7 @@ void ScriptedDevice::write(const Eigen::Vector3d& force) noexcept {
   if (failed_) return;
   if (!force.allFinite()) {
     failed_ = true;
-    state_.status = DeviceStatus::failed;
+    state_.status = DeviceState::Status::failed;
     force_.setZero();
     return;
   }

@@ -95,7 +95,7 @@ struct SimulatedDevice::Inside {
     forces.fill(Eigen::Vector3d::Zero());
   }
 
-  [[nodiscard]] HandTarget target_at(double time) noexcept;
+  [[nodiscard]] TargetSource::Target target_at(double time) noexcept;
   [[nodiscard]] Eigen::Vector3d within_reach(const Eigen::Vector3d& goal) const noexcept;
   [[nodiscard]] Eigen::Vector3d quantised() const noexcept;
   void begin() noexcept;
@@ -110,7 +110,7 @@ struct SimulatedDevice::Inside {
   SimulatedDeviceOptions options;
   Playback trajectory;
   TargetSource* source = nullptr;
-  HandTarget target;  // at the current time
+  TargetSource::Target target;  // at the current time
   DeviceInfo info;
   Eigen::Matrix4d generator;
   Eigen::Matrix4d whole_step;  // its exponential over one step
@@ -153,7 +153,7 @@ double SimulatedDevice::work() const noexcept {
 
 DeviceState SimulatedDevice::read() noexcept {
   Inside& in = *inside_;
-  if (in.wrong != nullptr || in.state.status == DeviceStatus::finished) return in.state;
+  if (in.wrong != nullptr || in.state.status == DeviceState::Status::finished) return in.state;
   if (in.started) {
     in.advance();
   } else {
@@ -168,7 +168,7 @@ DeviceState SimulatedDevice::read() noexcept {
   in.started = true;
   // Half a step of slack: the end of a trajectory need not be a whole number of steps.
   if (in.options.duration && in.state.time > *in.options.duration + 0.5 / in.options.rate) {
-    in.state.status = DeviceStatus::finished;
+    in.state.status = DeviceState::Status::finished;
   }
   return in.state;
 }
@@ -194,11 +194,11 @@ std::string SimulatedDevice::reason() const {
 
 void SimulatedDevice::Inside::fail(const char* what) noexcept {
   wrong = what;
-  state.status = DeviceStatus::failed;
+  state.status = DeviceState::Status::failed;
 }
 
 // Times are asked for once each, in growing order.
-HandTarget SimulatedDevice::Inside::target_at(double time) noexcept {
+TargetSource::Target SimulatedDevice::Inside::target_at(double time) noexcept {
   if (source != nullptr) return source->target(time, position);
   if (trajectory.empty()) return {options.position, 0};
   return {trajectory.at(time), 0};

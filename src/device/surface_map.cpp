@@ -1,8 +1,7 @@
-#include "device/surface_map.hpp"
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "device/explore.hpp"
 #include "palpate/geometry/shapes.hpp"
 #include "palpate/geometry/spacing.hpp"
 

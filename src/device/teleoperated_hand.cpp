@@ -1,5 +1,3 @@
-#include "palpate/device/teleoperated_hand.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,6 +5,7 @@
 #include "base/latest.hpp"
 #include "base/requirement.hpp"
 #include "device/target_motion.hpp"
+#include "palpate/device/simulated.hpp"
 
 namespace palpate {
 namespace {
@@ -33,7 +32,7 @@ RemoteTarget::RemoteTarget() : inside_(std::make_unique<Inside>()) {}
 
 RemoteTarget::~RemoteTarget() = default;
 
-bool RemoteTarget::move(const HandTarget& target, double stamp) noexcept {
+bool RemoteTarget::move(const TargetSource::Target& target, double stamp) noexcept {
   if (!target.position.allFinite() || !std::isfinite(stamp)) return false;
   Command& newest = inside_->newest;
   newest = {target, stamp, true, newest.moves + 1};
@@ -80,7 +79,7 @@ struct TeleoperatedHand::Inside {
   TeleoperatedHandOptions options;
   TargetInterpolator interpolator;
   RemoteTarget::Command command;
-  HandTarget target;
+  TargetSource::Target target;
   Mode mode = Mode::released;
   double time = 0;             // of the last call
   double trajectory_time = 0;  // on the trajectory
@@ -96,7 +95,7 @@ TeleoperatedHand::TeleoperatedHand(const RemoteTarget& remote, Trajectory trajec
 
 TeleoperatedHand::~TeleoperatedHand() = default;
 
-HandTarget TeleoperatedHand::target(double time, const Vector3d& position) noexcept {
+TargetSource::Target TeleoperatedHand::target(double time, const Vector3d& position) noexcept {
   Inside& in = *inside_;
   if (!in.started) in.begin(time, position);
   in.receive(time);

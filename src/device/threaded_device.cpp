@@ -1,5 +1,3 @@
-#include "palpate/device/threaded_device.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "base/latest.hpp"
 #include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/device/hardware.hpp"
 
 namespace palpate {
 namespace {
@@ -119,14 +118,14 @@ struct ThreadedDevice::Inside {
   double retry_at = 0;  // s
 
   // Of the servo's thread.
-  DeviceState state{.status = DeviceStatus::silent};
+  DeviceState state{.status = DeviceState::Status::silent};
   Reading seen;
   Connection located = kNone;  // the connection whose position the last step reported
 
   // Between them.
   Latest<Reading> readings;
   Latest<Command> commands;
-  std::atomic<DeviceStatus> status{DeviceStatus::silent};
+  std::atomic<DeviceState::Status> status{DeviceState::Status::silent};
   mutable std::mutex loss_mutex;  // the servo's thread never takes it
   std::string loss;               // why the hardware is lost; empty: it is there
 
@@ -242,17 +241,17 @@ void ThreadedDevice::Inside::reopen() noexcept {
 
 DeviceState ThreadedDevice::read() noexcept {
   Inside& in = *inside_;
-  if (in.state.status == DeviceStatus::failed) return in.state;
+  if (in.state.status == DeviceState::Status::failed) return in.state;
   const double now = in.clock.now();
   if (const std::optional<Inside::Reading> reading = in.readings.look()) in.seen = *reading;
   const bool known = in.seen.connection != kNone && now - in.seen.end <= in.options.state_timeout;
   if (known) {
     in.state = in.seen.state;
     const bool located = in.located == in.seen.connection;
-    in.state.status = located ? DeviceStatus::ok : DeviceStatus::silent;
+    in.state.status = located ? DeviceState::Status::ok : DeviceState::Status::silent;
     in.located = in.seen.connection;
   } else {
-    in.state.status = DeviceStatus::silent;
+    in.state.status = DeviceState::Status::silent;
     in.state.velocity.setZero();
     in.state.buttons = 0;
     in.located = kNone;
@@ -264,24 +263,24 @@ DeviceState ThreadedDevice::read() noexcept {
 
 void ThreadedDevice::write(const Vector3d& force) noexcept {
   Inside& in = *inside_;
-  if (in.state.status == DeviceStatus::failed) return;
+  if (in.state.status == DeviceState::Status::failed) return;
   if (force.allFinite()) {
-    const bool felt = in.state.status == DeviceStatus::ok;
+    const bool felt = in.state.status == DeviceState::Status::ok;
     in.commands.set({force, in.clock.now(), felt ? in.located : kNone});
     return;
   }
   in.commands.set({});
-  in.state.status = DeviceStatus::failed;
+  in.state.status = DeviceState::Status::failed;
   in.status.store(in.state.status);
 }
 
 std::string ThreadedDevice::reason() const {
   const Inside& in = *inside_;
-  const DeviceStatus status = in.status.load();
-  if (status == DeviceStatus::failed) {
+  const DeviceState::Status status = in.status.load();
+  if (status == DeviceState::Status::failed) {
     return "a written force was not finite; find the error in the code that computed it";
   }
-  if (status == DeviceStatus::ok) return {};
+  if (status == DeviceState::Status::ok) return {};
   const std::lock_guard lock(in.loss_mutex);
   if (!in.loss.empty()) return in.loss;
   return fmt::format(

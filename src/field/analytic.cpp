@@ -61,7 +61,7 @@ void AnalyticField::set_pose(const Eigen::Isometry3d& T_world_shape) noexcept {
 
 PlaneField::PlaneField(const AnalyticField::Options& options) : AnalyticField(options) {}
 
-Distance PlaneField::distance(const Eigen::Vector3d& x) const noexcept {
+AnalyticField::Distance PlaneField::distance(const Eigen::Vector3d& x) const noexcept {
   return {x.z(), Eigen::Vector3d::UnitZ()};
 }
 
@@ -70,7 +70,7 @@ SphereField::SphereField(double radius, const AnalyticField::Options& options)
   require_positive("radius", radius);
 }
 
-Distance SphereField::distance(const Eigen::Vector3d& x) const noexcept {
+AnalyticField::Distance SphereField::distance(const Eigen::Vector3d& x) const noexcept {
   const double length = x.norm();
   if (length <= 0) return {-radius_, Eigen::Vector3d::UnitZ()};
   return {length - radius_, x / length};
@@ -81,7 +81,7 @@ BoxField::BoxField(const Eigen::Vector3d& size, const AnalyticField::Options& op
   for (int axis = 0; axis < 3; ++axis) require_positive("edge length", size[axis]);
 }
 
-Distance BoxField::distance(const Eigen::Vector3d& x) const noexcept {
+AnalyticField::Distance BoxField::distance(const Eigen::Vector3d& x) const noexcept {
   const Eigen::Vector3d beyond = x.cwiseAbs() - half_;
   const Eigen::Vector3d outside = beyond.cwiseMax(0);
   const Eigen::Vector3d sign = x.unaryExpr([](double v) { return std::copysign(1.0, v); });
@@ -98,7 +98,7 @@ TorusField::TorusField(double ring, double tube, const AnalyticField::Options& o
   kRequire(std::isfinite(ring) && ring > tube, "ring radius", ring, "give more than the tube's");
 }
 
-Distance TorusField::distance(const Eigen::Vector3d& x) const noexcept {
+AnalyticField::Distance TorusField::distance(const Eigen::Vector3d& x) const noexcept {
   const double rho = std::hypot(x.x(), x.y());
   const double across = rho - ring_;
   const double length = std::hypot(across, x.z());

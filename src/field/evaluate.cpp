@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "field/formulas.hpp"
-#include "field/joined_height.hpp"
 #include "field/oriented.hpp"
 
 // Notation as in docs/method.md: q_i = p_i - x, w_i the weights, v_i = c_i w_i,
@@ -166,7 +165,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   const simd::Columns& columns = patch.columns();
   const Vector3d local = x - patch.center();
   const bool wendland = options.kernel == Kernel::wendland;
-  const bool metaball = options.kind == FieldKind::metaball;
+  const bool metaball = options.kind == FieldOptions::Kind::metaball;
   simd::Sums sums;
   (metaball ? surface.sums->weights : surface.sums->all)(columns, wendland, local.data(), sums);
   const Support support = support_of(sums, columns.sources);
@@ -202,13 +201,14 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
 
 double free_level(const ImplicitSurface& surface, double smallest_radius) noexcept {
   const FieldOptions& options = surface.options;
-  if (options.kind != FieldKind::metaball && !options.capped) return kNoWeight;
+  if (options.kind != FieldOptions::Kind::metaball && !options.capped) return kNoWeight;
   double level = options.threshold;
   if (options.tool_radius > 0) {
     const double tool = std::min(options.tool_radius / smallest_radius, surface.largest_tool);
     level = plane_threshold(options.kernel, surface.offset + tool);
   }
-  return options.kind == FieldKind::metaball ? level : std::min(level, options.minimum_support);
+  return options.kind == FieldOptions::Kind::metaball ? level
+                                                      : std::min(level, options.minimum_support);
 }
 
 bool is_free(const ImplicitSurface& surface, const Patch& patch, const Ball& ball) noexcept {

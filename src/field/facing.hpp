@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "field/active_layer.hpp"
 #include "field/selection.hpp"
 #include "field/simd/sums.hpp"
 

@@ -49,11 +49,11 @@ void check(const FieldOptions& options) {
           "give 0 with raw weights (the preset `paper` uses a point tool)");
 }
 
-FieldOptions paper_field(FieldKind kind) {
+FieldOptions paper_field(FieldOptions::Kind kind) {
   FieldOptions options;
   options.kind = kind;
-  options.gradient =
-      kind == FieldKind::pointset ? FieldOptions::Gradient::normal : FieldOptions::Gradient::exact;
+  options.gradient = kind == FieldOptions::Kind::pointset ? FieldOptions::Gradient::normal
+                                                          : FieldOptions::Gradient::exact;
   options.threshold = 0.5;
   options.capped = false;
   options.sharp_edges = false;

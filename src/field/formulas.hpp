@@ -32,6 +32,17 @@ struct KernelValue {
   return kernel == Kernel::wyvill ? wyvill(q) : wendland(q);
 }
 
+/// The level at which the density-normalised weight sum of a plane stands at a height of `eta`
+/// support radii, 1 at 0 and 0 from 1 on: the metaball's threshold for an offset of eta R
+/// (docs/method.md 2.1).
+[[nodiscard]] double plane_threshold(Kernel kernel, double eta) noexcept;
+
+/// d plane_threshold / d eta.
+[[nodiscard]] double plane_threshold_slope(Kernel kernel, double eta) noexcept;
+
+/// The inverse of plane_threshold, by bisection. Not for the servo step.
+[[nodiscard]] double plane_offset(Kernel kernel, double threshold) noexcept;
+
 /// How far two points' normals agree on what is outside, -1 ... 1: n_p, mirrored by the plane
 /// halfway between p and q, times n_q, as if an arc joined the two; their plain product where both
 /// points lie on one plane within `tolerance` (m). `way`: from p to q, or back, m.

@@ -1,10 +1,9 @@
-#include "field/joined_height.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "field/facing.hpp"
 #include "field/formulas.hpp"
+#include "field/oriented.hpp"
 
 namespace palpate {
 
@@ -68,7 +67,7 @@ constexpr double kBackToBack = 0.8;  // cosine from which on two sheets may be s
 /// Can the surface of these normals be told here at all?
 bool has_normals(const FieldOptions& options, const simd::LabelSums& sums, double least) noexcept {
   if (!(sums.v > least)) return false;
-  return options.kind == FieldKind::balanced ||
+  return options.kind == FieldOptions::Kind::balanced ||
          vector(sums.vn).squaredNorm() > 1e-24 * sums.v * sums.v;
 }
 
@@ -79,14 +78,14 @@ Value smooth_min(const Value& a, const Value& b, const Value& radius, double wid
 
 /// Are there edges here to be kept sharp?
 bool keeps_edges(const FieldOptions& options, const simd::Columns& columns) noexcept {
-  return options.sharp_edges && columns.edges && options.kind == FieldKind::balanced &&
+  return options.sharp_edges && columns.edges && options.kind == FieldOptions::Kind::balanced &&
          options.gradient == FieldOptions::Gradient::exact;
 }
 
 /// The surface of one label's normals, with its exact gradient.
 Value height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
-  const Oriented oriented =
-      options.kind == FieldKind::balanced ? balanced(place.sums()) : pointset(place.sums());
+  const Oriented oriented = options.kind == FieldOptions::Kind::balanced ? balanced(place.sums())
+                                                                         : pointset(place.sums());
   if (options.gradient == FieldOptions::Gradient::normal) return {oriented.f, oriented.base};
   return {oriented.f, oriented.base + place.gradient(oriented.b)};
 }

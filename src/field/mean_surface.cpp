@@ -1,12 +1,12 @@
-#include "field/mean_surface.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "field/traversal.hpp"
+#include "field/evaluate.hpp"
+#include "field/formulas.hpp"
+#include "field/selection.hpp"
 
 namespace palpate {
 

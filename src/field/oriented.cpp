@@ -1,5 +1,10 @@
-// Values and gradients of surfaces from normals; notation in oriented.hpp, derivation in method.md.
 #include "field/oriented.hpp"
+
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "field/formulas.hpp"
 
 namespace palpate {
 
@@ -68,6 +73,115 @@ void add(Oriented& to, double factor, const Oriented& from) noexcept {
   }
   to.b.gamma += factor * from.b.gamma;
   to.b.delta += factor * from.b.delta;
+}
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kFaint = 1e-9;      // of all weight: a source with less is not there
+constexpr double kFloor = 0.1;       // of Phi: beyond, what is seen of a surface says too little
+constexpr double kFine = 4;          // power of 1 / R_s in c_s
+constexpr double kUniteFrom = 0.98;  // |sum lambda n| from which on heights are united
+constexpr double kUniteFull = 0.995;
+
+/// What one source says.
+struct Own {
+  int source = 0;
+  double v = 0;
+  double height = 0;      ///< f_s, m
+  Vector3d slope;         ///< sum v n / v
+  Vector3d normal;        ///< of unit length
+  double radius = 0;      ///< R_s, m
+  Vector3d radius_slope;  ///< its gradient
+  double cover = 0;       ///< c_s
+  double steep = 0;       ///< d log c_s / d f_s, 1/m
+  double share = 0;       ///< lambda_s
+};
+
+using Owns = std::array<Own, simd::kMaxSources>;
+
+Own own(const FieldPlace& place, int source) noexcept {
+  const simd::SourceMoments& of = place.sums().of[source];
+  Own o;
+  o.source = source;
+  o.v = of.v;
+  o.height = -of.vnq / of.v;
+  o.slope = vector(of.vn) / of.v;
+  o.normal = o.slope.normalized();
+  const double radius = place.radius.f;
+  const double eta = std::abs(o.height) / radius;
+  const double phi = plane_threshold(place.kernel, eta);
+  const double squared = phi * phi + kFloor * kFloor;
+  const double w = place.all->w[source];
+  o.radius = place.all->wr_of[source] / w;
+  o.radius_slope =
+      (vector(place.all->grad_wr_of[source]) - o.radius * vector(place.all->grad_w[source])) / w;
+  const double r2 = o.radius * o.radius;
+  o.cover = of.v / (std::sqrt(squared) * r2 * r2);
+  if (eta < 1) {
+    const double by_eta = -phi * plane_threshold_slope(place.kernel, eta) / squared;
+    o.steep = std::copysign(by_eta / radius, o.height);
+  }
+  return o;
+}
+
+/// Those that are there, with their shares; their number, 0 when one has no normal here.
+int list(const FieldPlace& place, Owns& owns) noexcept {
+  int count = 0;
+  double covers = 0;
+  for (int s = 0; s < place.columns->sources; ++s) {
+    const simd::SourceMoments& of = place.sums().of[s];
+    if (!(of.v > kFaint * place.sums().v)) continue;
+    if (!(vector(of.vn).norm() > kFaint * of.v)) return 0;
+    owns[static_cast<std::size_t>(count)] = own(place, s);
+    covers += owns[static_cast<std::size_t>(count++)].cover;
+  }
+  for (Own& o : std::span(owns).first(static_cast<std::size_t>(count))) o.share = o.cover / covers;
+  return count;
+}
+
+}  // namespace
+
+Value united_shift(const FieldPlace& place) noexcept {
+  Owns all;
+  const int count = place.columns->sources > 1 ? list(place, all) : 0;
+  if (count < 2) return {};
+  const auto owns = std::span(all).first(static_cast<std::size_t>(count));
+  const double v = place.sums().v;
+  double by_cover = 0;
+  double by_weight = 0;
+  Vector3d normal = Vector3d::Zero();
+  for (const Own& o : owns) {
+    by_cover += o.share * o.height;
+    by_weight += o.v / v * o.height;
+    normal += o.share * o.normal;
+  }
+  const double coherence = normal.norm();
+  const SmoothStep tau = smooth_step(coherence, kUniteFrom, kUniteFull - kUniteFrom);
+  if (tau.value <= 0) return {};
+  normal /= coherence;
+  const double way = by_cover - by_weight;
+  // Chain rule through f_s, V_s, the normals and R.
+  Value result{tau.value * way, Vector3d::Zero()};
+  double by_radius = 0;
+  for (const Own& o : owns) {
+    const double aligned = normal.dot(o.normal);
+    const double by_log =
+        o.share * (tau.value * (o.height - by_cover) + tau.slope * way * (aligned - coherence));
+    const double by_height = tau.value * (o.share - o.v / v) + by_log * o.steep;
+    const double by_v = by_log / o.v - tau.value * (o.height - by_weight) / v;
+    by_radius -= by_log * o.steep * o.height / place.radius.f;
+    simd::Linear b{};
+    assign(b.alpha,
+           tau.slope * way * o.share / (o.v * o.slope.norm()) * (normal - aligned * o.normal));
+    b.gamma = -by_height / o.v;
+    b.delta = -by_height * o.height / o.v + by_v;
+    const Vector3d sum = place.gradient_of_source(o.source, b);
+    result.grad += by_height * o.slope + sum - by_log * kFine / o.radius * o.radius_slope;
+  }
+  result.grad += by_radius * place.radius.grad;
+  return result;
 }
 
 }  // namespace palpate

@@ -1,11 +1,13 @@
-// Surfaces from normals. Notation as in docs/method.md: q_i = p_i - x, v_i = c_i w_i,
-// V = sum v, A = sum v q / V, Nb = sum v n / V.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "field/simd/sums.hpp"
 #include "palpate/field/field_options.hpp"
+
+// Surfaces from normals. Notation as in docs/method.md: q_i = p_i - x, v_i = c_i w_i,
+// V = sum v, A = sum v q / V, Nb = sum v n / V.
 
 namespace palpate {
 
@@ -75,5 +77,53 @@ struct FieldPlace {
     return sum;
   }
 };
+
+/// By what the height over all points moves where sources tell of one surface at different heights,
+/// m, with its gradient; 0 for a single source, and nothing where they agree.
+///
+/// Summed up together, points count by how near they are. Where two sources' surfaces lie more than
+/// 0.7 R apart, the height is that of the one here and of the other there: two sheets with a gap,
+/// between which a proxy falls. Here each source has a height f_s = -sum v n.q / V_s of its own,
+/// which counts by how much of the source's surface there is, whatever its height, and how finely
+/// the source sees it:
+///
+///   c_s = V_s / (Phi(f_s / R) R_s^4),  lambda_s = c_s / sum c,
+///   shift = tau (sum lambda_s f_s - sum V_s f_s / V)
+///
+/// Phi is what the weights of a plane at that height sum to. R_s, the source's mean radius, grows
+/// as its rays graze, so that a source has faded before its surface ends at a silhouette. tau,
+/// taken from |sum lambda_s n_s|, is 1 where normals of two sources differ by less than 11 degrees
+/// and 0 from 23 on: the faces of an edge or of a thin plate do not disagree.
+[[nodiscard]] Value united_shift(const FieldPlace& place) noexcept;
+
+/// A surface of the label's points with its edges sharp: where points lie beside an edge, the mean
+/// of the heights above what both planes leave takes the place of `smooth`. With its exact
+/// gradient.
+[[nodiscard]] Value with_edges(const FieldPlace& place, const Value& smooth) noexcept;
+
+/// By what acute creases are closed: a length that is taken off the height as seen from the proxy's
+/// side, m, with its gradient. 0 on single surfaces, between sheets that meet at 115 degrees and
+/// more, and wherever the surface is not concave.
+///
+/// Where two sheets face each other within a support, their normals and heights cancel: the mean of
+/// both stays near 0, or is free, far behind either of them, and a proxy slips through. With the
+/// mean normal Nb and the concavity h = (Nb . A - sum v n.q / V) / R, signed by the side,
+///
+///   closure = 0.2 R chi(1 - |Nb|^2 / 0.7) chi(100 h),  chi(u) = u^2 (3 - 2u), u within 0 and 1
+///
+/// |Nb|^2 is 1/2 between two equal sheets at 90 degrees and 0 between parallel ones; the gate opens
+/// before that, as sheets are seldom equal. h is half the gap, over R, between sheets that face
+/// each other, and below 0 in the plate between sheets that face away, which keeps its shape.
+[[nodiscard]] Value crease_closure(const FieldPlace& place) noexcept;
+
+/// Smooth maximum of two lengths over a width k, of R, that may vary: C1 (docs/method.md 1).
+[[nodiscard]] Value smooth_max(const Value& a, const Value& b, const Value& radius,
+                               double width) noexcept;
+
+/// The height above the sheets at a place as they meet there: what is across bounds free space with
+/// what is in front, and what is behind bounds the solid with both (Facing). Nothing where no label
+/// has more than `least` of trusted weight. With its exact gradient.
+[[nodiscard]] std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place,
+                                                 double least) noexcept;
 
 }  // namespace palpate

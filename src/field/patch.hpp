@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "field/active_layer.hpp"
 #include "field/facing.hpp"
 #include "field/selection.hpp"
 #include "field/simd/sums.hpp"

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "geometry/parallel.hpp"
-#include "geometry/sort_records.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::detail {
@@ -193,19 +192,16 @@ void CellBuilder::append_children(std::size_t cell, int shift) {
 
 std::vector<std::uint32_t> CellBuilder::order() const {
   std::vector<std::uint32_t> order(records_.size());
-  parallel_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      order[i] = static_cast<std::uint32_t>(records_[i] & kPlaceMask);
-    }
+  parallel_each(order.size(), kGrain, [&](std::size_t i) {
+    order[i] = static_cast<std::uint32_t>(records_[i] & kPlaceMask);
   });
   return order;
 }
 
 std::vector<Eigen::Vector3f> CellBuilder::points() const {
   std::vector<Eigen::Vector3f> points(records_.size());
-  parallel_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points[i] = positions_[records_[i] & kPlaceMask];
-  });
+  parallel_each(points.size(), kGrain,
+                [&](std::size_t i) { points[i] = positions_[records_[i] & kPlaceMask]; });
   return points;
 }
 
@@ -215,19 +211,17 @@ std::vector<CellGrid::Cell> CellBuilder::cells() const {
 
 void fit_boxes(std::span<const Eigen::Vector3f> points, std::span<CellGrid::Cell> cells,
                std::span<const Eigen::Vector3f> ends) {
-  parallel_ranges(cells.size(), kCellsAtATime, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      CellGrid::Cell& cell = cells[i];
-      if (cell.children != 0) continue;
-      cell.lower = cell.upper = points[cell.begin];
-      for (std::uint32_t k = cell.begin + 1; k < cell.end; ++k) {
-        cell.lower = cell.lower.cwiseMin(points[k]);
-        cell.upper = cell.upper.cwiseMax(points[k]);
-      }
-      for (std::uint32_t k = cell.begin; !ends.empty() && k < cell.end; ++k) {
-        cell.lower = cell.lower.cwiseMin(ends[k]);
-        cell.upper = cell.upper.cwiseMax(ends[k]);
-      }
+  parallel_each(cells.size(), kCellsAtATime, [&](std::size_t i) {
+    CellGrid::Cell& cell = cells[i];
+    if (cell.children != 0) return;
+    cell.lower = cell.upper = points[cell.begin];
+    for (std::uint32_t k = cell.begin + 1; k < cell.end; ++k) {
+      cell.lower = cell.lower.cwiseMin(points[k]);
+      cell.upper = cell.upper.cwiseMax(points[k]);
+    }
+    for (std::uint32_t k = cell.begin; !ends.empty() && k < cell.end; ++k) {
+      cell.lower = cell.lower.cwiseMin(ends[k]);
+      cell.upper = cell.upper.cwiseMax(ends[k]);
     }
   });
   for (std::size_t i = cells.size(); i-- > 0;) {

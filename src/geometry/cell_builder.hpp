@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/sort_records.hpp"
+#include "geometry/parallel.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 
 namespace palpate::detail {

@@ -96,11 +96,9 @@ template <class Pick>
   const auto pick_of = [&](std::span<const float> some) {
     return std::accumulate(some.begin() + 1, some.end(), some.front(), pick);
   };
-  parallel_ranges(cells.size(), std::size_t{1} << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const CellGrid::Cell& cell = cells[c];
-      if (cell.children == 0) picked[c] = pick_of(values.subspan(cell.begin, cell.size()));
-    }
+  parallel_each(cells.size(), std::size_t{1} << 14, [&](std::size_t c) {
+    const CellGrid::Cell& cell = cells[c];
+    if (cell.children == 0) picked[c] = pick_of(values.subspan(cell.begin, cell.size()));
   });
   for (std::size_t c = cells.size(); c-- > 0;) {  // children stand behind their parents
     const CellGrid::Cell& cell = cells[c];
@@ -199,10 +197,8 @@ inline constexpr std::uint32_t kBlockPoints = 256;
 template <class Body>
 void for_each_block(const CellGrid& grid, const Body& body) {
   const std::vector<Block> blocks = make_blocks(grid, kBlockPoints);
-  parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
-    Surroundings surroundings;
-    for (std::size_t b = begin; b < end; ++b) body(blocks[b], surroundings);
-  });
+  parallel_each_with<Surroundings>(
+      blocks.size(), 8, [&](std::size_t b, auto& surroundings) { body(blocks[b], surroundings); });
 }
 
 /// Calls body(first, count, runs) for all points of a block, at most simd::kQueries at a time:

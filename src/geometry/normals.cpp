@@ -115,15 +115,12 @@ std::vector<float> support_radii(std::span<const float> spacings, const SupportO
   const double typical = median(spacings);
   const double multiple = options.multiple.value_or(support_multiple(options.noise, typical));
   std::vector<float> radii(spacings.size());
-  detail::parallel_ranges(radii.size(), std::size_t{1} << 16, [&](auto begin, auto end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto spacing = static_cast<double>(spacings[i]);
-      const double footprint = options.footprint > 0 ? options.footprint : spacing;
-      const double smoothing =
-          std::min({noise_radius(options.noise, footprint, options.normal_error),
-                    options.most_spacings * spacing, options.finest_shape});
-      radii[i] = static_cast<float>(std::max({multiple * spacing, options.minimum, smoothing}));
-    }
+  detail::parallel_each(radii.size(), std::size_t{1} << 16, [&](std::size_t i) {
+    const auto spacing = static_cast<double>(spacings[i]);
+    const double footprint = options.footprint > 0 ? options.footprint : spacing;
+    const double smoothing = std::min({noise_radius(options.noise, footprint, options.normal_error),
+                                       options.most_spacings * spacing, options.finest_shape});
+    radii[i] = static_cast<float>(std::max({multiple * spacing, options.minimum, smoothing}));
   });
   return radii;
 }

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace palpate::detail {
 
@@ -20,5 +23,49 @@ void parallel_ranges(std::size_t count, std::size_t grain, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const auto& range) { body(range.begin(), range.end()); });
 }
+
+/// Calls body(i) for each of [0, count), likewise.
+template <class Body>
+void parallel_each(std::size_t count, std::size_t grain, const Body& body) {
+  parallel_ranges(count, grain, [&](std::size_t i, std::size_t end) {
+    for (; i < end; ++i) body(i);
+  });
+}
+
+/// Calls body(i, memory): each piece has a `Memory`, which keeps its room from one i to the next.
+template <class Memory, class Body>
+void parallel_each_with(std::size_t count, std::size_t grain, const Body& body) {
+  parallel_ranges(count, grain, [&](std::size_t i, std::size_t end) {
+    Memory memory;
+    for (; i < end; ++i) body(i, memory);
+  });
+}
+
+/// A place on a Morton curve through cells numbered along each axis, of which the lower 11 bits
+/// count.
+inline std::uint64_t morton_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  // Puts two zero bits between any two.
+  const auto spread = [](std::uint64_t v) {
+    v = (v | (v << 16)) & 0x70000FF;
+    v = (v | (v << 8)) & 0x700F00F;
+    v = (v | (v << 4)) & 0x430C30C3;
+    v = (v | (v << 2)) & 0x49249249;
+    return v;
+  };
+  return spread(x) << 2 | spread(y) << 1 | spread(z);
+}
+
+/// A Morton key and the place of its point in the input, in one word: sorting words sorts by key,
+/// and by place among equal keys.
+using Record = std::uint64_t;
+
+inline constexpr int kPlaceBits = 31;
+inline constexpr int kKeyBits = 33;  ///< eleven levels of three bits
+inline constexpr std::uint64_t kPlaceMask = (std::uint64_t{1} << kPlaceBits) - 1;
+
+/// Sorts records by the upper `bits` of their kKeyBits key; equal keys keep their order. `scratch`
+/// is as long as `records`. Runs on several threads when there are many records; the result does
+/// not depend on their number.
+void sort_records(std::span<Record> records, std::span<Record> scratch, int bits);
 
 }  // namespace palpate::detail

@@ -1,7 +1,5 @@
 #include "palpate/geometry/spacing.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,7 +10,6 @@
 #include <vector>
 
 #include "geometry/neighborhoods.hpp"
-#include "palpate/base/error.hpp"
 
 namespace palpate {
 namespace {
@@ -130,20 +127,6 @@ std::vector<float> mean_distances_to_three(const CellGrid& grid) {
   return means;
 }
 
-std::vector<float> mean_distances(const CellGrid& grid, std::size_t k) {
-  std::vector<float> means(grid.size());
-  detail::parallel_ranges(grid.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellGrid::Neighbor> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      grid.nearest(grid.points()[i], k + 1, found);
-      float sum = 0;
-      for (const CellGrid::Neighbor& neighbor : found) sum += std::sqrt(neighbor.squared_distance);
-      means[i] = sum / static_cast<float>(found.size() - 1);
-    }
-  });
-  return means;
-}
-
 // On a uniform plane the mean of k r^2's is (k + 1) / (2 pi) of the area per point; the factor
 // makes a square grid exact (its eight nearest: four at s, four at sqrt(2) s).
 float spacing_from(const simd::Row* rows, std::uint32_t query) {
@@ -228,11 +211,9 @@ std::vector<float> smooth(const CellGrid& grid, std::vector<float> spacings) {
 
 }  // namespace
 
-double mean_spacing(const CellGrid& grid, int k) {
-  if (k < 1) throw Error(fmt::format("spacing: k = {} neighbours; give 1 or more", k));
+double mean_spacing(const CellGrid& grid) {
   if (grid.size() < 2) return kLoneSpacing;
-  const std::vector<float> means =
-      k == 3 ? mean_distances_to_three(grid) : mean_distances(grid, static_cast<std::size_t>(k));
+  const std::vector<float> means = mean_distances_to_three(grid);
   double sum = 0;
   for (const float mean : means) sum += static_cast<double>(mean);
   return sum > 0 ? sum / static_cast<double>(means.size()) : kLoneSpacing;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,13 +57,19 @@ std::optional<Role> role_of(std::string_view name) {
   return found == std::end(kRoleNames) ? std::nullopt : std::optional{found->second};
 }
 
-Columns complete_columns(const std::array<bool, kRoleCount>& has) {
-  const auto all = [&](Role a, Role b, Role c) {
-    return has[index_of(a)] && has[index_of(b)] && has[index_of(c)];
-  };
-  return {.normals = all(Role::normal_x, Role::normal_y, Role::normal_z),
-          .colors = all(Role::red, Role::green, Role::blue),
-          .intensities = has[index_of(Role::intensity)]};
+void Roles::add(std::optional<Role> role) {
+  if (role && std::exchange(has_[index_of(*role)], true)) role.reset();
+  roles_.push_back(role);
+}
+
+bool Roles::has(Role first, std::size_t count) const {
+  return std::ranges::all_of(std::span(has_).subspan(index_of(first), count), std::identity());
+}
+
+Columns Roles::columns() const {
+  return {.normals = has(Role::normal_x, 3),
+          .colors = has(Role::red, 3),
+          .intensities = has(Role::intensity, 1)};
 }
 
 namespace {

@@ -11,7 +11,7 @@
 
 #include "io/input.hpp"
 #include "palpate/geometry/point_cloud.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate::io {
 
@@ -37,8 +37,26 @@ struct Columns {
 /// x, nx, normal_x, red, r, diffuse_red, intensity, scalar_intensity, quality, ...
 [[nodiscard]] std::optional<Role> role_of(std::string_view name);
 
-/// The optional columns that are complete among `has`, one flag a role.
-[[nodiscard]] Columns complete_columns(const std::array<bool, kRoleCount>& has);
+/// The roles of a file's columns, in their order.
+class Roles {
+ public:
+  /// Of the next column; none when a column before has this role already.
+  void add(std::optional<Role> role);
+
+  [[nodiscard]] std::size_t size() const { return roles_.size(); }
+  [[nodiscard]] std::optional<Role> operator[](std::size_t column) const { return roles_[column]; }
+  /// Are there x, y and z?
+  [[nodiscard]] bool has_point() const { return has(Role::x, 3); }
+  /// The optional columns that are complete.
+  [[nodiscard]] Columns columns() const;
+
+ private:
+  /// So many that follow one another.
+  [[nodiscard]] bool has(Role first, std::size_t count) const;
+
+  std::vector<std::optional<Role>> roles_;
+  std::array<bool, kRoleCount> has_{};
+};
 
 /// Coordinates beyond this many metres are no place on any survey, and their squares would leave
 /// the range of float; a point that has one is dropped like one that is not finite.

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string_view>
 
+#include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::io {
@@ -39,6 +42,135 @@ std::string extension(std::string_view name) {
   std::transform(result.begin(), result.end(), result.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   return result;
+}
+
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr std::string_view kReadable =
+    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, 16-bit depth PNG and PGM, optionally "
+    "gzipped";
+
+struct Known {
+  std::string_view start;
+  FileKind kind;
+};
+
+constexpr Known kKnown[] = {
+    {"ply\n", FileKind::ply},
+    {"ply\r", FileKind::ply},
+    {"ply ", FileKind::ply},
+    {"LASF", FileKind::las},
+    {"\x89PNG\r\n\x1a\n", FileKind::png},
+    {"P5", FileKind::pgm},
+    {"\x1f\x8b", FileKind::gzip},
+    {"# .PCD", FileKind::pcd},
+};
+
+struct Refused {
+  std::string_view start;
+  std::string_view what;
+  std::string_view remedy;
+};
+
+constexpr std::string_view kExport =
+    "Export the points as PLY, for example with CloudCompare or MeshLab";
+
+constexpr Refused kRefused[] = {
+    {"\xfd"
+     "7zXZ\0"sv,
+     "compressed with xz",
+     "Unpack it first: \"xz -dk FILE\", or pipe it: \"xz -dc FILE | palpate ... -\""},
+    {"(\xb5/\xfd", "compressed with zstd", "Unpack it first: zstd -d FILE"},
+    {"BZh", "compressed with bzip2", "Unpack it first: bunzip2 -k FILE"},
+    {"PK\x03\x04", "a ZIP archive", "Unpack it first and give the cloud inside"},
+    {"\xff\xd8\xff", "a JPEG picture", kReadable},
+    {"GIF8", "a GIF picture", kReadable},
+    {"BM", "a BMP picture", kReadable},
+    {"II*\0"sv, "a TIFF picture", "Convert depth images to 16-bit grey PNG"},
+    {"MM\0*"sv, "a TIFF picture", "Convert depth images to 16-bit grey PNG"},
+    {"P6", "a colour picture (PPM)", "Give the 16-bit depth image of the camera"},
+    {"P2", "a PGM written as text", "Convert it to binary PGM (P5) or to 16-bit PNG"},
+    {"ASTM-E57", "an E57 scan", kExport},
+    {"glTF", "a binary glTF model", kExport},
+    {"\x89HDF", "an HDF5 file", "Export the points as PLY or text"},
+    {"OFF", "an OFF model", kExport},
+    {"solid ", "an STL model", kExport},
+    {"Kaydara FBX", "an FBX model", kExport},
+    {"#ROSBAG", "a ROS bag", "Export one cloud from it as PCD"},
+    {"\x89MCAP", "an MCAP recording", "Export one cloud from it as PCD"},
+    {"%PDF", "a PDF document", kReadable},
+    {"\x7f"
+     "ELF",
+     "a program", kReadable},
+    {"<", "a web page or XML document", "If it was downloaded, download the file itself again"},
+    {"{", "a JSON document", kReadable},
+    {"[", "a JSON document", kReadable},
+    {"version https://git-lfs", "a Git LFS pointer, not the file itself",
+     "Download the file: git lfs pull"},
+};
+
+// Text if the first few thousand bytes hold no control characters but white space.
+bool looks_like_text(std::string_view text) {
+  const std::string_view head = text.substr(0, 4096);
+  return std::all_of(head.begin(), head.end(),
+                     [](char c) { return c < 0 || c >= ' ' || (c >= '\t' && c <= '\r'); });
+}
+
+// The first word of text that is no comment.
+std::string_view first_word(const Input& input) {
+  TextScanner scanner(input);
+  while (!scanner.at_end()) {
+    std::string_view line = scanner.next_line();
+    if (!is_blank_or_comment(line)) return take_word(line);
+  }
+  return {};
+}
+
+FileKind text_kind(const Input& input) {
+  const std::string_view word = first_word(input);
+  constexpr std::string_view kPcdWords[] = {"VERSION", "FIELDS", "COLUMNS"};
+  constexpr std::string_view kObjWords[] = {"v", "vn", "vt", "mtllib", "o", "g", "s", "usemtl"};
+  if (std::find(std::begin(kPcdWords), std::end(kPcdWords), word) != std::end(kPcdWords)) {
+    return FileKind::pcd;
+  }
+  const bool is_obj =
+      std::find(std::begin(kObjWords), std::end(kObjWords), word) != std::end(kObjWords);
+  if (is_obj || extension(input.name) == ".obj") return FileKind::obj;
+  return FileKind::text;
+}
+
+void refuse_known(const Input& input) {
+  for (const Refused& entry : kRefused) {
+    if (input.text().starts_with(entry.start)) {
+      fail(input, fmt::format("this is {}, not a supported point cloud", entry.what), entry.remedy);
+    }
+  }
+}
+
+[[noreturn]] void refuse_unknown(const Input& input) {
+  const std::string ending = extension(input.name);
+  if (ending == ".stl") fail(input, "this is an STL model", kExport);
+  std::string head;
+  for (const std::byte b : input.bytes.first(std::min<std::size_t>(input.bytes.size(), 8))) {
+    head += fmt::format(" {:02x}", std::to_integer<unsigned>(b));
+  }
+  fail(input, fmt::format("unknown file type (it starts with{})", head), kReadable);
+}
+
+}  // namespace
+
+FileKind kind_of(const Input& input) {
+  if (input.bytes.empty()) {
+    fail(input, "the file is empty", "Download or export it again");
+  }
+  for (const Known& entry : kKnown) {
+    if (input.text().starts_with(entry.start)) return entry.kind;
+  }
+  refuse_known(input);
+  if (!looks_like_text(input.text())) refuse_unknown(input);
+  return text_kind(input);
 }
 
 }  // namespace palpate::io

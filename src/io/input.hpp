@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate::io {
 
@@ -68,5 +68,13 @@ class Progress {
   std::size_t stride_;
   std::size_t next_;
 };
+
+enum class FileKind { ply, pcd, las, obj, text, png, pgm, gzip };
+
+/// What the bytes are: by their first bytes, for text also by its first words, and by the name
+/// last.
+/// @throws Error that says what to do about kinds that we know but do not read (xz, JPEG, E57, STL,
+///   JSON, a web page, ...) and about bytes that are nothing we know.
+[[nodiscard]] FileKind kind_of(const Input& input);
 
 }  // namespace palpate::io

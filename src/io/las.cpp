@@ -1,5 +1,3 @@
-#include "io/las.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <cmath>
 
 #include "io/cloud_builder.hpp"
+#include "io/formats.hpp"
 #include "io/input.hpp"
 #include "io/text_scanner.hpp"
 

@@ -6,8 +6,8 @@
 #include "base/shared_library.hpp"
 #include "io/cloud_builder.hpp"
 #include "io/file_bytes.hpp"
+#include "io/formats.hpp"
 #include "io/input.hpp"
-#include "io/las.hpp"
 #include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
 

@@ -1,5 +1,3 @@
-#include "io/obj.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "io/cloud_builder.hpp"
+#include "io/formats.hpp"
 #include "io/input.hpp"
 #include "io/text_scanner.hpp"
 

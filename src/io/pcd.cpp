@@ -1,49 +1,34 @@
-#include "io/pcd.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
 #include "io/cloud_builder.hpp"
 #include "io/file_bytes.hpp"
+#include "io/formats.hpp"
 #include "io/input.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {
 namespace {
 
-struct FieldUse {
-  std::optional<Role> role;
-  bool packed_color = false;
-};
-
 struct FieldUses {
-  std::vector<FieldUse> uses;  // one a field
-  Columns columns;
+  Roles roles;                     // one a field
+  std::optional<std::size_t> rgb;  // the field that packs a colour
 };
 
 FieldUses uses_of(const Input& input, const PcdHeader& header) {
   FieldUses result;
-  std::array<bool, kRoleCount> has{};
-  bool packed = false;
   for (const PcdField& field : header.fields) {
-    FieldUse use;
-    if (field.count > 0) use.role = role_of(field.name);
-    if (use.role && has[index_of(*use.role)]) use.role.reset();
-    if (use.role) has[index_of(*use.role)] = true;
-    use.packed_color = !packed && field.count > 0 && size_of(field.type) == 4 &&
-                       (field.name == "rgb" || field.name == "rgba");
-    packed = packed || use.packed_color;
-    result.uses.push_back(use);
+    const bool packed = field.count > 0 && size_of(field.type) == 4 &&
+                        (field.name == "rgb" || field.name == "rgba");
+    if (packed && !result.rgb) result.rgb = result.roles.size();
+    result.roles.add(field.count > 0 ? role_of(field.name) : std::nullopt);
   }
-  if (!has[index_of(Role::x)] || !has[index_of(Role::y)] || !has[index_of(Role::z)]) {
+  if (!result.roles.has_point()) {
     fail(input, "the FIELDS of this PCD file lack x, y or z", "Export it again with positions");
   }
-  result.columns = complete_columns(has);
-  result.columns.colors = result.columns.colors || packed;
   return result;
 }
 
@@ -78,7 +63,9 @@ class PcdReader {
 
  private:
   CloudBuilder builder(std::size_t room) const {
-    CloudBuilder result(input_, uses_.columns, ColorScale::byte, std::min(header_.points, room));
+    Columns columns = uses_.roles.columns();
+    columns.colors = columns.colors || uses_.rgb;
+    CloudBuilder result(input_, columns, ColorScale::byte, std::min(header_.points, room));
     if (header_.organised()) result.organise(header_.width, header_.height);
     return result;
   }
@@ -100,15 +87,15 @@ class PcdReader {
   bool read_ascii_row(TextScanner& scanner, Row& row) {
     for (std::size_t k = 0; k < header_.fields.size(); ++k) {
       for (std::size_t j = 0; j < header_.fields[k].count; ++j) {
-        const FieldUse& use = uses_.uses[k];
-        if (j > 0 || !(use.role || use.packed_color)) {
+        const std::optional<Role> role = uses_.roles[k];
+        if (j > 0 || !(role || uses_.rgb == k)) {
           if (scanner.next_token().empty()) return false;
           continue;
         }
         const std::optional<double> value = scanner.next_number();
         if (!value) return false;
-        if (use.role) row[index_of(*use.role)] = *value;
-        if (use.packed_color) set_packed_color(row, color_bits(header_.fields[k].type, *value));
+        if (role) row[index_of(*role)] = *value;
+        if (uses_.rgb == k) set_packed_color(row, color_bits(header_.fields[k].type, *value));
       }
     }
     return true;
@@ -150,9 +137,10 @@ class PcdReader {
   }
 
   void read_field(std::size_t k, const std::byte* at, Row& row) const {
-    const FieldUse& use = uses_.uses[k];
-    if (use.role) row[index_of(*use.role)] = load_number(header_.fields[k].type, at);
-    if (use.packed_color) set_packed_color(row, load_as<std::uint32_t>(at));
+    if (const auto role = uses_.roles[k]) {
+      row[index_of(*role)] = load_number(header_.fields[k].type, at);
+    }
+    if (uses_.rgb == k) set_packed_color(row, load_as<std::uint32_t>(at));
   }
 
   Bytes unpack() const {

@@ -1,12 +1,10 @@
-#include "io/ply.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include "io/cloud_builder.hpp"
+#include "io/formats.hpp"
 #include "io/input.hpp"
 #include "io/text_scanner.hpp"
 
@@ -60,27 +58,20 @@ class BinaryCursor {
 };
 
 struct VertexColumns {
-  std::vector<std::optional<Role>> roles;  // one a property
-  Columns columns;
+  Roles roles;  // one a property
   ColorScale color_scale = ColorScale::byte;
-  bool has_point = false;
 };
 
 VertexColumns columns_of(const PlyElement& element) {
   VertexColumns result;
-  std::array<bool, kRoleCount> has{};
+  Roles& roles = result.roles;
   for (const PlyProperty& property : element.properties) {
-    std::optional<Role> role = property.list_count ? std::nullopt : role_of(property.name);
-    if (role && has[index_of(*role)]) role.reset();
-    if (role) has[index_of(*role)] = true;
-    if (role == Role::red && property.type != NumberType::uint8) {
+    roles.add(property.list_count ? std::nullopt : role_of(property.name));
+    if (roles[roles.size() - 1] == Role::red && property.type != NumberType::uint8) {
       result.color_scale =
           is_floating(property.type) ? ColorScale::guess : ColorScale::guess_integer;
     }
-    result.roles.push_back(role);
   }
-  result.columns = complete_columns(has);
-  result.has_point = has[index_of(Role::x)] && has[index_of(Role::y)] && has[index_of(Role::z)];
   return result;
 }
 
@@ -93,7 +84,7 @@ class PlyReader {
   CloudFile run(std::string format) {
     for (const PlyElement& element : header_.elements) {
       const VertexColumns columns = columns_of(element);
-      if (columns.has_point) return read_vertices(element, columns, std::move(format));
+      if (columns.roles.has_point()) return read_vertices(element, columns, std::move(format));
       skip_element(element);
     }
     fail(input_, "no element of this PLY file has the properties x, y and z",
@@ -104,7 +95,7 @@ class PlyReader {
   CloudFile read_vertices(const PlyElement& element, const VertexColumns& columns,
                           std::string format) {
     const std::size_t room = (input_.bytes.size() - cursor_.offset() + 1) / least_row(element);
-    CloudBuilder builder(input_, columns.columns, columns.color_scale,
+    CloudBuilder builder(input_, columns.roles.columns(), columns.color_scale,
                          std::min(element.count, room));
     Progress progress(input_.options, input_.bytes.size());
     Row row{};

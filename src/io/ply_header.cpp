@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "io/ply.hpp"
+#include "io/formats.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {

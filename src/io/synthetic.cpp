@@ -9,7 +9,7 @@
 #include <functional>
 #include <numbers>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {

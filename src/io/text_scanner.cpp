@@ -114,4 +114,9 @@ std::optional<double> TextScanner::next_number() {
   return value;
 }
 
+bool is_blank_or_comment(std::string_view line) {
+  const std::string_view text = trim(line);
+  return text.empty() || text[0] == '#' || text[0] == '%' || text.substr(0, 2) == "//";
+}
+
 }  // namespace palpate::io

@@ -88,6 +88,9 @@ class TextScanner {
 /// `text` without white space (and CR) around it.
 [[nodiscard]] std::string_view trim(std::string_view text);
 
+/// Blank, or a comment: starts with #, // or %.
+[[nodiscard]] bool is_blank_or_comment(std::string_view line);
+
 /// Takes the first blank-separated word off `text`; empty when none is left.
 std::string_view take_word(std::string_view& text);
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/encode_cloud.hpp"
+#include "io/formats.hpp"
 #include "io/input.hpp"
 #include "palpate/base/error.hpp"
 

@@ -1,17 +1,123 @@
-#include "io/xyz.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "io/cloud_builder.hpp"
+#include "io/formats.hpp"
 #include "io/input.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {
 namespace {
+
+// Columns of a text cloud that are looked at; more are refused.
+constexpr std::size_t kMostTextColumns = 64;
+
+// The cells of one line.
+struct TextCells {
+  std::array<std::string_view, kMostTextColumns> cells;
+  std::size_t count = 0;
+  bool too_many = false;
+};
+
+constexpr std::string_view kMarks = ",;";
+
+// The next cell and the rest of the line behind it and its separator.
+std::string_view take_cell(std::string_view& rest, bool marked) {
+  if (!marked) {
+    const std::string_view word = take_word(rest);
+    rest = trim(rest);
+    return word;
+  }
+  const std::size_t end = std::min(rest.find_first_of(kMarks), rest.size());
+  const std::string_view cell = trim(rest.substr(0, end));
+  rest.remove_prefix(end);
+  return cell;
+}
+
+// Cuts at commas and semicolons where the line has any, blanks around the cells left out; two in a
+// row enclose an empty cell. Otherwise cuts at blanks and tabs, several counting as one.
+TextCells split_cells(std::string_view line) {
+  TextCells result;
+  std::string_view rest = trim(line);
+  const bool marked = rest.find_first_of(kMarks) != std::string_view::npos;
+  bool more = !rest.empty();
+  while (more) {
+    if (result.count == kMostTextColumns) {
+      result.too_many = true;
+      break;
+    }
+    result.cells[result.count++] = take_cell(rest, marked);
+    more = !rest.empty();
+    if (more && marked) rest.remove_prefix(1);
+  }
+  return result;
+}
+
+// "1,5;2,0": commas inside the cells of a semicolon list.
+bool has_decimal_commas(std::string_view line) {
+  return line.find(';') != std::string_view::npos && line.find(',') != std::string_view::npos;
+}
+
+using Rows = std::vector<std::array<double, kMostTextColumns>>;
+
+// "X[m]", "\"x\"", "//X" all mean x.
+std::string_view bare_name(std::string_view name) {
+  constexpr std::string_view kQuotes = "\"'/#";
+  while (!name.empty() && kQuotes.find(name.front()) != std::string_view::npos) {
+    name.remove_prefix(1);
+  }
+  return trim(name.substr(0, name.find_first_of("[(\"'")));
+}
+
+bool are_unit(const Rows& rows, std::size_t first) {
+  if (rows.empty()) return false;
+  std::size_t unit = 0;
+  for (const auto& row : rows) {
+    const double length = std::hypot(row[first], row[first + 1], row[first + 2]);
+    if (std::abs(length - 1) < 0.01) ++unit;
+  }
+  return 2 * unit > rows.size();
+}
+
+// From a header line.
+Roles roles_from_names(const TextCells& names) {
+  Roles roles;
+  for (std::size_t i = 0; i < names.count; ++i) roles.add(role_of(bare_name(names.cells[i])));
+  return roles;
+}
+
+// What follows x, y and z, from the number of columns and the first few rows of numbers.
+std::vector<Role> roles_behind(std::size_t count, const Rows& rows) {
+  using enum Role;
+  switch (count) {
+    case 4:
+      return {intensity};
+    case 6:
+      if (are_unit(rows, 3)) return {normal_x, normal_y, normal_z};
+      return {red, green, blue};
+    case 7:
+      return {intensity, red, green, blue};
+    case 9:
+      if (are_unit(rows, 3)) return {normal_x, normal_y, normal_z, red, green, blue};
+      return {red, green, blue, normal_x, normal_y, normal_z};
+    default:
+      return {};
+  }
+}
+
+Roles roles_from_rows(std::size_t count, const Rows& rows) {
+  Roles roles;
+  for (const Role role : {Role::x, Role::y, Role::z}) roles.add(role);
+  for (const Role role : roles_behind(count, rows)) roles.add(role);
+  while (roles.size() < count) roles.add(std::nullopt);
+  return roles;
+}
 
 constexpr std::string_view kRemedy =
     "A text cloud has one point per line, x y z first, or a header line that names the columns x, "
@@ -25,8 +131,8 @@ class XyzReader {
     const std::optional<std::size_t> announced = read_count();
     find_columns();
     // A column takes two characters at least.
-    const std::size_t room = (input_.bytes.size() - scanner_.offset()) / (2 * columns_.count) + 1;
-    CloudBuilder builder(input_, columns_.columns, ColorScale::guess, std::min(room, expected()));
+    const std::size_t room = (input_.bytes.size() - scanner_.offset()) / (2 * roles_.size()) + 1;
+    CloudBuilder builder(input_, roles_.columns(), ColorScale::guess, std::min(room, expected()));
     Progress progress(input_.options, input_.bytes.size());
     Row row{};
     std::size_t rows = 0;
@@ -82,7 +188,7 @@ class XyzReader {
 
   bool named_in_comment() const {
     const std::string_view text = trim(line_);
-    return text.substr(0, 2) == "//" && columns_from_names(cells_).has_value();
+    return text.substr(0, 2) == "//" && roles_from_names(cells_).has_point();
   }
 
   bool is_number_line() const {
@@ -90,20 +196,19 @@ class XyzReader {
   }
 
   void take_names() {
-    const std::optional<TextColumns> columns = columns_from_names(cells_);
-    if (!columns) {
+    roles_ = roles_from_names(cells_);
+    if (!roles_.has_point()) {
       fail_at_line(input_, line_begin_,
                    fmt::format("\"{}\" is neither a point nor a header with the columns x, y and z",
                                excerpt(line_)),
                    kRemedy);
     }
-    columns_ = *columns;
     has_names_ = true;
   }
 
   void guess_columns() {
     constexpr std::size_t kSample = 100;
-    std::vector<std::array<double, kMostTextColumns>> rows;
+    Rows rows;
     std::size_t count = 0;
     while (rows.size() < kSample && next_cells()) {
       if (count == 0) refuse_decimal_commas();
@@ -116,20 +221,20 @@ class XyzReader {
     }
     if (count == 0) fail(input_, "no line holds numbers", kRemedy);
     if (count < 3) fail(input_, fmt::format("{} columns, but x y z need 3", count), kRemedy);
-    columns_ = columns_from_rows(count, rows);
+    roles_ = roles_from_rows(count, rows);
   }
 
   bool read_row(Row& row) {
     if (!next_cells()) return false;
-    if (cells_.count != columns_.count || cells_.too_many) {
+    if (cells_.count != roles_.size() || cells_.too_many) {
       refuse_decimal_commas();
       fail_at_line(input_, line_begin_,
                    fmt::format("{} columns, but the first line has {}: \"{}\"", cells_.count,
-                               columns_.count, excerpt(line_)),
+                               roles_.size(), excerpt(line_)),
                    kRemedy);
     }
-    for (std::size_t i = 0; i < columns_.count; ++i) {
-      if (columns_.roles[i]) row[index_of(*columns_.roles[i])] = cell_number(cells_.cells[i]);
+    for (std::size_t i = 0; i < roles_.size(); ++i) {
+      if (const auto role = roles_[i]) row[index_of(*role)] = cell_number(cells_.cells[i]);
     }
     return true;
   }
@@ -165,7 +270,7 @@ class XyzReader {
 
   const Input& input_;
   TextScanner scanner_;
-  TextColumns columns_;
+  Roles roles_;
   TextCells cells_;
   std::string_view line_;
   std::size_t line_begin_ = 0;

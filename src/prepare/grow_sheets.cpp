@@ -1,5 +1,3 @@
-#include "prepare/grow_sheets.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +8,6 @@
 #include "field/formulas.hpp"
 #include "geometry/neighborhoods.hpp"
 #include "prepare/sheets.hpp"
-#include "prepare/snapping.hpp"
 
 namespace palpate {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/normals.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/sheet_fit.hpp"
@@ -47,13 +48,10 @@ std::size_t step_for(const CellGrid& grid, std::size_t samples) {
 double noise_in_windows(const CellGrid& grid, double spacing, const Window& window) {
   const std::size_t step = step_for(grid, kSamples);
   std::vector<float> residuals((grid.size() - step / 2 + step - 1) / step, -1);
-  detail::parallel_ranges(residuals.size(), 64, [&](std::size_t begin, std::size_t end) {
-    SheetFitter fitter;
-    for (std::size_t k = begin; k < end; ++k) {
-      const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
-      const SheetFit fit = fitter.fit(grid, at, window.reach * spacing, spacing);
-      if (fit.points >= window.fewest) residuals[k] = static_cast<float>(fit.bend);
-    }
+  detail::parallel_each_with<SheetFitter>(residuals.size(), 64, [&](std::size_t k, auto& fitter) {
+    const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
+    const SheetFit fit = fitter.fit(grid, at, window.reach * spacing, spacing);
+    if (fit.points >= window.fewest) residuals[k] = static_cast<float>(fit.bend);
   });
   std::erase(residuals, -1.f);
   if (residuals.empty()) return 0;
@@ -79,24 +77,21 @@ struct Widths {
 std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
   const std::size_t step = step_for(grid, kWideSamples);
   std::vector<Widths> all((grid.size() + step - 1) / step);
-  detail::parallel_ranges(all.size(), 16, [&](std::size_t begin, std::size_t end) {
-    SheetFitter fitter;
-    for (std::size_t k = begin; k < end; ++k) {
-      const Eigen::Vector3f& at = grid.points()[std::min(k * step + step / 2, grid.size() - 1)];
-      const SheetFit narrow = fitter.fit(grid, at, kNarrow.reach * spacing, spacing);
-      const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, 0);
-      const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
-      if (!(narrow.bend > 0 && map.bend > 0 && middle.bend > 0)) continue;
-      const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, 0);
-      double together = wide.bend;  // looked at where shape does not count
-      if (wide.bend <= kShapeGrowth * middle.bend) {
-        const double tiles = fitter.tile_variance(kWideReach * spacing, kTile * spacing);
-        together = std::max(together, std::sqrt(tiles));
-      }
-      all[k] = {static_cast<float>(wide.bend / middle.bend),
-                static_cast<float>(wide.bend / narrow.bend), static_cast<float>(wide.bend),
-                static_cast<float>(together / map.bend)};
+  detail::parallel_each_with<SheetFitter>(all.size(), 16, [&](std::size_t k, auto& fitter) {
+    const Eigen::Vector3f& at = grid.points()[std::min(k * step + step / 2, grid.size() - 1)];
+    const SheetFit narrow = fitter.fit(grid, at, kNarrow.reach * spacing, spacing);
+    const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, 0);
+    const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
+    if (!(narrow.bend > 0 && map.bend > 0 && middle.bend > 0)) return;
+    const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, 0);
+    double together = wide.bend;  // looked at where shape does not count
+    if (wide.bend <= kShapeGrowth * middle.bend) {
+      const double tiles = fitter.tile_variance(kWideReach * spacing, kTile * spacing);
+      together = std::max(together, std::sqrt(tiles));
     }
+    all[k] = {static_cast<float>(wide.bend / middle.bend),
+              static_cast<float>(wide.bend / narrow.bend), static_cast<float>(wide.bend),
+              static_cast<float>(together / map.bend)};
   });
   std::erase_if(all, [](const Widths& w) { return w.growth == 0; });
   return all;
@@ -152,13 +147,114 @@ bool is_stray(const SheetInput& input, std::size_t i, double typical, SheetFitte
 
 std::vector<std::uint8_t> find_strays(const SheetInput& input, double typical) {
   std::vector<std::uint8_t> strays(input.grid.size());
-  detail::parallel_ranges(strays.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    SheetFitter fitter;
-    for (std::size_t i = begin; i < end; ++i) {
-      strays[i] = is_stray(input, i, typical, fitter) ? 1 : 0;
-    }
+  detail::parallel_each_with<SheetFitter>(strays.size(), 4096, [&](std::size_t i, auto& fitter) {
+    strays[i] = is_stray(input, i, typical, fitter) ? 1 : 0;
   });
   return strays;
+}
+
+namespace {
+
+constexpr std::size_t kRawPerSample = 32;
+constexpr std::size_t kMostSamples = 20000;
+constexpr float kWindow = 5;         // spacings
+constexpr float kSurroundings = 20;  // spacings
+constexpr double kFlatter = 0.3;     // the quantile that is taken
+constexpr std::size_t kFewest = 8;   // samples that a quantile is taken of
+
+}  // namespace
+
+NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
+  const std::size_t step = std::max(kRawPerSample, raw.size() / kMostSamples);
+  const std::size_t count = raw.size() / step;
+  std::vector<float> found(count);
+  detail::parallel_each_with<SheetFitter>(count, 64, [&](std::size_t k, auto& fitter) {
+    const std::size_t i = k * step + step / 2;
+    const SheetFit fit =
+        fitter.fit(raw, raw.points()[i], static_cast<double>(kWindow * spacings[i]),
+                   static_cast<double>(spacings[i]));
+    found[k] = static_cast<float>(fit.bend * fit.footprint);
+  });
+  std::vector<Eigen::Vector3f> places;
+  std::vector<float> values;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!(found[k] > 0)) continue;
+    places.push_back(raw.points()[k * step + step / 2]);
+    values.push_back(found[k]);
+  }
+  reach_ = kSurroundings * static_cast<float>(median(spacings));
+  places_ = CellGrid(places);
+  for (const std::uint32_t k : places_.order()) values_.push_back(values[k]);
+  typical_ = static_cast<float>(median(values_));
+}
+
+std::vector<float> NoiseMap::at(std::span<const Eigen::Vector3f> points) const {
+  std::vector<float> all(points.size(), typical_);
+  detail::parallel_ranges(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> near;
+    std::vector<float> around;
+    for (std::size_t i = begin; i < end; ++i) {
+      near.clear();
+      around.clear();
+      places_.within(points[i], reach_, near);
+      if (near.size() < kFewest) continue;
+      for (const std::uint32_t k : near) around.push_back(values_[k]);
+      const auto place = around.begin() + static_cast<std::ptrdiff_t>(
+                                              kFlatter * static_cast<double>(around.size() - 1));
+      std::nth_element(around.begin(), place, around.end());
+      all[i] = *place;
+    }
+  });
+  return all;
+}
+
+namespace {
+
+// Noise tilts normals by 3.2 sigma_n delta / R^2 (docs/method.md 5.3).
+constexpr double kNoiseToTilt = 3.2;
+
+// No R is above this many floors (2.5 spacings each): more smoothing would cost shape and time, and
+// noise that needs it is the sensor's to filter.
+constexpr float kMostFloors = 2.4f;
+
+// Rms distance from the plane, in R. Noise gives theta R / (3.2 s), about 0.03; a sphere of four R
+// 0.04; a right angle 0.2.
+constexpr float kBends = 0.08f;
+constexpr float kEdge = 0.14f;
+constexpr float kShrink = 0.25f;
+constexpr float kSmoothing = 0.5f;  // R within which radii are averaged
+
+}  // namespace
+
+std::vector<float> noisy_radii(const CellGrid& grid, const NoiseMap& noise, double excess,
+                               double normal_error, const std::vector<float>& floors) {
+  const double scale = kNoiseToTilt * excess / normal_error;
+  std::vector<float> radii = noise.at(grid.points());
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const double radius = std::sqrt(scale * static_cast<double>(radii[i]));
+    radii[i] = std::clamp(static_cast<float>(radius), floors[i], kMostFloors * floors[i]);
+  }
+  shrink_at_edges(grid, floors, radii);
+  return radii;
+}
+
+void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
+                     std::vector<float>& radii) {
+  const std::vector<float> residuals = estimate_normals(grid, radii).residuals;
+  std::vector<float> small(radii.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const float bend = (residuals[i] / radii[i] - kBends) / (kEdge - kBends);
+    small[i] = std::max(floors[i], radii[i] * (1 - kShrink * std::clamp(bend, 0.0f, 1.0f)));
+  }
+  // Averaged, so that noise in the residuals does not make R flicker from point to point.
+  detail::parallel_each_with<std::vector<std::uint32_t>>(
+      radii.size(), 1024, [&](std::size_t i, auto& near) {
+        near.clear();
+        grid.within(grid.points()[i], kSmoothing * radii[i], near);
+        float sum = 0;
+        for (const std::uint32_t k : near) sum += small[k];
+        if (!near.empty()) radii[i] = std::max(floors[i], sum / static_cast<float>(near.size()));
+      });
 }
 
 }  // namespace palpate

@@ -11,16 +11,14 @@
 #include <vector>
 
 #include "geometry/normals.hpp"
-#include "geometry/weight_sums.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/filters.hpp"
+#include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "prepare/check_input.hpp"
 #include "prepare/columns.hpp"
-#include "prepare/growth.hpp"
 #include "prepare/noise.hpp"
 #include "prepare/radii.hpp"
 #include "prepare/sheets.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate {
 namespace {
@@ -228,13 +226,13 @@ class Preparation {
 
   void weigh() {
     points_.kernel = options_.kernel;
-    sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
+    sums_ = WeightSums(points_.grid, points_.radii, options_.kernel);
     if (!options_.radius && !options_.paper && options_.estimate_normals &&
-        close_gaps(points_.grid, sums_.own, spacings_, points_.radii, own_sheets_) > 0) {
+        close_gaps(points_.grid, sums_->own, spacings_, points_.radii, own_sheets_) > 0) {
       limit_growth(points_.grid, 1, points_.radii, &own_sheets_);
-      sums_ = weight_sums(points_.grid, points_.radii, options_.kernel);
+      sums_ = WeightSums(points_.grid, points_.radii, options_.kernel);
     }
-    points_.density_weights = density_weights(sums_);
+    points_.density_weights = density_weights(*sums_);
     if (!counts_.empty()) {
       weigh_by_counts(points_.grid, in_grid_order(points_.grid, counts_), points_.radii,
                       points_.density_weights);
@@ -247,7 +245,7 @@ class Preparation {
 
   /// Points that noise made stay in the index and weigh nothing.
   void silence_speckle() {
-    auto mask = detail::speckle_mask(points_.grid, points_.radii, sums_);
+    auto mask = speckle_mask(points_.grid, points_.radii, *sums_);
     for (std::size_t i = 0; i < strays_.size(); ++i) mask[i] |= strays_[i];
     const auto speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
     if (speckle < points_.size()) {  // a cloud of nothing else is a sparse one
@@ -264,13 +262,13 @@ class Preparation {
   const PointCloud* cloud_;  // that, or what was given
   std::optional<Eigen::Vector3d> viewpoint_;
   SurfacePoints points_;
-  PrepareReport report_;
+  Prepared::Report report_;
   std::vector<float> spacings_;
   std::vector<std::uint32_t> counts_;   // points that each voxel's stands for; empty: one each
   std::vector<Eigen::Vector3f> given_;  // in sorted order; empty: none
   OwnSheets own_sheets_;
   std::vector<std::uint8_t> strays_;  // 1: one; empty: not looked for
-  detail::WeightSums sums_;
+  std::optional<WeightSums> sums_;
   double footprint_ = 0;
   Noise noise_;
   std::size_t twins_ = 0;

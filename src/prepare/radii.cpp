@@ -1,17 +1,19 @@
 #include "prepare/radii.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <vector>
+#include <limits>
+#include <span>
+#include <utility>
 
-#include "geometry/normals.hpp"
+#include "geometry/neighborhoods.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/sheet_fit.hpp"
 
 namespace palpate {
-
 namespace {
 
 constexpr std::size_t kSpacingSamples = 1000;
@@ -43,131 +45,194 @@ bool is_irregular(const CellGrid& grid, std::span<const float> spacings) {
 
 namespace {
 
-constexpr std::size_t kRawPerSample = 32;
-constexpr std::size_t kMostSamples = 20000;
-constexpr float kWindow = 5;         // spacings
-constexpr float kSurroundings = 20;  // spacings
-constexpr double kFlatter = 0.3;     // the quantile that is taken
-constexpr std::size_t kFewest = 8;   // samples that a quantile is taken of
+constexpr float kMultiple = 2.5f;      // R over the gap
+constexpr float kFaint = 2.5f;         // sums of weights: 5.8 on a square grid
+constexpr float kOpposite = -0.5f;     // cosine between two that lie on opposite sides
+constexpr float kFirstReach = 1.5f;    // radii
+constexpr int kWidenings = 2;          // of the reach, each twofold: gaps up to three radii
+constexpr std::size_t kEnough = 2048;  // points in reach: no sparse place any more
+
+/// The nearest in each of the six cones round the axes.
+class Cones {
+ public:
+  void add(const Eigen::Vector3f& offset) {
+    const float distance = offset.norm();
+    if (!(distance > 0)) return;
+    Eigen::Index axis = 0;
+    offset.cwiseAbs().maxCoeff(&axis);
+    Nearest& cone = cones_[static_cast<std::size_t>(2 * axis + (offset[axis] > 0 ? 1 : 0))];
+    if (distance < cone.distance) cone = {distance, offset / distance};
+  }
+
+  /// The further of the nearest two that lie on opposite sides; infinity: there are none, m.
+  [[nodiscard]] float gap() const {
+    float gap = kNone;
+    for (std::size_t a = 0; a < cones_.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const float both = std::max(cones_[a].distance, cones_[b].distance);
+        if (both < gap && cones_[a].direction.dot(cones_[b].direction) < kOpposite) gap = both;
+      }
+    }
+    return gap;
+  }
+
+ private:
+  static constexpr float kNone = std::numeric_limits<float>::infinity();
+  struct Nearest {
+    float distance = kNone;
+    Eigen::Vector3f direction = Eigen::Vector3f::Zero();
+  };
+  std::array<Nearest, 6> cones_;
+};
+
+/// The gap that a point lies in; 0 where none is found.
+float gap_at(const CellGrid& grid, std::uint32_t i, float radius,
+             std::vector<std::uint32_t>& near) {
+  const Eigen::Vector3f& p = grid.points()[i];
+  float reach = kFirstReach * radius;
+  for (int k = 0; k < kWidenings; ++k, reach *= 2) {
+    near.clear();
+    grid.within(p, reach, near);
+    if (near.size() > kEnough) break;
+    Cones cones;
+    for (const std::uint32_t j : near) cones.add(grid.points()[j] - p);
+    // Those in sight only are the nearest of all.
+    if (const float gap = cones.gap(); gap <= reach) return gap;
+  }
+  return 0;
+}
 
 }  // namespace
 
-NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
-  const std::size_t step = std::max(kRawPerSample, raw.size() / kMostSamples);
-  const std::size_t count = raw.size() / step;
-  std::vector<float> found(count);
-  detail::parallel_ranges(count, 64, [&](std::size_t begin, std::size_t end) {
+std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
+                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own) {
+  std::vector<std::uint32_t> faint;
+  for (std::uint32_t i = 0; i < radii.size(); ++i) {
+    if (sums[i] < kFaint) faint.push_back(i);
+  }
+  std::vector<std::uint8_t> raised(faint.size());
+  const std::vector<float> before = radii;
+  detail::parallel_ranges(faint.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> near;
     SheetFitter fitter;
     for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t i = k * step + step / 2;
-      const SheetFit fit =
-          fitter.fit(raw, raw.points()[i], static_cast<double>(kWindow * spacings[i]),
-                     static_cast<double>(spacings[i]));
-      found[k] = static_cast<float>(fit.bend * fit.footprint);
+      const std::uint32_t i = faint[k];
+      const float wanted = kMultiple * gap_at(grid, i, before[i], near);
+      if (!(wanted > before[i])) continue;
+      const SheetFit fit = fitter.fit(grid, grid.points()[i], static_cast<double>(wanted),
+                                      static_cast<double>(spacings[i]));
+      if (!fit.is_sheet(static_cast<double>(wanted), 0)) continue;
+      radii[i] = wanted;
+      spacings[i] = std::max(spacings[i], wanted / kMultiple);
+      own.normals[i] = fit.normal.cast<float>();
+      own.confidences[i] = static_cast<float>(fit.planarity);
+      own.residuals[i] = static_cast<float>(fit.residual);
+      own.bends[i] = static_cast<float>(fit.bend);
+      raised[k] = 1;
     }
   });
-  std::vector<Eigen::Vector3f> places;
-  std::vector<float> values;
-  for (std::size_t k = 0; k < count; ++k) {
-    if (!(found[k] > 0)) continue;
-    places.push_back(raw.points()[k * step + step / 2]);
-    values.push_back(found[k]);
-  }
-  reach_ = kSurroundings * static_cast<float>(median(spacings));
-  places_ = CellGrid(places);
-  for (const std::uint32_t k : places_.order()) values_.push_back(values[k]);
-  typical_ = static_cast<float>(median(values_));
-}
-
-std::vector<float> NoiseMap::at(std::span<const Eigen::Vector3f> points) const {
-  std::vector<float> all(points.size(), typical_);
-  detail::parallel_ranges(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> near;
-    std::vector<float> around;
-    for (std::size_t i = begin; i < end; ++i) {
-      near.clear();
-      around.clear();
-      places_.within(points[i], reach_, near);
-      if (near.size() < kFewest) continue;
-      for (const std::uint32_t k : near) around.push_back(values_[k]);
-      const auto place = around.begin() + static_cast<std::ptrdiff_t>(
-                                              kFlatter * static_cast<double>(around.size() - 1));
-      std::nth_element(around.begin(), place, around.end());
-      all[i] = *place;
-    }
-  });
-  return all;
+  return static_cast<std::size_t>(std::ranges::count(raised, 1));
 }
 
 namespace {
 
-// Noise tilts normals by 3.2 sigma_n delta / R^2 (docs/method.md 5.3).
-constexpr double kNoiseToTilt = 3.2;
+constexpr float kMatters = 0.8f;  // of the own R: a smaller limit is worth looking for
+constexpr std::uint32_t kBlockPoints = 64;
+constexpr float kPlane = 0.5f;  // confidence
+constexpr float kResiduals = 3;
+constexpr float kOff = 0.12f;  // of the way
 
-// No R is above this many floors (2.5 spacings each): more smoothing would cost shape and time, and
-// noise that needs it is the sensor's to filter.
-constexpr float kMostFloors = 2.4f;
+/// The limits of one block after another.
+class Limiter {
+ public:
+  Limiter(const CellGrid& grid, float slope, const std::vector<float>& radii,
+          const std::vector<float>& smallest, const OwnSheets* own)
+      : grid_(grid), slope_(slope), radii_(radii), smallest_(smallest), own_(own) {}
 
-// Rms distance from the plane, in R. Noise gives theta R / (3.2 s), about 0.03; a sphere of four R
-// 0.04; a right angle 0.2.
-constexpr float kBends = 0.08f;
-constexpr float kEdge = 0.14f;
-constexpr float kShrink = 0.25f;
-constexpr float kSmoothing = 0.5f;  // R within which radii are averaged
+  /// limits: of all points; those of the block are written.
+  void limit(const detail::Block& block, std::vector<float>& limits) {
+    find_leaves(block);
+    for (std::uint32_t i = block.begin; i < block.end; ++i) limits[i] = limit_at(i);
+  }
+
+ private:
+  /// A leaf and the least that its points can limit those of the block to, m.
+  struct Leaf {
+    float bound;
+    std::uint32_t cell;
+  };
+
+  /// The leaves that may limit a point of the block, the strictest first.
+  void find_leaves(const detail::Block& block) {
+    const auto own = radii_.begin();
+    const float largest = kMatters * *std::max_element(own + block.begin, own + block.end);
+    leaves_.clear();
+    std::array<std::uint32_t, CellGrid::kMaxStack> stack;
+    std::size_t open = 0;
+    stack[open++] = 0;
+    while (open > 0) {
+      const std::uint32_t index = stack[--open];
+      if (smallest_[index] >= largest) continue;
+      const CellGrid::Cell& cell = grid_.cells()[index];
+      const float squared = detail::squared_distance(cell, block.lower, block.upper);
+      const float bound = smallest_[index] + slope_ * std::sqrt(squared);
+      if (bound >= largest) continue;
+      for (std::uint32_t k = 0; k < cell.children; ++k) stack[open++] = cell.first_child + k;
+      if (cell.children == 0) leaves_.push_back({bound, index});
+    }
+    std::sort(leaves_.begin(), leaves_.end(),
+              [](const Leaf& a, const Leaf& b) { return a.bound < b.bound; });
+  }
+
+  /// min_j (R_j + distance / 2).
+  [[nodiscard]] float limit_at(std::uint32_t i) const {
+    const Eigen::Vector3f& p = grid_.points()[i];
+    const float matters = kMatters * radii_[i];
+    float limit = matters;
+    for (const Leaf& leaf : leaves_) {
+      if (leaf.bound >= limit) break;
+      const CellGrid::Cell& cell = grid_.cells()[leaf.cell];
+      const float bound = slope_ * std::sqrt(detail::squared_distance(cell, p));
+      if (smallest_[leaf.cell] + bound >= limit) continue;
+      for (std::uint32_t j = cell.begin; j < cell.end; ++j) {
+        const float distance = std::sqrt(detail::squared_distance(grid_.points()[j], p));
+        const float limited = radii_[j] + slope_ * distance;
+        if (limited < limit && !on_plane(i, j, distance)) limit = limited;
+      }
+    }
+    return limit < matters ? limit : radii_[i];
+  }
+
+  /// Does j lie on the plane of i, as far as one can tell?
+  [[nodiscard]] bool on_plane(std::uint32_t i, std::uint32_t j, float distance) const {
+    if (!own_ || own_->confidences[i] < kPlane) return false;
+    const float off = std::abs(own_->normals[i].dot(grid_.points()[j] - grid_.points()[i]));
+    return off <= std::max(kResiduals * own_->residuals[i], kOff * distance);
+  }
+
+  const CellGrid& grid_;
+  float slope_;  // of R over distance
+  const std::vector<float>& radii_;
+  const std::vector<float>& smallest_;
+  const OwnSheets* own_;
+  std::vector<Leaf> leaves_;
+};
 
 }  // namespace
 
-std::vector<float> noisy_radii(const CellGrid& grid, const NoiseMap& noise, double excess,
-                               double normal_error, const std::vector<float>& floors) {
-  const double scale = kNoiseToTilt * excess / normal_error;
-  std::vector<float> radii = noise.at(grid.points());
-  for (std::size_t i = 0; i < radii.size(); ++i) {
-    const double radius = std::sqrt(scale * static_cast<double>(radii[i]));
-    radii[i] = std::clamp(static_cast<float>(radius), floors[i], kMostFloors * floors[i]);
-  }
-  shrink_at_edges(grid, floors, radii);
-  return radii;
-}
-
-void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
-                     std::vector<float>& radii) {
-  const std::vector<float> residuals = estimate_normals(grid, radii).residuals;
-  std::vector<float> small(radii.size());
-  for (std::size_t i = 0; i < radii.size(); ++i) {
-    const float bend = (residuals[i] / radii[i] - kBends) / (kEdge - kBends);
-    small[i] = std::max(floors[i], radii[i] * (1 - kShrink * std::clamp(bend, 0.0f, 1.0f)));
-  }
-  // Averaged, so that noise in the residuals does not make R flicker from point to point.
-  detail::parallel_ranges(radii.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> near;
-    for (std::size_t i = begin; i < end; ++i) {
-      near.clear();
-      grid.within(grid.points()[i], kSmoothing * radii[i], near);
-      float sum = 0;
-      for (const std::uint32_t k : near) sum += small[k];
-      if (!near.empty()) radii[i] = std::max(floors[i], sum / static_cast<float>(near.size()));
-    }
+void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii,
+                  const OwnSheets* own) {
+  if (radii.empty()) return;
+  const auto [low, high] = std::minmax_element(radii.begin(), radii.end());
+  if (*low >= kMatters * *high) return;
+  const std::vector<float> smallest = detail::smallest_in_cells(grid, radii);
+  const std::vector<detail::Block> blocks = detail::make_blocks(grid, kBlockPoints);
+  std::vector<float> limited(radii.size());
+  detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
+    Limiter limiter(grid, slope, radii, smallest, own);
+    for (std::size_t b = begin; b < end; ++b) limiter.limit(blocks[b], limited);
   });
-}
-
-std::vector<float> density_weights(const CellGrid& grid, std::span<const float> radii,
-                                   Kernel kernel) {
-  return density_weights(weight_sums(grid, radii, kernel));
-}
-
-detail::WeightSums weight_sums(const CellGrid& grid, std::span<const float> radii, Kernel kernel) {
-  const simd::JoinFunctions& joins = simd::best_joins();
-  return detail::weight_sums(grid, radii,
-                             kernel == Kernel::wyvill ? joins.wyvill_sums : joins.wendland_sums);
-}
-
-std::vector<float> density_weights(const detail::WeightSums& sums) {
-  constexpr float kShareOfAround = 0.8f;
-  std::vector<float> weights(sums.own.size());
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    weights[i] = 1 / std::max(sums.own[i], kShareOfAround * sums.around[i]);
-  }
-  return weights;
+  radii = std::move(limited);
 }
 
 }  // namespace palpate

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <cstddef>
 #include <span>
 #include <vector>
 
-#include "geometry/weight_sums.hpp"
-#include "palpate/field/field_options.hpp"
 #include "palpate/geometry/cell_grid.hpp"
+#include "prepare/sheets.hpp"
 
 namespace palpate {
 
@@ -19,53 +18,21 @@ namespace palpate {
 /// Do the points lie so irregularly that the gaps between them need a larger support?
 [[nodiscard]] bool is_irregular(const CellGrid& grid, std::span<const float> spacings);
 
-/// How noisy a cloud is where: sensors err more on what is far away or faces them.
-class NoiseMap {
- public:
-  /// `raw`: the points as measured, `spacings` theirs, in sorted order, m.
-  NoiseMap(const CellGrid& raw, std::span<const float> spacings);
+/// Raises the support radii (m) of points that hardly any other's support reaches, though others
+/// lie on opposite sides of them, to 2.5 times the way to those, where one sheet goes on over the
+/// gap; that sheet becomes the point's own, and the way its spacing. Beside far denser points (a
+/// handful of near-duplicates is enough) spacings and limit_growth() make R too small, which tears
+/// a hole. A stray point has all others on one side and keeps its radius; so does the corner of a
+/// sheet. Returns how many were raised. Does not depend on the number of threads.
+std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
+                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own);
 
-  /// sigma_n delta for each of `points`, m^2: rms distance from a smooth surface times the root of
-  /// the area per point, as the flatter part of the surroundings has it, so that edges are no
-  /// noise.
-  [[nodiscard]] std::vector<float> at(std::span<const Eigen::Vector3f> points) const;
-
- private:
-  CellGrid places_;
-  std::vector<float> values_;  // sigma_n delta, in the order of places_
-  float reach_ = 0;            // how far a value is of interest, m
-  float typical_ = 0;
-};
-
-/// Support radii for a noisy cloud: from place to place so large that noise tilts normals by
-/// `normal_error` (rad), nowhere below a point's `floor` nor above 2.4 times that. `excess`:
-/// Noise::excess. All in sorted order, m.
-[[nodiscard]] std::vector<float> noisy_radii(const CellGrid& grid, const NoiseMap& noise,
-                                             double excess, double normal_error,
-                                             const std::vector<float>& floors);
-
-/// Makes support radii smaller again, by a quarter at most, where the points within them bend away
-/// from a plane by more than noise explains: at edges, which a large R rounds off by about 0.35 R
-/// (docs/method.md 5.3), a little noise is the smaller evil. Part of noisy_radii().
-void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
-                     std::vector<float>& radii);
-
-/// What each point counts, so that a sampled surface weighs about 1 however dense its points are
-/// (docs/method.md 2.2):
-///
-///   S_i = sum_j w(|p_i - p_j| / R_j),  the point itself included
-///   Sbar_i = sum_j w_ij S_j / sum_j w_ij
-///   a_i = 1 / max(S_i, 0.8 Sbar_i)
-///
-/// Sorted order; radii are the R_i, m. Positive and at most 1.
-/// @throws Error when there are not as many radii as points, or one is not positive and finite.
-[[nodiscard]] std::vector<float> density_weights(const CellGrid& grid, std::span<const float> radii,
-                                                 Kernel kernel = Kernel::wyvill);
-
-/// The sums that density_weights() is made of, for those who need them for more than that.
-[[nodiscard]] detail::WeightSums weight_sums(const CellGrid& grid, std::span<const float> radii,
-                                             Kernel kernel);
-
-[[nodiscard]] std::vector<float> density_weights(const detail::WeightSums& sums);
+/// Lets support radii vary slowly from place to place, as the paper's section III-D assumes: each
+/// becomes min_j (R_j + slope |p_i - p_j|). Then a sparse point's support ends before it reaches
+/// what is sampled finely. In sorted order, m.
+/// `own`: points on the plane of a point do not limit it, since it tells nothing else of them;
+/// nullptr: all do.
+void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii,
+                  const OwnSheets* own = nullptr);
 
 }  // namespace palpate

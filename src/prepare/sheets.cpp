@@ -6,7 +6,6 @@
 
 #include "geometry/neighborhoods.hpp"
 #include "geometry/normals.hpp"
-#include "prepare/grow_sheets.hpp"
 #include "prepare/sheet_fit.hpp"
 
 namespace palpate {

@@ -105,4 +105,56 @@ struct Twin {
 [[nodiscard]] SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known,
                                                 OwnSheets& own, std::vector<Twin>& twins);
 
+/// Which sheet each point lies on.
+struct Growths {
+  SurfacePoints::Sheets sheets;  ///< every sheet is a part of its own; no gaps yet
+  std::vector<std::uint8_t>
+      sure;                 ///< 1: its own fit put the point there; 0: a neighbour's, or none
+  std::vector<Twin> twins;  ///< in rising order
+};
+
+/// The first half of make_sheets(). Normals of one sheet agree afterwards.
+[[nodiscard]] Growths grow_sheets(const SheetInput& input, OwnSheets& own);
+
+/// How far the points i and j may be off each other's plane when they lie on one sheet, m.
+[[nodiscard]] float sheet_tolerance(const SheetInput& input, const OwnSheets& own, std::uint32_t i,
+                                    std::uint32_t j);
+
+/// What a pair of points says of two sheets: should their normals keep (> 0) or change (< 0) their
+/// relative sign? -1 ... 1.
+struct SheetVote {
+  std::uint32_t a = 0;  ///< sheets, a < b
+  std::uint32_t b = 0;
+  float value = 0;
+};
+
+/// Measures how far the next sheet is above and below each point; returns what sheets say of each
+/// other, in the order of their numbers.
+[[nodiscard]] std::vector<SheetVote> look_around(const SheetInput& input, const OwnSheets& own,
+                                                 Growths& grown);
+
+inline constexpr std::uint32_t kNoHost = ~std::uint32_t{0};
+
+/// Whose planes points lie on, in sorted order.
+struct Snapped {
+  std::vector<std::uint8_t> sure;    ///< 1: its own fit is a sheet's; 0: a host's is, or none
+  std::vector<std::uint32_t> hosts;  ///< the sure point whose fit each has: itself, or another, or
+                                     ///< kNoHost
+  std::vector<Twin> twins;           ///< those that lie on a second plane
+};
+
+/// A point is sure of its plane where its own fit is smooth. At edges and creases, where it is not,
+/// a point takes over the fit of the sure one on whose plane it lies. One that lies on none has no
+/// confidence left, unless hardly anything is sure around it.
+[[nodiscard]] Snapped snap_to_planes(const SheetInput& input, OwnSheets& own);
+
+/// The curvature that a sure point's fit tells, 1/m: a sphere's cap of radius a and curvature k is
+/// off its plane by k a^2 / sqrt(48) RMS.
+[[nodiscard]] float bow(const SheetInput& input, const OwnSheets& own, std::uint32_t i);
+
+// How far normals may turn where both fits are bowed, against the arc; and how far off the chord,
+// against the turn: an arc's is half.
+inline constexpr float kTurnMargin = 1.5f;
+inline constexpr float kChord = 0.6f;
+
 }  // namespace palpate

@@ -1,5 +1,3 @@
-#include "prepare/snapping.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,7 @@
 
 #include "geometry/parallel.hpp"
 #include "prepare/sheet_fit.hpp"
+#include "prepare/sheets.hpp"
 
 namespace palpate {
 namespace {
@@ -39,18 +38,16 @@ class Snapping {
   Snapping(const SheetInput& input, OwnSheets& own)
       : input_(input), own_(own), sure_(input.grid.size()) {
     const auto noise = static_cast<float>(input.noise);
-    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
-      std::vector<std::uint32_t> near;
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto radius = static_cast<double>(input.radii[i]);
-        const float bend = own.bends[i];
-        const bool smooth =
-            static_cast<double>(own.residuals[i]) <= flat_residual(radius, input.noise) ||
-            bend <= std::max(kSmoothBend * input.radii[i], kNoisyBend * noise) ||
-            (bend <= kNoisyBend * kNoisier * noise && is_as_around(i, near));
-        sure_[i] = own.confidences[i] >= kPlanarFit && smooth ? 1 : 0;
-      }
-    });
+    detail::parallel_each_with<std::vector<std::uint32_t>>(
+        sure_.size(), 512, [&](std::size_t i, auto& near) {
+          const auto radius = static_cast<double>(input.radii[i]);
+          const float bend = own.bends[i];
+          const bool smooth =
+              static_cast<double>(own.residuals[i]) <= flat_residual(radius, input.noise) ||
+              bend <= std::max(kSmoothBend * input.radii[i], kNoisyBend * noise) ||
+              (bend <= kNoisyBend * kNoisier * noise && is_as_around(i, near));
+          sure_[i] = own.confidences[i] >= kPlanarFit && smooth ? 1 : 0;
+        });
   }
 
   void run() {
@@ -123,10 +120,9 @@ class Snapping {
 
   template <class Body>
   void each_with_memory(const Body& body) const {
-    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
-      std::vector<std::uint32_t> near;
-      for (std::size_t i = begin; i < end; ++i) body(static_cast<std::uint32_t>(i), near);
-    });
+    detail::parallel_each_with<std::vector<std::uint32_t>>(
+        sure_.size(), 512,
+        [&](std::size_t i, auto& near) { body(static_cast<std::uint32_t>(i), near); });
   }
 
   void take_host(std::uint32_t i, std::vector<std::uint32_t>& near) {

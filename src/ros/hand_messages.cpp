@@ -120,13 +120,13 @@ DiagnosticStatus hand_status(const std::string& name, const ServoState& state,
   DiagnosticStatus status;
   const bool ended = has_ended(state.device);
   const std::string guard = in_words(state.guard);
-  status.level =
-      level_of(state.guard.fault != GuardFault::none || state.device == DeviceStatus::failed,
-               state.device == DeviceStatus::silent);
+  status.level = level_of(
+      state.guard.fault != Guard::Fault::none || state.device == DeviceState::Status::failed,
+      state.device == DeviceState::Status::silent);
   status.name = "palpate: " + name;
-  status.message = ended                                  ? "ended"
-                   : state.device == DeviceStatus::silent ? "the device is silent"
-                                                          : guard;
+  status.message = ended                                         ? "ended"
+                   : state.device == DeviceState::Status::silent ? "the device is silent"
+                                                                 : guard;
   if (status.message.empty()) status.message = "ok";
   status.hardware_id = name;
   status.values = {fact("computing p99.9", 1e6 * computing.quantile(0.999), "us"),

@@ -53,8 +53,8 @@ void RobotTarget::look(const ServoState& state, double now, const message::Time&
 
 bool RobotTarget::may_go(const ServoState& state) const {
   const bool held = !options_.dead_man || ((state.buttons >> *options_.dead_man) & 1U) != 0;
-  return held && state.step > 0 && state.device == DeviceStatus::ok &&
-         state.guard.fault == GuardFault::none && !state.paused;
+  return held && state.step > 0 && state.device == DeviceState::Status::ok &&
+         state.guard.fault == Guard::Fault::none && !state.paused;
 }
 
 }  // namespace palpate::ros

@@ -25,13 +25,38 @@ struct FrameTiming {
 class FrameIntervalFilter {
  public:
   /// The moment of a frame with this stamp whose surface is to start at `start`, s.
-  [[nodiscard]] FrameTiming next(double stamp, double start);
+  [[nodiscard]] FrameTiming next(double stamp, double start) {
+    if (frames_ > 0) measure(stamp);
+    // Two snapshots with one start are in order all the same: the newer one goes on from where the
+    // older one is then.
+    if (frames_ > 0) start = std::max(start, last_start_);
+    last_stamp_ = stamp;
+    last_start_ = start;
+    ++frames_;
+    return {stamp, start, interval_};
+  }
 
   /// Smoothed time between frames, s; a thirtieth until there have been two.
   [[nodiscard]] double interval() const { return interval_; }
 
  private:
-  void measure(double stamp);
+  static constexpr int kMemory = 8;  // frames
+  // A gap counts as so many intervals at most, and as so few at least.
+  static constexpr double kOutlier = 2;
+  static constexpr double kShortest = 1e-3;  // s
+  static constexpr double kLongest = 2;
+
+  void measure(double stamp) {
+    const double gap = stamp - last_stamp_;
+    if (!(gap > 0)) return;
+    if (frames_ == 1) {
+      interval_ = std::clamp(gap, kShortest, kLongest);
+      return;
+    }
+    const double believed = std::clamp(gap, interval_ / kOutlier, interval_ * kOutlier);
+    interval_ += (believed - interval_) / std::min(frames_, kMemory);
+    interval_ = std::clamp(interval_, kShortest, kLongest);
+  }
 
   double interval_ = 1. / 30;
   double last_stamp_ = 0;

@@ -1,9 +1,8 @@
-#include "scene/patches.hpp"
-
 #include <algorithm>
 #include <utility>
 
-#include "field/mean_surface.hpp"
+#include "field/evaluate.hpp"
+#include "scene/scene_view.hpp"
 
 namespace palpate {
 
@@ -111,12 +110,13 @@ bool Patches::walk_is_free(const Ball& ball) const noexcept {
 }
 
 bool Patches::gather(Patch& patch, const Vector3d& center, double extra, int& left) const noexcept {
-  const bool whole = patch.gather(layers_, sources_, center, extra,
-                                  {.radius = radius_,
-                                   .raw_weights = surface_->options.raw_weights,
-                                   .normals = surface_->options.kind != FieldKind::metaball,
-                                   .most_visits = left,
-                                   .stance = &stance_});
+  const bool whole =
+      patch.gather(layers_, sources_, center, extra,
+                   {.radius = radius_,
+                    .raw_weights = surface_->options.raw_weights,
+                    .normals = surface_->options.kind != FieldOptions::Kind::metaball,
+                    .most_visits = left,
+                    .stance = &stance_});
   count(patch, whole, left);
   return whole;
 }

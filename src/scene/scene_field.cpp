@@ -11,10 +11,8 @@
 #include <utility>
 
 #include "field/evaluate.hpp"
-#include "field/mean_surface.hpp"
-#include "scene/patches.hpp"
+#include "scene/scene_view.hpp"
 #include "scene/source_inside.hpp"
-#include "scene/source_view.hpp"
 
 namespace palpate {
 namespace {
@@ -84,7 +82,7 @@ struct SceneField::State {
   std::deque<SourceView> views;
   std::vector<ReachTable*> boards;  // of the views' sources
   ToolReach reach;
-  std::vector<SoftMaterial> soft;
+  std::vector<SourceOptions::SoftMaterial> soft;
   std::array<ActiveLayer, Scene::kMaxSources * Snapshot::kMaxLayers> layers;
   std::size_t layer_count = 0;
   std::array<const Snapshot*, Scene::kMaxSources> shown{};  // of the views
@@ -132,7 +130,7 @@ void SceneField::State::list_layers() noexcept {
 void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   ActiveLayer layer = views[source].layer(k, static_cast<int>(source));
   if (layer.points->size() == 0) return;  // a sensor that sees nothing
-  if (surface.options.kind == FieldKind::metaball) layer.least_radius = 0;
+  if (surface.options.kind == FieldOptions::Kind::metaball) layer.least_radius = 0;
   const bool still = layer.points->end_positions.empty();
   const Snapshot& newest = *shown[source];
   const double lasts = std::max(newest.end - newest.start, newest.interval);
@@ -270,7 +268,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
 
 Field::Traits SceneField::traits() const noexcept {
   const State& state = *state_;
-  const bool metaball = options_.kind == FieldKind::metaball;
+  const bool metaball = options_.kind == FieldOptions::Kind::metaball;
   // One finely sampled spot must not make sweeps fine everywhere.
   const double smallest =
       std::max(state.patches.near().points() > 0 ? state.patches.near().smallest_radius()

@@ -1,5 +1,3 @@
-#include "scene/snapshot_builder.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -7,7 +5,8 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/filters.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+#include "scene/source_inside.hpp"
 
 namespace palpate {
 namespace {
@@ -121,7 +120,7 @@ std::shared_ptr<Snapshot> SnapshotBuilder::last_of_frames(const Snapshot& newest
 
 std::shared_ptr<const Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double stamp,
                                                       const Arrival& arrival,
-                                                      PrepareReport& report) {
+                                                      Prepared::Report& report) {
   time_of("stamp", stamp);
   if (clouds_ == Policy::morph) {
     throw Error(
@@ -155,7 +154,7 @@ std::shared_ptr<const Snapshot> SnapshotBuilder::fused(const FrameTiming& moment
   return snapshot;
 }
 
-FrameTiming SnapshotBuilder::next_timing(double stamp, const StartTime& start) {
+FrameTiming SnapshotBuilder::next_timing(double stamp, const Source::StartTime& start) {
   const FrameTiming moment = interval_filter_.next(stamp, time_of("start", start()));
   if (presence_at(moment.start) <= 0) forget();
   return moment;

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "prepare/check_input.hpp"
+#include "prepare/columns.hpp"
 #include "scene/source_inside.hpp"
 
 namespace palpate {
@@ -110,7 +110,7 @@ void Source::Inside::take_change() {
   if (changed) builder = std::move(changed);
 }
 
-PrepareReport Source::report() const {
+Prepared::Report Source::report() const {
   const std::lock_guard lock(inside_->mutex);
   return inside_->report;
 }
@@ -152,7 +152,7 @@ void Source::set(const PointCloud& cloud) {
 void Source::set(const DepthFrame& frame) {
   SourceOptions whole = options();
   whole.policy = {.fit_everywhere = true};
-  const StartTime at_once = [] { return 0.0; };
+  const Source::StartTime at_once = [] { return 0.0; };
   const Eigen::Isometry3d stand = frame.T_world_sensor.value_or(pose());
   auto snapshot = std::make_shared<Snapshot>();
   named(inside_->name, [&] {
@@ -167,7 +167,7 @@ void Source::set(const DepthFrame& frame) {
   publish(std::move(snapshot));
 }
 
-bool Source::push(const DepthFrame& frame, const StartTime& start) {
+bool Source::push(const DepthFrame& frame, const Source::StartTime& start) {
   inside_->take_change();
   if (!inside_->room_for(false)) return false;
   inside_->reaches.read(inside_->found);
@@ -181,11 +181,11 @@ bool Source::push(const DepthFrame& frame, const StartTime& start) {
   return true;
 }
 
-bool Source::push(const PointCloud& cloud, double stamp, const StartTime& start) {
+bool Source::push(const PointCloud& cloud, double stamp, const Source::StartTime& start) {
   inside_->take_change();
   if (!inside_->room_for(true)) return false;
   inside_->reaches.read(inside_->found);
-  PrepareReport report;
+  Prepared::Report report;
   named(inside_->name, [&] {
     inside_->hand_over(
         *this, inside_->builder->take(cloud, stamp, {pose(), inside_->found, start}, report));
@@ -270,7 +270,7 @@ std::shared_ptr<const SurfacePoints> Source::points() const {
   return inside_->points;
 }
 
-SourceState Source::state() const {
+Source::State Source::state() const {
   const std::lock_guard lock(inside_->mutex);
   return inside_->state;
 }

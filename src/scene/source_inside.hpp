@@ -1,18 +1,124 @@
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "palpate/field/surface_points.hpp"
+#include "palpate/scene/scene.hpp"
 #include "palpate/scene/source.hpp"
+#include "scene/frame_timing.hpp"
 #include "scene/handoff.hpp"
-#include "scene/seams.hpp"
-#include "scene/snapshot_builder.hpp"
+#include "scene/policies/fusion.hpp"
+#include "scene/policies/morph.hpp"
+#include "scene/recycler.hpp"
 #include "scene/tool_reach.hpp"
 
 namespace palpate {
+
+/// How far apart two surfaces are where both are there: the median distance, along the normal of
+/// `b`, from points of `a` to the nearest point of `b`, m, where they are going. Points count that
+/// have a neighbour within three radii whose normal points the same way within 45 degrees; nothing
+/// when fewer than 30 of about a thousand that are tried do.
+[[nodiscard]] std::optional<double> disagreement(const SurfacePoints& a, const SurfacePoints& b);
+
+/// How wide supports have to be for the surfaces of sources that disagree to be one.
+///
+/// Heights of sources unite where the supports of both reach (united_shift()). Further apart
+/// than that there is a gap between two sheets, into which a proxy slips where one of them ends. So
+/// where two surfaces of a scene lie up to 1.5 R apart, no R of either is below 2.5 times that
+/// distance. What lies further apart stays two.
+class Seams {
+ public:
+  /// Compares the newest points of the source at `place` with those of the others that have come
+  /// by. It stays where it is. Takes milliseconds, and memory; any thread but a servo's.
+  void compare(std::size_t place, const Source& source);
+
+  /// No support radius of that source is to be below this, m. Changes; may be read by any thread.
+  [[nodiscard]] const std::atomic<double>& least_radius(std::size_t place) const noexcept {
+    return least_radii_[place];
+  }
+
+ private:
+  std::mutex mutex_;
+  std::array<const Source*, Scene::kMaxSources> sources_{};
+  std::array<std::array<double, Scene::kMaxSources>, Scene::kMaxSources> common_{};  // R, m
+  std::array<std::atomic<double>, Scene::kMaxSources> least_radii_{};
+};
+
+/// A frame or cloud on its way into a source.
+struct Arrival {
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  std::span<const Reach> reach;  ///< of all fields, world frame
+  const Source::StartTime& start;
+};
+
+/// Makes a source's snapshots out of what is pushed into it, as its policy says. One thread uses
+/// it; what it gives out comes back to it by itself and is used again.
+class SnapshotBuilder {
+ public:
+  /// @throws Error when an option is out of its range.
+  explicit SnapshotBuilder(const SourceOptions& options);
+
+  /// @throws Error as DepthFilter::filter does, and when a time is not finite.
+  [[nodiscard]] std::shared_ptr<const Snapshot> take(const DepthFrame& frame,
+                                                     const Arrival& arrival);
+
+  /// nullptr: no point of the cloud is within reach. `report`: of its preparation.
+  /// @throws Error as prepare() does, when a time is not finite, and when the policy is morph.
+  [[nodiscard]] std::shared_ptr<const Snapshot> take(const PointCloud& cloud, double stamp,
+                                                     const Arrival& arrival,
+                                                     Prepared::Report& report);
+
+  /// A surface that stays: the newest frame's, all of it fitted, from where the last snapshot ends.
+  /// nullptr: `newest` was not made here.
+  [[nodiscard]] std::shared_ptr<Snapshot> last_of_frames(const Snapshot& newest);
+
+  /// How many snapshots of clouds or of depth frames may be in use at a time while so many fields
+  /// look at them: N + 2 and one for each.
+  [[nodiscard]] std::size_t most_snapshots(bool clouds, std::size_t fields) const;
+
+  [[nodiscard]] double interval() const { return interval_filter_.interval(); }
+  [[nodiscard]] const NoiseModel& noise() const { return noise_; }
+  [[nodiscard]] double median_depth() const { return median_depth_; }
+
+ private:
+  struct Empty {
+    void operator()(Snapshot& snapshot) const noexcept { snapshot.layers.clear(); }
+  };
+
+  [[nodiscard]] std::shared_ptr<Snapshot> morphed(const MorphInput& input,
+                                                  const FrameTiming& moment);
+  [[nodiscard]] std::shared_ptr<const Snapshot> fused(const FrameTiming& moment);
+  [[nodiscard]] FrameTiming next_timing(double stamp, const Source::StartTime& start);
+  [[nodiscard]] std::shared_ptr<Snapshot> next_snapshot(const FrameTiming& moment, Policy policy);
+  [[nodiscard]] double presence_at(double time) const;
+  void forget();
+  [[nodiscard]] PointCloud within_reach(const PointCloud& cloud, const Arrival& arrival) const;
+  void note_noise(const FilteredDepth& depth);
+
+  SourceOptions options_;
+  Policy frames_;  // the policies for depth frames and for clouds
+  Policy clouds_;
+  FrameIntervalFilter interval_filter_;
+  DepthFilter filter_;
+  Morph morph_;
+  LayerHistory layers_;
+  Fusion fusion_;
+  Recycler<SurfacePoints> points_;
+  Recycler<Snapshot, Empty> snapshots_;
+  Snapshot last_;    // without its layers
+  Pinhole pinhole_;  // of the last frame
+  NoiseModel noise_;
+  double median_depth_ = 0;
+  std::vector<float> depths_;
+};
 
 /// What a source is made of; its scene and the fields of that reach into it.
 struct Source::Inside {
@@ -28,9 +134,9 @@ struct Source::Inside {
   SourceOptions options;
   std::unique_ptr<SnapshotBuilder> changed;  // for the next push
   Eigen::Isometry3d pose;
-  PrepareReport report;
+  Prepared::Report report;
   std::shared_ptr<const SurfacePoints> points;
-  SourceState state;
+  Source::State state;
 
   std::unique_ptr<SnapshotBuilder> builder;  // the preparing thread's
   std::vector<Reach> found;                  // likewise

@@ -9,7 +9,6 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_frame.hpp"
-#include "sensor/drivers.hpp"
 #include "sensor/live_camera.hpp"
 
 namespace palpate::sensor {
@@ -88,20 +87,20 @@ class FreenectConnection final : public Connection {
     start();
   }
 
-  [[nodiscard]] CameraStatus fetch(DepthFrame& frame, double& device_time,
-                                   double timeout) override {
+  [[nodiscard]] DepthCamera::Status fetch(DepthFrame& frame, double& device_time,
+                                          double timeout) override {
     fresh_ = false;
     timeval wait{};
     wait.tv_usec = static_cast<suseconds_t>(1e6 * std::clamp(timeout, 0.0, 0.9));
     check(freenect_process_events_timeout(context_.get(), &wait), "stopped delivering");
-    if (!fresh_) return CameraStatus::waiting;
+    if (!fresh_) return DepthCamera::Status::waiting;
     device_time = seconds_;
     frame.camera = {mode_.width, mode_.height, kinect_pinhole(mode_.width, mode_.height), {}};
     frame.depth.resize(static_cast<std::size_t>(mode_.width) *
                        static_cast<std::size_t>(mode_.height));
     convert(frame.depth);
     frame.colors.clear();
-    return CameraStatus::frame;
+    return DepthCamera::Status::frame;
   }
 
  private:
@@ -156,7 +155,7 @@ class FreenectConnection final : public Connection {
 }  // namespace
 
 DriverInfo freenect_driver() {
-  DriverInfo driver{.name = "freenect", .description = "Kinect v1", .missing = {}, .devices = {}};
+  DriverInfo driver{.name = "freenect", .description = "Kinect v1"};
   const Context context = make_context();
   driver.available = context != nullptr;
   if (!context) {

@@ -84,41 +84,41 @@ void LiveCamera::begin(double start) {
   device_time_.reset();
 }
 
-CameraStatus LiveCamera::read(DepthFrame& frame, double timeout) {
+DepthCamera::Status LiveCamera::read(DepthFrame& frame, double timeout) {
   reason_.clear();
-  if (!connection_ && lost_ == Lost::ended) return CameraStatus::ended;
+  if (!connection_ && lost_ == Lost::ended) return DepthCamera::Status::ended;
   try {
     if (!connection_) connect();
     return fetch(frame, timeout);
   } catch (const Error& error) {
     reason_ = error.what();
     connection_.reset();
-    return CameraStatus::failed;
+    return DepthCamera::Status::failed;
   }
 }
 
-CameraStatus LiveCamera::fetch(DepthFrame& frame, double timeout) {
+DepthCamera::Status LiveCamera::fetch(DepthFrame& frame, double timeout) {
   double device_time = 0;
-  const CameraStatus status = connection_->fetch(frame, device_time, timeout);
+  const DepthCamera::Status status = connection_->fetch(frame, device_time, timeout);
   const double now = (clock_ != nullptr ? *clock_ : host_).now();
-  if (status == CameraStatus::waiting) return silent(now);
+  if (status == DepthCamera::Status::waiting) return silent(now);
   heard_ = now;
-  if (status == CameraStatus::damaged) reason_ = connection_->damage();
-  if (status == CameraStatus::frame) {
+  if (status == DepthCamera::Status::damaged) reason_ = connection_->damage();
+  if (status == DepthCamera::Status::frame) {
     frame.stamp = stamp_of(device_time, now);
     frame.T_world_sensor.reset();
   }
   return status;
 }
 
-CameraStatus LiveCamera::silent(double now) {
-  if (now - heard_ <= kLongSilence) return CameraStatus::waiting;
+DepthCamera::Status LiveCamera::silent(double now) {
+  if (now - heard_ <= kLongSilence) return DepthCamera::Status::waiting;
   reason_ =
       fmt::format("{}: open, but silent for {:.3g} s. {}", info_.name, now - heard_, silence_);
   heard_ = now;
   // A recording may hold long pauses; a device is better opened again.
   if (lost_ == Lost::opened_again) connection_.reset();
-  return CameraStatus::failed;
+  return DepthCamera::Status::failed;
 }
 
 double LiveCamera::stamp_of(double device_time, double now) {

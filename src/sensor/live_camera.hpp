@@ -12,6 +12,27 @@
 
 namespace palpate::sensor {
 
+// The optional drivers. The build takes DRIVER_camera.cpp where its library is there, and what it
+// makes of absent_camera.cpp.in where it is not.
+[[nodiscard]] DriverInfo openni2_driver();
+/// `device`: empty, a URI, or the path of an .oni file.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_openni2(const std::string& device,
+                                                        const CameraOptions& options);
+
+[[nodiscard]] DriverInfo freenect_driver();
+/// `device`: empty or a number.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_freenect(const std::string& device,
+                                                         const CameraOptions& options);
+
+[[nodiscard]] DriverInfo ros_driver();
+/// `name`: "TOPIC[,frame=FRAME]", a topic of depth images (Image of 16UC1 or 32FC1 with the
+/// CameraInfo beside it, or CompressedImage) or of PointCloud2, whose publisher may appear later.
+/// With a frame, /tf and /tf_static say where the sensor is in it. Stamps of programs on this
+/// machine's clock are brought to the stream's; others (10 s off) are replaced by the time of
+/// arrival. The environment says in which domain (dds::environment_options()).
+[[nodiscard]] std::unique_ptr<DepthCamera> open_ros(const std::string& name,
+                                                    const CameraOptions& options);
+
 /// The depth camera of a Kinect v1 (and its PrimeSense relatives) by its maker's nominal values;
 /// single devices differ from them by about a percent.
 [[nodiscard]] Pinhole kinect_pinhole(int width, int height);
@@ -47,8 +68,8 @@ class Connection {
   /// Fills camera, depth and colours of `frame`, and `device_time` (s, the device's clock), waiting
   /// `timeout` s at most. Never `failed`: it throws then.
   /// @throws Error when the device is lost.
-  [[nodiscard]] virtual CameraStatus fetch(DepthFrame& frame, double& device_time,
-                                           double timeout) = 0;
+  [[nodiscard]] virtual DepthCamera::Status fetch(DepthFrame& frame, double& device_time,
+                                                  double timeout) = 0;
 
   /// What was wrong with the frame that fetch() called `damaged`.
   [[nodiscard]] virtual std::string damage() const { return {}; }
@@ -78,13 +99,13 @@ class LiveCamera final : public DepthCamera {
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
   void begin(double start) override;
-  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override;
+  [[nodiscard]] DepthCamera::Status read(DepthFrame& frame, double timeout) override;
   [[nodiscard]] std::string reason() const override { return reason_; }
 
  private:
   void connect();
-  [[nodiscard]] CameraStatus fetch(DepthFrame& frame, double timeout);
-  [[nodiscard]] CameraStatus silent(double now);
+  [[nodiscard]] DepthCamera::Status fetch(DepthFrame& frame, double timeout);
+  [[nodiscard]] DepthCamera::Status silent(double now);
   [[nodiscard]] double stamp_of(double device_time, double now);
 
   CameraInfo info_;

@@ -1,11 +1,10 @@
-#include "palpate/sensor/open_camera.hpp"
-
 #include <fmt/format.h>
 
 #include <string_view>
 
 #include "palpate/base/error.hpp"
-#include "sensor/drivers.hpp"
+#include "palpate/sensor/depth_camera.hpp"
+#include "sensor/live_camera.hpp"
 #include "sensor/sequence.hpp"
 #include "sim/simulated_camera.hpp"
 
@@ -16,9 +15,7 @@ using namespace sensor;
 
 DriverInfo simulated_driver() {
   DriverInfo driver{.name = "simulated",
-                    .description = "analytic scenes with simulated sensor noise",
-                    .missing = {},
-                    .devices = {}};
+                    .description = "analytic scenes with simulated sensor noise"};
   for (const SimulatedName& scene : simulated_names()) {
     driver.devices.push_back({"simulated:" + scene.name, scene.description});
   }
@@ -27,9 +24,7 @@ DriverInfo simulated_driver() {
 
 DriverInfo sequence_driver() {
   return {.name = "sequence",
-          .description = "folders of depth images: sequence:DIR (docs/sequences.md)",
-          .missing = {},
-          .devices = {}};
+          .description = "folders of depth images: sequence:DIR (docs/sequences.md)"};
 }
 
 }  // namespace

@@ -11,11 +11,9 @@
 #include <thread>
 #include <utility>
 
-#include "base/listed.hpp"
+#include "base/shared_library.hpp"
 #include "palpate/base/error.hpp"
-#include "sensor/drivers.hpp"
 #include "sensor/live_camera.hpp"
-#include "sensor/openni2_frame.hpp"
 #include "sensor/openni2_library.hpp"
 
 namespace palpate::sensor {
@@ -152,32 +150,32 @@ class OpenNi2Connection final : public Connection {
     check(library_->start(stream_.get()), "does not start");
   }
 
-  [[nodiscard]] CameraStatus fetch(DepthFrame& frame, double& device_time,
-                                   double timeout) override {
-    if (at_end_) return CameraStatus::ended;
+  [[nodiscard]] DepthCamera::Status fetch(DepthFrame& frame, double& device_time,
+                                          double timeout) override {
+    if (at_end_) return DepthCamera::Status::ended;
     OniStreamHandle stream = stream_.get();
     int ready = 0;
     const int milliseconds = static_cast<int>(std::lround(1e3 * std::clamp(timeout, 0.0, 60.0)));
     const OniStatus status = library_->wait(&stream, 1, &ready, milliseconds);
-    if (status == ONI_STATUS_TIME_OUT) return CameraStatus::waiting;
+    if (status == ONI_STATUS_TIME_OUT) return DepthCamera::Status::waiting;
     check(status, "stopped delivering");
     OniFrame* raw = nullptr;
     check(library_->read_frame(stream, &raw), "stopped delivering");
     const Frame image(raw, {library_});
     if (once_ && image->frameIndex <= last_) at_end_ = true;  // it began again
-    if (at_end_) return CameraStatus::ended;
+    if (at_end_) return DepthCamera::Status::ended;
     last_ = image->frameIndex;
     at_end_ = once_ && last_ >= frames_;
     if (!is_whole(*image)) {
       damaged_ =
           fmt::format("{} x {} pixels in {} bytes", image->width, image->height, image->dataSize);
-      return CameraStatus::damaged;
+      return DepthCamera::Status::damaged;
     }
     copy_depth(*image, mirrored_, frame.depth);
     frame.colors.clear();
     frame.camera = {image->width, image->height, pinhole(image->width, image->height), {}};
     device_time = kMicrosecond * static_cast<double>(image->timestamp);
-    return CameraStatus::frame;
+    return DepthCamera::Status::frame;
   }
 
   [[nodiscard]] std::string damage() const override {
@@ -251,9 +249,7 @@ void list_devices(DriverInfo& driver) {
 
 DriverInfo openni2_driver() {
   DriverInfo driver{.name = "openni2",
-                    .description = "PrimeSense and Asus Xtion cameras, and .oni recordings",
-                    .missing = {},
-                    .devices = {}};
+                    .description = "PrimeSense and Asus Xtion cameras, and .oni recordings"};
   return listed(driver, list_devices);
 }
 

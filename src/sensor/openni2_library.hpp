@@ -1,8 +1,10 @@
 #pragma once
 
 #include <OniCAPI.h>
+#include <OniCTypes.h>
 
 #include <string>
+#include <vector>
 
 #include "base/shared_library.hpp"
 
@@ -46,5 +48,11 @@ class OpenNi2Library {
   decltype(&::oniShutdown) shutdown_ = nullptr;
   decltype(&::oniGetExtendedError) get_extended_error_ = nullptr;
 };
+
+/// Does it hold all depths that it says, in a format that is known?
+[[nodiscard]] bool is_whole(const OniFrame& image);
+
+/// Depths (m, row by row, reusing memory) of a frame that is whole; `mirrored`: left is right.
+void copy_depth(const OniFrame& image, bool mirrored, std::vector<float>& depth);
 
 }  // namespace palpate::sensor

@@ -14,7 +14,7 @@
 #include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
 #include "palpate/base/error.hpp"
-#include "sensor/drivers.hpp"
+#include "sensor/live_camera.hpp"
 
 namespace palpate::sensor {
 namespace {
@@ -105,7 +105,7 @@ class RosCamera final : public DepthCamera {
 
   [[nodiscard]] const palpate::CameraInfo& info() const noexcept override { return info_; }
   [[nodiscard]] std::string reason() const override { return reason_; }
-  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override;
+  [[nodiscard]] DepthCamera::Status read(DepthFrame& frame, double timeout) override;
 
  private:
   using Images =
@@ -115,7 +115,7 @@ class RosCamera final : public DepthCamera {
   bool connect(double timeout);
   void take_infos();
   template <class Message>
-  CameraStatus take(Reader<Message>& reader, DepthFrame& frame, double timeout);
+  DepthCamera::Status take(Reader<Message>& reader, DepthFrame& frame, double timeout);
   void fill(const Image& message, DepthFrame& frame) { fill_image(message, frame); }
   void fill(const CompressedImage& message, DepthFrame& frame) { fill_image(message, frame); }
   void fill(const PointCloud2& message, DepthFrame& frame) const;
@@ -165,13 +165,13 @@ bool RosCamera::connect(double timeout) {
   return false;
 }
 
-CameraStatus RosCamera::read(DepthFrame& frame, double timeout) {
+DepthCamera::Status RosCamera::read(DepthFrame& frame, double timeout) {
   reason_.clear();
-  if (!connect(timeout)) return CameraStatus::waiting;
+  if (!connect(timeout)) return DepthCamera::Status::waiting;
   return std::visit(
       [&](auto& reader) {
         if constexpr (std::is_same_v<decltype(reader), std::monostate&>) {
-          return CameraStatus::waiting;
+          return DepthCamera::Status::waiting;
         } else {
           return take(*reader, frame, timeout);
         }
@@ -180,18 +180,18 @@ CameraStatus RosCamera::read(DepthFrame& frame, double timeout) {
 }
 
 template <class Message>
-CameraStatus RosCamera::take(Reader<Message>& reader, DepthFrame& frame, double timeout) {
-  if (!reader.wait(timeout)) return CameraStatus::waiting;
+DepthCamera::Status RosCamera::take(Reader<Message>& reader, DepthFrame& frame, double timeout) {
+  if (!reader.wait(timeout)) return DepthCamera::Status::waiting;
   take_infos();
   try {
     Message message;
-    if (!reader.take(message)) return CameraStatus::waiting;
+    if (!reader.take(message)) return DepthCamera::Status::waiting;
     fill(message, frame);
     frame.stamp = stamp_of(message.header);
-    return place(message.header, frame) ? CameraStatus::frame : CameraStatus::unposed;
+    return place(message.header, frame) ? DepthCamera::Status::frame : DepthCamera::Status::unposed;
   } catch (const Error& error) {
     reason_ = error.what();
-    return CameraStatus::damaged;
+    return DepthCamera::Status::damaged;
   }
 }
 

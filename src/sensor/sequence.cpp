@@ -10,7 +10,6 @@
 #include "io/input.hpp"
 #include "palpate/base/error.hpp"
 #include "sensor/pose_track.hpp"
-#include "sensor/sequence_description.hpp"
 
 namespace palpate {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "palpate/io/read_depth.hpp"
+#include "palpate/io/files.hpp"
 #include "sensor/sequence.hpp"
 
 namespace palpate::sensor {
@@ -21,7 +21,7 @@ class SequenceCamera final : public DepthCamera {
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
   void begin(double start) override;
-  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override;
+  [[nodiscard]] DepthCamera::Status read(DepthFrame& frame, double timeout) override;
   [[nodiscard]] std::string reason() const override { return reason_; }
 
  private:
@@ -29,7 +29,7 @@ class SequenceCamera final : public DepthCamera {
   void load_image(const SequenceFrame& frame);
   [[nodiscard]] double stamp() const;
   [[nodiscard]] bool wait(double timeout) const;
-  [[nodiscard]] CameraStatus show(DepthFrame& frame);
+  [[nodiscard]] DepthCamera::Status show(DepthFrame& frame);
 
   Sequence sequence_;
   SequenceOptions options_;
@@ -41,8 +41,8 @@ class SequenceCamera final : public DepthCamera {
   std::size_t next_ = 0;
   std::size_t laps_ = 0;
   bool loaded_ = false;  // the next frame is in loaded_frame_, or failed to get there
-  CameraStatus status_ = CameraStatus::frame;  // of the loaded frame
-  std::string failure_;                        // why it is not good
+  DepthCamera::Status status_ = DepthCamera::Status::frame;  // of the loaded frame
+  std::string failure_;                                      // why it is not good
   DepthFrame loaded_frame_;
 };
 
@@ -71,16 +71,16 @@ void SequenceCamera::begin(double start) {
   loaded_ = false;
 }
 
-CameraStatus SequenceCamera::read(DepthFrame& frame, double timeout) {
+DepthCamera::Status SequenceCamera::read(DepthFrame& frame, double timeout) {
   reason_.clear();
   if (next_ == sequence_.frames.size()) {
-    if (!options_.loop) return CameraStatus::ended;
+    if (!options_.loop) return DepthCamera::Status::ended;
     next_ = 0;
     ++laps_;
   }
   if (!start_) start_ = options_.clock != nullptr ? options_.clock->now() : 0;
   load();  // beforehand, so that it is there when its time comes
-  if (!wait(timeout)) return CameraStatus::waiting;
+  if (!wait(timeout)) return DepthCamera::Status::waiting;
   return show(frame);
 }
 
@@ -96,7 +96,7 @@ void SequenceCamera::load() {
 
 void SequenceCamera::load_image(const SequenceFrame& frame) {
   if (sequence_.posed && !frame.T_world_sensor) {
-    status_ = CameraStatus::unposed;
+    status_ = DepthCamera::Status::unposed;
     failure_ = fmt::format("{}: it has no pose, but other frames have one. It was skipped.",
                            frame.image.string());
     return;
@@ -104,11 +104,11 @@ void SequenceCamera::load_image(const SequenceFrame& frame) {
   try {
     read_depth_frame(frame.image, images_, loaded_frame_);
   } catch (const Error& error) {
-    status_ = CameraStatus::damaged;
+    status_ = DepthCamera::Status::damaged;
     failure_ = error.what();
     return;
   }
-  status_ = CameraStatus::frame;
+  status_ = DepthCamera::Status::frame;
   // The first image says what size all have, where the description does not.
   images_.camera.width = loaded_frame_.camera.width;
   images_.camera.height = loaded_frame_.camera.height;
@@ -124,17 +124,17 @@ bool SequenceCamera::wait(double timeout) const {
   return options_.clock->now() >= stamp();
 }
 
-CameraStatus SequenceCamera::show(DepthFrame& frame) {
+DepthCamera::Status SequenceCamera::show(DepthFrame& frame) {
   const double time = stamp();
   loaded_ = false;
   ++next_;
-  if (status_ != CameraStatus::frame) {
+  if (status_ != DepthCamera::Status::frame) {
     reason_ = std::exchange(failure_, "");
     return status_;
   }
   std::swap(frame, loaded_frame_);
   frame.stamp = time;
-  return CameraStatus::frame;
+  return DepthCamera::Status::frame;
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "sensor/sequence_description.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,6 +8,7 @@
 
 #include "palpate/base/error.hpp"
 #include "sensor/pose_track.hpp"
+#include "sensor/sequence.hpp"
 
 namespace palpate::sensor {
 namespace {

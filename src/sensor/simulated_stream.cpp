@@ -1,5 +1,3 @@
-#include "palpate/sensor/simulated_stream.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +6,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "sensor/frame_check.hpp"
+#include "palpate/sensor/stream.hpp"
 #include "sensor/stream_statistics.hpp"
 
 namespace palpate {
@@ -46,7 +44,7 @@ double frame_time_of(const CameraInfo& camera, const std::string& name) {
 }  // namespace
 
 struct SimulatedStream::Player {
-  Player(DepthCamera& from, const std::string& name, FrameSink to,
+  Player(DepthCamera& from, const std::string& name, Stream::Sink to,
          const SimulatedStreamOptions& wishes, std::function<void()> at_end)
       : options(checked(wishes, name)),
         frame_time(frame_time_of(from.info(), name)),
@@ -61,7 +59,7 @@ struct SimulatedStream::Player {
   void advance(double time);
   void look();
   void schedule();
-  void do_without(CameraStatus status);
+  void do_without(DepthCamera::Status status);
   void take();
   void prepare();
   void finish();
@@ -69,7 +67,7 @@ struct SimulatedStream::Player {
   const SimulatedStreamOptions options;
   const double frame_time;  // s
   DepthCamera& camera;
-  const FrameSink sink;
+  const Stream::Sink sink;
   const std::function<void()> ended;  // may be empty
   StreamStatistics log;
   FrameCheck check;
@@ -97,12 +95,12 @@ void SimulatedStream::Player::advance(double time) {
 
 void SimulatedStream::Player::look() {
   if (failures > 0) log.retried();
-  const CameraStatus status = ask(camera, frame, silent ? 0 : options.patience, reason);
-  silent = status == CameraStatus::waiting;
-  failures = status == CameraStatus::failed ? failures + 1 : 0;
-  waits = status == CameraStatus::frame;
+  const DepthCamera::Status status = ask(camera, frame, silent ? 0 : options.patience, reason);
+  silent = status == DepthCamera::Status::waiting;
+  failures = status == DepthCamera::Status::failed ? failures + 1 : 0;
+  waits = status == DepthCamera::Status::frame;
   if (waits) return schedule();
-  if (status == CameraStatus::ended) return finish();
+  if (status == DepthCamera::Status::ended) return finish();
   do_without(status);
 }
 
@@ -117,11 +115,11 @@ void SimulatedStream::Player::schedule() {
   }
 }
 
-void SimulatedStream::Player::do_without(CameraStatus status) {
+void SimulatedStream::Player::do_without(DepthCamera::Status status) {
   if (left_out(status))
     log.frame_received(next, objection_to(status, reason), check.size_changes());
-  if (status == CameraStatus::waiting) log.waiting(next);
-  if (status == CameraStatus::failed) log.failed(next, reason, failures > 1);
+  if (status == DepthCamera::Status::waiting) log.waiting(next);
+  if (status == DepthCamera::Status::failed) log.failed(next, reason, failures > 1);
   next += frame_time;
 }
 
@@ -156,9 +154,14 @@ void SimulatedStream::Player::finish() {
   log.ended();
 }
 
-SimulatedStream::SimulatedStream(DepthCamera& camera, const std::string& name, FrameSink sink,
+SimulatedStream::SimulatedStream(DepthCamera& camera, const std::string& name, Stream::Sink sink,
                                  const SimulatedStreamOptions& options, std::function<void()> ended)
     : player_(std::make_unique<Player>(camera, name, std::move(sink), options, std::move(ended))) {}
+
+SimulatedStream::SimulatedStream(DepthCamera& camera, Source& source,
+                                 const SimulatedStreamOptions& options)
+    : SimulatedStream(camera, source.name(), sink_of(source), options,
+                      [&source] { source.keep(); }) {}
 
 SimulatedStream::~SimulatedStream() = default;
 SimulatedStream::SimulatedStream(SimulatedStream&&) noexcept = default;

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "sensor/frame_check.hpp"
 #include "sensor/frame_exchange.hpp"
 #include "sensor/stream_statistics.hpp"
 
@@ -43,6 +42,16 @@ class Retry {
   double wait_ = 0;
   int failures_ = 0;  // in a row
 };
+
+Stream::Sink sink_of(Source& source) {
+  return [&source](const DepthFrame& frame, const Source::StartTime& start) {
+    if (source.push(frame, start)) return;
+    throw Error(
+        fmt::format("all snapshots are held by fields that are not updated, e.g. that of {}. "
+                    "Update or close it",
+                    source.state().slowest));
+  };
+}
 
 }  // namespace sensor
 namespace {
@@ -76,7 +85,7 @@ const StreamOptions& checked(const StreamOptions& options, const std::string& na
 }  // namespace
 
 struct Stream::Threads {
-  Threads(DepthCamera& from, const std::string& name, FrameSink to, const Clock& time,
+  Threads(DepthCamera& from, const std::string& name, Stream::Sink to, const Clock& time,
           const StreamOptions& wishes, std::function<void()> at_end)
       : options(checked(wishes, name)),
         camera(from),
@@ -99,7 +108,7 @@ struct Stream::Threads {
   void stop();
   void read();
   [[nodiscard]] bool take(DepthFrame& frame);
-  void leave_out(CameraStatus status);
+  void leave_out(DepthCamera::Status status);
   void compare_clocks(double stamp, double now);
   [[nodiscard]] bool wait_to_retry();
   void prepare();
@@ -108,7 +117,7 @@ struct Stream::Threads {
 
   const StreamOptions options;
   DepthCamera& camera;                // the reading thread's
-  const FrameSink sink;               // the preparing thread's
+  const Stream::Sink sink;            // the preparing thread's
   const std::function<void()> ended;  // may be empty
   const Clock& clock;
   StreamStatistics log;
@@ -144,12 +153,12 @@ void Stream::Threads::stop() {
 void Stream::Threads::read() {
   DepthFrame frame;
   while (exchange.wait_for_room()) {
-    const CameraStatus status = ask(camera, frame, options.patience, reason);
-    if (status == CameraStatus::waiting) log.waiting(clock.now());
+    const DepthCamera::Status status = ask(camera, frame, options.patience, reason);
+    if (status == DepthCamera::Status::waiting) log.waiting(clock.now());
     if (left_out(status)) leave_out(status);
-    if (status == CameraStatus::ended) break;
-    if (status == CameraStatus::frame && !take(frame)) return;
-    if (status == CameraStatus::failed && !wait_to_retry()) return;
+    if (status == DepthCamera::Status::ended) break;
+    if (status == DepthCamera::Status::frame && !take(frame)) return;
+    if (status == DepthCamera::Status::failed && !wait_to_retry()) return;
   }
   exchange.end();
 }
@@ -169,7 +178,7 @@ bool Stream::Threads::take(DepthFrame& frame) {
 }
 
 // A device that sends damaged frames is there: it is asked for the next at once.
-void Stream::Threads::leave_out(CameraStatus status) {
+void Stream::Threads::leave_out(DepthCamera::Status status) {
   retry.succeeded();
   log.frame_received(clock.now(), objection_to(status, reason), check.size_changes());
 }
@@ -209,7 +218,7 @@ void Stream::Threads::finish() {
 
 void Stream::Threads::prepare(const DepthFrame& frame) {
   std::optional<double> asked;
-  const StartTime ask_start = [&] {
+  const Source::StartTime ask_start = [&] {
     asked = clock.now();
     return *asked + tail + options.lead;
   };
@@ -225,10 +234,15 @@ void Stream::Threads::prepare(const DepthFrame& frame) {
   }
 }
 
-Stream::Stream(DepthCamera& camera, const std::string& name, FrameSink sink, const Clock& clock,
+Stream::Stream(DepthCamera& camera, const std::string& name, Stream::Sink sink, const Clock& clock,
                const StreamOptions& options, std::function<void()> ended)
     : threads_(std::make_unique<Threads>(camera, name, std::move(sink), clock, options,
                                          std::move(ended))) {}
+
+Stream::Stream(DepthCamera& camera, Source& source, const Clock& clock,
+               const StreamOptions& options)
+    : Stream(camera, source.name(), sink_of(source), clock, options, [&source] { source.keep(); }) {
+}
 
 Stream::~Stream() = default;
 Stream::Stream(Stream&&) noexcept = default;

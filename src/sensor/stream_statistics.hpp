@@ -3,15 +3,60 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "palpate/base/error.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 #include "palpate/sensor/stream.hpp"
-#include "sensor/frame_check.hpp"
 
 namespace palpate::sensor {
+
+/// Why a frame is not passed on.
+struct Objection {
+  std::uint64_t StreamState::Drops::*cause;
+  std::string words;
+};
+
+/// Does the camera itself leave a frame out that came?
+[[nodiscard]] bool left_out(DepthCamera::Status status) noexcept;
+
+/// The objection to such a frame, for the camera's reason.
+[[nodiscard]] Objection objection_to(DepthCamera::Status status, const std::string& reason);
+
+/// Looks at the frames of one camera, in the order in which they come.
+class FrameCheck {
+ public:
+  explicit FrameCheck(bool allow_repeats) : allow_repeats_(allow_repeats) {}
+
+  /// Nothing when the frame is good. No stamp can lie after `latest`, s.
+  [[nodiscard]] std::optional<Objection> examine(const DepthFrame& frame, double latest);
+
+  /// New sizes that lasted.
+  [[nodiscard]] std::uint64_t size_changes() const { return size_changes_; }
+
+ private:
+  [[nodiscard]] std::optional<Objection> check_stamp(double stamp, double latest) const;
+  [[nodiscard]] std::optional<Objection> check_size(const DepthFrame& frame);
+  [[nodiscard]] std::optional<Objection> check_picture(const DepthFrame& frame);
+
+  struct Size {
+    int width = 0;
+    int height = 0;
+    bool operator==(const Size&) const = default;
+  };
+
+  bool allow_repeats_;
+  Size size_;               // of frames that are passed on
+  Size candidate_;          // another one that came lately
+  int candidate_seen_ = 0;  // times in a row
+  std::uint64_t size_changes_ = 0;
+  std::optional<double> stamp_;           // of the last frame that was passed on
+  std::optional<std::uint64_t> picture_;  // sum over its depths
+};
 
 /// @throws Error unless an option's time is finite and `good`; `name` is whom the stream feeds.
 inline void require_time(bool good, double seconds, const char* what, const std::string& name) {
@@ -22,8 +67,11 @@ inline void require_time(bool good, double seconds, const char* what, const std:
 
 /// DepthCamera::read() of a camera that may also throw: it has failed then. `reason` says why where
 /// no whole frame came, and is left as it is otherwise.
-[[nodiscard]] CameraStatus ask(DepthCamera& camera, DepthFrame& frame, double timeout,
-                               std::string& reason);
+[[nodiscard]] DepthCamera::Status ask(DepthCamera& camera, DepthFrame& frame, double timeout,
+                                      std::string& reason);
+
+/// Pushes into `source`, which outlives it. Throws Error when no snapshot is free.
+[[nodiscard]] Stream::Sink sink_of(Source& source);
 
 /// Keeps a stream's books. Any thread; times are s on the stream's clock.
 class StreamStatistics {

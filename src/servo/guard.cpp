@@ -36,14 +36,14 @@ bool sane(const Vector3d& v) noexcept {
   return v.allFinite() && v.cwiseAbs().maxCoeff() <= Guard::kLargest;
 }
 
-GuardFault judge(const GuardInput& input) noexcept {
-  if (input.fault != GuardFault::none) return input.fault;
-  if (!sane(input.hip) || !sane(input.velocity)) return GuardFault::hand;
-  if (!std::isfinite(input.dt) || input.dt < 0) return GuardFault::time;
-  if (!sane(input.normal) || !sane(input.drift)) return GuardFault::force;
+Guard::Fault judge(const Guard::Input& input) noexcept {
+  if (input.fault != Guard::Fault::none) return input.fault;
+  if (!sane(input.hip) || !sane(input.velocity)) return Guard::Fault::hand;
+  if (!std::isfinite(input.dt) || input.dt < 0) return Guard::Fault::time;
+  if (!sane(input.normal) || !sane(input.drift)) return Guard::Fault::force;
   const bool good_stiffness = input.stiffness >= 0 && input.stiffness <= Guard::kLargest;
-  if (!sane(input.force) || !good_stiffness) return GuardFault::force;
-  return GuardFault::none;
+  if (!sane(input.force) || !good_stiffness) return Guard::Fault::force;
+  return Guard::Fault::none;
 }
 
 // What a spring holds that is stretched to `force`, J.
@@ -52,7 +52,7 @@ double stored(const Vector3d& force, double stiffness) noexcept {
 }
 
 // From the hand to the proxy, m.
-Vector3d stretch(const GuardInput& input) noexcept {
+Vector3d stretch(const Guard::Input& input) noexcept {
   if (!(input.stiffness > 0)) return Vector3d::Zero();
   return input.force / input.stiffness;
 }
@@ -70,10 +70,10 @@ class Guard::Inside {
     validate(options);
   }
 
-  [[nodiscard]] Vector3d pass(const GuardInput& input) noexcept;
+  [[nodiscard]] Vector3d pass(const Guard::Input& input) noexcept;
   void reset() noexcept;
 
-  [[nodiscard]] const GuardState& state() const noexcept { return state_; }
+  [[nodiscard]] const Guard::State& state() const noexcept { return state_; }
   [[nodiscard]] const GuardOptions& options() const noexcept { return options_; }
 
  private:
@@ -83,28 +83,28 @@ class Guard::Inside {
     Vector3d velocity;  // smoothed, m/s
   };
 
-  void begin(const GuardInput& input) noexcept;
-  [[nodiscard]] Motion follow(const GuardInput& input) const noexcept;
-  [[nodiscard]] double sliding(const GuardInput& input, const Motion& motion) const noexcept;
-  [[nodiscard]] double held(const GuardInput& input) const noexcept;
-  [[nodiscard]] Vector3d damp(const GuardInput& input, const Motion& motion) const noexcept;
-  [[nodiscard]] Vector3d start(const GuardInput& input, const Vector3d& force) noexcept;
-  [[nodiscard]] double affordable_gain(const GuardInput& input) const noexcept;
-  [[nodiscard]] bool fades_unpaid(const GuardInput& input, const Motion& motion) const noexcept;
-  [[nodiscard]] Vector3d limit_change(const GuardInput& input, const Motion& motion,
+  void begin(const Guard::Input& input) noexcept;
+  [[nodiscard]] Motion follow(const Guard::Input& input) const noexcept;
+  [[nodiscard]] double sliding(const Guard::Input& input, const Motion& motion) const noexcept;
+  [[nodiscard]] double held(const Guard::Input& input) const noexcept;
+  [[nodiscard]] Vector3d damp(const Guard::Input& input, const Motion& motion) const noexcept;
+  [[nodiscard]] Vector3d start(const Guard::Input& input, const Vector3d& force) noexcept;
+  [[nodiscard]] double affordable_gain(const Guard::Input& input) const noexcept;
+  [[nodiscard]] bool fades_unpaid(const Guard::Input& input, const Motion& motion) const noexcept;
+  [[nodiscard]] Vector3d limit_change(const Guard::Input& input, const Motion& motion,
                                       const Vector3d& force) noexcept;
-  [[nodiscard]] Vector3d brake(const GuardInput& input, const Motion& motion,
+  [[nodiscard]] Vector3d brake(const Guard::Input& input, const Motion& motion,
                                const Vector3d& force) noexcept;
   [[nodiscard]] Vector3d limit_length(const Vector3d& force) noexcept;
-  [[nodiscard]] Vector3d remember(const GuardInput& input, const Motion& motion,
+  [[nodiscard]] Vector3d remember(const Guard::Input& input, const Motion& motion,
                                   const Vector3d& force) noexcept;
-  [[nodiscard]] Vector3d fail(GuardFault fault) noexcept;
+  [[nodiscard]] Vector3d fail(Guard::Fault fault) noexcept;
   void note(GuardNote bit, std::uint64_t& count) noexcept;
 
   GuardOptions options_;
   Passivity passivity_;
-  GuardState state_;
-  GuardInput before_;                     // its force is the one that was let through
+  Guard::State state_;
+  Guard::Input before_;                   // its force is the one that was let through
   Vector3d velocity_ = Vector3d::Zero();  // smoothed, of the step before
   Vector3d slewed_ = Vector3d::Zero();    // let through by clamp and slew then
   double stiffness_ = 0;                  // that made a force last, N/m
@@ -119,7 +119,7 @@ Guard::~Guard() = default;
 Guard::Guard(Guard&&) noexcept = default;
 Guard& Guard::operator=(Guard&&) noexcept = default;
 
-Vector3d Guard::pass(const GuardInput& input) noexcept {
+Vector3d Guard::pass(const Guard::Input& input) noexcept {
   return inside_->pass(input);
 }
 
@@ -127,7 +127,7 @@ void Guard::reset() noexcept {
   inside_->reset();
 }
 
-const GuardState& Guard::state() const noexcept {
+const Guard::State& Guard::state() const noexcept {
   return inside_->state();
 }
 
@@ -136,15 +136,15 @@ const GuardOptions& Guard::options() const noexcept {
 }
 
 void Guard::Inside::reset() noexcept {
-  state_.fault = GuardFault::none;
+  state_.fault = Guard::Fault::none;
   started_ = false;
 }
 
-Vector3d Guard::Inside::pass(const GuardInput& input) noexcept {
+Vector3d Guard::Inside::pass(const Guard::Input& input) noexcept {
   ++state_.counts.steps;
   state_.notes = GuardNote::none;
-  if (state_.fault != GuardFault::none) return fail(state_.fault);
-  if (const GuardFault found = judge(input); found != GuardFault::none) return fail(found);
+  if (state_.fault != Guard::Fault::none) return fail(state_.fault);
+  if (const Guard::Fault found = judge(input); found != Guard::Fault::none) return fail(found);
   if (!options_.on) return input.felt ? input.force : Vector3d::Zero();
   if (!started_) begin(input);
   const Motion motion = follow(input);
@@ -166,7 +166,7 @@ Vector3d Guard::Inside::pass(const GuardInput& input) noexcept {
   return remember(input, motion, limit_length(brake(input, motion, slewed_)));
 }
 
-void Guard::Inside::begin(const GuardInput& input) noexcept {
+void Guard::Inside::begin(const Guard::Input& input) noexcept {
   before_ = input;
   before_.force.setZero();
   velocity_ = input.velocity - input.drift;
@@ -179,7 +179,7 @@ void Guard::Inside::begin(const GuardInput& input) noexcept {
   started_ = true;
 }
 
-Guard::Inside::Motion Guard::Inside::follow(const GuardInput& input) const noexcept {
+Guard::Inside::Motion Guard::Inside::follow(const Guard::Input& input) const noexcept {
   const Vector3d now = input.velocity - input.drift;
   return {input.hip - before_.hip - input.drift * input.dt,
           velocity_ + Guard::kSmoothing * (now - velocity_)};
@@ -187,13 +187,13 @@ Guard::Inside::Motion Guard::Inside::follow(const GuardInput& input) const noexc
 
 // What the spring holds, or a force that fades after the surface has gone, as a spring let loose
 // slowly.
-double Guard::Inside::held(const GuardInput& input) const noexcept {
+double Guard::Inside::held(const Guard::Input& input) const noexcept {
   return std::max(stored(input.force, input.stiffness), stored(slewed_, stiffness_));
 }
 
 // The share of the hand's way along the surface in which the proxy goes along, smoothed; 1 at the
 // first touch.
-double Guard::Inside::sliding(const GuardInput& input, const Motion& motion) const noexcept {
+double Guard::Inside::sliding(const Guard::Input& input, const Motion& motion) const noexcept {
   if (before_.normal.isZero(0) || before_.stiffness == 0 || input.stiffness == 0) return 1;
   const Vector3d along = tangential(motion.way, input.normal);
   const double square = along.squaredNorm();
@@ -205,7 +205,7 @@ double Guard::Inside::sliding(const GuardInput& input, const Motion& motion) con
 }
 
 // The part along the normal is never turned round.
-Vector3d Guard::Inside::damp(const GuardInput& input, const Motion& motion) const noexcept {
+Vector3d Guard::Inside::damp(const Guard::Input& input, const Motion& motion) const noexcept {
   if (!input.felt) return Vector3d::Zero();
   if (options_.damping == 0 || input.normal.isZero(0)) return input.force;
   const double pressed = std::max(0.0, input.force.dot(input.normal));
@@ -214,7 +214,7 @@ Vector3d Guard::Inside::damp(const GuardInput& input, const Motion& motion) cons
   return input.force + std::max(damped, -pressed) * input.normal - options_.damping * held;
 }
 
-Vector3d Guard::Inside::start(const GuardInput& input, const Vector3d& force) noexcept {
+Vector3d Guard::Inside::start(const Guard::Input& input, const Vector3d& force) noexcept {
   gain_ = input.felt ? std::max(gain_, std::min(1.0, affordable_gain(input))) : 0;
   if (gain_ == 1) return force;
   if (input.felt && !force.isZero(0)) note(GuardNote::starting, state_.counts.starting);
@@ -222,7 +222,7 @@ Vector3d Guard::Inside::start(const GuardInput& input, const Vector3d& force) no
 }
 
 // A stretched spring holds more as the gain rises: no more than the hand has put in.
-double Guard::Inside::affordable_gain(const GuardInput& input) const noexcept {
+double Guard::Inside::affordable_gain(const Guard::Input& input) const noexcept {
   if (options_.soft_start == 0) return 1;
   const double risen = gain_ + input.dt / options_.soft_start;
   if (input.normal.isZero(0)) return risen;
@@ -232,7 +232,7 @@ double Guard::Inside::affordable_gain(const GuardInput& input) const noexcept {
 }
 
 // In the air there is nothing to brake against; what is owed waits for the next contact.
-Vector3d Guard::Inside::brake(const GuardInput& input, const Motion& motion,
+Vector3d Guard::Inside::brake(const Guard::Input& input, const Motion& motion,
                               const Vector3d& force) noexcept {
   if (!input.felt || input.normal.isZero(0)) return force;
   const Vector3d brake = passivity_.brake(force, motion.way, input.dt, options_.damping);
@@ -243,13 +243,13 @@ Vector3d Guard::Inside::brake(const GuardInput& input, const Motion& motion,
 
 // A force that fades in the air and gives more than was paid for goes with the hand, as the spring
 // that it was.
-bool Guard::Inside::fades_unpaid(const GuardInput& input, const Motion& motion) const noexcept {
+bool Guard::Inside::fades_unpaid(const Guard::Input& input, const Motion& motion) const noexcept {
   return options_.passivity.on && input.normal.isZero(0) &&
          stored(slewed_, stiffness_) > -passivity_.committed(motion.way);
 }
 
 // Leaving a surface, K of this step is 0 and the change is explained by that of the last one.
-Vector3d Guard::Inside::limit_change(const GuardInput& input, const Motion& motion,
+Vector3d Guard::Inside::limit_change(const Guard::Input& input, const Motion& motion,
                                      const Vector3d& force) noexcept {
   const double loose = fades_unpaid(input, motion) ? stiffness_ : 0;
   const double stiffness = std::max({input.stiffness, before_.stiffness, loose});
@@ -270,7 +270,7 @@ Vector3d Guard::Inside::limit_length(const Vector3d& force) noexcept {
   return options_.maximum_force / length * force;
 }
 
-Vector3d Guard::Inside::remember(const GuardInput& input, const Motion& motion,
+Vector3d Guard::Inside::remember(const Guard::Input& input, const Motion& motion,
                                  const Vector3d& force) noexcept {
   before_ = input;
   stretch_ = stretch(input);
@@ -280,8 +280,8 @@ Vector3d Guard::Inside::remember(const GuardInput& input, const Motion& motion,
 }
 
 // At once: a step of force is the smaller evil.
-Vector3d Guard::Inside::fail(GuardFault fault) noexcept {
-  if (state_.fault == GuardFault::none) ++state_.counts.faults;
+Vector3d Guard::Inside::fail(Guard::Fault fault) noexcept {
+  if (state_.fault == Guard::Fault::none) ++state_.counts.faults;
   state_.fault = fault;
   state_.notes = GuardNote::fault;
   started_ = false;

@@ -11,26 +11,26 @@ GuardOptions in_world(GuardOptions at_hand, double scale) noexcept {
   return at_hand;
 }
 
-std::string_view in_words(GuardFault fault) noexcept {
+std::string_view in_words(Guard::Fault fault) noexcept {
   switch (fault) {
-    case GuardFault::none:
+    case Guard::Fault::none:
       return {};
-    case GuardFault::force:
+    case Guard::Fault::force:
       return "the computed force is not finite; report this with the cloud that was touched";
-    case GuardFault::hand:
+    case Guard::Fault::hand:
       return "the device reported a position or velocity that is not finite; check the device";
-    case GuardFault::time:
+    case Guard::Fault::time:
       return "the time was not finite or went backwards; check the clock";
-    case GuardFault::proxy:
+    case Guard::Fault::proxy:
       return "the proxy got a position or time that is not finite; check the device";
-    case GuardFault::device:
+    case Guard::Fault::device:
       return "the device failed; see its message and reopen it";
   }
   return {};
 }
 
-std::string in_words(const GuardState& state) {
-  if (state.fault != GuardFault::none) {
+std::string in_words(const Guard::State& state) {
+  if (state.fault != Guard::Fault::none) {
     return fmt::format("zero force until reset: {}", in_words(state.fault));
   }
   std::string words;

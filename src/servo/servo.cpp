@@ -10,9 +10,8 @@
 #include "base/latest.hpp"
 #include "base/requirement.hpp"
 #include "palpate/servo/z_width.hpp"
-#include "servo/clutch.hpp"
 #include "servo/passivity.hpp"
-#include "servo/records.hpp"
+#include "servo/servo_inside.hpp"
 
 namespace palpate {
 namespace {
@@ -63,9 +62,9 @@ std::optional<T> news(const Latest<T>& wish, std::uint64_t& seen) noexcept {
   return found;
 }
 
-GuardFault known_fault(const ServoState& state) noexcept {
-  if (state.device == DeviceStatus::failed) return GuardFault::device;
-  return has(state.contact.notes, ContactNote::fault) ? GuardFault::proxy : GuardFault::none;
+Guard::Fault known_fault(const ServoState& state) noexcept {
+  if (state.device == DeviceState::Status::failed) return Guard::Fault::device;
+  return has(state.contact.notes, ContactNote::fault) ? Guard::Fault::proxy : Guard::Fault::none;
 }
 
 }  // namespace
@@ -162,7 +161,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   state.dt = goes_on ? now - state.time : first_step(device.info());
   state.time = now;
   hand = options.workspace.position_to_world(read.position);
-  heard = heard || read.status != DeviceStatus::silent;
+  heard = heard || read.status != DeviceState::Status::silent;
   apply_pending();
   place_tool(read);
   field.update(now, state.hip, started ? proxy.position() : state.hip);
@@ -211,8 +210,8 @@ void Servo::Inside::apply_pending() noexcept {
 }
 
 Vector3d Servo::Inside::guarded() noexcept {
-  GuardInput input;
-  input.felt = !state.paused && state.device != DeviceStatus::silent;
+  Guard::Input input;
+  input.felt = !state.paused && state.device != DeviceState::Status::silent;
   input.softened = is_softened;
   input.hip = hand;
   input.velocity = state.velocity;

@@ -164,7 +164,7 @@ RealtimeReport make_realtime(const RealtimeOptions& options) {
   return report;
 }
 
-double Deadlines::begin(double now) noexcept {
+double ServoThread::Deadlines::begin(double now) noexcept {
   const double late = std::max(now - next(), 0.0);
   const auto missed = static_cast<std::uint64_t>(std::floor(late / period_));
   index_ += missed + 1;
@@ -176,7 +176,7 @@ double Deadlines::begin(double now) noexcept {
   return late;
 }
 
-void Deadlines::restart(double now) noexcept {
+void ServoThread::Deadlines::restart(double now) noexcept {
   start_ = now;
   index_ = 1;
 }
@@ -193,12 +193,13 @@ double rate_for(const DeviceInfo& device, const std::optional<double>& wanted) {
 
 }  // namespace
 
-ServoThread::ServoThread(Servo& servo, WaitingClock& clock, const ServoThreadOptions& options)
-    : servo_(servo), clock_(clock), rate_(rate_for(servo.device().info(), options.rate)) {
+ServoThread::ServoThread(Servo& servo, WaitingClock& clock, const RealtimeOptions& realtime,
+                         std::optional<double> rate)
+    : servo_(servo), clock_(clock), rate_(rate_for(servo.device().info(), rate)) {
   std::promise<RealtimeReport> answered;
   std::future<RealtimeReport> answer = answered.get_future();
   try {
-    thread_ = std::jthread([this, asked = options.realtime,
+    thread_ = std::jthread([this, asked = realtime,
                             answered = std::move(answered)](const std::stop_token& stop) mutable {
       answered.set_value(make_realtime(asked));
       run(stop);
@@ -220,7 +221,7 @@ void ServoThread::stop() {
 }
 
 void ServoThread::run(const std::stop_token& stop) noexcept {
-  Deadlines deadlines(clock_.now(), 1 / rate_);
+  ServoThread::Deadlines deadlines(clock_.now(), 1 / rate_);
   while (!stop.stop_requested() && step(deadlines)) {
   }
   servo_.device().write(Eigen::Vector3d::Zero());
@@ -228,11 +229,11 @@ void ServoThread::run(const std::stop_token& stop) noexcept {
 }
 
 // False when the device has come to its end.
-bool ServoThread::step(Deadlines& deadlines) noexcept {
+bool ServoThread::step(ServoThread::Deadlines& deadlines) noexcept {
   Device& device = servo_.device();
   if (!device.info().keeps_time) clock_.wait_until(deadlines.next());
   const DeviceState state = device.read();
-  if (state.status == DeviceStatus::finished) return false;
+  if (state.status == DeviceState::Status::finished) return false;
   const double now = clock_.now();
   ServoState::Timing timing;
   timing.lateness = deadlines.begin(now);
@@ -243,7 +244,7 @@ bool ServoThread::step(Deadlines& deadlines) noexcept {
   timing.computing = thread_cpu_seconds() - start;
   device.write(servo_.device_force());
   servo_.show(timing);
-  return state.status != DeviceStatus::failed;
+  return state.status != DeviceState::Status::failed;
 }
 
 }  // namespace palpate

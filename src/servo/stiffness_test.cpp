@@ -6,7 +6,7 @@
 #include "base/requirement.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/servo/z_width.hpp"
-#include "servo/oscillation_detector.hpp"
+#include "servo/oscillation.hpp"
 
 namespace palpate {
 
@@ -102,7 +102,7 @@ struct StiffnessTest::Inside {
   void press(double dt, double now) noexcept;
   void go_to(Phase phase, double now) noexcept;
   [[nodiscard]] bool is_over() const noexcept { return state.phase >= Phase::unstable; }
-  [[nodiscard]] GuardInput felt(const DeviceState& hand, double dt) const noexcept;
+  [[nodiscard]] Guard::Input felt(const DeviceState& hand, double dt) const noexcept;
 
   StiffnessTestOptions options;
   Guard guard;
@@ -145,12 +145,12 @@ Vector3d StiffnessTest::Inside::step(const DeviceState& hand, double now) noexce
 
 void StiffnessTest::Inside::advance(const DeviceState& hand, double now, double dt) noexcept {
   const bool rests = state.phase == Phase::rest;
-  if (hand.status == DeviceStatus::silent && now - since <= options.patience) {
+  if (hand.status == DeviceState::Status::silent && now - since <= options.patience) {
     if (!rests) go_to(Phase::rest, now);
     return;
   }
   const bool known = hand.position.allFinite() && hand.velocity.allFinite();
-  if (hand.status != DeviceStatus::ok || !known || !std::isfinite(dt)) {
+  if (hand.status != DeviceState::Status::ok || !known || !std::isfinite(dt)) {
     return go_to(Phase::device_lost, now);
   }
   if (hand.velocity.norm() > options.fastest) return go_to(Phase::too_fast, now);
@@ -194,8 +194,8 @@ void StiffnessTest::Inside::go_to(Phase phase, double now) noexcept {
   since = now;
 }
 
-GuardInput StiffnessTest::Inside::felt(const DeviceState& hand, double dt) const noexcept {
-  GuardInput input;
+Guard::Input StiffnessTest::Inside::felt(const DeviceState& hand, double dt) const noexcept {
+  Guard::Input input;
   input.hip = hand.position;
   input.velocity = hand.velocity;
   input.dt = dt;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "servo/impact.hpp"
+#include "servo/oscillation.hpp"
 
 namespace palpate {
 namespace {
@@ -20,8 +20,8 @@ struct Wall {
   double stiffness;
   bool two_sided;
 
-  [[nodiscard]] GuardInput felt(const DeviceState& hand, double dt) const {
-    GuardInput input;
+  [[nodiscard]] Guard::Input felt(const DeviceState& hand, double dt) const {
+    Guard::Input input;
     input.hip = hand.position;
     input.velocity = hand.velocity;
     input.dt = dt;

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <thread>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -110,14 +110,14 @@ std::uint64_t SimulatedCamera::shown_in(std::uint64_t frame) const {
   return frame;
 }
 
-CameraStatus SimulatedCamera::read(DepthFrame& frame, double timeout) {
-  if (options_.clock && !wait_for_frame(timeout)) return CameraStatus::waiting;
+DepthCamera::Status SimulatedCamera::read(DepthFrame& frame, double timeout) {
+  if (options_.clock && !wait_for_frame(timeout)) return DepthCamera::Status::waiting;
   while (!arrives(next_)) ++next_;
   if (options_.frames > 0 && next_ - first_ >= static_cast<std::uint64_t>(options_.frames)) {
-    return CameraStatus::ended;
+    return DepthCamera::Status::ended;
   }
   fill(next_++, frame);
-  return CameraStatus::frame;
+  return DepthCamera::Status::frame;
 }
 
 // Waits until the next frame has been taken, and goes on to the newest one.

@@ -46,7 +46,7 @@ class SimulatedCamera final : public DepthCamera {
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
   void begin(double start) override;
-  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override;
+  [[nodiscard]] DepthCamera::Status read(DepthFrame& frame, double timeout) override;
   [[nodiscard]] std::string reason() const override { return {}; }
 
   /// The truth.
@@ -111,5 +111,9 @@ struct SimulatedName {
 /// @throws Error when a name or a value makes no sense.
 [[nodiscard]] std::unique_ptr<SimulatedCamera> open_simulated(const std::string& specification,
                                                               const Clock* clock);
+
+/// Changes a set-up by "KEY=VALUE" (open_simulated() says which there are).
+/// @throws Error when the key is unknown or the value makes no sense.
+void set_simulated(SimulatedSetup& setup, const std::string& assignment);
 
 }  // namespace palpate

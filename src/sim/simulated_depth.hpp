@@ -9,6 +9,8 @@
 
 namespace palpate {
 
+using Distance = AnalyticField::Distance;
+
 enum class SolidKind {
   half_space,  ///< all below the local plane z = 0
   ball,        ///< of radius size.x

@@ -1,11 +1,10 @@
-#include "sim/simulated_faults.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
+#include "sim/simulated_noise.hpp"
 
 namespace palpate::sim {
 namespace {

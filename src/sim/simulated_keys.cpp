@@ -1,5 +1,3 @@
-#include "sim/simulated_keys.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,9 +6,10 @@
 #include <optional>
 #include <string_view>
 
-#include "base/angle.hpp"
+#include "base/numbers.hpp"
 #include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
+#include "sim/simulated_camera.hpp"
 
 namespace palpate {
 namespace {

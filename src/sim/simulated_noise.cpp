@@ -6,9 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
-#include "sim/simulated_faults.hpp"
 
 namespace palpate {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "base/angle.hpp"
+#include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {

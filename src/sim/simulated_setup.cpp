@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/angle.hpp"
+#include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
 #include "sim/simulated_camera.hpp"
-#include "sim/simulated_keys.hpp"
 #include "sim/simulated_scene.hpp"
 
 namespace palpate {

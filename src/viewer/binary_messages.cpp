@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "viewer/local_surface.hpp"
 #include "viewer/messages.hpp"
+#include "viewer/scene_encoder.hpp"
 
 namespace palpate::viewer {
 

@@ -13,6 +13,32 @@
 
 namespace palpate::viewer {
 
+void Outbox::put(Topic topic, Message message) {
+  if (topic.kind == Topic::Kind::answer) {
+    if (answers_.size() == kMostAnswers) answers_.pop_front();
+    answers_.push_back(std::move(message));
+    return;
+  }
+  const auto same = std::ranges::find(row_, topic, &Waiting::topic);
+  if (same == row_.end()) {
+    row_.push_back({topic, std::move(message)});
+  } else {
+    same->message = std::move(message);
+  }
+}
+
+std::optional<Message> Outbox::take() {
+  std::optional<Message> message;
+  if (!answers_.empty()) {
+    message = std::move(answers_.front());
+    answers_.pop_front();
+  } else if (!row_.empty()) {
+    message = std::move(row_.front().message);
+    row_.pop_front();
+  }
+  return message;
+}
+
 namespace {
 
 std::string why_not(const Setting& setting, double value) {
@@ -197,7 +223,7 @@ void ClientSessions::act(Session&, const Record& record) {
   send_to_all({Topic::Kind::record}, text_message(record_text(record.on, file)));
 }
 
-void ClientSessions::send_to_all(Topic topic, Message message) {
+void ClientSessions::send_to_all(Topic topic, const Message& message) {
   for (Session* session : greeted()) {
     session->outbox.put(topic, message);
     if (session->wake) session->wake();

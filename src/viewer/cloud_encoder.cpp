@@ -1,5 +1,3 @@
-#include "viewer/cloud_encoder.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "field/formulas.hpp"
+#include "viewer/scene_encoder.hpp"
 
 namespace palpate::viewer {
 
@@ -37,7 +36,7 @@ std::vector<std::uint32_t> felt(const SurfacePoints& points) {
 
 /// Has nothing confirmed the surface for so long that it cannot be felt any more? A cloud that was
 /// set and not pushed stands still.
-bool faded(const SourceState& state, double now) {
+bool faded(const Source::State& state, double now) {
   return state.frames > 0 && now > state.silent_from + state.fade;
 }
 
@@ -93,7 +92,7 @@ std::vector<EncodedCloud> CloudEncoder::encode(const std::set<std::size_t>& budg
   std::vector<std::shared_ptr<const SurfacePoints>> newest(sources_.size());
   std::vector<std::size_t> sizes(sources_.size());
   for (std::size_t s = 0; s < sources_.size(); ++s) {
-    const SourceState state = scene_.source(s).state();
+    const Source::State state = scene_.source(s).state();
     newest[s] = scene_.source(s).points();
     Known& known = sources_[s];
     const bool gone = faded(state, now);

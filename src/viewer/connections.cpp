@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "viewer/page.hpp"
+#include "viewer/server.hpp"
 
 namespace palpate::viewer {
 

@@ -1,5 +1,3 @@
-#include "viewer/local_surface.hpp"
-
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -7,6 +5,8 @@
 #include <limits>
 #include <optional>
 #include <utility>
+
+#include "viewer/scene_encoder.hpp"
 
 namespace palpate::viewer {
 

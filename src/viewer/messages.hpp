@@ -18,6 +18,9 @@
 
 namespace palpate::viewer {
 
+using Setting = ViewerControls::Setting;
+using ViewedStream = ViewerOptions::Stream;
+
 struct Mesh;  // local_surface.hpp
 
 // What a page says. JSON.
@@ -105,7 +108,7 @@ struct Welcome {
 
 /// How a device is doing; `reason`: why it is silent or has failed, and what to do.
 struct DeviceReport {
-  DeviceStatus status = DeviceStatus::ok;
+  DeviceState::Status status = DeviceState::Status::ok;
   std::string reason;
 };
 
@@ -120,7 +123,7 @@ struct SourceReport {
   std::uint64_t dropped = 0;
   std::optional<double> disagreement;
   std::optional<Eigen::Isometry3d> pose;  ///< relative to the origin
-  std::optional<ViewerStream::Frustum> frustum;
+  std::optional<ViewedStream::Frustum> frustum;
 };
 
 // Texts that are no UTF-8 come out with replacement characters.

@@ -1,6 +1,6 @@
 #include <array>
 
-#include "viewer/page.hpp"
+#include "viewer/server.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -11,13 +11,13 @@ namespace palpate::viewer {
 
 namespace {
 
-const ViewerStream* stream_of(std::span<const ViewerStream> streams, const std::string& source) {
+const ViewedStream* stream_of(std::span<const ViewedStream> streams, const std::string& source) {
   const auto found = std::ranges::find_if(
-      streams, [&](const ViewerStream& stream) { return stream.state.source == source; });
+      streams, [&](const ViewedStream& stream) { return stream.state.source == source; });
   return found == streams.end() ? nullptr : &*found;
 }
 
-void add_stream(const ViewerStream& stream, const Source& source, const Eigen::Vector3d& origin,
+void add_stream(const ViewedStream& stream, const Source& source, const Eigen::Vector3d& origin,
                 SourceReport& report) {
   report.rate = stream.state.rate;
   report.dropped += stream.state.drops.total();
@@ -53,13 +53,13 @@ std::vector<std::string> tool_names(const std::vector<Servo*>& servos) {
   return names;
 }
 
-std::vector<SourceReport> source_reports(const Scene& scene, std::span<const ViewerStream> streams,
+std::vector<SourceReport> source_reports(const Scene& scene, std::span<const ViewedStream> streams,
                                          const Eigen::Vector3d& origin, double now) {
   std::vector<SourceReport> reports;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const Source& source = scene.source(i);
-    const SourceState state = scene.state(i);
-    const ViewerStream* stream = stream_of(streams, source.name());
+    const Source::State state = scene.state(i);
+    const ViewedStream* stream = stream_of(streams, source.name());
     const auto points = source.points();
     SourceReport report;
     report.name = source.name();
@@ -122,7 +122,7 @@ std::vector<Eigen::Vector3f> StateReporter::forces_until(std::uint64_t step) {
 
 // What the guard did in any step since the message before, not in the last one alone.
 std::uint32_t StateReporter::flags(const ServoState& state, bool taken) {
-  const GuardState::Counts& counts = state.guard.counts;
+  const Guard::State::Counts& counts = state.guard.counts;
   std::uint32_t flags = 0;
   const auto set = [&flags](bool is, std::uint32_t flag) { flags |= is ? flag : 0; };
   set(state.contact.touching, state_flag::kTouching);
@@ -135,7 +135,7 @@ std::uint32_t StateReporter::flags(const ServoState& state, bool taken) {
   set(counts.starting > counts_.starting, state_flag::kStarting);
   set(counts.softened > counts_.softened, state_flag::kSoftened);
   set(state.clutched, state_flag::kClutched);
-  set(state.guard.fault != GuardFault::none, state_flag::kFault);
+  set(state.guard.fault != Guard::Fault::none, state_flag::kFault);
   set(has(state.field_notes, FieldNote::thinned), state_flag::kThinned);
   set(has(state.contact.notes, ContactNote::softer), state_flag::kSofter);
   counts_ = counts;
@@ -149,11 +149,11 @@ double StateReporter::rate(double now, std::uint64_t step) {
   return time > 0 ? static_cast<double>(step - steps_.front().second) / time : 0;
 }
 
-std::vector<Notice> FaultNotices::update(std::span<const ViewerStream> streams,
+std::vector<Notice> FaultNotices::update(std::span<const ViewedStream> streams,
                                          std::span<const DeviceFault> devices) {
   std::vector<Notice> news;
   present_.clear();
-  for (const ViewerStream& stream : streams) {
+  for (const ViewedStream& stream : streams) {
     const Notice notice{Viewer::NoticeLevel::warning, stream.state.problem};
     if (is_new(stream.state)) news.push_back(notice);
     if (lasts(stream.state) && !notice.text.empty()) present_.push_back(notice);
@@ -161,7 +161,7 @@ std::vector<Notice> FaultNotices::update(std::span<const ViewerStream> streams,
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const auto& [name, fault] = devices[i];
     const bool changed = std::exchange(faults_[i], fault) != fault;
-    if (fault == GuardFault::none) continue;
+    if (fault == Guard::Fault::none) continue;
     present_.push_back({Viewer::NoticeLevel::fault, fmt::format("{}: {}", name, in_words(fault))});
     if (changed) news.push_back(present_.back());
   }

@@ -26,7 +26,7 @@ namespace palpate::viewer {
 /// How every source of `scene` fares at `now` (s, on the snapshots' clock). Takes milliseconds; any
 /// thread but a servo's.
 [[nodiscard]] std::vector<SourceReport> source_reports(const Scene& scene,
-                                                       std::span<const ViewerStream> streams,
+                                                       std::span<const ViewedStream> streams,
                                                        const Eigen::Vector3d& origin, double now);
 
 /// Makes the messages of one servo's state: of what happened since the message before. One thread
@@ -51,7 +51,7 @@ class StateReporter {
   std::uint64_t step_ = 0;  // of the message before
   double time_ = 0;         // of it, s
   std::uint64_t forces_seen_ = 0;
-  GuardState::Counts counts_;
+  Guard::State::Counts counts_;
   Durations computing_;
   Durations lateness_;
   std::deque<std::pair<double, std::uint64_t>> steps_;  // when which step was the newest
@@ -60,7 +60,7 @@ class StateReporter {
 /// The latched fault of a device, if there is one.
 struct DeviceFault {
   std::string name;
-  GuardFault fault = GuardFault::none;
+  Guard::Fault fault = Guard::Fault::none;
 };
 
 /// What is wrong with streams and devices: tells what is new, and knows what lasts. One thread uses
@@ -71,7 +71,7 @@ class FaultNotices {
   static constexpr double kPeace = 10;
 
   /// What is new since the call before. Each index stands for the same device in every call.
-  [[nodiscard]] std::vector<Notice> update(std::span<const ViewerStream> streams,
+  [[nodiscard]] std::vector<Notice> update(std::span<const ViewedStream> streams,
                                            std::span<const DeviceFault> devices);
 
   /// What was wrong at the last call and goes on, for those who come later.
@@ -86,7 +86,7 @@ class FaultNotices {
   [[nodiscard]] bool is_new(const StreamState& stream);
 
   std::map<std::string, Problem> problems_;  // the last one of each source
-  std::map<std::size_t, GuardFault> faults_;
+  std::map<std::size_t, Guard::Fault> faults_;
   std::vector<Notice> present_;
 };
 

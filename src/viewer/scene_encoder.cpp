@@ -8,7 +8,6 @@
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "viewer/local_surface.hpp"
 #include "viewer/messages.hpp"
 #include "viewer/reports.hpp"
 
@@ -22,7 +21,8 @@ constexpr double kWorthIt = 0.1;
 // Between the support at which capped solids end behind their surface and that of the surface
 // itself.
 double least_support_of(const FieldOptions& options) {
-  const bool ends = options.capped && options.kind != FieldKind::metaball && !options.raw_weights;
+  const bool ends =
+      options.capped && options.kind != FieldOptions::Kind::metaball && !options.raw_weights;
   return ends ? 0.5 * (options.minimum_support + options.threshold) : 0;
 }
 
@@ -177,8 +177,8 @@ void SceneEncoder::join_scene() {
 
 void SceneEncoder::report(EncodedScene& encoded) {
   reported_ = host_time();
-  const std::vector<ViewerStream> streams =
-      options_.streams ? options_.streams() : std::vector<ViewerStream>{};
+  const std::vector<ViewedStream> streams =
+      options_.streams ? options_.streams() : std::vector<ViewedStream>{};
   encoded.sources = std::make_shared<const std::string>(
       sources_text(source_reports(scene_, streams, options_.origin, now())));  // painting took time
 }

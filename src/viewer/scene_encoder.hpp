@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -12,13 +14,87 @@
 #include <thread>
 #include <vector>
 
+#include "palpate/field/field.hpp"
+#include "palpate/field/surface_points.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/viewer/viewer.hpp"
-#include "viewer/cloud_encoder.hpp"
-#include "viewer/session.hpp"
+#include "viewer/client_sessions.hpp"
+#include "viewer/messages.hpp"
 
 namespace palpate::viewer {
+
+/// Triangles around a centre that is known apart. Seen from the free side their corners go
+/// anticlockwise.
+struct Mesh {
+  std::vector<Eigen::Vector3f> vertices;  ///< m, relative to the centre
+  std::vector<std::array<std::uint16_t, 3>> triangles;
+};
+
+/// Where a surface is to be meshed.
+struct LocalRegion {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
+  double radius = 0;  ///< R, m; the mesh reaches kReach of it to every side
+  /// Where there is less support the surface is left out: the back of a sheet, where the solid
+  /// ends because nothing is known behind it.
+  double least_support = 0;
+};
+
+/// R's to every side of the centre.
+inline constexpr double kReach = 2.4;
+
+/// The surface of `field` in a cube (surface nets): what can be felt there, as far as it is known.
+/// Cubes that are free are passed over, and no more than 32^3 cells looked at, so that it costs a
+/// few thousand samples.
+[[nodiscard]] Mesh local_surface(const Field& field, const LocalRegion& region);
+
+/// At most `budget` of `count` points, rising: one of each of `budget` equal stretches of their
+/// order. Along a CellGrid's Morton order, stretches are places: what is left covers all as the
+/// points did, and the same points stay from one call to the next.
+[[nodiscard]] std::vector<std::uint32_t> thinned(std::size_t count, std::size_t budget);
+
+/// How many points each of several clouds may show so that all show no more than `budget`: in
+/// proportion to their sizes.
+[[nodiscard]] std::vector<std::size_t> shares(const std::vector<std::size_t>& sizes,
+                                              std::size_t budget);
+
+/// The points that can be felt, where they are going to be, thinned to `budget`, relative to
+/// `origin` (m, world). Source and stamp are left to the caller.
+[[nodiscard]] CloudMessage cloud_of(const SurfacePoints& points, const Eigen::Vector3d& origin,
+                                    std::size_t budget);
+
+/// The cloud of a source for those who draw `budget` points in all.
+struct EncodedCloud {
+  std::size_t source = 0;
+  std::size_t budget = 0;
+  SharedBytes bytes;
+};
+
+/// Encodes each source's newest cloud once for each budget that clients have. One thread uses it.
+class CloudEncoder {
+ public:
+  CloudEncoder(const Scene& scene, const Eigen::Vector3d& origin)
+      : scene_(scene), origin_(origin), sources_(scene.size()) {}
+
+  /// All that is to be seen at `now` (s, on the snapshots' clock); what did not change has the
+  /// bytes that it had.
+  [[nodiscard]] std::vector<EncodedCloud> encode(const std::set<std::size_t>& budgets, double now);
+
+ private:
+  struct Known {
+    std::weak_ptr<const SurfacePoints> points;
+    std::uint64_t frames = 0;
+    bool faded = false;
+    std::map<std::size_t, SharedBytes> encoded;  // by share
+  };
+
+  [[nodiscard]] SharedBytes encode(std::size_t source, const SurfacePoints* points,
+                                   std::size_t share) const;
+
+  const Scene& scene_;
+  Eigen::Vector3d origin_;
+  std::vector<Known> sources_;
+};
 
 /// What is around one tool.
 struct EncodedSurface {
@@ -39,7 +115,7 @@ struct EncodedScene {
 struct SceneEncoderOptions {
   std::vector<Servo*> servos;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::function<std::vector<ViewerStream>()> streams = {};
+  std::function<std::vector<ViewedStream>()> streams = {};
   std::function<void(EncodedScene)> show;  ///< called on the encoder's thread
 };
 

@@ -2,7 +2,9 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "palpate/viewer/viewer.hpp"
 #include "viewer/access.hpp"
@@ -38,5 +40,14 @@ class Server {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+struct PageFile {
+  std::string_view path;  ///< "/app.js"
+  std::string_view type;  ///< MIME
+  std::string_view bytes;
+};
+
+/// The page's files, held in the program. Where the page was not built, one that says how to.
+[[nodiscard]] std::span<const PageFile> page_files();
 
 }  // namespace palpate::viewer

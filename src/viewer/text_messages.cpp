@@ -101,8 +101,6 @@ ClientMessage read_object(const json& object) {
   throw Unread{"unknown message type"};
 }
 
-using nlohmann::json;
-
 constexpr int kVersion = 1;
 
 std::string text_of(const json& message) {
@@ -160,10 +158,10 @@ const char* name_of(Viewer::NoticeLevel level) {
   return level == Viewer::NoticeLevel::warning ? "warning" : "info";
 }
 
-const char* name_of(DeviceStatus status) {
-  if (status == DeviceStatus::silent) return "silent";
-  if (status == DeviceStatus::finished) return "finished";
-  return status == DeviceStatus::failed ? "failed" : "ok";
+const char* name_of(DeviceState::Status status) {
+  if (status == DeviceState::Status::silent) return "silent";
+  if (status == DeviceState::Status::finished) return "finished";
+  return status == DeviceState::Status::failed ? "failed" : "ok";
 }
 
 }  // namespace

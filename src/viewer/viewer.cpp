@@ -135,11 +135,11 @@ struct Viewer::Parts {
             controls,        labels_of(servos, controls),
             *options.origin, [this] { return welcome(); }};
   }
-  [[nodiscard]] std::vector<ViewerStream> streams() const {
-    return options.streams ? options.streams() : std::vector<ViewerStream>{};
+  [[nodiscard]] std::vector<ViewedStream> streams() const {
+    return options.streams ? options.streams() : std::vector<ViewedStream>{};
   }
   [[nodiscard]] Welcome welcome();
-  void check_faults(const std::vector<ViewerStream>& streams);
+  void check_faults(const std::vector<ViewedStream>& streams);
   void send_devices();
   void tick();
   void post(EncodedScene encoded) {
@@ -169,10 +169,10 @@ Welcome Viewer::Parts::welcome() {
   welcome.origin = *options.origin;
   welcome.up = options.up;
   welcome.radius = box.empty() ? kEmptyRadius : 0.5 * box.size().norm();
-  const std::vector<ViewerStream> seen = streams();
+  const std::vector<ViewedStream> seen = streams();
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const std::string& name = scene.source(i).name();
-    const bool camera = std::ranges::any_of(seen, [&](const ViewerStream& stream) {
+    const bool camera = std::ranges::any_of(seen, [&](const ViewedStream& stream) {
       return stream.state.source == name && stream.frustum;
     });
     welcome.sources.push_back({name, camera});
@@ -182,7 +182,7 @@ Welcome Viewer::Parts::welcome() {
   return welcome;
 }
 
-void Viewer::Parts::check_faults(const std::vector<ViewerStream>& streams) {
+void Viewer::Parts::check_faults(const std::vector<ViewedStream>& streams) {
   std::vector<DeviceFault> faults;
   for (std::size_t i = 0; i < servos.size(); ++i) {
     faults.push_back({names[i], servos[i]->state().guard.fault});
@@ -195,8 +195,8 @@ void Viewer::Parts::send_devices() {
   for (const Servo* servo : servos) {
     DeviceReport& report = reports.emplace_back();
     report.status = servo->state().device;
-    const bool wrong =
-        report.status == DeviceStatus::silent || report.status == DeviceStatus::failed;
+    const bool wrong = report.status == DeviceState::Status::silent ||
+                       report.status == DeviceState::Status::failed;
     if (wrong) report.reason = servo->device().reason();
   }
   sessions.send_to_all({Topic::Kind::devices},

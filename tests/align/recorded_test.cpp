@@ -6,7 +6,7 @@
 
 #include "palpate/align/align.hpp"
 #include "palpate/scene/source.hpp"
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 
 namespace palpate {
 namespace {
@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 std::vector<DepthFrame> frames_of(const std::string& folder) {
   const auto camera = open_camera("sequence:" + folder, {});
   std::vector<DepthFrame> frames;
-  for (DepthFrame frame; camera->read(frame, 1) == CameraStatus::frame;) frames.push_back(frame);
+  for (DepthFrame frame; camera->read(frame, 1) == DepthCamera::Status::frame;)
+    frames.push_back(frame);
   return frames;
 }
 

@@ -1,10 +1,9 @@
-#include "apps/palpate/info/density_map.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 
+#include "apps/palpate/info/info_command.hpp"
 #include "palpate/io/synthetic.hpp"
 
 namespace palpate::app {

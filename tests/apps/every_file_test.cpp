@@ -9,7 +9,7 @@
 
 #include "apps/palpate/options/touch_options.hpp"
 #include "apps/palpate/run/touch_statistics.hpp"
-#include "apps/palpate/touch/simulated_run.hpp"
+#include "apps/palpate/touch/touch.hpp"
 #include "apps/program.hpp"
 #include "palpate/base/error.hpp"
 #include "support/effort.hpp"
@@ -66,7 +66,7 @@ bool is_quiet(const ServoState& step) {
 }
 
 // As `palpate touch FILE --duration 10` does.
-TouchStatistics touch(const TouchPlan& plan) {
+TouchStatistics statistics_of(const TouchPlan& plan) {
   LoadedScene loaded = load_sources(plan.sources, {.explored = true});
   std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, nullptr);
   place_hands(hands, {plan.motion, plan.surface, plan.page}, {}, loaded.scene);
@@ -94,7 +94,7 @@ void expect_touched(const fs::path& file) {
   choices.plan.motion.duration = 1e-3 * milliseconds();
   if (file.extension() == ".png") describe_depth(file, choices.every_source.reading);
   try {
-    const TouchStatistics statistics = touch(plan_touch(CLI::App(), choices));
+    const TouchStatistics statistics = statistics_of(plan_touch(CLI::App(), choices));
     EXPECT_GE(statistics.steps(), static_cast<std::size_t>(milliseconds()));
     EXPECT_GT(statistics.touching(), 0u);
   } catch (const Error& error) {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "apps/palpate/touch/simulated_run.hpp"
+#include "apps/palpate/touch/touch.hpp"
 #include "apps/setup_parsed.hpp"
 #include "support/effort.hpp"
 

@@ -10,7 +10,7 @@
 #include <functional>
 #include <thread>
 
-#include "apps/palpate/cli/json.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "apps/program.hpp"
 #include "device/remote_client.hpp"
 #include "palpate/base/clock.hpp"

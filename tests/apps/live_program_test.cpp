@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "apps/palpate/cli/json.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "apps/program.hpp"
 #include "support/effort.hpp"
 

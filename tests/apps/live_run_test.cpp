@@ -1,9 +1,8 @@
-#include "apps/palpate/touch/live_run.hpp"
-
 #include <gtest/gtest.h>
 
 #include <memory>
 
+#include "apps/palpate/touch/touch.hpp"
 #include "apps/setup_parsed.hpp"
 
 namespace palpate::app {
@@ -12,7 +11,9 @@ namespace {
 // Stands still, and ends in some way after some reads.
 class ShortDevice final : public Device {
  public:
-  ShortDevice(int reads, DeviceStatus end) : left_(reads), end_(end) { info_.name = "short"; }
+  ShortDevice(int reads, DeviceState::Status end) : left_(reads), end_(end) {
+    info_.name = "short";
+  }
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] DeviceState read() noexcept override {
@@ -28,10 +29,10 @@ class ShortDevice final : public Device {
  private:
   DeviceInfo info_;
   int left_;
-  DeviceStatus end_;
+  DeviceState::Status end_;
 };
 
-Hand hand_with(const std::string& name, int reads, DeviceStatus end) {
+Hand hand_with(const std::string& name, int reads, DeviceState::Status end) {
   Hand hand;
   hand.name = name;
   hand.device = std::make_unique<ShortDevice>(reads, end);
@@ -49,8 +50,8 @@ TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
   plan.time.realtime.lock_memory = false;
   LoadedScene loaded = load_sources(plan.sources, {});
   std::vector<Hand> hands;
-  hands.push_back(hand_with("hand 1", 20, DeviceStatus::failed));
-  hands.push_back(hand_with("hand 2", 200, DeviceStatus::finished));
+  hands.push_back(hand_with("hand 1", 20, DeviceState::Status::failed));
+  hands.push_back(hand_with("hand 2", 200, DeviceState::Status::finished));
   app::Run run{
       plan.time, plan.page, plan.ros, loaded, hands, {}, plan.surface.proxy_of(kStiffness)};
   std::vector<std::size_t> steps(2);
@@ -61,9 +62,9 @@ TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
   ASSERT_EQ(reports.size(), 2u);
   EXPECT_FALSE(outcome.interrupted);
   EXPECT_EQ(reports[0].failure, "hand 1: device 'short' failed: its cable is out");
-  EXPECT_EQ(reports[0].guard.fault, GuardFault::device);
+  EXPECT_EQ(reports[0].guard.fault, Guard::Fault::device);
   EXPECT_EQ(reports[1].failure, "");
-  EXPECT_EQ(reports[1].guard.fault, GuardFault::none);
+  EXPECT_EQ(reports[1].guard.fault, Guard::Fault::none);
   EXPECT_EQ(left(hands[1]), 0) << "went on to its own end";
   EXPECT_LE(steps[0], 21u);
   EXPECT_GT(steps[1], 0u);

@@ -50,7 +50,7 @@ TEST(LiveStatus, TellsPaceForceAndStreamsInOneLine) {
 
 TEST(LiveStatus, TellsWhatIsWrong) {
   LiveMoment moment = second();
-  moment.hands[0].servo.guard.fault = GuardFault::hand;
+  moment.hands[0].servo.guard.fault = Guard::Fault::hand;
   moment.streams[0].phase = StreamState::Phase::stalled;
   moment.streams[0].drops.overtaken = 2;
   moment.streams[0].drops.late = 1;
@@ -77,7 +77,7 @@ TEST(LiveStatus, TellsOfEachHandByName) {
   moment.hands.push_back(moment.hands[0]);
   moment.hands[2].name = "hand 3";
   moment.hands[2].ended = true;
-  moment.hands[2].servo.guard.fault = GuardFault::device;
+  moment.hands[2].servo.guard.fault = Guard::Fault::device;
   const std::string words = in_words(moment);
   for (const char* part :
        {"12.3 s | hand 1: 1.23 N  1000 Hz", "| hand 2: no client is sending to 'a' |",

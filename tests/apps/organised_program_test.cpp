@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "apps/palpate/cli/json.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "apps/program.hpp"
 #include "apps/recorded_wall.hpp"
 

@@ -1,10 +1,9 @@
-#include "apps/palpate/options/setup_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <iterator>
 
+#include "apps/palpate/options/touch_options.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 #include "support/effort.hpp"
@@ -67,7 +66,7 @@ TEST(SetupFile, TheDocumentedOneRunsAsItIs) {
 TEST(SetupFile, FillsInWhatTheCommandLineDoesNotSay) {
   const Shell shell;
   const TouchPlan plan = planned(shell, kDesk, "");
-  EXPECT_EQ(plan.surface.field.kind, FieldKind::pointset);
+  EXPECT_EQ(plan.surface.field.kind, FieldOptions::Kind::pointset);
   EXPECT_EQ(plan.surface.field.tool_radius, 0.002);
   EXPECT_EQ(plan.surface.stiffness, 700);
   EXPECT_EQ(plan.motion.seed, 9u);
@@ -93,51 +92,6 @@ TEST(SetupFile, FillsInWhatTheCommandLineDoesNotSay) {
       << "of [stream], for sources that say nothing else";
 }
 
-constexpr const char* kEverything = R"([[source]]
-from = "camera:simulated"
-memory = 3
-[[source]]
-name = "other"
-from = "camera:simulated"
-fit_everywhere = false
-normal_error = 0.005
-[[source]]
-name = "points"
-from = "camera:simulated"
-unorganised = true
-
-[reading]
-viewpoint = [0, 0, 1.2]
-unorganised = false
-
-[stream]
-silence = 0.7
-fade = 0.9
-nearest = 0.4
-farthest = 2
-memory = 12
-fit_everywhere = true
-clip_to_reach = true
-
-[surface]
-normal_error = 0.01
-sharp_edges = false
-
-[guard]
-maximum_force = 2.5
-slew = 150
-watchdog = 0.02
-damping = 0.7
-soft_start = 0.1
-passivity = false
-
-[servo]
-processor = 1
-realtime = false
-priority = 60
-lock_memory = false
-)";
-
 TEST(SetupFile, NamesOneDeviceOrOneForEachHand) {
   const Shell shell;
   const std::string from = "[[source]]\nfrom = \"synthetic:torus\"\n[hand]\n";
@@ -162,44 +116,6 @@ TEST(SetupFile, NamesOneDeviceOrOneForEachHand) {
   EXPECT_EQ(placed.path, "haply:04EA");
   EXPECT_EQ(placed.placement.frame, "left");
   EXPECT_EQ(placed.placement.scale, 2);
-}
-
-TEST(SetupFile, EveryChoiceReachesTheLibrary) {
-  const Shell shell;
-  const TouchPlan plan = planned(shell, kEverything, "");
-  ASSERT_EQ(plan.sources.size(), 3u);
-  EXPECT_FALSE(plan.sources[0].as_cloud);
-  EXPECT_TRUE(plan.sources[2].as_cloud);
-  EXPECT_FALSE(plan.sources[2].options.organised);
-  const SourceOptions& first = plan.sources[0].options;
-  EXPECT_EQ(first.policy.silence, 0.7);
-  EXPECT_EQ(first.policy.fade, 0.9);
-  EXPECT_TRUE(first.policy.fit_everywhere);
-  EXPECT_TRUE(first.policy.clip_to_reach);
-  EXPECT_EQ(first.depth.nearest, 0.4);
-  EXPECT_EQ(first.depth.farthest, 2);
-  EXPECT_EQ(first.depth.memory, 3) << "its own";
-  EXPECT_EQ(first.depth.normal_error, 0.01);
-  EXPECT_EQ(first.prepare.normal_error, 0.01);
-  ASSERT_TRUE(first.prepare.viewpoint);
-  EXPECT_EQ(first.prepare.viewpoint->z(), 1.2);
-  const SourceOptions& second = plan.sources[1].options;
-  EXPECT_EQ(second.depth.memory, 12) << "of [stream]";
-  EXPECT_FALSE(second.policy.fit_everywhere);
-  EXPECT_EQ(second.depth.normal_error, 0.005);
-  EXPECT_FALSE(plan.surface.field.sharp_edges);
-  const GuardOptions& guard = plan.time.guard;
-  EXPECT_EQ(guard.maximum_force, 2.5);
-  EXPECT_EQ(guard.slew, 150);
-  EXPECT_EQ(guard.silence, 0.02);
-  EXPECT_EQ(guard.damping, 0.7);
-  EXPECT_EQ(guard.soft_start, 0.1);
-  EXPECT_FALSE(guard.passivity.on);
-  const RealtimeOptions& realtime = plan.time.realtime;
-  EXPECT_EQ(realtime.processor, 1);
-  EXPECT_FALSE(realtime.realtime_priority);
-  EXPECT_EQ(realtime.priority, 60);
-  EXPECT_FALSE(realtime.lock_memory);
 }
 
 TEST(SetupFile, WhatIsNotSaidIsAsTheLibraryHasIt) {
@@ -250,7 +166,7 @@ TEST(SetupFile, CommandLineWins) {
   const TouchPlan plan = planned(
       shell, kDesk,
       "left=sequence:monday other.ply --policy average --field metaball --pose mug=1,0,0,0,0,0,1");
-  EXPECT_EQ(plan.surface.field.kind, FieldKind::metaball);
+  EXPECT_EQ(plan.surface.field.kind, FieldOptions::Kind::metaball);
   const std::vector<SourcePlan>& sources = plan.sources;
   ASSERT_EQ(sources.size(), 3u);
   const auto x = [](const SourcePlan& source) {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "apps/palpate/cli/json.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "apps/program.hpp"
 #include "apps/recorded_wall.hpp"
 #include "support/effort.hpp"

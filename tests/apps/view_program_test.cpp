@@ -1,7 +1,7 @@
 // Runs that are shown on a page. What the page itself does is tested in a browser (tests/page).
 #include <gtest/gtest.h>
 
-#include "apps/palpate/cli/json.hpp"
+#include "apps/palpate/cli/output.hpp"
 #include "apps/program.hpp"
 
 namespace palpate::app {

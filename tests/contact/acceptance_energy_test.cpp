@@ -87,7 +87,7 @@ Lap second_lap(PointField& points, const Vector3d& start, const Loop& loop, doub
   return lap;
 }
 
-using EnergyCase = std::tuple<int, FieldKind>;
+using EnergyCase = std::tuple<int, FieldOptions::Kind>;
 class AcceptanceEnergy : public testing::TestWithParam<EnergyCase> {};
 
 TEST_P(AcceptanceEnergy, ClosedLoopsGiveNothing) {
@@ -122,8 +122,8 @@ std::string energy_name(const testing::TestParamInfo<EnergyCase>& tested) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, AcceptanceEnergy,
                          testing::Combine(testing::Range(0, 8),
-                                          testing::Values(FieldKind::metaball,
-                                                          FieldKind::balanced)),
+                                          testing::Values(FieldOptions::Kind::metaball,
+                                                          FieldOptions::Kind::balanced)),
                          energy_name);
 
 }  // namespace

@@ -105,7 +105,7 @@ void check(const Field& field, const Contact& contact, FuzzTally& tally) {
   if (depth > 0.002) ++tally.inside;
 }
 
-using FuzzCase = std::tuple<int, FieldKind>;
+using FuzzCase = std::tuple<int, FieldOptions::Kind>;
 class AcceptanceFuzz : public testing::TestWithParam<FuzzCase> {};
 
 TEST_P(AcceptanceFuzz, NeverNaNNeverInsideNeverOnTheWrongSide) {
@@ -146,8 +146,9 @@ std::string fuzz_name(const testing::TestParamInfo<FuzzCase>& tested) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, AcceptanceFuzz,
                          testing::Combine(testing::Range(0, 4),
-                                          testing::Values(FieldKind::metaball, FieldKind::pointset,
-                                                          FieldKind::balanced)),
+                                          testing::Values(FieldOptions::Kind::metaball,
+                                                          FieldOptions::Kind::pointset,
+                                                          FieldOptions::Kind::balanced)),
                          fuzz_name);
 
 }  // namespace

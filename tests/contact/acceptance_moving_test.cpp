@@ -29,7 +29,8 @@ struct Stepped {
   Contact settled;
 };
 
-Stepped step_surface(FieldKind kind, double dz, const Vector3d& hip = {0.001, 0.0005, -0.003}) {
+Stepped step_surface(FieldOptions::Kind kind, double dz,
+                     const Vector3d& hip = {0.001, 0.0005, -0.003}) {
   Scene scene;
   Source& source = scene.add("camera");
   const Sampling sampling{.jitter = 0.2};
@@ -51,7 +52,7 @@ Stepped step_surface(FieldKind kind, double dz, const Vector3d& hip = {0.001, 0.
   return result;
 }
 
-using StepCase = std::tuple<FieldKind, double>;
+using StepCase = std::tuple<FieldOptions::Kind, double>;
 class AcceptanceStep : public testing::TestWithParam<StepCase> {};
 
 TEST_P(AcceptanceStep, KeepsTheContactAndChangesTheForceByKdz) {
@@ -59,7 +60,7 @@ TEST_P(AcceptanceStep, KeepsTheContactAndChangesTheForceByKdz) {
   const Stepped stepped = step_surface(kind, dz);
   const double wanted = std::max(0.0, stepped.before.force.z() + 500 * dz);
   // The new sheet is another sample of the plane: a metaball's bumps are felt.
-  const double tolerance = kind == FieldKind::metaball ? 0.35 : 0.1;
+  const double tolerance = kind == FieldOptions::Kind::metaball ? 0.35 : 0.1;
   EXPECT_NEAR(stepped.after.force.z(), wanted, tolerance);
   EXPECT_NEAR(stepped.settled.force.z(), wanted, tolerance);
   EXPECT_EQ(stepped.after.touching, wanted > 0);
@@ -67,7 +68,8 @@ TEST_P(AcceptanceStep, KeepsTheContactAndChangesTheForceByKdz) {
 
 INSTANTIATE_TEST_SUITE_P(
     Steps, AcceptanceStep,
-    testing::Combine(testing::Values(FieldKind::balanced, FieldKind::pointset, FieldKind::metaball),
+    testing::Combine(testing::Values(FieldOptions::Kind::balanced, FieldOptions::Kind::pointset,
+                                     FieldOptions::Kind::metaball),
                      testing::Values(0.5e-3, 1e-3, 2e-3, 4e-3, 6e-3, 10e-3, 15e-3, -0.5e-3, -1e-3,
                                      -2e-3, -10e-3, -15e-3)));
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "palpate/contact/proxy.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/effort.hpp"
 #include "support/kind_name.hpp"
@@ -125,7 +125,8 @@ class Bunny : public testing::Test {
 
 TEST_F(Bunny, IsExploredWithoutEnteringIt) {
   const Vector3d center(-0.017, 0.1, 0);
-  for (const FieldKind kind : {FieldKind::balanced, FieldKind::metaball}) {
+  for (const FieldOptions::Kind kind :
+       {FieldOptions::Kind::balanced, FieldOptions::Kind::metaball}) {
     Touch touch(cloud_, {}, {.kind = kind}, {}, {0.2, 0.1, 0});
     const int ticks = effort(30000);
     const Walk result = walk(touch, center, 0.16, ticks, 0.3);
@@ -143,8 +144,9 @@ TEST_F(Bunny, IsExploredThePapersWay) {
   for (const FieldOptions::Gradient gradient :
        {FieldOptions::Gradient::exact, FieldOptions::Gradient::normal,
         FieldOptions::Gradient::printed}) {
-    FieldOptions options = paper_field(
-        gradient == FieldOptions::Gradient::normal ? FieldKind::pointset : FieldKind::metaball);
+    FieldOptions options =
+        paper_field(gradient == FieldOptions::Gradient::normal ? FieldOptions::Kind::pointset
+                                                               : FieldOptions::Kind::metaball);
     options.gradient = gradient;
     Touch touch(cloud_, source, options, {.method = ProxyOptions::Method::single_step},
                 {0.2, 0.1, 0});

@@ -138,7 +138,8 @@ TEST(AcceptanceEdge, EdgeOnIsMetGently) {
 }
 
 TEST(AcceptanceFriction, IsWithinOnePercentOnPlanesOfPoints) {
-  for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset}) {
+  for (const FieldOptions::Kind kind :
+       {FieldOptions::Kind::balanced, FieldOptions::Kind::pointset}) {
     for (const double mu : {0.1, 0.5, 1.2}) {
       PointField points(sheet({.jitter = 0.2}, 0.06), {.kind = kind});
       Rider rider(points, {-0.03, 0, 0.02},
@@ -175,7 +176,7 @@ TEST(AcceptanceMetaball, OffsetIsAboutHalfARadiusWhateverM) {
   for (const double m : {2.0, 2.5, 3.0, 4.0, 5.0}) {
     const double radius = m * 4e-3;
     PointField points(sheet({.radius = radius, .jitter = 0.05}, 3 * radius),
-                      {.kind = FieldKind::metaball});
+                      {.kind = FieldOptions::Kind::metaball});
     const double offset = mean_height(points, 0, 4e-3) / radius;
     EXPECT_NEAR(offset, 0.49, 0.02) << m;
     RecordProperty("offset_R_m" + std::to_string(m).substr(0, 3), std::to_string(offset));
@@ -192,7 +193,7 @@ TEST(AcceptanceMetaball, OffsetIgnoresTheDensity) {
     for (double y = -0.05; y <= 0.05; y += s)
       points.push_back({{x, y, 0}, Vector3d::UnitZ(), radius});
   }
-  PointField field(points, {.kind = FieldKind::metaball});
+  PointField field(points, {.kind = FieldOptions::Kind::metaball});
   double least = 1;
   double most = 0;
   for (double x = -0.035; x < 0.036; x += 0.01) {
@@ -205,7 +206,7 @@ TEST(AcceptanceMetaball, OffsetIgnoresTheDensity) {
   EXPECT_LE(most - least, 0.02 * 0.5 * (most + least));
 }
 
-double bias_on_ball(FieldKind kind, double radius) {
+double bias_on_ball(FieldOptions::Kind kind, double radius) {
   const double rho = 0.06;
   PointField points(ball({.radius = radius}, rho), {.kind = kind});
   double sum = 0;
@@ -223,8 +224,8 @@ double bias_on_ball(FieldKind kind, double radius) {
 }
 
 TEST(AcceptanceCurvature, BalancedHasNoBiasWherePointSetsSink) {
-  const double balanced = bias_on_ball(FieldKind::balanced, 16e-3);
-  const double pointset = bias_on_ball(FieldKind::pointset, 16e-3);
+  const double balanced = bias_on_ball(FieldOptions::Kind::balanced, 16e-3);
+  const double pointset = bias_on_ball(FieldOptions::Kind::pointset, 16e-3);
   RecordProperty("balanced_mm", std::to_string(1e3 * balanced));
   RecordProperty("pointset_mm", std::to_string(1e3 * pointset));
   EXPECT_LT(std::abs(balanced), 0.01e-3);

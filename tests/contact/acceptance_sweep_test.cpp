@@ -1,7 +1,7 @@
 // docs/method.md 10: sweeps against brute-force sampling, 0 missed contacts.
 #include <gtest/gtest.h>
 
-#include "contact/sweep.hpp"
+#include "contact/probe.hpp"
 #include "support/effort.hpp"
 #include "support/point_field.hpp"
 #include "support/point_shapes.hpp"
@@ -104,7 +104,7 @@ void compare(PointField& scene, const Vector3d& from, const Vector3d& to, double
   }
 }
 
-using SweepCase = std::tuple<int, FieldKind>;
+using SweepCase = std::tuple<int, FieldOptions::Kind>;
 class AcceptanceSweep : public testing::TestWithParam<SweepCase> {};
 
 TEST_P(AcceptanceSweep, MissesNothingThatBruteForceFinds) {
@@ -143,12 +143,13 @@ TEST_P(AcceptanceSweep, MissesNothingThatBruteForceFinds) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, AcceptanceSweep,
                          testing::Combine(testing::Range(0, 5),
-                                          testing::Values(FieldKind::metaball,
-                                                          FieldKind::balanced)),
+                                          testing::Values(FieldOptions::Kind::metaball,
+                                                          FieldOptions::Kind::balanced)),
                          [](const auto& tested) {
                            return std::string(kScenes[std::get<0>(tested.param)].name) +
-                                  (std::get<1>(tested.param) == FieldKind::metaball ? "_metaball"
-                                                                                    : "_balanced");
+                                  (std::get<1>(tested.param) == FieldOptions::Kind::metaball
+                                       ? "_metaball"
+                                       : "_balanced");
                          });
 
 }  // namespace

@@ -87,7 +87,7 @@ void expect_held(const Pressed& found, double degrees, unsigned seed) {
 }
 
 struct CreaseCase {
-  FieldKind kind;
+  FieldOptions::Kind kind;
   CreaseLook look;
 };
 
@@ -178,13 +178,14 @@ TEST_P(AcuteCrease, AHandNeverGetsIntoAClosedObject) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, AcuteCrease,
-                         testing::Values(CreaseCase{FieldKind::balanced, CreaseLook::exact},
-                                         CreaseCase{FieldKind::balanced, CreaseLook::noisy},
-                                         CreaseCase{FieldKind::balanced, CreaseLook::uneven},
-                                         CreaseCase{FieldKind::pointset, CreaseLook::exact},
-                                         CreaseCase{FieldKind::pointset, CreaseLook::noisy},
-                                         CreaseCase{FieldKind::pointset, CreaseLook::uneven}));
+INSTANTIATE_TEST_SUITE_P(
+    Of, AcuteCrease,
+    testing::Values(CreaseCase{FieldOptions::Kind::balanced, CreaseLook::exact},
+                    CreaseCase{FieldOptions::Kind::balanced, CreaseLook::noisy},
+                    CreaseCase{FieldOptions::Kind::balanced, CreaseLook::uneven},
+                    CreaseCase{FieldOptions::Kind::pointset, CreaseLook::exact},
+                    CreaseCase{FieldOptions::Kind::pointset, CreaseLook::noisy},
+                    CreaseCase{FieldOptions::Kind::pointset, CreaseLook::uneven}));
 
 }  // namespace
 }  // namespace palpate::test

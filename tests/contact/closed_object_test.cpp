@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "device/explore.hpp"
 #include "palpate/contact/proxy.hpp"
-#include "palpate/device/exploration.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/effort.hpp"
@@ -83,7 +83,8 @@ TEST(ClosedObject, ARabbitIsNeverEntered) {
     if (!with_normals) cloud.normals.clear();
     Scene scene;
     const auto points = scene.add("rabbit", cloud).points();
-    for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset}) {
+    for (const FieldOptions::Kind kind :
+         {FieldOptions::Kind::balanced, FieldOptions::Kind::pointset}) {
       for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(effort(6)); ++seed) {
         EXPECT_LT(deepest(scene, *points, {.kind = kind}, seed), 0.35) << "seed " << seed;
       }

@@ -1,9 +1,9 @@
-#include "contact/energy_tank.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "contact/proxy_inside.hpp"
 
 namespace palpate {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "contact/sweep.hpp"
+#include "contact/probe.hpp"
 #include "contact/test_fields.hpp"
 
 namespace palpate::test {

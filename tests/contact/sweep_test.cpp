@@ -1,5 +1,3 @@
-#include "contact/sweep.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>

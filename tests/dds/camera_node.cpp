@@ -10,7 +10,7 @@
 #include "message/depth_images.hpp"
 #include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 
 namespace {
 
@@ -53,9 +53,9 @@ int main(int count, char** arguments) {
   std::uint64_t sent = 0;
   const double end = clock.now() + std::stod(arguments[3]);
   for (camera->begin(clock.now()); clock.now() < end;) {
-    const CameraStatus status = camera->read(frame, 0.1);
-    if (status == CameraStatus::ended) break;
-    if (status != CameraStatus::frame) continue;
+    const DepthCamera::Status status = camera->read(frame, 0.1);
+    if (status == DepthCamera::Status::ended) break;
+    if (status != DepthCamera::Status::frame) continue;
     const message::Header header{message::to_time(system_now() - (clock.now() - frame.stamp)),
                                  "camera_depth"};
     const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());

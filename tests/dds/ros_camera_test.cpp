@@ -9,7 +9,7 @@
 #include "message/depth_images.hpp"
 #include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 
 namespace palpate {
 namespace {
@@ -54,19 +54,20 @@ Header now(const std::string& frame = "camera") {
 }
 
 // The first answer that is not `waiting`, while `send` is called.
-CameraStatus answer(DepthCamera& camera, DepthFrame& frame, const std::function<void()>& send) {
+DepthCamera::Status answer(DepthCamera& camera, DepthFrame& frame,
+                           const std::function<void()>& send) {
   for (int i = 0; i < 200; ++i) {
     send();
-    const CameraStatus status = camera.read(frame, 0.05);
-    if (status != CameraStatus::waiting) return status;
+    const DepthCamera::Status status = camera.read(frame, 0.05);
+    if (status != DepthCamera::Status::waiting) return status;
   }
-  return CameraStatus::waiting;
+  return DepthCamera::Status::waiting;
 }
 
 // The first frame.
 bool gets_frame(DepthCamera& camera, DepthFrame& frame, const std::function<void()>& send) {
   for (int i = 0; i < 200; ++i) {
-    if (answer(camera, frame, send) == CameraStatus::frame) return true;
+    if (answer(camera, frame, send) == DepthCamera::Status::frame) return true;
   }
   return false;
 }
@@ -99,10 +100,11 @@ TEST(RosCamera, SaysWhatItWaitsForOrCannotUse) {
   Node node;
   const auto nobody = open_camera("ros:/nobody/image");
   DepthFrame frame;
-  EXPECT_EQ(nobody->read(frame, 0.01), CameraStatus::waiting);
+  EXPECT_EQ(nobody->read(frame, 0.01), DepthCamera::Status::waiting);
   EXPECT_THAT(nobody->reason(), testing::HasSubstr("nobody publishes /nobody/image"));
   const auto camera = open_camera("ros:/cam/image");
-  EXPECT_EQ(answer(*camera, frame, [&] { node.send(now(), "rgb8"); }), CameraStatus::damaged);
+  EXPECT_EQ(answer(*camera, frame, [&] { node.send(now(), "rgb8"); }),
+            DepthCamera::Status::damaged);
   EXPECT_THAT(camera->reason(),
               testing::AnyOf(testing::HasSubstr("rgb8"), testing::HasSubstr("CameraInfo")));
   EXPECT_THROW(static_cast<void>(open_camera("ros:cam")), std::exception);
@@ -121,10 +123,10 @@ TEST(RosCamera, PlacesFramesByTheirTransform) {
     }
     node.send(header);
   };
-  CameraStatus status = CameraStatus::waiting;
-  for (int i = 0; i < 100 && status != CameraStatus::unposed; ++i)
+  DepthCamera::Status status = DepthCamera::Status::waiting;
+  for (int i = 0; i < 100 && status != DepthCamera::Status::unposed; ++i)
     status = answer(*camera, frame, send);
-  EXPECT_EQ(status, CameraStatus::unposed);
+  EXPECT_EQ(status, DepthCamera::Status::unposed);
   EXPECT_THAT(camera->reason(), testing::HasSubstr("/tf"));
   placed = true;
   ASSERT_TRUE(gets_frame(*camera, frame, send)) << camera->reason();

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "palpate/device/open_device.hpp"
+#include "palpate/device/hardware.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo_thread.hpp"
@@ -40,6 +40,6 @@ int main(int count, char** arguments) {
              1e3 * *info.delay, stiffness);
   const double start = clock.now();
   clock.wait_until(start + seconds);
-  fmt::print("device {}: {}\n", servo.state().device == DeviceStatus::ok ? "ok" : "not ok",
+  fmt::print("device {}: {}\n", servo.state().device == DeviceState::Status::ok ? "ok" : "not ok",
              device->reason());
 }

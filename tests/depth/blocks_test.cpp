@@ -7,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "depth/neighbors.hpp"
 #include "depth/small_frames.hpp"
 
 namespace palpate::test {

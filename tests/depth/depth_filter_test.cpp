@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/angle.hpp"
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "depth/small_frames.hpp"
 #include "palpate/base/error.hpp"
 #include "support/effort.hpp"

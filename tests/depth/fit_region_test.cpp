@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "depth/window_fits.hpp"
 #include "support/effort.hpp"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "base/random.hpp"
-#include "depth/noise_fit.hpp"
+#include "base/numbers.hpp"
+#include "depth/noise_tracker.hpp"
 
 namespace palpate::depth {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "depth/noise_tracker.hpp"
 #include "palpate/depth/depth_filter.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate {
 namespace {

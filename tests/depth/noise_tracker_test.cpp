@@ -251,16 +251,16 @@ TEST(NoiseTracker, TakesFramesOfAnotherSize) {
   expect_sigma(tracker.update(view_of(large_image)), 0.12);
 }
 
-TEST(SensorProfiles, AreFoundByName) {
-  for (const SensorProfile& profile : sensor_profiles()) {
-    EXPECT_EQ(sensor_profile(profile.name).name, profile.name);
-    for (const double z : {0.1, 1.0, 10.0}) EXPECT_GT(profile.noise.sigma(z), 0);
-    EXPECT_GE(profile.noise.correlation, 1);
+TEST(SensorNoise, IsFoundByName) {
+  for (const char* sensor : {"kinect1", "xtion", "realsense", "tof"}) {
+    const NoiseModel noise = sensor_noise(sensor);
+    for (const double z : {0.1, 1.0, 10.0}) EXPECT_GT(noise.sigma(z), 0);
+    EXPECT_GE(noise.correlation, 1);
   }
-  EXPECT_NEAR(sensor_profile("xtion").noise.sigma(0.7), 0.63e-3, 0.01e-3);
-  EXPECT_NEAR(sensor_profile("realsense").noise.sigma(1), 2.5e-3, 0.05e-3);
+  EXPECT_NEAR(sensor_noise("xtion").sigma(0.7), 0.63e-3, 0.01e-3);
+  EXPECT_NEAR(sensor_noise("realsense").sigma(1), 2.5e-3, 0.05e-3);
   try {
-    (void)sensor_profile("kinect7");
+    (void)sensor_noise("kinect7");
     FAIL();
   } catch (const Error& error) {
     const std::string text = error.what();

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "depth/noise_tracker.hpp"
 #include "depth/shapes.hpp"
 #include "sim/simulated_depth.hpp"

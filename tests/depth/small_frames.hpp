@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "depth/blocks.hpp"
-#include "depth/neighbors.hpp"
 #include "depth/shapes.hpp"
 #include "palpate/depth/depth_filter.hpp"
 #include "sim/simulated_depth.hpp"

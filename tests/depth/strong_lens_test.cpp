@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "depth/input.hpp"
 #include "depth/small_frames.hpp"
 

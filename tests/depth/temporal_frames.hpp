@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "depth/blocks.hpp"
 
 namespace palpate::test {

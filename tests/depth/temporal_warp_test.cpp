@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/angle.hpp"
+#include "base/numbers.hpp"
 #include "depth/temporal_filter.hpp"
 #include "depth/temporal_frames.hpp"
 #include "support/effort.hpp"

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/angle.hpp"
 #include "base/cpu.hpp"
+#include "base/numbers.hpp"
 #include "depth/metric_fit.hpp"
-#include "depth/simd/plain.hpp"
+#include "depth/simd/fits.hpp"
 #include "depth/small_frames.hpp"
 
 namespace palpate::test {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "device/explore.hpp"
+#include "field/formulas.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/exploration.hpp"
 #include "palpate/io/synthetic.hpp"
@@ -25,7 +27,7 @@ TEST(ExplorationPlan, HandFeelsTheSameOfSmallAndLargeClouds) {
   for (const double factor : {0.01, 1.0, 1000.0}) {
     Scene scene;
     scene.add("cloud", scaled(factor));
-    const ExplorationPlan plan = plan_exploration(scene, {}, {.duration = 2});
+    const Placement plan = plan_exploration(scene, {}, {.duration = 2});
     EXPECT_NEAR(plan.workspace.felt_stiffness(plan.stiffness), 500, 1e-6) << factor;
     EXPECT_LE(plan.depth * plan.stiffness, 4 + 1e-9) << factor;
     double reach = 0;
@@ -38,7 +40,7 @@ TEST(ExplorationPlan, HandFeelsTheSameOfSmallAndLargeClouds) {
 TEST(ExplorationPlan, StiffnessThatWasAskedForIsKeptAndHeldStable) {
   Scene scene;
   scene.add("cloud", scaled(1000));
-  const ExplorationPlan plan = plan_exploration(scene, {}, {.duration = 1, .stiffness = 500});
+  const Placement plan = plan_exploration(scene, {}, {.duration = 1, .stiffness = 500});
   EXPECT_EQ(plan.stiffness, 500);
   EXPECT_LE(plan.workspace.felt_stiffness(plan.stiffness), 2000);
 }
@@ -66,9 +68,9 @@ TEST(ExplorationPlan, ADeviceThatNobodyLeadsStandsJustOutsideTheMiddleOfTheSurfa
     plane.viewpoint = Eigen::Vector3d(0, 0, factor);
     Scene scene;
     scene.add("plane", plane);
-    const ExplorationPlanOptions options{.duration = 1};
+    const ExplorationOptions options{.duration = 1};
     const Placement placement = place_device(scene, {}, options);
-    const ExplorationPlan plan = plan_exploration(scene, {}, options);
+    const Placement plan = plan_exploration(scene, {}, options);
     EXPECT_EQ(placement.workspace.scale, plan.workspace.scale) << "as hands that explore";
     EXPECT_EQ(placement.stiffness, plan.stiffness);
     const Eigen::Vector3d outside(0, 0, 2e-3 * placement.workspace.scale);
@@ -102,14 +104,14 @@ TEST(ExplorationPlan, HandStopsHigherOverASurfaceThatLiesHigher) {
   scene.add("plane", plane);
   const double radius = scene.source(0).report().radius;
   const auto lowest = [&](const FieldOptions& field) {
-    const ExplorationPlan plan = plan_exploration(scene, field, {.duration = 2});
+    const Placement plan = plan_exploration(scene, field, {.duration = 2});
     double z = 1;
     for (const TrajectoryRow& row : plan.target) {
       z = std::min(z, plan.workspace.position_to_world(row.position).z());
     }
     return z;
   };
-  FieldOptions field{.kind = FieldKind::metaball, .threshold = 0.4};
+  FieldOptions field{.kind = FieldOptions::Kind::metaball, .threshold = 0.4};
   const double usual = lowest(field);
   field.threshold = 0.05;
   EXPECT_NEAR(lowest(field) - usual,

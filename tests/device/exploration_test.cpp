@@ -1,11 +1,10 @@
-#include "palpate/device/exploration.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "device/explore.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/synthetic.hpp"
@@ -127,7 +126,7 @@ TEST(Exploration, SameSeedSameRowsOtherSeedOtherRows) {
 TEST(Exploration, SaysHowFarItIs) {
   const PointCloud cloud = synthetic_cloud("sphere");
   std::vector<double> told;
-  const ExplorationOptions options{
+  const StrokeOptions options{
       .duration = 10, .radius = 5e-3, .patch = 1, .progress = [&](double done) {
         told.push_back(done);
       }};
@@ -152,7 +151,7 @@ TEST(Exploration, StaysInAPatchOfALargeCloudFarFromTheOrigin) {
   PointCloud cloud = synthetic_cloud("bumps");
   for (Vector3f& p : cloud.positions) p *= 500;  // 100 m
   cloud.origin = {637000, 851000, 500};
-  const ExplorationOptions options{
+  const StrokeOptions options{
       .duration = 5, .radius = 2.5, .depth = 1, .patch = 30, .slide_speed = 20, .travel_speed = 50};
   const Trajectory rows = explore(view(cloud), options);
   EXPECT_NO_THROW(check(rows));

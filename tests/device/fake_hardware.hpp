@@ -12,7 +12,7 @@
 
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/device/threaded_device.hpp"
+#include "palpate/device/hardware.hpp"
 
 namespace palpate::test {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "device/fake_hardware.hpp"
-#include "palpate/device/threaded_device.hpp"
+#include "palpate/device/hardware.hpp"
 
 namespace palpate::test {
 
@@ -73,8 +73,9 @@ class FaultTrial {
   }
   void step() {
     const DeviceState state = device_.read();
-    if (state.status == DeviceStatus::silent) reasons_.insert(device_.reason());
-    device_.write(state.status == DeviceStatus::ok ? wanted_ : Eigen::Vector3d::Zero().eval());
+    if (state.status == DeviceState::Status::silent) reasons_.insert(device_.reason());
+    device_.write(state.status == DeviceState::Status::ok ? wanted_
+                                                          : Eigen::Vector3d::Zero().eval());
   }
 
   Hardware hardware_;

@@ -9,7 +9,7 @@
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/device/open_device.hpp"
+#include "palpate/device/hardware.hpp"
 
 namespace palpate {
 namespace {
@@ -152,19 +152,19 @@ TEST_F(Haply, AnswerThatComesLateMeetsNoForce) {
 TEST_F(Haply, IsLostAndComesBackBehindTheServosThread) {
   SteadyClock clock;
   const auto device = open_device(name(), clock, {.retry_interval = 0.01});
-  const auto step_until = [&](DeviceStatus wanted) {
+  const auto step_until = [&](DeviceState::Status wanted) {
     while (device->read().status != wanted) {
       device->write(kForce);
       clock.wait_until(clock.now() + 1e-3);
     }
   };
-  step_until(DeviceStatus::ok);
+  step_until(DeviceState::Status::ok);
   for (const Fault fault : {Fault::closes, Fault::garbage, Fault::null}) {
     service_.set(fault);
-    step_until(DeviceStatus::silent);
+    step_until(DeviceState::Status::silent);
     EXPECT_THAT(device->reason(), HasSubstr("04EA"));
     service_.set(Fault::none);
-    step_until(DeviceStatus::ok);
+    step_until(DeviceState::Status::ok);
     EXPECT_EQ(device->reason(), "");
   }
   EXPECT_GE(service_.connections(), 2);

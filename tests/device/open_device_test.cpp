@@ -1,11 +1,10 @@
-#include "palpate/device/open_device.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "device/drivers.hpp"
 #include "device/fake_hardware.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/device/hardware.hpp"
 
 namespace palpate::device {
 namespace {
@@ -70,8 +69,8 @@ TEST(OpenDevice, OpensByName) {
   const auto device = open_device(std::string("forcedimension,library=") + PALPATE_FAKE_DHD, clock,
                                   {.threaded = false});
   device->service();
-  EXPECT_EQ(device->read().status, DeviceStatus::silent);
-  EXPECT_EQ(device->read().status, DeviceStatus::ok);
+  EXPECT_EQ(device->read().status, DeviceState::Status::silent);
+  EXPECT_EQ(device->read().status, DeviceState::Status::ok);
   EXPECT_THAT(device->info().name, HasSubstr("omega.3"));
   EXPECT_EQ(device->info().rate, 4000);
   EXPECT_DOUBLE_EQ(device->info().delay.value_or(0), 3 / 4000.0) << "its own, and the thread's";

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "device/openhaptics_rig.hpp"
-#include "palpate/device/threaded_device.hpp"
+#include "palpate/device/hardware.hpp"
 
 namespace palpate {
 namespace {
@@ -147,7 +147,7 @@ class OpenHapticsHeld : public OpenHapticsPair {
   template <class Condition>
   bool hold(const Condition& condition) {
     for (int i = 0; i < 20000; ++i) {
-      const bool ok = second_.read().status == DeviceStatus::ok;
+      const bool ok = second_.read().status == DeviceState::Status::ok;
       second_.write(ok ? kPush : Vector3d::Zero().eval());
       if (condition()) return true;
       steady_.wait_until(steady_.now() + 1e-3);

@@ -8,7 +8,7 @@
 #include "device/double_library.hpp"
 #include "device/fake_hardware.hpp"
 #include "device/fake_hd.hpp"
-#include "device/openhaptics.hpp"
+#include "device/openhaptics_scheduler.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::test {

@@ -225,7 +225,7 @@ TEST_F(OpenHaptics, ThreadsExchangeWithoutARace) {
   int felt = 0;
   for (int i = 0; i < 5000 && felt < 50; ++i) {
     const DeviceState state = device.read();
-    device.write(state.status == DeviceStatus::ok ? kPush : Vector3d::Zero().eval());
+    device.write(state.status == DeviceState::Status::ok ? kPush : Vector3d::Zero().eval());
     if (library_.force().norm() > 0.7) ++felt;
     clock.wait_until(clock.now() + 1e-3);
   }

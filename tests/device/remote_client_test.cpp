@@ -29,7 +29,7 @@ struct Session {
 // A step; the force is that of the wall.
 DeviceState serve(RemoteDevice& device, Session& session) {
   const DeviceState state = device.read();
-  const bool felt = state.status == DeviceStatus::ok;
+  const bool felt = state.status == DeviceState::Status::ok;
   const double force = felt ? -kStiffness * std::min(0.0, state.position.z()) : 0;
   device.write({0, 0, force});
   session.states += felt ? 1 : 0;

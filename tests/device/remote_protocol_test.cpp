@@ -59,7 +59,7 @@ class RemoteProtocolTest : public testing::Test {
 };
 
 TEST_F(RemoteProtocolTest, IsSilentUntilSomebodySpeaks) {
-  EXPECT_EQ(step().status, DeviceStatus::silent);
+  EXPECT_EQ(step().status, DeviceState::Status::silent);
   EXPECT_FALSE(link_.answer({0, 0, 1})) << "nobody to answer to";
   EXPECT_FALSE(link_.farewell());
 }
@@ -68,11 +68,11 @@ TEST_F(RemoteProtocolTest, FirstPlaceIsToldAsSilentSoThatForcesBeginWhereTheHand
   say(0.03);
   say(0.03);
   const DeviceState first = step();
-  EXPECT_EQ(first.status, DeviceStatus::silent);
+  EXPECT_EQ(first.status, DeviceState::Status::silent);
   EXPECT_EQ(first.position.x(), 0.03);
   EXPECT_LE(felt(), 0);
   say(0.031);
-  EXPECT_EQ(step().status, DeviceStatus::ok);
+  EXPECT_EQ(step().status, DeviceState::Status::ok);
 }
 
 TEST_F(RemoteProtocolTest, ForceComesUpFromZeroAndIsNeverMoreThanTheMaximum) {
@@ -92,9 +92,9 @@ TEST_F(RemoteProtocolTest, ForceComesUpFromZeroAndIsNeverMoreThanTheMaximum) {
 
 TEST_F(RemoteProtocolTest, SilenceFadesTheForceAndTellsItsEndOnce) {
   talk(1);
-  EXPECT_EQ(step(0.098).status, DeviceStatus::ok) << "short of the silence";
+  EXPECT_EQ(step(0.098).status, DeviceState::Status::ok) << "short of the silence";
   EXPECT_EQ(felt(), 5);
-  EXPECT_EQ(step(2e-3).status, DeviceStatus::silent);
+  EXPECT_EQ(step(2e-3).status, DeviceState::Status::silent);
   double last = 5;
   bool fading = false;
   for (int i = 0; i < 60; ++i) {
@@ -118,11 +118,11 @@ TEST_F(RemoteProtocolTest, ComesBackSoftly) {
   static_cast<void>(felt());
   EXPECT_EQ(say(-0.05), PacketFlaw::none);
   const DeviceState back = step();
-  EXPECT_EQ(back.status, DeviceStatus::silent);
+  EXPECT_EQ(back.status, DeviceState::Status::silent);
   EXPECT_EQ(back.position.x(), -0.05);
   EXPECT_LE(felt(), 0);
   say(-0.05);
-  EXPECT_EQ(step().status, DeviceStatus::ok);
+  EXPECT_EQ(step().status, DeviceState::Status::ok);
   EXPECT_LT(felt(), 0.05);
 }
 
@@ -146,7 +146,7 @@ TEST_F(RemoteProtocolTest, AClientThatStartsAnewAtOnceStartsSoftlyToo) {
   EXPECT_EQ(say(0.01), PacketFlaw::none);
   step();
   packet_ = {};
-  EXPECT_EQ(talk(0.003).status, DeviceStatus::ok);
+  EXPECT_EQ(talk(0.003).status, DeviceState::Status::ok);
   EXPECT_LT(felt(), 0.05);
 }
 
@@ -168,7 +168,7 @@ TEST_F(RemoteProtocolTest, RepeatedPacketsDoNotKeepItAlive) {
     static_cast<void>(repeat());
     const DeviceState state = step();
     if (i > 100) {
-      ASSERT_EQ(state.status, DeviceStatus::silent) << i;
+      ASSERT_EQ(state.status, DeviceState::Status::silent) << i;
     }
   }
 }
@@ -184,14 +184,14 @@ TEST_F(RemoteProtocolTest, ListensToOneClientUntilItIsSilentOrLeaves) {
   EXPECT_EQ(link_.client(), kOther);
   packet_.leaving = true;
   EXPECT_EQ(say(0.5, kOther), PacketFlaw::none);
-  EXPECT_EQ(step().status, DeviceStatus::silent) << "at once";
+  EXPECT_EQ(step().status, DeviceState::Status::silent) << "at once";
   packet_ = {};
   EXPECT_EQ(say(0.1, kClient), PacketFlaw::none);
 }
 
 TEST_F(RemoteProtocolTest, RefusesClientsThatCannotBeAnswered) {
   EXPECT_EQ(say(0.1, SocketAddress{}), PacketFlaw::no_address);
-  EXPECT_EQ(step().status, DeviceStatus::silent);
+  EXPECT_EQ(step().status, DeviceState::Status::silent);
 }
 
 TEST_F(RemoteProtocolTest, VelocityIsToldOrThatOfTheLastTwoPlaces) {

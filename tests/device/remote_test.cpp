@@ -54,14 +54,14 @@ TEST_F(RemoteDeviceTest, TellsWhereTheClientsHandIsAndTheClientTheForce) {
   RemoteDevice device(clock_, options());
   EXPECT_FALSE(device.info().keeps_time);
   EXPECT_EQ(device.info().maximum_force, 5);
-  EXPECT_EQ(step(device).status, DeviceStatus::silent);
+  EXPECT_EQ(step(device).status, DeviceState::Status::silent);
   EXPECT_NE(device.reason().find(options().path), std::string::npos) << device.reason();
   RemoteClient client(device.path(), folder_ / "client");
   talk(device, client);
   client.packet().buttons = 3;
   client.say(0.02);
   const DeviceState state = step(device, -1.5);
-  EXPECT_EQ(state.status, DeviceStatus::ok);
+  EXPECT_EQ(state.status, DeviceState::Status::ok);
   EXPECT_EQ(state.position, Vector3d(0, 0, 0.02));
   EXPECT_EQ(state.buttons, 3u);
   EXPECT_EQ(state.time, clock_.time);
@@ -111,7 +111,7 @@ TEST_F(RemoteDeviceTest, CountsWhatItRefusesAndSaysWhy) {
   expect_refusal(PacketFlaw::no_address);
   EXPECT_EQ(device.counts().received, 6u);
   EXPECT_EQ(device.counts().taken, 0u);
-  EXPECT_EQ(step(device).status, DeviceStatus::silent);
+  EXPECT_EQ(step(device).status, DeviceState::Status::silent);
 }
 
 TEST_F(RemoteDeviceTest, SilenceIsToldAndNoForceComesAndItComesBack) {
@@ -124,13 +124,13 @@ TEST_F(RemoteDeviceTest, SilenceIsToldAndNoForceComesAndItComesBack) {
     state = step(device, 4);
     if (const auto heard = client.hear()) felt = heard->z;
   }
-  EXPECT_EQ(state.status, DeviceStatus::silent);
+  EXPECT_EQ(state.status, DeviceState::Status::silent);
   EXPECT_EQ(felt, 0);
   for (int i = 0; i < 3; ++i) {
     client.say(0.01);
     step(device, 4);
   }
-  EXPECT_EQ(step(device, 4).status, DeviceStatus::ok);
+  EXPECT_EQ(step(device, 4).status, DeviceState::Status::ok);
   EXPECT_LT(client.hear()->z, 0.1) << "a soft start";
 }
 
@@ -140,13 +140,13 @@ TEST_F(RemoteDeviceTest, AClientThatIsGoneIsSilentAndNoFailure) {
     RemoteClient client(device.path(), folder_ / "client");
     talk(device, client);
   }
-  for (int i = 0; i < 300; ++i) ASSERT_NE(step(device, 1).status, DeviceStatus::failed);
+  for (int i = 0; i < 300; ++i) ASSERT_NE(step(device, 1).status, DeviceState::Status::failed);
   EXPECT_GT(device.counts().unsent, 0u);
   RemoteClient next(device.path(), folder_ / "client");
   next.say(0);
   step(device);
   next.say(0);
-  EXPECT_EQ(step(device).status, DeviceStatus::ok);
+  EXPECT_EQ(step(device).status, DeviceState::Status::ok);
 }
 
 TEST_F(RemoteDeviceTest, ForcesThatAreNotFiniteLatchAndTheClientIsToldSo) {
@@ -155,7 +155,7 @@ TEST_F(RemoteDeviceTest, ForcesThatAreNotFiniteLatchAndTheClientIsToldSo) {
   talk(device, client);
   client.say(0.01);
   step(device, std::numeric_limits<double>::quiet_NaN());
-  EXPECT_EQ(step(device).status, DeviceStatus::failed);
+  EXPECT_EQ(step(device).status, DeviceState::Status::failed);
   EXPECT_NE(device.reason().find("not finite"), std::string::npos) << device.reason();
   const auto heard = client.hear();
   ASSERT_TRUE(heard);

@@ -20,13 +20,13 @@ TEST(ScriptedDevice, PlaysOneRowAStepThenIsFinished) {
   const Trajectory rows = three_rows();
   for (const TrajectoryRow& row : rows) {
     const DeviceState state = device.read();
-    EXPECT_EQ(state.status, DeviceStatus::ok);
+    EXPECT_EQ(state.status, DeviceState::Status::ok);
     EXPECT_EQ(state.time, row.time);
     EXPECT_EQ(state.position, row.position);
     device.write({0, 0, 1});
   }
   const DeviceState last = device.read();
-  EXPECT_EQ(last.status, DeviceStatus::finished);
+  EXPECT_EQ(last.status, DeviceState::Status::finished);
   EXPECT_EQ(last.position, rows.back().position);
 }
 
@@ -42,9 +42,9 @@ TEST(ScriptedDevice, ForceThatIsNotFiniteIsLatchedWithAReason) {
   (void)device.read();
   EXPECT_EQ(device.reason(), "");
   device.write({0, std::numeric_limits<double>::quiet_NaN(), 0});
-  EXPECT_EQ(device.read().status, DeviceStatus::failed);
+  EXPECT_EQ(device.read().status, DeviceState::Status::failed);
   device.write({1, 0, 0});
-  EXPECT_EQ(device.read().status, DeviceStatus::failed);
+  EXPECT_EQ(device.read().status, DeviceState::Status::failed);
   EXPECT_EQ(device.force(), Vector3d::Zero());
   EXPECT_NE(device.reason().find("0.5 s"), std::string::npos);
 }
@@ -113,16 +113,16 @@ TEST(PacedDevice, TellsWhenTheDeviceHasFinishedOrFailed) {
   ScriptedDevice device({{0, Vector3d::Zero()}, {1e-3, Vector3d::Zero()}});
   HandClock clock;
   PacedDevice paced(device, clock);
-  EXPECT_EQ(paced.read().status, DeviceStatus::ok);
+  EXPECT_EQ(paced.read().status, DeviceState::Status::ok);
   clock.time += 1;
-  EXPECT_EQ(paced.read().status, DeviceStatus::finished);
+  EXPECT_EQ(paced.read().status, DeviceState::Status::finished);
 
   SimulatedDevice broken;
   PacedDevice other(broken, clock);
   static_cast<void>(other.read());
   other.write(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
   clock.time += 1;
-  EXPECT_EQ(other.read().status, DeviceStatus::failed);
+  EXPECT_EQ(other.read().status, DeviceState::Status::failed);
   EXPECT_FALSE(other.reason().empty());
 }
 

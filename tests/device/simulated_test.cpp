@@ -242,7 +242,7 @@ TEST(SimulatedDevice, SameInputSameBits) {
 TEST(SimulatedDevice, IsFinishedAfterItsTarget) {
   SimulatedDevice device({}, {{0, {0, 0, 0}}, {0.01, {0.001, 0, 0}}});
   int steps = 0;
-  while (device.read().status == DeviceStatus::ok && steps < 100) {
+  while (device.read().status == DeviceState::Status::ok && steps < 100) {
     device.write(Vector3d::Zero());
     ++steps;
   }
@@ -258,7 +258,7 @@ TEST(SimulatedDevice, LongForcesAreShortenedAndWrongOnesLatch) {
   (void)device.read();
   EXPECT_LT((device.true_velocity() - 1e-3 / 0.1 * Vector3d(1.2, 0, 1.6)).norm(), 1e-12);
   device.write({std::numeric_limits<double>::infinity(), 0, 0});
-  EXPECT_EQ(device.read().status, DeviceStatus::failed);
+  EXPECT_EQ(device.read().status, DeviceState::Status::failed);
   EXPECT_NE(device.reason(), "");
 }
 
@@ -277,16 +277,16 @@ TEST(SimulatedDevice, RefusesOptionsOutOfRange) {
 
 TEST(SimulatedDevice, TargetOfOneRowIsOneStepAndNoTargetIsNoEnd) {
   SimulatedDevice one({}, {{0, {0.1, 0, 0}}});
-  EXPECT_EQ(one.read().status, DeviceStatus::ok);
-  EXPECT_EQ(one.read().status, DeviceStatus::finished);
+  EXPECT_EQ(one.read().status, DeviceState::Status::ok);
+  EXPECT_EQ(one.read().status, DeviceState::Status::finished);
   SimulatedDevice free;
-  for (int i = 0; i < 1000; ++i) ASSERT_EQ(free.read().status, DeviceStatus::ok);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(free.read().status, DeviceState::Status::ok);
 }
 
 TEST(SimulatedDevice, DurationThatWasGivenWins) {
   SimulatedDevice device({.duration = 0.01}, {{0, {0, 0, 0}}, {1, {0.1, 0, 0}}});
-  for (int i = 0; i <= 10; ++i) EXPECT_EQ(device.read().status, DeviceStatus::ok) << i;
-  EXPECT_EQ(device.read().status, DeviceStatus::finished);
+  for (int i = 0; i <= 10; ++i) EXPECT_EQ(device.read().status, DeviceState::Status::ok) << i;
+  EXPECT_EQ(device.read().status, DeviceState::Status::finished);
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "palpate/device/teleoperated_hand.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -86,14 +84,14 @@ class Asker {
  public:
   Asker(TeleoperatedHand& hand, const Vector3d& device) : hand_(hand), device_(device) {}
 
-  HandTarget ask() {
-    const HandTarget wish = hand_.target(now_, device_);
+  TargetSource::Target ask() {
+    const TargetSource::Target wish = hand_.target(now_, device_);
     if (step_ > 0) fastest_ = std::max(fastest_, (wish.position - last_.position).norm() / kStep);
     last_ = wish;
     now_ = ++step_ * kStep;
     return wish;
   }
-  HandTarget ask_until(double time) {
+  TargetSource::Target ask_until(double time) {
     while (now_ < time - 0.5 * kStep) ask();
     return last_;
   }
@@ -105,7 +103,7 @@ class Asker {
  private:
   TeleoperatedHand& hand_;
   Vector3d device_;
-  HandTarget last_;
+  TargetSource::Target last_;
   double now_ = 0;
   double fastest_ = 0;
   int step_ = 0;
@@ -139,7 +137,7 @@ TEST(TeleoperatedHand, FollowsWhoeverTakesItAndReturnsSomeTimeAfterItWasLetGo) {
   const double left = 0.05 * 0.499;
   while (asker.now() < 1.5) {
     static_cast<void>(remote.move({place, 2}, asker.now()));
-    const HandTarget wish = asker.ask();
+    const TargetSource::Target wish = asker.ask();
     ASSERT_EQ(wish.buttons, 2u);
   }
   EXPECT_EQ(asker.ask().position, place);
@@ -172,10 +170,10 @@ TEST(TeleoperatedHand, SilenceIsLettingGoAndTheHandCeasesToPull) {
   Asker asker(hand, Vector3d::Zero());
   asker.ask();
   static_cast<void>(remote.move({{0.01, 0, 0}, 1}, 0));
-  const HandTarget held = asker.ask_until(0.1);
+  const TargetSource::Target held = asker.ask_until(0.1);
   EXPECT_EQ(held.position.x(), 0.01);
   EXPECT_EQ(held.buttons, 1u);
-  const HandTarget silent = asker.ask_until(0.12);
+  const TargetSource::Target silent = asker.ask_until(0.12);
   EXPECT_EQ(silent.buttons, 0u);
   EXPECT_LT(asker.ask_until(0.7).position.x(), 1e-6);
 }
@@ -236,7 +234,8 @@ TEST(TeleoperatedHand, SameWordsAtTheSameTimesSameBits) {
 
 class Lost final : public TargetSource {
  public:
-  [[nodiscard]] HandTarget target(double time, const Vector3d& position) noexcept override {
+  [[nodiscard]] TargetSource::Target target(double time,
+                                            const Vector3d& position) noexcept override {
     return {time < 0.01 ? position : Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()),
             0};
   }
@@ -245,8 +244,8 @@ class Lost final : public TargetSource {
 TEST(TeleoperatedHand, AGuideThatIsNotFiniteIsAFailureOfTheDevice) {
   Lost lost;
   SimulatedDevice device({}, lost);
-  for (int i = 0; i < 10; ++i) ASSERT_EQ(device.read().status, DeviceStatus::ok);
-  EXPECT_EQ(device.read().status, DeviceStatus::failed);
+  for (int i = 0; i < 10; ++i) ASSERT_EQ(device.read().status, DeviceState::Status::ok);
+  EXPECT_EQ(device.read().status, DeviceState::Status::failed);
   EXPECT_TRUE(device.read().position.allFinite());
   EXPECT_NE(device.reason().find("target"), std::string::npos) << device.reason();
 }

@@ -9,7 +9,7 @@
 
 #include "device/fake_hardware.hpp"
 #include "device/fault_trial.hpp"
-#include "palpate/device/threaded_device.hpp"
+#include "palpate/device/hardware.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
 #include "support/snapshots.hpp"
@@ -226,7 +226,7 @@ TEST_F(JumpOnASheet, IsNotFelt) {
     last = force;
   }
   EXPECT_EQ(device_.reason(), "");
-  EXPECT_EQ(servo_.state().device, DeviceStatus::ok);
+  EXPECT_EQ(servo_.state().device, DeviceState::Status::ok);
   EXPECT_LE(most_in_a_step, 1.1 * before * 1e-3 / servo_.options().guard.soft_start);
   go(kPressed, 5e-3, 0.1);
   go(5e-3, 5e-3, 0.6);

@@ -1,12 +1,11 @@
 // Hardware that fails in every way that hardware does, in simulated time, and a thread of its own.
-#include "palpate/device/threaded_device.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
 #include "device/fake_hardware.hpp"
+#include "palpate/device/hardware.hpp"
 
 namespace palpate {
 namespace {
@@ -41,14 +40,14 @@ class ThreadedDeviceTest : public testing::Test {
   }
   void step() {
     state_ = device_->read();
-    device_->write(state_.status == DeviceStatus::ok ? kPushForce : Vector3d::Zero().eval());
+    device_->write(state_.status == DeviceState::Status::ok ? kPushForce : Vector3d::Zero().eval());
   }
   void run(double duration) {
     for (const double end = clock_.now() + duration; clock_.now() < end - 1e-9;) advance();
   }
   void push() {
     run(0.02);
-    ASSERT_EQ(state_.status, DeviceStatus::ok);
+    ASSERT_EQ(state_.status, DeviceState::Status::ok);
     ASSERT_EQ(hardware_.force(), kPushForce);
     reasons_.clear();
   }
@@ -61,7 +60,7 @@ class ThreadedDeviceTest : public testing::Test {
     hardware_.set(fault);
     run(0.5);
     EXPECT_LE(pushed_for(start), kReaction);
-    EXPECT_EQ(state_.status, DeviceStatus::silent);
+    EXPECT_EQ(state_.status, DeviceState::Status::silent);
     EXPECT_EQ(state_.velocity.norm(), 0);
     ASSERT_EQ(reasons_.size(), 1u) << "one loss, one reason";
     EXPECT_NE(reasons_.begin()->find(word), std::string::npos) << *reasons_.begin();
@@ -70,7 +69,7 @@ class ThreadedDeviceTest : public testing::Test {
     EXPECT_EQ(reasons_.size(), 1u) << "that it is not back yet is no news";
     hardware_.set(Fault::none);
     run(1.1);
-    EXPECT_EQ(state_.status, DeviceStatus::ok);
+    EXPECT_EQ(state_.status, DeviceState::Status::ok);
     EXPECT_EQ(hardware_.force(), kPushForce);
     EXPECT_EQ(device_->reason(), "");
   }
@@ -100,16 +99,16 @@ TEST_F(ThreadedDeviceTest, TellsThePlaceAndAppliesTheForce) {
 
 TEST_F(ThreadedDeviceTest, TellsTheFirstPlaceAsSilentSoThatForcesBeginWhereTheHandIs) {
   open();
-  EXPECT_EQ(device_->read().status, DeviceStatus::silent);
+  EXPECT_EQ(device_->read().status, DeviceState::Status::silent);
   hardware_.move({0.03, 0, 0});
   device_->service();
   const DeviceState first = device_->read();
-  EXPECT_EQ(first.status, DeviceStatus::silent);
+  EXPECT_EQ(first.status, DeviceState::Status::silent);
   EXPECT_EQ(first.position.x(), 0.03);
   device_->write(kPushForce);
   device_->service();
   EXPECT_EQ(hardware_.force().norm(), 0) << "nobody knew where the hand was";
-  EXPECT_EQ(device_->read().status, DeviceStatus::ok);
+  EXPECT_EQ(device_->read().status, DeviceState::Status::ok);
 }
 
 TEST_F(ThreadedDeviceTest, IsNotOpenedWhereThereIsNone) {
@@ -149,7 +148,7 @@ TEST_F(ThreadedDeviceTest, PlaceThatIsNoNumberTakesTheForceAwayInTwoSteps) {
     run(0.5);
     EXPECT_LE(pushed_for(start), 2 * kServoStep);
     EXPECT_TRUE(state_.position.allFinite() && state_.orientation.coeffs().allFinite());
-    EXPECT_EQ(state_.status, DeviceStatus::silent);
+    EXPECT_EQ(state_.status, DeviceState::Status::silent);
     ASSERT_TRUE(reasons_.size() == 1 &&
                 reasons_.begin()->find("not a number") != std::string::npos);
     hardware_.set(Fault::none);
@@ -180,17 +179,17 @@ TEST_F(ThreadedDeviceTest, SilenceIsToldAndEndsSoftlyForWhoeverComputesForces) {
   while (clock_.now() < start + 0.1) {
     clock_.wait_until(clock_.now() + 0.8 * kServoStep);  // no turn: the device's thread waits
     step();
-    ASSERT_EQ(state_.status == DeviceStatus::ok, clock_.now() - start < 4.5e-3);
+    ASSERT_EQ(state_.status == DeviceState::Status::ok, clock_.now() - start < 4.5e-3);
   }
   EXPECT_NE(device_->reason().find("cable"), std::string::npos) << device_->reason();
   hardware_.move({0.05, 0, 0});
   device_->service();
   EXPECT_EQ(hardware_.force().norm(), 0) << "the force of before the silence is gone";
   step();
-  EXPECT_EQ(state_.status, DeviceStatus::silent);
+  EXPECT_EQ(state_.status, DeviceState::Status::silent);
   EXPECT_EQ(state_.position.x(), 0.05);
   step();
-  EXPECT_EQ(state_.status, DeviceStatus::ok);
+  EXPECT_EQ(state_.status, DeviceState::Status::ok);
 }
 
 TEST_F(ThreadedDeviceTest, StuckServoIsNotFelt) {
@@ -227,7 +226,7 @@ TEST_F(ThreadedDeviceTest, AnotherDeviceInItsPlaceIsNotUsed) {
   hardware_.set(Fault::none);
   hardware_.rename("stronger");
   run(3);
-  EXPECT_EQ(state_.status, DeviceStatus::silent);
+  EXPECT_EQ(state_.status, DeviceState::Status::silent);
   EXPECT_NE(device_->reason().find("found stronger"), std::string::npos);
   EXPECT_EQ(hardware_.opened(), hardware_.closed());
 }
@@ -239,7 +238,7 @@ TEST_F(ThreadedDeviceTest, ForceThatIsNotFiniteIsAFailure) {
   device_->write({0, std::nan(""), 0});
   run(0.05);
   EXPECT_LE(pushed_for(start), 2 * kServoStep);
-  EXPECT_EQ(state_.status, DeviceStatus::failed);
+  EXPECT_EQ(state_.status, DeviceState::Status::failed);
   EXPECT_NE(device_->reason().find("not finite"), std::string::npos);
   device_->write(kPushForce);
   run(0.05);
@@ -272,7 +271,7 @@ TEST(ThreadedDeviceThread, FollowsFaultsAndEnds) {
   {
     ThreadedDevice device([&] { return std::make_unique<FakeDriver>(hardware); }, clock,
                           {.retry_interval = 1e-3, .begin = [&begun] { begun = true; }});
-    const auto step_until = [&](DeviceStatus wanted) {
+    const auto step_until = [&](DeviceState::Status wanted) {
       DeviceState state;
       do {
         state = device.read();
@@ -285,9 +284,9 @@ TEST(ThreadedDeviceThread, FollowsFaultsAndEnds) {
     for (int i = 0; i < 20; ++i) {
       hardware.move({i * 1e-3, 0, 0});
       hardware.set(Fault::none);
-      step_until(DeviceStatus::ok);
+      step_until(DeviceState::Status::ok);
       hardware.set(i % 2 == 0 ? Fault::absent : Fault::not_a_number);
-      EXPECT_TRUE(step_until(DeviceStatus::silent).position.allFinite());
+      EXPECT_TRUE(step_until(DeviceState::Status::silent).position.allFinite());
     }
     EXPECT_GE(hardware.closed(), 1);
   }

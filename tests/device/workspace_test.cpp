@@ -1,8 +1,8 @@
-#include "palpate/device/workspace.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "palpate/device/device.hpp"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "field/edged_shapes.hpp"
 #include "field/evaluate.hpp"
-#include "field/joined_height.hpp"
+#include "field/oriented.hpp"
 
 namespace palpate::test {
 namespace {
@@ -97,7 +97,8 @@ TEST(AcuteCreases, FromTheirOtherSideTheyAreEdgesAndStay) {
 }
 
 TEST(AcuteCreases, BehindEitherSheetIsSolid) {
-  for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset}) {
+  for (const FieldOptions::Kind kind :
+       {FieldOptions::Kind::balanced, FieldOptions::Kind::pointset}) {
     for (double degrees = 15; degrees <= 90; degrees += 5) {
       const double angle = degrees * std::numbers::pi / 180;
       const Gathered points(wedge(fine(kCreaseSupport), angle, 24e-3));
@@ -131,7 +132,8 @@ TEST(AcuteCreases, TheGradientIsExact) {
   int closed = 0;
   for (int k = 0; k < 400; ++k) {
     const Vector3d x(place(random) + 4e-3, place(random), 0.5 * place(random) + 1e-3);
-    for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset}) {
+    for (const FieldOptions::Kind kind :
+         {FieldOptions::Kind::balanced, FieldOptions::Kind::pointset}) {
       const FieldOptions options{.kind = kind};
       const Sample sample = points.sample(x, options);
       Vector3d numeric;

@@ -5,7 +5,7 @@
 
 #include "field/edged_shapes.hpp"
 #include "field/evaluate.hpp"
-#include "field/joined_height.hpp"
+#include "field/oriented.hpp"
 #include "support/known_edges.hpp"
 
 namespace palpate::test {

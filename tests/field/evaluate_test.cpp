@@ -5,6 +5,7 @@
 #include <array>
 #include <random>
 
+#include "field/formulas.hpp"
 #include "palpate/base/error.hpp"
 #include "support/known_edges.hpp"
 #include "support/make_points.hpp"
@@ -82,13 +83,22 @@ INSTANTIATE_TEST_SUITE_P(
         Case{{.tool_radius = 2e-3}, 1, 0.5, "balanced_tool"}, Case{{}, 1, 0, "sharp", 1},
         Case{{.kernel = Kernel::wendland, .tool_radius = 2e-3}, 1, 0.5, "sharp_wendland_tool", 1},
         Case{{}, 2, 0.3, "sharp_two_sources", 3}, Case{{}, 2, 0.3, "one_of_two_sharp", 2},
-        Case{{.kind = FieldKind::pointset}, 1, 0, "pointset"},
-        Case{{.kind = FieldKind::pointset}, 2, 0.6, "pointset_blended"},
-        Case{{.kind = FieldKind::metaball}, 1, 0, "metaball"},
-        Case{{.kind = FieldKind::metaball, .kernel = Kernel::wendland}, 2, 0, "metaball_wendland"},
-        Case{{.kind = FieldKind::metaball, .tool_radius = 2e-3}, 2, 0, "metaball_tool"},
-        Case{{.kind = FieldKind::metaball, .tool_radius = 3.5e-3}, 2, 0, "metaball_large_tool"},
-        Case{{.kind = FieldKind::metaball, .threshold = 0.5, .raw_weights = true}, 1, 0, "raw"}),
+        Case{{.kind = FieldOptions::Kind::pointset}, 1, 0, "pointset"},
+        Case{{.kind = FieldOptions::Kind::pointset}, 2, 0.6, "pointset_blended"},
+        Case{{.kind = FieldOptions::Kind::metaball}, 1, 0, "metaball"},
+        Case{{.kind = FieldOptions::Kind::metaball, .kernel = Kernel::wendland},
+             2,
+             0,
+             "metaball_wendland"},
+        Case{{.kind = FieldOptions::Kind::metaball, .tool_radius = 2e-3}, 2, 0, "metaball_tool"},
+        Case{{.kind = FieldOptions::Kind::metaball, .tool_radius = 3.5e-3},
+             2,
+             0,
+             "metaball_large_tool"},
+        Case{{.kind = FieldOptions::Kind::metaball, .threshold = 0.5, .raw_weights = true},
+             1,
+             0,
+             "raw"}),
     [](const auto& test) { return test.param.name; });
 
 TEST_P(GradientTest, EveryInstructionSetGivesTheSameBits) {
@@ -134,7 +144,8 @@ TEST(Evaluate, HeightOverAPlaneIsExact) {
   const SurfacePoints points = make_points(plane_points(4e-3, 10e-3));
   const Patch patch = patch_of(points);
   const Patch from_below = patch_of(points, -1);
-  for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset}) {
+  for (const FieldOptions::Kind kind :
+       {FieldOptions::Kind::balanced, FieldOptions::Kind::pointset}) {
     const ImplicitSurface surface{FieldOptions{.kind = kind}};
     for (const double z : {-3e-3, -1e-3, 0.0, 1e-3, 3e-3}) {
       const Sample sample = evaluate(surface, patch, {0.3e-3, 0.2e-3, z});
@@ -152,7 +163,8 @@ TEST(Evaluate, AToolPushesThePlaneOutByItsRadius) {
   EXPECT_NEAR(evaluate(ball, patch, {0, 0, 3e-3}).value, 0, 1e-12);
   EXPECT_NEAR(evaluate(ball, patch_of(points, -1), {0, 0, -3e-3}).value, 0, 1e-12);
 
-  const ImplicitSurface blob{FieldOptions{.kind = FieldKind::metaball, .tool_radius = 3e-3}};
+  const ImplicitSurface blob{
+      FieldOptions{.kind = FieldOptions::Kind::metaball, .tool_radius = 3e-3}};
   double low = 0;
   double high = 10e-3;
   for (int i = 0; i < 50; ++i) {
@@ -179,7 +191,7 @@ TEST(Evaluate, FourSourcesThatAgreeRaiseAMetaballByLittle) {
     for (int s = 0; s < sources; ++s) layers.push_back({&points, s});
     Patch patch(8192);
     patch.gather(layers, sources, Vector3d::Zero(), 12e-3);
-    const ImplicitSurface surface{FieldOptions{.kind = FieldKind::metaball}};
+    const ImplicitSurface surface{FieldOptions{.kind = FieldOptions::Kind::metaball}};
     double low = 0;
     double high = 10e-3;
     for (int i = 0; i < 50; ++i) {
@@ -200,7 +212,7 @@ TEST(Evaluate, FourSourcesThatAgreeRaiseAMetaballByLittle) {
 TEST(Evaluate, PrintedGradientPointsInwards) {
   const SurfacePoints points = make_points(wavy_sheet(20));
   const Patch patch = patch_of(points);
-  FieldOptions options{.kind = FieldKind::metaball};
+  FieldOptions options{.kind = FieldOptions::Kind::metaball};
   const ImplicitSurface exact(options);
   options.gradient = FieldOptions::Gradient::printed;
   const ImplicitSurface printed(options);
@@ -225,7 +237,9 @@ TEST(Evaluate, DegenerateNeighbourhoodsStayFinite) {
     SurfacePoints points = make_points(cloud);
     draw_edges(points, 1);
     const Patch patch = patch_of(points);
-    for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset, FieldKind::metaball}) {
+    for (const FieldOptions::Kind kind :
+         {FieldOptions::Kind::balanced, FieldOptions::Kind::pointset,
+          FieldOptions::Kind::metaball}) {
       const ImplicitSurface surface{FieldOptions{.kind = kind}};
       for (const double z : {0.0, 1e-12, 5e-3, 9.999999e-3, 10e-3, 11e-3}) {
         const Sample sample = evaluate(surface, patch, {0, 0, z});

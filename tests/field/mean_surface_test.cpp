@@ -1,7 +1,6 @@
-#include "field/mean_surface.hpp"
-
 #include <gtest/gtest.h>
 
+#include "field/evaluate.hpp"
 #include "palpate/base/error.hpp"
 #include "support/make_points.hpp"
 

@@ -5,7 +5,6 @@
 #include <random>
 
 #include "field/evaluate.hpp"
-#include "field/mean_surface.hpp"
 #include "field/patch.hpp"
 #include "support/known_edges.hpp"
 #include "support/make_points.hpp"
@@ -67,7 +66,8 @@ TEST(PatchAdvance, IsAsGatheringAfresh) {
   for (unsigned seed = 1; seed <= 3; ++seed) points.push_back(moving_sheet(seed));
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1, 1);
-  for (const FieldKind kind : {FieldKind::balanced, FieldKind::metaball}) {
+  for (const FieldOptions::Kind kind :
+       {FieldOptions::Kind::balanced, FieldOptions::Kind::metaball}) {
     const ImplicitSurface surface{FieldOptions{.kind = kind}};
     for (int k = 0; k < 60; ++k) {
       const Vector3d center = 15e-3 * Vector3d(unit(random), unit(random), 0.3 * unit(random));

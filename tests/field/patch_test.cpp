@@ -5,7 +5,6 @@
 #include <random>
 
 #include "field/evaluate.hpp"
-#include "field/mean_surface.hpp"
 #include "support/make_points.hpp"
 
 namespace palpate {
@@ -117,7 +116,8 @@ TEST(FreeSpace, IsNeverFreeWhereTheFieldIsSolid) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(-40e-3, 40e-3);
   int free_balls = 0;
-  for (const FieldKind kind : {FieldKind::balanced, FieldKind::metaball}) {
+  for (const FieldOptions::Kind kind :
+       {FieldOptions::Kind::balanced, FieldOptions::Kind::metaball}) {
     const ImplicitSurface surface{FieldOptions{.kind = kind}};
     Patch patch(2048);
     for (int k = 0; k < 2000; ++k) {

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-class Reference : public testing::TestWithParam<FieldKind> {};
+class Reference : public testing::TestWithParam<FieldOptions::Kind> {};
 
 TEST_P(Reference, GradientAgreesWithCentralDifferences) {
   SurfacePoints sharp = make_points(wavy_sheet(1, 0.2));
@@ -89,8 +89,8 @@ TEST_P(Reference, SceneFieldSaysTheSame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Reference,
-                         testing::Values(FieldKind::balanced, FieldKind::pointset,
-                                         FieldKind::metaball));
+                         testing::Values(FieldOptions::Kind::balanced, FieldOptions::Kind::pointset,
+                                         FieldOptions::Kind::metaball));
 
 }  // namespace
 }  // namespace palpate::test

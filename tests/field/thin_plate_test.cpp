@@ -44,7 +44,7 @@ class RunningTogether {
                   {.stance = &stance});
   }
 
-  [[nodiscard]] Sample sample(const Vector3d& x, FieldKind kind) const {
+  [[nodiscard]] Sample sample(const Vector3d& x, FieldOptions::Kind kind) const {
     return evaluate(ImplicitSurface({.kind = kind}), patch_, x);
   }
 
@@ -54,7 +54,8 @@ class RunningTogether {
 };
 
 TEST(ThinPlate, HasNoHoleWhereItsSidesRunTogether) {
-  for (const FieldKind kind : {FieldKind::balanced, FieldKind::pointset}) {
+  for (const FieldOptions::Kind kind :
+       {FieldOptions::Kind::balanced, FieldOptions::Kind::pointset}) {
     for (const double degrees : {1., 3., 6., 10., 15.}) {
       const RunningTogether plate(degrees);
       for (double x = -15e-3; x <= 15e-3; x += 0.5e-3) {
@@ -70,8 +71,8 @@ TEST(ThinPlate, EndsWhereItsFarSideIs) {
   const RunningTogether plate(10);
   for (double x = 8e-3; x <= 15e-3; x += 0.5e-3) {  // thicker than 0.2 R
     const double thick = x * std::tan(radians(10));
-    EXPECT_LT(plate.sample({x, 0, 0.1e-3 - thick}, FieldKind::balanced).value, 0) << x;
-    EXPECT_GT(plate.sample({x, 0, -0.1e-3 - thick}, FieldKind::balanced).value, 0) << x;
+    EXPECT_LT(plate.sample({x, 0, 0.1e-3 - thick}, FieldOptions::Kind::balanced).value, 0) << x;
+    EXPECT_GT(plate.sample({x, 0, -0.1e-3 - thick}, FieldOptions::Kind::balanced).value, 0) << x;
   }
 }
 
@@ -84,12 +85,12 @@ TEST(ThinPlate, TheGradientIsExact) {
     for (int k = 0; k < 400; ++k) {
       const Vector3d x = Vector3d(6e-3, 6e-3, 1e-3)
                              .cwiseProduct(Vector3d(place(random), place(random), place(random)));
-      const Sample sample = plate.sample(x, FieldKind::balanced);
+      const Sample sample = plate.sample(x, FieldOptions::Kind::balanced);
       Vector3d numeric;
       for (int axis = 0; axis < 3; ++axis) {
         const Vector3d step = kStep * Vector3d::Unit(axis);
-        numeric[axis] = (plate.sample(x + step, FieldKind::balanced).value -
-                         plate.sample(x - step, FieldKind::balanced).value) /
+        numeric[axis] = (plate.sample(x + step, FieldOptions::Kind::balanced).value -
+                         plate.sample(x - step, FieldOptions::Kind::balanced).value) /
                         (2 * kStep);
       }
       EXPECT_LE((sample.gradient - numeric).norm(), 2e-5 * std::max(1.0, numeric.norm()))

@@ -1,5 +1,3 @@
-#include "palpate/geometry/filters.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +5,9 @@
 #include "geometry/clouds.hpp"
 #include "geometry/normals.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/spacing.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate {
 namespace {
@@ -38,7 +38,8 @@ TEST(Clip, KeepsWhatIsInsideWithAllItsColumns) {
 }
 
 std::vector<std::uint8_t> mask_of(const CellGrid& grid) {
-  return speckle_mask(grid, support_radii(local_spacings(grid)));
+  const std::vector<float> radii = support_radii(local_spacings(grid));
+  return speckle_mask(grid, radii, WeightSums(grid, radii));
 }
 
 TEST(Speckle, IsWhatFloatsAroundASurfaceAndNothingOfIt) {
@@ -68,10 +69,10 @@ TEST(Speckle, LeavesALineAndASphereAlone) {
   }
 }
 
-TEST(Speckle, WantsARadiusForEachPoint) {
+TEST(WeightSums, WantARadiusForEachPoint) {
   const CellGrid grid(Clouds(1).plane(3, 1));
-  EXPECT_THROW((void)speckle_mask(grid, std::vector<float>(3, 1.f)), Error);
-  EXPECT_THROW((void)speckle_mask(grid, std::vector<float>(9, 0.f)), Error);
+  EXPECT_THROW(WeightSums(grid, std::vector<float>(3, 1.f)), Error);
+  EXPECT_THROW(WeightSums(grid, std::vector<float>(9, 0.f)), Error);
 }
 
 TEST(SupportRadii, AreTheLargestOfSpacingNoiseAndMinimum) {

@@ -12,9 +12,8 @@
 #include "field/formulas.hpp"
 #include "geometry/clouds.hpp"
 #include "geometry/neighborhoods.hpp"
-#include "geometry/weight_sums.hpp"
 #include "palpate/field/field_options.hpp"
-#include "prepare/radii.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate {
 namespace {
@@ -136,7 +135,7 @@ void expect_sums(const CellGrid& grid, const std::vector<float>& radii, Kernel k
   for (std::size_t i = 0; i < own.size(); ++i) {
     for (std::size_t j = 0; j < own.size(); ++j) own[i] += weight(i, j);
   }
-  const std::vector<float> weights = density_weights(grid, radii, kernel);
+  const std::vector<float> weights = density_weights(WeightSums(grid, radii, kernel));
   for (std::size_t i = 0; i < own.size(); ++i) {
     double around = 0;
     for (std::size_t j = 0; j < own.size(); ++j) around += weight(i, j) * own[j];
@@ -159,7 +158,7 @@ TEST(DensityWeights, MakeAPlaneWeighAboutOneHoweverDense) {
       const CellGrid grid(Clouds(3).plane(40, spacing, 0.2));
       const auto radius = static_cast<float>(multiple * spacing);
       const std::vector<float> radii(grid.size(), radius);
-      const std::vector<float> weights = density_weights(grid, radii);
+      const std::vector<float> weights = density_weights(WeightSums(grid, radii));
       std::vector<std::uint32_t> near;
       const auto middle = static_cast<float>(19.5 * spacing);
       grid.within(Vector3f(middle, middle, 0), radius, near);
@@ -176,7 +175,7 @@ TEST(DensityWeights, MakeAPlaneWeighAboutOneHoweverDense) {
 TEST(DensityWeights, AreFiniteForCoincidentPointsAndTinyRadii) {
   const CellGrid grid(std::vector<Vector3f>(300, Vector3f(1, 2, 3)));
   for (const float radius : {1e-30f, 1e-3f, 1e18f}) {
-    for (const float w : density_weights(grid, std::vector<float>(300, radius))) {
+    for (const float w : density_weights(WeightSums(grid, std::vector<float>(300, radius)))) {
       EXPECT_NEAR(w, 1. / 300, 1e-6);
     }
   }

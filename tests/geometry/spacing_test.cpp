@@ -16,7 +16,7 @@ using Eigen::Vector3f;
 using test::Clouds;
 using test::Points;
 
-double brute_mean_spacing(const Points& points, std::size_t k) {
+double brute_mean_spacing(const Points& points) {
   double sum = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::vector<double> distances;
@@ -24,7 +24,7 @@ double brute_mean_spacing(const Points& points, std::size_t k) {
       if (j != i) distances.push_back((points[i] - points[j]).cast<double>().norm());
     }
     std::sort(distances.begin(), distances.end());
-    const std::size_t others = std::min(k, distances.size());
+    const std::size_t others = std::min<std::size_t>(3, distances.size());
     for (std::size_t n = 0; n < others; ++n) sum += distances[n] / static_cast<double>(others);
   }
   return sum / static_cast<double>(points.size());
@@ -34,18 +34,15 @@ double median_spacing(const Points& points) {
   return median(local_spacings(CellGrid(points)));
 }
 
-TEST(MeanSpacing, EqualsBruteForceForEveryK) {
+TEST(MeanSpacing, EqualsBruteForce) {
   Clouds clouds;
   Points points = clouds.sphere(700, 0.1);
   points.insert(points.end(), 20, points.front());                      // coincide
   for (const Vector3f& p : clouds.cube(60, 1e-3)) points.push_back(p);  // much denser
   points.push_back(Vector3f(50, 0, 0));                                 // far off
   const CellGrid grid(points);
-  for (const int k : {1, 2, 3, 4, 9}) {
-    const double expected = brute_mean_spacing(points, static_cast<std::size_t>(k));
-    EXPECT_NEAR(mean_spacing(grid, k), expected, 1e-6 * expected) << k;
-  }
-  EXPECT_THROW((void)mean_spacing(grid, 0), Error);
+  const double expected = brute_mean_spacing(points);
+  EXPECT_NEAR(mean_spacing(grid), expected, 1e-6 * expected);
 }
 
 TEST(MeanSpacing, IsDefinedForTheSmallestClouds) {

@@ -8,7 +8,7 @@
 
 #include "geometry/clouds.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/filters.hpp"
+#include "palpate/geometry/point_cloud.hpp"
 
 namespace palpate {
 namespace {

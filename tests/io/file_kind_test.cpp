@@ -1,8 +1,7 @@
-#include "io/file_kind.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/input.hpp"
 #include "io/reading.hpp"
 
 namespace palpate {

@@ -1,10 +1,9 @@
-#include "io/las.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "io/formats.hpp"
 #include "io/las_bytes.hpp"
 
 namespace palpate {

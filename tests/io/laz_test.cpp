@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/las.hpp"
+#include "io/formats.hpp"
 #include "io/las_bytes.hpp"
 
 namespace palpate {

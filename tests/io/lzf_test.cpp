@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/pcd.hpp"
+#include "io/formats.hpp"
 
 namespace palpate::io {
 namespace {

@@ -1,8 +1,7 @@
-#include "io/ply.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/formats.hpp"
 #include "io/reading.hpp"
 
 namespace palpate {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "io/reading.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate {
 namespace {

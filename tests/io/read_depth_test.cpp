@@ -1,5 +1,3 @@
-#include "palpate/io/read_depth.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 
 #include "io/reading.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate {
 namespace {

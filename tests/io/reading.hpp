@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "palpate/base/error.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate {
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "io/encode_cloud.hpp"
+#include "io/formats.hpp"
 #include "io/reading.hpp"
 
 namespace palpate {

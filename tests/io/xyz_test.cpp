@@ -1,10 +1,9 @@
-#include "io/xyz.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <clocale>
 
+#include "io/formats.hpp"
 #include "io/reading.hpp"
 
 namespace palpate {

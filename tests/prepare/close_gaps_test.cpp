@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "prepare/growth.hpp"
 #include "prepare/radii.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate {
 namespace {
@@ -41,7 +41,7 @@ Case make_case(const Vector3f& odd, float radius) {
 std::size_t close(Case& made, OwnSheets& own) {
   std::vector<float> spacings(made.grid.size(), kGapSpacing);
   own = fit_own_sheets(made.grid, spacings, made.radii, 0);
-  const detail::WeightSums sums = weight_sums(made.grid, made.radii, Kernel::wyvill);
+  const WeightSums sums(made.grid, made.radii);
   return close_gaps(made.grid, sums.own, spacings, made.radii, own);
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "prepare/growth.hpp"
+#include "prepare/radii.hpp"
 
 namespace palpate {
 namespace {

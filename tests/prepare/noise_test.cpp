@@ -7,9 +7,8 @@
 #include <random>
 
 #include "palpate/geometry/spacing.hpp"
-#include "prepare/columns.hpp"
-#include "prepare/radii.hpp"
 #include "prepare/sheet_fit.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate {
 namespace {

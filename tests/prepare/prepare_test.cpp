@@ -37,12 +37,12 @@ PointCloud flat(double noise = 0) {
 }
 
 TEST(Prepare, FindsSpacingAndNoise) {
-  const PrepareReport clean = prepare(flat()).report;
+  const Prepared::Report clean = prepare(flat()).report;
   EXPECT_NEAR(clean.spacing, 5e-3, 0.3e-3);
   EXPECT_LT(clean.noise, 1e-6);
   EXPECT_EQ(clean.voxel, 0);
   EXPECT_NEAR(clean.radius, 2.5 * clean.spacing, 0.3e-3);
-  const PrepareReport noisy = prepare(flat(2e-3)).report;
+  const Prepared::Report noisy = prepare(flat(2e-3)).report;
   EXPECT_NEAR(noisy.noise, 2e-3, 0.4e-3);
   EXPECT_GT(noisy.voxel, 0);
   EXPECT_GT(noisy.radius, 1.3 * clean.radius);
@@ -50,7 +50,7 @@ TEST(Prepare, FindsSpacingAndNoise) {
 
 TEST(Prepare, ShapeIsNotNoise) {
   const auto waves = [](double x, double y) { return 5e-3 * std::sin(50 * x) * std::sin(50 * y); };
-  const PrepareReport report = prepare(sheet(waves, 0)).report;
+  const Prepared::Report report = prepare(sheet(waves, 0)).report;
   EXPECT_LT(report.noise, 0.1e-3);
   EXPECT_EQ(report.voxel, 0);
   EXPECT_LT(report.radius, 3.1 * report.spacing);
@@ -58,7 +58,7 @@ TEST(Prepare, ShapeIsNotNoise) {
 
 TEST(Prepare, EverySyntheticCloudKeepsItsShape) {
   for (const auto& [name, description] : synthetic_names()) {
-    const PrepareReport report = prepare(synthetic_cloud(name)).report;
+    const Prepared::Report report = prepare(synthetic_cloud(name)).report;
     EXPECT_LT(report.radius, 4 * report.spacing) << name;
   }
 }
@@ -80,7 +80,7 @@ TEST(Prepare, PutsTheCloudWhereItsPoseSays) {
 
 // Noise that a given radius does not average leaves no point sure of its plane.
 TEST(Prepare, NoisyPointsOfAGivenRadiusKeepTheirNormals) {
-  const PrepareReport report = prepare(flat(2e-3), {.paper = true}).report;
+  const Prepared::Report report = prepare(flat(2e-3), {.paper = true}).report;
   EXPECT_LT(report.untrusted, 0.2);
 }
 
@@ -141,7 +141,7 @@ TEST(Prepare, ColoursStayWithTheirPoints) {
 }
 
 TEST(Prepare, TakesWhatItIsGiven) {
-  const PrepareReport report =
+  const Prepared::Report report =
       prepare(flat(), {.voxel = 12e-3, .radius = 40e-3, .minimum_radius = 50e-3}).report;
   EXPECT_EQ(report.voxel, 12e-3);
   EXPECT_NEAR(report.radius, 50e-3, 1e-6);
@@ -151,7 +151,7 @@ TEST(Prepare, TakesWhatItIsGiven) {
 }
 
 TEST(Prepare, ThePapersWayIsOneRadiusForAll) {
-  const PrepareReport report = prepare(flat(1e-3), {.paper = true}).report;
+  const Prepared::Report report = prepare(flat(1e-3), {.paper = true}).report;
   EXPECT_EQ(report.voxel, 0);
   EXPECT_EQ(report.radius_smallest, report.radius_largest);
   EXPECT_NEAR(report.radius, 2.5 * report.spacing, 1e-6);

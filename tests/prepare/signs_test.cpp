@@ -15,7 +15,7 @@
 #include "geometry/clouds.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/prepare/prepare.hpp"
-#include "prepare/check_input.hpp"
+#include "prepare/columns.hpp"
 
 namespace palpate {
 namespace {

@@ -37,7 +37,7 @@ ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "touch", "zwidth
 ALLOWED = {("contact", "palpate/field/field.hpp"), ("sim", "palpate/sensor/depth_camera.hpp")}
 
 # The one file that asks what machine it is compiled for.
-PLATFORM_FILES = {"src/base/cpu.cpp"}
+PLATFORM_FILES = {"src/base/cpu.hpp"}
 
 SOURCE_FOLDERS = ("apps", "bench", "examples", "fuzz", "include", "src", "tests")
 TEXT_SUFFIXES = {".cpp", ".hpp", ".inl", ".in", ".cmake", ".md", ".mjs", ".py", ".sh", ".ts", ".txt"}

@@ -61,7 +61,7 @@ class Rules(unittest.TestCase):
     def test_macros_are_found(self):
         self.assertEqual(len(self.found(rules.macros, {"src/io/a.cpp": "#define A 1\n"})), 1)
         self.assertEqual(len(self.found(rules.macros, {"src/io/a.cpp": "#ifdef A\n#endif\n"})), 1)
-        self.assertEqual(self.found(rules.macros, {"src/base/cpu.cpp": "#if A\n#endif\n"}), [])
+        self.assertEqual(self.found(rules.macros, {"src/base/cpu.hpp": "#if A\n#endif\n"}), [])
 
     def test_marks_are_found(self):
         mark = "// TO" + "DO: later\n"

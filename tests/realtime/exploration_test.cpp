@@ -1,6 +1,4 @@
 // The real-time contract over a whole exploration of each data set.
-#include "palpate/device/exploration.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "palpate/io/cloud_file.hpp"
+#include "device/explore.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "realtime/build.hpp"
 #include "realtime/rig.hpp"

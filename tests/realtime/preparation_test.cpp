@@ -54,7 +54,7 @@ Findings push(Policy policy, bool moving) {
     }
     field.update(frame.stamp, Vector3d::Zero(), Vector3d::Zero());
     const double start = frame.stamp;
-    const StartTime felt = [start] { return start; };
+    const Source::StartTime felt = [start] { return start; };
     Watch watch;
     source.push(frame, felt);
     const Findings once = watch.stop();

@@ -71,14 +71,14 @@ struct Case {
   ProxyOptions proxy;
 };
 
-Case plain(const char* name, FieldKind kind) {
+Case plain(const char* name, FieldOptions::Kind kind) {
   return {name, FieldOptions{.kind = kind}, ProxyOptions{}};
 }
 
 std::vector<Case> cases() {
-  std::vector<Case> all = {plain("balanced", FieldKind::balanced),
-                           plain("pointset", FieldKind::pointset),
-                           plain("metaball", FieldKind::metaball)};
+  std::vector<Case> all = {plain("balanced", FieldOptions::Kind::balanced),
+                           plain("pointset", FieldOptions::Kind::pointset),
+                           plain("metaball", FieldOptions::Kind::metaball)};
   all.push_back({"wendland", FieldOptions{.kernel = Kernel::wendland}, {}});
   all.push_back(
       {"paper", paper_field(), ProxyOptions{.method = ProxyOptions::Method::single_step}});

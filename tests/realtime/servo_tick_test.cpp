@@ -87,18 +87,18 @@ TEST_F(ServoTick, KeepsTheContractOnFaultsGapsAndReset) {
     tick(-2e-3, 0.1);  // the watchdog's
     tick(bad);
     tick(-2e-3);
-    EXPECT_NE(servo_->state().guard.fault, GuardFault::none);
+    EXPECT_NE(servo_->state().guard.fault, Guard::Fault::none);
     servo_->reset();
     tick(5e-3);
-    EXPECT_EQ(servo_->state().guard.fault, GuardFault::none);
+    EXPECT_EQ(servo_->state().guard.fault, Guard::Fault::none);
   }
   tick(0, nan);
   now_ = 10;
   servo_->reset();
   press();
-  device_.state().status = DeviceStatus::failed;
+  device_.state().status = DeviceState::Status::failed;
   tick(-2e-3);
-  EXPECT_EQ(servo_->state().guard.fault, GuardFault::device);
+  EXPECT_EQ(servo_->state().guard.fault, Guard::Fault::device);
 }
 
 TEST_F(ServoTick, KeepsTheContractWhileOthersWatchAndChangeIt) {
@@ -107,7 +107,8 @@ TEST_F(ServoTick, KeepsTheContractWhileOthersWatchAndChangeIt) {
       static_cast<void>(servo_->state());
       static_cast<void>(servo_->lateness());
       servo_->set_contact({.stiffness = 200.0 + i % 100, .texture = {.amplitude = 1e-5 * (i % 3)}});
-      servo_->set_field({.kind = i % 200 < 100 ? FieldKind::balanced : FieldKind::metaball});
+      servo_->set_field(
+          {.kind = i % 200 < 100 ? FieldOptions::Kind::balanced : FieldOptions::Kind::metaball});
       servo_->pause(i % 50 == 0);
     }
   });

@@ -1,6 +1,4 @@
 // The real-time contract of a simulated device whose hand is guided from outside.
-#include "palpate/device/teleoperated_hand.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "palpate/device/exploration.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "safety/given_energy.hpp"
 #include "support/effort.hpp"
@@ -58,7 +58,7 @@ void expect_paid(const GivenEnergy& given, const MostOwed& owed, const std::stri
 class RandomGuide final : public TargetSource {
  public:
   explicit RandomGuide(const RandomHand& hand) : hand_(hand) {}
-  [[nodiscard]] HandTarget target(double, const Vector3d&) noexcept override {
+  [[nodiscard]] TargetSource::Target target(double, const Vector3d&) noexcept override {
     return {hand_.next(), 0};
   }
 
@@ -81,7 +81,7 @@ std::vector<EnergyFuzzScene> energy_fuzz_scenes() {
           {"corner", wedge(noisy, std::numbers::pi / 2, 0.03)}};
 }
 
-using EnergyFuzzCase = std::tuple<int, FieldKind>;
+using EnergyFuzzCase = std::tuple<int, FieldOptions::Kind>;
 class EnergyFuzz : public testing::TestWithParam<EnergyFuzzCase> {};
 
 TEST_P(EnergyFuzz, NoSurfaceGivesMoreThanWasPutIn) {
@@ -112,8 +112,9 @@ std::string energy_fuzz_name(const testing::TestParamInfo<EnergyFuzzCase>& teste
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EnergyFuzz,
                          testing::Combine(testing::Range(0, 5),
-                                          testing::Values(FieldKind::metaball, FieldKind::pointset,
-                                                          FieldKind::balanced)),
+                                          testing::Values(FieldOptions::Kind::metaball,
+                                                          FieldOptions::Kind::pointset,
+                                                          FieldOptions::Kind::balanced)),
                          energy_fuzz_name);
 
 TEST(Energy, WithoutTheGuardAStiffBallGivesWhatNobodyPutIn) {
@@ -178,8 +179,7 @@ void expect_exploration_is_paid(const PointCloud& cloud) {
   Scene scene;
   scene.add("cloud", cloud);
   ServoOptions options;
-  const ExplorationPlan plan =
-      plan_exploration(scene, options.field, {.duration = 1e-3 * kExplored});
+  const Placement plan = plan_exploration(scene, options.field, {.duration = 1e-3 * kExplored});
   options.workspace = plan.workspace;
   options.proxy.stiffness = plan.stiffness;
   SimulatedDevice device({}, plan.target);

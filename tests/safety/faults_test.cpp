@@ -147,10 +147,10 @@ class Ordeal {
         leap_ = 0.02 * Vector3d(uniform(), uniform(), uniform());
         break;
       case Fault::device_falls_silent:
-        state.status = DeviceStatus::silent;
+        state.status = DeviceState::Status::silent;
         break;
       case Fault::device_fails:
-        state.status = DeviceStatus::failed;
+        state.status = DeviceState::Status::failed;
         break;
       case Fault::time_is_no_number:
         return kNothing;
@@ -172,7 +172,7 @@ class Ordeal {
         servo_.set_contact({.stiffness = stiffness_});
         break;
       case Fault::another_field:
-        servo_.set_field({.kind = static_cast<FieldKind>(random_() % 3)});
+        servo_.set_field({.kind = static_cast<FieldOptions::Kind>(random_() % 3)});
         break;
       case Fault::clutch:
         state.buttons = 1u << kClutch;
@@ -196,7 +196,7 @@ class Ordeal {
   void judge(const ServoState& state, bool fatal) {
     ASSERT_TRUE(state.force.allFinite()) << "step " << steps_;
     ASSERT_LE(state.force.norm(), Servo::kForceShare * kRatedForce * (1 + 1e-12));
-    const bool faulted = state.guard.fault != GuardFault::none;
+    const bool faulted = state.guard.fault != Guard::Fault::none;
     if (fatal || faulted) {
       ASSERT_EQ(state.force, Vector3d::Zero()) << "fault " << static_cast<int>(fault_);
     }
@@ -212,8 +212,8 @@ class Ordeal {
 
   // What a guard ought to be told: the hand goes its own way while the clutch is held, and touches
   // nothing.
-  [[nodiscard]] GuardInput told(const ServoState& state) {
-    GuardInput input;
+  [[nodiscard]] Guard::Input told(const ServoState& state) {
+    Guard::Input input;
     input.hip = device_.state().position;
     input.velocity = device_.state().velocity;
     input.dt = state.dt;

@@ -17,7 +17,7 @@ struct GivenEnergy {
   double in_all = 0;         ///< most, from the beginning to any moment, J
   int contacts = 0;          ///< touches that were left again
   double largest_force = 0;  ///< N
-  GuardState::Counts counts;
+  Guard::State::Counts counts;
 };
 
 /// Lets the hand of `device` touch `scene` through a servo until it has finished, at most `steps`

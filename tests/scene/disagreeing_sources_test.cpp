@@ -124,7 +124,7 @@ TEST(Scene, DoesNotWidenMetaballs) {
   Scene scene;
   scene.add("one").publish(test::still(test::plane(0)));
   scene.add("other").publish(test::still(test::plane(-8e-3)));
-  SceneField field(scene, {.kind = FieldKind::metaball});
+  SceneField field(scene, {.kind = FieldOptions::Kind::metaball});
   EXPECT_NEAR(radius_of(field), kRadius, 1e-9);
   field.change({});
   EXPECT_NEAR(radius_of(field), 20e-3, 1e-6);

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "palpate/scene/scene.hpp"
-#include "scene/seams.hpp"
+#include "scene/source_inside.hpp"
 #include "support/snapshots.hpp"
 
 namespace palpate {

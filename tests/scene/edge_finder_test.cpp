@@ -1,5 +1,3 @@
-#include "scene/policies/edge_finder.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <numbers>
 
 #include "palpate/depth/depth_filter.hpp"
+#include "scene/policies/block_surface.hpp"
 #include "scene/policies/morph.hpp"
 #include "support/depth_frames.hpp"
 #include "support/rates.hpp"

@@ -24,7 +24,7 @@ const Vector3d kNowhere = Vector3d::Constant(std::numeric_limits<double>::quiet_
 /// before.
 bool push_number(int k, bool clouds, Source& source) {
   const double stamp = kFrame * k;
-  const StartTime start = [=] { return stamp + 0.01; };
+  const Source::StartTime start = [=] { return stamp + 0.01; };
   const double depth = 0.5 - 1e-3 * (k % 3);
   const double end = 0.04 + 0.02 * ((5 * k + 5) % 7);
   if (!clouds) {

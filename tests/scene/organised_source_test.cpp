@@ -7,7 +7,7 @@
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/depth/depth_frame.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/organised_clouds.hpp"

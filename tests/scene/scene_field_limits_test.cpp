@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "field/formulas.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/snapshots.hpp"
@@ -157,7 +158,7 @@ TEST(SceneField, OneRadiusForAllIsOneEverywhere) {
   for (TestPoint& p : points) p.radius = p.position.x() < 0 ? 8e-3 : 16e-3;
   Scene scene;
   scene.add("plane").publish(still(points));
-  FieldOptions options = paper_field(FieldKind::metaball);
+  FieldOptions options = paper_field(FieldOptions::Kind::metaball);
   SceneField field(scene, options);
   const Vector3d left(-20e-3, 0, 5e-3);
   field.update(0, left, left);
@@ -198,7 +199,7 @@ TEST(SceneField, AToolOfAnySizeIsPushedOutAndCountsForWhatTheSupportCarries) {
     for (const double threshold : {0.4, 0.1}) {
       const double offset = plane_offset(kernel, threshold);
       for (const double tool : {0.0, 0.1, 0.2, 0.3, 0.5, 0.52, 0.7, 1.0, 3.0}) {
-        SceneField field(scene, {.kind = FieldKind::metaball,
+        SceneField field(scene, {.kind = FieldOptions::Kind::metaball,
                                  .kernel = kernel,
                                  .threshold = threshold,
                                  .tool_radius = tool * kRadius});
@@ -227,7 +228,7 @@ TEST(SceneField, PointsOfNoWeightAreNotThere) {
   auto snapshot = std::make_unique<Snapshot>();
   snapshot->layers.push_back({share(std::move(points)), 1, 1});
   scene.add("plane").publish(std::move(snapshot));
-  FieldOptions raw = paper_field(FieldKind::metaball);
+  FieldOptions raw = paper_field(FieldOptions::Kind::metaball);
   for (const FieldOptions& options : {FieldOptions{}, raw}) {
     SceneField field(scene, options);
     field.update(0, Vector3d::Zero(), Vector3d::Zero());

@@ -77,7 +77,7 @@ TEST(SceneField, ChangesOverAtTheNextSnapshotsStart) {
 TEST(SceneField, ChangesToWhatAFieldOfThoseOptionsIs) {
   Scene scene;
   scene.add("plane").publish(still(plane(0)));
-  const FieldOptions metaball{.kind = FieldKind::metaball, .threshold = 0.5};
+  const FieldOptions metaball{.kind = FieldOptions::Kind::metaball, .threshold = 0.5};
   SceneField changed(scene);
   SceneField made(scene, metaball);
   const Vector3d x(1e-3, 2e-3, 6e-3);

@@ -64,7 +64,7 @@ TEST_P(SeamsTest, APlaneIsOnePlane) {
 // A metaball's plane rises by (n^1/4 - 1) at most where n cameras agree (docs/method.md 2.9).
 TEST_P(SeamsTest, AMetaballRisesLittleWhereTheyAgree) {
   push(0, 0, 0);
-  SceneField field(scene_, {.kind = FieldKind::metaball});
+  SceneField field(scene_, {.kind = FieldOptions::Kind::metaball});
   double lowest = 1;
   double highest = 0;
   const double half = 0.05 + 0.07 * (GetParam() - 1);

@@ -97,7 +97,7 @@ TEST_F(SwapStressTest, AThousandSwapsASecondWithAStuckReader) {
     EXPECT_EQ(each.infinite, 0);
     EXPECT_EQ(each.outside, 0);
   }
-  const SourceState state = source_.state();
+  const Source::State state = source_.state();
   EXPECT_EQ(state.frames, static_cast<std::uint64_t>(pushed));
   EXPECT_EQ(state.frames + state.dropped, static_cast<std::uint64_t>(count));
   EXPECT_GT(pushed, 10) << "a reader that stands still delays nobody";

@@ -29,7 +29,7 @@ class ManualClock final : public Clock {
 
 /// What a fake camera answers to one read().
 struct Answer {
-  CameraStatus status = CameraStatus::frame;
+  DepthCamera::Status status = DepthCamera::Status::frame;
   DepthFrame frame{};
   std::string reason{};
   bool throws = false;
@@ -50,7 +50,7 @@ class Script {
     const bool any = changed_.wait_for(lock, std::chrono::duration<double>(timeout),
                                        [this] { return !answers_.empty(); });
     ++reads_;
-    if (!any) return {.status = CameraStatus::waiting};
+    if (!any) return {.status = DepthCamera::Status::waiting};
     Answer answer = std::move(answers_.front());
     answers_.pop_front();
     return answer;
@@ -83,11 +83,11 @@ class FakeCamera final : public DepthCamera {
   void begin(double start) override { begun_ = start; }
   /// When it was told to begin last.
   [[nodiscard]] std::optional<double> begun() const { return begun_; }
-  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override {
+  [[nodiscard]] DepthCamera::Status read(DepthFrame& frame, double timeout) override {
     Answer answer = script_->next(timeout);
     reason_ = answer.reason;
     if (answer.throws) throw std::runtime_error(answer.reason);
-    if (answer.status == CameraStatus::frame) frame = std::move(answer.frame);
+    if (answer.status == DepthCamera::Status::frame) frame = std::move(answer.frame);
     return answer.status;
   }
   [[nodiscard]] std::string reason() const override { return reason_; }

@@ -10,7 +10,7 @@
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
+#include "palpate/sensor/stream.hpp"
 #include "sim/simulated_camera.hpp"
 #include "support/rates.hpp"
 
@@ -29,7 +29,7 @@ struct Lane {
   Source* source = nullptr;
   std::vector<double> stamps, starts;
 
-  void take(const DepthFrame& frame, const StartTime& start) {
+  void take(const DepthFrame& frame, const Source::StartTime& start) {
     double from = 0;
     source->push(frame, [&] { return from = start(); });
     stamps.push_back(frame.stamp);
@@ -57,7 +57,9 @@ class FourCameras : public testing::Test {
       lane.source = &scene_.add(name);
       streams_.emplace_back(
           *lane.camera, name,
-          [&lane](const DepthFrame& frame, const StartTime& start) { lane.take(frame, start); },
+          [&lane](const DepthFrame& frame, const Source::StartTime& start) {
+            lane.take(frame, start);
+          },
           SimulatedStreamOptions{.latency = kLatency});
     }
   }

@@ -1,11 +1,10 @@
-#include "sensor/frame_check.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "sensor/fake_camera.hpp"
+#include "sensor/stream_statistics.hpp"
 
 namespace palpate::sensor {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 #include "sensor/fake_camera.hpp"
 #include "sensor/folder.hpp"
 
@@ -50,11 +50,11 @@ TEST(Freenect, PlaysADump) {
   double stamp = 0;
   for (int k = 0; k < 10; ++k) {
     clock.set(10 + k / 30.0);
-    CameraStatus status = CameraStatus::waiting;
-    for (int i = 0; i < 10 && status == CameraStatus::waiting; ++i) {
+    DepthCamera::Status status = DepthCamera::Status::waiting;
+    for (int i = 0; i < 10 && status == DepthCamera::Status::waiting; ++i) {
       status = camera->read(frame, 0.05);
     }
-    ASSERT_EQ(status, CameraStatus::frame) << k << camera->reason();
+    ASSERT_EQ(status, DepthCamera::Status::frame) << k << camera->reason();
     EXPECT_EQ(frame.camera.width, 640);
     EXPECT_NEAR(frame.camera.pinhole.fx, 575.8, 0.1);
     ASSERT_EQ(frame.depth.size(), 640u * 480u);

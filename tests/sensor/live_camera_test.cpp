@@ -15,7 +15,7 @@ using testing::HasSubstr;
 struct Device {
   bool absent = false;
   bool lost = false;
-  CameraStatus status = CameraStatus::frame;
+  DepthCamera::Status status = DepthCamera::Status::frame;
   double time = 0;
   int opened = 0;
 };
@@ -26,8 +26,8 @@ class DeviceConnection final : public Connection {
     if (device.absent) throw Error("it is not there");
     ++device.opened;
   }
-  [[nodiscard]] CameraStatus fetch(DepthFrame& frame, double& device_time,
-                                   double /*timeout*/) override {
+  [[nodiscard]] DepthCamera::Status fetch(DepthFrame& frame, double& device_time,
+                                          double /*timeout*/) override {
     if (device_.lost) throw Error("it is lost");
     frame.depth = {1};
     device_time = device_.time;
@@ -51,7 +51,7 @@ class LiveCameraTest : public testing::Test {
   double stamp(LiveCamera& camera, double now, double device_time) {
     clock_.set(now);
     device_.time = device_time;
-    EXPECT_EQ(camera.read(frame_, 0), CameraStatus::frame);
+    EXPECT_EQ(camera.read(frame_, 0), DepthCamera::Status::frame);
     return frame_.stamp;
   }
 
@@ -69,26 +69,27 @@ TEST_F(LiveCameraTest, OpensALostDeviceAgain) {
   const auto camera = open();
   device_.lost = true;
   device_.absent = true;
-  EXPECT_EQ(camera->read(frame_, 0), CameraStatus::failed);
+  EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::failed);
   EXPECT_EQ(camera->reason(), "it is lost");
-  EXPECT_EQ(camera->read(frame_, 0), CameraStatus::failed);
+  EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::failed);
   EXPECT_EQ(camera->reason(), "it is not there");
   device_.lost = false;
   device_.absent = false;
-  EXPECT_EQ(camera->read(frame_, 0), CameraStatus::frame);
+  EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::frame);
   EXPECT_EQ(camera->reason(), "");
   EXPECT_EQ(device_.opened, 2);
 }
 
 TEST_F(LiveCameraTest, OpensASilentDeviceAgain) {
   const auto camera = open();
-  device_.status = CameraStatus::waiting;
+  device_.status = DepthCamera::Status::waiting;
   clock_.set(2.9);
-  EXPECT_EQ(camera->read(frame_, 0), CameraStatus::waiting);
+  EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::waiting);
   clock_.set(3.1);
-  EXPECT_EQ(camera->read(frame_, 0), CameraStatus::failed);
+  EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::failed);
   EXPECT_EQ(camera->reason(), "device: open, but silent for 3.1 s. Shake it.");
-  EXPECT_EQ(camera->read(frame_, 0), CameraStatus::waiting) << "a new start has its own time";
+  EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::waiting)
+      << "a new start has its own time";
   EXPECT_EQ(device_.opened, 2);
 }
 
@@ -99,14 +100,14 @@ TEST_F(LiveCameraTest, LeavesDamagedFramesOutAndStaysOpen) {
     const auto camera = open(true, lost);
     for (int i = 1; i <= 10; ++i) {
       clock_.set(i);
-      device_.status = CameraStatus::damaged;
-      EXPECT_EQ(camera->read(frame_, 0), CameraStatus::damaged);
+      device_.status = DepthCamera::Status::damaged;
+      EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::damaged);
       EXPECT_EQ(camera->reason(), "it is torn");
     }
-    device_.status = CameraStatus::waiting;
-    EXPECT_EQ(camera->read(frame_, 0), CameraStatus::waiting) << "damaged, but not silent";
-    device_.status = CameraStatus::frame;
-    EXPECT_EQ(camera->read(frame_, 0), CameraStatus::frame);
+    device_.status = DepthCamera::Status::waiting;
+    EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::waiting) << "damaged, but not silent";
+    device_.status = DepthCamera::Status::frame;
+    EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::frame);
     EXPECT_EQ(camera->reason(), "");
     EXPECT_EQ(device_.opened, 1);
   }
@@ -115,10 +116,10 @@ TEST_F(LiveCameraTest, LeavesDamagedFramesOutAndStaysOpen) {
 TEST_F(LiveCameraTest, EndsALostRecording) {
   const auto camera = open(true, Lost::ended);
   device_.lost = true;
-  EXPECT_EQ(camera->read(frame_, 0), CameraStatus::failed);
+  EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::failed);
   EXPECT_EQ(camera->reason(), "it is lost");
   device_.lost = false;
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(camera->read(frame_, 0), CameraStatus::ended);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::ended);
   EXPECT_EQ(device_.opened, 1) << "it would play from its beginning";
 }
 
@@ -137,15 +138,15 @@ TEST_F(LiveCameraTest, BeginsARecordingAgainAndNoDevice) {
 
 TEST_F(LiveCameraTest, WaitsForARecordingThatIsSilent) {
   const auto camera = open(true, Lost::ended);
-  device_.status = CameraStatus::waiting;
+  device_.status = DepthCamera::Status::waiting;
   for (const double now : {4.0, 8.0}) {
     clock_.set(now);
-    EXPECT_EQ(camera->read(frame_, 0), CameraStatus::failed);
+    EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::failed);
     EXPECT_EQ(camera->reason(), "device: open, but silent for 4 s. Shake it.");
-    EXPECT_EQ(camera->read(frame_, 0), CameraStatus::waiting);
+    EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::waiting);
   }
-  device_.status = CameraStatus::frame;
-  EXPECT_EQ(camera->read(frame_, 0), CameraStatus::frame);
+  device_.status = DepthCamera::Status::frame;
+  EXPECT_EQ(camera->read(frame_, 0), DepthCamera::Status::frame);
   EXPECT_EQ(device_.opened, 1);
 }
 

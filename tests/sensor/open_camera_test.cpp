@@ -1,9 +1,8 @@
-#include "palpate/sensor/open_camera.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "palpate/base/error.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 #include "sensor/folder.hpp"
 
 namespace palpate {
@@ -13,18 +12,18 @@ using testing::HasSubstr;
 
 TEST(OpenCamera, OpensByName) {
   DepthFrame frame;
-  EXPECT_EQ(open_camera("simulated")->read(frame, 0), CameraStatus::frame);
+  EXPECT_EQ(open_camera("simulated")->read(frame, 0), DepthCamera::Status::frame);
   const sensor::Folder folder;
   folder.write("sequence.json", R"({"fx": 4, "fy": 4, "cx": 1.5, "cy": 1})");
   folder.write("depth/0.pgm", sensor::pgm(2000));
   const std::string name = "sequence:" + folder.path().string();
   const auto once = open_camera(name);
   EXPECT_EQ(once->info().name, name);
-  EXPECT_EQ(once->read(frame, 0), CameraStatus::frame);
+  EXPECT_EQ(once->read(frame, 0), DepthCamera::Status::frame);
   EXPECT_EQ(frame.depth[0], 2.0F);
-  EXPECT_EQ(once->read(frame, 0), CameraStatus::ended);
+  EXPECT_EQ(once->read(frame, 0), DepthCamera::Status::ended);
   const auto loop = open_camera(name, {.loop = true});
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(loop->read(frame, 0), CameraStatus::frame);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(loop->read(frame, 0), DepthCamera::Status::frame);
 }
 
 // What comes once again bit for bit is no frozen picture where there is no noise, or one image.
@@ -72,7 +71,7 @@ TEST(OpenCamera, ListsEveryDriverAndWhatIsMissing) {
   EXPECT_EQ(drivers[0].name, "simulated");
   for (const DriverInfo::Device& device : drivers[0].devices) {
     DepthFrame frame;
-    EXPECT_EQ(open_camera(device.name)->read(frame, 0), CameraStatus::frame) << device.name;
+    EXPECT_EQ(open_camera(device.name)->read(frame, 0), DepthCamera::Status::frame) << device.name;
   }
 }
 

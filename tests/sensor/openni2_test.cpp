@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 #include "sensor/fake_camera.hpp"
 #include "sensor/folder.hpp"
 #include "sensor/live_camera.hpp"
 #include "sensor/oni_file.hpp"
-#include "sensor/openni2_frame.hpp"
+#include "sensor/openni2_library.hpp"
 
 namespace palpate {
 namespace {
@@ -35,12 +35,12 @@ std::string refusal(const std::string& name) {
 }
 
 // Reads until something else than `waiting` comes.
-CameraStatus next(DepthCamera& camera, DepthFrame& frame) {
+DepthCamera::Status next(DepthCamera& camera, DepthFrame& frame) {
   for (int i = 0; i < 100; ++i) {
-    const CameraStatus status = camera.read(frame, 0.1);
-    if (status != CameraStatus::waiting) return status;
+    const DepthCamera::Status status = camera.read(frame, 0.1);
+    if (status != DepthCamera::Status::waiting) return status;
   }
-  return CameraStatus::waiting;
+  return DepthCamera::Status::waiting;
 }
 
 TEST(OpenNi2, SaysThatThereIsNoCameraOrFile) {
@@ -62,7 +62,7 @@ std::string dummy_frame() {
   clock.set(50);
   const auto camera = open_camera("openni2:Dummy", {.clock = &clock}).release();
   DepthFrame frame;
-  if (next(*camera, frame) != CameraStatus::frame) return "no frame: " + camera->reason();
+  if (next(*camera, frame) != DepthCamera::Status::frame) return "no frame: " + camera->reason();
   if (frame.camera.width != 320 || frame.camera.height != 240) return "its size";
   if (frame.depth.size() != 320u * 240u || frame.depth[100] != 2.0F) return "its depths";
   if (std::abs(frame.camera.pinhole.fx - 287.9) > 0.1) return "its nominal focal length";
@@ -86,9 +86,9 @@ TEST(OpenNi2, ReportsRecordingsThatNeverPlay) {
   ManualClock clock;
   const auto camera = open_camera((folder.path() / "a.oni").string(), {.clock = &clock});
   DepthFrame frame;
-  EXPECT_EQ(camera->read(frame, 0.1), CameraStatus::waiting);
+  EXPECT_EQ(camera->read(frame, 0.1), DepthCamera::Status::waiting);
   clock.set(4);
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::failed);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::failed);
   EXPECT_THAT(camera->reason(), AllOf(HasSubstr("silent for 4 s"), HasSubstr("dummy device")));
 }
 
@@ -100,7 +100,7 @@ TEST(OpenNi2, PlaysARecordingToItsEnd) {
   DepthFrame frame;
   int frames = 0;
   double stamp = -1;
-  while (next(*camera, frame) == CameraStatus::frame) {
+  while (next(*camera, frame) == DepthCamera::Status::frame) {
     ++frames;
     EXPECT_EQ(frame.depth.at(7), static_cast<float>(1e-3 * (1000 + frames)));
     EXPECT_EQ(frame.depth[0], 0.5F);
@@ -111,24 +111,24 @@ TEST(OpenNi2, PlaysARecordingToItsEnd) {
   EXPECT_NEAR(stamp, 7 / 30.0, 1e-3);
   EXPECT_NEAR(frame.camera.pinhole.fx, 32 / std::tan(0.5), 1e-6);
   EXPECT_NEAR(frame.camera.pinhole.cy, 24, 1e-9);
-  EXPECT_EQ(next(*camera, frame), CameraStatus::ended);
+  EXPECT_EQ(next(*camera, frame), DepthCamera::Status::ended);
 }
 
 TEST(OpenNi2, LeavesADamagedFrameOutAndPlaysOn) {
   const Folder folder;
   folder.write("a.oni", OniFile(64, 48, 6, {.cut = 3}).bytes());
   const auto camera = open_camera((folder.path() / "a.oni").string());
-  std::vector<CameraStatus> came;
+  std::vector<DepthCamera::Status> came;
   DepthFrame frame;
   do {
     came.push_back(next(*camera, frame));
-    if (came.back() == CameraStatus::damaged) {
+    if (came.back() == DepthCamera::Status::damaged) {
       EXPECT_THAT(camera->reason(), AllOf(HasSubstr("a.oni"), HasSubstr("damaged")));
     }
-  } while (came.back() != CameraStatus::ended && came.size() < 20);
-  constexpr auto kGood = CameraStatus::frame;
-  EXPECT_THAT(came, ElementsAre(kGood, kGood, CameraStatus::damaged, kGood, kGood, kGood,
-                                CameraStatus::ended));
+  } while (came.back() != DepthCamera::Status::ended && came.size() < 20);
+  constexpr auto kGood = DepthCamera::Status::frame;
+  EXPECT_THAT(came, ElementsAre(kGood, kGood, DepthCamera::Status::damaged, kGood, kGood, kGood,
+                                DepthCamera::Status::ended));
 }
 
 // A frame that says all that it needs to.
@@ -189,7 +189,7 @@ TEST(OpenNi2, LoopsARecording) {
   DepthFrame frame;
   double stamp = -1;
   for (int i = 0; i < 10; ++i) {
-    ASSERT_EQ(next(*camera, frame), CameraStatus::frame) << i << camera->reason();
+    ASSERT_EQ(next(*camera, frame), DepthCamera::Status::frame) << i << camera->reason();
     EXPECT_GT(frame.stamp, stamp);
     stamp = frame.stamp;
   }
@@ -200,7 +200,7 @@ TEST(OpenNi2, TurnsMirroredRecordingsRound) {
   folder.write("a.oni", OniFile(64, 48, 2, {.mirrored = true}).bytes());
   const auto camera = open_camera((folder.path() / "a.oni").string());
   DepthFrame frame;
-  ASSERT_EQ(next(*camera, frame), CameraStatus::frame);
+  ASSERT_EQ(next(*camera, frame), DepthCamera::Status::frame);
   EXPECT_EQ(frame.depth[63], 0.5F);
   EXPECT_EQ(frame.depth[0], 1.001F);
 }

@@ -36,7 +36,7 @@ class SequenceData : public testing::TestWithParam<Expected> {
 std::vector<DepthFrame> play(const Sequence& sequence) {
   const auto camera = open_sequence(sequence);
   std::vector<DepthFrame> frames(1);
-  while (camera->read(frames.back(), 0) == CameraStatus::frame) frames.emplace_back();
+  while (camera->read(frames.back(), 0) == DepthCamera::Status::frame) frames.emplace_back();
   EXPECT_EQ(camera->reason(), "");
   frames.pop_back();
   return frames;

@@ -1,9 +1,8 @@
-#include "sensor/sequence_description.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "palpate/base/error.hpp"
+#include "sensor/sequence.hpp"
 
 namespace palpate::sensor {
 namespace {

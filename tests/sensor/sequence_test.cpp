@@ -81,9 +81,9 @@ TEST(Sequence, KnowsTheTumLayout) {
   EXPECT_NEAR(sequence.frames[1].T_world_sensor->translation().x(), 0.5, 1e-9);
   const auto camera = open_sequence(sequence);
   DepthFrame frame;
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::unposed);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::unposed);
   EXPECT_THAT(camera->reason(), AllOf(HasSubstr("a.pgm"), HasSubstr("no pose")));
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::frame);
   EXPECT_EQ(frame.depth[0], 1.0F);
 }
 
@@ -132,13 +132,13 @@ TEST(SequenceCamera, PlaysAsFastAsItIsAsked) {
   EXPECT_EQ(camera->info().rate, 10);
   DepthFrame frame;
   for (int i = 0; i < 3; ++i) {
-    ASSERT_EQ(camera->read(frame, 0), CameraStatus::frame);
+    ASSERT_EQ(camera->read(frame, 0), DepthCamera::Status::frame);
     EXPECT_DOUBLE_EQ(frame.stamp, 0.1 * i);
     EXPECT_EQ(frame.depth[5], static_cast<float>(i + 1));
     EXPECT_EQ(frame.camera.width, 4);
   }
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::ended);
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::ended);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::ended);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::ended);
 }
 
 TEST(SequenceCamera, KeepsTheTimeOfItsClock) {
@@ -149,18 +149,18 @@ TEST(SequenceCamera, KeepsTheTimeOfItsClock) {
   const auto camera = open_sequence(read_sequence(folder.path()), {.clock = &clock});
   EXPECT_TRUE(camera->info().paces);
   DepthFrame frame;
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::frame);
   EXPECT_DOUBLE_EQ(frame.stamp, 100);
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::waiting);
-  EXPECT_EQ(camera->read(frame, 1e-3), CameraStatus::waiting);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::waiting);
+  EXPECT_EQ(camera->read(frame, 1e-3), DepthCamera::Status::waiting);
   clock.set(100.099);
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::waiting);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::waiting);
   clock.set(100.25);
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame) << "late, and not left out";
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::frame) << "late, and not left out";
   EXPECT_DOUBLE_EQ(frame.stamp, 100.1);
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::frame);
   EXPECT_DOUBLE_EQ(frame.stamp, 100.2);
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::ended);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::ended);
 }
 
 // Who plans by the first frame for a while leaves no backlog behind.
@@ -170,20 +170,20 @@ TEST(SequenceCamera, BeginsAgainWhenItIsTold) {
   ManualClock clock;
   const auto camera = open_sequence(read_sequence(folder.path()), {.clock = &clock});
   DepthFrame frame;
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::frame);
   clock.set(50);
   camera->begin(51);
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::waiting) << "not yet";
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::waiting) << "not yet";
   for (int i = 0; i < 3; ++i) {
     clock.set(51 + 0.1 * i);
-    ASSERT_EQ(camera->read(frame, 0), CameraStatus::frame);
+    ASSERT_EQ(camera->read(frame, 0), DepthCamera::Status::frame);
     EXPECT_EQ(frame.stamp, clock.now());
     EXPECT_EQ(frame.depth[0], static_cast<float>(i + 1));
-    EXPECT_NE(camera->read(frame, 0), CameraStatus::frame);
+    EXPECT_NE(camera->read(frame, 0), DepthCamera::Status::frame);
   }
   camera->begin(60);
   clock.set(60);
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame) << "also after its end";
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::frame) << "also after its end";
   EXPECT_EQ(frame.depth[0], 1.0F);
 }
 
@@ -194,7 +194,7 @@ TEST(SequenceCamera, LoopsWithStampsThatGoOn) {
   camera->begin(7);
   DepthFrame frame;
   for (int i = 0; i < 7; ++i) {
-    ASSERT_EQ(camera->read(frame, 0), CameraStatus::frame);
+    ASSERT_EQ(camera->read(frame, 0), DepthCamera::Status::frame);
     EXPECT_NEAR(frame.stamp, 7 + 0.1 * i, 1e-12);
     EXPECT_EQ(frame.depth[0], static_cast<float>(i % 2 + 1));
   }
@@ -216,18 +216,18 @@ TEST(SequenceCamera, GoesOnAfterEveryKindOfDamage) {
   const auto camera = open_sequence(sequence);
   std::filesystem::remove(sequence.frames[4].image);
   DepthFrame frame;
-  ASSERT_EQ(camera->read(frame, 0), CameraStatus::frame);
+  ASSERT_EQ(camera->read(frame, 0), DepthCamera::Status::frame);
   for (const char* why :
        {"pixels", "002.pgm", "8 x 6 pixels, but the camera has 4 x 3", "no such file"}) {
-    EXPECT_EQ(camera->read(frame, 0), CameraStatus::damaged);
+    EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::damaged);
     EXPECT_THAT(camera->reason(), HasSubstr(why));
   }
-  EXPECT_EQ(camera->read(frame, 0), CameraStatus::frame);
+  EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::frame);
   EXPECT_EQ(camera->reason(), "");
   EXPECT_NEAR(frame.stamp, 0.5, 1e-12);
   folder.write("depth/000.pgm", swapped);
   const auto again = open_sequence(read_sequence(folder.path()));
-  EXPECT_EQ(again->read(frame, 0), CameraStatus::damaged);
+  EXPECT_EQ(again->read(frame, 0), DepthCamera::Status::damaged);
   EXPECT_THAT(again->reason(), HasSubstr("byte_order"));
 }
 

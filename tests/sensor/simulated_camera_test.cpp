@@ -40,7 +40,7 @@ std::vector<DepthFrame> frames_of(SimulatedCamera& camera, int count) {
   std::vector<DepthFrame> frames;
   for (int i = 0; i < count; ++i) {
     frames.emplace_back();
-    EXPECT_EQ(camera.read(frames.back(), 0), CameraStatus::frame);
+    EXPECT_EQ(camera.read(frames.back(), 0), DepthCamera::Status::frame);
   }
   return frames;
 }
@@ -60,7 +60,7 @@ TEST(SimulatedCamera, BeginsAgainWithoutAClockAlone) {
   SimulatedCamera live = table_camera(options);
   live.begin(5);
   DepthFrame frame;
-  ASSERT_EQ(live.read(frame, 1), CameraStatus::frame);
+  ASSERT_EQ(live.read(frame, 1), DepthCamera::Status::frame);
   EXPECT_GE(frame.stamp, 100) << "it sees what happens now";
 }
 
@@ -88,7 +88,7 @@ TEST(SimulatedCamera, ShowsTheSceneAtTheStamp) {
   SimulatedCamera camera = table_camera(options);
   DepthFrame frame;
   for (int k = 0; k < 4; ++k) {
-    ASSERT_EQ(camera.read(frame, 0), CameraStatus::frame);
+    ASSERT_EQ(camera.read(frame, 0), DepthCamera::Status::frame);
     EXPECT_EQ(frame.depth, camera.exact_depth());
     for (std::size_t i = 0; i < frame.depth.size(); i += 37) {
       const auto u = static_cast<double>(i % 64);
@@ -151,7 +151,7 @@ TEST(SimulatedCamera, EndsLoopsAndMayKeepItsPoseToItself) {
   EXPECT_LT(frames[0].stamp, frames[3].stamp);
   EXPECT_FALSE(frames[0].T_world_sensor);
   DepthFrame frame;
-  EXPECT_EQ(camera.read(frame, 0), CameraStatus::ended);
+  EXPECT_EQ(camera.read(frame, 0), DepthCamera::Status::ended);
 }
 
 TEST(SimulatedCamera, RepeatsFramesAndJumpsAsTold) {
@@ -167,7 +167,7 @@ TEST(SimulatedCamera, RepeatsFramesAndJumpsAsTold) {
   double last = -1;
   int frames = 0;
   int repeated = 0;
-  while (camera.read(frame, 0) == CameraStatus::frame) {
+  while (camera.read(frame, 0) == DepthCamera::Status::frame) {
     repeated += frame.depth == before ? 1 : 0;
     before = frame.depth;
     EXPECT_GT(frame.stamp, last);
@@ -186,14 +186,14 @@ TEST(SimulatedCamera, WaitsForItsClockAndLosesWhatNobodyAskedFor) {
   SimulatedCamera camera = table_camera(options);
   EXPECT_TRUE(camera.info().paces);
   DepthFrame frame;
-  EXPECT_EQ(camera.read(frame, 1), CameraStatus::frame);
+  EXPECT_EQ(camera.read(frame, 1), DepthCamera::Status::frame);
   EXPECT_NEAR(frame.stamp, 100, 1e-3);
-  EXPECT_EQ(camera.read(frame, 0.01), CameraStatus::waiting);
-  EXPECT_EQ(camera.read(frame, 0.1), CameraStatus::frame);
+  EXPECT_EQ(camera.read(frame, 0.01), DepthCamera::Status::waiting);
+  EXPECT_EQ(camera.read(frame, 0.1), DepthCamera::Status::frame);
   EXPECT_NEAR(frame.stamp, 100 + 1 / 30.0, 1e-3);
   EXPECT_GE(clock.now(), frame.stamp);
   clock.set(110.01);
-  EXPECT_EQ(camera.read(frame, 0.1), CameraStatus::frame);
+  EXPECT_EQ(camera.read(frame, 0.1), DepthCamera::Status::frame);
   EXPECT_NEAR(frame.stamp, 110, 1e-3);
 }
 
@@ -202,7 +202,7 @@ TEST(SimulatedCamera, TellsAPoseThatIsOffByTheCalibrationError) {
   options.T_camera_told = calibration_error(0.003, 0.5 * 3.14159265358979 / 180, 7);
   SimulatedCamera camera = table_camera(options);
   DepthFrame frame;
-  ASSERT_EQ(camera.read(frame, 0), CameraStatus::frame);
+  ASSERT_EQ(camera.read(frame, 0), DepthCamera::Status::frame);
   const Eigen::Isometry3d error = camera.true_pose(0).inverse() * *frame.T_world_sensor;
   EXPECT_NEAR(error.translation().norm(), 0.003, 1e-12);
   EXPECT_NEAR(Eigen::AngleAxisd(error.rotation()).angle(), 0.5 * 3.14159265358979 / 180, 1e-9);
@@ -227,11 +227,11 @@ TEST(SimulatedSetup, OpensEveryNamedSceneAndReadsItsKeys) {
     const auto camera = open_simulated(named.name + ",noise=b,seed=3,frames=1", nullptr);
     EXPECT_EQ(camera->info().name, "simulated:" + named.name);
     DepthFrame frame;
-    ASSERT_EQ(camera->read(frame, 0), CameraStatus::frame);
+    ASSERT_EQ(camera->read(frame, 0), DepthCamera::Status::frame);
     const auto seen = std::count_if(frame.depth.begin(), frame.depth.end(),
                                     [](float z) { return z > 0.3f && z < 3; });
     EXPECT_GT(seen, 200000) << named.name;
-    EXPECT_EQ(camera->read(frame, 0), CameraStatus::ended);
+    EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::ended);
   }
   EXPECT_EQ(open_simulated("", nullptr)->info().name, "simulated:table");
   EXPECT_EQ(open_simulated("still,rate=60", nullptr)->info().rate, 60);
@@ -245,9 +245,9 @@ TEST(SimulatedSetup, ShowsOneWorldToCamerasOfOneClock) {
   DepthFrame first;
   DepthFrame second;
   clock.set(1013.9);
-  ASSERT_EQ(one->read(first, 1), CameraStatus::frame);
+  ASSERT_EQ(one->read(first, 1), DepthCamera::Status::frame);
   clock.set(1013.9);
-  ASSERT_EQ(two->read(second, 1), CameraStatus::frame);
+  ASSERT_EQ(two->read(second, 1), DepthCamera::Status::frame);
   EXPECT_EQ(first.stamp, second.stamp);
   EXPECT_EQ(first.depth, second.depth);
   EXPECT_EQ(one->scene().solids.size(), two->scene().solids.size());
@@ -259,8 +259,8 @@ TEST(SimulatedSetup, TurnsShrinksAndMisleads) {
       open_simulated("still,noise=none,view=40,width=160,seed=5,error=0.003", nullptr);
   DepthFrame a;
   DepthFrame b;
-  ASSERT_EQ(plain->read(a, 0), CameraStatus::frame);
-  ASSERT_EQ(other->read(b, 0), CameraStatus::frame);
+  ASSERT_EQ(plain->read(a, 0), DepthCamera::Status::frame);
+  ASSERT_EQ(other->read(b, 0), DepthCamera::Status::frame);
   EXPECT_EQ(b.camera.width, 160);
   EXPECT_EQ(b.camera.height, 120);
   EXPECT_NEAR(b.camera.pinhole.cx, 79.5, 1e-12);

@@ -15,7 +15,7 @@ namespace {
 
 std::vector<float> frame_of(const std::string& specification) {
   DepthFrame frame;
-  EXPECT_EQ(open_simulated(specification, nullptr)->read(frame, 0), CameraStatus::frame);
+  EXPECT_EQ(open_simulated(specification, nullptr)->read(frame, 0), DepthCamera::Status::frame);
   return frame.depth;
 }
 

@@ -1,5 +1,3 @@
-#include "palpate/sensor/simulated_stream.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +25,7 @@ class SimulatedStreamTest : public testing::Test {
  protected:
   [[nodiscard]] SimulatedStream stream(const SimulatedStreamOptions& options = kAtOnce) {
     return {camera_, "table",
-            [this](const DepthFrame& frame, const StartTime& start) {
+            [this](const DepthFrame& frame, const Source::StartTime& start) {
               taken_.push_back({frame.stamp, start(), now_});
             },
             options, [this] { ended_at_.push_back(now_); }};
@@ -38,7 +36,7 @@ class SimulatedStreamTest : public testing::Test {
     for (const double stamp : stamps) give(frame_at(stamp, ++depth_));
   }
   void give(DepthFrame frame) { script_->give({.frame = std::move(frame)}); }
-  void give(CameraStatus status, const std::string& reason = "") {
+  void give(DepthCamera::Status status, const std::string& reason = "") {
     script_->give({.status = status, .reason = reason});
   }
 
@@ -60,7 +58,7 @@ class SimulatedStreamTest : public testing::Test {
 
 TEST_F(SimulatedStreamTest, FramesAreFeltAtTheirStampPlusLatency) {
   give({0, 0.1, 0.2});
-  give(CameraStatus::ended);
+  give(DepthCamera::Status::ended);
   SimulatedStream stream = this->stream({.latency = 0.01, .patience = 0});
   EXPECT_EQ(camera_.begun(), 0) << "all cameras of a run begin at its t = 0";
   stream.advance(0.0099);
@@ -94,7 +92,7 @@ TEST_F(SimulatedStreamTest, AreReadyByTheLeadBefore) {
 
 TEST_F(SimulatedStreamTest, TellsOfTheEndAfterTheLastFrame) {
   give({0, 0.1});
-  give(CameraStatus::ended);
+  give(DepthCamera::Status::ended);
   SimulatedStream stream = this->stream();
   play(stream, 0.05);
   EXPECT_TRUE(ended_at_.empty());
@@ -118,10 +116,10 @@ TEST_F(SimulatedStreamTest, ObjectsToWhatAStreamObjectsTo) {
     script.give({.frame = frame_at(0.4, 4, 8, 6)});
     script.give({.frame = frame_at(0, 5)});
     script.give({.frame = frame_at(std::nan(""), 6)});
-    script.give({.status = CameraStatus::unposed, .reason = "nowhere"});
-    script.give({.status = CameraStatus::damaged, .reason = "torn"});
+    script.give({.status = DepthCamera::Status::unposed, .reason = "nowhere"});
+    script.give({.status = DepthCamera::Status::damaged, .reason = "torn"});
     script.give({.frame = frame_at(0.9, 9)});
-    script.give({.status = CameraStatus::ended});
+    script.give({.status = DepthCamera::Status::ended});
   };
   answer(*script_);
   SimulatedStream stream = this->stream({.latency = 0, .stall = 1e9, .patience = 0});
@@ -131,7 +129,7 @@ TEST_F(SimulatedStreamTest, ObjectsToWhatAStreamObjectsTo) {
   FakeCamera camera(script, false);
   const SteadyClock clock;
   const Stream live(camera, "table",
-                    [](const DepthFrame&, const StartTime& start) { (void)start(); }, clock,
+                    [](const DepthFrame&, const Source::StartTime& start) { (void)start(); }, clock,
                     {.stall = 1e9});
   ASSERT_TRUE(eventually([&] { return live.state().phase == StreamState::Phase::ended; }));
   const StreamState state = stream.state();
@@ -168,7 +166,7 @@ TEST_F(SimulatedStreamTest, NoticesAFrozenPictureAndThatItMovesAgain) {
   FakeCamera still(script_, false, true);
   for (int i = 0; i <= 9; ++i) give(frame_at(0.1 * i, 2));
   SimulatedStream allowed(
-      still, "table", [](const DepthFrame&, const StartTime&) {}, kAtOnce);
+      still, "table", [](const DepthFrame&, const Source::StartTime&) {}, kAtOnce);
   allowed.advance(2);
   EXPECT_EQ(allowed.state().drops.total(), 0u);
 }
@@ -186,7 +184,7 @@ TEST_F(SimulatedStreamTest, TakesAnotherSizeThatLasts) {
 // However many: a recording goes on behind them.
 TEST_F(SimulatedStreamTest, DamagedFramesTakeTheirTimeAndTheNextIsAsGoodAsEver) {
   constexpr int kDamaged = 300;
-  for (int i = 0; i < kDamaged; ++i) give(CameraStatus::damaged, "it has no pose");
+  for (int i = 0; i < kDamaged; ++i) give(DepthCamera::Status::damaged, "it has no pose");
   give({kDamaged / 30.0});
   SimulatedStream stream = this->stream();
   play(stream, 5);
@@ -200,7 +198,7 @@ TEST_F(SimulatedStreamTest, DamagedFramesTakeTheirTimeAndTheNextIsAsGoodAsEver) 
 
 TEST_F(SimulatedStreamTest, ACameraThatFailsIsNamedAndNeverGivenUp) {
   give({0});
-  for (int i = 0; i < 150; ++i) give(CameraStatus::failed, "the cable is loose");
+  for (int i = 0; i < 150; ++i) give(DepthCamera::Status::failed, "the cable is loose");
   SimulatedStream stream = this->stream();
   play(stream, 2);
   StreamState state = stream.state();
@@ -243,9 +241,10 @@ TEST_F(SimulatedStreamTest, StampsThatStandStillDoNotHoldUpTime) {
 TEST_F(SimulatedStreamTest, CountsWhatPreparationRefuses) {
   give({0, 0.1});
   SimulatedStream stream(
-      camera_, "table", [](const DepthFrame&, const StartTime&) { throw Error("all too much"); },
-      kAtOnce, [] { throw Error("no end"); });
-  give(CameraStatus::ended);
+      camera_, "table",
+      [](const DepthFrame&, const Source::StartTime&) { throw Error("all too much"); }, kAtOnce,
+      [] { throw Error("no end"); });
+  give(DepthCamera::Status::ended);
   stream.advance(1);
   EXPECT_EQ(stream.state().drops.refused, 3u);
   EXPECT_EQ(stream.state().touchable, 0u);
@@ -269,7 +268,7 @@ TEST_F(SimulatedStreamTest, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)stream({.stall = 0}), Error);
   EXPECT_THROW((void)stream({.patience = std::nan("")}), Error);
   FakeCamera paces(script_, true);
-  const auto sink = [](const DepthFrame&, const StartTime&) {};
+  const auto sink = [](const DepthFrame&, const Source::StartTime&) {};
   EXPECT_THROW(SimulatedStream(paces, "table", sink), Error);
 }
 

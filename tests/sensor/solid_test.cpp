@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/random.hpp"
+#include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
 #include "sim/simulated_depth.hpp"
 #include "sim/simulated_scene.hpp"

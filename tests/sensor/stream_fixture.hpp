@@ -19,8 +19,8 @@ namespace palpate::sensor {
 /// What is pushed, with a gate before it.
 class Touchable {
  public:
-  [[nodiscard]] FrameSink sink() {
-    return [this](const DepthFrame& frame, const StartTime& start) { push(frame, start); };
+  [[nodiscard]] Stream::Sink sink() {
+    return [this](const DepthFrame& frame, const Source::StartTime& start) { push(frame, start); };
   }
   void close() { open(false); }
   void open(bool is_open = true) {
@@ -46,7 +46,7 @@ class Touchable {
   }
 
  private:
-  void push(const DepthFrame& frame, const StartTime& start) {
+  void push(const DepthFrame& frame, const Source::StartTime& start) {
     std::unique_lock lock(mutex_);
     ++entered_;
     changed_.wait(lock, [this] { return open_; });

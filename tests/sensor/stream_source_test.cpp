@@ -5,8 +5,7 @@
 
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/open_camera.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 #include "palpate/sensor/stream.hpp"
 #include "sensor/fake_camera.hpp"
 #include "sensor/folder.hpp"

@@ -76,7 +76,7 @@ class StreamSurfaceTest : public testing::Test {
   }
 
   // At time `t` the camera answers something else than a frame, and the stream notes it.
-  void answer(double t, CameraStatus status) {
+  void answer(double t, DepthCamera::Status status) {
     run_.at(t, [=, this] {
       clock_.set(t);
       script_->give({.status = status, .reason = "unplugged"});
@@ -189,7 +189,7 @@ TEST_F(StreamSurfaceTest, FadesWhenThePictureFreezes) {
 
 TEST_F(StreamSurfaceTest, FadesWhenTheCameraIsUnpluggedAndComesBackWithIt) {
   deliver_planes(0, kGood);
-  for (int i = 0; i < 20; ++i) answer(kTrouble + 0.01 + 0.05 * i, CameraStatus::failed);
+  for (int i = 0; i < 20; ++i) answer(kTrouble + 0.01 + 0.05 * i, DepthCamera::Status::failed);
   deliver_planes(67, 99);
   expect_fading_after(kTrouble);
   EXPECT_NE(stream_.state().phase, StreamState::Phase::running);
@@ -250,7 +250,7 @@ TEST_F(StreamSurfaceTest, GoesOverToASmallerSizeWithoutAStep) {
 
 TEST_F(StreamSurfaceTest, KeepsWhatARecordingShowedLast) {
   deliver_planes(0, kGood);
-  answer(kTrouble + kFrame, CameraStatus::ended);
+  answer(kTrouble + kFrame, DepthCamera::Status::ended);
   press(kGone);
   EXPECT_NEAR(least_, kForce, 0.01 * kForce);
   EXPECT_LT(step_, kNoStep);

@@ -54,7 +54,7 @@ TEST_F(StreamTest, LosesNothingOfACameraThatDoesNotPace) {
     stamps.push_back(i);
     script_->give({.frame = frame_at(i, static_cast<float>(i))});
   }
-  script_->give({.status = CameraStatus::ended});
+  script_->give({.status = DepthCamera::Status::ended});
   EXPECT_TRUE(eventually([&] { return stream.state().phase == StreamState::Phase::ended; }));
   EXPECT_EQ(touchable_.stamps(), stamps);
   EXPECT_EQ(stream.state().drops.total(), 0u);
@@ -94,7 +94,7 @@ TEST_F(StreamTest, EndsWhenTheLastFrameIsPrepared) {
   touchable_.close();
   const Stream stream = this->stream();
   give(stream, 1);
-  script_->give({.status = CameraStatus::ended});
+  script_->give({.status = DepthCamera::Status::ended});
   ASSERT_TRUE(eventually([&] { return script_->pending() == 0; }));
   EXPECT_NE(stream.state().phase, StreamState::Phase::ended);
   touchable_.open();
@@ -109,7 +109,7 @@ TEST_F(StreamTest, TellsOfTheEndAfterTheLastFrame) {
   const Stream stream(camera(), "table", touchable_.sink(), clock_, {},
                       [&] { pushed_at_end = touchable_.stamps().size(); });
   give(stream, 0.1);
-  script_->give({.status = CameraStatus::ended});
+  script_->give({.status = DepthCamera::Status::ended});
   ASSERT_TRUE(eventually([&] { return stream.state().phase == StreamState::Phase::ended; }));
   EXPECT_EQ(pushed_at_end, 1u);
 }
@@ -118,13 +118,13 @@ TEST_F(StreamTest, StopsInEveryState) {
   { const Stream starting = this->stream(); }
   {
     const Stream failing = this->stream({.first_retry = 1e6, .longest_retry = 1e6});
-    script_->give({.status = CameraStatus::failed, .reason = "a"});
-    script_->give({.status = CameraStatus::failed, .reason = "b"});
+    script_->give({.status = DepthCamera::Status::failed, .reason = "a"});
+    script_->give({.status = DepthCamera::Status::failed, .reason = "b"});
     ASSERT_TRUE(eventually([&] { return failing.state().failures == 2; }));
   }
   {
     const Stream ended = this->stream();
-    script_->give({.status = CameraStatus::ended});
+    script_->give({.status = DepthCamera::Status::ended});
     ASSERT_TRUE(eventually([&] { return ended.state().phase == StreamState::Phase::ended; }));
   }
   {
@@ -158,7 +158,7 @@ TEST_F(StreamTest, ManyLookOnWhileItRuns) {
     });
   }
   for (int i = 1; i <= 200; ++i) script_->give({.frame = frame_at(i, static_cast<float>(i))});
-  script_->give({.status = CameraStatus::ended});
+  script_->give({.status = DepthCamera::Status::ended});
   for (std::thread& observer : observers) observer.join();
   EXPECT_EQ(stream.state().touchable, 200u);
 }

@@ -87,7 +87,7 @@ TEST_F(StreamTest, SurvivesPreparationThatThrows) {
 TEST_F(StreamTest, AsksACameraThatFailsEverMoreRarely) {
   const Stream stream = this->stream({.stall = kNever, .first_retry = 1, .longest_retry = 3});
   const auto fail = [&](std::uint64_t failures) {
-    script_->give({.status = CameraStatus::failed, .reason = "unplugged"});
+    script_->give({.status = DepthCamera::Status::failed, .reason = "unplugged"});
     return eventually([&] { return stream.state().failures == failures; });
   };
   const auto retried = [&](std::uint64_t retries) {
@@ -117,7 +117,7 @@ TEST_F(StreamTest, AsksADeviceThatSendsDamagedFramesAgainAtOnce) {
   give(stream, 0.1);
   for (std::uint64_t i = 1; i <= 20; ++i) {
     clock_.set(0.1 + 0.01 * static_cast<double>(i));
-    script_->give({.status = CameraStatus::damaged, .reason = "cut off"});
+    script_->give({.status = DepthCamera::Status::damaged, .reason = "cut off"});
     ASSERT_TRUE(eventually([&] { return stream.state().drops.garbage == i; })) << i;
   }
   EXPECT_EQ(stream.state().phase, StreamState::Phase::running);
@@ -135,9 +135,9 @@ TEST_F(StreamTest, AsksADeviceThatSendsDamagedFramesAgainAtOnce) {
 TEST_F(StreamTest, BeginsAnewWithItsWaitsAfterADamagedFrame) {
   const Stream stream = this->stream({.stall = kNever, .first_retry = 1e9, .longest_retry = 1e9});
   for (std::uint64_t i = 1; i <= 3; ++i) {
-    script_->give({.status = CameraStatus::failed, .reason = "unplugged"});
+    script_->give({.status = DepthCamera::Status::failed, .reason = "unplugged"});
     ASSERT_TRUE(eventually([&] { return stream.state().failures == i; }));
-    script_->give({.status = CameraStatus::damaged, .reason = "cut off"});
+    script_->give({.status = DepthCamera::Status::damaged, .reason = "cut off"});
     ASSERT_TRUE(eventually([&] { return stream.state().drops.garbage == i; }));
   }
   EXPECT_EQ(stream.state().phase, StreamState::Phase::starting);
@@ -156,7 +156,7 @@ TEST_F(StreamTest, TakesACameraThatWaitsAfterItFailedForAStalledOne) {
   const Stream stream = this->stream({.stall = 0.5, .first_retry = 1e-3, .longest_retry = 1e-3});
   give(stream, 0.1);
   for (std::uint64_t i = 1; i <= 2; ++i) {
-    script_->give({.status = CameraStatus::failed, .reason = "unplugged"});
+    script_->give({.status = DepthCamera::Status::failed, .reason = "unplugged"});
     ASSERT_TRUE(eventually([&] { return stream.state().failures == i; }));
   }
   EXPECT_EQ(stream.state().phase, StreamState::Phase::failed);
@@ -172,10 +172,10 @@ class HangingCamera final : public DepthCamera {
  public:
   explicit HangingCamera(std::shared_future<void> let_go) : let_go_(std::move(let_go)) {}
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }
-  [[nodiscard]] CameraStatus read(DepthFrame& frame, double /*timeout*/) override {
+  [[nodiscard]] DepthCamera::Status read(DepthFrame& frame, double /*timeout*/) override {
     if (read_++ > 0) let_go_.wait();
     frame = frame_at(0.1);
-    return read_ == 1 ? CameraStatus::frame : CameraStatus::ended;
+    return read_ == 1 ? DepthCamera::Status::frame : DepthCamera::Status::ended;
   }
   [[nodiscard]] std::string reason() const override { return {}; }
 

@@ -16,18 +16,18 @@ class AllowedStep {
 
   /// From the force of the step before to this one's, N. Every step is told, in their order;
   /// `notes`: the guard's own of this step.
-  [[nodiscard]] double operator()(const GuardInput& input, GuardNote notes);
+  [[nodiscard]] double operator()(const Guard::Input& input, GuardNote notes);
 
   /// The next step is the first one again, as after a fault.
   void forget() { begun_ = false; }
 
  private:
-  void begin(const GuardInput& input);
-  [[nodiscard]] double stiffness(const GuardInput& input) const;
-  [[nodiscard]] double brake(const GuardInput& input) const;
+  void begin(const Guard::Input& input);
+  [[nodiscard]] double stiffness(const Guard::Input& input) const;
+  [[nodiscard]] double brake(const Guard::Input& input) const;
 
   GuardOptions options_;
-  GuardInput before_;
+  Guard::Input before_;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  // against the surface, smoothed, m/s
   double spring_ = 0;                                   // that made a force last, N/m
   double brake_ = 0;                                    // of the step before at most, N

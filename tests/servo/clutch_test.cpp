@@ -1,9 +1,9 @@
-#include "servo/clutch.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <random>
+
+#include "servo/servo_inside.hpp"
 
 namespace palpate {
 namespace {

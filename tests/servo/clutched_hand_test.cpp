@@ -78,7 +78,7 @@ TEST_F(ClutchedHand, ForceGoesSoftlyAndComesBackOnlyWhenTheHandPushes) {
   EXPECT_LT(go(30e-3, 30e-3, 1000).force.norm(), 1e-3) << "a resting hand";
   EXPECT_NEAR(go(30e-3, 26e-3, 100).force.norm(), 2, 0.1) << "felt at once";
   EXPECT_EQ(go(26e-3, 40e-3, 200).force, Vector3d::Zero());
-  EXPECT_EQ(servo_.state().guard.fault, GuardFault::none);
+  EXPECT_EQ(servo_.state().guard.fault, Guard::Fault::none);
 }
 
 TEST_F(ClutchedHand, ToolThatRestsIsTakenAlongByASurface) {
@@ -117,11 +117,11 @@ TEST_F(ClutchedHand, WhatIsNoPlaceIsAFaultUntilReset) {
   for (const double bad : {kNan, 1e300}) {
     go(5e-3, 8e-3, 10);
     go(8e-3, 9e-3, 10, true);
-    EXPECT_NE(tick(bad, true).guard.fault, GuardFault::none);
+    EXPECT_NE(tick(bad, true).guard.fault, Guard::Fault::none);
     tick(7e-3, true);
     EXPECT_EQ(tick(7e-3).force, Vector3d::Zero());
     servo_.reset();
-    EXPECT_EQ(tick(5e-3).guard.fault, GuardFault::none);
+    EXPECT_EQ(tick(5e-3).guard.fault, Guard::Fault::none);
     EXPECT_EQ(servo_.state().hip.z(), 5e-3);
   }
 }
@@ -139,7 +139,7 @@ TEST(Servo, RefusesAClutchThatNoDeviceHas) {
 // Presses as hard as it may, and is torn out as soon as the clutch is held.
 class TornOut final : public TargetSource {
  public:
-  [[nodiscard]] HandTarget target(double time, const Vector3d&) noexcept override {
+  [[nodiscard]] TargetSource::Target target(double time, const Vector3d&) noexcept override {
     if (time < 1) return {kOverSheet, 0};
     if (time < 2) return {{kOverSheet.x(), kOverSheet.y(), -25e-3}, 0};
     return {{kOverSheet.x(), kOverSheet.y(), -25e-3 + 4 * (time - 2)}, kClutchDown};
@@ -182,7 +182,7 @@ class Restless final : public TargetSource {
  public:
   explicit Restless(unsigned seed) : random_(seed) {}
 
-  [[nodiscard]] HandTarget target(double time, const Vector3d&) noexcept override {
+  [[nodiscard]] TargetSource::Target target(double time, const Vector3d&) noexcept override {
     if (time >= next_) {
       next_ = time + std::uniform_real_distribution<double>(0.02, 0.2)(random_);
       goal_ = {std::uniform_real_distribution<double>(-0.02, 0.02)(random_), 0.3e-3,

@@ -10,7 +10,7 @@ namespace {
 constexpr double kPeriod = 1e-3;  // s
 
 TEST(Deadlines, KeepsTheGridWhateverTheLateness) {
-  Deadlines deadlines(5, kPeriod);
+  ServoThread::Deadlines deadlines(5, kPeriod);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> late(0, 0.9e-3);
   for (int i = 0; i < 10'000; ++i) {
@@ -22,7 +22,7 @@ TEST(Deadlines, KeepsTheGridWhateverTheLateness) {
 }
 
 TEST(Deadlines, LeavesOutWhatAGapMadeImpossible) {
-  Deadlines deadlines(0, kPeriod);
+  ServoThread::Deadlines deadlines(0, kPeriod);
   EXPECT_EQ(deadlines.begin(0), 0);
   EXPECT_NEAR(deadlines.begin(0.1004), 0.0994, 1e-12);  // due at 1 ms
   EXPECT_NEAR(deadlines.next(), 0.101, 1e-12) << "the next on the grid: no burst";
@@ -30,7 +30,7 @@ TEST(Deadlines, LeavesOutWhatAGapMadeImpossible) {
 }
 
 TEST(Deadlines, BeginsEarlyWithoutLateness) {
-  Deadlines deadlines(1, kPeriod);
+  ServoThread::Deadlines deadlines(1, kPeriod);
   EXPECT_EQ(deadlines.begin(0.9995), 0);
   EXPECT_NEAR(deadlines.next(), 1.001, 1e-12);
 }
@@ -39,7 +39,7 @@ TEST(Deadlines, NeverIsDueInThePast) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> late(0, 5e-3);
   for (const double period : {1e-4, 1e-3, 1.0 / 3000, 2e-3}) {
-    Deadlines deadlines(1e5, period);
+    ServoThread::Deadlines deadlines(1e5, period);
     double now = 1e5;
     double due = 0;
     for (int i = 0; i < 5000; ++i) {
@@ -54,7 +54,7 @@ TEST(Deadlines, NeverIsDueInThePast) {
 }
 
 TEST(Deadlines, FollowsWhatElsePacesTheSteps) {
-  Deadlines deadlines(0, kPeriod);
+  ServoThread::Deadlines deadlines(0, kPeriod);
   double now = 0;
   for (int i = 0; i < 1000; ++i) {  // a device whose milliseconds are 2 % long
     deadlines.begin(now);

@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 using test::plain;
 using test::pushed;
 
-GuardInput touching(const Vector3d& force, const Vector3d& velocity) {
-  GuardInput input = pushed(force);
+Guard::Input touching(const Vector3d& force, const Vector3d& velocity) {
+  Guard::Input input = pushed(force);
   input.normal = Vector3d::UnitZ();
   input.velocity = velocity;
   return input;
@@ -30,11 +30,11 @@ TEST(Guard, DampsAlongTheNormalOfWhatIsTouched) {
   for (int i = 0; i < 100; ++i) force = guard.pass(touching({0.2, 0, 0.1}, -velocity));
   EXPECT_NEAR(force.z(), 0, 1e-9) << "it attracts";
   EXPECT_NEAR(force.x(), 0.2, 1e-9);
-  GuardInput carried = touching({0, 0, 2}, velocity);
+  Guard::Input carried = touching({0, 0, 2}, velocity);
   carried.drift = velocity;  // the surface moves along with the hand
   for (int i = 0; i < 100; ++i) force = guard.pass(carried);
   EXPECT_NEAR(force.z(), 2, 1e-9);
-  GuardInput free = touching({0, 0, 0}, velocity);
+  Guard::Input free = touching({0, 0, 0}, velocity);
   free.normal.setZero();
   for (int i = 0; i < 100; ++i) force = guard.pass(free);
   EXPECT_EQ(force, Vector3d::Zero()) << "drags in the air";
@@ -46,7 +46,7 @@ double drag(double share) {
   GuardOptions options = plain();
   options.damping = 1;
   Guard guard(options);
-  GuardInput input = touching({0, 0, 2}, {0.2, 0, 0});
+  Guard::Input input = touching({0, 0, 2}, {0.2, 0, 0});
   double drag = 0;
   for (int i = 0; i < 100; ++i) {
     input.hip.x() = 2e-4 * i;
@@ -78,7 +78,7 @@ TEST(Guard, ComesUpSoftlyWhileNothingIsTouched) {
   GuardOptions options = plain();
   options.soft_start = 0.1;
   Guard guard(options);
-  const GuardInput free = pushed({0, 0, 0});
+  const Guard::Input free = pushed({0, 0, 0});
   for (int i = 0; i < 50; ++i) static_cast<void>(guard.pass(free));
   // Half way up; in contact it stays, for the hand has paid nothing.
   Vector3d force;
@@ -98,7 +98,7 @@ TEST(Guard, StartsSoftlyAgainAfterWhatWasNotFelt) {
   Guard guard(options);
   for (int i = 0; i < 200; ++i) static_cast<void>(guard.pass(pushed({0, 0, 0})));
   for (int i = 0; i < 20; ++i) static_cast<void>(guard.pass(touching({0, 0, 2}, {0, 0, 0})));
-  GuardInput unfelt = touching({0, 0, 2}, {0, 0, 0});
+  Guard::Input unfelt = touching({0, 0, 2}, {0, 0, 0});
   unfelt.felt = false;
   EXPECT_NEAR(guard.pass(unfelt).z(), 1.7, 1e-9) << "goes at the rate of the slew";
   for (int i = 0; i < 20; ++i) static_cast<void>(guard.pass(unfelt));
@@ -119,7 +119,7 @@ TEST(Guard, BrakesAHandThatWasGivenEnergy) {
     const Vector3d next = hip + Vector3d(0, 0, 1e-4);
     given += force.dot(next - hip);
     hip = next;
-    GuardInput input = touching({0, 0, 1}, {0, 0, 0.1});
+    Guard::Input input = touching({0, 0, 1}, {0, 0, 0.1});
     input.hip = hip;
     force = guard.pass(input);
     braked = braked || has(guard.state().notes, GuardNote::braked);
@@ -135,7 +135,7 @@ TEST(Guard, WorkOfAMovingSurfaceIsItsOwn) {
   options.passivity.on = true;
   Guard guard(options);
   for (int i = 0; i < 1000; ++i) {  // carries the hand along with 1 N
-    GuardInput input = touching({0, 0, 1}, {0, 0, 0.1});
+    Guard::Input input = touching({0, 0, 1}, {0, 0, 0.1});
     input.hip = Vector3d(0, 0, 1e-4 * i);
     input.drift = input.velocity;
     ASSERT_NEAR(guard.pass(input).z(), std::min(0.3 + 0.35 * i, 1.0), 1e-9) << "step " << i;
@@ -148,7 +148,7 @@ double given_by_fading(bool passivity) {
   GuardOptions options = plain();
   options.passivity = {.on = passivity, .delay = 0};
   Guard guard(options);
-  GuardInput input = touching({0, 0, 0}, {0, 0, -0.1});
+  Guard::Input input = touching({0, 0, 0}, {0, 0, -0.1});
   Vector3d force = Vector3d::Zero();
   double given = 0;
   const auto go = [&](double way) {
@@ -179,7 +179,7 @@ TEST(Guard, NoContactPaysForTheNext) {
   options.passivity = {.on = true, .delay = 0};
   Guard guard(options);
   for (int i = 0; i < 100; ++i) {  // dragged through 1 N: 10 mJ, of which nothing is stored
-    GuardInput input = touching({-1, 0, 0}, {0.1, 0, 0});
+    Guard::Input input = touching({-1, 0, 0}, {0.1, 0, 0});
     input.hip = Vector3d(1e-4 * i, 0, 0);
     input.stiffness = 1e6;
     static_cast<void>(guard.pass(input));
@@ -191,7 +191,7 @@ TEST(Guard, NoContactPaysForTheNext) {
 
 TEST(Guard, SaysWhatIsSofterThanAskedFor) {
   Guard guard(plain());
-  GuardInput input = touching({0, 0, 0.1}, {0, 0, 0});
+  Guard::Input input = touching({0, 0, 0.1}, {0, 0, 0});
   input.softened = true;
   EXPECT_EQ(guard.pass(input), input.force);
   EXPECT_TRUE(has(guard.state().notes, GuardNote::softened));

@@ -33,8 +33,8 @@ Vector3d vector(double scale, bool wild) {
 }
 
 // A step of a hand that moves at up to 1 m/s or rests, in contact or not, at any force up to 50 N.
-GuardInput input(bool wild, const Vector3d& before) {
-  GuardInput made;
+Guard::Input input(bool wild, const Vector3d& before) {
+  Guard::Input made;
   made.force = *rc::gen::element(0.0, 1.0, 1.0) * vector(50, wild);
   made.hip = before + *rc::gen::element(0.0, 1.0) * vector(1e-3, wild);
   made.velocity = vector(1, wild);
@@ -48,8 +48,8 @@ GuardInput input(bool wild, const Vector3d& before) {
   return made;
 }
 
-std::vector<GuardInput> inputs(bool wild) {
-  std::vector<GuardInput> all;
+std::vector<Guard::Input> inputs(bool wild) {
+  std::vector<Guard::Input> all;
   const int count = *rc::gen::inRange(1, 60);
   Vector3d hip = Vector3d::Zero();
   for (int i = 0; i < count; ++i) {
@@ -62,14 +62,14 @@ std::vector<GuardInput> inputs(bool wild) {
 RC_GTEST_PROP(GuardProperty, NeverLetsPassWhatIsNotFiniteOrTooLong, ()) {
   const GuardOptions options{.maximum_force = *rc::gen::element(0.5, 3.0, 16.0)};
   Guard guard(options);
-  for (const GuardInput& each : inputs(true)) {
-    const bool faulted = guard.state().fault != GuardFault::none;
+  for (const Guard::Input& each : inputs(true)) {
+    const bool faulted = guard.state().fault != Guard::Fault::none;
     const Vector3d force = guard.pass(each);
     RC_ASSERT(force.allFinite());
     RC_ASSERT(force.norm() <= options.maximum_force * (1 + 1e-12));
     if (faulted) RC_ASSERT(force.isZero(0));
     if (has(guard.state().notes, GuardNote::fault)) RC_ASSERT(force.isZero(0));
-    if (!each.force.allFinite()) RC_ASSERT(guard.state().fault != GuardFault::none);
+    if (!each.force.allFinite()) RC_ASSERT(guard.state().fault != Guard::Fault::none);
   }
 }
 
@@ -82,7 +82,7 @@ RC_GTEST_PROP(GuardProperty, NeverStepsFurtherThanHandAndSlewAllow, ()) {
   Guard guard(options);
   test::AllowedStep allowed_step(options);
   Vector3d before = Vector3d::Zero();
-  for (const GuardInput& each : inputs(false)) {
+  for (const Guard::Input& each : inputs(false)) {
     const Vector3d force = guard.pass(each);
     const double allowed = allowed_step(each, guard.state().notes);
     if (each.dt > options.silence) {
@@ -97,7 +97,7 @@ RC_GTEST_PROP(GuardProperty, NeverStepsFurtherThanHandAndSlewAllow, ()) {
 // Without the damper, which always acts, no link changes a force and does not say so.
 RC_GTEST_PROP(GuardProperty, ChangesNothingThatNeedsNoChange, ()) {
   Guard guard({.maximum_force = 16, .damping = 0, .soft_start = 0});
-  for (const GuardInput& each : inputs(false)) {
+  for (const Guard::Input& each : inputs(false)) {
     const Vector3d force = guard.pass(each);
     if (guard.state().notes == GuardNote::none && each.felt) RC_ASSERT(force == each.force);
   }

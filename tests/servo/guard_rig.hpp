@@ -18,9 +18,9 @@ inline GuardOptions plain(double maximum_force = std::numeric_limits<double>::in
 }
 
 /// A millisecond's step with `force` (N) of a surface of 500 N/m that tells no normal.
-inline GuardInput pushed(const Eigen::Vector3d& force,
-                         const Eigen::Vector3d& hip = Eigen::Vector3d::Zero()) {
-  GuardInput input;
+inline Guard::Input pushed(const Eigen::Vector3d& force,
+                           const Eigen::Vector3d& hip = Eigen::Vector3d::Zero()) {
+  Guard::Input input;
   input.force = force;
   input.hip = hip;
   input.dt = 1e-3;

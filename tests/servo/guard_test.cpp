@@ -22,7 +22,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Pressing into a floor at z = 0 along z, as a proxy would answer.
-GuardInput pressed(double z) {
+Guard::Input pressed(double z) {
   return pushed({0, 0, z < 0 ? -500 * z : 0}, {0, 0, z});
 }
 
@@ -31,7 +31,7 @@ TEST(Guard, LetsASpringPassBitForBitThatTheHandStretches) {
   for (int i = 0; i < 2000; ++i) {
     // 0.2 m/s at most, to 13 mm: comes in, goes out.
     const double z = 3e-3 - 16e-3 * std::abs(std::sin(0.0125 * i));
-    const GuardInput input = pressed(z);
+    const Guard::Input input = pressed(z);
     ASSERT_EQ(guard.pass(input), input.force) << "step " << i;
     ASSERT_EQ(guard.state().notes, GuardNote::none);
   }
@@ -42,8 +42,8 @@ TEST(Guard, LetsASpringPassBitForBitThatTheHandStretches) {
 TEST(Guard, LetsAHandGoAtOnceThatLeavesFast) {
   Guard guard(plain());
   for (int i = 0; i < 100; ++i) static_cast<void>(guard.pass(pressed(-1e-4 * i)));
-  GuardInput out = pressed(5e-3);  // 15 mm in a step
-  out.stiffness = 0;               // it touches nothing now
+  Guard::Input out = pressed(5e-3);  // 15 mm in a step
+  out.stiffness = 0;                 // it touches nothing now
   EXPECT_EQ(guard.pass(out), Vector3d::Zero());
   EXPECT_EQ(guard.state().notes, GuardNote::none);
 }
@@ -76,21 +76,21 @@ TEST(Guard, ShortensToTheMaximumAndKeepsTheDirection) {
 }
 
 TEST(Guard, HoldsZeroAtOnceAndUntilResetWhenSomethingIsNotFinite) {
-  const std::vector<std::pair<GuardFault, GuardInput>> cases = [] {
-    std::vector<std::pair<GuardFault, GuardInput>> all;
+  const std::vector<std::pair<Guard::Fault, Guard::Input>> cases = [] {
+    std::vector<std::pair<Guard::Fault, Guard::Input>> all;
     for (const double bad : {kNaN, kInfinity, -kInfinity, 1e300}) {
-      all.emplace_back(GuardFault::force, pushed({0, bad, 2}));
-      all.emplace_back(GuardFault::hand, pushed({0, 0, 2}, {bad, 0, 0}));
-      all.emplace_back(GuardFault::hand, pushed({0, 0, 2}));
+      all.emplace_back(Guard::Fault::force, pushed({0, bad, 2}));
+      all.emplace_back(Guard::Fault::hand, pushed({0, 0, 2}, {bad, 0, 0}));
+      all.emplace_back(Guard::Fault::hand, pushed({0, 0, 2}));
       all.back().second.velocity.z() = bad;
-      all.emplace_back(GuardFault::force, pushed({0, 0, 2}));
+      all.emplace_back(Guard::Fault::force, pushed({0, 0, 2}));
       all.back().second.stiffness = bad;
     }
     for (const double bad : {kNaN, kInfinity, -1e-9}) {
-      all.emplace_back(GuardFault::time, pushed({0, 0, 2}));
+      all.emplace_back(Guard::Fault::time, pushed({0, 0, 2}));
       all.back().second.dt = bad;
     }
-    for (const GuardFault known : {GuardFault::proxy, GuardFault::device}) {
+    for (const Guard::Fault known : {Guard::Fault::proxy, Guard::Fault::device}) {
       all.emplace_back(known, pushed({0, 0, 2}));
       all.back().second.fault = known;
     }
@@ -109,14 +109,14 @@ TEST(Guard, HoldsZeroAtOnceAndUntilResetWhenSomethingIsNotFinite) {
     EXPECT_NE(in_words(guard.state()).find(in_words(fault)), std::string::npos);
     guard.reset();
     EXPECT_NEAR(guard.pass(pushed({0, 0, 2})).norm(), 0.3, 1e-12) << "up from zero";
-    EXPECT_EQ(guard.state().fault, GuardFault::none);
+    EXPECT_EQ(guard.state().fault, Guard::Fault::none);
   }
 }
 
 TEST(Guard, GivesZeroAfterASilenceAndComesBackSoftly) {
   Guard guard(plain());
   for (int i = 0; i < 50; ++i) static_cast<void>(guard.pass(pushed({0, 0, 2})));
-  GuardInput late = pushed({0, 0, 2}, {0, 0, -0.05});  // wherever the hand went meanwhile
+  Guard::Input late = pushed({0, 0, 2}, {0, 0, -0.05});  // wherever the hand went meanwhile
   late.dt = 0.1;
   EXPECT_EQ(guard.pass(late), Vector3d::Zero());
   EXPECT_TRUE(has(guard.state().notes, GuardNote::silence));
@@ -131,7 +131,7 @@ TEST(Guard, HasPatienceUpToTheSilenceItWasTold) {
   GuardOptions options = plain();
   options.silence = 0.05;
   Guard guard(options);
-  GuardInput slow = pushed({0, 0, 1});
+  Guard::Input slow = pushed({0, 0, 1});
   slow.dt = 0.04;
   static_cast<void>(guard.pass(slow));
   EXPECT_EQ(guard.pass(slow), slow.force);
@@ -147,12 +147,12 @@ TEST(Guard, ComesUpSoftlyWhenItStartsInContact) {
 TEST(Guard, ThatIsOffLetsEveryForcePass) {
   Guard guard({.on = false});
   EXPECT_EQ(guard.pass(pushed({0, 0, 1e6})), Vector3d(0, 0, 1e6));
-  GuardInput input = pushed({0, 0, 5});
+  Guard::Input input = pushed({0, 0, 5});
   input.felt = false;
   EXPECT_EQ(guard.pass(input), Vector3d::Zero());
   EXPECT_EQ(guard.state().counts.steps, 2u);
   EXPECT_EQ(guard.pass(pushed({0, 0, std::nan("")})), Vector3d::Zero()) << "but what is no force";
-  EXPECT_EQ(guard.state().fault, GuardFault::force);
+  EXPECT_EQ(guard.state().fault, Guard::Fault::force);
 }
 
 TEST(Guard, RefusesOptionsOutOfRange) {

@@ -3,7 +3,7 @@
 #include <limits>
 #include <thread>
 
-#include "servo/records.hpp"
+#include "servo/servo_inside.hpp"
 
 namespace palpate {
 namespace {

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <thread>
 
-#include "servo/records.hpp"
+#include "servo/servo_inside.hpp"
 #include "support/effort.hpp"
 
 namespace palpate {

@@ -32,7 +32,7 @@ inline ServoOptions first_links() {
 /// The same at a metaball, which pushes a hand that starts in it out.
 inline ServoOptions pushed_out() {
   ServoOptions options = first_links();
-  options.field.kind = FieldKind::metaball;
+  options.field.kind = FieldOptions::Kind::metaball;
   return options;
 }
 
@@ -57,7 +57,7 @@ class FreeDevice final : public Device {
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] DeviceState read() noexcept override {
-    if (last_step_ >= 0 && reads_ > last_step_) state_.status = DeviceStatus::finished;
+    if (last_step_ >= 0 && reads_ > last_step_) state_.status = DeviceState::Status::finished;
     ++reads_;
     return state_;
   }

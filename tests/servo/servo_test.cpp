@@ -22,7 +22,7 @@ const Vector3d kPressedAt(0.3e-3, 0.4e-3, -4e-3);  // m: 2 N at 500 N/m
 std::vector<Vector3d> by_servo(Device& device, Scene& scene, const ServoOptions& options) {
   Servo servo(device, scene, options);
   std::vector<Vector3d> forces;
-  for (ServoState state = servo.tick(); state.device == DeviceStatus::ok; state = servo.tick()) {
+  for (auto state = servo.tick(); state.device == DeviceState::Status::ok; state = servo.tick()) {
     forces.push_back(state.force);
     EXPECT_EQ(state.guard.notes, GuardNote::none) << "at " << state.time << " s";
   }
@@ -37,7 +37,7 @@ std::vector<Vector3d> by_hand(Device& device, Scene& scene, const ServoOptions& 
   double before = 0;
   while (true) {
     const DeviceState state = device.read();
-    if (state.status != DeviceStatus::ok) return forces;
+    if (state.status != DeviceState::Status::ok) return forces;
     const bool first = forces.empty();
     const Vector3d hip = options.workspace.position_to_world(state.position);
     field.update(state.time, hip, first ? hip : proxy.position());
@@ -137,11 +137,11 @@ TEST(Servo, LatchesWhatIsNotFiniteAndForgetsItWhenTold) {
     EXPECT_EQ(device.force(), Vector3d::Zero());
     device.state().position = kPressedAt;
     EXPECT_EQ(servo.tick(3e-3).force, Vector3d::Zero()) << "it stays";
-    EXPECT_NE(servo.state().guard.fault, GuardFault::none);
+    EXPECT_NE(servo.state().guard.fault, Guard::Fault::none);
     device.state().position = {0, 0, 5e-3};
     servo.reset();
     servo.tick(4e-3);
-    EXPECT_EQ(servo.state().guard.fault, GuardFault::none);
+    EXPECT_EQ(servo.state().guard.fault, Guard::Fault::none);
     device.state().position = kPressedAt;
     EXPECT_GT(servo.tick(5e-3).force.norm(), 1);
   }
@@ -155,10 +155,10 @@ TEST(Servo, SaysThatADeviceFailed) {
   servo.tick(0);
   device.state().position = kPressedAt;
   servo.tick(1e-3);
-  device.state().status = DeviceStatus::failed;
+  device.state().status = DeviceState::Status::failed;
   EXPECT_EQ(servo.tick(2e-3).force, Vector3d::Zero());
-  EXPECT_EQ(servo.state().guard.fault, GuardFault::device);
-  EXPECT_EQ(servo.state().device, DeviceStatus::failed);
+  EXPECT_EQ(servo.state().guard.fault, Guard::Fault::device);
+  EXPECT_EQ(servo.state().device, DeviceState::Status::failed);
 }
 
 TEST(Servo, SurvivesAGapAndComesBackSoftly) {
@@ -194,7 +194,7 @@ TEST(Servo, TakesItsFirstStepAlsoOfADeviceThatDoesNotTellItsRate) {
   device.info().rate = 0;
   Servo servo(device, scene, test::first_links());
   const ServoState state = servo.tick(0);
-  EXPECT_EQ(state.guard.fault, GuardFault::none);
+  EXPECT_EQ(state.guard.fault, Guard::Fault::none);
   EXPECT_GT(state.dt, 0);
   EXPECT_LT(state.dt, 0.01);
 }
@@ -265,9 +265,9 @@ TEST(Servo, ChangesTheSurfaceWithoutPushingAndLetsItsForceFade) {
   servo.tick(0);
   device.state().position = {0, 0, 2e-3};
   EXPECT_EQ(servo.tick(1e-3).force.norm(), 0) << "above the sheet";
-  EXPECT_EQ(servo.field().kind, FieldKind::balanced);
-  servo.set_field({.kind = FieldKind::metaball});  // stands 0.49 R = 4.9 mm before its points
-  EXPECT_EQ(servo.field().kind, FieldKind::metaball);
+  EXPECT_EQ(servo.field().kind, FieldOptions::Kind::balanced);
+  servo.set_field({.kind = FieldOptions::Kind::metaball});  // 0.49 R = 4.9 mm before its points
+  EXPECT_EQ(servo.field().kind, FieldOptions::Kind::metaball);
   for (int i = 2; i < 100; ++i) EXPECT_LE(servo.tick(1e-3 * i).force.norm(), 0.06);
   EXPECT_NEAR(servo.state().contact.proxy.z(), 4.9e-3, 2e-4);
   const auto go_to = [&](double z, int tick) {

@@ -33,10 +33,8 @@ class FakeClock final : public WaitingClock {
   int waits_ = 0;
 };
 
-ServoThreadOptions modest() {
-  ServoThreadOptions options;
-  options.realtime = {.realtime_priority = false, .lock_memory = false};
-  return options;
+RealtimeOptions modest() {
+  return {.realtime_priority = false, .lock_memory = false};
 }
 
 void wait_for(const ServoThread& thread) {
@@ -51,9 +49,7 @@ TEST(ServoThread, StepsOnTheClocksGridUntilTheDeviceIsDone) {
   Servo servo(device, scene, test::pushed_out());
   FakeClock clock;
   {
-    ServoThreadOptions options = modest();
-    options.rate = 2000;
-    const ServoThread thread(servo, clock, options);
+    const ServoThread thread(servo, clock, modest(), 2000);
     EXPECT_EQ(thread.rate(), 2000);
     wait_for(thread);
     EXPECT_EQ(thread.skipped(), 0u);
@@ -117,12 +113,12 @@ TEST(ServoThread, EndsWithZeroForceWhenToldTo) {
 TEST(ServoThread, EndsWhenTheDeviceFails) {
   Scene scene;
   FreeDevice device;
-  device.state().status = DeviceStatus::failed;
+  device.state().status = DeviceState::Status::failed;
   Servo servo(device, scene, test::first_links());
   FakeClock clock;
   const ServoThread thread(servo, clock, modest());
   wait_for(thread);
-  EXPECT_EQ(servo.state().guard.fault, GuardFault::device);
+  EXPECT_EQ(servo.state().guard.fault, Guard::Fault::device);
 }
 
 // Everything that other threads may do while it runs; for the thread sanitizer.
@@ -154,9 +150,7 @@ TEST(ServoThread, RefusesRatesThatNoServoHas) {
   Servo servo(device, scene, test::first_links());
   FakeClock clock;
   for (const double rate : {0.0, 499.0, 10'001.0, -1.0}) {
-    ServoThreadOptions options = modest();
-    options.rate = rate;
-    EXPECT_THROW(ServoThread(servo, clock, options), Error);
+    EXPECT_THROW(ServoThread(servo, clock, modest(), rate), Error);
   }
   device.info().keeps_time = true;
   device.info().rate = 30;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "servo/impact.hpp"
+#include "servo/oscillation.hpp"
 
 namespace palpate {
 namespace {
@@ -85,7 +85,7 @@ Leaning lean(const WallOptions& options, double press) {
   double high = -1;
   for (std::size_t i = 0; i < 3000; ++i) {
     const DeviceState hand = device.read();
-    GuardInput input;
+    Guard::Input input;
     input.hip = hand.position;
     input.velocity = hand.velocity;
     input.dt = 1e-3;
@@ -161,7 +161,7 @@ double swing_beside_a_stuck_proxy(const Stuck& stuck, GuardOptions options) {
   options.soft_start = 0;
   options.passivity.delay = stuck.delay;
   Guard guard(options);
-  GuardInput input;
+  Guard::Input input;
   input.normal.z() = 1;
   input.dt = 1e-3;
   input.stiffness = 0.8 * passive_stiffness(stuck.damping + 1, 1e-3, 1e-3 * stuck.delay);

@@ -16,10 +16,11 @@ ServoState step_of_number(std::uint64_t number) {
 }
 
 // What neither thread writes, the servo's counters, the recorder's: a cache line each.
-static_assert(alignof(StepQueue) == 64 && sizeof(StepQueue) == 3 * alignof(StepQueue));
+static_assert(alignof(ServoState::Queue) == 64 &&
+              sizeof(ServoState::Queue) == 3 * alignof(ServoState::Queue));
 
 TEST(StepQueue, GivesStepsInOrderAndCountsThoseThatFoundNoRoom) {
-  StepQueue queue(3);  // four
+  ServoState::Queue queue(3);  // four
   EXPECT_FALSE(queue.pop());
   for (std::uint64_t i = 1; i <= 6; ++i) EXPECT_EQ(queue.push(step_of_number(i)), i <= 4);
   EXPECT_EQ(queue.dropped(), 2u);
@@ -30,7 +31,7 @@ TEST(StepQueue, GivesStepsInOrderAndCountsThoseThatFoundNoRoom) {
 }
 
 TEST(StepQueue, LosesAndTearsNothingBetweenTwoThreads) {
-  StepQueue queue(64);
+  ServoState::Queue queue(64);
   const auto count = static_cast<std::uint64_t>(test::effort(100'000));
   std::jthread servo([&](const std::stop_token& stop) {
     for (std::uint64_t i = 1; i <= count; ++i) {

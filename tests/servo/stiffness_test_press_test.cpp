@@ -52,7 +52,7 @@ class Presser {
     wait(5e-3);
     EXPECT_EQ(force_, 0);
     hand.velocity.setZero();
-    hand.status = DeviceStatus::ok;
+    hand.status = DeviceState::Status::ok;
     wait(31);  // longer than it has patience
     EXPECT_EQ(phase(), why);
     EXPECT_EQ(force_, 0) << "over is over";
@@ -101,7 +101,7 @@ TEST(PressedWall, EndsWhenTheDeviceFails) {
     Presser presser;
     presser.press(1);
     if (lifts) presser.hold();
-    presser.hand.status = DeviceStatus::failed;
+    presser.hand.status = DeviceState::Status::failed;
     presser.expect_over(StiffnessTest::Phase::device_lost);
   }
 }
@@ -111,11 +111,11 @@ TEST(PressedWall, IsPutUnderARestingHandAgainAfterASilence) {
     Presser presser;
     presser.press(1);
     if (lifts) presser.hold();
-    presser.hand.status = DeviceStatus::silent;
+    presser.hand.status = DeviceState::Status::silent;
     presser.wait(5e-3);
     EXPECT_EQ(presser.phase(), StiffnessTest::Phase::rest);
     EXPECT_EQ(presser.force(), 0);
-    presser.hand.status = DeviceStatus::ok;
+    presser.hand.status = DeviceState::Status::ok;
     presser.wait(0.1);
     EXPECT_EQ(presser.force(), 0) << "it has to rest first";
     presser.press(1);

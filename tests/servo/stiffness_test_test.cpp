@@ -7,7 +7,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/servo/z_width.hpp"
-#include "servo/oscillation_detector.hpp"
+#include "servo/oscillation.hpp"
 
 namespace palpate {
 namespace {
@@ -19,7 +19,7 @@ class ObedientHand final : public TargetSource {
  public:
   explicit ObedientHand(const StiffnessTest& trial) : trial_(trial) {}
 
-  [[nodiscard]] HandTarget target(double, const Vector3d&) noexcept override {
+  [[nodiscard]] TargetSource::Target target(double, const Vector3d&) noexcept override {
     const bool presses = trial_.state().phase == StiffnessTest::Phase::press;
     const bool rests = trial_.state().phase == StiffnessTest::Phase::rest || trial_.is_over();
     const double goal = rests ? height_ : presses ? -12e-3 : 0;
@@ -106,10 +106,10 @@ TEST(StiffnessTest, EndsWhenSomethingIsWrong) {
   EXPECT_EQ(after({}, 1), StiffnessTest::Phase::press);
   EXPECT_EQ(after({}, 60), StiffnessTest::Phase::timed_out);
   EXPECT_EQ(after({.velocity = {0, 0.6, 0}}, 1), StiffnessTest::Phase::too_fast);
-  EXPECT_EQ(after({.status = DeviceStatus::silent}, 1), StiffnessTest::Phase::rest)
+  EXPECT_EQ(after({.status = DeviceState::Status::silent}, 1), StiffnessTest::Phase::rest)
       << "not heard yet";
-  EXPECT_EQ(after({.status = DeviceStatus::silent}, 60), StiffnessTest::Phase::device_lost);
-  EXPECT_EQ(after({.status = DeviceStatus::failed}, 1), StiffnessTest::Phase::device_lost);
+  EXPECT_EQ(after({.status = DeviceState::Status::silent}, 60), StiffnessTest::Phase::device_lost);
+  EXPECT_EQ(after({.status = DeviceState::Status::failed}, 1), StiffnessTest::Phase::device_lost);
   EXPECT_EQ(after({.position = {0, 0, std::nan("")}}, 1), StiffnessTest::Phase::device_lost);
 }
 

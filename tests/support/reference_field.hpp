@@ -52,7 +52,7 @@ class ReferenceField final : public Field {
     const Dual radius = s.radius / s.plain;
     const Dual blob = as_length(radius, options_.threshold, support);
     Dual value = blob;
-    if (s.trusted.v > 1e-9 * s.plain.v && options_.kind != FieldKind::metaball) {
+    if (s.trusted.v > 1e-9 * s.plain.v && options_.kind != FieldOptions::Kind::metaball) {
       Dual height = with_edges(s, height_of(s) - closure(s, radius));
       if (sources_ > 1) height = height + united_shift(s.own, radius, options_.kernel);
       value = blend(s, capped(height, radius, support), blob);
@@ -70,7 +70,7 @@ class ReferenceField final : public Field {
       const double r = std::max(0.0, (ball.center - p.position).norm() - ball.radius) / p.radius;
       most[static_cast<std::size_t>(p.source)].v += p.weight * evaluate(options_.kernel, r * r).w;
     }
-    const double level = options_.kind == FieldKind::metaball
+    const double level = options_.kind == FieldOptions::Kind::metaball
                              ? options_.threshold
                              : std::min(options_.threshold, options_.minimum_support);
     return united(most).v < level;
@@ -81,7 +81,7 @@ class ReferenceField final : public Field {
   }
 
   [[nodiscard]] Field::Traits traits() const noexcept override {
-    const bool metaball = options_.kind == FieldKind::metaball;
+    const bool metaball = options_.kind == FieldOptions::Kind::metaball;
     return {.resolution = (metaball ? 0.002 : 1.0 / 16) * typical_radius()};
   }
 
@@ -185,7 +185,7 @@ class ReferenceField final : public Field {
   [[nodiscard]] Dual height_of(const Sums& s) const {
     const DualVector a = s.q / s.trusted;
     const DualVector mean_normal = s.n / s.trusted;
-    if (options_.kind == FieldKind::pointset) {
+    if (options_.kind == FieldOptions::Kind::pointset) {
       return -1.0 * (dot(mean_normal, a) / sqrt(dot(mean_normal, mean_normal)));
     }
     return -0.5 * (dot(mean_normal, a) + s.nq / s.trusted);
@@ -214,7 +214,7 @@ class ReferenceField final : public Field {
 
   /// The part of the height that points beside edges have a say in is what they say.
   [[nodiscard]] Dual with_edges(const Sums& s, const Dual& height) const {
-    if (options_.kind != FieldKind::balanced || !options_.sharp_edges || s.edge.v <= 0) {
+    if (options_.kind != FieldOptions::Kind::balanced || !options_.sharp_edges || s.edge.v <= 0) {
       return height;
     }
     return height + (s.edge_height - height * s.edge) / s.trusted;

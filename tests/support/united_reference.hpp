@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "field/formulas.hpp"
 #include "palpate/field/field_options.hpp"
 #include "support/dual.hpp"
 
@@ -16,7 +17,7 @@ struct OwnSums {
   Dual nq;       // sum v n . (p - x)
 };
 
-/// The shift of src/field/united_height.hpp, with gradients that carry themselves.
+/// The shift of united_shift(), with gradients that carry themselves.
 inline Dual united_shift(const std::vector<OwnSums>& sources, const Dual& radius, Kernel kernel) {
   Dual v, by_weight, covers, by_cover;
   DualVector normal;

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "viewer/bytes.hpp"
-#include "viewer/local_surface.hpp"
 #include "viewer/messages.hpp"
+#include "viewer/scene_encoder.hpp"
 
 namespace palpate::viewer {
 namespace {

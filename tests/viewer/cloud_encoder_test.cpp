@@ -1,11 +1,10 @@
-#include "viewer/cloud_encoder.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "support/make_points.hpp"
 #include "support/snapshots.hpp"
+#include "viewer/scene_encoder.hpp"
 
 namespace palpate::viewer {
 namespace {

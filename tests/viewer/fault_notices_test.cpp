@@ -5,9 +5,9 @@
 namespace palpate::viewer {
 namespace {
 
-ViewerStream stream(StreamState::Phase phase, const std::string& problem = "",
-                    double problem_at = 0) {
-  ViewerStream stream;
+ViewerOptions::Stream stream(StreamState::Phase phase, const std::string& problem = "",
+                             double problem_at = 0) {
+  ViewerOptions::Stream stream;
   stream.state.source = "table";
   stream.state.phase = phase;
   stream.state.problem = problem;
@@ -45,8 +45,8 @@ TEST(FaultNotices, WhatLastsIsPresentUntilItEnds) {
 
 TEST(FaultNotices, ADeviceOfASourcesNameAndOneOfAnotherDevicesAreKeptApart) {
   FaultNotices faults;
-  const std::vector<DeviceFault> devices{{"table", GuardFault::none},
-                                         {"table", GuardFault::device}};
+  const std::vector<DeviceFault> devices{{"table", Guard::Fault::none},
+                                         {"table", Guard::Fault::device}};
   const std::vector stalled{stream(StreamState::Phase::stalled, kDark.text, 5)};
   EXPECT_EQ(faults.update(stalled, devices).size(), 2u);
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(faults.update(stalled, devices).empty());
@@ -57,8 +57,8 @@ TEST(FaultNotices, ADeviceOfASourcesNameAndOneOfAnotherDevicesAreKeptApart) {
 
 TEST(FaultNotices, AFaultThatIsForgottenAndLatchedAgainIsTold) {
   FaultNotices faults;
-  const std::vector<DeviceFault> well{{"one", GuardFault::none}};
-  const std::vector<DeviceFault> failed{{"one", GuardFault::device}};
+  const std::vector<DeviceFault> well{{"one", Guard::Fault::none}};
+  const std::vector<DeviceFault> failed{{"one", Guard::Fault::device}};
   EXPECT_EQ(faults.update({}, failed).size(), 1u);
   EXPECT_TRUE(faults.update({}, well).empty());
   EXPECT_TRUE(faults.present().empty());

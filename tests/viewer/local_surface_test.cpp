@@ -1,5 +1,3 @@
-#include "viewer/local_surface.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "palpate/field/analytic.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/snapshots.hpp"
+#include "viewer/scene_encoder.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -30,7 +30,7 @@ TEST(Pages, AreToldWhyADeviceIsSilent) {
   const auto client = rig.enter();
   const auto told = [&] { return client->receive_json("devices")["devices"].at(0); };
   EXPECT_EQ(told(), nlohmann::json({{"status", "ok"}}));
-  rig.device.state().status = DeviceStatus::silent;
+  rig.device.state().status = DeviceState::Status::silent;
   rig.press(0.021);
   nlohmann::json device = told();
   while (device["status"] == "ok") device = told();
@@ -43,7 +43,7 @@ TEST(Pages, NobodyHearsOfAProblemThatIsOver) {
   stream.phase = StreamState::Phase::running;
   stream.problem = "sheet (a camera): one bad frame";
   ViewerOptions options;
-  options.streams = [&] { return std::vector{ViewerStream{stream}}; };
+  options.streams = [&] { return std::vector{ViewerOptions::Stream{stream}}; };
   ViewerRig rig(options);
   auto client = rig.enter();
   for (int i = 0; i < 3; ++i) client->receive_json("sources");

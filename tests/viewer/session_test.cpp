@@ -1,6 +1,6 @@
-#include "viewer/session.hpp"
-
 #include <gtest/gtest.h>
+
+#include "viewer/client_sessions.hpp"
 
 namespace palpate::viewer {
 namespace {

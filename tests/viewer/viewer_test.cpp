@@ -191,13 +191,14 @@ TEST(Viewer, SendsTheSurfaceAroundTheTool) {
 
 TEST(Viewer, ASettingReachesTheProgram) {
   std::mutex mutex;
-  Setting setting{.key = "k", .label = "Stiffness", .least = 0, .most = 1000, .value = 500.0};
+  ViewerControls::Setting setting{
+      .key = "k", .label = "Stiffness", .least = 0, .most = 1000, .value = 500.0};
   ViewerControls controls;
   controls.settings = [&] {
     const std::lock_guard lock(mutex);
     return std::vector{setting};
   };
-  controls.set = [&](const std::string& key, const Setting::Value& value) {
+  controls.set = [&](const std::string& key, const ViewerControls::Setting::Value& value) {
     const std::lock_guard lock(mutex);
     EXPECT_EQ(key, "k");
     setting.value = value;
@@ -211,7 +212,7 @@ TEST(Viewer, ASettingReachesTheProgram) {
   EXPECT_NE(client->receive_json("refused")["text"].get<std::string>().find("Stiffness"),
             std::string::npos);
   const std::lock_guard lock(mutex);
-  EXPECT_EQ(setting.value, Setting::Value{750.0});
+  EXPECT_EQ(setting.value, ViewerControls::Setting::Value{750.0});
 }
 
 TEST(Viewer, PausesAndResetsItsServosByItself) {
@@ -227,12 +228,12 @@ TEST(Viewer, PausesAndResetsItsServosByItself) {
   EXPECT_FALSE(frame.payload.empty());
   rig.device.state().position.x() = std::nan("");
   rig.servo->tick(0.031);
-  ASSERT_NE(rig.servo->state().guard.fault, GuardFault::none);
+  ASSERT_NE(rig.servo->state().guard.fault, Guard::Fault::none);
   client->send_text(R"({"type":"reset"})");
   client->send_text(R"({"type":"ping","id":2})");
   EXPECT_EQ(client->receive_json("pong")["id"], 2);
   rig.press(0.032);
-  EXPECT_EQ(rig.servo->state().guard.fault, GuardFault::none);
+  EXPECT_EQ(rig.servo->state().guard.fault, Guard::Fault::none);
 }
 
 TEST(Viewer, AHandIsReleasedWhenItsPageGoesAway) {

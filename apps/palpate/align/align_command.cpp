@@ -10,17 +10,43 @@
 #include <sstream>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
 #include "palpate/align/align.hpp"
 
 namespace palpate::app {
-
 namespace {
 
 namespace fs = std::filesystem;
+
+// Draws sources before and after they were aligned, into `picture` (`path` in messages).
+void draw_alignment(const LoadedScene& loaded, const std::vector<AlignedSource>& aligned,
+                    const std::string& path, OutputFile& picture) {
+  constexpr std::size_t kShown = 60'000;  // points of a source
+  const Waiting waiting("drawing the picture");
+  nlohmann::json facts = {{"sources", nlohmann::json::array()}};
+  std::vector<float> rows;  // place before, place after, normal after, source
+  for (std::size_t s = 0; s < aligned.size(); ++s) {
+    const SurfacePoints& points = *loaded.scene.source(s).points();
+    const Eigen::Isometry3f moved = aligned[s].T_aligned_rough.cast<float>();
+    const std::size_t stride = 1 + points.size() / kShown;
+    for (std::size_t i = 0; i < points.size(); i += stride) {
+      const Eigen::Vector3f p = points.origin.cast<float>() + points.grid.points()[i];
+      const Eigen::Vector3f q = moved * p;
+      const Eigen::Vector3f n = moved.linear() * points.normals[i];
+      rows.insert(rows.end(), {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), n.x(), n.y(), n.z(),
+                               static_cast<float>(s)});
+    }
+    facts["sources"].push_back({{"name", loaded.sources[s].plan.argument.name},
+                                {"before_m", aligned[s].before.residual},
+                                {"after_m", aligned[s].after.residual},
+                                {"radius_m", points.radius}});
+  }
+  draw_by_python(align_script(), {{"cloud.f32", float_bytes(rows)}, {"facts.json", facts.dump()}},
+                 path, picture);
+}
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
@@ -186,16 +212,14 @@ void add_align_options(CLI::App& command, AlignOptions& options) {
 void align_sources(const CLI::App& command, const AlignOptions& options) {
   const TouchPlan plan = plan_touch(command, options.touch);
   check_outputs(options.output, plan.outputs);
-  std::optional<OutputFile> output, json;
-  if (!options.output.empty()) output.emplace(options.output);
-  if (!plan.outputs.json.empty()) json.emplace(plan.outputs.json);
-  std::optional<OutputFile> picture;
-  if (!plan.outputs.picture.empty()) picture.emplace(plan.outputs.picture);
+  std::optional<OutputFile> output = output_at(options.output);
+  std::optional<OutputFile> json = output_at(plan.outputs.json);
+  std::optional<OutputFile> picture = output_at(plan.outputs.picture);
   std::vector<SourcePlan> sources = plan.sources;
   require(sources.size() > 1, "align needs at least two sources; name another one");
   const LoadedScene loaded = load_sources(sources, {.explored = true});
   const std::vector<AlignedSource> aligned = solve(loaded);
-  nlohmann::ordered_json report = nlohmann::ordered_json::array();
+  Json report = Json::array();
   std::FILE* out = options.output == "-" || plan.outputs.json == "-" ? stderr : stdout;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     Eigen::Isometry3d& pose = sources[i].options.T_world_sensor;
@@ -203,7 +227,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
     print_source(sources[i], aligned[i], out);
     report.push_back(json_of(sources[i], aligned[i]));
   }
-  if (json) write_whole(json, text_of(report));
+  write_whole(json, text_of(report));
   write_whole(output, setup_text(command, options, sources));
   if (picture) draw_alignment(loaded, aligned, plan.outputs.picture, *picture);
 }

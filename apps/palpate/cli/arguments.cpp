@@ -15,7 +15,6 @@
 #include "palpate/depth/depth_filter.hpp"
 
 namespace palpate::app {
-
 namespace {
 
 std::optional<double> number_in(std::string_view text) {
@@ -101,7 +100,7 @@ Pinhole parse_intrinsics(const std::string& text) {
 NoiseModel parse_noise(const std::string& text) {
   if (std::ranges::none_of(text, [](char c) { return c == ','; })) {
     try {
-      return sensor_profile(text).noise;
+      return sensor_noise(text);
     } catch (const Error& error) {
       throw UsageError(fmt::format("--noise: {}", error.what()));
     }
@@ -193,6 +192,80 @@ std::vector<CloudArgument> parse_clouds(const std::vector<std::string>& argument
   std::ranges::transform(arguments, clouds.begin(), split_argument);
   name_all(clouds);
   return clouds;
+}
+
+CLI::Validator number(const std::string& range, std::function<bool(double)> good) {
+  const auto check = [range, good = std::move(good)](const std::string& text) -> std::string {
+    double value = 0;
+    const bool is_number = CLI::detail::lexical_cast(text, value);
+    if (is_number && !std::isfinite(value)) {
+      return fmt::format("'{}' is not finite; give {}", text, range);
+    }
+    if (is_number && good(value)) return "";
+    return fmt::format("'{}' is not {}", text, range);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator positive() {
+  return number("a number above 0", [](double x) { return x > 0; });
+}
+
+CLI::Validator not_negative() {
+  return number("a number of 0 or more", [](double x) { return x >= 0; });
+}
+
+CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
+  const auto check = [least, most](const std::string& text) -> std::string {
+    std::int64_t value = 0;
+    if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return "";
+    return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  const auto check = [words](const std::string& text) -> std::string {
+    if (std::ranges::find(words, text) != words.end()) return "";
+    return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "),
+                       did_you_mean(text, words));
+  };
+  return CLI::Validator(check, "", fmt::format("{}", fmt::join(words, " ")));
+}
+
+CLI::Validator parsed_by(std::function<void(const std::string&)> parse) {
+  const auto check = [parse = std::move(parse)](const std::string& text) -> std::string {
+    try {
+      parse(text);
+    } catch (const UsageError& error) {
+      return without_option(error.what());
+    }
+    return "";
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Option* add_json_option(CLI::App& command, std::string& path) {
+  return command.add_option("--json", path, "the same as JSON; - is standard output")
+      ->type_name("FILE");
+}
+
+std::string without_option(const std::string& message) {
+  const std::size_t end = message.find(": ");
+  return message.starts_with("--") && end != std::string::npos ? message.substr(end + 2) : message;
+}
+
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kWidth = 66;
+  std::string result;
+  std::size_t begin = 0;
+  while (text.size() - begin > kWidth) {
+    const std::size_t space = text.rfind(' ', begin + kWidth);
+    if (space == std::string::npos || space <= begin) break;
+    result += text.substr(begin, space - begin) + '\n';
+    begin = space + 1;
+  }
+  return result + text.substr(begin);
 }
 
 }  // namespace palpate::app

@@ -24,9 +24,10 @@ inline constexpr std::array<Named<Policy>, 5> kPolicies = {{{"replace", Policy::
                                                             {"fusion", Policy::fusion},
                                                             {"morph", Policy::morph}}};
 
-inline constexpr std::array<Named<FieldKind>, 3> kFields = {{{"balanced", FieldKind::balanced},
-                                                             {"pointset", FieldKind::pointset},
-                                                             {"metaball", FieldKind::metaball}}};
+inline constexpr std::array<Named<FieldOptions::Kind>, 3> kFields = {
+    {{"balanced", FieldOptions::Kind::balanced},
+     {"pointset", FieldOptions::Kind::pointset},
+     {"metaball", FieldOptions::Kind::metaball}}};
 
 inline constexpr std::array<Named<Kernel>, 2> kKernels = {
     {{"wyvill", Kernel::wyvill}, {"wendland", Kernel::wendland}}};

@@ -136,10 +136,19 @@ void OutputFile::fail(const char* what) const {
   throw Error(fmt::format("{} {}: {}; choose another path", path_, what, std::strerror(errno)));
 }
 
+std::optional<OutputFile> output_at(const std::string& path) {
+  return path.empty() ? std::nullopt : std::make_optional<OutputFile>(path);
+}
+
 void write_whole(std::optional<OutputFile>& file, std::string_view text) {
   if (!file) return;
   file->write(text);
   file->close();
+}
+
+void write_whole(const std::string& path, std::string_view text) {
+  std::optional<OutputFile> file = output_at(path);
+  write_whole(file, text);
 }
 
 std::string numbered_path(const std::string& path, std::size_t hand) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -51,8 +52,13 @@ class OutputFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
+/// The file that was asked for; none where `path` is empty. @throws Error as OutputFile does.
+[[nodiscard]] std::optional<OutputFile> output_at(const std::string& path);
+
 /// Writes all of a file that was asked for, if any. @throws Error as OutputFile does.
 void write_whole(std::optional<OutputFile>& file, std::string_view text);
+/// The same of the file at `path`; none where that is empty.
+void write_whole(const std::string& path, std::string_view text);
 
 /// Where a file goes that each hand or cloud has: "forces.csv" of the first (0), then
 /// "forces-2.csv", "forces-3.csv"; empty where it is.
@@ -70,5 +76,14 @@ struct NamedFile {
 /// @throws UsageError when an output is a file that is read, or that another output goes to as
 /// well, links followed. What is no plain file may be written by several.
 void check_distinct(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
+
+/// Reports keep their keys in the order in which they are written.
+using Json = nlohmann::ordered_json;
+
+/// Indented, with a line's end. Bytes that are not UTF-8, as names of files may have, become
+/// U+FFFD.
+[[nodiscard]] inline std::string text_of(const Json& data) {
+  return data.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 }  // namespace palpate::app

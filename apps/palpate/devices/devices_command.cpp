@@ -7,13 +7,12 @@
 #include <functional>
 #include <string_view>
 
-#include "apps/palpate/cli/json.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
+#include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/driver_info.hpp"
-#include "palpate/device/open_device.hpp"
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/device/hardware.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 
 namespace palpate::app {
 
@@ -62,9 +61,7 @@ void write_drivers(const std::vector<DriverInfo>& drivers, const std::string& pa
                     {"missing", driver.missing},
                     {"devices", devices}});
   }
-  OutputFile file(path);
-  file.write(text_of(list));
-  file.close();
+  write_whole(path, text_of(list));
 }
 
 constexpr const char* kCamerasFooter = R"(Examples:
@@ -73,10 +70,6 @@ constexpr const char* kCamerasFooter = R"(Examples:
   palpate touch camera:simulated:table
 
 Exit codes: 0 done, 1 the list could not be written, 2 the command line is wrong.)";
-
-std::string state_of(const DriverInfo& driver) {
-  return driver.name == "sequence" ? "available" : found_by(driver, "camera");
-}
 
 constexpr const char* kDevicesFooter = R"(Examples:
   palpate devices
@@ -87,42 +80,37 @@ Exit codes: 0 done, 1 the list could not be written, 2 the command line is wrong
 
 // Those that need no hardware.
 std::vector<DriverInfo> built_in() {
-  return {{.name = "scripted",
-           .description = "follows its trajectory exactly, whatever the force",
-           .missing = {},
-           .devices = {}},
-          {.name = "simulated",
-           .description = "a device with mass and friction that is pulled along its trajectory",
-           .missing = {},
-           .devices = {}},
-          {.name = "remote",
-           .description = "another program, over a socket (docs/remote_device.md)",
-           .missing = {},
-           .devices = {}}};
+  return {
+      {.name = "scripted", .description = "follows its trajectory exactly, whatever the force"},
+      {.name = "simulated",
+       .description = "a device with mass and friction that is pulled along its trajectory"},
+      {.name = "remote", .description = "another program, over a socket (docs/remote_device.md)"}};
 }
 
 }  // namespace
 
-void add_cameras_options(CLI::App& command, CamerasOptions& options) {
+void add_cameras_options(CLI::App& command, ListOptions& options) {
   add_json_option(command, options.json)->group("Output");
   command.footer(kCamerasFooter);
 }
 
-void cameras(const CamerasOptions& options) {
+void cameras(const ListOptions& options) {
   const std::vector<DriverInfo> drivers = [] {
     const Waiting waiting("looking for cameras");
     return list_cameras();
   }();
-  print_drivers(drivers, options.json == "-" ? stderr : stdout, state_of);
-  if (!options.json.empty()) write_drivers(drivers, options.json);
+  print_drivers(drivers, options.json == "-" ? stderr : stdout, [](const DriverInfo& driver) {
+    return driver.name == "sequence" ? "available" : found_by(driver, "camera");
+  });
+  write_drivers(drivers, options.json);
 }
 
-void add_devices_options(CLI::App& command, DevicesOptions& options) {
+void add_devices_options(CLI::App& command, ListOptions& options) {
   add_json_option(command, options.json)->group("Output");
   command.footer(kDevicesFooter);
 }
 
-void devices(const DevicesOptions& options) {
+void devices(const ListOptions& options) {
   std::vector<DriverInfo> drivers = built_in();
   const std::vector<DriverInfo> hardware = [] {
     const Waiting waiting("looking for haptic devices");
@@ -133,7 +121,7 @@ void devices(const DevicesOptions& options) {
   print_drivers(hardware, stream,
                 [](const DriverInfo& driver) { return found_by(driver, "device"); });
   drivers.insert(drivers.end(), hardware.begin(), hardware.end());
-  if (!options.json.empty()) write_drivers(drivers, options.json);
+  write_drivers(drivers, options.json);
 }
 
 }  // namespace palpate::app

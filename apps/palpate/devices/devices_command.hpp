@@ -8,25 +8,20 @@ class App;
 
 namespace palpate::app {
 
-/// The command line of `palpate devices`.
-struct DevicesOptions {
+/// The command line of `palpate devices` and of `palpate cameras`.
+struct ListOptions {
   std::string json;
 };
 
-void add_devices_options(CLI::App& command, DevicesOptions& options);
+void add_devices_options(CLI::App& command, ListOptions& options);
 
 /// `palpate devices`. @throws Error.
-void devices(const DevicesOptions& options);
+void devices(const ListOptions& options);
 
-/// The command line of `palpate cameras`.
-struct CamerasOptions {
-  std::string json;
-};
-
-void add_cameras_options(CLI::App& command, CamerasOptions& options);
+void add_cameras_options(CLI::App& command, ListOptions& options);
 
 /// `palpate cameras`. @throws Error.
-void cameras(const CamerasOptions& options);
+void cameras(const ListOptions& options);
 
 /// The command line of `palpate ros`.
 struct RosOptions {

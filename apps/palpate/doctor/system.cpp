@@ -29,7 +29,7 @@
 #include "apps/palpate/cli/process.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app::doctor {
@@ -77,7 +77,7 @@ void keep_time(double seconds, RealtimeTrial& trial) {
   SteadyClock clock;
   Durations lateness;
   const double start = clock.now();
-  Deadlines deadlines(start, kJitterPeriod);
+  ServoThread::Deadlines deadlines(start, kJitterPeriod);
   while (deadlines.next() < start + seconds) {
     clock.wait_until(deadlines.next());
     lateness.add(deadlines.begin(clock.now()));

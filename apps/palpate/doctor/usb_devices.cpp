@@ -1,5 +1,3 @@
-#include "apps/palpate/doctor/usb_devices.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>

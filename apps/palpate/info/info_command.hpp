@@ -3,7 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/options/source_options.hpp"
+#include "apps/palpate/report/report.hpp"
+#include "apps/palpate/sources/cloud_facts.hpp"
+#include "apps/palpate/sources/load.hpp"
+#include "palpate/depth/depth_frame.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+#include "palpate/scene/source.hpp"
 
 namespace CLI {
 class App;
@@ -23,5 +30,70 @@ void add_info_options(CLI::App& command, InfoOptions& options);
 
 /// `palpate info`. @throws UsageError, Error.
 void info(const InfoOptions& options);
+
+/// A cloud without stray points seen along its shortest side, as counts on a grid.
+struct DensityMap {
+  int columns = 0;
+  int rows = 0;
+  int horizontal = 0;               ///< axis (0-2) that runs to the right
+  int vertical = 0;                 ///< axis that runs upwards
+  double cell = 0;                  ///< width of a cell, m; it is twice as high, like a letter
+  std::vector<std::size_t> counts;  ///< row by row, the top one first
+
+  [[nodiscard]] std::size_t place(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(column);
+  }
+};
+
+[[nodiscard]] DensityMap map_density(const PointCloud& cloud, int columns);
+
+/// The map as lines of text, denser is darker; in colours when `colored`.
+[[nodiscard]] std::string draw(const DensityMap& map, bool colored);
+
+/// Everything that `palpate info` tells of one cloud.
+struct InfoReport {
+  LoadedCloud loaded;
+  Box bounds;
+  Box core;  ///< without stray points
+  UnitsGuess units;
+  SpacingFacts spacing;
+  Prepared::Report prepared;  ///< with the defaults: the advice
+  double rim = 0;             ///< share of points at a border or a hole
+
+  OrganisedFrame organised;  ///< of a cloud with rows and columns
+  Source::State image;       ///< felt as that frame; depth 0: it is not
+  double image_radius = 0;   ///< R then, median, m
+};
+
+[[nodiscard]] Report report_of(const InfoReport& report);
+
+/// What touch() would do unless told otherwise, in the words of its options.
+[[nodiscard]] Report advice_of(const InfoReport& report);
+
+/// What some frames of a camera or sequence show of it.
+struct LiveFacts {
+  CloudArgument argument;
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+  Pinhole pinhole;
+  bool distorted = false;
+  bool posed = false;        ///< frames tell where they were taken
+  std::size_t frames = 0;    ///< that were looked at
+  std::size_t repeated = 0;  ///< of them bit for bit like the one before
+  std::size_t failures = 0;  ///< reads that failed
+  std::size_t unposed = 0;   ///< frames without a pose among those with one
+  double rate = 0;           ///< frames a second by their stamps, Hz
+  double valid = 0;          ///< share of pixels with a depth
+  double depth = 0;          ///< median, m
+  double nearest = 0;        ///< a hundredth of the depths is nearer, m
+  double farthest = 0;       ///< a hundredth is farther, m
+  NoiseModel noise;          ///< as measured
+};
+
+/// Looks at the first 30 frames, or as many as there are. @throws Error when there is none.
+[[nodiscard]] LiveFacts study_live(const CloudArgument& argument);
+
+[[nodiscard]] Report report_of(const LiveFacts& facts);
 
 }  // namespace palpate::app

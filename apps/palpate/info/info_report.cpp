@@ -1,12 +1,11 @@
-#include "apps/palpate/info/info_report.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <vector>
 
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/report/source_report.hpp"
+#include "apps/palpate/info/info_command.hpp"
+#include "apps/palpate/report/report.hpp"
 #include "palpate/depth/depth_filter.hpp"
 
 namespace palpate::app {
@@ -159,7 +158,7 @@ Json json_of(const LiveFacts& facts) {
 Report report_of(const InfoReport& info) {
   const CloudArgument& argument = info.loaded.argument;
   const std::string& format = info.loaded.file.format;
-  const PrepareReport& r = info.prepared;
+  const Prepared::Report& r = info.prepared;
   Report report(argument.name, fmt::format("{} ({}), read in {}", argument.path, format,
                                            duration(info.loaded.seconds)));
   report.data = {{"name", argument.name}, {"file", argument.path}, {"format", format}};
@@ -175,7 +174,7 @@ Report report_of(const InfoReport& info) {
 }
 
 Report advice_of(const InfoReport& info) {
-  const PrepareReport& r = info.prepared;
+  const Prepared::Report& r = info.prepared;
   Report report("touch would use", "");
   if (info.image.depth > 0) {
     report.line("the depth filter",
@@ -211,9 +210,10 @@ LiveFacts study_live(const CloudArgument& argument) {
   facts.posed = frame.T_world_sensor.has_value();
   look_at_depths(frame, facts);
   DepthFilter filter;
-  CameraStatus status = CameraStatus::frame;
-  for (int i = 0; i < kTries && facts.frames < kFrames && status != CameraStatus::ended; ++i) {
-    if (status == CameraStatus::frame) {
+  DepthCamera::Status status = DepthCamera::Status::frame;
+  for (int i = 0; i < kTries && facts.frames < kFrames && status != DepthCamera::Status::ended;
+       ++i) {
+    if (status == DepthCamera::Status::frame) {
       const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());
       const FilteredDepth& depth = filter.filter(frame, pose, {});
       facts.noise = depth.noise;
@@ -222,9 +222,10 @@ LiveFacts study_live(const CloudArgument& argument) {
       last = frame.stamp;
     }
     status = camera->read(frame, kWait);
-    const bool failed = status == CameraStatus::damaged || status == CameraStatus::failed;
+    const bool failed =
+        status == DepthCamera::Status::damaged || status == DepthCamera::Status::failed;
     facts.failures += failed ? 1 : 0;
-    facts.unposed += status == CameraStatus::unposed ? 1 : 0;
+    facts.unposed += status == DepthCamera::Status::unposed ? 1 : 0;
   }
   if (last > start) facts.rate = static_cast<double>(facts.frames - 1) / (last - start);
   return facts;

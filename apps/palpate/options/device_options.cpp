@@ -10,7 +10,7 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/option_table.hpp"
-#include "palpate/device/open_device.hpp"
+#include "palpate/device/hardware.hpp"
 
 namespace palpate::app {
 

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/names.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
 
 namespace palpate::app {
 

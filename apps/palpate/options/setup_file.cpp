@@ -1,5 +1,3 @@
-#include "apps/palpate/options/setup_file.hpp"
-
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -10,6 +8,7 @@
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/options/touch_options.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {

@@ -1,5 +1,3 @@
-#include "apps/palpate/options/source_choice.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <fstream>
 
 #include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/options/touch_options.hpp"
 
 namespace palpate::app {
 

@@ -2,9 +2,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/palpate/cli/arguments.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/scene/source.hpp"
 
 namespace palpate::app {
@@ -33,5 +34,11 @@ void add_source_options(OptionTable& table, SourcePlan& source);
 
 /// What a command takes as sources, for its help.
 [[nodiscard]] std::string cloud_help();
+
+/// What becomes of a source's frames or clouds in time.
+[[nodiscard]] Policy policy_of(const SourcePlan& source);
+
+/// Is --history a policy's?
+[[nodiscard]] bool keeps_history(Policy policy);
 
 }  // namespace palpate::app

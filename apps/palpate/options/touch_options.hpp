@@ -23,7 +23,7 @@ struct TouchChoices {
   std::vector<PoseArgument> poses = {};
   std::vector<DescribedSource> described_sources = {};  ///< of the set-up file
   SourcePlan every_source = {};  ///< what holds for sources that the set-up file says no more of
-  std::optional<FieldKind> field = {};
+  std::optional<FieldOptions::Kind> field = {};
   std::optional<FieldOptions::Gradient> gradient = {};
   std::optional<double> threshold = {};        ///< of the metaball
   std::optional<double> friction_static = {};  ///< the dynamic one unless given
@@ -46,5 +46,24 @@ void add_touch_options(OptionTable& table, TouchChoices& choices);
 
 /// All of them on the command line of `palpate touch`, with its help.
 void add_touch_command(CLI::App& command, TouchChoices& choices);
+
+/// Reads a set-up file into `choices`, to which the options of `table` are bound, and fills in what
+/// the command line did not give; notes which keys it has. Files in it are relative to its own
+/// folder. docs/setup.md describes the file.
+/// @throws Error that names file, line and key: of a key that is unknown, a value of another type
+/// or out of range, a file that is no TOML.
+void read_setup(const std::string& path, const OptionTable& table, const GivenOptions& given,
+                TouchChoices& choices, DescribedOptions& described);
+
+/// The set-up file's sources and then those of the command line; one of these that has the name of
+/// one of the file's takes its place and keeps its pose and options. --pose wins over the file.
+/// What depends on the whole surface is filled in.
+/// @throws UsageError when there is none, two have one name, a pose names none of them, or options
+/// of one contradict each other.
+[[nodiscard]] std::vector<DescribedSource> choose_sources(const TouchChoices& choices,
+                                                          const SurfacePlan& surface);
+
+/// Tells in `facts` of one more source.
+void add_facts(RunFacts& facts, const SourcePlan& source);
 
 }  // namespace palpate::app

@@ -7,8 +7,8 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/options/setup_file.hpp"
-#include "apps/palpate/options/source_choice.hpp"
+#include "apps/palpate/options/source_options.hpp"
+#include "apps/palpate/options/touch_options.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 
 namespace palpate::app {
@@ -19,7 +19,7 @@ FieldOptions field_of(const TouchChoices& choices) {
   const SurfacePlan& surface = choices.plan.surface;
   FieldOptions field = surface.field;
   if (surface.paper) {
-    field = paper_field(choices.field.value_or(FieldKind::metaball));
+    field = paper_field(choices.field.value_or(FieldOptions::Kind::metaball));
     field.kernel = surface.field.kernel;
     field.tool_radius = surface.field.tool_radius;
   }
@@ -39,7 +39,7 @@ SurfacePlan surface_of(const TouchChoices& choices) {
 }
 
 void check_surface(const TouchChoices& choices, const SurfacePlan& surface) {
-  const bool metaball = surface.field.kind == FieldKind::metaball;
+  const bool metaball = surface.field.kind == FieldOptions::Kind::metaball;
   require(metaball || choices.gradient != FieldOptions::Gradient::printed,
           "--gradient printed applies only to the metaball (eq. 4); add --field metaball");
   require(!metaball || choices.gradient != FieldOptions::Gradient::normal,
@@ -150,8 +150,8 @@ ProxyOptions SurfacePlan::proxy_of(double hardest) const {
   return result;
 }
 
-SoftMaterial SurfacePlan::soft_material(double hardest) const {
-  SoftMaterial soft;
+SourceOptions::SoftMaterial SurfacePlan::soft_material(double hardest) const {
+  SourceOptions::SoftMaterial soft;
   soft.friction_factor = soft_friction.value_or(1);
   if (!soft_stiffness) return soft;
   if (*soft_stiffness > hardest) {

@@ -38,7 +38,7 @@ struct SurfacePlan {
 
   /// What the softest points feel like, where the hardest ones have `hardest` N/m.
   /// @throws UsageError when they would be harder than these.
-  [[nodiscard]] SoftMaterial soft_material(double hardest) const;
+  [[nodiscard]] SourceOptions::SoftMaterial soft_material(double hardest) const;
 };
 
 /// How hands move, and for how long.

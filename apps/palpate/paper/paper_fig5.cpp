@@ -5,10 +5,10 @@
 #include <ctime>
 
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/paper/paper_figures.hpp"
+#include "apps/palpate/paper/paper_command.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/filters.hpp"
+#include "palpate/geometry/point_cloud.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::app {
@@ -61,7 +61,7 @@ Fig5Row measure(const PointCloud& cloud, std::size_t size, const PrepareTimes& p
   std::vector<double> spacing;
   std::vector<double> weights;
   for (int i = 0; i < repeats; ++i) {
-    const PrepareReport report = prepare(thinned, options).report;
+    const Prepared::Report report = prepare(thinned, options).report;
     index.push_back(1e3 * report.seconds_index);
     normals.push_back(1e3 * report.seconds_normals);
     spacing.push_back(1e3 * report.seconds_spacing);
@@ -85,7 +85,7 @@ double measure_frames(DepthCamera& camera, DepthFrame frame, int repeats) {
     source.push(frame, [&] { return frame.stamp; });
     if (i >= kWarm || times.empty()) times.push_back(1e3 * (computing_seconds() - begin));
     if (i == kWarm) times.erase(times.begin());
-    if (camera.read(frame, 0) != CameraStatus::frame) break;
+    if (camera.read(frame, 0) != DepthCamera::Status::frame) break;
   }
   return fastest(times);
 }

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/paper/paper_figures.hpp"
+#include "apps/palpate/paper/paper_command.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "palpate/sensor/simulated_stream.hpp"
+#include "palpate/sensor/stream.hpp"
 
 namespace palpate::app {
 
@@ -114,14 +114,15 @@ class Feelers {
   Feelers(const Place& place, const Fig7Options& options) : place_(place) {
     for (int n = 1; n <= kMostClouds; ++n) add_clouds(n, options);
     ours_.add("camera");
-    for (const FieldKind kind : {FieldKind::metaball, FieldKind::pointset}) {
+    for (const FieldOptions::Kind kind :
+         {FieldOptions::Kind::metaball, FieldOptions::Kind::pointset}) {
       for (int n = 1; n <= kMostClouds; ++n) add_paper(kind, n);
     }
     feelers_.emplace_back(ours_, FieldOptions{}, ProxyOptions{});
     feelers_.back().press.name = "palpate";
   }
 
-  void push(const DepthFrame& frame, const StartTime& start) {
+  void push(const DepthFrame& frame, const Source::StartTime& start) {
     const PointCloud cloud = cloud_of(frame);
     for (Scene& scene : clouds_) {
       if (frame.T_world_sensor) scene.source(0).set_pose(*frame.T_world_sensor);
@@ -158,11 +159,11 @@ class Feelers {
     clouds_.emplace_back().add("clouds", options);
   }
 
-  void add_paper(FieldKind kind, int n) {
+  void add_paper(FieldOptions::Kind kind, int n) {
     ProxyOptions proxy;
     proxy.method = ProxyOptions::Method::single_step;
     feelers_.emplace_back(clouds_[static_cast<std::size_t>(n) - 1], paper_field(kind), proxy);
-    feelers_.back().press.name = kind == FieldKind::metaball ? "metaball" : "point-set";
+    feelers_.back().press.name = kind == FieldOptions::Kind::metaball ? "metaball" : "point-set";
     feelers_.back().press.clouds = n;
   }
 
@@ -246,9 +247,9 @@ Fig7 measure_fig7(DepthCamera& camera, const Fig7Options& options) {
   const double whole = kSettled + options.duration;
   const int steps = static_cast<int>(std::lround(whole / kPeriod));
   Progress progress("pressing");
-  SimulatedStream stream(camera, "the press", [&](const DepthFrame& next, const StartTime& start) {
-    feelers.push(next, start);
-  });
+  SimulatedStream stream(
+      camera, "the press",
+      [&](const DepthFrame& next, const Source::StartTime& start) { feelers.push(next, start); });
   for (int i = 0; i < steps; ++i) {
     const double time = i * kPeriod;
     stream.advance(time);

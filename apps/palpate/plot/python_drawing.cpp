@@ -10,6 +10,7 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/process.hpp"
+#include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
@@ -117,6 +118,25 @@ void draw_by_python(std::string_view script, const std::vector<DrawingData>& dat
   }
   throw Error(fmt::format("{} was not drawn: {} (everything else was written)", path,
                           last_line(read_text(complaints))));
+}
+
+FigureFiles::FigureFiles(const std::string& csv, const std::string& json,
+                         const std::string& picture)
+    : picture_path_(picture) {
+  check_distinct({}, {{"--csv", csv}, {"--json", json}, {"--picture", picture}});
+  check_picture(picture);
+  if (!csv.empty()) csv_.emplace(csv);
+  if (!json.empty()) json_.emplace(json);
+  if (!picture.empty()) picture_.emplace(picture);
+}
+
+void FigureFiles::write(const std::string& table, const Json& facts) {
+  write_whole(csv_, table);
+  write_whole(json_, text_of(facts));
+  if (!picture_) return;
+  const Waiting waiting("drawing the picture");
+  draw_by_python(figures_script(), {{"facts.json", text_of(facts)}, {"table.csv", table}},
+                 picture_path_, *picture_);
 }
 
 }  // namespace palpate::app

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,25 @@ void check_picture(const std::string& path);
 /// @throws Error when Python or matplotlib is missing, naming the package, or drawing fails.
 void draw_by_python(std::string_view script, const std::vector<DrawingData>& data,
                     const std::string& path, OutputFile& picture);
+
+/// The files that a figure goes to. All are made before the work: a place that does not exist is
+/// told at once.
+class FigureFiles {
+ public:
+  /// Their paths; empty: not asked for.
+  /// @throws UsageError, Error as check_distinct(), check_picture() and OutputFile do.
+  FigureFiles(const std::string& csv, const std::string& json, const std::string& picture);
+
+  /// The table, the facts, and the picture that figures.py draws of both.
+  /// @throws Error as OutputFile and draw_by_python() do.
+  void write(const std::string& table, const Json& facts);
+
+ private:
+  std::string picture_path_;
+  std::optional<OutputFile> csv_;
+  std::optional<OutputFile> json_;
+  std::optional<OutputFile> picture_;
+};
 
 // The scripts, as CMake found them. All import drawing.py.
 [[nodiscard]] std::string_view drawing_script();

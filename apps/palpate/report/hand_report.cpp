@@ -17,7 +17,7 @@ double share(std::size_t part, std::size_t whole) {
 }
 
 // "12 steps slew-limited, 3 steps force-limited"; empty: it never intervened.
-std::string guard_words(const GuardState::Counts& counts) {
+std::string guard_words(const Guard::State::Counts& counts) {
   std::string words;
   const auto add = [&words](std::uint64_t count, std::string_view text) {
     if (count == 0) return;
@@ -33,8 +33,8 @@ std::string guard_words(const GuardState::Counts& counts) {
   return words;
 }
 
-Json add_guard(Report& report, const GuardOptions& limits, const GuardState& guard) {
-  const GuardState::Counts& counts = guard.counts;
+Json add_guard(Report& report, const GuardOptions& limits, const Guard::State& guard) {
+  const Guard::State::Counts& counts = guard.counts;
   const std::string words = guard_words(counts);
   const std::string most = std::isfinite(limits.maximum_force)
                                ? fmt::format("at most {:.3g} N", limits.maximum_force)
@@ -43,7 +43,7 @@ Json add_guard(Report& report, const GuardOptions& limits, const GuardState& gua
               fmt::format("{}, {:.3g} N/s, watchdog {}: {}", most, limits.slew,
                           duration(limits.silence), words.empty() ? "no intervention" : words));
   const std::string fault(in_words(guard.fault));
-  if (guard.fault != GuardFault::none) report.line("fault", fault, Mark::warning);
+  if (guard.fault != Guard::Fault::none) report.line("fault", fault, Mark::warning);
   return {{"maximum_force_N", limit(limits.maximum_force)},
           {"slew_N_per_s", limits.slew},
           {"watchdog_s", limits.silence},
@@ -103,7 +103,7 @@ Json add_live(Report& report, const LiveReport& live) {
 }
 
 Json add_unguarded(Report& report, const Unguarded& run) {
-  const GuardState::Counts& counts = run.counts();
+  const Guard::State::Counts& counts = run.counts();
   std::string words;
   if (counts.slewed > 0) {
     words += fmt::format("; it would have slew-limited {} steps (largest {:.2g} N in a step)",

@@ -21,7 +21,7 @@ struct LiveReport {
   std::uint64_t skipped = 0;    ///< steps left out because one before them was late
   std::uint64_t unwritten = 0;  ///< steps that came faster than they could be written down
   GuardOptions limits;          ///< of the guard, as they held
-  GuardState guard;             ///< at the end
+  Guard::State guard;           ///< at the end
   std::string failure;          ///< of the device, in words; empty: none
 };
 
@@ -37,7 +37,7 @@ struct HandReport {
   bool scales = true;                    ///< is there a file, whose units --scale can mend?
 };
 
-/// Work done on the hand, J: in its own metres, where the cloud is magnified (workspace.hpp).
+/// Work done on the hand, J: in its own metres, where the cloud is magnified (Workspace).
 struct HandEnergy {
   double given = 0;  ///< TouchStatistics::given_energy()
   double path = 0;   ///< TouchStatistics::path_energy()

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/palpate/cli/json.hpp"
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/sources/loaded_scene.hpp"
 
 namespace palpate::app {
 
@@ -42,5 +43,21 @@ class Report {
 
 /// JSON has no infinity: null is no limit.
 [[nodiscard]] Json limit(double value);
+
+/// What a run knows of one of its sources and, of a camera, of what became of its frames.
+[[nodiscard]] Report source_report(const LoadedSource& source);
+
+/// That of a camera.
+[[nodiscard]] Report camera_report(const LoadedSource& source);
+
+/// Says how much of a cloud is no surface that its points agree on, where it is a hundredth or
+/// more.
+void add_trust(Report& report, const Prepared::Report& prepared);
+
+/// "640 x 480 pixels of a camera of 525 px".
+[[nodiscard]] std::string in_words(const CameraModel& camera);
+
+/// The same as data.
+[[nodiscard]] Json json_of(const CameraModel& camera);
 
 }  // namespace palpate::app

@@ -2,13 +2,112 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
 #include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
-#include "apps/palpate/report/source_report.hpp"
+#include "apps/palpate/report/report.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/geometry/shapes.hpp"
 
 namespace palpate::app {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kCloudPoints = 60'000;
+constexpr std::size_t kSteps = 20'000;
+constexpr double kWhole = 2.5;  // times the way: show a cloud up to this size whole
+constexpr std::size_t kCloudColumns = 7;
+
+// What the picture shows: the way of hand and proxy, and some of what is around it or, unless that
+// is much larger, the whole cloud.
+Box view(const std::vector<ServoState>& steps, const Scene& scene) {
+  Box box;
+  for (const ServoState& step : steps) {
+    box.extend(step.hip);
+    box.extend(step.contact.proxy);
+  }
+  Box all;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const std::shared_ptr<const SurfacePoints> source = scene.source(i).points();
+    if (source) all.extend(source->bounds());
+  }
+  if (!all.empty() && all.size().maxCoeff() < kWhole * box.size().maxCoeff()) {
+    box.extend(all);
+  }
+  const double margin = 0.35 * box.size().maxCoeff() + 1e-3;
+  box.extend(box.lower - Vector3d::Constant(margin));
+  box.extend(box.upper + Vector3d::Constant(margin));
+  return box;
+}
+
+// Every k-th row of a cloud's values, so that few enough are left.
+std::vector<float> thinned(const std::vector<float>& values) {
+  const std::size_t count = values.size() / kCloudColumns;
+  const std::size_t stride = count / kCloudPoints + 1;
+  if (stride == 1) return values;
+  std::vector<float> result;
+  for (std::size_t i = 0; i < count; i += stride) {
+    const auto row = values.begin() + static_cast<std::ptrdiff_t>(kCloudColumns * i);
+    result.insert(result.end(), row, row + kCloudColumns);
+  }
+  return result;
+}
+
+// x, y, z, normal and source of points inside the view, thinned evenly.
+std::vector<float> visible_points(const Scene& scene, const Box& box) {
+  std::vector<float> values;
+  for (std::size_t s = 0; s < scene.size(); ++s) {
+    const std::shared_ptr<const SurfacePoints> source = scene.source(s).points();
+    if (!source) continue;
+    for (std::size_t i = 0; i < source->size(); ++i) {
+      const Vector3d world = source->origin + source->grid.points()[i].cast<double>();
+      if (!box.contains(world)) continue;
+      const Eigen::Vector3f p = (world - box.center()).cast<float>();
+      const Eigen::Vector3f n =
+          source->normals.empty() ? Eigen::Vector3f::Zero() : source->normals[i];
+      values.insert(values.end(),
+                    {p.x(), p.y(), p.z(), n.x(), n.y(), n.z(), static_cast<float>(s)});
+    }
+  }
+  return thinned(values);
+}
+
+std::vector<float> step_rows(const std::vector<ServoState>& steps, const Box& box) {
+  const std::size_t stride = steps.size() / kSteps + 1;
+  std::vector<float> values;
+  for (std::size_t i = 0; i < steps.size(); i += stride) {
+    const ServoState& s = steps[i];
+    const Vector3d h = s.hip - box.center();
+    const Vector3d p = s.contact.proxy - box.center();
+    const Vector3d& f = s.force;
+    for (const double v :
+         {s.time - steps.front().time, h.x(), h.y(), h.z(), p.x(), p.y(), p.z(), f.x(), f.y(),
+          f.z(), s.contact.touching ? 1.0 : 0.0, 1e6 * s.timing.computing}) {
+      values.push_back(static_cast<float>(v));
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+void Picture::draw(const Scene& scene, const std::string& title, const std::string& subtitle) {
+  if (steps_.empty()) throw Error("cannot draw a picture of a run without steps");
+  const Waiting waiting("drawing the picture");
+  const Box box = view(steps_, scene);
+  const nlohmann::json facts = {{"title", title}, {"subtitle", subtitle}};
+  draw_by_python(picture_script(),
+                 {{"cloud.f32", float_bytes(visible_points(scene, box))},
+                  {"steps.f32", float_bytes(step_rows(steps_, box))},
+                  {"facts.json", facts.dump()}},
+                 path_, file_);
+}
 
 namespace {
 

@@ -8,14 +8,14 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
-#include "palpate/device/open_device.hpp"
+#include "palpate/device/hardware.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
 
 namespace palpate::app {
-
 namespace {
 
 // A day: longer ones are times in another unit, or broken.
@@ -97,7 +97,7 @@ void follow(Hand& hand, const HandTask& task, Trajectory trajectory) {
   simulate(hand, task, std::move(trajectory));
 }
 
-void explore(Hand& hand, const HandTask& task, const Scene& scene, ExplorationPlanOptions plan) {
+void explore(Hand& hand, const HandTask& task, const Scene& scene, ExplorationOptions plan) {
   const bool pulled = hand.chosen.kind == DeviceKind::simulated;
   if (!pulled) plan.hand.stiffness = std::numeric_limits<double>::infinity();
   Progress progress("planning the exploration");
@@ -121,15 +121,15 @@ Eigen::Matrix3d behind(const Eigen::Isometry3d& T_world_camera) {
 }
 
 void put_at_surface(Hand& hand, const FieldOptions& field, const Scene& scene,
-                    const ExplorationPlanOptions& plan) {
+                    const ExplorationOptions& plan) {
   const Placement placement = place_device(scene, field, plan);
   hand.workspace = placement.workspace;
   hand.stiffness = placement.stiffness;
   place(hand.workspace, hand.chosen.placement, scene);
 }
 
-ExplorationPlanOptions plan_options(const HandTask& task, const Trajectory& trajectory) {
-  ExplorationPlanOptions plan;
+ExplorationOptions plan_options(const HandTask& task, const Trajectory& trajectory) {
+  ExplorationOptions plan;
   plan.duration = task.motion.duration.value_or(plan.duration);
   plan.stiffness = task.surface.stiffness.value_or(trajectory.empty() ? 0 : kStiffness);
   plan.tool_radius = task.surface.field.tool_radius;
@@ -159,7 +159,7 @@ void check(const Trajectory& trajectory, const std::string& file, bool simulated
 
 }  // namespace
 
-ServoOptions servo_options(const Run& run, const Hand& hand, StepQueue* steps) {
+ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* steps) {
   ServoOptions options;
   options.field = run.field;
   options.proxy = run.proxy;
@@ -195,7 +195,7 @@ std::vector<Hand> open_hands(const std::vector<DevicePlan>& devices, const Motio
 
 void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajectory& trajectory,
                  const Scene& scene) {
-  ExplorationPlanOptions plan = plan_options(task, trajectory);
+  ExplorationOptions plan = plan_options(task, trajectory);
   for (Hand& hand : hands) {
     plan.scale = hand.chosen.placement.scale;
     if (!hand.chosen.follows_trajectory()) {
@@ -218,6 +218,56 @@ void place(Workspace& workspace, const PlacementOptions& placement, const Scene&
     }
   }
   pose.translation() += pose.linear() * placement.offset;
+}
+
+Stream::Sink feeding(LoadedSource& from, Source& to, double (*computing)()) {
+  return [&from, &to, computing](const DepthFrame& frame, const Source::StartTime& start) {
+    FeedReport& feed = from.feed;
+    feed.width = frame.camera.width;
+    feed.height = frame.camera.height;
+    const double begin = computing();
+    push_frame(from, to, frame, start);
+    feed.prepare_ms.push_back(1e3 * (computing() - begin));
+  };
+}
+
+void keep_states(LoadedScene& loaded, const std::vector<StreamState>& states) {
+  auto next = states.begin();
+  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
+    LoadedSource& source = loaded.sources[i];
+    if (!source.camera) continue;
+    source.feed.state = *next++;
+    source.state = loaded.scene.state(i);
+  }
+}
+
+LiveFeed::LiveFeed(LoadedScene& loaded, const Clock& clock, double start)
+    : loaded_(loaded), start_(start) {
+  StreamOptions options;
+  options.start = start;
+  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
+    LoadedSource& from = loaded.sources[i];
+    if (!from.camera) continue;
+    Source& to = loaded.scene.source(i);
+    streams_.emplace_back(*from.camera, to.name(), feeding(from, to, thread_cpu_seconds), clock,
+                          options, [&to] { to.keep(); });
+  }
+}
+
+std::vector<StreamState> LiveFeed::states() const {
+  std::vector<StreamState> states;
+  for (const Stream& stream : streams_) states.push_back(stream.state());
+  return states;
+}
+
+void LiveFeed::finish() {
+  std::vector<StreamState> states = this->states();
+  streams_.clear();
+  for (StreamState& state : states) {
+    state.problem_at -= start_;
+    state.last_frame -= start_;
+  }
+  keep_states(loaded_, states);
 }
 
 }  // namespace palpate::app

@@ -11,8 +11,8 @@
 #include "palpate/device/device.hpp"
 #include "palpate/device/exploration.hpp"
 #include "palpate/device/remote.hpp"
-#include "palpate/device/teleoperated_hand.hpp"
-#include "palpate/device/workspace.hpp"
+#include "palpate/device/simulated.hpp"
+#include "palpate/sensor/stream.hpp"
 #include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
@@ -29,7 +29,7 @@ struct Hand {
   double stiffness = 0;                 ///< of the surface, N/m in the world; of all hands the same
   std::size_t steps = 0;                ///< that its trajectory takes
   std::optional<double> duration = {};  ///< s, of a device that never ends by itself
-  std::optional<ExplorationPlan> plan = {};  ///< of the built-in exploration, if it is that
+  std::optional<Placement> plan = {};   ///< of the built-in exploration, if it is that
 };
 
 /// All that a run is made of: what is touched, who touches, and by which clock.
@@ -45,7 +45,7 @@ struct Run {
 
 /// What the servo of one of the hands is made with; `steps`: who records its steps, if anybody.
 [[nodiscard]] ServoOptions servo_options(const Run& run, const Hand& hand,
-                                         StepQueue* steps = nullptr);
+                                         ServoState::Queue* steps = nullptr);
 
 /// Is handed every step of every hand, by its index, as soon as it is done.
 using EachStep = std::function<void(std::size_t hand, const ServoState&)>;
@@ -80,5 +80,32 @@ void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajector
 /// Turns and moves `workspace`, whose axes are the world's, as `placement` wants it. Its frame is
 /// the name of a source in `scene`.
 void place(Workspace& workspace, const PlacementOptions& placement, const Scene& scene);
+
+/// Makes the frames of `from` part of `to` and notes in `from.feed` what they were like, with their
+/// preparation's time as `computing` tells it (s). Both outlive the sink; until its stream has
+/// ended the notes are the stream's.
+[[nodiscard]] Stream::Sink feeding(LoadedSource& from, Source& to, double (*computing)());
+
+/// Keeps how the streams and the sources that they fed fared. `states` are in the order of the
+/// sources.
+void keep_states(LoadedScene& loaded, const std::vector<StreamState>& states);
+
+/// The streams of everything in `loaded` that lives, into its scene; it outlives them.
+class LiveFeed {
+ public:
+  /// Recordings begin together at `start`, s on the clock.
+  LiveFeed(LoadedScene& loaded, const Clock& clock, double start);
+
+  /// How each stream fares, in the order of the sources.
+  [[nodiscard]] std::vector<StreamState> states() const;
+
+  /// Ends the streams and puts what they were like into `loaded`, times counted from the start.
+  void finish();
+
+ private:
+  LoadedScene& loaded_;
+  double start_;
+  std::vector<Stream> streams_;
+};
 
 }  // namespace palpate::app

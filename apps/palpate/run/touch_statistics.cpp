@@ -123,7 +123,7 @@ Unguarded::Unguarded(const GuardOptions& guard, const DeviceInfo& device, double
     : guard_(limits_for(guard, device, scale)) {}
 
 void Unguarded::add(const ServoState& step) {
-  GuardInput input;
+  Guard::Input input;
   input.force = step.force;
   input.normal = step.contact.normal;
   input.drift = step.contact.drift;

@@ -82,7 +82,7 @@ class Unguarded {
 
   [[nodiscard]] const GuardOptions& limits() const { return guard_.options(); }
   /// `slewed` and `clamped` are the steps that would have been slowed and shortened.
-  [[nodiscard]] const GuardState::Counts& counts() const { return guard_.state().counts; }
+  [[nodiscard]] const Guard::State::Counts& counts() const { return guard_.state().counts; }
   /// Largest change of the force, N, in a step that would have been slowed.
   [[nodiscard]] double largest_change() const { return largest_change_; }
 

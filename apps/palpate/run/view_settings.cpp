@@ -21,26 +21,22 @@ constexpr const char* kAutomatic = "automatic";
 
 Setting number(const char* key, const char* label, const char* unit, double least, double most,
                double step, double value) {
-  Setting setting;
-  setting.key = key;
-  setting.label = label;
-  setting.unit = unit;
-  setting.least = least;
-  setting.most = most;
-  setting.step = step;
-  setting.value = value;
-  return setting;
+  return {.key = key,
+          .label = label,
+          .unit = unit,
+          .least = least,
+          .most = most,
+          .step = step,
+          .value = value};
 }
 
 Setting choice(const char* key, const char* label, std::vector<std::string> choices,
                const char* value) {
-  Setting setting;
-  setting.key = key;
-  setting.label = label;
-  setting.kind = Setting::Kind::choice;
-  setting.choices = std::move(choices);
-  setting.value = std::string(value);
-  return setting;
+  return {.key = key,
+          .label = label,
+          .kind = Setting::Kind::choice,
+          .choices = std::move(choices),
+          .value = std::string(value)};
 }
 
 std::vector<std::string> policies(const ViewScope& scope) {
@@ -60,7 +56,7 @@ void set_contact(ContactSettings& feel, const std::string& key, double value) {
   feel.friction.static_coefficient = value;
 }
 
-FieldOptions other_kind(FieldOptions field, FieldKind kind) {
+FieldOptions other_kind(FieldOptions field, FieldOptions::Kind kind) {
   if (field.raw_weights) return paper_field(kind);
   field.kind = kind;
   return field;
@@ -76,7 +72,7 @@ constexpr std::array<Preset, 4> kPresets = {{
     {"paper",
      [](ViewSettings& settings) {
        settings.field = paper_field();
-       settings.policy = Policy::average;
+       settings.preparation.policy = Policy::average;
        settings.feel.texture = {};
      }},
     {"soft",
@@ -106,45 +102,34 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
                           settings.feel.texture.amplitude / kMillimetre));
   }
   if (scope.lives || scope.clouds) {
-    list.push_back(number("smoothing", "Smoothing", "", 0.5, 3, 0.1, settings.smoothing));
+    list.push_back(
+        number("smoothing", "Smoothing", "", 0.5, 3, 0.1, settings.preparation.smoothing));
   }
   if (scope.lives) {
-    const char* const policy = settings.policy ? name_in(kPolicies, *settings.policy) : kAutomatic;
+    const char* const policy =
+        settings.preparation.policy ? name_in(kPolicies, *settings.preparation.policy) : kAutomatic;
     list.push_back(choice("policy", "Time", policies(scope), policy));
-    list.push_back(number("history", "History", "clouds", 1, 7, 1, settings.history));
+    list.push_back(number("history", "History", "clouds", 1, 7, 1, settings.preparation.history));
   }
   if (scope.clouds) {
     list.push_back(number("voxel", "Voxel (0: automatic)", "mm", 0, 50, 0.5,
-                          settings.voxel.value_or(0) / kMillimetre));
+                          settings.preparation.voxel.value_or(0) / kMillimetre));
   }
   return list;
-}
-
-bool prepares_alike(const ViewSettings& one, const ViewSettings& other) {
-  return one.smoothing == other.smoothing && one.policy == other.policy &&
-         one.history == other.history && one.voxel == other.voxel;
-}
-
-ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other) {
-  settings.smoothing = other.smoothing;
-  settings.policy = other.policy;
-  settings.history = other.history;
-  settings.voxel = other.voxel;
-  return settings;
 }
 
 void set(ViewSettings& settings, const std::string& key, const Setting::Value& value) {
   if (key == "field") {
     settings.field = other_kind(settings.field, *choice_of(kFields, std::get<std::string>(value)));
   } else if (key == "policy") {
-    settings.policy = choice_of(kPolicies, std::get<std::string>(value));
+    settings.preparation.policy = choice_of(kPolicies, std::get<std::string>(value));
   } else if (key == "history") {
-    settings.history = static_cast<int>(std::lround(std::get<double>(value)));
+    settings.preparation.history = static_cast<int>(std::lround(std::get<double>(value)));
   } else if (key == "smoothing") {
-    settings.smoothing = std::get<double>(value);
+    settings.preparation.smoothing = std::get<double>(value);
   } else if (key == "voxel") {
     const double voxel = std::get<double>(value) * kMillimetre;
-    settings.voxel = voxel > 0 ? std::optional<double>(voxel) : std::nullopt;
+    settings.preparation.voxel = voxel > 0 ? std::optional<double>(voxel) : std::nullopt;
   } else if (key == "stiffness" || key == "friction" || key == "texture") {
     set_contact(settings.feel, key, std::get<double>(value));
   } else {
@@ -171,15 +156,15 @@ ViewSettings preset(const ViewSettings& initial, const std::string& name, const 
   throw Error(fmt::format("unknown preset '{}'", name));
 }
 
-SourceOptions prepared_by(const ViewSettings& settings, const ViewSettings& initial,
-                          const SourceOptions& own) {
+SourceOptions prepared_by(const ViewSettings::Preparation& wanted,
+                          const ViewSettings::Preparation& initial, const SourceOptions& own) {
   constexpr double kRadiusMultiple = 2.5;
   SourceOptions options = own;
-  if (settings.policy != initial.policy) options.policy.policy = settings.policy;
-  if (settings.history != initial.history) options.policy.history = settings.history;
-  if (settings.voxel != initial.voxel) options.prepare.voxel = settings.voxel;
-  if (settings.smoothing == initial.smoothing) return options;
-  const double wider = settings.smoothing / initial.smoothing;
+  if (wanted.policy != initial.policy) options.policy.policy = wanted.policy;
+  if (wanted.history != initial.history) options.policy.history = wanted.history;
+  if (wanted.voxel != initial.voxel) options.prepare.voxel = wanted.voxel;
+  if (wanted.smoothing == initial.smoothing) return options;
+  const double wider = wanted.smoothing / initial.smoothing;
   options.depth.normal_error /= wider;
   if (options.prepare.radius) {
     *options.prepare.radius *= wider;
@@ -200,7 +185,7 @@ double deepest_texture(const Scene& scene) {
   return largest;
 }
 
-Preparer::Preparer(Run& run, const ViewSettings& initial, Failed failed)
+Preparer::Preparer(Run& run, const Preparation& initial, Failed failed)
     : run_(run),
       initial_(initial),
       held_(initial),
@@ -214,47 +199,46 @@ void Preparer::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Preparer::want(const ViewSettings& settings) {
+void Preparer::want(const Preparation& wanted) {
   {
     const std::lock_guard lock(mutex_);
-    wanted_ = settings;
+    wanted_ = wanted;
   }
   changed_.notify_one();
 }
 
 void Preparer::work(const std::stop_token& stop) {
   while (true) {
-    ViewSettings settings;
+    Preparation wanted;
     {
       std::unique_lock lock(mutex_);
       if (!changed_.wait(lock, stop, [this] { return wanted_.has_value(); })) return;
-      settings = *std::exchange(wanted_, std::nullopt);
+      wanted = *std::exchange(wanted_, std::nullopt);
     }
     try {
-      prepare(settings);
-      held_ = settings;
+      prepare(wanted);
+      held_ = wanted;
     } catch (const std::exception& error) {
-      take_back();
+      // What could not be prepared has left its surface as it was; frames to come go on as before.
+      change_all(held_);
       failed_(error.what(), held_);
     }
   }
 }
 
 // What lives is prepared so from its next frame on.
-void Preparer::prepare(const ViewSettings& settings) {
+void Preparer::change_all(const Preparation& wanted) {
   for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
-    Source& source = run_.loaded.scene.source(i);
-    const LoadedSource& loaded = run_.loaded.sources[i];
-    source.change(prepared_by(settings, initial_, loaded.plan.options));
-    if (loaded.cloud) source.set(*loaded.cloud);
+    const SourceOptions& options = run_.loaded.sources[i].plan.options;
+    run_.loaded.scene.source(i).change(prepared_by(wanted, initial_, options));
   }
 }
 
-// What could not be prepared has left its surface as it was; frames to come go on as before.
-void Preparer::take_back() {
+void Preparer::prepare(const Preparation& wanted) {
+  change_all(wanted);
   for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
-    const SourceOptions& options = run_.loaded.sources[i].plan.options;
-    run_.loaded.scene.source(i).change(prepared_by(held_, initial_, options));
+    const LoadedSource& loaded = run_.loaded.sources[i];
+    if (loaded.cloud) run_.loaded.scene.source(i).set(*loaded.cloud);
   }
 }
 

@@ -16,14 +16,23 @@
 
 namespace palpate::app {
 
+using Setting = ViewerControls::Setting;
+
 /// What a viewer's page may change while the tool feels.
 struct ViewSettings {
+  /// Of how sources are prepared.
+  struct Preparation {
+    std::optional<Policy> policy;  ///< unset: as each kind of source has it
+    int history = 4;
+    double smoothing = 1;         ///< of what the noise asks for: windows and radii grow with it
+    std::optional<double> voxel;  ///< of clouds, m; unset: chosen from the data
+
+    bool operator==(const Preparation&) const = default;
+  };
+
   FieldOptions field;
   ContactSettings feel;
-  std::optional<Policy> policy;  ///< unset: as each kind of source has it
-  int history = 4;
-  double smoothing = 1;         ///< of what the noise asks for: windows and radii grow with it
-  std::optional<double> voxel;  ///< of clouds, m; unset: chosen from the data
+  Preparation preparation;
 };
 
 /// What there is to set.
@@ -39,12 +48,6 @@ struct ViewScope {
 [[nodiscard]] std::vector<Setting> list_settings(const ViewSettings& settings,
                                                  const ViewScope& scope);
 
-/// Are sources prepared alike by both?
-[[nodiscard]] bool prepares_alike(const ViewSettings& one, const ViewSettings& other);
-
-/// `settings`, but prepared as `other` has it.
-[[nodiscard]] ViewSettings with_preparation(ViewSettings settings, const ViewSettings& other);
-
 /// @throws Error when there is no such key.
 void set(ViewSettings& settings, const std::string& key, const Setting::Value& value);
 
@@ -56,8 +59,9 @@ void set(ViewSettings& settings, const std::string& key, const Setting::Value& v
 [[nodiscard]] ViewSettings preset(const ViewSettings& initial, const std::string& name,
                                   const ViewScope& scope);
 
-/// `own`, which a source began with, but for what `settings` have other than `initial`.
-[[nodiscard]] SourceOptions prepared_by(const ViewSettings& settings, const ViewSettings& initial,
+/// `own`, which a source began with, but for what `wanted` has other than `initial`.
+[[nodiscard]] SourceOptions prepared_by(const ViewSettings::Preparation& wanted,
+                                        const ViewSettings::Preparation& initial,
                                         const SourceOptions& own);
 
 /// The largest amplitude of a texture, m, that a hand can meet on the thinnest surface of `scene`;
@@ -68,11 +72,12 @@ void set(ViewSettings& settings, const std::string& key, const Setting::Value& v
 /// Of wishes that come faster than it works the last one counts. What fails is taken back.
 class Preparer {
  public:
+  using Preparation = ViewSettings::Preparation;
   /// Called on the preparer's thread: why a preparation failed, and what sources are prepared by.
-  using Failed = std::function<void(const std::string& why, const ViewSettings& held)>;
+  using Failed = std::function<void(const std::string& why, const Preparation& held)>;
 
   /// `initial`: what the run began with. The run outlives it.
-  Preparer(Run& run, const ViewSettings& initial, Failed failed);
+  Preparer(Run& run, const Preparation& initial, Failed failed);
   ~Preparer();
   Preparer(const Preparer&) = delete;
   Preparer& operator=(const Preparer&) = delete;
@@ -81,20 +86,20 @@ class Preparer {
   void stop();
 
   /// Any thread; returns at once.
-  void want(const ViewSettings& settings);
+  void want(const Preparation& wanted);
 
  private:
   void work(const std::stop_token& stop);
-  void prepare(const ViewSettings& settings);
-  void take_back();
+  void prepare(const Preparation& wanted);
+  void change_all(const Preparation& wanted);
 
   Run& run_;
-  ViewSettings initial_;
-  ViewSettings held_;  // the last that sources could be prepared by
+  Preparation initial_;
+  Preparation held_;  // the last that sources could be prepared by
   Failed failed_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::optional<ViewSettings> wanted_;
+  std::optional<Preparation> wanted_;
   std::jthread thread_;  // last: it uses all of the above
 };
 

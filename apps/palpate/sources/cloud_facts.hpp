@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "palpate/geometry/shapes.hpp"
-#include "palpate/io/cloud_file.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/prepare/prepare.hpp"
 
 namespace palpate::app {

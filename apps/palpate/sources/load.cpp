@@ -7,9 +7,9 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/io/read_depth.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
-#include "palpate/sensor/open_camera.hpp"
+#include "palpate/sensor/depth_camera.hpp"
 
 namespace palpate::app {
 
@@ -46,9 +46,9 @@ class PosedCamera final : public DepthCamera {
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return camera_->info(); }
   void begin(double start) override { camera_->begin(start); }
-  [[nodiscard]] CameraStatus read(DepthFrame& frame, double timeout) override {
-    const CameraStatus status = camera_->read(frame, timeout);
-    if (status == CameraStatus::frame && frame.T_world_sensor) {
+  [[nodiscard]] DepthCamera::Status read(DepthFrame& frame, double timeout) override {
+    const DepthCamera::Status status = camera_->read(frame, timeout);
+    if (status == DepthCamera::Status::frame && frame.T_world_sensor) {
       frame.T_world_sensor = T_world_recording_ * *frame.T_world_sensor;
     }
     return status;
@@ -124,10 +124,10 @@ DepthFrame first_frame(DepthCamera& camera) {
   std::string problem = "no frame arrived";
   const int tries = camera.info().paces ? static_cast<int>(kPatience / kAnswerWait) : kAnswerTries;
   for (int i = 0; i < tries; ++i) {
-    const CameraStatus status = camera.read(frame, kAnswerWait);
-    if (status == CameraStatus::frame) return frame;
+    const DepthCamera::Status status = camera.read(frame, kAnswerWait);
+    if (status == DepthCamera::Status::frame) return frame;
     if (!camera.reason().empty()) problem = camera.reason();
-    if (status == CameraStatus::ended) break;
+    if (status == DepthCamera::Status::ended) break;
   }
   throw Error(fmt::format("{} delivered no frame: {}", camera.info().name, problem));
 }

@@ -232,7 +232,7 @@ LoadedScene load_sources(const std::vector<SourcePlan>& sources, const LoadOptio
   return loaded;
 }
 
-void begin_run(LoadedScene& loaded, const SoftMaterial& soft) {
+void begin_run(LoadedScene& loaded, const SourceOptions::SoftMaterial& soft) {
   Scene scene;
   for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
     const LoadedSource& from = loaded.sources[i];
@@ -248,7 +248,7 @@ void begin_run(LoadedScene& loaded, const SoftMaterial& soft) {
 }
 
 void push_frame(const LoadedSource& from, Source& to, const DepthFrame& frame,
-                const StartTime& start) {
+                const Source::StartTime& start) {
   if (!from.plan.as_cloud && !frame.cloud) {
     check_range(frame, from.plan.options.depth);
     to.push(frame, start);

@@ -26,9 +26,9 @@ struct FeedReport {
 
 /// One source of a run. Points themselves live in the scene.
 struct LoadedSource {
-  SourcePlan plan;         ///< of a camera with the range of depths that its first frame asks for
-  PrepareReport prepared;  ///< of a cloud
-  SourceState state;       ///< of a depth image; of what lives, after the run
+  SourcePlan plan;  ///< of a camera with the range of depths that its first frame asks for
+  Prepared::Report prepared;  ///< of a cloud
+  Source::State state;        ///< of a depth image; of what lives, after the run
 
   // Of what stands still:
   bool depth_image = false;  ///< or an organised cloud that is felt as one
@@ -72,13 +72,13 @@ struct LoadOptions {
 /// Makes the scene what a run begins with: clouds as they were prepared, with another soft material
 /// (how hard the hardest points are may be known after preparation only); cameras without a
 /// surface.
-void begin_run(LoadedScene& loaded, const SoftMaterial& soft);
+void begin_run(LoadedScene& loaded, const SourceOptions::SoftMaterial& soft);
 
 /// Makes a camera's frame part of its source in the scene: by the depth filter or, where that is
 /// wanted, as a cloud.
 /// @throws Error as Source::push() does, and when nothing that the filter could take is in its
 /// range.
 void push_frame(const LoadedSource& from, Source& to, const DepthFrame& frame,
-                const StartTime& start);
+                const Source::StartTime& start);
 
 }  // namespace palpate::app

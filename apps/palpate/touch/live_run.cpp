@@ -1,5 +1,3 @@
-#include "apps/palpate/touch/live_run.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +8,9 @@
 #include <utility>
 
 #include "apps/palpate/cli/process.hpp"
-#include "apps/palpate/run/feed.hpp"
+#include "apps/palpate/run/run.hpp"
 #include "apps/palpate/touch/live_status.hpp"
+#include "apps/palpate/touch/touch.hpp"
 #include "apps/palpate/view/view.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/ros/bridge.hpp"
@@ -71,7 +70,7 @@ class LiveHand {
   std::size_t index_;
   double rate_;
   std::optional<PacedDevice> paced_;  // of a device that defines its own time
-  StepQueue steps_;
+  ServoState::Queue steps_;
   Servo servo_;
   double start_ = 0;
   double looked_ = 0;
@@ -88,7 +87,7 @@ LiveHand::LiveHand(Run& run, std::size_t index, WaitingClock& clock)
       steps_(static_cast<std::size_t>(kQueue * rate_)),
       servo_(paced_by(paced_, *hand_.device, clock), run.loaded.scene,
              servo_options(run, hand_, &steps_)),
-      thread_(servo_, clock, {.rate = rate_, .realtime = run.time.realtime}) {}
+      thread_(servo_, clock, run.time.realtime, rate_) {}
 
 void LiveHand::begin(double start) {
   start_ = start;
@@ -109,7 +108,7 @@ bool LiveHand::over(double now) const {
 }
 
 std::string LiveHand::failure() const {
-  if (thread_.running() || servo_.state().device != DeviceStatus::failed) return {};
+  if (thread_.running() || servo_.state().device != DeviceState::Status::failed) return {};
   return fmt::format("{}: device '{}' failed: {}", hand_.name, hand_.device->info().name,
                      hand_.device->reason());
 }
@@ -127,7 +126,7 @@ HandMoment LiveHand::moment(double now) {
   moment.rate = span > 0 ? static_cast<double>(moment.computing.count) / span : 0;
   lateness_ = lateness;
   computing_ = computing;
-  if (moment.servo.device == DeviceStatus::silent) moment.silence = hand_.device->reason();
+  if (moment.servo.device == DeviceState::Status::silent) moment.silence = hand_.device->reason();
   moment.ended = !thread_.running();
   return moment;
 }

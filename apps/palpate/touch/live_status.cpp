@@ -29,9 +29,9 @@ std::string hand_words(const HandMoment& moment) {
                                  moment.force, moment.rate, 1e6 * moment.computing.quantile(0.5),
                                  1e6 * moment.computing.quantile(0.99),
                                  1e3 * moment.lateness.quantile(0.99));
-  const GuardState& guard = moment.servo.guard;
+  const Guard::State& guard = moment.servo.guard;
   if (moment.servo.clutched) words += "  clutch held: the hand moves without the tool";
-  if (guard.fault != GuardFault::none) {
+  if (guard.fault != Guard::Fault::none) {
     words += fmt::format("  FAULT: {}", in_words(guard.fault));
   } else if (guard.notes != GuardNote::none) {
     words += "  " + in_words(guard);

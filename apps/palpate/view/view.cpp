@@ -59,9 +59,9 @@ ViewSettings initial_settings(const Run& run) {
   settings.field = run.field;
   settings.feel = {run.proxy.stiffness, run.proxy.friction, run.proxy.texture};
   const SourceOptions first = run.loaded.scene.source(0).options();
-  settings.policy = first.policy.policy;
-  settings.history = first.policy.history;
-  settings.voxel = first.prepare.voxel;
+  settings.preparation.policy = first.policy.policy;
+  settings.preparation.history = first.policy.history;
+  settings.preparation.voxel = first.prepare.voxel;
   return settings;
 }
 
@@ -84,18 +84,18 @@ ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
   return scope;
 }
 
-std::optional<ViewerStream::Frustum> frustum_of(const LoadedSource& source,
-                                                const SourceState& state) {
+std::optional<ViewerOptions::Stream::Frustum> frustum_of(const LoadedSource& source,
+                                                         const Source::State& state) {
   if (!source.camera) return std::nullopt;
   const CameraModel& lens = source.lens;
-  return ViewerStream::Frustum{0.5 * lens.width / lens.pinhole.fx,
-                               0.5 * lens.height / lens.pinhole.fy, kFar * state.depth};
+  return ViewerOptions::Stream::Frustum{0.5 * lens.width / lens.pinhole.fx,
+                                        0.5 * lens.height / lens.pinhole.fy, kFar * state.depth};
 }
 
-std::vector<ViewerStream> streams_of(const Run& run, const LiveFeed& feed) {
-  std::vector<ViewerStream> streams;
+std::vector<ViewerOptions::Stream> streams_of(const Run& run, const LiveFeed& feed) {
+  std::vector<ViewerOptions::Stream> streams;
   for (StreamState& state : feed.states()) {
-    ViewerStream& stream = streams.emplace_back();
+    ViewerOptions::Stream& stream = streams.emplace_back();
     for (std::size_t i = 0; i < run.loaded.scene.size(); ++i) {
       if (run.loaded.scene.source(i).name() != state.source) continue;
       stream.frustum = frustum_of(run.loaded.sources[i], run.loaded.scene.source(i).state());
@@ -116,8 +116,8 @@ struct View::Parts {
         settings(initial),
         holds(r.hands.begin(), r.hands.end()),
         recording(r.hands.size(), [this](const std::string& why) { recording_broke(why); }),
-        preparer(r, initial,
-                 [this](const std::string& why, const ViewSettings& held) { go_back(why, held); }),
+        preparer(r, initial.preparation,
+                 [this](const std::string& why, const auto& held) { go_back(why, held); }),
         viewer(r.loaded.scene, servos, viewer_options(), controls()) {}
 
   ~Parts() { preparer.stop(); }  // what it tells, it tells the viewer
@@ -167,16 +167,16 @@ struct View::Parts {
       servo->set_field(wanted.field);
     }
     const std::lock_guard lock(settings_mutex);
-    const bool prepares = !prepares_alike(wanted, settings);
+    const bool prepares = wanted.preparation != settings.preparation;
     settings = wanted;
-    if (prepares) preparer.want(settings);
+    if (prepares) preparer.want(settings.preparation);
   }
 
   // The preparer's thread.
-  void go_back(const std::string& why, const ViewSettings& held) {
+  void go_back(const std::string& why, const ViewSettings::Preparation& held) {
     {
       const std::lock_guard lock(settings_mutex);
-      settings = with_preparation(settings, held);
+      settings.preparation = held;
     }
     viewer.settings_changed();
     viewer.notice(Viewer::NoticeLevel::warning, why);

@@ -3,7 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include "apps/palpate/run/feed.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "palpate/servo/servo.hpp"
 

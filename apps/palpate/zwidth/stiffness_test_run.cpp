@@ -10,13 +10,12 @@
 #include <thread>
 
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/json.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/zwidth/zwidth_command.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/device/open_device.hpp"
+#include "palpate/device/hardware.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {
@@ -43,7 +42,7 @@ class TrialThread {
  private:
   void run(const std::stop_token& stop) {
     static_cast<void>(make_realtime({}));
-    Deadlines deadlines(clock_.now(), 1 / device_.info().rate);
+    ServoThread::Deadlines deadlines(clock_.now(), 1 / device_.info().rate);
     // The force has gone when the guard had a tenth of a second for it.
     int after = static_cast<int>(0.1 * device_.info().rate);
     while (!stop.stop_requested() && after > 0) {
@@ -134,8 +133,7 @@ void run_stiffness_test(const StiffnessTestRunOptions& options) {
                     options.device));
   }
   ask(options);
-  std::optional<OutputFile> json;
-  if (!options.json.empty()) json.emplace(options.json);
+  std::optional<OutputFile> json = output_at(options.json);
   SteadyClock clock;
   const Interruption interruption;
   ThreadedDeviceOptions link;

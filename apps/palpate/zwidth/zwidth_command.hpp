@@ -1,8 +1,8 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "apps/palpate/zwidth/zwidth_map.hpp"
 #include "palpate/servo/z_width.hpp"
 
 namespace CLI {
@@ -10,6 +10,19 @@ class App;
 }
 
 namespace palpate::app {
+
+/// What a map of walls is made for. What is empty is chosen.
+struct ZWidthOptions {
+  std::string profile = "simulated";  ///< a name that is known
+  std::string profiles;               ///< file that has it; empty: what comes with palpate
+  std::vector<double> rates;          ///< Hz
+  std::vector<int> delays;            ///< steps
+  std::vector<double> dampings;       ///< of the device, N s/m
+  double wall_damping = 0;            ///< B of the guard's damper, N s/m
+  std::string csv;
+  std::string json;
+  std::string picture;
+};
 
 struct StiffnessTestRunOptions {
   std::string device;      ///< what open_device() takes

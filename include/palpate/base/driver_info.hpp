@@ -13,11 +13,11 @@ struct DriverInfo {
     std::string description;  ///< for people
   };
 
-  std::string name;         ///< what open_camera() or open_device() takes, without a device
-  std::string description;  ///< which devices these are
-  bool available = true;    ///< is it in this build, and does it work?
-  std::string missing;      ///< what is missing and what brings it, if it is not available
-  std::vector<Device> devices;
+  std::string name;          ///< what open_camera() or open_device() takes, without a device
+  std::string description;   ///< which devices these are
+  bool available = true;     ///< is it in this build, and does it work?
+  std::string missing = {};  ///< what is missing and what brings it, if it is not available
+  std::vector<Device> devices = {};
 };
 
 }  // namespace palpate

@@ -27,17 +27,10 @@ struct NoiseModel {
   }
 };
 
-/// What is known of a kind of sensor before its first frame.
-struct SensorProfile {
-  std::string_view name;  ///< such as "xtion"
-  NoiseModel noise;       ///< measured on recordings (docs/method.md 6.2)
-};
-
-/// The sensors that there are profiles of: kinect1, xtion, realsense, tof.
-[[nodiscard]] std::span<const SensorProfile> sensor_profiles();
-
-/// @throws Error that lists the names when there is no such profile.
-[[nodiscard]] const SensorProfile& sensor_profile(std::string_view name);
+/// Of a kind of sensor, before its first frame: kinect1, xtion, realsense or tof. Measured on
+/// recordings (docs/method.md 6.2).
+/// @throws Error that lists the names when it is none of them.
+[[nodiscard]] NoiseModel sensor_noise(std::string_view sensor);
 
 /// For a sensor of which nothing is known: as noisy as the worse of the common ones within a
 /// metre, so that a fit smooths too much rather than too little.

@@ -9,21 +9,6 @@
 
 namespace palpate {
 
-/// How a device is doing.
-enum class DeviceStatus {
-  ok,
-  silent,  ///< not latched: no data from the hand, so no force may be applied; the position is the
-           ///< last that was known, or the first after the silence
-  finished,  ///< a recording or a simulation has ended, and with it the loop; the last state is
-             ///< repeated
-  failed,    ///< latched: no force is applied any more; reason() says why
-};
-
-/// True when there will be no more steps.
-[[nodiscard]] constexpr bool has_ended(DeviceStatus status) noexcept {
-  return status == DeviceStatus::finished || status == DeviceStatus::failed;
-}
-
 /// What one device can do.
 struct DeviceInfo {
   std::string name;  ///< for messages
@@ -44,7 +29,17 @@ struct DeviceInfo {
 
 /// A device at the beginning of a step, in its own frame.
 struct DeviceState {
-  DeviceStatus status = DeviceStatus::ok;
+  /// How a device is doing.
+  enum class Status {
+    ok,
+    silent,    ///< not latched: no data from the hand, so no force may be applied; the position is
+               ///< the last that was known, or the first after the silence
+    finished,  ///< a recording or a simulation has ended, and with it the loop; the last state is
+               ///< repeated
+    failed,    ///< latched: no force is applied any more; reason() says why
+  };
+
+  Status status = Status::ok;
   double time = 0;  ///< s, on the device's clock; a ServoThread uses its own
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
   /// m/s; damping and brake depend on it. Estimate it from positions where it is not measured.
@@ -55,6 +50,11 @@ struct DeviceState {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   double gripper = 0;  ///< opening between its fingers, m; 0 where there is none
 };
+
+/// True when there will be no more steps.
+[[nodiscard]] constexpr bool has_ended(DeviceState::Status status) noexcept {
+  return status == DeviceState::Status::finished || status == DeviceState::Status::failed;
+}
 
 /// A haptic device: measures where the hand is and applies a force to it. It may measure more
 /// (orientation, gripper), but the output has three degrees of freedom: no torque is rendered.
@@ -122,5 +122,37 @@ struct DeviceProfile {
 /// Reads a file of profiles.
 /// @throws Error as parse_device_profiles(), or when the file cannot be read.
 [[nodiscard]] std::vector<DeviceProfile> read_device_profiles(const std::string& path);
+
+/// Where a device's frame is in the world and how much its motion is magnified.
+///
+/// Positions and velocities are rotated and multiplied by `scale`; positions are also translated.
+/// Forces are only rotated: a newton that a proxy computes is a newton that the hand feels. Hence
+///  - the hand feels a surface of K N/m in the world as scale * K N/m (felt_stiffness()); for it to
+///    feel K, give the surface K / scale;
+///  - work done on the hand is the world's work F . dh divided by `scale`; its sign, which
+///    passivity depends on, is the same in both.
+struct Workspace {
+  Eigen::Isometry3d T_world_device = Eigen::Isometry3d::Identity();  ///< pose of the device's frame
+  double scale = 1;  ///< metres in the world for one metre of the device; > 0
+
+  [[nodiscard]] Eigen::Vector3d position_to_world(const Eigen::Vector3d& device) const noexcept {
+    return T_world_device * Eigen::Vector3d(scale * device);
+  }
+  [[nodiscard]] Eigen::Vector3d position_to_device(const Eigen::Vector3d& world) const noexcept {
+    return T_world_device.linear().transpose() * (world - T_world_device.translation()) / scale;
+  }
+  [[nodiscard]] Eigen::Vector3d velocity_to_world(const Eigen::Vector3d& device) const noexcept {
+    return T_world_device.linear() * Eigen::Vector3d(scale * device);
+  }
+  [[nodiscard]] Eigen::Quaterniond orientation_to_world(
+      const Eigen::Quaterniond& device) const noexcept {
+    return Eigen::Quaterniond(T_world_device.linear()) * device;
+  }
+  [[nodiscard]] Eigen::Vector3d force_to_device(const Eigen::Vector3d& world) const noexcept {
+    return T_world_device.linear().transpose() * world;
+  }
+  /// The stiffness that the hand feels, N/m, of a surface with `world` N/m.
+  [[nodiscard]] double felt_stiffness(double world) const noexcept { return scale * world; }
+};
 
 }  // namespace palpate

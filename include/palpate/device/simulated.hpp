@@ -1,3 +1,5 @@
+// Devices without hardware: SimulatedDevice has mass and is held by a hand, ScriptedDevice plays a
+// trajectory. Both run in simulated time; PacedDevice runs them in real time.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,27 +13,24 @@
 #include "palpate/device/device.hpp"
 #include "palpate/io/trajectory.hpp"
 
-// Devices without hardware: SimulatedDevice has mass and is held by a hand, ScriptedDevice plays a
-// trajectory. Both run in simulated time; PacedDevice runs them in real time.
 namespace palpate {
-
-/// Where a hand wants to be.
-struct HandTarget {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, device frame
-  std::uint32_t buttons = 0;                           ///< bit k: button k is down
-};
 
 /// Says step by step where a simulated device's hand wants to be, for motions that are not known in
 /// advance.
 class TargetSource {
  public:
+  /// Where a hand wants to be.
+  struct Target {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, device frame
+    std::uint32_t buttons = 0;                           ///< bit k: button k is down
+  };
+
   virtual ~TargetSource() = default;
 
   /// The target at `time`, s on the device's clock, which grows from call to call; the device is at
   /// `position` now, m, device frame. Called on the servo's thread: no allocation, lock, throw or
   /// system call. A target that is not finite makes the device fail.
-  [[nodiscard]] virtual HandTarget target(double time,
-                                          const Eigen::Vector3d& position) noexcept = 0;
+  [[nodiscard]] virtual Target target(double time, const Eigen::Vector3d& position) noexcept = 0;
 
  protected:
   TargetSource() = default;
@@ -154,5 +153,75 @@ class PacedDevice final : public Device {
 /// @throws Error that names the row when a trajectory is empty, not finite, or its times do not
 /// grow strictly.
 void check(const Trajectory& trajectory);
+
+/// A tool that is taken, moved and released from outside: by a page's mouse, over a network, by
+/// another program. One thread at a time sends; any number of others read, without locks.
+class RemoteTarget {
+ public:
+  /// The newest command to a tool.
+  struct Command {
+    TargetSource::Target target;
+    double stamp = 0;         ///< of the target, s, on the sender's clock
+    bool held = false;        ///< somebody holds the tool
+    std::uint64_t moves = 0;  ///< targets that were sent so far
+  };
+
+  RemoteTarget();
+  ~RemoteTarget();
+
+  /// Takes the tool, unless it is held already, and moves it. `stamp`: s, on the sender's clock;
+  /// grows from call to call. False: ignored, since it is not finite. Wait-free, as all that
+  /// follows.
+  bool move(const TargetSource::Target& target, double stamp) noexcept;
+
+  /// The user of the tool is still connected and keeps it still: a mouse that rests sends
+  /// nothing, so its connection calls this, more often than the reader's command_timeout.
+  void keep_alive() noexcept;
+
+  void release() noexcept;
+
+  /// The newest command; none when the sender was too fast for a consistent copy.
+  [[nodiscard]] std::optional<Command> command() const noexcept;
+  /// Grows with every call above that had an effect.
+  [[nodiscard]] std::uint64_t generation() const noexcept;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+struct TeleoperatedHandOptions {
+  double speed = 0.5;            ///< limit of the target's speed, but on the trajectory, m/s; > 0
+  double command_timeout = 0.1;  ///< s without a command after which the tool is released; > 0
+  double release_time = 0.2;     ///< time constant in which the hand ceases to pull, s; > 0
+  double return_after = 3;       ///< s from the release until the trajectory goes on; 0 or more
+};
+
+/// A hand that plays a trajectory again and again, such as that of plan_exploration(), until
+/// somebody takes the tool; then it follows the commands, and some time after the release it
+/// returns to the trajectory.
+///
+///  - To the trajectory's beginning, and back to where it was interrupted, the target moves at
+///    `speed`; the trajectory waits for it.
+///  - Commands are interpolated between their irregular times, and followed no faster than `speed`.
+///  - A command that is overdue counts as a release: the target moves to where the device is, so
+///    that nothing pulls any more and the surface pushes it out.
+///
+/// Same commands at the same times, same bits. One thread calls target(); others send to the
+/// RemoteTarget.
+class TeleoperatedHand final : public TargetSource {
+ public:
+  /// `trajectory`: device frame; empty: none. `remote` outlives it.
+  /// @throws Error when an option is out of range or the trajectory is not valid.
+  explicit TeleoperatedHand(const RemoteTarget& remote, Trajectory trajectory = {},
+                            const TeleoperatedHandOptions& options = {});
+  ~TeleoperatedHand() override;
+
+  [[nodiscard]] Target target(double time, const Eigen::Vector3d& position) noexcept override;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
 
 }  // namespace palpate

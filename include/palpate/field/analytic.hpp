@@ -7,16 +7,16 @@
 
 namespace palpate {
 
-/// A distance to a shape and its gradient, in the shape's own frame.
-struct Distance {
-  double value = 0;                                     ///< m; negative inside
-  Eigen::Vector3d gradient = Eigen::Vector3d::UnitZ();  ///< unit; any one where several are true
-};
-
 /// A solid known by its exact signed distance. The fields that the proxy is tested on to
 /// machine precision; also good as a wall or a floor beside scanned clouds.
 class AnalyticField : public Field {
  public:
+  /// A distance to a shape and its gradient, in the shape's own frame.
+  struct Distance {
+    double value = 0;                                     ///< m; negative inside
+    Eigen::Vector3d gradient = Eigen::Vector3d::UnitZ();  ///< unit; any one where several are true
+  };
+
   /// What all analytic fields share.
   struct Options {
     Eigen::Isometry3d T_world_shape = Eigen::Isometry3d::Identity();  ///< pose of the shape's frame

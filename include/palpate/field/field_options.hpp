@@ -5,26 +5,15 @@ namespace palpate {
 /// The paper's two compactly supported weights (section III-A).
 enum class Kernel { wyvill, wendland };
 
-/// The level at which the density-normalised weight sum of a plane stands at a height of `eta`
-/// support radii, 1 at 0 and 0 from 1 on: the metaball's threshold for an offset of eta R
-/// (docs/method.md 2.1).
-[[nodiscard]] double plane_threshold(Kernel kernel, double eta) noexcept;
-
-/// d plane_threshold / d eta.
-[[nodiscard]] double plane_threshold_slope(Kernel kernel, double eta) noexcept;
-
-/// The inverse of plane_threshold, by bisection. Not for the servo step.
-[[nodiscard]] double plane_offset(Kernel kernel, double threshold) noexcept;
-
-/// The implicit surfaces that points can be turned into.
-enum class FieldKind {
-  balanced,  ///< mean of point-set surface and IMLS; our default (docs/method.md 2.4)
-  pointset,  ///< the paper's point-set surface, eqs. (5)-(7)
-  metaball,  ///< the paper's metaball surface, eq. (3), on density-normalised weights
-};
-
 /// How points become a surface. The defaults are ours; paper_field() gives the paper's.
 struct FieldOptions {
+  /// The implicit surfaces that points can be turned into.
+  enum class Kind {
+    balanced,  ///< mean of point-set surface and IMLS; our default (docs/method.md 2.4)
+    pointset,  ///< the paper's point-set surface, eqs. (5)-(7)
+    metaball,  ///< the paper's metaball surface, eq. (3), on density-normalised weights
+  };
+
   /// Which vector stands for the gradient.
   enum class Gradient {
     exact,    ///< of the function as evaluated
@@ -32,7 +21,7 @@ struct FieldOptions {
     printed,  ///< eq. (4) as printed, which points inward: to show that, never to be felt
   };
 
-  FieldKind kind = FieldKind::balanced;
+  Kind kind = Kind::balanced;
   Kernel kernel = Kernel::wyvill;
   Gradient gradient = Gradient::exact;
   double threshold = 0.4;        ///< metaball level T', of the (united) weight sum
@@ -53,6 +42,6 @@ struct FieldOptions {
 void check(const FieldOptions& options);
 
 /// The paper's field: raw weights, T = 0.5, R of the nearest point, no cap.
-[[nodiscard]] FieldOptions paper_field(FieldKind kind = FieldKind::metaball);
+[[nodiscard]] FieldOptions paper_field(FieldOptions::Kind kind = FieldOptions::Kind::metaball);
 
 }  // namespace palpate

@@ -10,11 +10,10 @@ namespace palpate {
 /// What spacings are when no two points differ: there is nothing to measure, m.
 inline constexpr double kLoneSpacing = 1e-3;
 
-/// The paper's s: the mean over all points of the mean distance to their k nearest other points
+/// The paper's s: the mean over all points of the mean distance to their three nearest other points
 /// (fewer in smaller clouds), m. Exact; neighbours at the same place count with distance zero.
 /// kLoneSpacing when no two points differ.
-/// @throws Error when k < 1.
-[[nodiscard]] double mean_spacing(const CellGrid& grid, int k = 3);
+[[nodiscard]] double mean_spacing(const CellGrid& grid);
 
 /// Spacing from area for each point, in sorted order, m: the side of the square that a point has to
 /// itself on a surface, from the mean squared distance of its eight nearest others (places taken

@@ -40,31 +40,32 @@ struct PrepareOptions {
   Kernel kernel = Kernel::wyvill;        ///< that the density weights are made for
 };
 
-/// What preparation found and how long it took (wall time, s).
-struct PrepareReport {
-  std::size_t points_in = 0;
-  std::size_t points_out = 0;  ///< that are felt: after clip, voxel filter, speckle
-  std::size_t duplicates = 0;  ///< points left out, as others lie at their very place
-  std::size_t speckle = 0;     ///< points that weigh nothing as speckle
-  double spacing = 0;          ///< s, median, m
-  double noise = 0;            ///< rms distance from a smooth surface, m
-  double voxel = 0;            ///< leaf used, m; 0: none
-  double radius = 0;           ///< R, median, m
-  double radius_smallest = 0;
-  double radius_largest = 0;
-  double trust_low = 0;  ///< a tenth of what is felt has a smaller SurfacePoints::confidences
-  double untrusted = 0;  ///< share of what is felt whose normals are not trusted (below 0.5), 0-1;
-                         ///< it is felt as metaball
-  double seconds_filter = 0;
-  double seconds_index = 0;
-  double seconds_spacing = 0;
-  double seconds_normals = 0;
-  double seconds_weights = 0;
-};
-
+/// A cloud as a surface.
 struct Prepared {
+  /// What preparation found and how long it took (wall time, s).
+  struct Report {
+    std::size_t points_in = 0;
+    std::size_t points_out = 0;  ///< that are felt: after clip, voxel filter, speckle
+    std::size_t duplicates = 0;  ///< points left out, as others lie at their very place
+    std::size_t speckle = 0;     ///< points that weigh nothing as speckle
+    double spacing = 0;          ///< s, median, m
+    double noise = 0;            ///< rms distance from a smooth surface, m
+    double voxel = 0;            ///< leaf used, m; 0: none
+    double radius = 0;           ///< R, median, m
+    double radius_smallest = 0;
+    double radius_largest = 0;
+    double trust_low = 0;  ///< a tenth of what is felt has a smaller SurfacePoints::confidences
+    double untrusted = 0;  ///< share of what is felt whose normals are not trusted (below 0.5),
+                           ///< 0-1; it is felt as metaball
+    double seconds_filter = 0;
+    double seconds_index = 0;
+    double seconds_spacing = 0;
+    double seconds_normals = 0;
+    double seconds_weights = 0;
+  };
+
   SurfacePoints points;
-  PrepareReport report;
+  Report report;
 };
 
 /// Filters and indexes a cloud, finds its sheets and places it in the world. Runs on every core;

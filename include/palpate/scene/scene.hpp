@@ -33,7 +33,7 @@ class Scene {
 
   /// State of the i-th source with its disagreement with the others. Takes milliseconds; any
   /// thread but a servo's.
-  [[nodiscard]] SourceState state(std::size_t i) const;
+  [[nodiscard]] Source::State state(std::size_t i) const;
 
  private:
   friend class SceneField;

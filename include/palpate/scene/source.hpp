@@ -39,35 +39,14 @@ struct PolicyOptions {
                                 ///< next ones (the paper's section IV-B)
 };
 
-/// State of a source, for display and logs.
-struct SourceState {
-  std::uint64_t frames = 0;   ///< frames and clouds that became a surface
-  std::uint64_t dropped = 0;  ///< dropped because stalled fields held all snapshots
-  std::string slowest = {};   ///< name of a stalled field at the last drop; empty: never
-  double interval = 0;        ///< time between frames, smoothed, s; 0: none yet
-  double latency = 0;         ///< of the last one, from its stamp to the start of its surface, s
-  double stamp = 0;           ///< of the last one, s
-  std::size_t points = 0;     ///< of the newest surface's newest layer
-  double noise = 0;           ///< sigma of one pixel at `depth`, m; 0: no depth frame yet
-  double depth = 0;           ///< median depth of the last frame, m
-  double correlation = 0;     ///< c of NoiseModel
-  double silent_from = 0;     ///< when the surface begins to fade unless a frame comes, s
-  double fade = 0;            ///< in which it fades away then, s
-  /// Median distance along the normals between this source's surface and the others', where both
-  /// see it, m; the worst of the others. Scene::state() only.
-  std::optional<double> disagreement = {};
-
-  [[nodiscard]] double rate() const { return interval > 0 ? 1 / interval : 0; }  ///< Hz
-};
-
-/// What points of material 0 feel like. Material 1 is as stiff and rough as the proxy's options
-/// say, and between the two it goes in a straight line.
-struct SoftMaterial {
-  double stiffness_factor = 1;  ///< 0-1
-  double friction_factor = 1;   ///< 0-1
-};
-
 struct SourceOptions {
+  /// What points of material 0 feel like. Material 1 is as stiff and rough as the proxy's options
+  /// say, and between the two it goes in a straight line.
+  struct SoftMaterial {
+    double stiffness_factor = 1;  ///< 0-1
+    double friction_factor = 1;   ///< 0-1
+  };
+
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();  ///< pose of the sensor's frame
   PrepareOptions prepare = {};
   SoftMaterial soft = {};         ///< applies where preparation makes materials
@@ -113,17 +92,38 @@ struct Snapshot {
 /// How sure its sensor is of it at `time` (s), 0-1.
 [[nodiscard]] double presence(const Snapshot& snapshot, double time) noexcept;
 
-/// Asked once, when of a pushed frame or cloud all is done that can be done before: when its
-/// surface is to start being felt, s, on the clock that SceneField::update is given. Live: now plus
-/// a lead in which the rest is done (some ms for a depth frame); a surface that comes after its
-/// start all the same begins where the last one waits and catches up. In simulated time: the
-/// frame's stamp plus the latency. A start before that of the surface pushed last counts as the
-/// same.
-using StartTime = std::function<double()>;
-
 /// One sensor or file: its pose, and the newest snapshot of what it sees.
 class Source {
  public:
+  /// State of a source, for display and logs.
+  struct State {
+    std::uint64_t frames = 0;   ///< frames and clouds that became a surface
+    std::uint64_t dropped = 0;  ///< dropped because stalled fields held all snapshots
+    std::string slowest = {};   ///< name of a stalled field at the last drop; empty: never
+    double interval = 0;        ///< time between frames, smoothed, s; 0: none yet
+    double latency = 0;         ///< of the last one, from its stamp to the start of its surface, s
+    double stamp = 0;           ///< of the last one, s
+    std::size_t points = 0;     ///< of the newest surface's newest layer
+    double noise = 0;           ///< sigma of one pixel at `depth`, m; 0: no depth frame yet
+    double depth = 0;           ///< median depth of the last frame, m
+    double correlation = 0;     ///< c of NoiseModel
+    double silent_from = 0;     ///< when the surface begins to fade unless a frame comes, s
+    double fade = 0;            ///< in which it fades away then, s
+    /// Median distance along the normals between this source's surface and the others', where both
+    /// see it, m; the worst of the others. Scene::state() only.
+    std::optional<double> disagreement = {};
+
+    [[nodiscard]] double rate() const { return interval > 0 ? 1 / interval : 0; }  ///< Hz
+  };
+
+  /// Asked once, when of a pushed frame or cloud all is done that can be done before: when its
+  /// surface is to start being felt, s, on the clock that SceneField::update is given. Live: now
+  /// plus a lead in which the rest is done (some ms for a depth frame); a surface that comes after
+  /// its start all the same begins where the last one waits and catches up. In simulated time: the
+  /// frame's stamp plus the latency. A start before that of the surface pushed last counts as the
+  /// same.
+  using StartTime = std::function<double()>;
+
   /// @throws Error when an option is out of its range.
   Source(std::string name, const SourceOptions& options);
   ~Source();
@@ -134,7 +134,7 @@ class Source {
   /// Any thread but a servo's.
   [[nodiscard]] SourceOptions options() const;
   /// Of the newest cloud that was prepared here. Any thread but a servo's.
-  [[nodiscard]] PrepareReport report() const;
+  [[nodiscard]] Prepared::Report report() const;
 
   /// Where the sensor stands: options().T_world_sensor until set_pose(). Any thread but a servo's.
   [[nodiscard]] Eigen::Isometry3d pose() const;
@@ -187,7 +187,7 @@ class Source {
   [[nodiscard]] std::shared_ptr<const SurfacePoints> points() const;
 
   /// Its state. Any thread but a servo's. Scene::state() adds the disagreement with other sources.
-  [[nodiscard]] SourceState state() const;
+  [[nodiscard]] State state() const;
 
  private:
   friend class Scene;

@@ -1,21 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
+#include "palpate/base/clock.hpp"
+#include "palpate/base/driver_info.hpp"
 #include "palpate/depth/depth_frame.hpp"
 
 namespace palpate {
-
-/// What came of asking a camera for a frame.
-enum class CameraStatus {
-  frame,    ///< a new frame
-  waiting,  ///< none within the time that was given
-  damaged,  ///< one that cannot be used (cut, garbage): reason() says why; the next may be good
-  unposed,  ///< one of a recording with poses that has none; reason() names it, the next may have
-            ///< one
-  ended,    ///< a recording has come to its end
-  failed,   ///< unplugged, out of order: reason() says why; asking again may help
-};
 
 struct CameraInfo {
   std::string name;   ///< for messages, such as "simulated:table"
@@ -29,6 +22,17 @@ struct CameraInfo {
 /// A source of depth frames. One thread uses it. Construction opens it and throws Error.
 class DepthCamera {
  public:
+  /// What came of asking a camera for a frame.
+  enum class Status {
+    frame,    ///< a new frame
+    waiting,  ///< none within the time that was given
+    damaged,  ///< one that cannot be used (cut, garbage): reason() says why; the next may be good
+    unposed,  ///< one of a recording with poses that has none; reason() names it, the next may have
+              ///< one
+    ended,    ///< a recording has come to its end
+    failed,   ///< unplugged, out of order: reason() says why; asking again may help
+  };
+
   virtual ~DepthCamera() = default;
 
   [[nodiscard]] virtual const CameraInfo& info() const noexcept = 0;
@@ -40,7 +44,7 @@ class DepthCamera {
   virtual void begin(double /*start*/) {}
 
   /// Fills `frame` with the next image, reusing its memory, waiting for it at most `timeout` s.
-  [[nodiscard]] virtual CameraStatus read(DepthFrame& frame, double timeout) = 0;
+  [[nodiscard]] virtual Status read(DepthFrame& frame, double timeout) = 0;
 
   /// Why the last read() failed or what damaged its frame, and what to do; empty otherwise.
   [[nodiscard]] virtual std::string reason() const = 0;
@@ -50,5 +54,24 @@ class DepthCamera {
   DepthCamera(const DepthCamera&) = default;
   DepthCamera& operator=(const DepthCamera&) = default;
 };
+
+struct CameraOptions {
+  /// Clock of the stamps; outlives the camera. Recordings and simulated cameras also wait for
+  /// it; null: they are as fast as they are asked, and real cameras stamp by the host's clock.
+  const Clock* clock = nullptr;
+  bool loop = false;  ///< recordings begin again at the end
+};
+
+/// Opens a camera by name: "simulated[:SCENE[,KEY=VALUE]...]" (docs/simulated_cameras.md),
+/// "sequence:DIR" (docs/sequences.md), "openni2[:URI]" (PrimeSense, Xtion; without URI the first
+/// that is there), "openni2:FILE.oni" or just "FILE.oni", "freenect[:NUMBER]" (Kinect v1; the first
+/// is 0), "ros:TOPIC[,frame=FRAME]" (docs/ros2.md). Set-up: one thread at a time.
+/// @throws Error when the name is none of these, when the build lacks the driver, when there is no
+///   such camera, it is in use or may not be used; says what to do.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_camera(const std::string& name,
+                                                       const CameraOptions& options = {});
+
+/// Every driver, with what it finds. Set-up: one thread at a time; may take a second.
+[[nodiscard]] std::vector<DriverInfo> list_cameras();
 
 }  // namespace palpate

@@ -15,7 +15,7 @@ enum class GuardNote : std::uint32_t {
   slewed = 1u << 0,    ///< the force changed faster than the hand explains; it follows more slowly
   clamped = 1u << 1,   ///< longer than the device's maximum; shortened to it
   silence = 1u << 2,   ///< watchdog: no step for too long; zero now, and a soft return
-  fault = 1u << 3,     ///< latched: zero until reset(); GuardState::fault says why
+  fault = 1u << 3,     ///< latched: zero until reset(); Guard::State::fault says why
   braked = 1u << 4,    ///< the hand had been given energy; a brake takes it back
   starting = 1u << 5,  ///< a force comes up softly: after a start, a pause, a silence or a fault
   softened = 1u << 6,  ///< rendered softer than requested: the device could not hold that
@@ -27,16 +27,6 @@ enum class GuardNote : std::uint32_t {
 [[nodiscard]] constexpr bool has(GuardNote notes, GuardNote bit) noexcept {
   return (static_cast<std::uint32_t>(notes) & static_cast<std::uint32_t>(bit)) != 0;
 }
-
-/// Why the force stays at zero.
-enum class GuardFault : std::uint8_t {
-  none,
-  force,   ///< force or stiffness were not finite, or absurdly large
-  hand,    ///< hand position or velocity not finite, or absurdly large
-  time,    ///< the time since the last step was not finite, or negative
-  proxy,   ///< the proxy has latched a fault (ContactNote::fault)
-  device,  ///< the device has failed
-};
 
 struct GuardOptions {
   /// Of the brake that takes back what the hand was given.
@@ -58,41 +48,6 @@ struct GuardOptions {
   double soft_start = 0.5;  ///< s in which forces come up after a start; 0: at once
   double stiffness_share = 0.8;  ///< most stiffness, as a share of the passive one; infinite: any
   Passivity passivity = {};
-};
-
-/// Input of one step. World frame.
-struct GuardInput {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< the proxy's, on the hand, N
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the touched surface; 0: none is
-  Eigen::Vector3d drift = Eigen::Vector3d::Zero();     ///< velocity of that surface, m/s
-  Eigen::Vector3d hip = Eigen::Vector3d::Zero();       ///< m; goes as the hand itself does
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the hand, m/s
-  double dt = 0;                                       ///< since the last step, s
-  double stiffness = 0;                                ///< K that made the force, N/m
-  bool felt = true;                     ///< false: the force goes to zero and starts softly again
-  bool softened = false;                ///< a stiffer surface was requested
-  GuardFault fault = GuardFault::none;  ///< known already
-};
-
-struct GuardState {
-  /// How often each link stepped in, since construction.
-  struct Counts {
-    std::uint64_t steps = 0;
-    std::uint64_t slewed = 0;
-    std::uint64_t clamped = 0;
-    std::uint64_t silences = 0;
-    std::uint64_t faults = 0;  ///< times that one was latched, not steps spent in it
-    std::uint64_t braked = 0;
-    std::uint64_t starting = 0;
-    std::uint64_t softened = 0;
-  };
-
-  GuardNote notes = GuardNote::none;  ///< of the last step
-  GuardFault fault = GuardFault::none;
-  Counts counts;
-  /// Of the passivity ledger, J: above zero was given to the hand. Work in the world, which is
-  /// Workspace::scale times that on the hand.
-  double energy = 0;
 };
 
 /// Everything between the proxy's force and the device: a chain of links, each of which lets a good
@@ -118,6 +73,51 @@ struct GuardState {
 /// thread uses a guard. Everything but construction is real-time: no allocation, no clock, bounded.
 class Guard {
  public:
+  /// Why the force stays at zero.
+  enum class Fault : std::uint8_t {
+    none,
+    force,   ///< force or stiffness were not finite, or absurdly large
+    hand,    ///< hand position or velocity not finite, or absurdly large
+    time,    ///< the time since the last step was not finite, or negative
+    proxy,   ///< the proxy has latched a fault (ContactNote::fault)
+    device,  ///< the device has failed
+  };
+
+  /// Input of one step. World frame.
+  struct Input {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< the proxy's, on the hand, N
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the touched surface; 0: none is
+    Eigen::Vector3d drift = Eigen::Vector3d::Zero();     ///< velocity of that surface, m/s
+    Eigen::Vector3d hip = Eigen::Vector3d::Zero();       ///< m; goes as the hand itself does
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the hand, m/s
+    double dt = 0;                                       ///< since the last step, s
+    double stiffness = 0;                                ///< K that made the force, N/m
+    bool felt = true;           ///< false: the force goes to zero and starts softly again
+    bool softened = false;      ///< a stiffer surface was requested
+    Fault fault = Fault::none;  ///< known already
+  };
+
+  struct State {
+    /// How often each link stepped in, since construction.
+    struct Counts {
+      std::uint64_t steps = 0;
+      std::uint64_t slewed = 0;
+      std::uint64_t clamped = 0;
+      std::uint64_t silences = 0;
+      std::uint64_t faults = 0;  ///< times that one was latched, not steps spent in it
+      std::uint64_t braked = 0;
+      std::uint64_t starting = 0;
+      std::uint64_t softened = 0;
+    };
+
+    GuardNote notes = GuardNote::none;  ///< of the last step
+    Fault fault = Fault::none;
+    Counts counts;
+    /// Of the passivity ledger, J: above zero was given to the hand. Work in the world, which is
+    /// Workspace::scale times that on the hand.
+    double energy = 0;
+  };
+
   /// Larger numbers than this (N, m, m/s, N/m) are a fault: nothing here makes them.
   static constexpr double kLargest = 1e9;
   /// Share of the newest velocity in the smoothed one, a step.
@@ -130,12 +130,12 @@ class Guard {
   Guard& operator=(Guard&&) noexcept;
 
   /// The force that may go to the device, N. Finite, whatever the input.
-  [[nodiscard]] Eigen::Vector3d pass(const GuardInput& input) noexcept;
+  [[nodiscard]] Eigen::Vector3d pass(const Input& input) noexcept;
 
   /// Forgets a fault and where the hand was; the next force comes up from zero.
   void reset() noexcept;
 
-  [[nodiscard]] const GuardState& state() const noexcept;
+  [[nodiscard]] const State& state() const noexcept;
   [[nodiscard]] const GuardOptions& options() const noexcept;
 
  private:
@@ -148,9 +148,9 @@ class Guard {
 [[nodiscard]] GuardOptions in_world(GuardOptions at_hand, double scale) noexcept;
 
 /// Why the force stays at zero and what to do; empty for none.
-[[nodiscard]] std::string_view in_words(GuardFault fault) noexcept;
+[[nodiscard]] std::string_view in_words(Guard::Fault fault) noexcept;
 
 /// What the guard did in the last step and why, in one line; empty when it did nothing.
-[[nodiscard]] std::string in_words(const GuardState& state);
+[[nodiscard]] std::string in_words(const Guard::State& state);
 
 }  // namespace palpate

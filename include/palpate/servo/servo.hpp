@@ -13,7 +13,6 @@
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/device/workspace.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
 
@@ -27,6 +26,8 @@ struct ServoState {
     double computing = std::numeric_limits<double>::quiet_NaN();  ///< of the thread, without others
   };
 
+  class Queue;
+
   std::uint64_t step = 0;                         ///< counts from 1; 0: there was none yet
   double time = 0;                                ///< s, on the clock that snapshots are stamped on
   double dt = 0;                                  ///< since the step before, s
@@ -36,15 +37,46 @@ struct ServoState {
   double gripper = 0;                                               ///< its opening at the hand, m
   Contact contact;                                  ///< its force is the proxy's own
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< what the guard let through, N
-  GuardState guard;
+  Guard::State guard;
   FieldNote field_notes = FieldNote::none;
-  DeviceStatus device = DeviceStatus::ok;
+  DeviceState::Status device = DeviceState::Status::ok;
   std::uint32_t buttons = 0;
   std::size_t patch_points = 0;
   bool paused = false;
   bool clutched = false;  ///< the hand moves freely; the tool rests (ServoOptions::clutch_button)
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< from the hand to the tool, by the clutch, m
   Timing timing;
+};
+
+/// Every step of a servo, in order, for one thread that records them. Lock-free; all memory is
+/// taken at construction. Where the recorder falls behind by more than there is room for, steps are
+/// left out and counted: the servo never waits.
+class ServoState::Queue {
+ public:
+  /// Room for `capacity` steps, rounded up to a power of two.
+  explicit Queue(std::size_t capacity);
+  ~Queue();
+  Queue(const Queue&) = delete;
+  Queue& operator=(const Queue&) = delete;
+
+  /// The servo's: puts a step in. Real-time. False: there was no room.
+  bool push(const ServoState& state) noexcept;
+
+  /// The recorder's: takes the oldest step out; none: empty.
+  [[nodiscard]] std::optional<ServoState> pop() noexcept;
+
+  /// Steps that were left out. Any thread.
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(); }
+
+ private:
+  static constexpr std::size_t kCacheLine = 64;
+
+  // Threads that write into one cache line wait for each other.
+  std::size_t size_;
+  std::unique_ptr<ServoState[]> steps_;
+  alignas(kCacheLine) std::atomic<std::uint64_t> pushed_{0};  // the servo writes it, and the next
+  std::atomic<std::uint64_t> dropped_{0};
+  alignas(kCacheLine) std::atomic<std::uint64_t> popped_{0};  // the recorder writes it
 };
 
 /// How long things took, counted in bins that grow geometrically: eight to an octave, from 1/8 us
@@ -72,37 +104,6 @@ struct Durations {
   [[nodiscard]] Durations since(const Durations& earlier) const noexcept;
 };
 
-/// Every step of a servo, in order, for one thread that records them. Lock-free; all memory is
-/// taken at construction. Where the recorder falls behind by more than there is room for, steps are
-/// left out and counted: the servo never waits.
-class StepQueue {
- public:
-  /// Room for `capacity` steps, rounded up to a power of two.
-  explicit StepQueue(std::size_t capacity);
-  ~StepQueue();
-  StepQueue(const StepQueue&) = delete;
-  StepQueue& operator=(const StepQueue&) = delete;
-
-  /// The servo's: puts a step in. Real-time. False: there was no room.
-  bool push(const ServoState& state) noexcept;
-
-  /// The recorder's: takes the oldest step out; none: empty.
-  [[nodiscard]] std::optional<ServoState> pop() noexcept;
-
-  /// Steps that were left out. Any thread.
-  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(); }
-
- private:
-  static constexpr std::size_t kCacheLine = 64;
-
-  // Threads that write into one cache line wait for each other.
-  std::size_t size_;
-  std::unique_ptr<ServoState[]> steps_;
-  alignas(kCacheLine) std::atomic<std::uint64_t> pushed_{0};  // the servo writes it, and the next
-  std::atomic<std::uint64_t> dropped_{0};
-  alignas(kCacheLine) std::atomic<std::uint64_t> popped_{0};  // the recorder writes it
-};
-
 struct ServoOptions {
   FieldOptions field = {};
   ProxyOptions proxy = {};
@@ -110,7 +111,7 @@ struct ServoOptions {
   Workspace workspace = {};
   /// While this button of the device is down, 0 to 31, the hand moves without the tool.
   std::optional<int> clutch_button = {};
-  StepQueue* steps = nullptr;  ///< every step is put into it; outlives the servo
+  ServoState::Queue* steps = nullptr;  ///< every step is put into it; outlives the servo
 };
 
 /// What may change while a servo runs.
@@ -135,7 +136,7 @@ class Servo {
  public:
   /// Of a device's continuous maximum: what it is asked to hold (docs/method.md 8.6).
   static constexpr double kForceShare = 0.8;
-  static constexpr double kAddedForceFade = 0.1;  ///< s in which add_force()'s force fades
+  static constexpr double kAddedForceFade = 0.1;      ///< s in which add_force()'s force fades
   static constexpr std::size_t kRecentForces = 1024;  ///< steps that forces_since() remembers
 
   /// @throws Error when an option is out of its range or the scene has too many readers.
@@ -192,8 +193,9 @@ class Servo {
   /// @throws Error when a value is out of its range.
   void set_contact(const ContactSettings& contact);
 
-  /// A force from outside, such as what a robot's sensor feels, N, world frame: it goes through the guard with the
-  /// surface's and fades in kAddedForceFade unless the next one comes. Any thread; not real-time.
+  /// A force from outside, such as what a robot's sensor feels, N, world frame: it goes through the
+  /// guard with the surface's and fades in kAddedForceFade unless the next one comes. Any thread;
+  /// not real-time.
   /// @throws Error when it is not finite.
   void add_force(const Eigen::Vector3d& force);
 

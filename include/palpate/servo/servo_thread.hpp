@@ -46,42 +46,6 @@ struct RealtimeReport {
 /// there is no other.
 [[nodiscard]] RealtimeReport::Request leave_processor(int processor);
 
-/// When the steps of a clock-paced loop are due: on a grid of whole periods. A step that comes late
-/// does not move the grid, and those that it made impossible are left out: after a gap there is one
-/// step and no burst.
-class Deadlines {
- public:
-  /// The first step is due at `start`, s; `period` > 0, s.
-  Deadlines(double start, double period) noexcept : start_(start), period_(period) {}
-
-  /// When the next step is due, s.
-  [[nodiscard]] double next() const noexcept {
-    return start_ + static_cast<double>(index_) * period_;
-  }
-
-  /// A step begins at `now`. Returns how late it is, s; next() is then after `now`.
-  double begin(double now) noexcept;
-
-  /// The next step is due a period after `now`: where something else paces the steps.
-  void restart(double now) noexcept;
-
-  /// Steps that were left out because one before them was late.
-  [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
-
- private:
-  double start_;
-  double period_;
-  std::uint64_t index_ = 0;
-  std::uint64_t skipped_ = 0;
-};
-
-struct ServoThreadOptions {
-  /// Steps a second, 500 to 10000 Hz; unset: what the device is made for. Devices that keep time
-  /// (DeviceInfo::keeps_time) pace the thread themselves; theirs is then the rate.
-  std::optional<double> rate = {};
-  RealtimeOptions realtime = {};
-};
-
 /// A thread that steps a servo until it is destroyed, the device finishes, or it fails.
 ///
 /// A device that keeps time paces it; any other is stepped by the clock, at absolute deadlines. A
@@ -89,13 +53,45 @@ struct ServoThreadOptions {
 /// ended it, the device is given zero force.
 class ServoThread {
  public:
+  /// When the steps of a clock-paced loop are due: on a grid of whole periods. A step that comes
+  /// late does not move the grid, and those that it made impossible are left out: after a gap there
+  /// is one step and no burst.
+  class Deadlines {
+   public:
+    /// The first step is due at `start`, s; `period` > 0, s.
+    Deadlines(double start, double period) noexcept : start_(start), period_(period) {}
+
+    /// When the next step is due, s.
+    [[nodiscard]] double next() const noexcept {
+      return start_ + static_cast<double>(index_) * period_;
+    }
+
+    /// A step begins at `now`. Returns how late it is, s; next() is then after `now`.
+    double begin(double now) noexcept;
+
+    /// The next step is due a period after `now`: where something else paces the steps.
+    void restart(double now) noexcept;
+
+    /// Steps that were left out because one before them was late.
+    [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
+
+   private:
+    double start_;
+    double period_;
+    std::uint64_t index_ = 0;
+    std::uint64_t skipped_ = 0;
+  };
+
   static constexpr double kLeastRate = 500;    // Hz
   static constexpr double kMostRate = 10'000;  // Hz
 
   /// Starts, and returns when the system has answered what was asked for. Servo and clock outlive
-  /// it, and nobody else steps the servo meanwhile.
+  /// it, and nobody else steps the servo meanwhile. `rate`: steps a second, 500 to 10000 Hz; unset:
+  /// what the device is made for. Devices that keep time (DeviceInfo::keeps_time) pace the thread
+  /// themselves; theirs is then the rate.
   /// @throws Error when the rate is out of range or there is no thread to be had.
-  ServoThread(Servo& servo, WaitingClock& clock, const ServoThreadOptions& options = {});
+  ServoThread(Servo& servo, WaitingClock& clock, const RealtimeOptions& realtime = {},
+              std::optional<double> rate = {});
   ~ServoThread();
   ServoThread(const ServoThread&) = delete;
   ServoThread& operator=(const ServoThread&) = delete;

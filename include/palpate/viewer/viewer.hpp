@@ -16,34 +16,34 @@
 
 namespace palpate {
 
-/// Something that a viewer's page may change. The viewer knows no setting of its own: a program
-/// offers them (ViewerControls).
-struct Setting {
-  /// A number, a choice or a switch.
-  using Value = std::variant<double, std::string, bool>;
-
-  enum class Kind {
-    number,  ///< from `least` to `most`
-    choice,  ///< one of `choices`
-    on_off,  ///< a switch
-  };
-
-  std::string key;    ///< "stiffness"; unique
-  std::string label;  ///< for people
-  std::string unit = {};
-  Kind kind = Kind::number;
-  double least = 0;  ///< of a number
-  double most = 1;
-  double step = 0;  ///< that its slider should take; 0: any
-  std::vector<std::string> choices = {};
-  Value value = 0.0;  ///< the present one, of the kind
-};
-
 /// What a viewer's page may do to the program. All are called on the viewer's network thread, one
 /// at a time, and should return within a millisecond or so. An Error that they throw is reported to
 /// the page and changes nothing. Those that are empty are refused with words, unless it says
 /// otherwise.
 struct ViewerControls {
+  /// Something that a viewer's page may change. The viewer knows no setting of its own: a program
+  /// offers them.
+  struct Setting {
+    /// A number, a choice or a switch.
+    using Value = std::variant<double, std::string, bool>;
+
+    enum class Kind {
+      number,  ///< from `least` to `most`
+      choice,  ///< one of `choices`
+      on_off,  ///< a switch
+    };
+
+    std::string key;    ///< "stiffness"; unique
+    std::string label;  ///< for people
+    std::string unit = {};
+    Kind kind = Kind::number;
+    double least = 0;  ///< of a number
+    double most = 1;
+    double step = 0;  ///< that its slider should take; 0: any
+    std::vector<std::string> choices = {};
+    Value value = 0.0;  ///< the present one, of the kind
+  };
+
   /// What can be set, with present values.
   std::function<std::vector<Setting>()> settings = {};
   /// `value` is of the setting's kind and in its range already.
@@ -68,21 +68,21 @@ struct ViewerControls {
   std::function<void(std::size_t device)> release = {};
 };
 
-/// A stream as the page shows it.
-struct ViewerStream {
-  /// What a camera sees: a pyramid along +z of its pose.
-  struct Frustum {
-    double tan_half_width = 0;
-    double tan_half_height = 0;
-    double far = 0;  ///< m
+struct ViewerOptions {
+  /// A stream as the page shows it.
+  struct Stream {
+    /// What a camera sees: a pyramid along +z of its pose.
+    struct Frustum {
+      double tan_half_width = 0;
+      double tan_half_height = 0;
+      double far = 0;  ///< m
+    };
+
+    StreamState state;                                     ///< `state.source` names the source
+    std::optional<Frustum> frustum = {};                   ///< unset: no camera
+    std::optional<Eigen::Isometry3d> T_world_sensor = {};  ///< unset: Source::pose()
   };
 
-  StreamState state;                                     ///< `state.source` names the source
-  std::optional<Frustum> frustum = {};                   ///< unset: no camera
-  std::optional<Eigen::Isometry3d> T_world_sensor = {};  ///< unset: Source::pose()
-};
-
-struct ViewerOptions {
   /// What a viewer bears from those who connect (docs/viewer_protocol.md). Times in s.
   struct Limits {
     std::size_t clients = 8;
@@ -112,7 +112,7 @@ struct ViewerOptions {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   /// How the streams fare; called about four times a second by two threads of the viewer, perhaps
   /// at the same time.
-  std::function<std::vector<ViewerStream>()> streams = {};
+  std::function<std::vector<Stream>()> streams = {};
   Limits limits = {};
 
   static constexpr std::uint16_t kFirstPort = 8420;

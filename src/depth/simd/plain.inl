@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "depth/simd/plain.hpp"
+#include "depth/simd/fits.hpp"
 
 namespace palpate::simd {
 namespace {

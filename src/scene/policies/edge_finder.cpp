@@ -1,9 +1,8 @@
-#include "scene/policies/edge_finder.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/parallel.hpp"
+#include "scene/policies/block_surface.hpp"
 #include "scene/policies/lanes.hpp"
 
 namespace palpate {
@@ -81,10 +80,8 @@ void EdgeFinder::look(const FilteredDepth& depth, const BlockSurface& surface) {
   }
   const Faces faces{depth, surface};
   meets_.resize(depth.size());
-  detail::parallel_ranges(static_cast<std::size_t>(depth.rows), kRowsAtOnce,
-                          [&](std::size_t v, std::size_t end) {
-                            for (; v < end; ++v) look_at(faces, static_cast<int>(v));
-                          });
+  detail::parallel_each(static_cast<std::size_t>(depth.rows), kRowsAtOnce,
+                        [&](std::size_t v) { look_at(faces, static_cast<int>(v)); });
   for (std::size_t block = 0; block < depth.size(); ++block) {
     if ((meets_[block] & kInRow) != 0) join(faces, block, 1, 0);
     if ((meets_[block] & kInColumn) != 0) join(faces, block, 0, 1);

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/filters.hpp"
-#include "prepare/columns.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate {
 namespace {
@@ -119,7 +119,7 @@ std::vector<Eigen::Vector3d> Fusion::usable(const PointCloud& cloud,
 }
 
 void Fusion::choose_leaf(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor) {
-  const PrepareReport report = prepare(cloud, prepare_, T_world_sensor).report;
+  const Prepared::Report report = prepare(cloud, prepare_, T_world_sensor).report;
   leaf_ = report.voxel > 0 ? report.voxel : kLeafSpacings * report.spacing;
   origin_ = T_world_sensor * cloud.origin;
 }

@@ -55,7 +55,7 @@ class Fusion {
   /// The surface from that cloud on.
   [[nodiscard]] SurfacePoints surface(const FrameTiming& moment);
 
-  [[nodiscard]] const PrepareReport& report() const { return prepared_.report; }
+  [[nodiscard]] const Prepared::Report& report() const { return prepared_.report; }
 
   /// Nothing is shown any more; what was mixed stays, and fades in again.
   void forget() {

@@ -5,9 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "field/active_layer.hpp"
+#include "field/selection.hpp"
 #include "geometry/parallel.hpp"
-#include "geometry/sort_records.hpp"
 
 namespace palpate {
 namespace {
@@ -90,11 +89,9 @@ void Morph::fill(const MorphInput& input, const FrameTiming& moment,
 /// where they stand among all, then they are written.
 void Morph::settle(const FilteredDepth& depth, std::size_t begin, std::size_t end) {
   const std::size_t pieces = (end - begin + kPlaces - 1) / kPlaces;
-  detail::parallel_ranges(pieces, 1, [&](std::size_t k, std::size_t last) {
-    for (; k < last; ++k) {
-      const std::size_t first = begin + k * kPlaces;
-      look_at(depth, first, std::min(end, first + kPlaces), pieces_[k]);
-    }
+  detail::parallel_each(pieces, 1, [&](std::size_t k) {
+    const std::size_t first = begin + k * kPlaces;
+    look_at(depth, first, std::min(end, first + kPlaces), pieces_[k]);
   });
   for (std::size_t k = 0; k < pieces; ++k) {
     Piece& piece = pieces_[k];
@@ -102,9 +99,7 @@ void Morph::settle(const FilteredDepth& depth, std::size_t begin, std::size_t en
     gather_unseen(piece);
   }
   next_entries_.resize(writer_.count());
-  detail::parallel_ranges(pieces, 1, [&](std::size_t k, std::size_t last) {
-    for (; k < last; ++k) write(pieces_[k]);
-  });
+  detail::parallel_each(pieces, 1, [&](std::size_t k) { write(pieces_[k]); });
   for (std::size_t k = 0; k < pieces; ++k) {
     extremes_.add(pieces_[k].extremes);
     for (const auto& [at, edge] : pieces_[k].edges) writer_.add_edge(at, edge);

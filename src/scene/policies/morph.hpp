@@ -14,7 +14,6 @@
 #include "palpate/geometry/shapes.hpp"
 #include "scene/frame_timing.hpp"
 #include "scene/policies/block_surface.hpp"
-#include "scene/policies/edge_finder.hpp"
 #include "scene/policies/point_writer.hpp"
 
 namespace palpate {

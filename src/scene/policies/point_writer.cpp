@@ -168,13 +168,11 @@ void PointWriter::measure_reach() {
   const std::span<const CellGrid::Cell> cells = points_->grid.cells();
   std::vector<float>& reach = points_->cell_reach;
   reach.resize(cells.size());
-  detail::parallel_ranges(cells.size(), kCellsAtATime, [&](std::size_t c, std::size_t end) {
-    for (; c < end; ++c) {
-      const CellGrid::Cell& cell = cells[c];
-      reach[c] = 0;
-      for (std::uint32_t i = cell.begin; cell.children == 0 && i < cell.end; ++i) {
-        reach[c] = std::max(reach[c], std::max(points_->radii[i], points_->end_radii[i]));
-      }
+  detail::parallel_each(cells.size(), kCellsAtATime, [&](std::size_t c) {
+    const CellGrid::Cell& cell = cells[c];
+    reach[c] = 0;
+    for (std::uint32_t i = cell.begin; cell.children == 0 && i < cell.end; ++i) {
+      reach[c] = std::max(reach[c], std::max(points_->radii[i], points_->end_radii[i]));
     }
   });
   for (std::size_t c = cells.size(); c-- > 0;) {  // children stand behind their parents

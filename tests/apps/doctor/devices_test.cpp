@@ -133,7 +133,7 @@ TEST(DoctorDrivers, AreMissedWhereACameraNeedsThem) {
 
 TEST(DoctorDrivers, AreSaidToBeBlindWhereTheyFindNothingOfWhatIsThere) {
   MadeUp machine;
-  DriverInfo driver{.name = "openni2", .description = "", .missing = "", .devices = {}};
+  DriverInfo driver{.name = "openni2", .description = ""};
   machine.system.cameras = [&driver] { return std::vector{driver}; };
   const auto xtion = [&] { return about("driver openni2", examined(machine)); };
   EXPECT_EQ(xtion().severity, Severity::good);

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "palpate/depth/depth_frame.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+
+namespace palpate {
+
+struct ReadOptions {
+  double scale = 1;  ///< multiplies the file's coordinates to give metres; depths too
+  std::optional<Pinhole> intrinsics{};  ///< of a depth image; needed for one
+  double depth_unit = 1e-3;             ///< metres a step of a depth image
+  /// Called with 0 ... 1 now and then, on this thread; may throw to give up.
+  std::function<void(double)> progress{};
+};
+
+/// A cloud and what its file said of itself.
+struct CloudFile {
+  PointCloud cloud;
+  std::string format;        ///< such as "PLY, binary little endian"
+  std::size_t declared = 0;  ///< points that the file announces; of a depth image its pixels
+  std::size_t dropped = 0;   ///< of them not finite, beyond 10^12 m, or marked invalid
+};
+
+/// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS (LAZ through the user's liblaszip), 16-bit depth PNG and
+/// PGM; gzip around any of them. The kind is told from the bytes first and from the name second;
+/// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
+/// depth, and those beyond ten times the image's median depth, likewise.
+///
+/// The cloud's origin stays zero where floats around zero lose at most four bits; otherwise it is
+/// a round point near the median of the cloud.
+/// @throws Error that names the file, the place in it (byte or line) and a remedy: also for a file
+///   that is cut, holds no usable point, or announces more than its bytes can hold.
+[[nodiscard]] CloudFile read_cloud_file(const std::filesystem::path& path,
+                                        const ReadOptions& options = {});
+
+/// The same for bytes in memory. `name` stands for the file in messages and gives its extension.
+[[nodiscard]] CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& name,
+                                         const ReadOptions& options = {});
+
+/// The cloud alone.
+[[nodiscard]] PointCloud read_cloud(const std::filesystem::path& path,
+                                    const ReadOptions& options = {});
+
+struct WriteOptions {
+  bool ascii = false;  ///< text instead of binary (little endian); digits enough to lose none
+};
+
+/// Writes positions in metres, and normals, colours and intensities where the cloud has them, as
+/// PLY or PCD by the path's extension. Coordinates are float where the origin is zero, else double.
+/// PCD keeps the viewpoint, PLY has no place for one. What was under `path` is replaced only once
+/// the new file is complete.
+/// @throws Error for another extension, columns of unequal length, or a path that cannot be
+/// written.
+void write_cloud(const std::filesystem::path& path, const PointCloud& cloud,
+                 const WriteOptions& options = {});
+
+struct ReadDepthOptions {
+  CameraModel camera;        ///< its pinhole is needed; width and height 0: whatever the image has
+  double depth_unit = 1e-3;  ///< metres a step of the image
+  /// Values that mean "nothing measured", besides 0, 65535 and a PGM's largest.
+  std::vector<std::uint16_t> invalid = {};
+  bool swapped = false;  ///< the less significant byte comes first, against both formats' rules
+};
+
+/// Reads a 16-bit grey PNG or PGM (gzip around it too) as the image of a depth camera, whatever its
+/// name says. Stamp, pose and colours stay for the caller to set.
+/// @throws Error that names the file and a remedy: for anything else, for images that are cut or of
+///   another size than options.camera says, and for such whose bytes look swapped and
+///   options.swapped is not set.
+[[nodiscard]] DepthFrame read_depth_frame(const std::filesystem::path& path,
+                                          const ReadDepthOptions& options);
+
+/// The same into a frame whose memory is used again. On an Error, `frame` is what it was.
+void read_depth_frame(const std::filesystem::path& path, const ReadDepthOptions& options,
+                      DepthFrame& frame);
+
+/// The same for bytes in memory. `name` stands for the file in messages.
+[[nodiscard]] DepthFrame read_depth_frame_bytes(std::span<const std::byte> bytes,
+                                                const std::string& name,
+                                                const ReadDepthOptions& options);
+
+}  // namespace palpate

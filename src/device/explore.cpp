@@ -1,0 +1,294 @@
+#include "device/explore.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/numbers.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kClearance = 2.5;  // R above the felt surface where the hand moves freely
+constexpr double kStep = 0.25;      // R from one place of a stroke to the next
+constexpr double kStroke = 0.6;     // longest stroke, of the region's extent
+constexpr double kLongest = 1.2;    // s that one stroke may take
+constexpr double kDwell = 0.1;      // s at rest before and after a stroke
+constexpr double kRamp = 0.2;       // share of a move spent speeding up, and slowing down
+constexpr double kFresh = 0.3;      // of the extent from all that was touched is far enough ...
+constexpr double kNear = 0.3;       // ... and weighs against the way there
+constexpr int kCandidates = 24;     // places looked at for the beginning of a stroke
+constexpr int kTries = 8;           // of strokes to which no free way leads
+constexpr int kDirections = 4;      // directions tried there
+
+// Share of a move's way that is done after share u of its time: speed rises and falls as a cosine.
+double progress(double u) {
+  const auto ramp = [](double v) {
+    return 0.5 * (v - kRamp / std::numbers::pi * std::sin(std::numbers::pi * v / kRamp));
+  };
+  if (u < kRamp) return ramp(u) / (1 - kRamp);
+  if (u > 1 - kRamp) return 1 - ramp(1 - u) / (1 - kRamp);
+  return (u - kRamp / 2) / (1 - kRamp);
+}
+
+// Writes rows while moves are appended, until the time is over.
+class Player {
+ public:
+  Player(const Vector3d& origin, const StrokeOptions& options)
+      : origin_(origin), options_(options) {}
+
+  [[nodiscard]] bool over() const { return time() > options_.duration; }
+  [[nodiscard]] double share() const { return std::min(1.0, time() / options_.duration); }
+
+  void dwell(const Vector3d& place, double seconds) {
+    const double end = time() + seconds;
+    while (time() < end && !over()) add(place);
+  }
+
+  void move(const std::vector<Vector3d>& way, double speed) {
+    std::vector<double> lengths(1, 0.0);
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      lengths.push_back(lengths.back() + (way[i] - way[i - 1]).norm());
+    }
+    if (lengths.back() <= 0) return;
+    const double seconds = lengths.back() / (speed * (1 - kRamp));
+    const double start = time();
+    std::size_t k = 1;
+    while (time() < start + seconds && !over()) {
+      const double done = progress((time() - start) / seconds) * lengths.back();
+      while (k + 1 < way.size() && lengths[k] < done) ++k;
+      const double length = lengths[k] - lengths[k - 1];
+      const double part = length > 0 ? std::clamp((done - lengths[k - 1]) / length, 0.0, 1.0) : 1.0;
+      add(way[k - 1] + part * (way[k] - way[k - 1]));
+    }
+  }
+
+  Trajectory take() { return std::move(rows_); }
+
+ private:
+  [[nodiscard]] double time() const { return static_cast<double>(rows_.size()) * options_.period; }
+  void add(const Vector3d& place) { rows_.push_back({time(), origin_ + place}); }
+
+  Vector3d origin_;
+  StrokeOptions options_;
+  Trajectory rows_;
+};
+
+class Explorer {
+ public:
+  Explorer(const ExploredSurface& surface, const StrokeOptions& options)
+      : options_(options),
+        map_(surface, options.patch, options.radius),
+        random_(options.seed),
+        player_(surface.origin, options) {}
+
+  Trajectory run() {
+    std::vector<MapSample> stroke = next_stroke(next_start(map_.center()));
+    player_.dwell(above(stroke.front()), kDwell);
+    while (!player_.over()) {
+      if (options_.progress) options_.progress(player_.share());
+      touch(stroke);
+      const MapSample last = stroke.back();
+      Route way;
+      for (int i = 0; i < kTries && !way.clear; ++i) {
+        stroke = next_stroke(next_start(last.position));
+        way = route(last, stroke.front());
+      }
+      if (way.clear) {
+        player_.move(way.places, options_.travel_speed);
+      } else {
+        stroke = next_stroke(last);  // walled in: go on from here
+      }
+    }
+    return player_.take();
+  }
+
+ private:
+  struct Route {
+    std::vector<Vector3d> places;
+    bool clear = false;
+  };
+
+  [[nodiscard]] double clearance() const { return options_.offset + kClearance * options_.radius; }
+  [[nodiscard]] Vector3d above(const MapSample& s) const {
+    return s.position + clearance() * s.normal;
+  }
+  [[nodiscard]] Vector3d under(const MapSample& s, double depth) const {
+    return s.position + (options_.offset - depth) * s.normal;
+  }
+
+  // Can the hand leave the surface here without meeting it again? Not from inside a closed object.
+  [[nodiscard]] bool open(const MapSample& s) const {
+    const double step = 0.5 * kClearance * options_.radius;
+    const double farthest = std::max(map_.extent(), 3 * step);
+    double d = 2 * step;
+    while (d <= farthest) {
+      const double room = map_.distance(s.position + d * s.normal) - 1.6 * step;
+      if (room < 0) return false;
+      d += step * (1 + std::floor(room / step));  // nothing can be near before
+    }
+    return true;
+  }
+
+  // Down along the normal, along the stroke with the depth going up and down, and off again.
+  void touch(const std::vector<MapSample>& stroke) {
+    const double depth = options_.depth;
+    player_.move({above(stroke.front()), under(stroke.front(), depth)}, options_.slide_speed);
+    player_.dwell(under(stroke.front(), depth), kDwell);
+    std::vector<Vector3d> way;
+    for (std::size_t i = 0; i < stroke.size(); ++i) {
+      const double phase = static_cast<double>(i) * kStep / 6 * std::numbers::pi;
+      way.push_back(under(stroke[i], depth * (0.75 + 0.25 * std::cos(phase))));
+    }
+    player_.move(way, options_.slide_speed);
+    player_.dwell(way.back(), kDwell / 2);
+    player_.move({way.back(), above(stroke.back())}, options_.slide_speed);
+  }
+
+  std::vector<MapSample> next_stroke(const MapSample& start) {
+    std::vector<MapSample> best(1, start);
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = 2 * std::numbers::pi * (random_.uniform() + i) / kDirections;
+      const Vector3d u = start.normal.unitOrthogonal();
+      const Vector3d direction = std::cos(angle) * u + std::sin(angle) * start.normal.cross(u);
+      std::vector<MapSample> stroke = follow(start, direction);
+      if (stroke.size() > best.size()) best = std::move(stroke);
+    }
+    for (std::size_t i = 0; i < best.size(); i += 4) touched_.push_back(best[i].position);
+    return best;
+  }
+
+  // The higher, the better a stroke begins there; some value up to `enough` where it is no more.
+  [[nodiscard]] double score_of(const Vector3d& place, const Vector3d& here, double enough) const {
+    const double way = kNear * (place - here).norm();
+    double fresh = kFresh * map_.extent();
+    for (const Vector3d& p : touched_) {
+      fresh = std::min(fresh, (p - place).norm());
+      if (fresh - way <= enough) break;
+    }
+    return fresh - way;
+  }
+
+  // Of some places at random one that is far from all that was touched before but not from here.
+  MapSample next_start(const Vector3d& here) {
+    MapSample best;
+    double highest = -1e300;
+    int seen = 0;
+    for (int i = 0; seen < kCandidates && i < 50 * kCandidates; ++i) {
+      const auto k = static_cast<std::size_t>(random_.uniform() * static_cast<double>(map_.size()));
+      const MapSample sample = map_.at(map_.point(k));
+      if (sample.normal.isZero() || !map_.inside(sample.position)) continue;
+      if (i < 4 * kCandidates && !open(sample)) continue;
+      ++seen;
+      const double score = score_of(sample.position, here, highest);
+      if (score > highest) {
+        highest = score;
+        best = sample;
+      }
+    }
+    if (seen > 0) return best;
+    // Normals cancel everywhere (noise, leaves): poke at a point from above.
+    return {map_.point(0), Vector3d::UnitZ()};
+  }
+
+  // Along the surface until its points end or the stroke is long enough, and back to a place where
+  // the hand can leave.
+  [[nodiscard]] std::vector<MapSample> follow(const MapSample& start, Vector3d direction) const {
+    const double step = kStep * options_.radius;
+    const double longest = std::min(kStroke * map_.extent(), kLongest * options_.slide_speed);
+    std::vector<MapSample> way(1, start);
+    for (double length = 0; length < longest; length += step) {
+      MapSample next = map_.at(way.back().position + step * direction);
+      if (next.normal.isZero() || !map_.inside(next.position)) break;
+      if (next.normal.dot(way.back().normal) < 0.2) break;
+      if ((next.position - way.back().position).norm() > 4 * step) break;
+      way.push_back(next);
+      direction -= direction.dot(next.normal) * next.normal;
+      if (direction.norm() < 1e-3) break;
+      direction.normalize();
+    }
+    while (way.size() > 1 && !open(way.back())) way.pop_back();
+    return way;
+  }
+
+  // Through free space from over one place to over another: the flattest arc that touches nothing
+  // and passes over what stands between or, where a roof is over everything, under it.
+  [[nodiscard]] Route route(const MapSample& from, const MapSample& to) const {
+    const Vector3d a = above(from);
+    const Vector3d b = above(to);
+    Vector3d up = from.normal + to.normal;
+    if (up.norm() < 0.3) up = 0.5 * (a + b) - map_.center();
+    if (up.norm() < 1e-9) up = from.normal.unitOrthogonal();
+    up.normalize();
+    Route best;
+    for (const double lift : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0}) {
+      Route way = arc(a, b, lift * std::max((b - a).norm(), 4 * clearance()) * up);
+      if (!way.clear) continue;
+      const bool over = std::ranges::all_of(way.places, [&](auto& p) { return open({p, up}); });
+      if (over || !best.clear) best = std::move(way);
+      if (over) break;
+    }
+    return best;
+  }
+
+  // From a to b; begins and ends in the direction of `rise`, to 3/4 of which it goes up.
+  [[nodiscard]] Route arc(const Vector3d& a, const Vector3d& b, const Vector3d& rise) const {
+    const double length = (b - a).norm() + 1.5 * rise.norm();
+    const double piece = 0.5 * kClearance * options_.radius;
+    const int pieces = static_cast<int>(std::clamp(length / piece, 16.0, 200.0));
+    Route way;
+    Vector3d seen = a;
+    double room = 0;  // free around it
+    for (int i = 0; i <= pieces; ++i) {
+      const double u = static_cast<double>(i) / pieces;
+      const Vector3d place = a + u * u * (3 - 2 * u) * (b - a) + 3 * u * (1 - u) * rise;
+      way.places.push_back(place);
+      if ((place - seen).norm() < room) continue;
+      seen = place;
+      room = map_.distance(place) - piece;
+      if (room <= 0) return way;
+    }
+    way.clear = true;
+    return way;
+  }
+
+  StrokeOptions options_;
+  SurfaceMap map_;
+  Random random_;
+  Player player_;
+  std::vector<Vector3d> touched_;
+};
+
+void require(bool good, const char* name, double value) {
+  if (!good) throw Error(fmt::format("exploration: {} = {} is out of range", name, value));
+}
+
+}  // namespace
+
+Trajectory explore(const ExploredSurface& surface, const StrokeOptions& options) {
+  if (surface.points.empty()) throw Error("exploration: there are no points to explore");
+  if (!surface.normals.empty() && surface.normals.size() != surface.points.size()) {
+    throw Error(fmt::format("exploration: {} normals for {} points", surface.normals.size(),
+                            surface.points.size()));
+  }
+  const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
+  require(positive(options.duration), "duration", options.duration);
+  require(positive(options.period), "period", options.period);
+  require(positive(options.radius), "radius", options.radius);
+  require(positive(options.patch), "patch", options.patch);
+  require(positive(options.slide_speed), "slide_speed", options.slide_speed);
+  require(positive(options.travel_speed), "travel_speed", options.travel_speed);
+  require(std::isfinite(options.depth), "depth", options.depth);
+  require(std::isfinite(options.offset), "offset", options.offset);
+  return Explorer(surface, options).run();
+}
+
+}  // namespace palpate

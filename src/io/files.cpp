@@ -1,0 +1,182 @@
+#include "palpate/io/files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include "io/cloud_builder.hpp"
+#include "io/depth_image.hpp"
+#include "io/file_bytes.hpp"
+#include "io/formats.hpp"
+#include "io/input.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/depth/depth_frame.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace io;
+
+CloudFile read_kind(const Input& input, FileKind kind) {
+  switch (kind) {
+    case FileKind::ply:
+      return read_ply(input);
+    case FileKind::pcd:
+      return read_pcd(input);
+    case FileKind::las:
+      return read_las(input);
+    case FileKind::obj:
+      return read_obj(input);
+    case FileKind::text:
+      return read_xyz(input);
+    case FileKind::png:
+      return cloud_of(input, read_png(input));
+    case FileKind::pgm:
+      return cloud_of(input, read_pgm(input));
+    case FileKind::gzip:
+      break;
+  }
+  fail(input, "compressed with gzip twice", "Unpack it once with gunzip");
+}
+
+// "cloud.ply.gz" holds "cloud.ply".
+std::string name_inside(const std::string& name) {
+  return extension(name) == ".gz" ? name.substr(0, name.size() - 3) : name;
+}
+
+CloudFile read_packed(const Input& input) {
+  const Bytes unpacked = gunzip(input);
+  const Input inside{unpacked.span(), name_inside(input.name), input.options};
+  CloudFile file = read_kind(inside, kind_of(inside));
+  file.format += ", gzip";
+  return file;
+}
+
+}  // namespace
+
+CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& name,
+                           const ReadOptions& options) {
+  const Input input{bytes, name, options};
+  check_options(input);
+  try {
+    const FileKind kind = kind_of(input);
+    CloudFile file = kind == FileKind::gzip ? read_packed(input) : read_kind(input, kind);
+    if (options.progress) options.progress(1.0);
+    return file;
+  } catch (const std::bad_alloc&) {
+    fail(input, "not enough memory for its points",
+         "Downsample the cloud or split it into tiles first");
+  }
+}
+
+CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& options) {
+  const std::string name = path == "-" ? "standard input" : path.string();
+  try {
+    const Bytes bytes = read_bytes(path);
+    return read_cloud_bytes(bytes.span(), name, options);
+  } catch (const std::bad_alloc&) {
+    throw Error(
+        name +
+        ": not enough memory to read it. Downsample the cloud or split it into tiles first.");
+  }
+}
+
+PointCloud read_cloud(const std::filesystem::path& path, const ReadOptions& options) {
+  return read_cloud_file(path, options).cloud;
+}
+
+namespace {
+
+DepthImage read_image_of(const Input& input, FileKind kind) {
+  if (kind == FileKind::png) return read_png(input);
+  if (kind == FileKind::pgm) return read_pgm(input);
+  fail(input, "not a depth image", "Give a 16-bit grey PNG or PGM");
+}
+
+DepthImage read_image(const Input& input) {
+  const FileKind kind = kind_of(input);
+  if (kind != FileKind::gzip) return read_image_of(input, kind);
+  const Bytes unpacked = gunzip(input);
+  const Input inside{unpacked.span(), input.name, input.options};
+  return read_image_of(inside, kind_of(inside));
+}
+
+void check_size(const Input& input, const DepthImage& image, const CameraModel& camera) {
+  const auto fits = [](int wanted, std::size_t found) {
+    return wanted == 0 || static_cast<std::size_t>(wanted) == found;
+  };
+  if (fits(camera.width, image.width) && fits(camera.height, image.height)) return;
+  fail(input,
+       fmt::format("an image of {} x {} pixels, but the camera has {} x {}", image.width,
+                   image.height, camera.width, camera.height),
+       "Give the camera's own images, or correct its width and height");
+}
+
+void straighten(const Input& input, DepthImage& image, bool swapped) {
+  if (swapped) {
+    swap_bytes(image);
+  } else if (looks_swapped(image)) {
+    fail(input, "the two bytes of its samples seem to be swapped",
+         "If so, set \"byte_order\": \"little\" in a sequence.json, or write the image again");
+  }
+}
+
+// Makes marks for "nothing measured" the usual one.
+void blank(DepthImage& image, const std::vector<std::uint16_t>& invalid) {
+  std::ranges::replace_if(
+      image.samples,
+      [&](std::uint16_t sample) {
+        return !is_depth(image, sample) || std::ranges::find(invalid, sample) != invalid.end();
+      },
+      std::uint16_t{0});
+}
+
+void read_bytes_into(std::span<const std::byte> bytes, const std::string& name,
+                     const ReadDepthOptions& options, DepthFrame& frame) {
+  ReadOptions as_cloud;
+  if (options.camera.pinhole.fx != 0) as_cloud.intrinsics = options.camera.pinhole;
+  as_cloud.depth_unit = options.depth_unit;
+  const Input input{bytes, name, as_cloud};
+  try {
+    DepthImage image = read_image(input);
+    CameraModel camera = options.camera;
+    camera.pinhole = intrinsics_of(input, image);
+    const double unit = unit_of(input);
+    check_size(input, image, camera);
+    straighten(input, image, options.swapped);
+    camera.width = static_cast<int>(image.width);
+    camera.height = static_cast<int>(image.height);
+    blank(image, options.invalid);
+    frame.depth.resize(image.samples.size());
+    to_metres(image.samples, unit, frame.depth);
+    frame.colors.clear();
+    frame.camera = camera;
+  } catch (const std::bad_alloc&) {
+    fail(input, "not enough memory for its pixels", "Close other programs");
+  }
+}
+
+}  // namespace
+
+DepthFrame read_depth_frame_bytes(std::span<const std::byte> bytes, const std::string& name,
+                                  const ReadDepthOptions& options) {
+  DepthFrame frame;
+  read_bytes_into(bytes, name, options, frame);
+  return frame;
+}
+
+void read_depth_frame(const std::filesystem::path& path, const ReadDepthOptions& options,
+                      DepthFrame& frame) {
+  const Bytes bytes = read_bytes(path);
+  read_bytes_into(bytes.span(), path == "-" ? "standard input" : path.string(), options, frame);
+}
+
+DepthFrame read_depth_frame(const std::filesystem::path& path, const ReadDepthOptions& options) {
+  DepthFrame frame;
+  read_depth_frame(path, options, frame);
+  return frame;
+}
+
+}  // namespace palpate

@@ -1,0 +1,144 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/input.hpp"
+#include "io/text_scanner.hpp"
+#include "palpate/io/files.hpp"
+
+namespace palpate::io {
+
+enum class PlyEncoding { ascii, little_endian, big_endian };
+
+struct PlyProperty {
+  std::string name;
+  NumberType type = NumberType::float32;   ///< of the value, or of a list's items
+  std::optional<NumberType> list_count{};  ///< type of a list's length, if it is a list
+};
+
+struct PlyElement {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::ascii;
+  std::vector<PlyElement> elements;
+  std::size_t size = 0;  ///< bytes up to the first element
+};
+
+/// @throws Error that names the line of what is wrong.
+[[nodiscard]] PlyHeader read_ply_header(const Input& input);
+
+/// PLY: ascii, binary little and big endian; any order and type of properties. Points are the
+/// first element that has x, y and z; other elements and lists are skipped. Kept of a point: its
+/// normal, colour and the first scalar whose name says intensity or quality.
+[[nodiscard]] CloudFile read_ply(const Input& input);
+
+enum class PcdEncoding { ascii, binary, compressed };
+
+struct PcdField {
+  std::string name;
+  NumberType type = NumberType::float32;
+  std::size_t count = 1;   ///< numbers a point
+  std::size_t offset = 0;  ///< bytes from the start of a point
+};
+
+struct PcdHeader {
+  std::vector<PcdField> fields;
+  std::size_t point_size = 0;  ///< bytes of a binary point
+  std::size_t width = 0;
+  std::size_t height = 1;
+  std::size_t points = 0;
+  std::array<double, 7> viewpoint{0, 0, 0, 1, 0, 0, 0};  ///< position, quaternion w x y z
+  PcdEncoding encoding = PcdEncoding::ascii;
+  std::size_t size = 0;  ///< bytes up to the data
+
+  [[nodiscard]] bool organised() const { return height > 1; }
+};
+
+/// @throws Error that names the line of what is wrong.
+[[nodiscard]] PcdHeader read_pcd_header(const Input& input);
+
+/// Unpacks LZF, the compression of "DATA binary_compressed" in PCD files: a control byte below 32
+/// announces that many + 1 bytes as they are; above, its upper three bits (7: plus the next byte)
+/// hold a length - 2 and its lower five with the next byte a distance back - 1.
+/// @return nothing when done; otherwise the offset in `packed` at which the data goes wrong
+///   (reaches before the start, past the end, or leaves `unpacked` partly unfilled).
+[[nodiscard]] std::optional<std::size_t> lzf_unpack(std::span<const std::byte> packed,
+                                                    std::span<std::byte> unpacked);
+
+/// A byte of LZF gives at most this many bytes: 264 from three.
+inline constexpr std::size_t kLzfLargestRatio = 88;
+
+/// PCD 0.5 - 0.7: ascii, binary and binary_compressed; organised or not. Kept of a point: normal,
+/// colour ("rgb", "rgba": 0x00rrggbb in the bits of a float or an integer) and intensity. The
+/// viewpoint is kept when the cloud is organised or the file sets one.
+[[nodiscard]] CloudFile read_pcd(const Input& input);
+
+/// What reading points needs of a LAS header (ASPRS LAS 1.0 - 1.4).
+struct LasHeader {
+  int minor_version = 0;
+  int format = 0;           ///< point format, 0 - 10
+  bool compressed = false;  ///< LAZ
+  std::size_t points_offset = 0;
+  std::size_t record_size = 0;
+  std::size_t points = 0;
+  Eigen::Vector3d scale;  ///< coordinate = number * scale + offset
+  Eigen::Vector3d offset;
+
+  /// Formats from 6 on lay out a point's flags otherwise.
+  [[nodiscard]] bool extended() const { return format >= 6; }
+  /// The bit of a record's byte 15 that marks a point as withheld; LAS 1.0 has none.
+  [[nodiscard]] std::byte withheld_mask() const;
+  [[nodiscard]] std::optional<std::size_t> color_offset() const;  ///< bytes into a record
+  [[nodiscard]] std::string name() const;                         ///< "LAS 1.2, point format 0"
+};
+
+/// @throws Error that names the byte of what is wrong.
+[[nodiscard]] LasHeader read_las_header(const Input& input);
+
+/// LAS 1.0 - 1.4, point formats 0 - 10. Points marked withheld are dropped; intensity and colour
+/// are kept unless they are zero throughout. Made for tens of millions of points: two passes over
+/// the bytes, nothing held twice. A compressed (LAZ) file goes to read_laz.
+[[nodiscard]] CloudFile read_las(const Input& input);
+
+/// Under what names the user's LASzip is looked for (as dlopen does).
+inline const std::array<std::string, 2> kLaszipNames{"liblaszip.so.8", "liblaszip.so"};
+
+/// LAZ (and COPC, which is LAZ), through the C interface of the user's LASzip 3 library.
+/// @throws Error that says how to convert the file where none of `libraries` can be loaded.
+[[nodiscard]] CloudFile read_laz(const Input& input, const LasHeader& header,
+                                 std::span<const std::string> libraries = kLaszipNames);
+
+/// The vertices of a Wavefront OBJ file ("v x y z", with "r g b" where the first vertex has them),
+/// and its normals where there are as many "vn" as "v". Everything else is skipped.
+[[nodiscard]] CloudFile read_obj(const Input& input);
+
+/// A point a line, numbers separated by blanks, tabs, commas or semicolons. Lines that start with
+/// #, // or % are comments; a first line of one whole number announces a count (PTS).
+///
+/// A header line names the columns. Without one their number decides: 3 x y z; 4 and an
+/// intensity; 6 and a normal if the last three have unit length in the first lines, else a colour;
+/// 7 intensity and colour; 9 and a normal and a colour, in the order in which unit length is found.
+/// Of other numbers the first three columns are used.
+[[nodiscard]] CloudFile read_xyz(const Input& input);
+
+}  // namespace palpate::io
+
+namespace palpate {
+
+enum class CloudFormat { ply, pcd };
+
+/// The bytes of a file that write_cloud() writes.
+[[nodiscard]] std::string encode_cloud(const PointCloud& cloud, CloudFormat format,
+                                       const WriteOptions& options = {});
+
+}  // namespace palpate

@@ -1,0 +1,125 @@
+#include "prepare/weights.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/neighborhoods.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+using WeightSum = decltype(simd::JoinFunctions::wyvill_sums);
+
+constexpr float kLargest = std::numeric_limits<float>::max();
+constexpr std::size_t kFewestOthers = 3;
+
+void check(const CellGrid& grid, std::span<const float> radii) {
+  if (radii.size() != grid.size()) {
+    throw Error(fmt::format("weight sums: {} radii for {} points; give one for each", radii.size(),
+                            grid.size()));
+  }
+  for (const float radius : radii) {
+    if (!(radius > 0) || !std::isfinite(radius)) {
+      throw Error(
+          fmt::format("weight sums: a radius is {} m; all must be positive and finite", radius));
+    }
+  }
+}
+
+struct Input {
+  const CellGrid& grid;
+  std::vector<float> inverse;     // 1 / R_i^2
+  std::vector<float> cell_reach;  // m
+};
+
+Input make_input(const CellGrid& grid, std::span<const float> radii) {
+  Input input{grid, std::vector<float>(grid.size()), detail::largest_in_cells(grid, radii)};
+  std::transform(radii.begin(), radii.end(), input.inverse.begin(),
+                 [](float radius) { return std::min(1 / (radius * radius), kLargest); });
+  return input;
+}
+
+// For each point i the sum of w_ij values_j over all points j; no values: all 1.
+std::vector<float> sums_of(const Input& input, WeightSum sum, std::span<const float> values) {
+  std::vector<float> sums(input.grid.size());
+  detail::for_each_neighborhood(
+      input.grid, {.of_points = {}, .times = 1, .of_cells = input.cell_reach},
+      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+        simd::Row row;
+        sum(detail::make_join(input.grid, first, count, runs), input.inverse.data(), values.data(),
+            &row);
+        std::copy_n(row, count, sums.begin() + first);
+      });
+  return sums;
+}
+
+// Are there enough others within the smaller of both points' diameters? Whoever weighs as much as
+// that many others within their radii has company without a look.
+bool has_company(const CellGrid& grid, std::span<const float> radii, float own_sum, std::uint32_t i,
+                 std::vector<std::uint32_t>& near) {
+  if (own_sum >= kFewestOthers) return true;
+  near.clear();
+  grid.within(grid.points()[i], 2 * radii[i], near);
+  const auto others = std::ranges::count_if(near, [&](std::uint32_t j) {
+    const float squared = detail::squared_distance(grid.points()[i], grid.points()[j]);
+    return j != i && squared <= 4 * radii[j] * radii[j];
+  });
+  return static_cast<std::size_t>(others) >= kFewestOthers;
+}
+
+}  // namespace
+
+WeightSums::WeightSums(const CellGrid& grid, std::span<const float> radii, Kernel kernel) {
+  check(grid, radii);
+  const simd::JoinFunctions& joins = simd::best_joins();
+  const WeightSum sum = kernel == Kernel::wyvill ? joins.wyvill_sums : joins.wendland_sums;
+  const Input input = make_input(grid, radii);
+  own = sums_of(input, sum, {});
+  around = sums_of(input, sum, own);
+  detail::parallel_each(grid.size(), std::size_t{1} << 16,
+                        [&](std::size_t i) { around[i] /= own[i]; });
+}
+
+std::vector<float> density_weights(const WeightSums& sums) {
+  constexpr float kShareOfAround = 0.8f;
+  std::vector<float> weights(sums.own.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    weights[i] = 1 / std::max(sums.own[i], kShareOfAround * sums.around[i]);
+  }
+  return weights;
+}
+
+void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts,
+                     std::span<const float> radii, std::vector<float>& weights) {
+  constexpr float kLeast = 0.2f;  // a lone point still holds the surface together
+  constexpr float kMost = 3;
+  detail::parallel_each_with<std::vector<std::uint32_t>>(
+      weights.size(), 1024, [&](std::size_t i, auto& near) {
+        near.clear();
+        grid.within(grid.points()[i], radii[i], near);
+        float sum = 0;
+        for (const std::uint32_t k : near) sum += static_cast<float>(counts[k]);
+        const float mean = near.empty() ? 0 : sum / static_cast<float>(near.size());
+        if (!(mean > 0)) return;
+        weights[i] *= std::clamp(static_cast<float>(counts[i]) / mean, kLeast, kMost);
+      });
+}
+
+std::vector<std::uint8_t> speckle_mask(const CellGrid& grid, std::span<const float> radii,
+                                       const WeightSums& sums) {
+  constexpr float kShareOfAround = 0.35f;
+  std::vector<std::uint8_t> mask(grid.size());
+  detail::parallel_each_with<std::vector<std::uint32_t>>(
+      grid.size(), 4096, [&](std::size_t k, auto& near) {
+        const auto i = static_cast<std::uint32_t>(k);
+        const bool faint = sums.own[i] < kShareOfAround * sums.around[i];
+        mask[i] = faint || !has_company(grid, radii, sums.own[i], i, near) ? 1 : 0;
+      });
+  return mask;
+}
+
+}  // namespace palpate

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "palpate/field/field_options.hpp"
+#include "palpate/geometry/cell_grid.hpp"
+
+namespace palpate {
+
+/// S_i and Sbar_i of docs/method.md 2.2, in sorted order; radii are the R_i, m:
+///
+///   S_i = sum_j w(|p_i - p_j| / R_j),  the point itself included
+///   Sbar_i = sum_j w_ij S_j / sum_j w_ij
+struct WeightSums {
+  /// @throws Error when there are not as many radii as points, or one is not positive and finite.
+  WeightSums(const CellGrid& grid, std::span<const float> radii, Kernel kernel = Kernel::wyvill);
+
+  std::vector<float> own;     ///< S_i, at least 1
+  std::vector<float> around;  ///< Sbar_i
+};
+
+/// What each point counts, so that a sampled surface weighs about 1 however dense its points are:
+/// a_i = 1 / max(S_i, 0.8 Sbar_i). Positive and at most 1.
+[[nodiscard]] std::vector<float> density_weights(const WeightSums& sums);
+
+/// Lets points that stand for many weigh more than those that stand for few: multiplies each
+/// density weight by the point's count over the mean count within its radius. Sums of weights stay
+/// near 1, and means over points become means over what was measured, which halves their noise. All
+/// in sorted order; radii in m.
+void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts,
+                     std::span<const float> radii, std::vector<float>& weights);
+
+/// 1 for each point, in sorted order, that noise has put where no surface is: fewer than three
+/// others within 2 R_i and 2 R_j of each other, or S_i < 0.35 Sbar_i (docs/method.md 5.4). `sums`:
+/// of the same radii.
+[[nodiscard]] std::vector<std::uint8_t> speckle_mask(const CellGrid& grid,
+                                                     std::span<const float> radii,
+                                                     const WeightSums& sums);
+
+}  // namespace palpate

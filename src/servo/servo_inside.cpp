@@ -1,0 +1,131 @@
+// What a servo records: durations of steps, recent forces, the steps themselves.
+#include "servo/servo_inside.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kShortest = 1.25e-7;  // s, the lower end of the first bin
+constexpr double kLongest = 1e6;       // s
+
+std::size_t bin_of(double duration) noexcept {
+  if (duration <= kShortest) return 0;
+  const double octaves = std::log2(duration / kShortest);
+  const auto bin = static_cast<std::size_t>(octaves * Durations::kPerOctave);
+  return std::min(bin, Durations::kBins - 1);
+}
+
+double middle_of(std::size_t bin) noexcept {
+  return kShortest * std::exp2((static_cast<double>(bin) + 0.5) / Durations::kPerOctave);
+}
+
+}  // namespace
+
+void Durations::add(double duration) noexcept {
+  if (std::isnan(duration)) return;
+  const double length = std::clamp(duration, 0.0, kLongest);
+  ++counts[bin_of(length)];
+  ++count;
+  sum += length;
+  longest = std::max(longest, length);
+}
+
+double Durations::quantile(double p) const noexcept {
+  if (count == 0) return 0;
+  const double wanted = std::clamp(p, 0.0, 1.0) * static_cast<double>(count);
+  double below = 0;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    below += static_cast<double>(counts[bin]);
+    if (below >= wanted && below > 0) return std::min(middle_of(bin), longest);
+  }
+  return longest;
+}
+
+Durations Durations::since(const Durations& earlier) const noexcept {
+  Durations later = *this;
+  for (std::size_t bin = 0; bin < kBins; ++bin) later.counts[bin] -= earlier.counts[bin];
+  later.count -= earlier.count;
+  later.sum -= earlier.sum;
+  return later;
+}
+
+// One thread adds: what it read cannot have changed when it writes.
+void Histogram::add(double duration) noexcept {
+  if (std::isnan(duration)) return;
+  constexpr auto kRelaxed = std::memory_order_relaxed;
+  const double length = std::clamp(duration, 0.0, kLongest);
+  auto& count = counts_[bin_of(length)];
+  count.store(count.load(kRelaxed) + 1, kRelaxed);
+  sum_.store(sum_.load(kRelaxed) + length, kRelaxed);
+  longest_.store(std::max(longest_.load(kRelaxed), length), kRelaxed);
+}
+
+Durations Histogram::look() const noexcept {
+  Durations seen;
+  for (std::size_t bin = 0; bin < Durations::kBins; ++bin) {
+    seen.counts[bin] = counts_[bin].load(std::memory_order_relaxed);
+    seen.count += seen.counts[bin];
+  }
+  seen.sum = sum_.load(std::memory_order_relaxed);
+  seen.longest = longest_.load(std::memory_order_relaxed);
+  return seen;
+}
+
+void RecentForces::add(const Eigen::Vector3f& force) noexcept {
+  const std::uint64_t count = count_.load(std::memory_order_relaxed);
+  Place& place = forces_[count % kSteps];
+  for (std::size_t i = 0; i < 3; ++i) {
+    place[i].store(force[static_cast<Eigen::Index>(i)], std::memory_order_release);
+  }
+  count_.store(count + 1, std::memory_order_release);
+}
+
+std::vector<Eigen::Vector3f> RecentForces::since(std::uint64_t& seen) const {
+  const std::uint64_t end = count_.load(std::memory_order_acquire);
+  const std::uint64_t oldest = end > kSteps ? end - kSteps : 0;
+  const std::uint64_t begin = std::max(std::min(seen, end), oldest);
+  std::vector<Eigen::Vector3f> forces;
+  forces.reserve(static_cast<std::size_t>(end - begin));
+  for (std::uint64_t i = begin; i < end; ++i) {
+    const Place& place = forces_[i % kSteps];
+    forces.emplace_back(place[0].load(std::memory_order_acquire),
+                        place[1].load(std::memory_order_acquire),
+                        place[2].load(std::memory_order_acquire));
+  }
+  // The step that is under way writes over the place of the one kSteps before it.
+  const std::uint64_t now = count_.load(std::memory_order_acquire);
+  const std::uint64_t whole = now >= kSteps ? now - kSteps + 1 : 0;
+  const std::uint64_t lost = whole > begin ? std::min(whole, end) - begin : 0;
+  forces.erase(forces.begin(), forces.begin() + static_cast<std::ptrdiff_t>(lost));
+  seen = end;
+  return forces;
+}
+
+ServoState::Queue::Queue(std::size_t capacity)
+    : size_(std::bit_ceil(capacity)), steps_(std::make_unique<ServoState[]>(size_)) {}
+
+ServoState::Queue::~Queue() = default;
+
+bool ServoState::Queue::push(const ServoState& state) noexcept {
+  const std::uint64_t at = pushed_.load(std::memory_order_relaxed);
+  if (at - popped_.load(std::memory_order_acquire) == size_) {
+    dropped_.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+  steps_[at % size_] = state;
+  pushed_.store(at + 1, std::memory_order_release);
+  return true;
+}
+
+std::optional<ServoState> ServoState::Queue::pop() noexcept {
+  const std::uint64_t at = popped_.load(std::memory_order_relaxed);
+  if (at == pushed_.load(std::memory_order_acquire)) return std::nullopt;
+  std::optional<ServoState> oldest = steps_[at % size_];
+  popped_.store(at + 1, std::memory_order_release);
+  return oldest;
+}
+
+}  // namespace palpate

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "palpate/servo/servo.hpp"
+
+namespace palpate {
+
+/// Durations that one thread adds to while others look. Lock-free; adding is real-time.
+class Histogram {
+ public:
+  /// s; what is negative counts as 0, what is not a number is left out.
+  void add(double duration) noexcept;
+
+  /// What was added until now; a step that is under way may be in some numbers and not in others.
+  [[nodiscard]] Durations look() const noexcept;
+
+ private:
+  std::array<std::atomic<std::uint64_t>, Durations::kBins> counts_{};
+  std::atomic<double> sum_{0};
+  std::atomic<double> longest_{0};
+};
+
+/// The forces of a servo's last steps, for any number of those who watch. The servo writes over the
+/// oldest and waits for nobody; who watches more rarely than every kSteps steps misses some.
+class RecentForces {
+ public:
+  static constexpr std::size_t kSteps = Servo::kRecentForces;
+
+  /// N. One thread. Real-time.
+  void add(const Eigen::Vector3f& force) noexcept;
+
+  /// How many were added until now. Any thread.
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_.load(); }
+
+  /// What was added after the first `seen`, oldest first, as far as it is still there; `seen`
+  /// becomes count(). Any thread; allocates.
+  [[nodiscard]] std::vector<Eigen::Vector3f> since(std::uint64_t& seen) const;
+
+ private:
+  // A place is written with release and read with acquire: who reads a newer force than expected
+  // also sees a count that tells so.
+  using Place = std::array<std::atomic<float>, 3>;
+
+  std::array<Place, kSteps> forces_{};
+  std::atomic<std::uint64_t> count_{0};
+};
+
+/// Lets a hand move without its tool. At the end of a device's reach, hold the clutch, move the
+/// hand back, release it: the tool goes on from where it rested, further than any device reaches.
+///
+/// The tool is where the hand is, shifted by all that the hand moved while the clutch was held.
+/// Positions in one frame, m. Real-time.
+class Clutch {
+ public:
+  /// The tool's position while the hand is at `hand`: `rest`, finite, while the clutch is `held`;
+  /// then it moves on from there as the hand does. A hand that is not finite moves nothing, and
+  /// the result is not finite.
+  [[nodiscard]] Eigen::Vector3d tool(const Eigen::Vector3d& hand, bool held,
+                                     const Eigen::Vector3d& rest) noexcept {
+    if (!held || !hand.allFinite()) return hand + shift_;
+    shift_ = rest - hand;
+    return rest;
+  }
+
+  /// From the hand to the tool while the clutch is not held, m.
+  [[nodiscard]] const Eigen::Vector3d& shift() const noexcept { return shift_; }
+
+ private:
+  Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace palpate
