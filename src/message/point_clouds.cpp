@@ -50,20 +50,17 @@ Column column_of(const PointCloud2& message, const PointField& field, std::optio
 
 std::vector<Column> columns_of(const PointCloud2& message, io::Columns& optional) {
   std::vector<Column> columns;
-  std::array<bool, io::kRoleCount> has{};
+  io::Roles roles;
   bool packed = false;
   for (const PointField& field : message.fields) {
-    const std::optional<Role> role = io::role_of(field.name);
     const bool is_color = !packed && packs_color(field);
-    if (is_color) packed = true;
-    if (!is_color && (!role || has[index_of(*role)])) continue;
-    if (!is_color) has[index_of(*role)] = true;
-    columns.push_back(column_of(message, field, is_color ? std::nullopt : role));
+    packed = packed || is_color;
+    roles.add(is_color ? std::nullopt : io::role_of(field.name));
+    const std::optional<Role> role = roles[roles.size() - 1];
+    if (role || is_color) columns.push_back(column_of(message, field, role));
   }
-  if (!has[index_of(Role::x)] || !has[index_of(Role::y)] || !has[index_of(Role::z)]) {
-    throw Error(fmt::format("{}: its fields lack x, y or z", kName));
-  }
-  optional = io::complete_columns(has);
+  if (!roles.has_point()) throw Error(fmt::format("{}: its fields lack x, y or z", kName));
+  optional = roles.columns();
   optional.colors = optional.colors || packed;
   return columns;
 }

@@ -35,7 +35,7 @@ int main(int count, char** arguments) {
   options.guard.on = false;
   options.proxy.stiffness = stiffness;
   Servo servo(*device, scene, options);
-  const ServoThread thread(servo, clock, {.rate = 1000});
+  const ServoThread thread(servo, clock, {}, 1000);
   fmt::print("rate {:.1f} Hz, delay {:.2f} ms, stiffness {:.0f} N/m\n", info.rate,
              1e3 * *info.delay, stiffness);
   const double start = clock.now();

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/errors.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/report.hpp"

@@ -3,8 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "apps/palpate/cli/json.hpp"
-#include "apps/palpate/cli/option_checks.hpp"
+#include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/devices/devices_command.hpp"
@@ -53,9 +52,7 @@ void write(const std::vector<RosTopic>& topics, const std::string& path) {
                     {"use", topic.use},
                     {"mismatch", topic.mismatch}});
   }
-  OutputFile file(path);
-  file.write(text_of(list));
-  file.close();
+  write_whole(path, text_of(list));
 }
 
 }  // namespace
