@@ -20,15 +20,15 @@ using message::Header;
 using message::TFMessage;
 using Status = DepthCamera::Status;
 
-constexpr std::uint64_t kTransformWait = 100'000'000;  // ns that an image waits for its transform
+constexpr std::uint64_t kLateTransform = 100'000'000;  // ns that an image waits for its transform
 constexpr std::size_t kMostWaiting = 64;               // images
 constexpr std::size_t kMostHeld = 256 << 20;           // bytes of them
 constexpr int kMeasured = 30;                          // images that tell their rate
-constexpr double kSlowest = 0.1;                       // Hz
-constexpr double kFastest = 1000;                      // Hz
+constexpr double kSlowestBag = 0.1;                    // Hz
+constexpr double kFastestBag = 1000;                   // Hz
 constexpr int kInfos = 10;                             // that are tried until one can be used
 constexpr int kStatics = 1000;                         // messages of what stands still
-constexpr double kJump = 1;           // s that stamps may run ahead of the recording
+constexpr double kStampJump = 1;      // s that stamps may run ahead of the recording
 constexpr double kNanosecond = 1e-9;  // s
 
 // Decodes a message of type T and makes a frame of it.
@@ -116,8 +116,8 @@ void BagRecording::measure() {
   if (count == 0) throw Error(fmt::format("{}: no message is left on {}", file_, topic()));
   one_image_ = count == 1;
   if (last == first) return;
-  rate_ = std::clamp((count - 1) / (kNanosecond * static_cast<double>(last - first)), kSlowest,
-                     kFastest);
+  rate_ = std::clamp((count - 1) / (kNanosecond * static_cast<double>(last - first)), kSlowestBag,
+                     kFastestBag);
 }
 
 // So that the first images have a camera, which is often told a little later.
@@ -195,7 +195,7 @@ void BagRecording::read_ahead() {
 }
 
 bool BagRecording::is_ready(const Image& image) const {
-  if (frame_.empty() || log_ - image.log > kTransformWait) return true;
+  if (frame_.empty() || log_ - image.log > kLateTransform) return true;
   if (waiting_.size() >= kMostWaiting || held_ >= kMostHeld) return true;
   return transforms_.find(frame_, image.header.frame_id, to_seconds(image.header.stamp))
       .has_value();
@@ -221,10 +221,10 @@ void BagRecording::take(const bag::Message& message) {
 }
 
 void BagRecording::keep(const Channel& channel, const bag::Message& message) {
-  Image image{.fill = fill_from<message::Image>,
-              .header = {},
-              .log = message.stamp.log,
-              .data = bag::Bytes(message.data.begin(), message.data.end())};
+  Image image;
+  image.fill = fill_from<message::Image>;
+  image.log = message.stamp.log;
+  image.data.assign(message.data.begin(), message.data.end());
   if (holds<message::CompressedImage>(channel)) image.fill = fill_from<message::CompressedImage>;
   if (holds<message::PointCloud2>(channel)) image.fill = fill_from<message::PointCloud2>;
   try {
@@ -245,7 +245,7 @@ double BagRecording::step_to(const Image& image) {
   stamp_ = stamp;
   recorded_ = image.log;
   if (!std::exchange(any_, true)) return 0;
-  return told > 0 && told < recorded + kJump ? told : recorded;
+  return told > 0 && told < recorded + kStampJump ? told : recorded;
 }
 
 Status BagRecording::show(const Image& image, DepthFrame& frame, std::string& why) const {

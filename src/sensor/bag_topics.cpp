@@ -20,7 +20,7 @@ using message::PointCloud2;
 
 constexpr std::string_view kFrameOption = ",frame=";
 
-bool is_file(const std::string& path) {
+bool is_there(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
 }
@@ -98,19 +98,18 @@ std::string in_words(const Fitting& fitting) {
 }  // namespace
 
 BagName parse_bag_name(const std::string& name) {
-  BagName parsed{.file = name, .topic = {}, .frame = {}};
-  if (const std::size_t at = name.rfind(kFrameOption);
-      at != std::string::npos && !is_file(parsed.file)) {
-    parsed.frame = name.substr(at + kFrameOption.size());
-    parsed.file = name.substr(0, at);
+  if (is_there(name)) return {file_in(name), {}, {}};
+  const std::size_t topic = name.rfind(":/");
+  const std::size_t option =
+      topic == std::string::npos ? name.rfind(kFrameOption) : name.find(kFrameOption, topic);
+  BagName parsed;
+  parsed.file = name.substr(0, std::min(topic, option));
+  if (topic != std::string::npos) parsed.topic = name.substr(topic + 1, option - topic - 1);
+  if (option != std::string::npos) {
+    parsed.frame = name.substr(option + kFrameOption.size());
     if (parsed.frame.empty()) {
       throw Error(fmt::format("bag:{}: no frame is named; write bag:FILE,frame=FRAME", name));
     }
-  }
-  if (const std::size_t at = parsed.file.rfind(":/");
-      at != std::string::npos && !is_file(parsed.file)) {
-    parsed.topic = parsed.file.substr(at + 1);
-    parsed.file = parsed.file.substr(0, at);
   }
   parsed.file = file_in(parsed.file);
   return parsed;

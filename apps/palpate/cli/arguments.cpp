@@ -41,8 +41,8 @@ std::string name_of_camera(std::string_view text) {
 
 // Of "runs/monday.mcap:/camera/depth,frame=world" the file.
 std::string file_of_bag(const std::string& text) {
-  const std::string with_topic = text.substr(0, text.rfind(",frame="));
-  return with_topic.substr(0, with_topic.rfind(":/"));
+  const std::size_t topic = text.rfind(":/");
+  return text.substr(0, topic != std::string::npos ? topic : text.rfind(",frame="));
 }
 
 std::string name_of_path(const std::string& path) {
