@@ -40,7 +40,7 @@ struct Recorder {
   }
   // An image whose depths are `metres` everywhere.
   void image(std::uint64_t log, float metres, std::uint64_t stamp) {
-    message::Image image = image_of(frame_at(0, metres));
+    message::Image image = message::image_of(frame_at(0, metres));
     image.header = header_at(kNoon + stamp);
     put(images, image, log);
   }
@@ -190,7 +190,7 @@ TEST_F(BagCamera, FindsTheOneTopicOfDepthAmongOthers) {
     PointCloud cloud;
     cloud.positions = {{1, 2, 3}, {4, 5, 6}};
     recorder.put(colors, color, 0);
-    recorder.put(clouds, message_of(cloud), 0);
+    recorder.put(clouds, message::message_of(cloud), 0);
     recorder.info(0);
     recorder.image(0, 2);
   }
@@ -212,7 +212,7 @@ TEST_F(BagCamera, AsksWhichOfSeveralTopics) {
     Recorder recorder(path_);
     const auto second = recorder.writer.add_topic<message::Image>("/other/image");
     recorder.image(0, 2);
-    recorder.put(second, image_of(frame_at(0)), 0);
+    recorder.put(second, message::image_of(frame_at(0)), 0);
   }
   EXPECT_THAT(refusal(name_), HasSubstr("/cam/image, /other/image"));
 }
