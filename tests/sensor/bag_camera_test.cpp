@@ -160,8 +160,8 @@ TEST_F(BagCamera, PlacesImagesByTransformsThatComeAfterThem) {
       const std::uint64_t time = i * 100 * kMillisecond;
       recorder.image(time, 1);
       recorder.info(time);
-      // What the robot was doing is recorded 60 ms late; from the eighth on 150 ms.
-      const std::uint64_t late = (i < 7 ? 60 : 150) * kMillisecond;
+      // What the robot was doing is recorded 60 ms late; from the eighth on 250 ms.
+      const std::uint64_t late = (i < 7 ? 60 : 250) * kMillisecond;
       recorder.transform(recorder.tf, time + late, time, "odom", "base", static_cast<double>(i));
     }
     recorder.transform(recorder.still, 2 * kSecond, 0, "base", "camera", 0.5);
@@ -173,7 +173,7 @@ TEST_F(BagCamera, PlacesImagesByTransformsThatComeAfterThem) {
     if (i % 10 < 7) {
       ASSERT_EQ(status, Status::frame) << i << camera->reason();
       EXPECT_NEAR(frame.T_world_sensor->translation().x(), i % 10 + 0.5, 1e-9);
-    } else if (i % 10 < 9) {
+    } else {
       EXPECT_EQ(status, Status::unposed) << i;
       EXPECT_THAT(camera->reason(), HasSubstr("base in odom"));
     }
@@ -263,7 +263,7 @@ TEST_F(BagCamera, PlaysWhatIsThereOfAFileThatWasCut) {
       if (i % 5 == 4) recorder.writer.advance(kNoon + (i + 20) * 100 * kMillisecond);
     }
   }
-  std::filesystem::resize_file(path_, std::filesystem::file_size(path_) * 2 / 3);
+  std::filesystem::resize_file(path_, bag::McapReader(path_).contents().chunks.at(2).offset + 100);
   const auto camera = open_camera(name_);
   DepthFrame frame;
   int frames = 0;
@@ -275,8 +275,7 @@ TEST_F(BagCamera, PlaysWhatIsThereOfAFileThatWasCut) {
     ++damaged;
     EXPECT_THAT(camera->reason(), HasSubstr(path_));
   }
-  EXPECT_GE(frames, 5);
-  EXPECT_LT(frames, 20);
+  EXPECT_EQ(frames, 10);
   EXPECT_GE(damaged, 1);
 }
 
