@@ -64,6 +64,13 @@ void check(const DeviceState& reading, const DeviceInfo& info) {
                   info.name, kDistrust));
 }
 
+// A device that became slower since it was first opened would get forces that are too stiff for it.
+constexpr double kSlower = 1.25;
+
+bool is_slower(const DeviceInfo& found, const DeviceInfo& expected) {
+  return *found.delay > kSlower * *expected.delay;
+}
+
 std::string replaced_by(const std::string& found, const std::string& expected) {
   return fmt::format("found {} instead of {}; restart to use it", found, expected);
 }
@@ -231,9 +238,12 @@ void ThreadedDevice::Inside::reopen() noexcept {
   try {
     std::unique_ptr<DeviceDriver> found = open();
     const bool same = found->info().name == info.name;
+    const bool slower = is_slower(info_of(*found), info);
     const std::lock_guard lock(loss_mutex);
-    loss = same ? "" : replaced_by(found->info().name, info.name);
-    if (same) driver = std::move(found);
+    loss = !same    ? replaced_by(found->info().name, info.name)
+           : slower ? fmt::format("{}: slower than when it was opened; restart", info.name)
+                    : "";
+    if (same && !slower) driver = std::move(found);
   } catch (const std::exception&) {  // not back yet
   }
   if (!driver) retry_at = clock.now() + options.retry_interval;
