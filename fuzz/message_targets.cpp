@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "message/cdr.hpp"
 #include "message/depth_images.hpp"
 #include "message/display_types.hpp"
 #include "message/point_clouds.hpp"

@@ -52,16 +52,6 @@ double first_step(const DeviceInfo& device) noexcept {
   return device.rate > 0 ? 1 / device.rate : kFirstStep;
 }
 
-/// What was set since it was seen last.
-template <class T>
-std::optional<T> news(const Latest<T>& wish, std::uint64_t& seen) noexcept {
-  const std::uint64_t generation = wish.generation();
-  if (generation == seen) return std::nullopt;
-  const std::optional<T> found = wish.look();
-  if (found) seen = generation;
-  return found;
-}
-
 Guard::Fault known_fault(const ServoState& state) noexcept {
   if (state.device == DeviceState::Status::failed) return Guard::Fault::device;
   return has(state.contact.notes, ContactNote::fault) ? Guard::Fault::proxy : Guard::Fault::none;
@@ -100,7 +90,6 @@ struct Servo::Inside {
   void place_tool(const DeviceState& read) noexcept;
   [[nodiscard]] bool is_clutched(std::uint32_t buttons) const noexcept;
   [[nodiscard]] Vector3d guarded() noexcept;
-  [[nodiscard]] Vector3d added_force() noexcept;
 
   Device& device;
   ServoOptions options;
@@ -116,8 +105,6 @@ struct Servo::Inside {
   bool heard = false;  // the device has known where the hand is
   std::uint64_t contact_seen = 0;
   std::uint64_t field_seen = 0;
-  std::uint64_t added_seen = 0;
-  double added_at = -std::numeric_limits<double>::infinity();  // s
 
   Latest<ServoState> shown;
   RecentForces recent_forces;
@@ -126,7 +113,7 @@ struct Servo::Inside {
   std::mutex pending_mutex;  // between those who change what is felt; the step never takes it
   Latest<ContactSettings> wanted_contact;
   Latest<FieldOptions> wanted_field;
-  Latest<Vector3d> added{Vector3d::Zero()};
+  AddedForce added;
   std::atomic<bool> paused{false};
   std::atomic<bool> reset{false};
 };
@@ -225,15 +212,9 @@ Vector3d Servo::Inside::guarded() noexcept {
     input.drift = state.contact.drift;
     input.stiffness = state.contact.stiffness;
   }
-  input.force += added_force();
+  added.add_to(input.force, state.time);
   input.fault = known_fault(state);
   return guard.pass(input);
-}
-
-Vector3d Servo::Inside::added_force() noexcept {
-  if (news(added, added_seen)) added_at = state.time;
-  const double share = 1 - (state.time - added_at) / kAddedForceFade;
-  return share > 0 ? Vector3d(share * added.get()) : Vector3d::Zero();
 }
 
 void Servo::show(const ServoState::Timing& timing) noexcept {
