@@ -60,10 +60,13 @@ void check(const CameraInfo& info) {
     try {
       const CameraModel camera = camera_of(info, rectified);
       const Pinhole& p = camera.pinhole;
-      keep(p.fx > 0 && p.fy > 0 && std::isfinite(p.fx + p.fy + p.cx + p.cy), "a pinhole");
+      keep(p.fx > 0 && p.fy > 0, "a focal length");
+      for (const double each : {p.fx, p.fy, p.cx, p.cy}) keep(std::isfinite(each), "a pinhole");
       keep(camera.width >= 0 && camera.height >= 0, "a size");
       const auto& d = camera.distortion;
-      keep(std::isfinite(d.k1 + d.k2 + d.k3 + d.p1 + d.p2), "a lens that is not finite");
+      for (const double each : {d.k1, d.k2, d.k3, d.p1, d.p2}) {
+        keep(std::isfinite(each), "a lens that is not finite");
+      }
     } catch (const Error&) {
       continue;
     }
