@@ -12,6 +12,7 @@
 #include "palpate/servo/z_width.hpp"
 #include "servo/passivity.hpp"
 #include "servo/servo_inside.hpp"
+#include "servo/step_trace.hpp"
 
 namespace palpate {
 namespace {
@@ -112,11 +113,13 @@ struct Servo::Inside {
   Clutch clutch;
   Vector3d hand = Vector3d::Zero();  // where it is without the clutch, m, world
   ServoState state;                  // of the stepping thread; the others see what was shown
+  StepInput basis;                   // of the last step, where it is recorded
   bool started = false;
   bool heard = false;  // the device has known where the hand is
   std::uint64_t contact_seen = 0;
   std::uint64_t field_seen = 0;
   std::uint64_t added_seen = 0;
+  Vector3d added = Vector3d::Zero();                           // N
   double added_at = -std::numeric_limits<double>::infinity();  // s
 
   Latest<ServoState> shown;
@@ -126,7 +129,7 @@ struct Servo::Inside {
   std::mutex pending_mutex;  // between those who change what is felt; the step never takes it
   Latest<ContactSettings> wanted_contact;
   Latest<FieldOptions> wanted_field;
-  Latest<Vector3d> added{Vector3d::Zero()};
+  Latest<Vector3d> wanted_force{Vector3d::Zero()};
   std::atomic<bool> paused{false};
   std::atomic<bool> reset{false};
 };
@@ -161,6 +164,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   state.dt = goes_on ? now - state.time : first_step(device.info());
   state.time = now;
   hand = options.workspace.position_to_world(read.position);
+  basis.device = read;
   heard = heard || read.status != DeviceState::Status::silent;
   apply_pending();
   place_tool(read);
@@ -195,7 +199,9 @@ bool Servo::Inside::is_clutched(std::uint32_t buttons) const noexcept {
 
 void Servo::Inside::apply_pending() noexcept {
   state.paused = paused.load();
-  if (reset.exchange(false) || !heard) {
+  basis.contact_changed = basis.field_changed = basis.force_added = false;
+  basis.reset = reset.exchange(false);
+  if (basis.reset || !heard) {
     clutch = {};
     proxy.reset(hand);
     guard.reset();
@@ -203,9 +209,13 @@ void Servo::Inside::apply_pending() noexcept {
   if (const std::optional<ContactSettings> wanted = news(wanted_contact, contact_seen)) {
     is_softened = wanted->stiffness > stiffness_limit;
     proxy.change(std::min(wanted->stiffness, stiffness_limit), wanted->friction, wanted->texture);
+    basis.contact = *wanted;
+    basis.contact_changed = true;
   }
   if (const std::optional<FieldOptions> wanted = news(wanted_field, field_seen)) {
     field.change(*wanted);
+    basis.field = *wanted;
+    basis.field_changed = true;
   }
 }
 
@@ -231,9 +241,13 @@ Vector3d Servo::Inside::guarded() noexcept {
 }
 
 Vector3d Servo::Inside::added_force() noexcept {
-  if (news(added, added_seen)) added_at = state.time;
+  if (const std::optional<Vector3d> wanted = news(wanted_force, added_seen)) {
+    added = basis.added = *wanted;
+    added_at = state.time;
+    basis.force_added = true;
+  }
   const double share = 1 - (state.time - added_at) / kAddedForceFade;
-  return share > 0 ? Vector3d(share * added.get()) : Vector3d::Zero();
+  return share > 0 ? Vector3d(share * added) : Vector3d::Zero();
 }
 
 void Servo::show(const ServoState::Timing& timing) noexcept {
@@ -244,6 +258,9 @@ void Servo::show(const ServoState::Timing& timing) noexcept {
   inside_->shown.set(state);
   inside_->recent_forces.add(state.force.cast<float>());
   if (inside_->options.steps != nullptr) inside_->options.steps->push(state);
+  if (inside_->options.traces == nullptr) return;
+  inside_->basis.found = inside_->field.found();
+  inside_->options.traces->push(state, inside_->basis);
 }
 
 Vector3d Servo::device_force() const noexcept {
@@ -304,7 +321,7 @@ void Servo::set_contact(const ContactSettings& contact) {
 void Servo::add_force(const Vector3d& force) {
   if (!force.allFinite()) throw Error("a force from outside is not finite; find out who sent it");
   const std::lock_guard lock(inside_->pending_mutex);
-  inside_->added.set(force);
+  inside_->wanted_force.set(force);
 }
 
 void Servo::set_field(const FieldOptions& field) {
