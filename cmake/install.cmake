@@ -4,6 +4,8 @@ include(CMakePackageConfigHelpers)
 install(TARGETS palpate_core palpate_sim palpate_bag palpate_live palpate_ros EXPORT palpateTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(PALPATE_BUILD_ROS)
+  set(PALPATE_DDS_LIBRARY -lpalpate_dds)
+  set(PALPATE_DDS_LINK -lddsc)
   install(TARGETS palpate_dds EXPORT palpateTargets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endif()

@@ -37,7 +37,7 @@ changed_sources() {
   if [ -z "$base" ]; then sources; else git diff --name-only --diff-filter=d "$base" -- '*.cpp' '*.hpp'; fi
 }
 
-need_packages build cameras viewer test lint
+need_packages build cameras viewer ros test peers lint
 if [ "$mode" = fix ]; then
   sources | xargs clang-format-14 -i
   exit

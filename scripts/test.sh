@@ -22,7 +22,7 @@ started=$SECONDS
 status=0
 
 say "packages"
-need_packages build cameras viewer test
+need_packages build cameras viewer ros test peers
 need_npm
 need_modules tests/bag/peer
 need_browser
@@ -58,6 +58,7 @@ say "the program without optional libraries"
 bare 'palpate [0-9]' --version
 bare 'this build has no OpenNI2' cameras
 bare 'this build has no libfreenect' cameras
+bare 'this build has no Cyclone DDS' cameras
 bare 'this build cannot connect to Haply' devices
 bare 'contacts  *1' touch synthetic:sphere --duration 1
 bare 'frames  *30' touch camera:simulated --simulated-time --duration 1

@@ -81,4 +81,14 @@ class Latest {
   std::atomic<std::uint64_t> generation_{0};
 };
 
+/// What was set since it was seen last; `seen` is what the caller keeps, from 0 on. Real-time.
+template <class T>
+[[nodiscard]] std::optional<T> news(const Latest<T>& latest, std::uint64_t& seen) noexcept {
+  const std::uint64_t generation = latest.generation();
+  if (generation == seen) return std::nullopt;
+  const std::optional<T> found = latest.look();
+  if (found) seen = generation;
+  return found;
+}
+
 }  // namespace palpate

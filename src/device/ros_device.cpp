@@ -20,6 +20,7 @@ constexpr double kDiscovery = 3;        // s until a node that is there is heard
 constexpr double kMeasuring = 0.5;      // s of poses from which rate and delay are told
 constexpr double kSilence = 0.02;       // s without a pose: the node is gone, or hangs
 constexpr double kOldest = 1;           // s; a stamp further off is of another clock
+constexpr double kClockError = 5e-4;    // s; clocks of one machine, read one after the other
 constexpr double kVelocitySpan = 0.01;  // s over which positions give a velocity
 
 // What 19 of 20 stay below.
@@ -60,6 +61,7 @@ class RosDriver final : public DeviceDriver {
  private:
   void connect();
   void measure(const DeviceName& name);
+  void check_clocks(const std::vector<double>& ages) const;
   bool take();
   [[nodiscard]] std::optional<double> age() const;
   void estimate_velocity(double now);
@@ -101,9 +103,23 @@ void RosDriver::measure(const DeviceName& name) {
                             arrivals.size(), link_.pose_topic, kMeasuring));
   }
   info_.rate = (static_cast<double>(arrivals.size()) - 1) / (arrivals.back() - arrivals.front());
-  if (!ages.empty()) info_.delay = most_of(ages);
-  if (const std::string told = name.option("delay"); !told.empty())
+  if (const std::string told = name.option("delay"); !told.empty()) {
     info_.delay = milliseconds(told) / 1e3;
+  } else if (!ages.empty()) {
+    check_clocks(ages);
+    info_.delay = most_of(ages);
+  }
+}
+
+// Of poses that come before they were measured nobody knows how old they are.
+void RosDriver::check_clocks(const std::vector<double>& ages) const {
+  const double youngest = *std::ranges::min_element(ages);
+  if (youngest >= -kClockError) return;
+  throw Error(fmt::format(
+      "{}: stamps on {} are {:.1f} ms in the future, so the delay, and with it the stiffness that "
+      "is "
+      "stable, cannot be told; synchronise the two machines' clocks (chrony), or give delay=MS",
+      info_.name, link_.pose_topic, -1e3 * youngest));
 }
 
 // Everything that waits; false: no pose does.
@@ -116,7 +132,7 @@ std::optional<double> RosDriver::age() const {
   if (!told_.stamp) return {};
   const double age = system_now() - *told_.stamp;
   if (std::abs(age) > kOldest) return {};
-  return std::max(age, 0.0);
+  return age;
 }
 
 DeviceState RosDriver::exchange(const Vector3d& force) {
@@ -139,8 +155,7 @@ DeviceState RosDriver::exchange(const Vector3d& force) {
   if (info_.delay && told_.stamp && (!aged || *aged > *info_.delay + kSilence)) {
     throw Error(
         fmt::format("{}: a pose with a stamp {:.3g} s from now, when {:.3g} ms were usual; is the "
-                    "network slow, or "
-                    "was a clock set?",
+                    "network slow, or was a clock set?",
                     info_.name, system_now() - *told_.stamp, 1e3 * *info_.delay));
   }
   if (!told_.has_velocity) estimate_velocity(clock_.now());

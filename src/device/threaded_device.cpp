@@ -64,8 +64,16 @@ void check(const DeviceState& reading, const DeviceInfo& info) {
                   info.name, kDistrust));
 }
 
-std::string replaced_by(const std::string& found, const std::string& expected) {
-  return fmt::format("found {} instead of {}; restart to use it", found, expected);
+// A device that became slower would get forces that are too stiff for it.
+constexpr double kSlower = 1.25;
+
+// Why what was opened again cannot take the place of what was there; empty: it can.
+std::string objection_to(const DeviceInfo& found, const DeviceInfo& expected) {
+  if (found.name != expected.name) {
+    return fmt::format("found {} instead of {}; restart to use it", found.name, expected.name);
+  }
+  if (*found.delay <= kSlower * *expected.delay) return {};
+  return fmt::format("{}: slower than when it was opened; restart", found.name);
 }
 
 // A connection's number, from 1 on; each one that is opened has the next.
@@ -230,10 +238,10 @@ void ThreadedDevice::Inside::lose(const char* why) noexcept {
 void ThreadedDevice::Inside::reopen() noexcept {
   try {
     std::unique_ptr<DeviceDriver> found = open();
-    const bool same = found->info().name == info.name;
+    const std::string objection = objection_to(info_of(*found), info);
     const std::lock_guard lock(loss_mutex);
-    loss = same ? "" : replaced_by(found->info().name, info.name);
-    if (same) driver = std::move(found);
+    loss = objection;
+    if (objection.empty()) driver = std::move(found);
   } catch (const std::exception&) {  // not back yet
   }
   if (!driver) retry_at = clock.now() + options.retry_interval;

@@ -64,7 +64,8 @@ void add(std::vector<RosTopic>& topics, const dds::Endpoint& there) {
         fmt::format("its {} is another version of the type than palpate's", there.type);
   }
   const char* use = there.writes ? type->read : type->write;
-  if (use != nullptr) topic->use = fmt::format(fmt::runtime(use), there.topic);
+  if (use != nullptr && (there.writes || topic->use.empty()))
+    topic->use = fmt::format(fmt::runtime(use), there.topic);
 }
 
 // Listens to one topic.

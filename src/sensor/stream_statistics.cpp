@@ -25,14 +25,11 @@ bool is_camera(const CameraModel& camera) {
 }
 
 std::optional<Objection> check_form(const DepthFrame& frame) {
-  if (frame.cloud) return {};
   const CameraModel& camera = frame.camera;
   if (!is_camera(camera)) {
-    return Objection{
-        &StreamState::Drops::garbage,
-        fmt::format("a frame of {} x {} pixels and a focal "
-                    "length of {} x {} pixels",
-                    camera.width, camera.height, camera.pinhole.fx, camera.pinhole.fy)};
+    return Objection{&StreamState::Drops::garbage,
+                     fmt::format("a frame of {} x {} pixels and a focal length of {} x {} pixels",
+                                 camera.width, camera.height, camera.pinhole.fx, camera.pinhole.fy)};
   }
   const std::size_t pixels =
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
@@ -86,10 +83,14 @@ Objection objection_to(DepthCamera::Status status, const std::string& reason) {
 }
 
 std::optional<Objection> FrameCheck::examine(const DepthFrame& frame, double latest) {
-  if (auto objection = check_form(frame)) return objection;
+  if (!frame.cloud) {
+    if (auto objection = check_form(frame)) return objection;
+  }
   if (auto objection = check_stamp(frame.stamp, latest)) return objection;
-  if (auto objection = check_size(frame)) return objection;
-  if (auto objection = check_picture(frame)) return objection;
+  if (!frame.cloud) {
+    if (auto objection = check_size(frame)) return objection;
+    if (auto objection = check_picture(frame)) return objection;
+  }
   stamp_ = frame.stamp;
   return {};
 }
@@ -111,7 +112,6 @@ std::optional<Objection> FrameCheck::check_stamp(double stamp, double latest) co
 }
 
 std::optional<Objection> FrameCheck::check_size(const DepthFrame& frame) {
-  if (frame.cloud) return {};  // clouds have as many points as there happen to be
   const Size size{frame.camera.width, frame.camera.height};
   if (size_ == Size{}) size_ = size;
   if (size == size_) {
@@ -132,7 +132,6 @@ std::optional<Objection> FrameCheck::check_size(const DepthFrame& frame) {
 }
 
 std::optional<Objection> FrameCheck::check_picture(const DepthFrame& frame) {
-  if (frame.cloud) return {};
   if (is_empty(frame.depth)) {
     return Objection{&StreamState::Drops::empty,
                      "a frame without any depth: is the lens covered, or everything out of range?"};

@@ -53,16 +53,6 @@ double first_step(const DeviceInfo& device) noexcept {
   return device.rate > 0 ? 1 / device.rate : kFirstStep;
 }
 
-/// What was set since it was seen last.
-template <class T>
-std::optional<T> news(const Latest<T>& wish, std::uint64_t& seen) noexcept {
-  const std::uint64_t generation = wish.generation();
-  if (generation == seen) return std::nullopt;
-  const std::optional<T> found = wish.look();
-  if (found) seen = generation;
-  return found;
-}
-
 Guard::Fault known_fault(const ServoState& state) noexcept {
   if (state.device == DeviceState::Status::failed) return Guard::Fault::device;
   return has(state.contact.notes, ContactNote::fault) ? Guard::Fault::proxy : Guard::Fault::none;
@@ -101,7 +91,6 @@ struct Servo::Inside {
   void place_tool(const DeviceState& read) noexcept;
   [[nodiscard]] bool is_clutched(std::uint32_t buttons) const noexcept;
   [[nodiscard]] Vector3d guarded() noexcept;
-  [[nodiscard]] Vector3d added_force() noexcept;
 
   Device& device;
   ServoOptions options;
@@ -113,14 +102,11 @@ struct Servo::Inside {
   Clutch clutch;
   Vector3d hand = Vector3d::Zero();  // where it is without the clutch, m, world
   ServoState state;                  // of the stepping thread; the others see what was shown
-  StepInput basis;                   // of the last step, where it is recorded
+  StepInput basis;                   // of its last step
   bool started = false;
   bool heard = false;  // the device has known where the hand is
   std::uint64_t contact_seen = 0;
   std::uint64_t field_seen = 0;
-  std::uint64_t added_seen = 0;
-  Vector3d added = Vector3d::Zero();                           // N
-  double added_at = -std::numeric_limits<double>::infinity();  // s
 
   Latest<ServoState> shown;
   RecentForces recent_forces;
@@ -129,7 +115,7 @@ struct Servo::Inside {
   std::mutex pending_mutex;  // between those who change what is felt; the step never takes it
   Latest<ContactSettings> wanted_contact;
   Latest<FieldOptions> wanted_field;
-  Latest<Vector3d> wanted_force{Vector3d::Zero()};
+  AddedForce added;
   std::atomic<bool> paused{false};
   std::atomic<bool> reset{false};
 };
@@ -174,6 +160,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   state.force = guarded();
   state.guard = guard.state();
   state.field_notes = field.notes();
+  if (options.traces != nullptr) basis.found = field.found();
   state.patch_points = field.patch_points();
   ++state.step;
 }
@@ -199,24 +186,19 @@ bool Servo::Inside::is_clutched(std::uint32_t buttons) const noexcept {
 
 void Servo::Inside::apply_pending() noexcept {
   state.paused = paused.load();
-  basis.contact_changed = basis.field_changed = basis.force_added = false;
   basis.reset = reset.exchange(false);
   if (basis.reset || !heard) {
     clutch = {};
     proxy.reset(hand);
     guard.reset();
   }
-  if (const std::optional<ContactSettings> wanted = news(wanted_contact, contact_seen)) {
+  basis.contact = news(wanted_contact, contact_seen);
+  if (const auto& wanted = basis.contact) {
     is_softened = wanted->stiffness > stiffness_limit;
     proxy.change(std::min(wanted->stiffness, stiffness_limit), wanted->friction, wanted->texture);
-    basis.contact = *wanted;
-    basis.contact_changed = true;
   }
-  if (const std::optional<FieldOptions> wanted = news(wanted_field, field_seen)) {
-    field.change(*wanted);
-    basis.field = *wanted;
-    basis.field_changed = true;
-  }
+  basis.field = news(wanted_field, field_seen);
+  if (basis.field) field.change(*basis.field);
 }
 
 Vector3d Servo::Inside::guarded() noexcept {
@@ -235,19 +217,9 @@ Vector3d Servo::Inside::guarded() noexcept {
     input.drift = state.contact.drift;
     input.stiffness = state.contact.stiffness;
   }
-  input.force += added_force();
+  basis.added = added.add_to(input.force, state.time);
   input.fault = known_fault(state);
   return guard.pass(input);
-}
-
-Vector3d Servo::Inside::added_force() noexcept {
-  if (const std::optional<Vector3d> wanted = news(wanted_force, added_seen)) {
-    added = basis.added = *wanted;
-    added_at = state.time;
-    basis.force_added = true;
-  }
-  const double share = 1 - (state.time - added_at) / kAddedForceFade;
-  return share > 0 ? Vector3d(share * added) : Vector3d::Zero();
 }
 
 void Servo::show(const ServoState::Timing& timing) noexcept {
@@ -258,9 +230,7 @@ void Servo::show(const ServoState::Timing& timing) noexcept {
   inside_->shown.set(state);
   inside_->recent_forces.add(state.force.cast<float>());
   if (inside_->options.steps != nullptr) inside_->options.steps->push(state);
-  if (inside_->options.traces == nullptr) return;
-  inside_->basis.found = inside_->field.found();
-  inside_->options.traces->push(state, inside_->basis);
+  if (inside_->options.traces != nullptr) inside_->options.traces->push(state, inside_->basis);
 }
 
 Vector3d Servo::device_force() const noexcept {
@@ -271,27 +241,21 @@ Vector3d Servo::device_force() const noexcept {
 Device& Servo::device() const noexcept {
   return inside_->device;
 }
-
 const ServoOptions& Servo::options() const noexcept {
   return inside_->options;
 }
-
 double Servo::stiffness_limit() const noexcept {
   return inside_->stiffness_limit;
 }
-
 ServoState Servo::state() const noexcept {
   return inside_->shown.get();
 }
-
 Durations Servo::lateness() const noexcept {
   return inside_->lateness.look();
 }
-
 Durations Servo::computing() const noexcept {
   return inside_->computing.look();
 }
-
 std::vector<Eigen::Vector3f> Servo::forces_since(std::uint64_t& seen) const {
   return inside_->recent_forces.since(seen);
 }
@@ -321,7 +285,7 @@ void Servo::set_contact(const ContactSettings& contact) {
 void Servo::add_force(const Vector3d& force) {
   if (!force.allFinite()) throw Error("a force from outside is not finite; find out who sent it");
   const std::lock_guard lock(inside_->pending_mutex);
-  inside_->wanted_force.set(force);
+  inside_->added.set(force);
 }
 
 void Servo::set_field(const FieldOptions& field) {

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "base/latest.hpp"
 #include "palpate/servo/servo.hpp"
 
 namespace palpate {
@@ -73,6 +76,32 @@ class Clutch {
 
  private:
   Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();
+};
+
+/// A force from outside (Servo::add_force()) that fades unless the next one comes.
+class AddedForce {
+ public:
+  /// N, finite. One thread at a time.
+  void set(const Eigen::Vector3d& force) noexcept { newest_.set(force); }
+
+  /// Adds what is left of it in the step at `time`, s; nothing changes a bit where there is none.
+  /// The one that is new in this step, if any. The stepping thread's; real-time.
+  std::optional<Eigen::Vector3d> add_to(Eigen::Vector3d& force, double time) noexcept {
+    const std::optional<Eigen::Vector3d> newest = news(newest_, seen_);
+    if (newest) {
+      force_ = *newest;
+      time_ = time;
+    }
+    const double share = 1 - (time - time_) / Servo::kAddedForceFade;
+    if (share > 0 && !force_.isZero(0)) force += share * force_;
+    return newest;
+  }
+
+ private:
+  Latest<Eigen::Vector3d> newest_;
+  std::uint64_t seen_ = 0;
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
+  double time_ = 0;
 };
 
 }  // namespace palpate

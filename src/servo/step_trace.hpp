@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "palpate/servo/servo.hpp"
 
@@ -13,17 +14,12 @@ namespace palpate {
 /// All that a servo's step depended on besides the servo's options and the steps before: with it
 /// the step can be done again, to the same force, bit for bit.
 struct StepInput {
-  // What was changed before it.
-  bool reset = false;
-  bool contact_changed = false;
-  bool field_changed = false;
-  bool force_added = false;
-
   DeviceState device;
   SceneField::Found found;
-  ContactSettings contact;                          ///< where it was changed
-  FieldOptions field;                               ///< likewise
-  Eigen::Vector3d added = Eigen::Vector3d::Zero();  ///< likewise: Servo::add_force(), N
+  bool reset = false;                           ///< Servo::reset() was called
+  std::optional<ContactSettings> contact = {};  ///< where it was changed for this step
+  std::optional<FieldOptions> field = {};       ///< likewise
+  std::optional<Eigen::Vector3d> added = {};    ///< a new Servo::add_force(), N
 };
 
 /// A step with what it was made of.

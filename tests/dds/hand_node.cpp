@@ -1,7 +1,7 @@
 // A simulated device that a node of ROS 2 owns, in real time, with the preset fd's topics:
-// hand_node RATE DELAY_MS SECONDS DAMPING. Its hand presses 10 mm below z = 0. What it measured is
-// sent DELAY_MS later. Prints, of the last third of the time, how far the device moved up and down
-// (mm).
+// hand_node RATE DELAY_MS SECONDS DAMPING. Its hand goes from 10 mm above z = 0 to 10 mm below in
+// the fifth second. What it measured is sent DELAY_MS later. Prints how far the device moved up and
+// down (mm) from 60 to 85 % of the time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,8 +43,9 @@ int main(int count, char** arguments) {
                                  .delay = 0,
                                  .rate = rate,
                                  .hand = {.stiffness = 100, .damping = 0}};
-  SimulatedDevice device(options,
-                         {{0, {0, 0, 0.01}}, {1, {0, 0, -0.01}}, {seconds, {0, 0, -0.01}}});
+  SimulatedDevice device(
+      options,
+      {{0, {0, 0, 0.01}}, {4, {0, 0, 0.01}}, {5, {0, 0, -0.01}}, {seconds, {0, 0, -0.01}}});
   const dds::Participant participant(dds::environment_options());
   dds::Writer<message::PoseStamped> poses(participant, "/fd/ee_pose", {.reliable = true});
   dds::Reader<message::Float64MultiArray> forces(participant, "/fd/fd_controller/commands",
@@ -69,7 +70,8 @@ int main(int count, char** arguments) {
     }
     forces.take(force);
     if (force.data.size() >= 3) device.write({force.data[1], -force.data[0], force.data[2]});
-    if (static_cast<double>(step) < seconds * rate * 2 / 3) continue;
+    const double share = static_cast<double>(step) / (seconds * rate);
+    if (share < 0.6 || share > 0.85) continue;
     lowest = std::min(lowest, device.true_position().z());
     highest = std::max(highest, device.true_position().z());
   }

@@ -15,20 +15,23 @@ FLOORS = {
     "io": {"base", "geometry", "depth"},
     "message": {"base", "geometry", "depth", "io"},
     "bag": {"base", "geometry", "depth", "io", "message"},
+    "dds": {"base", "message"},
     "field": {"base", "geometry"},
     "contact": {"base", "geometry"},  # and field/field.hpp: see ALLOWED
     "prepare": {"base", "geometry", "field"},
     "align": {"base", "geometry", "field"},
     "scene": {"base", "geometry", "depth", "field", "prepare"},
     "sim": {"base", "geometry", "depth", "io", "field"},  # and the camera that it is: see ALLOWED
-    "sensor": {"base", "geometry", "depth", "io", "message", "bag", "field", "prepare", "scene",
-               "sim"},
-    "device": {"base", "geometry", "io", "field", "contact", "prepare", "scene"},
+    "sensor": {"base", "geometry", "depth", "io", "message", "bag", "dds", "field", "prepare",
+               "scene", "sim"},
+    "device": {"base", "geometry", "io", "message", "dds", "field", "contact", "prepare", "scene"},
     "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "device"},
     "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
                "servo"},
-    "apps": {"base", "geometry", "depth", "io", "message", "bag", "field", "contact", "prepare", "align", "scene",
-             "sensor", "device", "servo", "viewer"},
+    "ros": {"base", "geometry", "message", "bag", "dds", "field", "contact", "prepare", "scene",
+            "sensor", "device", "servo"},
+    "apps": {"base", "geometry", "depth", "io", "message", "bag", "field", "contact", "prepare", "align",
+             "scene", "sensor", "device", "servo", "ros", "viewer"},
 }
 # The rooms of the program, from the top down: what stands in one line sees what stands below it.
 ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "replay", "touch", "zwidth"}, {"view"},

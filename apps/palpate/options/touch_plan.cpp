@@ -106,9 +106,10 @@ void check_files(const TouchPlan& plan, const std::string& setup) {
 // Static sources have no need of real time.
 bool in_real_time(const TouchPlan& plan, bool simulated_time) {
   if (plan.page.wanted || need_real_time(plan.devices)) return true;
-  return !simulated_time && std::ranges::any_of(plan.sources, [](const SourcePlan& source) {
-    return source.kind == SourceKind::stream;
-  });
+  if (simulated_time) return false;
+  return plan.ros.wanted() || std::ranges::any_of(plan.sources, [](const SourcePlan& source) {
+           return source.kind == SourceKind::stream;
+         });
 }
 
 // A page that was not asked for is where a person is at the terminal.

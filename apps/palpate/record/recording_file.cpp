@@ -192,9 +192,9 @@ void RecordingFile::write(std::size_t index, const StepTrace& step) {
   const ServoState& state = step.state;
   const StepInput& input = step.input;
   if (input.reset) change(hand, state, "reset", Json());
-  if (input.contact_changed) change(hand, state, "contact", exact_json(input.contact));
-  if (input.field_changed) change(hand, state, "field", exact_json(input.field));
-  if (input.force_added) change(hand, state, "force", exact_json(input.added));
+  if (input.contact) change(hand, state, "contact", exact_json(*input.contact));
+  if (input.field) change(hand, state, "field", exact_json(*input.field));
+  if (input.added) change(hand, state, "force", exact_json(*input.added));
   message::Tick tick = tick_of(step, sources_);
   tick.header = header(state.time, kWorld);
   put(hand.tick, state.time, tick);
