@@ -5,7 +5,9 @@
 
 #include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/replay/replayed_run.hpp"
+#include "apps/palpate/run/run.hpp"
 #include "apps/setup_parsed.hpp"
+#include "palpate/base/clock.hpp"
 
 namespace palpate::app {
 namespace {
@@ -82,6 +84,51 @@ TEST(Replay, ChangesOfSettingsInContactAreDoneAgainInTheirSteps) {
       });
   EXPECT_TRUE(difference.exact()) << "step " << difference.first << " " << difference.ended;
   EXPECT_EQ(again, forces);
+}
+
+// The hand presses on what is in the middle of the camera's picture, from the second frame on.
+TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
+  Shell shell;
+  const TouchPlan plan = planned("camera:simulated --simulated-time");
+  LoadedScene loaded = load_sources(plan.sources, {});
+  begin_run(loaded, {});
+  LoadedSource& from = loaded.sources.front();
+  Source& source = loaded.scene.source(0);
+  Recorder recorder(shell.path("run.mcap"));
+  const Stream::Sink push = recorder.watching(0, feeding(from, source, thread_cpu_seconds));
+  const std::function<void()> end = recorder.watching(0, [&] { source.keep(); });
+  Handle device;
+  ServoOptions options;
+  options.traces = recorder.add_hand();
+  Servo servo(device, loaded.scene, options);
+  recorder.begin(loaded, {&servo}, 0, true);
+  DepthFrame frame;
+  double largest = 0;
+  for (int step = 0; step < 800; ++step) {
+    const double now = 1e-3 * step;
+    if (step % 33 == 0 && step < 600) {
+      ASSERT_EQ(from.camera->read(frame, 1), DepthCamera::Status::frame);
+      if (step == 198 || step == 297) {
+        SourceOptions changed = source.options();
+        changed.depth.normal_error *= step == 198 ? 2 : 0.5;
+        changed.policy.policy = step == 198 ? Policy::fusion : Policy::morph;
+        source.change(changed);
+      }
+      push(frame, [&] { return now + 5e-3; });
+    }
+    if (step == 600) end();
+    DeviceState hand;
+    hand.position.z() = source.state().depth + 5e-3 * std::sin(10 * now);
+    largest = std::max(largest, servo.step(hand, now).force.norm());
+    servo.show();
+    recorder.keep_up();
+  }
+  EXPECT_EQ(recorder.finish().frames, 19u);
+  EXPECT_GT(largest, 0.05);
+  const ForceDifference difference =
+      ReplayedRun(shell.path("run.mcap")).replay(0, [](const ServoState&, const DeviceInfo&) {});
+  EXPECT_TRUE(difference.exact()) << "step " << difference.first << " " << difference.ended;
+  EXPECT_EQ(difference.steps, 800u);
 }
 
 TEST(Replay, StepsThatFindNoRoomAreCounted) {
