@@ -85,7 +85,7 @@ const RosBridgeOptions& checked(const RosBridgeOptions& options) {
   };
   check_rate("rate (Hz)", options.rate);
   if (!options.robot) return options;
-  const RobotOptions& robot = *options.robot;
+  const RosBridgeOptions::Robot& robot = *options.robot;
   check_rate("the robot's rate (Hz)", robot.rate);
   require.positive("the robot's scale", robot.scale, "give a number above 0");
   const int button = robot.dead_man.value_or(0);

@@ -22,7 +22,7 @@ constexpr std::array<RobotPreset, 5> kRobots = {
      {"crtk", "/arm", "/servo_cp"},
      {"generic", "", ""}}};
 
-std::string robot_topic(const RobotOptions& robot) {
+std::string robot_topic(const RosBridgeOptions::Robot& robot) {
   const auto preset = std::ranges::find(kRobots, robot.preset, &RobotPreset::name);
   if (preset == kRobots.end()) {
     throw Error(fmt::format(
@@ -37,7 +37,8 @@ std::string robot_topic(const RobotOptions& robot) {
 
 }  // namespace
 
-RobotTarget::RobotTarget(const dds::Participant& participant, const RobotOptions& options)
+RobotTarget::RobotTarget(const dds::Participant& participant,
+                         const RosBridgeOptions::Robot& options)
     : options_(options),
       target_(participant, robot_topic(options), {.reliable = true}),
       due_(options.rate) {}

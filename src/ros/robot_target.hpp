@@ -28,7 +28,7 @@ class Every {
 class RobotTarget {
  public:
   /// @throws Error when the preset is none.
-  RobotTarget(const dds::Participant& participant, const RobotOptions& options);
+  RobotTarget(const dds::Participant& participant, const RosBridgeOptions::Robot& options);
 
   /// `now`: s. Tells the target where one is due.
   void look(const ServoState& state, double now, const message::Time& stamp);
@@ -36,7 +36,7 @@ class RobotTarget {
  private:
   [[nodiscard]] bool may_go(const ServoState& state) const;
 
-  RobotOptions options_;
+  RosBridgeOptions::Robot options_;
   dds::Writer<message::PoseStamped> target_;
   Every due_;
 };

@@ -9,7 +9,7 @@ namespace palpate::app {
 namespace {
 
 TEST(Robot, IsReadFromItsPresetAndOptions) {
-  const RobotOptions robot = parse_robot(
+  const RosBridgeOptions::Robot robot = parse_robot(
       "generic,topic=/goal,frame=base,rate=100,scale=2,origin=1/2/3/0/0/0/1,button=3,follow=hand");
   EXPECT_EQ(robot.preset, "generic");
   EXPECT_EQ(robot.topic, "/goal");

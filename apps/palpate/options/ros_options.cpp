@@ -42,7 +42,7 @@ Eigen::Isometry3d pose_in(std::string text) {
   return pose_of(v, "--robot: origin");
 }
 
-void take(RobotOptions& robot, const std::string& key, const std::string& value) {
+void take(RosBridgeOptions::Robot& robot, const std::string& key, const std::string& value) {
   if (key == "ns") {
     robot.ns = text_of(key, value);
   } else if (key == "topic") {
@@ -80,8 +80,8 @@ void remap(RosBridgeOptions& bridge, const std::string& text) {
 
 }  // namespace
 
-RobotOptions parse_robot(const std::string& text) {
-  RobotOptions robot;
+RosBridgeOptions::Robot parse_robot(const std::string& text) {
+  RosBridgeOptions::Robot robot;
   std::size_t comma = std::min(text.find(','), text.size());
   robot.preset = text.substr(0, comma);
   if (std::ranges::find(kRobots, robot.preset) == kRobots.end()) {

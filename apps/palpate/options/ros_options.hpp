@@ -20,7 +20,7 @@ struct RosPlan {
 
 /// "PRESET[,KEY=VALUE]...", as --robot has it.
 /// @throws UsageError when an option is not one.
-[[nodiscard]] RobotOptions parse_robot(const std::string& text);
+[[nodiscard]] RosBridgeOptions::Robot parse_robot(const std::string& text);
 
 void add_bridge_options(OptionTable& table, RosPlan& plan);
 

@@ -14,30 +14,30 @@
 
 namespace palpate {
 
-/// Where a robot is told to go, as a target that it follows (docs/ros2.md).
-struct RobotOptions {
-  /// "crisp", "cartesian", "servo", "crtk" or "generic": which topic takes the target.
-  std::string preset;
-  std::string ns = {};          ///< its namespace; empty: the preset's usual one
-  std::string topic = {};       ///< in place of the preset's
-  std::string frame = "world";  ///< frame of reference that targets are told in
-  /// The hand's own position instead of the proxy's: it enters what the camera sees.
-  bool hand = false;
-  double rate = 250;  ///< targets a second, Hz; 1 to 1000
-  /// From the world to the robot's frame of reference: T * (scale * position).
-  Eigen::Isometry3d T_robot_world = Eigen::Isometry3d::Identity();
-  double scale = 1;
-  std::optional<int> dead_man =
-      {};  ///< targets are told only while this button of the hand is down, 0 to 31
-};
-
 struct RosBridgeOptions {
+  /// Where a robot is told to go, as a target that it follows (docs/ros2.md).
+  struct Robot {
+    /// "crisp", "cartesian", "servo", "crtk" or "generic": which topic takes the target.
+    std::string preset;
+    std::string ns = {};          ///< its namespace; empty: the preset's usual one
+    std::string topic = {};       ///< in place of the preset's
+    std::string frame = "world";  ///< frame of reference that targets are told in
+    /// The hand's own position instead of the proxy's: it enters what the camera sees.
+    bool hand = false;
+    double rate = 250;  ///< targets a second, Hz; 1 to 1000
+    /// From the world to the robot's frame of reference: T * (scale * position).
+    Eigen::Isometry3d T_robot_world = Eigen::Isometry3d::Identity();
+    double scale = 1;
+    std::optional<int> dead_man =
+        {};  ///< targets are told only while this button of the hand is down, 0 to 31
+  };
+
   std::string ns = "/palpate";  ///< of all topics below
   std::string frame = "world";  ///< what palpate's world frame is called
   double rate = 250;            ///< poses, twists, wrenches of each hand a second, Hz; 1 to 1000
   /// Other names for topics, by their whole usual name.
   std::map<std::string, std::string> remap = {};
-  std::optional<RobotOptions> robot = {};  ///< what the first hand drives
+  std::optional<Robot> robot = {};  ///< what the first hand drives
 };
 
 /// Tells ROS 2 what hands do and feel, and takes contact forces from robots, on a thread of its own
