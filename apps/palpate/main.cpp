@@ -16,6 +16,7 @@
 #include "apps/palpate/info/info_command.hpp"
 #include "apps/palpate/paper/paper_command.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
+#include "apps/palpate/replay/replay_command.hpp"
 #include "apps/palpate/touch/touch.hpp"
 #include "apps/palpate/zwidth/zwidth_command.hpp"
 
@@ -81,6 +82,9 @@ std::vector<Command> add_commands(CLI::App& p) {
       command(p, "info", "Describe clouds, cameras and sequences", add_info_options, info),
       command(p, "bag", "Describe recordings, and recover what can be read of damaged ones",
               add_bag_options, bag),
+      command<ReplayCommand>(p, "replay", "Do a recorded run again and compare the forces",
+                             add_replay_options,
+                             [](const CLI::App&, const auto& options) { return replay(options); }),
       command(p, "cameras", "List cameras, and what is missing to use others", add_cameras_options,
               cameras),
       command<DoctorOptions>(p, "doctor",
@@ -133,7 +137,8 @@ int run(int argc, char** argv) {
     if (each.app->parsed()) return each.run();
   }
   throw UsageError(
-      "no command given; use touch, align, info, bag, cameras, devices, ros, doctor, paper, demo "
+      "no command given; use touch, align, info, bag, replay, cameras, devices, ros, doctor, "
+      "paper, demo "
       "or "
       "zwidth "
       "(see 'palpate --help')");

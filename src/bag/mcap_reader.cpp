@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "bag/chunk.hpp"
 
@@ -49,9 +50,11 @@ bool McapReader::next(Message& message) {
   return true;
 }
 
-// Of chunks that have the same time the one that was loaded first.
+// Of chunks that have the same time the one that comes first in the file, whichever began earlier.
 McapReader::Loaded* McapReader::soonest() {
-  const auto time = [](const Loaded& chunk) { return chunk.entries[chunk.next].time; };
+  const auto time = [](const Loaded& chunk) {
+    return std::pair(chunk.entries[chunk.next].time, chunk.place);
+  };
   const auto found = std::ranges::min_element(loaded_, {}, time);
   return found == loaded_.end() ? nullptr : &*found;
 }
@@ -61,6 +64,7 @@ void McapReader::load(const ChunkPlace& place) {
   if (place.end < from_) return;
   if (!place.channels.empty() && std::ranges::none_of(place.channels, wanted)) return;
   Loaded chunk;
+  chunk.place = place.offset;
   try {
     chunk.records = file_.read(place.offset, place.length);
     if (!place.loose) {

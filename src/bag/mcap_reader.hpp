@@ -45,6 +45,7 @@ class McapReader {
     Bytes records;
     std::vector<Entry> entries;  // by time
     std::size_t next = 0;
+    std::uint64_t place = 0;  // in the file
   };
 
   void load(const ChunkPlace& place);

@@ -24,7 +24,6 @@ using Eigen::Vector3d;
 constexpr double kMargin = 0.35;
 constexpr double kMovingMargin = 0.62;
 constexpr double kReserve = 0.1;
-
 constexpr double kToolShare = 0.3;  // of R: the largest tool that pushes a surface out in full
 
 // The smallest share of the mean radius that sweeps still follow.
@@ -279,6 +278,12 @@ Field::Traits SceneField::traits() const noexcept {
           .reanchor_reach = kFastestCloud * state.cloud_duration};
 }
 
+SceneField::Found SceneField::found() const noexcept {
+  Found found;
+  std::ranges::transform(state_->views, found.publications.begin(), &SourceView::taken);
+  std::ranges::transform(state_->views, found.least_radii.begin(), &SourceView::least_radius);
+  return found;
+}
 FieldNote SceneField::notes() const noexcept {
   return state_->notes | state_->patches.notes();
 }

@@ -44,6 +44,12 @@ class SourceView {
   /// fade as well: what other sources see there goes over to them gradually.
   [[nodiscard]] ActiveLayer layer(std::size_t k, int source) const noexcept;
 
+  /// Snapshot::publication of the newest snapshot that it took; 0: none yet.
+  [[nodiscard]] std::uint64_t taken() const noexcept { return taken_; }
+
+  /// What all supports are widened to now, m.
+  [[nodiscard]] double least_radius() const noexcept { return least_radius_; }
+
   /// The reader's place at the source.
   [[nodiscard]] std::size_t reader() const noexcept { return reader_; }
 
@@ -72,6 +78,7 @@ class SourceView {
   double begun_ = 0;     // when the current one began to be shown, s
   double behind_ = 0;    // how far its surface was behind then, in durations, ...
   double catch_up_ = 1;  // ... and in which time it makes up for that, s
+  std::uint64_t taken_ = 0;
   double least_radius_ = 0;
   double progress_ = 0;
   double rate_ = 0;  // of progress, 1/s

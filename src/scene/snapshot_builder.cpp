@@ -74,8 +74,7 @@ std::size_t SnapshotBuilder::most_snapshots(bool clouds, std::size_t fields) con
   return (weighs ? static_cast<std::size_t>(options_.policy.history) : 1) + 2 + fields;
 }
 
-std::shared_ptr<const Snapshot> SnapshotBuilder::take(const DepthFrame& frame,
-                                                      const Arrival& arrival) {
+std::shared_ptr<Snapshot> SnapshotBuilder::take(const DepthFrame& frame, const Arrival& arrival) {
   time_of("stamp", frame.stamp);
   const bool everywhere = options_.policy.fit_everywhere;
   const FilteredDepth& depth = everywhere
@@ -118,9 +117,8 @@ std::shared_ptr<Snapshot> SnapshotBuilder::last_of_frames(const Snapshot& newest
   return morphed(input, {last_.stamp, last_.end, std::max(kLeast, last_.end - last_.start)});
 }
 
-std::shared_ptr<const Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double stamp,
-                                                      const Arrival& arrival,
-                                                      Prepared::Report& report) {
+std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double stamp,
+                                                const Arrival& arrival, Prepared::Report& report) {
   time_of("stamp", stamp);
   if (clouds_ == Policy::morph) {
     throw Error(
@@ -146,7 +144,7 @@ std::shared_ptr<const Snapshot> SnapshotBuilder::take(const PointCloud& cloud, d
   return snapshot;
 }
 
-std::shared_ptr<const Snapshot> SnapshotBuilder::fused(const FrameTiming& moment) {
+std::shared_ptr<Snapshot> SnapshotBuilder::fused(const FrameTiming& moment) {
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, Policy::fusion);
   std::shared_ptr<SurfacePoints> points = points_.take();
   *points = fusion_.surface(moment);

@@ -107,7 +107,9 @@ void Source::change(const SourceOptions& options) {
 
 void Source::Inside::take_change() {
   const std::lock_guard lock(mutex);
-  if (changed) builder = std::move(changed);
+  if (!changed) return;
+  builder = std::move(changed);
+  ++changes;
 }
 
 Prepared::Report Source::report() const {
@@ -146,6 +148,7 @@ void Source::set(const PointCloud& cloud) {
   auto snapshot = std::make_shared<Snapshot>();
   snapshot->layers.push_back(
       {std::make_shared<const SurfacePoints>(std::move(prepared.points)), 1, 1});
+  snapshot->publication = ++inside_->publications;
   publish(std::move(snapshot));
 }
 
@@ -164,6 +167,7 @@ void Source::set(const DepthFrame& frame) {
     inside_->note(*snapshot);
     inside_->note(builder);
   });
+  snapshot->publication = ++inside_->publications;
   publish(std::move(snapshot));
 }
 
@@ -202,6 +206,7 @@ void Source::keep() {
       inside_->room_for(false) ? inside_->builder->last_of_frames(*newest) : nullptr;
   if (!kept) kept = std::make_shared<Snapshot>(*newest);
   kept->silent_from = std::numeric_limits<double>::infinity();
+  kept->publication = ++inside_->publications;
   {
     const std::lock_guard lock(inside_->mutex);
     inside_->points = kept->layers.empty() ? nullptr : kept->layers.back().points;
@@ -223,8 +228,9 @@ bool Source::Inside::room_for(bool clouds) {
   return false;
 }
 
-void Source::Inside::hand_over(const Source& source, std::shared_ptr<const Snapshot> snapshot) {
+void Source::Inside::hand_over(const Source& source, std::shared_ptr<Snapshot> snapshot) {
   if (!snapshot) return;
+  snapshot->publication = ++publications;
   {
     const std::lock_guard lock(mutex);
     note(*snapshot);

@@ -45,6 +45,11 @@ class Seams {
     return least_radii_[place];
   }
 
+  /// What it is until the next compare(): a run that is done again knows what it was.
+  void set_least_radius(std::size_t place, double radius) noexcept {
+    least_radii_[place].store(radius);
+  }
+
  private:
   std::mutex mutex_;
   std::array<const Source*, Scene::kMaxSources> sources_{};
@@ -67,14 +72,12 @@ class SnapshotBuilder {
   explicit SnapshotBuilder(const SourceOptions& options);
 
   /// @throws Error as DepthFilter::filter does, and when a time is not finite.
-  [[nodiscard]] std::shared_ptr<const Snapshot> take(const DepthFrame& frame,
-                                                     const Arrival& arrival);
+  [[nodiscard]] std::shared_ptr<Snapshot> take(const DepthFrame& frame, const Arrival& arrival);
 
   /// nullptr: no point of the cloud is within reach. `report`: of its preparation.
   /// @throws Error as prepare() does, when a time is not finite, and when the policy is morph.
-  [[nodiscard]] std::shared_ptr<const Snapshot> take(const PointCloud& cloud, double stamp,
-                                                     const Arrival& arrival,
-                                                     Prepared::Report& report);
+  [[nodiscard]] std::shared_ptr<Snapshot> take(const PointCloud& cloud, double stamp,
+                                               const Arrival& arrival, Prepared::Report& report);
 
   /// A surface that stays: the newest frame's, all of it fitted, from where the last snapshot ends.
   /// nullptr: `newest` was not made here.
@@ -95,7 +98,7 @@ class SnapshotBuilder {
 
   [[nodiscard]] std::shared_ptr<Snapshot> morphed(const MorphInput& input,
                                                   const FrameTiming& moment);
-  [[nodiscard]] std::shared_ptr<const Snapshot> fused(const FrameTiming& moment);
+  [[nodiscard]] std::shared_ptr<Snapshot> fused(const FrameTiming& moment);
   [[nodiscard]] FrameTiming next_timing(double stamp, const Source::StartTime& start);
   [[nodiscard]] std::shared_ptr<Snapshot> next_snapshot(const FrameTiming& moment, Policy policy);
   [[nodiscard]] double presence_at(double time) const;
@@ -124,7 +127,7 @@ class SnapshotBuilder {
 struct Source::Inside {
   void take_change();
   [[nodiscard]] bool room_for(bool clouds);
-  void hand_over(const Source& source, std::shared_ptr<const Snapshot> snapshot);
+  void hand_over(const Source& source, std::shared_ptr<Snapshot> snapshot);
   void note(const Snapshot& snapshot);
   void note(const SnapshotBuilder& made);
   void compare(const Source& source);
@@ -140,6 +143,8 @@ struct Source::Inside {
 
   std::unique_ptr<SnapshotBuilder> builder;  // the preparing thread's
   std::vector<Reach> found;                  // likewise
+  std::uint64_t publications = 0;            // likewise
+  std::uint64_t changes = 0;                 // taken; likewise
   ReachTable reaches;
   std::shared_ptr<Seams> seams;  // of the scene
   std::size_t place = 0;         // in it

@@ -87,6 +87,7 @@ void SourceView::look(double now) noexcept {
   if (!newest) return forget();
   if (next_ && next_->start - now <= kPatience) return;
   next_ = handoff_->acquire(reader_, 1 - slot_);
+  if (next_) taken_ = next_->publication;
 }
 
 void SourceView::forget() noexcept {

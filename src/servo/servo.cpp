@@ -12,6 +12,7 @@
 #include "palpate/servo/z_width.hpp"
 #include "servo/passivity.hpp"
 #include "servo/servo_inside.hpp"
+#include "servo/step_trace.hpp"
 
 namespace palpate {
 namespace {
@@ -101,6 +102,7 @@ struct Servo::Inside {
   Clutch clutch;
   Vector3d hand = Vector3d::Zero();  // where it is without the clutch, m, world
   ServoState state;                  // of the stepping thread; the others see what was shown
+  StepInput basis;                   // of its last step
   bool started = false;
   bool heard = false;  // the device has known where the hand is
   std::uint64_t contact_seen = 0;
@@ -148,6 +150,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   state.dt = goes_on ? now - state.time : first_step(device.info());
   state.time = now;
   hand = options.workspace.position_to_world(read.position);
+  basis.device = read;
   heard = heard || read.status != DeviceState::Status::silent;
   apply_pending();
   place_tool(read);
@@ -157,6 +160,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   state.force = guarded();
   state.guard = guard.state();
   state.field_notes = field.notes();
+  if (options.traces != nullptr) basis.found = field.found();
   state.patch_points = field.patch_points();
   ++state.step;
 }
@@ -182,18 +186,19 @@ bool Servo::Inside::is_clutched(std::uint32_t buttons) const noexcept {
 
 void Servo::Inside::apply_pending() noexcept {
   state.paused = paused.load();
-  if (reset.exchange(false) || !heard) {
+  basis.reset = reset.exchange(false);
+  if (basis.reset || !heard) {
     clutch = {};
     proxy.reset(hand);
     guard.reset();
   }
-  if (const std::optional<ContactSettings> wanted = news(wanted_contact, contact_seen)) {
+  basis.contact = news(wanted_contact, contact_seen);
+  if (const auto& wanted = basis.contact) {
     is_softened = wanted->stiffness > stiffness_limit;
     proxy.change(std::min(wanted->stiffness, stiffness_limit), wanted->friction, wanted->texture);
   }
-  if (const std::optional<FieldOptions> wanted = news(wanted_field, field_seen)) {
-    field.change(*wanted);
-  }
+  basis.field = news(wanted_field, field_seen);
+  if (basis.field) field.change(*basis.field);
 }
 
 Vector3d Servo::Inside::guarded() noexcept {
@@ -212,7 +217,7 @@ Vector3d Servo::Inside::guarded() noexcept {
     input.drift = state.contact.drift;
     input.stiffness = state.contact.stiffness;
   }
-  added.add_to(input.force, state.time);
+  basis.added = added.add_to(input.force, state.time);
   input.fault = known_fault(state);
   return guard.pass(input);
 }
@@ -225,6 +230,7 @@ void Servo::show(const ServoState::Timing& timing) noexcept {
   inside_->shown.set(state);
   inside_->recent_forces.add(state.force.cast<float>());
   if (inside_->options.steps != nullptr) inside_->options.steps->push(state);
+  if (inside_->options.traces != nullptr) inside_->options.traces->push(state, inside_->basis);
 }
 
 Vector3d Servo::device_force() const noexcept {
@@ -235,27 +241,21 @@ Vector3d Servo::device_force() const noexcept {
 Device& Servo::device() const noexcept {
   return inside_->device;
 }
-
 const ServoOptions& Servo::options() const noexcept {
   return inside_->options;
 }
-
 double Servo::stiffness_limit() const noexcept {
   return inside_->stiffness_limit;
 }
-
 ServoState Servo::state() const noexcept {
   return inside_->shown.get();
 }
-
 Durations Servo::lateness() const noexcept {
   return inside_->lateness.look();
 }
-
 Durations Servo::computing() const noexcept {
   return inside_->computing.look();
 }
-
 std::vector<Eigen::Vector3f> Servo::forces_since(std::uint64_t& seen) const {
   return inside_->recent_forces.since(seen);
 }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/latest.hpp"
@@ -84,14 +85,16 @@ class AddedForce {
   void set(const Eigen::Vector3d& force) noexcept { newest_.set(force); }
 
   /// Adds what is left of it in the step at `time`, s; nothing changes a bit where there is none.
-  /// The stepping thread's; real-time.
-  void add_to(Eigen::Vector3d& force, double time) noexcept {
-    if (const auto news_of_it = news(newest_, seen_)) {
-      force_ = *news_of_it;
+  /// The one that is new in this step, if any. The stepping thread's; real-time.
+  std::optional<Eigen::Vector3d> add_to(Eigen::Vector3d& force, double time) noexcept {
+    const std::optional<Eigen::Vector3d> newest = news(newest_, seen_);
+    if (newest) {
+      force_ = *newest;
       time_ = time;
     }
     const double share = 1 - (time - time_) / Servo::kAddedForceFade;
     if (share > 0 && !force_.isZero(0)) force += share * force_;
+    return newest;
   }
 
  private:

@@ -93,6 +93,26 @@ TEST(Mcap, MessagesThatWereWrittenOutOfOrderComeInTheOrderOfTheirTimes) {
   for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(read[i].time, kNoon + i * 1000);
 }
 
+// The second chunk begins earlier than the first and goes on at the first one's last time.
+TEST(Mcap, MessagesOfOneTimeComeAsTheyLieInTheFile) {
+  const test::Folder folder;
+  McapWriter writer(folder / "run.mcap");
+  const auto topic = writer.add_topic<message::Float64>("/a");
+  for (const auto& [time, value] : {std::pair(5, 1.0), std::pair(1, 0.0), std::pair(5, 2.0)}) {
+    const std::uint64_t stamp = kNoon + static_cast<std::uint64_t>(time);
+    writer.write(topic, {stamp, stamp}, message::Float64{value});
+    if (value == 1) writer.advance(kNoon + 2 * kSecond);
+  }
+  writer.close();
+  const std::vector<Read> read = all_of(folder / "run.mcap");
+  ASSERT_EQ(read.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    message::Float64 value;
+    message::decode(read[i].data, value);
+    EXPECT_EQ(value.data, static_cast<double>(i));
+  }
+}
+
 TEST(Mcap, AttachmentsAndMetadataComeBackAsTheyWere) {
   const test::Folder folder;
   McapWriter writer(folder / "run.mcap");

@@ -34,8 +34,8 @@ FLOORS = {
              "scene", "sensor", "device", "servo", "ros", "viewer"},
 }
 # The rooms of the program, from the top down: what stands in one line sees what stands below it.
-ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "touch", "zwidth"}, {"view"},
-         {"report"}, {"run"}, {"sources"}, {"options"}, {"plot"}, {"cli"}]
+ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "replay", "touch", "zwidth"}, {"view"},
+         {"report"}, {"run"}, {"record"}, {"sources"}, {"options"}, {"plot"}, {"cli"}]
 # Single headers that a floor may include of a floor that it may not see otherwise.
 ALLOWED = {("contact", "palpate/field/field.hpp"), ("sim", "palpate/sensor/depth_camera.hpp")}
 

@@ -8,6 +8,7 @@
 
 #include "realtime/watch.hpp"
 #include "servo/servo_rig.hpp"
+#include "servo/step_trace.hpp"
 
 namespace palpate::realtime {
 namespace {
@@ -27,6 +28,7 @@ class ServoTick : public testing::Test {
     options.guard.soft_start = 0.02;  // every link is at work
     options.guard.slew = 10;
     options.clutch_button = 0;
+    options.traces = &traces_;
     servo_ = std::make_unique<Servo>(device_, scene_, options);
   }
 
@@ -49,6 +51,7 @@ class ServoTick : public testing::Test {
   Scene scene_;
   Source* source_ = nullptr;
   FreeDevice device_{{0, 0, 5e-3}};
+  StepTraces traces_{256};  // nobody takes them: there is room for some steps
   std::unique_ptr<Servo> servo_;
   double now_ = 0;
 };

@@ -140,6 +140,10 @@ void add_output_options(OptionTable& table, OutputPlan& outputs) {
   table.add("--json", outputs.json, "FILE", "the report as JSON; - is standard output");
   table.add("--picture", outputs.picture, "FILE.png",
             "cloud, path, proxy and force as PNG (needs python3-matplotlib)");
+  table.add(
+      "--record", outputs.record, "FILE.mcap",
+      "the whole run as an MCAP bag: steps, frames and all that 'palpate replay' does it again "
+      "from (docs/bags.md)");
 }
 
 constexpr const char* kTouchFooter = R"(Examples:

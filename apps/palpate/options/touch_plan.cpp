@@ -94,7 +94,8 @@ void check_files(const TouchPlan& plan, const std::string& setup) {
   std::vector<NamedFile> read = inputs(clouds);
   read.push_back({"--trajectory", plan.motion.trajectory});
   read.push_back({"--setup", setup});
-  std::vector<NamedFile> written = {{"--json", outputs.json}};
+  require(outputs.record != "-", "--record cannot go to standard output; name a file");
+  std::vector<NamedFile> written = {{"--json", outputs.json}, {"--record", outputs.record}};
   for (std::size_t hand = 0; hand < plan.devices.size(); ++hand) {
     written.push_back({"--log", numbered_path(outputs.log, hand)});
     written.push_back({"--picture", numbered_path(outputs.picture, hand)});

@@ -71,6 +71,7 @@ struct OutputPlan {
   std::string log = {};
   std::string json = {};
   std::string picture = {};
+  std::string record = {};  ///< never standard output
 
   [[nodiscard]] bool takes_stdout() const { return log == "-" || json == "-"; }
 };

@@ -141,6 +141,31 @@ void HandOutputs::draw(const Scene& scene, const std::string& title, const HandR
   if (picture_) picture_->draw(scene, title, subtitle(report));
 }
 
+namespace {
+
+Report report_of(const RecordReport& recorded) {
+  Report part("recorded", recorded.path);
+  part.line("steps", grouped(recorded.steps));
+  if (recorded.frames > 0) part.line("frames", grouped(recorded.frames));
+  if (recorded.lost_steps + recorded.lost_frames > 0) {
+    part.line("lost",
+              fmt::format("{} steps and {} frames, for which the disk was too slow: a replay ends "
+                          "before them",
+                          grouped(recorded.lost_steps), grouped(recorded.lost_frames)),
+              Mark::warning);
+  }
+  if (!recorded.problem.empty()) part.line("ended", recorded.problem, Mark::error);
+  part.data = {{"file", recorded.path},
+               {"steps", recorded.steps},
+               {"frames", recorded.frames},
+               {"lost_steps", recorded.lost_steps},
+               {"lost_frames", recorded.lost_frames},
+               {"problem", recorded.problem}};
+  return part;
+}
+
+}  // namespace
+
 // What is of a hand stands beside what is of the run where there is one hand, else under "hands".
 Json report_on(const TouchReport& report, std::FILE* stream) {
   Json sources = Json::array();
@@ -163,6 +188,11 @@ Json report_on(const TouchReport& report, std::FILE* stream) {
     } else {
       json["hands"].push_back(part.data);
     }
+  }
+  if (report.recorded) {
+    const Report part = report_of(*report.recorded);
+    part.print(stream);
+    json["recording"] = part.data;
   }
   return json;
 }

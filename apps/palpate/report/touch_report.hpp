@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/report/hand_report.hpp"
 #include "apps/palpate/report/log.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
@@ -61,6 +62,7 @@ struct TouchReport {
   FieldOptions field;
   ProxyOptions proxy;
   std::vector<HandReport> hands;
+  std::optional<RecordReport> recorded = {};
 };
 
 /// For a person, to `stream`; the same as data: SI units, named in the keys. What is of a hand is

@@ -8,6 +8,7 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/record/recorder.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
@@ -167,6 +168,7 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   options.workspace = hand.workspace;
   options.clutch_button = hand.chosen.placement.clutch;
   options.steps = steps;
+  options.traces = run.recorder != nullptr ? run.recorder->add_hand() : nullptr;
   return options;
 }
 
@@ -231,6 +233,14 @@ Stream::Sink feeding(LoadedSource& from, Source& to, double (*computing)()) {
   };
 }
 
+Feeding feeding(LoadedScene& loaded, std::size_t index, Recorder* recorder) {
+  Source& to = loaded.scene.source(index);
+  Feeding feed{feeding(loaded.sources[index], to, thread_cpu_seconds), [&to] { to.keep(); }};
+  if (recorder == nullptr) return feed;
+  return {recorder->watching(index, std::move(feed.sink)),
+          recorder->watching(index, std::move(feed.ended))};
+}
+
 void keep_states(LoadedScene& loaded, const std::vector<StreamState>& states) {
   auto next = states.begin();
   for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
@@ -241,16 +251,16 @@ void keep_states(LoadedScene& loaded, const std::vector<StreamState>& states) {
   }
 }
 
-LiveFeed::LiveFeed(LoadedScene& loaded, const Clock& clock, double start)
+LiveFeed::LiveFeed(LoadedScene& loaded, const Clock& clock, double start, Recorder* recorder)
     : loaded_(loaded), start_(start) {
   StreamOptions options;
   options.start = start;
   for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
     LoadedSource& from = loaded.sources[i];
     if (!from.camera) continue;
-    Source& to = loaded.scene.source(i);
-    streams_.emplace_back(*from.camera, to.name(), feeding(from, to, thread_cpu_seconds), clock,
-                          options, [&to] { to.keep(); });
+    Feeding feed = feeding(loaded, i, recorder);
+    streams_.emplace_back(*from.camera, loaded.scene.source(i).name(), std::move(feed.sink), clock,
+                          options, std::move(feed.ended));
   }
 }
 

@@ -17,6 +17,8 @@
 
 namespace palpate::app {
 
+class Recorder;
+
 /// Who touches: a device, where it stands, and the surface's stiffness that goes with it.
 struct Hand {
   std::string name;                      ///< for messages
@@ -41,9 +43,10 @@ struct Run {
   std::vector<Hand>& hands;
   FieldOptions field;
   ProxyOptions proxy;
+  Recorder* recorder = nullptr;  ///< who writes all of it down, if anybody
 };
 
-/// What the servo of one of the hands is made with; `steps`: who records its steps, if anybody.
+/// What the servo of the next of the hands is made with; `steps`: who takes its steps, if anybody.
 [[nodiscard]] ServoOptions servo_options(const Run& run, const Hand& hand,
                                          ServoState::Queue* steps = nullptr);
 
@@ -86,6 +89,14 @@ void place(Workspace& workspace, const PlacementOptions& placement, const Scene&
 /// ended the notes are the stream's.
 [[nodiscard]] Stream::Sink feeding(LoadedSource& from, Source& to, double (*computing)());
 
+/// The same of the source at `index`, with what keeps its last frame, both recorded by `recorder`
+/// unless that is null.
+struct Feeding {
+  Stream::Sink sink;
+  std::function<void()> ended;
+};
+[[nodiscard]] Feeding feeding(LoadedScene& loaded, std::size_t index, Recorder* recorder);
+
 /// Keeps how the streams and the sources that they fed fared. `states` are in the order of the
 /// sources.
 void keep_states(LoadedScene& loaded, const std::vector<StreamState>& states);
@@ -93,8 +104,8 @@ void keep_states(LoadedScene& loaded, const std::vector<StreamState>& states);
 /// The streams of everything in `loaded` that lives, into its scene; it outlives them.
 class LiveFeed {
  public:
-  /// Recordings begin together at `start`, s on the clock.
-  LiveFeed(LoadedScene& loaded, const Clock& clock, double start);
+  /// Recordings begin together at `start`, s on the clock. `recorder`: may be null.
+  LiveFeed(LoadedScene& loaded, const Clock& clock, double start, Recorder* recorder);
 
   /// How each stream fares, in the order of the sources.
   [[nodiscard]] std::vector<StreamState> states() const;

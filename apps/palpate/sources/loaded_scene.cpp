@@ -138,7 +138,7 @@ void believe_no_farther(const DepthFrame& frame, SourcePlan& plan) {
   if (farthest > options.nearest) options.farthest = std::min(options.farthest, farthest);
 }
 
-void add_depth_image(Scene& scene, LoadedSource& result) {
+void add_depth_image(Scene& scene, bool keep, LoadedSource& result) {
   SourcePlan& plan = result.plan;
   const auto begin = WallClock::now();
   DepthFrame frame = load_depth_image(plan.argument.path, plan.reading);
@@ -154,6 +154,7 @@ void add_depth_image(Scene& scene, LoadedSource& result) {
   source.set(frame);
   check_felt(source, result);
   result.prepare_seconds = seconds_since(start);
+  if (keep) result.image = std::make_shared<DepthFrame>(std::move(frame));
 }
 
 // Makes it the first frame of the source. False: it shows no surface; `problem` gets the reason, if
@@ -224,7 +225,7 @@ LoadedScene load_sources(const std::vector<SourcePlan>& sources, const LoadOptio
     if (plan.kind == SourceKind::stream) {
       add_stream(loaded.scene, options, source);
     } else if (is_filtered_image(plan)) {
-      add_depth_image(loaded.scene, source);
+      add_depth_image(loaded.scene, options.keep_clouds, source);
     } else {
       add_cloud(loaded.scene, options.keep_clouds, source);
     }

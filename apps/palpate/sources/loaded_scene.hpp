@@ -39,6 +39,7 @@ struct LoadedSource {
   UnitsGuess units;            ///< of a file that was read without --scale
   double prepare_seconds = 0;  ///< wall time of everything between reading and touching
   std::shared_ptr<const PointCloud> cloud;  ///< where it may have to be prepared again
+  std::shared_ptr<const DepthFrame> image;  ///< likewise
 
   // Of what lives:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
@@ -58,7 +59,7 @@ struct LoadedScene {
 
 struct LoadOptions {
   bool explored = false;         ///< the surface has to be there before the run
-  bool keep_clouds = false;      ///< the page may ask to prepare them again
+  bool keep_clouds = false;      ///< they may have to be prepared again, or are recorded
   const Clock* clock = nullptr;  ///< of cameras, which it outlives; null: simulated time
 };
 

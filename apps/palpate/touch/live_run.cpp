@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/palpate/cli/process.hpp"
+#include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/touch/live_status.hpp"
 #include "apps/palpate/touch/touch.hpp"
@@ -160,6 +161,11 @@ std::vector<Servo*> servos_of(LiveHands& hands) {
   return servos;
 }
 
+std::vector<const Servo*> watched(LiveHands& hands) {
+  const std::vector<Servo*> servos = servos_of(hands);
+  return {servos.begin(), servos.end()};
+}
+
 bool any_goes_on(const LiveHands& hands, double now) {
   return std::ranges::any_of(hands, [now](const LiveHand& hand) { return !hand.over(now); });
 }
@@ -216,7 +222,8 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   LiveHands hands;
   // Setting them up may take half a second; recordings begin when the hands do.
   const double start = start_hands(run, clock, hands);
-  LiveFeed feed(run.loaded, clock, start);
+  if (run.recorder != nullptr) run.recorder->begin(run.loaded, watched(hands), start, false);
+  LiveFeed feed(run.loaded, clock, start, run.recorder);
   std::optional<View> view;
   std::optional<RosBridge> bridge;
   if (run.ros.wanted()) {

@@ -12,6 +12,7 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/run/view_settings.hpp"
@@ -32,9 +33,9 @@ std::vector<SimulatedStream> make_streams(Run& run) {
     LoadedSource& from = run.loaded.sources[i];
     if (!from.camera) continue;
     from.feed.simulated = true;
-    Source& to = run.loaded.scene.source(i);
-    streams.emplace_back(*from.camera, to.name(), feeding(from, to, thread_cpu_seconds), options,
-                         [&to] { to.keep(); });
+    Feeding feed = feeding(run.loaded, i, run.recorder);
+    streams.emplace_back(*from.camera, run.loaded.scene.source(i).name(), std::move(feed.sink),
+                         options, std::move(feed.ended));
   }
   return streams;
 }
@@ -47,6 +48,7 @@ bool run_simulated(Run& run, const EachStep& each) {
   ServoOptions options = servo_options(run, hand);
   options.guard.on = false;
   Servo servo(device, run.loaded.scene, options);
+  if (run.recorder != nullptr) run.recorder->begin(run.loaded, {&servo}, 0, true);
   std::vector<SimulatedStream> streams = make_streams(run);
   const Interruption interruption;
   DeviceState state = device.read();
@@ -61,6 +63,7 @@ bool run_simulated(Run& run, const EachStep& each) {
     const double computing = thread_cpu_seconds() - start;
     device.write(servo.device_force());
     servo.show({.computing = computing});
+    if (run.recorder != nullptr) run.recorder->keep_up();
     each(0, step);
   }
   std::vector<StreamState> states;
@@ -75,11 +78,13 @@ namespace {
 struct TouchOutputs {
   std::deque<HandOutputs> hands;
   std::optional<OutputFile> json;
+  std::optional<Recorder> recorder;
   std::optional<Unguarded> unguarded;  // of a run in simulated time
 
   TouchOutputs(const OutputPlan& plan, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) hands.emplace_back(plan, i);
     if (!plan.json.empty()) json.emplace(plan.json);
+    if (!plan.record.empty()) recorder.emplace(plan.record);
   }
 };
 
@@ -181,18 +186,28 @@ void touch(const TouchPlan& plan) {
   const double texture = surface.proxy.texture.amplitude;
   const bool explored = trajectory.empty() || hands.size() > 1 || texture > 0;
   const std::optional<RealtimeReport::Request> left = leave_to_servo(plan.time);
-  LoadedScene loaded = load_sources(plan.sources, {explored, plan.page.served, clock});
+  LoadedScene loaded =
+      load_sources(plan.sources, {explored, plan.page.served || outputs.recorder, clock});
   check_texture(texture, loaded.scene);
   place_hands(hands, {plan.motion, surface, plan.page}, trajectory, loaded.scene);
   const double stiffness = hands.front().stiffness;
   begin_run(loaded, surface.soft_material(stiffness));
-  Run run{
-      plan.time, plan.page, plan.ros, loaded, hands, surface.field, surface.proxy_of(stiffness)};
+  Run run{plan.time,
+          plan.page,
+          plan.ros,
+          loaded,
+          hands,
+          surface.field,
+          surface.proxy_of(stiffness),
+          outputs.recorder ? &*outputs.recorder : nullptr};
   LiveOutcome outcome = play(run, clock, outputs);
   for (LiveReport& each : outcome.hands) {
     if (left) each.realtime.requests.push_back(*left);
   }
-  tell({loaded, surface.paper, surface.field, run.proxy, hand_reports(run, outputs, outcome)},
+  std::optional<RecordReport> recorded;
+  if (outputs.recorder) recorded = outputs.recorder->finish();
+  tell({loaded, surface.paper, surface.field, run.proxy, hand_reports(run, outputs, outcome),
+        recorded},
        plan.outputs.takes_stdout() ? stderr : stdout, outputs);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -42,6 +44,12 @@ class SceneField final : public Field {
   /// Cells and points of the index that update() looks at, and likewise a proxy's step.
   static constexpr int kStepVisits = 40960;
 
+  /// What an update() found of each source, beside the time and what it was given.
+  struct Found {
+    std::array<std::uint64_t, Scene::kMaxSources> publications{};  ///< taken last; 0: none yet
+    std::array<double, Scene::kMaxSources> least_radii{};          ///< of all supports, m
+  };
+
   /// `name`: for reports of stalled fields. `scale`: metres that the tool goes for one of
   /// the hand (Workspace::scale), which bounds how fast it can be.
   /// @throws Error when an option is out of range or the scene has too many readers.
@@ -71,6 +79,9 @@ class SceneField final : public Field {
                 const Eigen::Vector3d& normal) const noexcept override;
 
   [[nodiscard]] const FieldOptions& options() const noexcept { return options_; }
+
+  /// What the last update() found. Real-time.
+  [[nodiscard]] Found found() const noexcept;
 
   /// Notes since the last update() began.
   [[nodiscard]] FieldNote notes() const noexcept;

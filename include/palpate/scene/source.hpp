@@ -83,6 +83,8 @@ struct Snapshot {
   double interval = 0;         ///< time between its source's frames, s; 0: nothing follows
   double stamp = 0;            ///< when the newest data in it was taken, s, same clock
   std::uint64_t sequence = 0;  ///< counts a source's snapshots
+  /// Counts what a source published of push(), set() and keep(); 0: it came by publish().
+  std::uint64_t publication = 0;
   std::vector<Layer> layers;
 };
 
@@ -192,6 +194,7 @@ class Source {
  private:
   friend class Scene;
   friend class SceneField;
+  friend class SourceTrace;  // of recordings and replays
 
   struct Inside;
   std::unique_ptr<Inside> inside_;

@@ -18,6 +18,8 @@
 
 namespace palpate {
 
+class StepTraces;
+
 /// All that a servo knows of its last step, for those who watch. World frame.
 struct ServoState {
   /// Times of a step, measured by the loop that paces the servo, s. Not a number: not measured.
@@ -112,6 +114,7 @@ struct ServoOptions {
   /// While this button of the device is down, 0 to 31, the hand moves without the tool.
   std::optional<int> clutch_button = {};
   ServoState::Queue* steps = nullptr;  ///< every step is put into it; outlives the servo
+  StepTraces* traces = nullptr;        ///< likewise, for palpate's own recordings
 };
 
 /// What may change while a servo runs.

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "apps/palpate/sources/loaded_scene.hpp"
+#include "bag/mcap_writer.hpp"
+#include "message/geometry_types.hpp"
+#include "message/palpate_types.hpp"
+#include "palpate/servo/servo.hpp"
+#include "servo/step_trace.hpp"
+
+namespace palpate::app {
+
+/// Names that a recording's parts go by.
+inline constexpr const char* kSetupName = "setup.json";
+inline constexpr const char* kSetupKind = "palpate recording 1";
+[[nodiscard]] inline std::string surface_name(std::size_t source) {
+  return fmt::format("surface-{}.cdr", source);
+}
+
+/// A frame of a source, and what became of it.
+struct RecordedFrame {
+  std::size_t source = 0;
+  DepthFrame frame;  ///< of kinds "image" and "cloud"
+  message::FrameUse use;
+};
+
+/// The messages of a run in an MCAP file. One thread. Every function throws Error when the file
+/// cannot be written.
+class RecordingFile {
+ public:
+  explicit RecordingFile(const std::string& path) : writer_(path) {}
+
+  /// What the run is made of. `epoch`: when the run's clock was 0, ns since 1970.
+  void begin(LoadedScene& loaded, const std::vector<const Servo*>& servos, std::int64_t epoch);
+
+  void write(std::size_t hand, const StepTrace& step);
+  void write(const RecordedFrame& recorded);
+
+  /// Everything is there.
+  void close() { writer_.close(); }
+
+ private:
+  struct HandTopics {
+    std::string name;
+    std::uint16_t tick, change, pose, proxy, wrench, joy;
+    double shown = 0;  // last message but ticks, s
+  };
+  struct SourceTopics {
+    std::string name;
+    std::uint16_t use, image, info, points, cloud;
+    double time = 0;  // of its last message, s
+  };
+
+  Json add_hand(const Servo& servo, const std::string& name);
+  Json add_source(const LoadedSource& loaded, const Source& source);
+  void attach(const std::string& name, const bag::Bytes& bytes, const char* type);
+  template <class T>
+  void put(std::uint16_t channel, double time, const T& message);
+  [[nodiscard]] message::Header header(double time, const std::string& frame) const;
+  void show(HandTopics& hand, const ServoState& state);
+  void change(const HandTopics& hand, const ServoState& state, const char* what, const Json& value);
+
+  bag::McapWriter writer_;
+  std::int64_t epoch_ = 0;
+  std::size_t sources_ = 0;
+  std::vector<HandTopics> hands_;
+  std::vector<SourceTopics> live_;  // by source
+  std::uint16_t transforms_ = 0;
+};
+
+/// A cloud as a recording holds it, and back.
+[[nodiscard]] message::Cloud recorded(const PointCloud& cloud);
+[[nodiscard]] PointCloud cloud_of(const message::Cloud& message);
+
+}  // namespace palpate::app

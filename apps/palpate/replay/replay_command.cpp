@@ -1,0 +1,104 @@
+#include "apps/palpate/replay/replay_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <vector>
+
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/replay/replayed_run.hpp"
+#include "apps/palpate/report/log.hpp"
+#include "apps/palpate/report/report.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr const char* kReplayFooter = R"(Examples:
+  palpate touch synthetic:torus --record run.mcap
+  palpate replay run.mcap
+
+The same program on the same kind of processor gives the same forces, bit for bit: the largest
+difference is 0. docs/bags.md says what is recorded.
+
+Exit codes: 0 the forces are the same, 1 they differ or the file cannot be read, 2 the command line
+is wrong.)";
+
+Report report_of(const ForceDifference& found) {
+  Report report(found.topic, fmt::format("{} steps", grouped(found.steps)));
+  report.line("difference",
+              fmt::format("{} N at most, {:.3g} N rms, in {} steps", found.largest, found.rms(),
+                          grouped(found.differing)),
+              found.differing > 0 ? Mark::error : Mark::plain);
+  if (found.first > 0) {
+    report.line("first", fmt::format("step {}, {:.6g} s after the hand's first", found.first,
+                                     found.first_time));
+  }
+  if (!found.ended.empty()) report.line("ended", found.ended, Mark::error);
+  report.data = {{"topic", found.topic},
+                 {"steps", found.steps},
+                 {"exact", found.exact()},
+                 {"differing_steps", found.differing},
+                 {"largest_difference_N", found.largest},
+                 {"rms_difference_N", found.rms()},
+                 {"first_step", found.first > 0 ? Json(found.first) : Json()},
+                 {"first_time_s", found.first > 0 ? Json(found.first_time) : Json()},
+                 {"ended", found.ended}};
+  return report;
+}
+
+ForceDifference replay_hand(const ReplayedRun& run, std::size_t hand, const std::string& log) {
+  std::optional<TouchLog> steps;
+  if (!log.empty()) steps.emplace(numbered_path(log, hand));
+  const Waiting waiting(fmt::format("replaying hand {}", hand + 1));
+  ForceDifference found = run.replay(hand, [&](const ServoState& step, const DeviceInfo& device) {
+    if (steps) steps->add(step, device);
+  });
+  if (steps) steps->close();
+  return found;
+}
+
+}  // namespace
+
+void add_replay_options(CLI::App& command, ReplayCommand& replay) {
+  command.footer(kReplayFooter);
+  command.add_option("file", replay.input, "what palpate touch --record wrote")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--json", replay.json, "the report as JSON; - is standard output")
+      ->type_name("FILE");
+  command
+      .add_option("--log", replay.log,
+                  "CSV with one row per servo step of the replay, as touch --log; - is standard "
+                  "output")
+      ->type_name("FILE");
+}
+
+int replay(const ReplayCommand& command) {
+  const ReplayedRun run(command.input);
+  if (command.log == "-" && (command.json == "-" || run.hands() > 1)) {
+    throw UsageError("--log cannot go to standard output beside --json or another hand's log");
+  }
+  std::vector<NamedFile> written = {{"--json", command.json}};
+  for (std::size_t hand = 0; hand < run.hands(); ++hand) {
+    written.push_back({"--log", numbered_path(command.log, hand)});
+  }
+  check_distinct({{"the recording", command.input}}, written);
+  std::optional<OutputFile> json = output_at(command.json);
+  Json hands = Json::array();
+  bool exact = true;
+  for (std::size_t hand = 0; hand < run.hands(); ++hand) {
+    const ForceDifference found = replay_hand(run, hand, command.log);
+    const Report report = report_of(found);
+    report.print(command.json == "-" || command.log == "-" ? stderr : stdout);
+    hands.push_back(report.data);
+    exact = exact && found.exact();
+  }
+  write_whole(json, text_of({{"file", command.input}, {"exact", exact}, {"hands", hands}}));
+  return exact ? kSuccess : kFailure;
+}
+
+}  // namespace palpate::app

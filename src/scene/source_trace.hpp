@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "palpate/scene/source.hpp"
+#include "scene/tool_reach.hpp"
+
+namespace palpate {
+
+/// What a source's surfaces depended on besides frames and options: a recording asks for it, a
+/// replay imposes it. The source, in a scene, outlives it. On the thread that pushes.
+class SourceTrace {
+ public:
+  explicit SourceTrace(Source& source) : source_(&source) {}
+
+  /// What the last push read: where the fields said that tools can be.
+  [[nodiscard]] std::span<const Reach> reach() const;
+
+  /// Snapshots that push(), set() and keep() have published so far.
+  [[nodiscard]] std::uint64_t publications() const;
+
+  /// Options of change() that pushes have taken so far.
+  [[nodiscard]] std::uint64_t changes() const;
+
+  /// The next push reads these, at most ReachTable::kPlaces, and nothing of fields.
+  void impose_reach(std::span<const Reach> reach);
+
+  /// Fields widen all supports of this source to this radius, m, until sources are compared again.
+  void impose_least_radius(double radius);
+
+ private:
+  Source* source_;
+};
+
+}  // namespace palpate
