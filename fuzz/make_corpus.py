@@ -18,7 +18,7 @@ def seed(target, name, data):
     folder.mkdir(parents=True, exist_ok=True)
     data = data.encode() if isinstance(data, str) else data
     (folder / name).write_bytes(data)
-    if target not in ("any", "client_message", "depth", "frame_list", "haply_frame", "mcap", "poses",
+    if target not in ("any", "cdr", "client_message", "depth", "frame_list", "haply_frame", "mcap", "poses",
                       "remote_state", "sequence", "trajectory"):
         seed("any", f"{target}-{name}", data)
 
@@ -278,5 +278,66 @@ def mcap():
          + record(12, text(b"made") + text(text(b"by") + text(b"hand"))) + schema + channel + messages[0])
 
 
-for make in (ply, pcd, las, depth, text, packed, sequences, remote, client_messages, haply, mcap):
+class Cdr:
+    """A message of ROS 2 as bytes: its values, each aligned to its size, behind a head of four bytes."""
+
+    def __init__(self, order="<"):
+        self.order = order
+        self.data = b""
+
+    def put(self, codes, *values):
+        for code, value in zip(codes, values):
+            size = struct.calcsize(code)
+            self.data += bytes(-len(self.data) % size) + struct.pack(self.order + code, value)
+        return self
+
+    def text(self, words):
+        self.put("I", len(words) + 1)
+        self.data += words.encode() + b"\0"
+        return self
+
+    def bytes(self, data):
+        self.put("I", len(data))
+        self.data += data
+        return self
+
+    def header(self):
+        return self.put("iI", 5, 250_000_000).text("camera")
+
+    def seed(self, name):
+        seed("cdr", name, (b"\0\1\0\0" if self.order == "<" else b"\0\0\0\0") + self.data)
+
+
+def messages():
+    depths = struct.pack("<4H", 500, 0, 1000, 65535)
+    for order, name in (("<", "image"), (">", "image_big_endian")):
+        Cdr(order).header().put("II", 2, 2).text("16UC1").put("BI", order == ">", 4).bytes(depths).seed(name)
+    Cdr().header().put("II", 1, 2).text("32FC1").put("BI", 0, 8).bytes(struct.pack("<2f", 0.5, 1)).seed("image_float")
+    image = (CORPUS / "png" / "depth").read_bytes()
+    Cdr().header().text("16UC1; png compressed").bytes(image).seed("png")
+    head = struct.pack("<iff", 0, 0.5, 0.25)
+    Cdr().header().text("32FC1; compressedDepth png").bytes(head + image).seed("compressed_depth")
+    cloud = Cdr().header().put("III", 1, 2, 4)
+    for name, offset, kind in (("x", 0, 7), ("y", 4, 7), ("z", 8, 7), ("rgb", 12, 7)):
+        cloud.text(name).put("IBI", offset, kind, 1)
+    points = b"".join(struct.pack("<fffI", x, y, z, 0x102030) for x, y, z in POINTS[:2])
+    cloud.put("BII", 0, 16, 32).bytes(points).put("B", 1).seed("cloud")
+    for model, coefficients in (("plumb_bob", [0.1, 0.01, 0, 0, 0]),
+                                ("rational_polynomial", [0.5, -0.1, 0, 0, 0.02, 0.45, -0.05, 0.01])):
+        info = Cdr().header().put("II", 480, 640).text(model).put("I", len(coefficients))
+        info.put("d" * len(coefficients), *coefficients)
+        info.put("d" * 9, 525, 0, 320, 0, 525, 240, 0, 0, 1).put("d" * 9, 1, 0, 0, 0, 1, 0, 0, 0, 1)
+        info.put("d" * 12, 525, 0, 320, 0, 0, 525, 240, 0, 0, 0, 1, 0).put("IIIIIIB", 0, 0, 0, 0, 0, 0, 0).seed(model)
+    tree = Cdr().put("I", 2)
+    for parent, child in (("world", "base"), ("base", "camera")):
+        tree.put("iI", 5, 0).text(parent).text(child).put("d" * 7, 1, 2, 3, 0, 0, 0, 1)
+    tree.seed("transforms")
+    Cdr().header().put("d" * 7, 1, 2, 3, 0, 0, 0, 1).seed("pose")
+    Cdr().header().put("Iff", 2, 0.5, -1).put("Iii", 2, 0, 1).seed("joy")
+    Cdr().header().put("I", 1).text("elbow").put("Id", 1, 0.5).put("Id", 1, 0).put("I", 0).seed("joints")
+    Cdr().header().put("IB", 1, 2).text("guard").text("off").text("").put("I", 1).text("key").text("value").seed("diagnostics")
+
+
+for make in (ply, pcd, las, depth, text, packed, sequences, remote, client_messages, haply, mcap,
+             messages):
     make()

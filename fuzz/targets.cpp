@@ -25,9 +25,9 @@
 namespace palpate::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 17> kNames{
-    "any", "depth", "frame_list", "gzip",  "haply_frame",  "las",      "mcap",       "obj", "pcd",
-    "pgm", "ply",   "png",        "poses", "remote_state", "sequence", "trajectory", "xyz"};
+constexpr std::array<std::string_view, 18> kNames{
+    "any", "cdr", "depth", "frame_list", "gzip",  "haply_frame",  "las",      "mcap",       "obj",
+    "pcd", "pgm", "ply",   "png",        "poses", "remote_state", "sequence", "trajectory", "xyz"};
 
 void expect(bool promise, const char* name) {
   if (!promise) throw std::logic_error(name);
@@ -182,6 +182,8 @@ void run_target(std::string_view name, std::span<const std::byte> bytes) {
       check_remote_state(bytes);
     } else if (name == "haply_frame") {
       check_haply_frame(input.text());
+    } else if (name == "cdr") {
+      check_messages(bytes);
     } else if (name == "mcap") {
       check_mcap(bytes);
     } else if (name == "gzip") {

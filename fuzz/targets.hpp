@@ -14,4 +14,7 @@ namespace palpate::fuzz {
 /// @throws std::logic_error for a broken promise.
 void run_target(std::string_view name, std::span<const std::byte> bytes);
 
+/// The target "cdr": messages of every type of ours. @throws std::logic_error for a broken promise.
+void check_messages(std::span<const std::byte> bytes);
+
 }  // namespace palpate::fuzz

@@ -23,7 +23,7 @@ fi
 say "packages"
 need_packages build cameras viewer ros test peers fuzz lint bench
 need_npm
-need_modules tests/bag/peer
+need_modules tests/peer
 need_browser
 find_data
 

@@ -24,7 +24,7 @@ status=0
 say "packages"
 need_packages build cameras viewer ros test peers
 need_npm
-need_modules tests/bag/peer
+need_modules tests/peer
 need_browser
 if [ "$fuzz" = yes ]; then need_packages fuzz; fi
 if [ "$fuzz" = yes ] && ! command -v clang++ >/dev/null; then

@@ -54,6 +54,9 @@ Distortion fitted(const std::vector<double>& d, const CameraModel& camera) {
 Distortion distortion_of(const CameraInfo& info, const CameraModel& camera) {
   const std::vector<double>& d = info.d;
   if (std::ranges::all_of(d, [](double value) { return value == 0; })) return {};
+  if (!std::ranges::all_of(d, [](double value) { return std::isfinite(value); })) {
+    throw Error("a lens whose coefficients are not finite; the camera has to be calibrated");
+  }
   if (info.distortion_model == "plumb_bob" && d.size() >= 4) {
     return {.k1 = d[0], .k2 = d[1], .p1 = d[2], .p2 = d[3], .k3 = d.size() > 4 ? d[4] : 0};
   }

@@ -33,6 +33,16 @@ namespace palpate::sensor {
 [[nodiscard]] std::unique_ptr<DepthCamera> open_ros(const std::string& name,
                                                     const CameraOptions& options);
 
+[[nodiscard]] DriverInfo bag_driver();
+/// `name`: "FILE[:TOPIC][,frame=FRAME]", depth images or clouds (as for open_ros()) in an MCAP bag
+/// of ROS 2's messages, which is read as it is played; without a topic the only one that fits. With
+/// a frame, the bag's transforms say where the sensor is in it, those recorded up to 0.1 s after
+/// the image included. Played as PlayedCamera does. What is damaged of the file is left out and
+/// told as damaged frames.
+/// @throws Error when it is no bag, or no topic or camera in it can be used; lists what can.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_bag(const std::string& name,
+                                                    const CameraOptions& options);
+
 /// The depth camera of a Kinect v1 (and its PrimeSense relatives) by its maker's nominal values;
 /// single devices differ from them by about a percent.
 [[nodiscard]] Pinhole kinect_pinhole(int width, int height);

@@ -10,11 +10,10 @@
 
 #include "dds/discovery.hpp"
 #include "dds/endpoint.hpp"
-#include "message/depth_images.hpp"
-#include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
 #include "palpate/base/error.hpp"
 #include "sensor/live_camera.hpp"
+#include "sensor/ros_frames.hpp"
 
 namespace palpate::sensor {
 namespace {
@@ -95,12 +94,13 @@ class RosCamera final : public DepthCamera {
  public:
   RosCamera(const std::string& name, const Clock* clock)
       : name_(parse(name)),
+        frames_(name_.topic),
         info_{.name = "ros:" + name_.topic, .rate = 30, .paces = true, .repeats = true},
         clock_(clock != nullptr ? *clock : host_),
         participant_(dds::environment_options()) {
     if (!name_.frame.empty()) transforms_.emplace(participant_);
     // Says at once when the topic's name is none.
-    infos_.emplace(participant_, message::info_topic(name_.topic), kSensor);
+    infos_.emplace(participant_, frames_.info_topic(), kSensor);
   }
 
   [[nodiscard]] const palpate::CameraInfo& info() const noexcept override { return info_; }
@@ -116,14 +116,11 @@ class RosCamera final : public DepthCamera {
   void take_infos();
   template <class Message>
   DepthCamera::Status take(Reader<Message>& reader, DepthFrame& frame, double timeout);
-  void fill(const Image& message, DepthFrame& frame) { fill_image(message, frame); }
-  void fill(const CompressedImage& message, DepthFrame& frame) { fill_image(message, frame); }
-  void fill(const PointCloud2& message, DepthFrame& frame) const;
-  void fill_image(const auto& message, DepthFrame& frame);
   [[nodiscard]] double stamp_of(const Header& header) const;
   bool place(const Header& header, DepthFrame& frame);
 
   CameraName name_;
+  RosFrames frames_;
   palpate::CameraInfo info_;
   SteadyClock host_;
   const Clock& clock_;
@@ -131,8 +128,6 @@ class RosCamera final : public DepthCamera {
   std::optional<TransformListener> transforms_;
   std::optional<Reader<message::CameraInfo>> infos_;
   Images images_;
-  std::optional<CameraModel> camera_;
-  std::string no_camera_ = "no CameraInfo has come yet";
   std::string reason_;
 };
 
@@ -186,7 +181,7 @@ DepthCamera::Status RosCamera::take(Reader<Message>& reader, DepthFrame& frame, 
   try {
     Message message;
     if (!reader.take(message)) return DepthCamera::Status::waiting;
-    fill(message, frame);
+    frames_.fill(message, frame);
     frame.stamp = stamp_of(message.header);
     return place(message.header, frame) ? DepthCamera::Status::frame : DepthCamera::Status::unposed;
   } catch (const Error& error) {
@@ -200,29 +195,11 @@ void RosCamera::take_infos() {
   for (bool more = true; more;) {
     try {
       more = infos_->take(told);
-      if (more) camera_ = camera_of(told, message::is_rectified(name_.topic));
+      if (more) frames_.tell(told);
     } catch (const Error& error) {
-      camera_.reset();
-      no_camera_ = error.what();
+      frames_.lose_camera(error.what());
     }
   }
-}
-
-void RosCamera::fill_image(const auto& message, DepthFrame& frame) {
-  if (!camera_) throw Error(fmt::format("{}: {}", infos_->topic(), no_camera_));
-  frame.camera = *camera_;
-  read_depth(message, frame);
-  if (frame.camera.width != camera_->width || frame.camera.height != camera_->height) {
-    throw Error(fmt::format("an image of {} x {} pixels, but {} tells of {} x {}",
-                            frame.camera.width, frame.camera.height, infos_->topic(),
-                            camera_->width, camera_->height));
-  }
-}
-
-void RosCamera::fill(const PointCloud2& message, DepthFrame& frame) const {
-  frame.depth.clear();
-  frame.colors.clear();
-  frame.cloud = std::make_shared<const PointCloud>(cloud_of(message));
 }
 
 double RosCamera::stamp_of(const Header& header) const {

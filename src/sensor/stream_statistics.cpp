@@ -27,9 +27,10 @@ bool is_camera(const CameraModel& camera) {
 std::optional<Objection> check_form(const DepthFrame& frame) {
   const CameraModel& camera = frame.camera;
   if (!is_camera(camera)) {
-    return Objection{&StreamState::Drops::garbage,
-                     fmt::format("a frame of {} x {} pixels and a focal length of {} x {} pixels",
-                                 camera.width, camera.height, camera.pinhole.fx, camera.pinhole.fy)};
+    return Objection{
+        &StreamState::Drops::garbage,
+        fmt::format("a frame of {} x {} pixels and a focal length of {} x {} pixels", camera.width,
+                    camera.height, camera.pinhole.fx, camera.pinhole.fy)};
   }
   const std::size_t pixels =
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);

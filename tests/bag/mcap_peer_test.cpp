@@ -25,7 +25,7 @@ class McapPeer : public testing::Test {
       GTEST_SKIP() << "node is absent (Debian: nodejs)";
     }
     if (!fs::exists(fs::path(PALPATE_PEER) / "node_modules/.package-lock.json")) {
-      GTEST_SKIP() << "tests/bag/peer/node_modules is absent: run npm ci in tests/bag/peer";
+      GTEST_SKIP() << "tests/peer/node_modules is absent: run npm ci in tests/peer";
     }
   }
 

@@ -133,6 +133,12 @@ TEST(CameraOf, RefusesLensesThatItCannotFollow) {
       },
       ThrowsMessage<Error>(HasSubstr("'equidistant'")));
   EXPECT_THROW(static_cast<void>(camera_of(info("plumb_bob", {0.1}), false)), Error);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(
+      [&] {
+        static_cast<void>(camera_of(info("plumb_bob", {0.1, none, 0, 0}), false));
+      },
+      ThrowsMessage<Error>(HasSubstr("not finite")));
   CameraInfo uncalibrated = info("plumb_bob", {});
   uncalibrated.k = {};
   EXPECT_THAT([&] { static_cast<void>(camera_of(uncalibrated, false)); },

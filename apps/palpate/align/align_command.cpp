@@ -109,14 +109,17 @@ void insert_given(toml::table& file, toml::array& sources, const CLI::App& comma
 
 // As a set-up file in the folder of `output` names it.
 std::string path_from(const std::string& output, const std::string& path) {
-  const bool sequence = path.starts_with(kSequence);
-  const std::string file = sequence ? path.substr(kSequence.size()) : path;
-  if (!sequence && (path == "-" || path.starts_with(kCamera) || path.starts_with(kSynthetic))) {
-    return path;
+  std::string kind;
+  for (const std::string_view recorded : {kSequence, kBag}) {
+    if (path.starts_with(recorded)) kind = recorded;
   }
+  const std::string file = path.substr(kind.size());
+  const bool is_file = path != "-" && !path.starts_with(kCamera) && !path.starts_with(kRos) &&
+                       !path.starts_with(kSynthetic);
+  if (!is_file) return path;
   if (fs::path(file).is_absolute()) return path;
   const fs::path folder = fs::absolute(output).parent_path();
-  return (sequence ? std::string(kSequence) : "") + fs::proximate(file, folder).string();
+  return kind + fs::proximate(file, folder).string();
 }
 
 // The set-up file that was read, if any, with these sources and their poses.

@@ -39,12 +39,20 @@ std::string name_of_camera(std::string_view text) {
   return name.empty() ? "camera" : name;
 }
 
+// Of "runs/monday.mcap:/camera/depth,frame=world" the file.
+std::string file_of_bag(const std::string& text) {
+  const std::size_t topic = text.rfind(":/");
+  return text.substr(0, topic != std::string::npos ? topic : text.rfind(",frame="));
+}
+
 std::string name_of_path(const std::string& path) {
   if (path == "-") return "stdin";
   if (path.starts_with(kSynthetic)) return path.substr(kSynthetic.size());
   if (path.starts_with(kCamera)) return name_of_camera(path.substr(kCamera.size()));
   std::filesystem::path file(path);
   if (path.starts_with(kSequence)) file = path.substr(kSequence.size());
+  if (path.starts_with(kRos)) file = path.substr(0, path.find(','));
+  if (path.starts_with(kBag)) file = file_of_bag(path.substr(kBag.size()));
   if (!file.has_filename()) file = file.parent_path();  // a folder with a slash behind it
   std::filesystem::path name = file.filename();
   if (name.extension() == ".gz") name = name.stem();
@@ -155,19 +163,21 @@ CloudArgument split_argument(const std::string& text) {
 }
 
 bool lives(const std::string& path) {
-  return path.starts_with(kCamera) || path.starts_with(kSequence) || path.starts_with(kRos) ||
-         path.ends_with(".oni");
+  return path.starts_with(kCamera) || path.starts_with(kSequence) || path.starts_with(kBag) ||
+         path.starts_with(kRos) || path.ends_with(".oni");
 }
 
 bool names_something(const std::string& path) {
-  return !path.empty() && path != kCamera && path != kSequence && path != kSynthetic;
+  return !path.empty() && path != kCamera && path != kSequence && path != kBag && path != kRos &&
+         path != kSynthetic;
 }
 
 void name_all(std::vector<CloudArgument>& sources) {
   for (const CloudArgument& source : sources) {
     if (names_something(source.path)) continue;
     throw UsageError(fmt::format(
-        "'{}' names no source; give a file path, camera:NAME, sequence:FOLDER or synthetic:NAME",
+        "'{}' names no source; give a file path, camera:NAME, sequence:FOLDER, bag:FILE, ros:TOPIC "
+        "or synthetic:NAME",
         source.path));
   }
   std::set<std::string> taken;

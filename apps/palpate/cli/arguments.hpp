@@ -17,6 +17,7 @@ namespace palpate::app {
 inline constexpr std::string_view kSynthetic = "synthetic:";
 inline constexpr std::string_view kCamera = "camera:";
 inline constexpr std::string_view kSequence = "sequence:";
+inline constexpr std::string_view kBag = "bag:";
 inline constexpr std::string_view kRos = "ros:";
 
 /// A source as named on the command line: NAME=PATH, or PATH alone.
@@ -60,11 +61,11 @@ struct PoseArgument {
 /// never split.
 [[nodiscard]] CloudArgument split_argument(const std::string& text);
 
-/// Does a path name something that lives ("camera:...", "sequence:...", an .oni file) instead of
-/// a cloud that stands still?
+/// Does a path name something that lives ("camera:...", "sequence:...", "bag:...", "ros:...", an
+/// .oni file) instead of a cloud that stands still?
 [[nodiscard]] bool lives(const std::string& path);
 
-/// Is there anything behind "camera:", "sequence:" or "synthetic:"?
+/// Is there anything behind "camera:", "sequence:", "bag:", "ros:" or "synthetic:"?
 [[nodiscard]] bool names_something(const std::string& path);
 
 /// Names every source that has no name yet after its path, with a number where two would be the

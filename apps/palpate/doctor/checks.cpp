@@ -54,9 +54,11 @@ void ask(std::span<const Check> checks, const Machine& machine, Findings& findin
 }
 
 Findings check_all(const System& system, double jitter) {
-  const Machine machine{system, system.try_realtime(jitter), known_usb_devices(system)};
+  const Machine machine{system, system.try_realtime(jitter), known_usb_devices(system),
+                        system.cameras()};
   Findings findings;
-  for (const auto& area : {check_kernel, check_haptic_devices, check_cameras, check_surroundings}) {
+  for (const auto& area :
+       {check_kernel, check_haptic_devices, check_cameras, check_ros, check_surroundings}) {
     area(machine, findings);
   }
   return findings;

@@ -96,6 +96,7 @@ struct Machine {
   const System& system;
   RealtimeTrial trial;
   std::vector<KnownUsbDevice> devices;
+  std::vector<DriverInfo> cameras;
 };
 
 /// A row of an area's table: what it looks at and how it answers.
@@ -116,7 +117,9 @@ void check_kernel(const Machine& machine, Findings& findings);
 void check_haptic_devices(const Machine& machine, Findings& findings);
 /// Depth cameras on USB, and the drivers of `palpate cameras`.
 void check_cameras(const Machine& machine, Findings& findings);
-/// Files, locale, network, pictures, browser.
+/// What lets ROS 2's nodes and palpate see one another: middleware, domain, range, buffers.
+void check_ros(const Machine& machine, Findings& findings);
+/// Files, locale, pictures, browser.
 void check_surroundings(const Machine& machine, Findings& findings);
 
 /// What is plugged in of one kind: may this user open it, does a driver of the kernel hold it?

@@ -157,7 +157,7 @@ Answer driver_answer(const Machine& machine, const DriverInfo& driver,
 
 // A driver that is missing is a problem where a camera for it is plugged in.
 void check_drivers(const Machine& machine, Findings& findings) {
-  for (const DriverInfo& driver : machine.system.cameras()) {
+  for (const DriverInfo& driver : machine.cameras) {
     const auto* const packages = std::ranges::find(kPackages, driver.name, &DriverPackages::driver);
     if (packages == kPackages.end()) continue;
     findings.push_back(

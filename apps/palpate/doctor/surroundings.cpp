@@ -11,10 +11,6 @@ namespace palpate::app::doctor {
 namespace {
 
 constexpr const char* kSurroundings = "surroundings";
-// A cloud of 640 x 480 points of 16 bytes, which comes in one burst.
-constexpr long kLargeCloud = 640L * 480 * 16;
-constexpr const char* kLargestBuffer = "2147483647";  // what ROS 2's guide to DDS tells
-
 constexpr std::array kBrowsers = {"firefox",  "firefox-esr",   "chromium",     "chromium-browser",
                                   "epiphany", "google-chrome", "x-www-browser"};
 
@@ -71,21 +67,6 @@ Answer decimal_point(const Machine& machine) {
       fmt::format("export {}=C.UTF-8", name == "LC_ALL" ? "LC_ALL" : "LC_NUMERIC"));
 }
 
-Answer network_buffer(const Machine& machine) {
-  const auto bytes = whole_number(machine.system, "proc/sys/net/core/rmem_max");
-  if (!bytes) return good("unknown (net.core.rmem_max)");
-  const std::string words =
-      fmt::format("net.core.rmem_max is {:.1f} MB", 1e-6 * static_cast<double>(*bytes));
-  if (*bytes >= kLargeCloud) return good(words);
-  return note(
-      fmt::format(
-          "{}; a cloud of 640 x 480 points over DDS (ROS 2) takes {:.1f} MB and may be lost", words,
-          1e-6 * kLargeCloud),
-      fmt::format("echo net.core.rmem_max={} | sudo tee /etc/sysctl.d/60-palpate.conf && sudo "
-                  "sysctl --system",
-                  kLargestBuffer));
-}
-
 Answer runtime_folder(const Machine& machine) {
   static constexpr const char* kRemedy = "export XDG_RUNTIME_DIR=$(mktemp -d)";
   const std::string folder = variable(machine.system, "XDG_RUNTIME_DIR");
@@ -137,7 +118,6 @@ constexpr std::array kChecks = {
     Check{kSurroundings, "XDG_RUNTIME_DIR", runtime_folder},
     Check{kSurroundings, "locale", locale},
     Check{kSurroundings, "decimal point", decimal_point},
-    Check{kSurroundings, "network buffer", network_buffer},
     Check{kSurroundings, "pictures", pictures},
     Check{kSurroundings, "browser", browser},
 };

@@ -26,7 +26,7 @@ struct RunFacts {
   // One source at least ...
   bool stream = false;           ///< is a camera or sequence
   bool is_static = false;        ///< is a file, or made by the program
-  bool recorded = false;         ///< is a sequence, which may be repeated
+  bool recorded = false;         ///< is a recording, which may be repeated
   bool image = false;            ///< is a depth image in a file
   bool depth = false;            ///< has depths, whatever becomes of them
   bool filtered = false;         ///< goes through the depth filter ...

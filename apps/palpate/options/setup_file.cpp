@@ -85,10 +85,12 @@ toml::table SetupFile::parse() const {
 }
 
 std::string SetupFile::resolved(const std::string& path) const {
-  if (path.starts_with(kSequence)) {
-    return std::string(kSequence) + (folder_ / path.substr(kSequence.size())).string();
+  for (const std::string_view recorded : {kSequence, kBag}) {
+    if (!path.starts_with(recorded)) continue;
+    return std::string(recorded) + (folder_ / path.substr(recorded.size())).string();
   }
-  const bool is_file = path != "-" && !path.starts_with(kCamera) && !path.starts_with(kSynthetic);
+  const bool is_file = path != "-" && !path.starts_with(kCamera) && !path.starts_with(kRos) &&
+                       !path.starts_with(kSynthetic);
   return is_file ? (folder_ / path).string() : path;
 }
 

@@ -98,8 +98,8 @@ void add_stream_options(OptionTable& table, SourcePlan& s) {
       .only_for({&RunFacts::cloud_frames,
                  "applies only to frames processed as clouds; add --unorganised, or remove it: the "
                  "depth filter always limits its costly steps to the tool's reach"});
-  table.add_flag("--loop", s.loop, "restart sequences when they end")
-      .only_for({&RunFacts::recorded, "applies only to sequences; no source is one"});
+  table.add_flag("--loop", s.loop, "restart recordings when they end")
+      .only_for({&RunFacts::recorded, "applies only to recordings; no source is one"});
 }
 
 }  // namespace

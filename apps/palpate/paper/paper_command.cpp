@@ -206,7 +206,7 @@ constexpr const char* kPaperSource = "camera:simulated:still";
 std::unique_ptr<DepthCamera> open_paper_source(const std::string& source) {
   if (!lives(source)) {
     throw UsageError(fmt::format(
-        "{} is neither a camera nor a sequence; name one, e.g. sequence:FOLDER", source));
+        "{} is neither a camera nor a recording; name one, e.g. sequence:FOLDER", source));
   }
   SourcePlan chosen;
   chosen.argument = {"source", source};

@@ -106,7 +106,7 @@ std::unique_ptr<DepthCamera> open_stream(const SourcePlan& source, const Clock* 
   if (clock == nullptr && camera->info().paces) {
     throw Error(
         fmt::format("{} runs only in real time; remove --simulated-time, or play a recording of it "
-                    "(sequence:FOLDER)",
+                    "(sequence:FOLDER, bag:FILE)",
                     source.argument.path));
   }
   const Eigen::Isometry3d& pose = source.options.T_world_sensor;

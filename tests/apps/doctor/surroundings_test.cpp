@@ -26,7 +26,13 @@ void break_everything(MadeUp& machine) {
   machine.usb("1-5", "1209", "0001", 1, 6, "", "Haply");
   machine.usb("1-6", "2988", "0302", 1, 7);
   machine.system.node = [](const std::filesystem::path&) { return Node{.there = true}; };
-  machine.system.variables = {{"DISPLAY", ":0"}, {"LANG", "de_DE.UTF-8"}, {"LC_TIME", "$(ls)"}};
+  machine.system.variables = {{"DISPLAY", ":0"},
+                              {"LANG", "de_DE.UTF-8"},
+                              {"LC_TIME", "$(ls)"},
+                              {"RMW_IMPLEMENTATION", "rmw_zenoh_cpp"},
+                              {"ROS_DOMAIN_ID", "$(ls)"},
+                              {"ROS_AUTOMATIC_DISCOVERY_RANGE", "MOON"},
+                              {"CYCLONEDDS_URI", "file:///etc/$(ls).xml"}};
 }
 
 // May all be pasted into a shell?
@@ -71,7 +77,7 @@ TEST(DoctorChecks, KeepAreasTogether) {
     if (areas.empty() || areas.back() != finding.area) areas.push_back(finding.area);
   }
   EXPECT_EQ(areas, (std::vector<std::string>{"kernel", "real-time rights", "haptic devices",
-                                             "cameras", "surroundings"}));
+                                             "cameras", "ROS 2", "surroundings"}));
 }
 
 TEST(DoctorChecks, MeasureJitterWhenTold) {
@@ -126,7 +132,7 @@ TEST(DoctorSurroundings, MissAFolderForTheRemoteDevicesSocket) {
   EXPECT_EQ(finding_on("XDG_RUNTIME_DIR", machine).severity, Severity::good);
 }
 
-TEST(DoctorSurroundings, CompareTheNetworkBufferWithACloud) {
+TEST(DoctorRos, ComparesTheNetworkBufferWithACloud) {
   MadeUp machine;
   machine.file("proc/sys/net/core/rmem_max", "212992");
   const Finding finding = finding_on("network buffer", machine);
@@ -134,6 +140,53 @@ TEST(DoctorSurroundings, CompareTheNetworkBufferWithACloud) {
   EXPECT_NE(finding.words.find("4.9 MB"), std::string::npos) << finding.words;
   machine.file("proc/sys/net/core/rmem_max", "8388608");
   EXPECT_EQ(finding_on("network buffer", machine).severity, Severity::good);
+}
+
+TEST(DoctorRos, SaysWhoIsNotSeenByDds) {
+  MadeUp machine;
+  const auto on = [&](const std::string& value) {
+    machine.system.variables = {{"RMW_IMPLEMENTATION", value}};
+    return finding_on("RMW_IMPLEMENTATION", machine);
+  };
+  EXPECT_EQ(on("").severity, Severity::good);
+  EXPECT_EQ(on("rmw_fastrtps_cpp").severity, Severity::good);
+  EXPECT_EQ(on("rmw_cyclonedds_cpp").severity, Severity::good);
+  const Finding zenoh = on("rmw_zenoh_cpp");
+  EXPECT_EQ(zenoh.severity, Severity::warning);
+  EXPECT_EQ(zenoh.remedy, "zenoh-bridge-ros2dds");
+  EXPECT_EQ(on("rmw_pigeon").severity, Severity::note);
+}
+
+TEST(DoctorRos, LooksAtDomainRangeAndSettings) {
+  MadeUp machine;
+  const auto severity = [&](const char* what, std::map<std::string, std::string> variables) {
+    machine.system.variables = std::move(variables);
+    return finding_on(what, machine).severity;
+  };
+  EXPECT_EQ(severity("ROS_DOMAIN_ID", {{"ROS_DOMAIN_ID", "42"}}), Severity::good);
+  EXPECT_EQ(severity("ROS_DOMAIN_ID", {{"ROS_DOMAIN_ID", "150"}}), Severity::note);
+  EXPECT_EQ(severity("ROS_DOMAIN_ID", {{"ROS_DOMAIN_ID", "233"}}), Severity::problem);
+  EXPECT_EQ(severity("ROS_DOMAIN_ID", {{"ROS_DOMAIN_ID", "4x"}}), Severity::problem);
+  const char* range = "ROS_AUTOMATIC_DISCOVERY_RANGE";
+  EXPECT_EQ(severity("who is told", {{range, "SUBNET"}}), Severity::good);
+  EXPECT_EQ(severity("who is told", {{range, "SUBNET"}, {"ROS_LOCALHOST_ONLY", "1"}}),
+            Severity::note);
+  EXPECT_EQ(severity("who is told", {{range, "OFF"}}), Severity::note);
+  EXPECT_EQ(severity("who is told", {{range, "MOON"}}), Severity::problem);
+  EXPECT_EQ(severity("who is told", {{"ROS_STATIC_PEERS", "robot"}}), Severity::good);
+  EXPECT_EQ(severity("CYCLONEDDS_URI", {{"CYCLONEDDS_URI", "file:///etc/cyclone.xml"}}),
+            Severity::problem);
+  machine.file("etc/cyclone.xml", "<CycloneDDS/>");
+  EXPECT_EQ(severity("CYCLONEDDS_URI", {{"CYCLONEDDS_URI", "file:///etc/cyclone.xml"}}),
+            Severity::good);
+  EXPECT_EQ(severity("CYCLONEDDS_URI", {{"CYCLONEDDS_URI", "<CycloneDDS/>"}}), Severity::good);
+}
+
+TEST(DoctorRos, TellsWhetherTheBuildHasDds) {
+  MadeUp machine;
+  EXPECT_EQ(finding_on("DDS", machine).severity, Severity::note);
+  machine.system.cameras = [] { return std::vector<DriverInfo>{{.name = "ros"}}; };
+  EXPECT_EQ(finding_on("DDS", machine).severity, Severity::good);
 }
 
 TEST(DoctorSurroundings, NeedABrowserOnADesktopOnly) {

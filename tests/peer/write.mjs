@@ -3,25 +3,11 @@
 import { McapWriter } from "@mcap/core";
 import { parse } from "@foxglove/rosmsg";
 import { MessageWriter } from "@foxglove/rosmsg2-serialization";
-import zstd from "@foxglove/wasm-zstd";
-import lz4 from "lz4js";
-import { open } from "node:fs/promises";
+import { compressors, fileOf } from "./common.mjs";
 
-await zstd.isLoaded;
-const compress = {
-  lz4: (bytes) => ({ compression: "lz4", compressedData: new Uint8Array(lz4.compress(bytes)) }),
-  zstd: (bytes) => ({ compression: "zstd", compressedData: new Uint8Array(zstd.compress(bytes)) }),
-};
 const [path, kind] = process.argv.slice(2);
-const file = await open(path, "w");
-let size = 0;
-const writable = {
-  position: () => BigInt(size),
-  write: async (bytes) => {
-    await file.write(bytes);
-    size += bytes.length;
-  },
-};
+const { writable, close } = await fileOf(path);
+const compress = await compressors();
 const writer = new McapWriter({ writable, chunkSize: 20_000, useChunks: kind !== "loose", compressChunk: compress[kind] });
 await writer.start({ profile: "ros2", library: "@mcap/core" });
 const definition = "float64 x\nfloat64 y\nfloat64 z\n";
@@ -41,4 +27,4 @@ for (let i = 0; i < 1000; ++i) {
 await writer.addAttachment({ name: "notes.txt", mediaType: "text/plain", logTime: 1n, createTime: 2n, data: new Uint8Array([1, 2, 3]) });
 await writer.addMetadata({ name: "made", metadata: new Map([["by", "others"]]) });
 await writer.end();
-await file.close();
+await close();

@@ -1,0 +1,282 @@
+// Depth images and clouds of anybody's bags.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <utility>
+
+#include "message/transforms.hpp"
+#include "palpate/base/error.hpp"
+#include "sensor/bag_topics.hpp"
+#include "sensor/live_camera.hpp"
+#include "sensor/played_camera.hpp"
+#include "sensor/ros_frames.hpp"
+
+namespace palpate::sensor {
+namespace {
+
+using bag::Channel;
+using message::Header;
+using message::TFMessage;
+using Status = DepthCamera::Status;
+
+constexpr std::uint64_t kLateTransform = 100'000'000;  // ns that an image waits for its transform
+constexpr std::size_t kMostWaiting = 64;               // images
+constexpr std::size_t kMostHeld = 256 << 20;           // bytes of them
+constexpr int kMeasured = 30;                          // images that tell their rate
+constexpr double kSlowestBag = 0.1;                    // Hz
+constexpr double kFastestBag = 1000;                   // Hz
+constexpr int kInfos = 10;                             // that are tried until one can be used
+constexpr int kStatics = 1000;                         // messages of what stands still
+constexpr double kStampJump = 1;      // s that stamps may run ahead of the recording
+constexpr double kNanosecond = 1e-9;  // s
+
+// Decodes a message of type T and makes a frame of it.
+template <class T>
+void fill_from(const RosFrames& frames, bag::View data, DepthFrame& frame) {
+  T message;
+  decode(data, message);
+  frames.fill(message, frame);
+}
+
+// The images or clouds of one topic, as open_bag() says. An image whose transform is not there yet
+// waits until the file is read 0.1 s further; no more than that is held.
+class BagRecording final : public Recording {
+ public:
+  explicit BagRecording(const BagName& name);
+
+  [[nodiscard]] const std::string& topic() const { return frames_.topic(); }
+  [[nodiscard]] double rate() const { return rate_; }
+  [[nodiscard]] bool is_one_image() const { return one_image_; }
+
+  void rewind() override;
+  [[nodiscard]] Status next(DepthFrame& frame, double& time, std::string& why) override;
+
+ private:
+  struct Image {
+    void (*fill)(const RosFrames&, bag::View, DepthFrame&) = nullptr;
+    Header header;
+    std::uint64_t log = 0;  // ns
+    bag::Bytes data;
+  };
+
+  [[nodiscard]] bool is_image(const Channel& channel) const {
+    return channel.topic == frames_.topic() && may_be_felt(channel);
+  }
+  [[nodiscard]] bool is_info(const Channel& channel) const {
+    return channel.topic == frames_.info_topic() && holds<message::CameraInfo>(channel);
+  }
+  void measure();
+  void learn_camera();
+  void learn_what_stands_still();
+  void read_ahead();
+  void take(const bag::Message& message);
+  void keep(const Channel& channel, const bag::Message& message);
+  [[nodiscard]] bool is_ready(const Image& image) const;
+  [[nodiscard]] double step_to(const Image& image);
+  [[nodiscard]] Status show(const Image& image, DepthFrame& frame, std::string& why) const;
+
+  std::string file_;
+  bag::McapReader reader_;
+  RosFrames frames_;
+  std::string frame_;
+  double rate_ = 30;
+  bool one_image_ = false;
+  message::Transforms still_;  // wherever in the file it is told
+  message::Transforms transforms_;
+  std::deque<Image> waiting_;
+  std::size_t held_ = 0;   // bytes of those
+  std::uint64_t log_ = 0;  // how far the file was read, ns
+  bool read_ = false;      // to its end
+  std::size_t told_ = 0;   // losses
+  double time_ = 0;        // of the last image
+  bool any_ = false;       // there was one, and when it was taken and recorded:
+  double stamp_ = 0;
+  std::uint64_t recorded_ = 0;
+};
+
+BagRecording::BagRecording(const BagName& name)
+    : file_(name.file), reader_(name.file), frames_(topic_of(reader_, name)), frame_(name.frame) {
+  measure();
+  learn_camera();
+  learn_what_stands_still();
+  BagRecording::rewind();
+}
+
+// By the first images.
+void BagRecording::measure() {
+  reader_.choose([&](const Channel& channel) { return is_image(channel); });
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  int count = 0;
+  for (bag::Message found; count < kMeasured && reader_.next(found); ++count) {
+    last = found.stamp.log;
+    if (count == 0) first = last;
+  }
+  if (count == 0) throw Error(fmt::format("{}: no message is left on {}", file_, topic()));
+  one_image_ = count == 1;
+  if (last == first) return;
+  rate_ = std::clamp((count - 1) / (kNanosecond * static_cast<double>(last - first)), kSlowestBag,
+                     kFastestBag);
+}
+
+// So that the first images have a camera, which is often told a little later.
+void BagRecording::learn_camera() {
+  const auto is_picture = [&](const auto& each) {
+    return is_image(each.second) && !holds<message::PointCloud2>(each.second);
+  };
+  if (std::ranges::none_of(reader_.contents().channels, is_picture)) return;
+  reader_.choose([&](const Channel& channel) { return is_info(channel); });
+  std::string why = fmt::format("there is no CameraInfo; record it with {}", topic());
+  int tried = 0;
+  for (bag::Message found; tried < kInfos && reader_.next(found); ++tried) {
+    try {
+      message::CameraInfo info;
+      decode(found.data, info);
+      static_cast<void>(camera_of(info, message::is_rectified(topic())));
+      return frames_.tell(info);
+    } catch (const Error& error) {
+      why = error.what();
+    }
+  }
+  throw Error(fmt::format("{}: {}: {}", file_, frames_.info_topic(), why));
+}
+
+void BagRecording::learn_what_stands_still() {
+  if (frame_.empty()) return;
+  reader_.choose([](const Channel& channel) {
+    return holds<TFMessage>(channel) && channel.topic.ends_with("tf_static");
+  });
+  int count = 0;
+  for (bag::Message found; count < kStatics && reader_.next(found); ++count) take(found);
+  still_ = std::exchange(transforms_, {});
+}
+
+void BagRecording::rewind() {
+  reader_.choose([&](const Channel& channel) {
+    return is_image(channel) || is_info(channel) || (!frame_.empty() && holds<TFMessage>(channel));
+  });
+  transforms_ = still_;
+  waiting_.clear();
+  held_ = 0;
+  log_ = 0;
+  read_ = false;
+  time_ = 0;
+  any_ = false;
+}
+
+Status BagRecording::next(DepthFrame& frame, double& time, std::string& why) {
+  time = time_;
+  try {
+    read_ahead();
+  } catch (const Error& error) {
+    read_ = true;
+    why = error.what();
+    return Status::damaged;
+  }
+  if (told_ < reader_.contents().losses.size()) {
+    why = fmt::format("{}: {}", file_, reader_.contents().losses[told_++]);
+    return Status::damaged;
+  }
+  if (waiting_.empty()) return Status::ended;
+  const Image image = std::move(waiting_.front());
+  waiting_.pop_front();
+  held_ -= image.data.size();
+  time = time_ += step_to(image);
+  return show(image, frame, why);
+}
+
+void BagRecording::read_ahead() {
+  while (!read_ && (waiting_.empty() || !is_ready(waiting_.front()))) {
+    bag::Message found;
+    read_ = !reader_.next(found);
+    if (!read_) take(found);
+  }
+}
+
+bool BagRecording::is_ready(const Image& image) const {
+  if (frame_.empty() || log_ - image.log > kLateTransform) return true;
+  if (waiting_.size() >= kMostWaiting || held_ >= kMostHeld) return true;
+  return transforms_.find(frame_, image.header.frame_id, to_seconds(image.header.stamp))
+      .has_value();
+}
+
+void BagRecording::take(const bag::Message& message) {
+  log_ = message.stamp.log;
+  const Channel& channel = reader_.channel_of(message);
+  if (is_image(channel)) return keep(channel, message);
+  try {
+    if (is_info(channel)) {
+      message::CameraInfo info;
+      decode(message.data, info);
+      frames_.tell(info);
+    } else {
+      TFMessage told;
+      decode(message.data, told);
+      transforms_.add(told, channel.topic.ends_with("tf_static"));
+    }
+  } catch (const Error&) {
+    // A damaged message says nothing; the next one comes soon.
+  }
+}
+
+void BagRecording::keep(const Channel& channel, const bag::Message& message) {
+  Image image;
+  image.fill = fill_from<message::Image>;
+  image.log = message.stamp.log;
+  image.data.assign(message.data.begin(), message.data.end());
+  if (holds<message::CompressedImage>(channel)) image.fill = fill_from<message::CompressedImage>;
+  if (holds<message::PointCloud2>(channel)) image.fill = fill_from<message::PointCloud2>;
+  try {
+    message::CdrReader(message.data).get(image.header);
+  } catch (const Error&) {
+    image.header = {};  // what is damaged is said when its turn comes
+  }
+  held_ += image.data.size();
+  waiting_.push_back(std::move(image));
+}
+
+// s from the image before it: as their stamps say, or, where those stand still or jump, as they
+// were recorded.
+double BagRecording::step_to(const Image& image) {
+  const double stamp = to_seconds(image.header.stamp);
+  const double recorded = kNanosecond * static_cast<double>(image.log - recorded_);
+  const double told = stamp - stamp_;
+  stamp_ = stamp;
+  recorded_ = image.log;
+  if (!std::exchange(any_, true)) return 0;
+  return told > 0 && told < recorded + kStampJump ? told : recorded;
+}
+
+Status BagRecording::show(const Image& image, DepthFrame& frame, std::string& why) const {
+  try {
+    image.fill(frames_, image.data, frame);
+  } catch (const Error& error) {
+    why = error.what();
+    return Status::damaged;
+  }
+  frame.T_world_sensor.reset();
+  if (frame_.empty()) return Status::frame;
+  const Header& header = image.header;
+  frame.T_world_sensor = transforms_.find(frame_, header.frame_id, to_seconds(header.stamp), &why);
+  return frame.T_world_sensor ? Status::frame : Status::unposed;
+}
+
+}  // namespace
+
+DriverInfo bag_driver() {
+  return {.name = "bag",
+          .description = "bags of ROS 2 (MCAP): bag:FILE[:TOPIC][,frame=FRAME] (docs/bags.md)",
+          .missing = {},
+          .devices = {}};
+}
+
+std::unique_ptr<DepthCamera> open_bag(const std::string& name, const CameraOptions& options) {
+  auto recording = std::make_unique<BagRecording>(parse_bag_name(name));
+  CameraInfo info{.name = "bag:" + name,
+                  .rate = recording->rate(),
+                  .repeats = options.loop && recording->is_one_image()};
+  return std::make_unique<PlayedCamera>(std::move(info), std::move(recording), options);
+}
+
+}  // namespace palpate::sensor

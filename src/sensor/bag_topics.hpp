@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+
+#include "bag/mcap_reader.hpp"
+#include "message/schema.hpp"
+#include "message/sensor_types.hpp"
+
+namespace palpate::sensor {
+
+/// What "FILE[:TOPIC][,frame=FRAME]" names.
+struct BagName {
+  std::string file;
+  std::string topic;  ///< empty: the one that fits
+  std::string frame;  ///< empty: images are placed nowhere
+};
+
+/// A file whose name looks like more is taken for what it is. Of a folder, as ROS 2 records into,
+/// the one MCAP file in it. @throws Error when there are none or several, or no frame is named.
+[[nodiscard]] BagName parse_bag_name(const std::string& name);
+
+/// Are these messages of T, in ROS 2's encoding?
+template <message::Message T>
+[[nodiscard]] bool holds(const bag::Channel& channel) {
+  return channel.message_encoding == "cdr" && channel.schema.name == message::ros_name(T::kName);
+}
+
+/// Images, of depth or not, or clouds.
+[[nodiscard]] inline bool may_be_felt(const bag::Channel& channel) {
+  return holds<message::Image>(channel) || holds<message::CompressedImage>(channel) ||
+         holds<message::PointCloud2>(channel);
+}
+
+/// The topic that is named; else the only one of depth images, else the only one of clouds. What
+/// the reader gives next is afterwards anything.
+/// @throws Error when there is no such topic, or several; it lists those that fit.
+[[nodiscard]] std::string topic_of(bag::McapReader& reader, const BagName& name);
+
+}  // namespace palpate::sensor
