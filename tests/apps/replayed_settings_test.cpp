@@ -86,7 +86,7 @@ TEST(Replay, ChangesOfSettingsInContactAreDoneAgainInTheirSteps) {
   EXPECT_EQ(again, forces);
 }
 
-// The hand presses on what is in the middle of the camera's picture, from the second frame on.
+// The hand goes to and fro along the camera's axis, through what it sees.
 TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
   Shell shell;
   const TouchPlan plan = planned("camera:simulated --simulated-time");
@@ -99,6 +99,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
   const std::function<void()> end = recorder.watching(0, [&] { source.keep(); });
   Handle device;
   ServoOptions options;
+  options.guard.on = false;
   options.traces = recorder.add_hand();
   Servo servo(device, loaded.scene, options);
   recorder.begin(loaded, {&servo}, 0, true);
@@ -118,7 +119,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
     }
     if (step == 600) end();
     DeviceState hand;
-    hand.position.z() = source.state().depth + 5e-3 * std::sin(10 * now);
+    hand.position.z() = source.state().depth - 0.1 * std::cos(10 * now);
     largest = std::max(largest, servo.step(hand, now).force.norm());
     servo.show();
     recorder.keep_up();

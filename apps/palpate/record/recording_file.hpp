@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
 #include "bag/mcap_writer.hpp"
 #include "message/geometry_types.hpp"
