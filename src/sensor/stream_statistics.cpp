@@ -84,9 +84,7 @@ Objection objection_to(DepthCamera::Status status, const std::string& reason) {
 }
 
 std::optional<Objection> FrameCheck::examine(const DepthFrame& frame, double latest) {
-  if (!frame.cloud) {
-    if (auto objection = check_form(frame)) return objection;
-  }
+  if (auto objection = check_form(frame); objection && !frame.cloud) return objection;
   if (auto objection = check_stamp(frame.stamp, latest)) return objection;
   if (!frame.cloud) {
     if (auto objection = check_size(frame)) return objection;

@@ -2,10 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <limits>
 
 #include "dds/hostile.hpp"
 #include "message/depth_images.hpp"
+#include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
 #include "palpate/device/hardware.hpp"
 #include "palpate/sensor/depth_camera.hpp"
@@ -15,6 +18,8 @@ namespace {
 
 using namespace message;
 using Status = DepthCamera::Status;
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 Image small_image() {
   DepthFrame frame;
@@ -29,7 +34,7 @@ Image small_image() {
 class HostileImages : public testing::Test {
  protected:
   void send(const Bytes& bytes) {
-    CameraInfo info =
+    message::CameraInfo info =
         info_of({.width = 4, .height = 3, .pinhole = {5, 5, 2, 1.5}, .distortion = {}});
     infos_.write(info);
     images_.write(bytes);
@@ -55,7 +60,7 @@ class HostileImages : public testing::Test {
 
   dds::Participant participant_{own_domain()};
   dds::RawWriter images_{participant_, {"/cam/image", Image::kName, Image::kHash}, {.depth = 2}};
-  dds::Writer<CameraInfo> infos_{participant_, "/cam/camera_info", {.reliable = true}};
+  dds::Writer<message::CameraInfo> infos_{participant_, "/cam/camera_info", {.reliable = true}};
   SteadyClock clock_;
   std::unique_ptr<DepthCamera> camera_ = open_camera("ros:/cam/image", {.clock = &clock_});
   DepthFrame frame_;
@@ -81,7 +86,7 @@ TEST_F(HostileImages, ThatAreDamagedAreToldAndLeftOut) {
                                 spoiled([](Image& image) { image.encoding = "16UC1\xff"; }),
                                 spoiled([](Image& image) { image.data.clear(); })};
   Bytes length = whole;  // of the frame's name: 2^31 and more
-  std::fill_n(length.begin() + 12, 4, 0xff);
+  for (std::size_t i = 12; i < 16; ++i) length.at(i) = 0xff;
   damaged.push_back(length);
   for (const Bytes& bytes : damaged) {
     EXPECT_EQ(answer_to(bytes), Status::damaged) << testing::PrintToString(bytes);
@@ -127,6 +132,32 @@ TEST_F(HostileImages, TenThousandASecondFillNoMemory) {
   flood.join();
   EXPECT_GT(frames, 10);
   EXPECT_LT(memory() - before, kMostMemory);
+}
+
+TEST(HostileNode, WhoseCloudsAndPosesAreNoneIsToldOf) {
+  const dds::Participant participant(own_domain());
+  dds::Writer<PointCloud2> clouds(participant, "/hostile/points", {.depth = 2});
+  dds::Writer<TFMessage> frames(participant, "/tf", {.reliable = true, .depth = 10});
+  const auto camera = open_camera("ros:/hostile/points,frame=world");
+  PointCloud cloud;
+  cloud.positions = {{1, 2, 3}, {4, 5, 6}};
+  const auto becomes = [&](Status wanted, auto&& spoil) {
+    DepthFrame frame;
+    return before_long([&] {
+      PointCloud2 message = message_of(cloud);
+      message.header = {to_time(wall_clock()), "camera"};
+      spoil(message);
+      frames.write({{{{message.header.stamp, "world"}, "camera", {{kNoNumber, 0, 0}, {}}}}});
+      clouds.write(message);
+      return camera->read(frame, 0.05) == wanted && !camera->reason().empty();
+    });
+  };
+  EXPECT_TRUE(becomes(Status::damaged, [](PointCloud2& message) { message.point_step = 0; }));
+  EXPECT_TRUE(becomes(Status::damaged, [](PointCloud2& message) { message.width = 1U << 31U; }));
+  EXPECT_TRUE(becomes(Status::damaged, [](PointCloud2& message) {
+    std::ranges::fill(message.data, std::uint8_t{0xff});  // all not numbers
+  }));
+  EXPECT_TRUE(becomes(Status::unposed, [](PointCloud2&) {})) << "a transform that is none";
 }
 
 TEST(HostileNode, WithAnotherTypeUnderTheTopicsNameIsNotHeard) {

@@ -175,7 +175,7 @@ TEST_F(BagCamera, PlacesImagesByTransformsThatComeAfterThem) {
       EXPECT_NEAR(frame.T_world_sensor->translation().x(), i % 10 + 0.5, 1e-9);
     } else {
       EXPECT_EQ(status, Status::unposed) << i;
-      EXPECT_THAT(camera->reason(), HasSubstr("base in odom"));
+      EXPECT_THAT(camera->reason(), HasSubstr("where base is in odom"));
     }
   }
 }

@@ -185,7 +185,7 @@ TEST(DoctorRos, LooksAtDomainRangeAndSettings) {
 TEST(DoctorRos, TellsWhetherTheBuildHasDds) {
   MadeUp machine;
   EXPECT_EQ(finding_on("DDS", machine).severity, Severity::note);
-  machine.system.cameras = [] { return std::vector<DriverInfo>{{.name = "ros"}}; };
+  machine.system.cameras = [] { return std::vector<DriverInfo>{{.name = "ros", .description = ""}}; };
   EXPECT_EQ(finding_on("DDS", machine).severity, Severity::good);
 }
 
