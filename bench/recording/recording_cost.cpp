@@ -37,11 +37,24 @@ Times times_of(std::vector<double> seconds) {
   return {at(0.5), at(0.99), at(1)};
 }
 
-Times median_of(const std::vector<Times>& runs, double Times::*which) {
-  std::vector<double> values;
-  for (const Times& run : runs) values.push_back(run.*which);
+double median_of(std::vector<double> values) {
   std::ranges::sort(values);
-  return {values[values.size() / 2], values.front(), values.back()};
+  return values[values.size() / 2];
+}
+
+// Of each run, and how much more it is in the recorded one of a pair.
+void tell(const char* name, double Times::*which, const std::vector<Times>& without,
+          const std::vector<Times>& with) {
+  std::vector<double> alone;
+  std::vector<double> more;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    alone.push_back(without[i].*which);
+    more.push_back(with[i].*which - without[i].*which);
+  }
+  const auto [least, most] = std::ranges::minmax(more);
+  fmt::print("{:8} {:7.2f} us, recorded {:+.2f} us ({:+.2f} to {:+.2f}): {:+.1f} %\n", name,
+             median_of(alone), median_of(more), least, most,
+             100 * median_of(more) / median_of(alone));
 }
 
 Times run(LoadedScene& loaded, const Placement& plan, bool recorded) {
@@ -92,15 +105,9 @@ int measure(int pairs, double duration) {
       (recorded ? with : without).push_back(run(loaded, plan, recorded));
     }
   }
-  for (const auto& [name, which] : {std::pair("p50", &Times::p50), std::pair("p99", &Times::p99),
-                                    std::pair("longest", &Times::longest)}) {
-    const Times a = median_of(without, which);
-    const Times b = median_of(with, which);
-    fmt::print(
-        "{:8} {:6.2f} us alone ({:.2f} to {:.2f}), {:6.2f} us recorded ({:.2f} to {:.2f}): "
-        "{:+.1f} %\n",
-        name, a.p50, a.p99, a.longest, b.p50, b.p99, b.longest, 100 * (b.p50 / a.p50 - 1));
-  }
+  tell("p50", &Times::p50, without, with);
+  tell("p99", &Times::p99, without, with);
+  tell("longest", &Times::longest, without, with);
   return 0;
 }
 

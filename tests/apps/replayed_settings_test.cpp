@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/replay/replayed_run.hpp"
@@ -86,7 +87,14 @@ TEST(Replay, ChangesOfSettingsInContactAreDoneAgainInTheirSteps) {
   EXPECT_EQ(again, forces);
 }
 
-// The hand goes to and fro along the camera's axis, through what it sees.
+// A point and its normal.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> middle_of(const SurfacePoints& points) {
+  std::size_t i = points.size() / 2;
+  while (points.normals[i].norm() < 0.5F) ++i;
+  return {points.origin + points.grid.points()[i].cast<double>(), points.normals[i].cast<double>()};
+}
+
+// The hand goes to and fro through what the camera sees.
 TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
   Shell shell;
   const TouchPlan plan = planned("camera:simulated --simulated-time");
@@ -104,6 +112,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
   Servo servo(device, loaded.scene, options);
   recorder.begin(loaded, {&servo}, 0, true);
   DepthFrame frame;
+  std::pair<Eigen::Vector3d, Eigen::Vector3d> place;
   double largest = 0;
   for (int step = 0; step < 800; ++step) {
     const double now = 1e-3 * step;
@@ -119,7 +128,8 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
     }
     if (step == 600) end();
     DeviceState hand;
-    hand.position.z() = source.state().depth - 0.1 * std::cos(10 * now);
+    if (step == 0) place = middle_of(*source.points());
+    hand.position = place.first + 0.03 * std::cos(10 * now) * place.second;
     largest = std::max(largest, servo.step(hand, now).force.norm());
     servo.show();
     recorder.keep_up();
