@@ -12,11 +12,11 @@ TEST(Devices, ListsDriversAndWhatIsMissing) {
   const Outcome outcome = shell.run("devices --json devices.json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   for (const char* word :
-       {"scripted", "simulated", "remote", "Force Dimension", "Touch", "Inverse3"}) {
+       {"scripted", "simulated", "remote", "Force Dimension", "Touch", "Inverse3", "ROS 2"}) {
     EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
   }
   const auto drivers = nlohmann::json::parse(shell.read("devices.json"));
-  ASSERT_EQ(drivers.size(), 6u);
+  ASSERT_EQ(drivers.size(), 7u);
   for (const auto& driver : drivers) {
     const bool available = driver["available"].get<bool>();
     EXPECT_EQ(available, driver["missing"].get<std::string>().empty()) << driver["name"];
@@ -29,7 +29,7 @@ TEST(Devices, GivesDataAloneOnStandardOutput) {
   Shell shell;
   const Outcome outcome = shell.run("devices --json -");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(nlohmann::json::parse(outcome.out).size(), 6u);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out).size(), 7u);
 }
 
 }  // namespace
