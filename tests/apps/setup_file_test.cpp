@@ -157,7 +157,7 @@ TEST(SetupFile, EveryPartAndKeyIsDocumented) {
     EXPECT_NE(text.find("`" + each.key() + "`"), std::string::npos) << each.key();
   }
   EXPECT_EQ(sections, (std::set<std::string>{"reading", "stream", "surface", "material", "hand",
-                                             "guard", "servo"}));
+                                             "guard", "servo", "ros"}));
   EXPECT_EQ(of_sources, 19);
 }
 
