@@ -55,7 +55,7 @@ void check(const PointCloud2& points) {
   }
 }
 
-void check(const CameraInfo& info) {
+void check(const message::CameraInfo& info) {
   for (const bool rectified : {false, true}) {
     try {
       const CameraModel camera = camera_of(info, rectified);
@@ -115,8 +115,8 @@ void check_messages(std::span<const std::byte> bytes) {
   const Bytes same(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   check_types<Bool, Int32, Float64, Float32MultiArray, Float64MultiArray, Point, Vector3,
               PoseStamped, WrenchStamped, TwistStamped, TFMessage, PointCloud2, Image,
-              CompressedImage, CameraInfo, Joy, JointState, DiagnosticArray, Marker, MarkerArray,
-              OmniFeedback, OmniButtonEvent>(same);
+              CompressedImage, message::CameraInfo, Joy, JointState, DiagnosticArray, Marker,
+              MarkerArray, OmniFeedback, OmniButtonEvent>(same);
 }
 
 }  // namespace palpate::fuzz
