@@ -230,7 +230,7 @@ void Servo::show(const ServoState::Timing& timing) noexcept {
   inside_->shown.set(state);
   inside_->recent_forces.add(state.force.cast<float>());
   if (inside_->options.steps != nullptr) inside_->options.steps->push(state);
-  if (inside_->options.traces != nullptr) inside_->options.traces->push(state, inside_->basis);
+  if (inside_->options.traces != nullptr) inside_->options.traces->push({state, inside_->basis});
 }
 
 Vector3d Servo::device_force() const noexcept {

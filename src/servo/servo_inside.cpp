@@ -1,8 +1,7 @@
-// What a servo records: durations of steps, recent forces, the steps themselves.
+// What a servo records: durations of steps, recent forces.
 #include "servo/servo_inside.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace palpate {
@@ -102,30 +101,6 @@ std::vector<Eigen::Vector3f> RecentForces::since(std::uint64_t& seen) const {
   forces.erase(forces.begin(), forces.begin() + static_cast<std::ptrdiff_t>(lost));
   seen = end;
   return forces;
-}
-
-ServoState::Queue::Queue(std::size_t capacity)
-    : size_(std::bit_ceil(capacity)), steps_(std::make_unique<ServoState[]>(size_)) {}
-
-ServoState::Queue::~Queue() = default;
-
-bool ServoState::Queue::push(const ServoState& state) noexcept {
-  const std::uint64_t at = pushed_.load(std::memory_order_relaxed);
-  if (at - popped_.load(std::memory_order_acquire) == size_) {
-    dropped_.fetch_add(1, std::memory_order_relaxed);
-    return false;
-  }
-  steps_[at % size_] = state;
-  pushed_.store(at + 1, std::memory_order_release);
-  return true;
-}
-
-std::optional<ServoState> ServoState::Queue::pop() noexcept {
-  const std::uint64_t at = popped_.load(std::memory_order_relaxed);
-  if (at == pushed_.load(std::memory_order_acquire)) return std::nullopt;
-  std::optional<ServoState> oldest = steps_[at % size_];
-  popped_.store(at + 1, std::memory_order_release);
-  return oldest;
 }
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -18,7 +19,62 @@
 
 namespace palpate {
 
-class StepTraces;
+struct StepTrace;
+
+/// Every step of a servo, in order, on its way to one thread that records them. Lock-free; all
+/// memory is taken at construction. Where the recorder falls behind by more than there is room for,
+/// steps are left out and counted: the servo never waits.
+template <class Step>
+class Ring {
+ public:
+  /// Room for `capacity` steps, rounded up to a power of two.
+  explicit Ring(std::size_t capacity)
+      : size_(std::bit_ceil(capacity)), steps_(std::make_unique<Step[]>(size_)) {}
+
+  /// The servo's: puts a step in. Real-time. False: there was no room.
+  bool push(const Step& step) noexcept {
+    const std::uint64_t at = pushed_.load(std::memory_order_relaxed);
+    if (at - popped_.load(std::memory_order_acquire) == size_) {
+      dropped_.fetch_add(1, std::memory_order_relaxed);
+      return false;
+    }
+    steps_[at % size_] = step;
+    pushed_.store(at + 1, std::memory_order_release);
+    return true;
+  }
+
+  /// The recorder's: the oldest step, there until drop(); null: empty.
+  [[nodiscard]] const Step* front() const noexcept {
+    const std::uint64_t at = popped_.load(std::memory_order_relaxed);
+    return at == pushed_.load(std::memory_order_acquire) ? nullptr : &steps_[at % size_];
+  }
+  void drop() noexcept { popped_.fetch_add(1, std::memory_order_release); }
+
+  /// The recorder's: takes the oldest step out; none: empty.
+  [[nodiscard]] std::optional<Step> pop() noexcept {
+    const Step* const oldest = front();
+    if (oldest == nullptr) return std::nullopt;
+    std::optional<Step> step = *oldest;
+    drop();
+    return step;
+  }
+
+  /// Is half of the room taken? Any thread.
+  [[nodiscard]] bool fills() const noexcept { return 2 * (pushed_ - popped_) > size_; }
+
+  /// Steps that were left out. Any thread.
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(); }
+
+ private:
+  static constexpr std::size_t kCacheLine = 64;
+
+  // Threads that write into one cache line wait for each other.
+  std::size_t size_;
+  std::unique_ptr<Step[]> steps_;
+  alignas(kCacheLine) std::atomic<std::uint64_t> pushed_{0};  // the servo writes it, and the next
+  std::atomic<std::uint64_t> dropped_{0};
+  alignas(kCacheLine) std::atomic<std::uint64_t> popped_{0};  // the recorder writes it
+};
 
 /// All that a servo knows of its last step, for those who watch. World frame.
 struct ServoState {
@@ -28,7 +84,7 @@ struct ServoState {
     double computing = std::numeric_limits<double>::quiet_NaN();  ///< of the thread, without others
   };
 
-  class Queue;
+  using Queue = Ring<ServoState>;
 
   std::uint64_t step = 0;                         ///< counts from 1; 0: there was none yet
   double time = 0;                                ///< s, on the clock that snapshots are stamped on
@@ -48,37 +104,6 @@ struct ServoState {
   bool clutched = false;  ///< the hand moves freely; the tool rests (ServoOptions::clutch_button)
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< from the hand to the tool, by the clutch, m
   Timing timing;
-};
-
-/// Every step of a servo, in order, for one thread that records them. Lock-free; all memory is
-/// taken at construction. Where the recorder falls behind by more than there is room for, steps are
-/// left out and counted: the servo never waits.
-class ServoState::Queue {
- public:
-  /// Room for `capacity` steps, rounded up to a power of two.
-  explicit Queue(std::size_t capacity);
-  ~Queue();
-  Queue(const Queue&) = delete;
-  Queue& operator=(const Queue&) = delete;
-
-  /// The servo's: puts a step in. Real-time. False: there was no room.
-  bool push(const ServoState& state) noexcept;
-
-  /// The recorder's: takes the oldest step out; none: empty.
-  [[nodiscard]] std::optional<ServoState> pop() noexcept;
-
-  /// Steps that were left out. Any thread.
-  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(); }
-
- private:
-  static constexpr std::size_t kCacheLine = 64;
-
-  // Threads that write into one cache line wait for each other.
-  std::size_t size_;
-  std::unique_ptr<ServoState[]> steps_;
-  alignas(kCacheLine) std::atomic<std::uint64_t> pushed_{0};  // the servo writes it, and the next
-  std::atomic<std::uint64_t> dropped_{0};
-  alignas(kCacheLine) std::atomic<std::uint64_t> popped_{0};  // the recorder writes it
 };
 
 /// How long things took, counted in bins that grow geometrically: eight to an octave, from 1/8 us
@@ -114,7 +139,7 @@ struct ServoOptions {
   /// While this button of the device is down, 0 to 31, the hand moves without the tool.
   std::optional<int> clutch_button = {};
   ServoState::Queue* steps = nullptr;  ///< every step is put into it; outlives the servo
-  StepTraces* traces = nullptr;        ///< likewise, for palpate's own recordings
+  Ring<StepTrace>* traces = nullptr;   ///< the same with what each was made of
 };
 
 /// What may change while a servo runs.
