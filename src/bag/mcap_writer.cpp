@@ -25,13 +25,13 @@ bool is_over(std::uint64_t span, std::uint64_t since, std::uint64_t now) {
 
 }  // namespace
 
-std::string offered_qos(const Qos& qos) {
+std::string offered_qos(const message::Quality& quality) {
   // rmw's numbers. A time of INT64_MAX ns is none.
   constexpr const char* kNever = "\n    sec: 9223372036\n    nsec: 854775807\n";
   return fmt::format(
       "- history: 1\n  depth: {}\n  reliability: {}\n  durability: {}\n  deadline:{}  lifespan:{}"
       "  liveliness: 1\n  liveliness_lease_duration:{}  avoid_ros_namespace_conventions: false\n",
-      qos.depth, qos.reliable ? 1 : 2, qos.transient_local ? 1 : 2, kNever, kNever, kNever);
+      quality.depth, quality.reliable ? 1 : 2, quality.stays ? 1 : 2, kNever, kNever, kNever);
 }
 
 McapWriter::McapWriter(std::string path, const Options& options)

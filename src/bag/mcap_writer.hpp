@@ -10,15 +10,9 @@
 
 namespace palpate::bag {
 
-/// What a topic offers its readers when a bag is played.
-struct Qos {
-  bool reliable = true;
-  bool transient_local = false;  ///< who comes late gets the last messages
-  std::uint32_t depth = 1;       ///< messages that are kept
-};
-
-/// The same as rosbag2 writes it in YAML, in the numbers that all its versions read.
-[[nodiscard]] std::string offered_qos(const Qos& qos);
+/// What a topic offers its readers when a bag is played, as rosbag2 writes it in YAML, in the
+/// numbers that all its versions read.
+[[nodiscard]] std::string offered_qos(const message::Quality& quality);
 
 /// Writes a bag (profile ros2). After each chunk the file is closed with all that a reader wants to
 /// find at its end, and what follows replaces that: if the program or the machine stops, no more
@@ -52,9 +46,10 @@ class McapWriter {
 
   /// The same for messages of one of our types.
   template <message::Message T>
-  [[nodiscard]] std::uint16_t add_topic(const std::string& topic, const Qos& qos = {}) {
+  [[nodiscard]] std::uint16_t add_topic(const std::string& topic,
+                                        const message::Quality& quality = {.reliable = true}) {
     Channel channel{topic, {message::ros_name(T::kName), "ros2msg", message::schema_of<T>()}};
-    channel.metadata["offered_qos_profiles"] = offered_qos(qos);
+    channel.metadata["offered_qos_profiles"] = offered_qos(quality);
     if (T::kHash[0] != '\0')
       channel.metadata["topic_type_hash"] = std::string("RIHS01_") + T::kHash;
     return add_channel(channel);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 
@@ -10,7 +9,7 @@ namespace palpate::dds {
 /// Who is told of what palpate publishes and wants.
 enum class Range {
   localhost,  ///< programs on this machine
-  subnet,     ///< whoever the network's multicast reaches
+  subnet,     ///< all that the network's multicast reaches
 };
 
 struct DomainOptions {

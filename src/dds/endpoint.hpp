@@ -13,12 +13,7 @@
 
 namespace palpate::dds {
 
-/// What an endpoint asks of, or offers to, those at the other end (docs/ros2.md).
-struct Quality {
-  bool reliable = false;  ///< lost messages are sent again
-  int depth = 1;          ///< newest messages that are kept
-  bool stays = false;     ///< late readers get what was written before ("transient local")
-};
+using message::Quality;
 
 /// A topic's name and type: "/camera/depth", "sensor_msgs/Image".
 struct TopicType {

@@ -130,7 +130,7 @@ bool RosDriver::take() {
 
 std::optional<double> RosDriver::age() const {
   if (!told_.stamp) return {};
-  const double age = system_now() - *told_.stamp;
+  const double age = message::system_now() - *told_.stamp;
   if (std::abs(age) > kOldest) return {};
   return age;
 }
@@ -156,7 +156,7 @@ DeviceState RosDriver::exchange(const Vector3d& force) {
     throw Error(
         fmt::format("{}: a pose with a stamp {:.3g} s from now, when {:.3g} ms were usual; is the "
                     "network slow, or was a clock set?",
-                    info_.name, system_now() - *told_.stamp, 1e3 * *info_.delay));
+                    info_.name, message::system_now() - *told_.stamp, 1e3 * *info_.delay));
   }
   if (!told_.has_velocity) estimate_velocity(clock_.now());
   return ours();

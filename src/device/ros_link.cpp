@@ -147,10 +147,6 @@ constexpr std::array<RosPreset, 6> kPresets = {{{"crtk", crtk},
 
 }  // namespace
 
-double system_now() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 void set_up(RosLink& link, const DeviceName& name) {
   const auto preset = std::ranges::find(kPresets, name.device, &RosPreset::name);
   if (preset == kPresets.end()) {

@@ -13,9 +13,6 @@
 
 namespace palpate::device {
 
-/// Now on the clock of ROS's stamps, s.
-[[nodiscard]] double system_now();
-
 // From a node's axes to ours (x right, y away from the operator, z up), and their unit.
 struct RosAxes {
   Eigen::Matrix3d to_ours = Eigen::Matrix3d::Identity();
@@ -84,7 +81,7 @@ struct RosLink {
     write = [writer, put = std::move(put), message = T{}](const Eigen::Vector3d& force) mutable {
       put(force, message);
       if constexpr (requires { message.header; })
-        message.header.stamp = message::to_time(system_now());
+        message.header.stamp = message::to_time(message::system_now());
       return writer->write(message);
     };
     listened = [writer] { return writer->readers() > 0; };

@@ -36,6 +36,14 @@ constexpr std::size_t aligned(std::size_t at, std::size_t size) {
   return kHead + (at - kHead + size - 1) / size * size;
 }
 
+/// From the other byte order.
+template <class T>
+void swap_bytes(T& value) {
+  auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof(T)>>(value);
+  std::ranges::reverse(bytes);
+  value = std::bit_cast<T>(bytes);
+}
+
 /// Appends values to bytes.
 class CdrWriter {
  public:
@@ -109,7 +117,7 @@ class CdrReader {
   void get(T& value) {
     align(sizeof(T));
     take(&value, sizeof(T));
-    if (swap_) swap(value);
+    if (swap_) swap_bytes(value);
   }
 
   void get(bool& value) {
@@ -154,14 +162,7 @@ class CdrReader {
     if (values.empty()) return;
     align(sizeof(T));
     take(values.data(), values.size_bytes());
-    if (swap_) std::ranges::for_each(values, [](T& value) { swap(value); });
-  }
-
-  template <class T>
-  static void swap(T& value) {
-    auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof(T)>>(value);
-    std::ranges::reverse(bytes);
-    value = std::bit_cast<T>(bytes);
+    if (swap_) std::ranges::for_each(values, swap_bytes<T>);
   }
 
   // Of a sequence whose elements take `least` bytes or more each.

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "io/depth_image.hpp"
+#include "message/cdr.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::message {
@@ -82,12 +83,7 @@ void set_size(DepthFrame& frame, std::uint32_t width, std::uint32_t height) {
 template <class T>
 void copy_row(const Image& image, std::size_t v, std::span<T> row) {
   std::memcpy(row.data(), image.data.data() + v * image.step, row.size_bytes());
-  if (image.is_bigendian == 0) return;
-  for (T& value : row) {
-    auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof(T)>>(value);
-    std::ranges::reverse(bytes);
-    value = std::bit_cast<T>(bytes);
-  }
+  if (image.is_bigendian != 0) std::ranges::for_each(row, swap_bytes<T>);
 }
 
 // image_transport's head of compressed depth: how 32-bit depths became 16 bits, z = a / (value -

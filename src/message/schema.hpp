@@ -12,6 +12,13 @@
 
 namespace palpate::message {
 
+/// What a topic asks of, or offers to, those at its other end (docs/ros2.md).
+struct Quality {
+  bool reliable = false;  ///< lost messages are sent again
+  int depth = 1;          ///< newest messages that are kept
+  bool stays = false;     ///< late readers get what was written before ("transient local")
+};
+
 /// "sensor_msgs/msg/Image", as ROS 2 and bags name a type whose kName is "sensor_msgs/Image".
 [[nodiscard]] inline std::string ros_name(std::string name) {
   return name.insert(name.find('/'), "/msg");

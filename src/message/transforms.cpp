@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace palpate::message {
@@ -34,6 +35,10 @@ void explain(std::string* why, std::string words) {
 }
 
 }  // namespace
+
+double system_now() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 double to_seconds(const Time& time) {
   return time.sec + time.nanosec / kNanoseconds;

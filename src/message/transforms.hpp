@@ -11,6 +11,8 @@
 
 namespace palpate::message {
 
+/// Now on the clock of ROS's stamps, s.
+[[nodiscard]] double system_now();
 [[nodiscard]] double to_seconds(const Time& time);
 /// `seconds` from 0 to 2^31; what is not becomes 0.
 [[nodiscard]] Time to_time(double seconds);

@@ -36,10 +36,6 @@ constexpr double kSurfaceRate = 5;  // Hz
 constexpr double kFrameRate = 50;   // Hz
 constexpr double kReportRate = 1;   // Hz
 
-double system_now() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 // The topics of one hand.
 struct HandTopics {
   HandTopics(const Participant& with, const std::function<std::string(const std::string&)>& name)
@@ -97,9 +93,9 @@ double extent_of(const Scene& scene) {
   Box box;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const auto points = scene.source(i).points();
-    if (points && points->size() > 0) box = points->bounds();
+    if (points) box.extend(points->bounds());
   }
-  return (box.upper - box.lower).norm();
+  return box.empty() ? 0 : box.size().norm();
 }
 
 }  // namespace
@@ -159,7 +155,7 @@ struct RosBridge::Inside {
   const std::function<std::vector<StreamState>()> streams;
   Participant participant;
   std::vector<std::unique_ptr<HandTopics>> topics;  // one a hand
-  std::vector<Report> reports;                      // likewise: what was told of already
+  std::vector<Report> reports;                      // one a hand: what was told already
   std::vector<Surface> surfaces;                    // one a source
   Writer<MarkerArray> markers;
   Writer<DiagnosticArray> diagnostics;

@@ -34,10 +34,6 @@ constexpr Quality kSensor{.reliable = false, .depth = 2};
 constexpr Quality kTf{.reliable = true, .depth = 100};
 constexpr Quality kTfStatic{.reliable = true, .depth = 100, .stays = true};
 
-double system_now() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 // A topic and where its images are to be placed.
 struct CameraName {
   std::string topic;
@@ -204,7 +200,7 @@ void RosCamera::take_infos() {
 
 double RosCamera::stamp_of(const Header& header) const {
   const double now = clock_.now();
-  const double age = system_now() - to_seconds(header.stamp);
+  const double age = message::system_now() - to_seconds(header.stamp);
   return std::abs(age) < kOtherClock ? now - age : now;
 }
 

@@ -52,7 +52,7 @@ TEST(McapWriter, QosIsWrittenAsRosbag2DoesIt) {
             "  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  liveliness: 1\n"
             "  liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n"
             "  avoid_ros_namespace_conventions: false\n");
-  EXPECT_NE(offered_qos({.transient_local = true}).find("durability: 1"), std::string::npos);
+  EXPECT_NE(offered_qos({.stays = true}).find("durability: 1"), std::string::npos);
 }
 
 TEST(McapWriter, RefusesUnknownChannelsFoldersThatAreNotThereAndWorkAfterItsEnd) {

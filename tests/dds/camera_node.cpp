@@ -16,10 +16,6 @@ namespace {
 
 using namespace palpate;
 
-double system_now() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 PointCloud points_of(const DepthFrame& frame) {
   PointCloud cloud;
   const Pinhole& p = frame.camera.pinhole;
@@ -56,8 +52,8 @@ int main(int count, char** arguments) {
     const DepthCamera::Status status = camera->read(frame, 0.1);
     if (status == DepthCamera::Status::ended) break;
     if (status != DepthCamera::Status::frame) continue;
-    const message::Header header{message::to_time(system_now() - (clock.now() - frame.stamp)),
-                                 "camera_depth"};
+    const message::Header header{
+        message::to_time(message::system_now() - (clock.now() - frame.stamp)), "camera_depth"};
     const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());
     frames.write({{{{header.stamp, "world"}, "camera_depth", message::transform_of(pose)}}});
     message::CameraInfo info = message::info_of(frame.camera);

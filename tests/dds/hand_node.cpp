@@ -21,10 +21,6 @@ namespace {
 using namespace palpate;
 using Eigen::Vector3d;
 
-double system_now() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 struct Waiting {
   double due = 0;
   message::PoseStamped pose;
@@ -61,7 +57,7 @@ int main(int count, char** arguments) {
     clock.wait_until(start + static_cast<double>(step) / rate);
     const DeviceState state = device.read();
     const Vector3d& at = state.position;
-    message::PoseStamped pose{{message::to_time(system_now()), "fd_base"},
+    message::PoseStamped pose{{message::to_time(message::system_now()), "fd_base"},
                               {{-at.y(), at.x(), at.z()}, {}}};
     waiting.push_back({clock.now() + delay, pose});
     for (; !waiting.empty() && waiting.front().due <= clock.now() + 0.5e-3 * (delay > 0 ? 1 : 0);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "dds/endpoint.hpp"
+#include "message/transforms.hpp"
 #include "palpate/base/clock.hpp"
 
 /// What tests of nodes that send what no node should have in common.
@@ -29,10 +30,7 @@ inline dds::DomainOptions own_domain() {
   return dds::environment_options();
 }
 
-/// Now on the clock of stamps, s.
-inline double wall_clock() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
+using message::system_now;
 
 /// What of this process is resident, bytes.
 inline double memory() {

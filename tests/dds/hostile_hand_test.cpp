@@ -26,7 +26,7 @@ class HandNode {
   using Make = std::function<Bytes()>;
 
   static Bytes still() {
-    return bytes_of(PoseStamped{{to_time(wall_clock()), "hand"}, {{0.01, 0.02, 0.03}, {}}});
+    return bytes_of(PoseStamped{{to_time(system_now()), "hand"}, {{0.01, 0.02, 0.03}, {}}});
   }
 
   HandNode() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -104,9 +104,9 @@ TEST_F(HostileHand, GetsNoForceWhilePosesAreNone) {
   ASSERT_TRUE(feels()) << device_->reason();
   const std::vector<std::pair<std::string, HandNode::Make>> kinds = {
       {"not a number",
-       [] { return bytes_of(pose_at(wall_clock(), std::numeric_limits<double>::quiet_NaN())); }},
-      {"no rotation", [] { return bytes_of(pose_at(wall_clock(), 0.01, 0)); }},
-      {"far away", [] { return bytes_of(pose_at(wall_clock(), 1e30)); }},
+       [] { return bytes_of(pose_at(system_now(), std::numeric_limits<double>::quiet_NaN())); }},
+      {"no rotation", [] { return bytes_of(pose_at(system_now(), 0.01, 0)); }},
+      {"far away", [] { return bytes_of(pose_at(system_now(), 1e30)); }},
       {"cut", [] { return Bytes{0, 1, 0, 0, 1, 2, 3, 4}; }},
       {"empty", [] { return Bytes{}; }},
       {"a length of 2^31",
@@ -115,8 +115,8 @@ TEST_F(HostileHand, GetsNoForceWhilePosesAreNone) {
          bytes[15] = 0x80;
          return bytes;
        }},
-      {"a second old", [] { return bytes_of(pose_at(wall_clock() - 1)); }},
-      {"of an hour later", [] { return bytes_of(pose_at(wall_clock() + 3600)); }},
+      {"a second old", [] { return bytes_of(pose_at(system_now() - 1)); }},
+      {"of an hour later", [] { return bytes_of(pose_at(system_now() + 3600)); }},
       {"of the year 1970", [] { return bytes_of(pose_at(0)); }}};
   for (const auto& [name, make] : kinds) {
     node_.send(make);
@@ -129,7 +129,7 @@ TEST_F(HostileHand, GetsNoForceWhilePosesAreNone) {
 TEST_F(HostileHand, GetsNoForceWhileItJumpsAbout) {
   ASSERT_TRUE(feels()) << device_->reason();
   int count = 0;
-  node_.send([&count] { return bytes_of(pose_at(wall_clock(), ++count % 2 == 0 ? 0.2 : -0.2)); });
+  node_.send([&count] { return bytes_of(pose_at(system_now(), ++count % 2 == 0 ? 0.2 : -0.2)); });
   EXPECT_TRUE(is_silent()) << node_.force() << " " << device_->reason();
   node_.send(HandNode::still);
   EXPECT_TRUE(feels()) << device_->reason();

@@ -16,10 +16,6 @@ namespace {
 
 using namespace message;
 
-double system_now() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 // A node with a camera, in a domain of the test's own.
 struct Node {
   Node() : participant((set_domain(), dds::environment_options())) {}

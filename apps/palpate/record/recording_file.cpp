@@ -111,7 +111,7 @@ void RecordingFile::begin(LoadedScene& loaded, const std::vector<const Servo*>& 
     const std::string number = servos.size() > 1 ? std::to_string(hands_.size() + 1) : "";
     setup["hands"].push_back(add_hand(*servo, "hand" + number));
   }
-  transforms_ = writer_.add_topic<message::TFMessage>("/tf", {.depth = 100});
+  transforms_ = writer_.add_topic<message::TFMessage>("/tf", {.reliable = true, .depth = 100});
   const std::string text = text_of(setup);
   attach(kSetupName, {text.begin(), text.end()}, "application/json");
 }
