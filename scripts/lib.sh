@@ -84,7 +84,7 @@ need_npm() {
   fi
 }
 
-# need_modules FOLDER: what its lock names, asked for anew only when that is newer. Tests that use it are skipped
+# need_modules FOLDER: what its lock names, asked for again only when that is newer. Tests that use it are skipped
 # without.
 need_modules() {
   local installed=$1/node_modules/.package-lock.json # npm writes it when it is done

@@ -24,7 +24,7 @@ void parallel_ranges(std::size_t count, std::size_t grain, const Body& body) {
                     [&](const auto& range) { body(range.begin(), range.end()); });
 }
 
-/// Calls body(i) for each of [0, count), likewise.
+/// Calls body(i) for each of [0, count) in the same way.
 template <class Body>
 void parallel_each(std::size_t count, std::size_t grain, const Body& body) {
   parallel_ranges(count, grain, [&](std::size_t i, std::size_t end) {

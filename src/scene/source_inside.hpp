@@ -133,7 +133,7 @@ struct Source::Inside {
   void compare(const Source& source);
 
   std::string name;
-  mutable std::mutex mutex;  // of what follows; whoever draws, and the preparing thread
+  mutable std::mutex mutex;  // of what follows: those who draw, and the preparing thread
   SourceOptions options;
   std::unique_ptr<SnapshotBuilder> changed;  // for the next push
   Eigen::Isometry3d pose;
@@ -142,9 +142,9 @@ struct Source::Inside {
   Source::State state;
 
   std::unique_ptr<SnapshotBuilder> builder;  // the preparing thread's
-  std::vector<Reach> found;                  // likewise
-  std::uint64_t publications = 0;            // likewise
-  std::uint64_t changes = 0;                 // taken; likewise
+  std::vector<Reach> found;                  // the same thread's
+  std::uint64_t publications = 0;            // the same thread's
+  std::uint64_t changes = 0;                 // taken; the same thread's
   ReachTable reaches;
   std::shared_ptr<Seams> seams;  // of the scene
   std::size_t place = 0;         // in it

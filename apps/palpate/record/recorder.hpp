@@ -52,7 +52,7 @@ class Recorder {
 
   /// `sink`, whose frames are recorded with what became of them.
   [[nodiscard]] Stream::Sink watching(std::size_t source, Stream::Sink sink);
-  /// `ended`, likewise.
+  /// `ended`, whose call is recorded.
   [[nodiscard]] std::function<void()> watching(std::size_t source, std::function<void()> ended);
 
   /// Waits until there is room for steps: for simulated time.

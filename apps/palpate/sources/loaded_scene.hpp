@@ -39,7 +39,7 @@ struct LoadedSource {
   UnitsGuess units;            ///< of a file that was read without --scale
   double prepare_seconds = 0;  ///< wall time of everything between reading and touching
   std::shared_ptr<const PointCloud> cloud;  ///< where it may have to be prepared again
-  std::shared_ptr<const DepthFrame> image;  ///< likewise
+  std::shared_ptr<const DepthFrame> image;  ///< the same of a depth image
 
   // Of what lives:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
