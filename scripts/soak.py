@@ -76,8 +76,8 @@ def tell(run, growth, samples):
           f"p99 {1e3 * late['p99']:.3f} ms, max {1e3 * late['max']:.1f} ms; faults {live['guard']['faults']}")
     for camera in run["sources"]:
         print(f"{camera['name']}: {camera['frames_touchable']} of {camera['frames']} frames touchable, "
-              f"latency {1e3 * camera['latency_s']['mean']:.0f} ms, "
-              f"{1e3 * camera['latency_s']['worst']:.0f} ms at worst; "
+              f"latency {1e3 * camera['latency_s']['p50']:.0f} ms, "
+              f"{1e3 * camera['latency_s']['max']:.0f} ms at worst; "
               f"dropped {sum(camera['drops'].values())}")
     print(f"memory {max(samples) / 1e6:.1f} MB at most, grown by {growth / 1e6:+.2f} MB")
 

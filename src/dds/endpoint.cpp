@@ -78,9 +78,9 @@ RawReader::RawReader(const Participant& participant, const TopicType& topic, con
   reader_ = dds_create_reader(participant.entity(), made, qos_of(quality, topic).get(), nullptr);
   dds_delete(made);  // the reader holds it
   if (reader_ < 0) throw failure(topic, reader_);
-  dds_set_status_mask(reader_, DDS_DATA_AVAILABLE_STATUS);
   waits_ = dds_create_waitset(participant.entity());
-  dds_waitset_attach(waits_, reader_, 0);
+  // As long as a message waits; the reader's own status would tell of each new one only.
+  dds_waitset_attach(waits_, dds_create_readcondition(reader_, DDS_ANY_STATE), 0);
 }
 
 RawReader::~RawReader() {
@@ -95,6 +95,7 @@ bool RawReader::take(const std::function<void(std::span<const std::uint8_t>)>& u
     const std::unique_ptr<ddsi_serdata, void (*)(ddsi_serdata*)> held(
         value, [](ddsi_serdata* last) { ddsi_serdata_unref(last); });
     if (!info.valid_data) continue;  // a writer has gone
+    count(info.publication_handle, number_of(value));
     use(bytes_of(value));
     return true;
   }
@@ -110,6 +111,12 @@ std::size_t RawReader::writers() const {
   dds_subscription_matched_status_t matched{};
   dds_get_subscription_matched_status(reader_, &matched);
   return matched.current_count;
+}
+
+void RawReader::count(std::uint64_t writer, std::uint64_t number) {
+  if (writer == writer_ && number > number_) lost_ += number - number_ - 1;
+  writer_ = writer;
+  number_ = number;
 }
 
 RawWriter::RawWriter(const Participant& participant, const TopicType& topic,

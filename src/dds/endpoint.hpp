@@ -39,12 +39,19 @@ class RawReader {
 
   /// Writers that it hears.
   [[nodiscard]] std::size_t writers() const;
+  /// Messages of one writer that did not arrive, or gave way to newer ones before they were taken.
+  [[nodiscard]] std::uint64_t lost() const { return lost_; }
   [[nodiscard]] const std::string& topic() const { return topic_; }
 
  private:
+  void count(std::uint64_t writer, std::uint64_t number);
+
   std::string topic_;
   std::int32_t reader_ = 0;
   std::int32_t waits_ = 0;
+  std::uint64_t writer_ = 0;  // of the last message
+  std::uint64_t number_ = 0;  // its writer's
+  std::uint64_t lost_ = 0;
 };
 
 /// Writes the bytes of messages. One thread at a time. May block for 100 ms where a reliable reader

@@ -3,6 +3,7 @@
 #include <dds/ddsi/q_radmin.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace palpate::dds {
@@ -10,6 +11,7 @@ namespace {
 
 struct Payload : ddsi_serdata {
   std::vector<std::uint8_t> bytes;
+  std::uint64_t number = 0;
 };
 
 // Values are sent in multiples of four bytes.
@@ -30,10 +32,22 @@ void pad(Payload& made) {
   made.bytes.resize((made.bytes.size() + kUnit - 1) / kUnit * kUnit);
 }
 
+// The number that its writer gave a message: in the head of the submessage (RTPS 2.3, 9.4.5.3),
+// where Cyclone has brought it into the byte order of this machine. 0: not known.
+std::uint64_t number_in(const nn_rdata* fragment) {
+  constexpr std::size_t kPlace = 16;
+  if (fragment == nullptr || fragment->submsg_zoff == 0) return 0;
+  std::array<std::uint32_t, 2> number{};  // high, low
+  const unsigned char* from = NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_SUBMSG_OFF(fragment));
+  std::memcpy(number.data(), from + kPlace, sizeof number);
+  return (std::uint64_t{number[0]} << 32) | number[1];
+}
+
 // Fragments follow one another, and may overlap.
 ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
                              const nn_rdata* fragment, std::size_t size) {
   Payload* made = make(type, kind, size);
+  made->number = number_in(fragment);
   std::size_t at = 0;
   for (; fragment != nullptr; fragment = fragment->nextfrag) {
     const std::size_t end = std::min<std::size_t>(fragment->maxp1, size);
@@ -140,6 +154,10 @@ ddsi_serdata* make_payload(const ddsi_sertype* type, std::span<const std::uint8_
   made->bytes.assign(bytes.begin(), bytes.end());
   pad(*made);
   return made;
+}
+
+std::uint64_t number_of(const ddsi_serdata* value) {
+  return payload(value).number;
 }
 
 std::span<const std::uint8_t> bytes_of(const ddsi_serdata* value) {

@@ -88,7 +88,7 @@ void RosDriver::connect() {
   }
 }
 
-// The time from a pose's stamp to its arrival, and how often poses come.
+// How often poses come, and how long it takes from a pose's stamp until its force is at the node.
 void RosDriver::measure(const DeviceName& name) {
   std::vector<double> arrivals;
   std::vector<double> ages;
@@ -107,7 +107,8 @@ void RosDriver::measure(const DeviceName& name) {
     info_.delay = milliseconds(told) / 1e3;
   } else if (!ages.empty()) {
     check_clocks(ages);
-    info_.delay = most_of(ages);
+    // How long forces take nobody tells: no less than the quickest pose.
+    info_.delay = most_of(ages) + std::max(0.0, std::ranges::min(ages));
   }
 }
 

@@ -23,8 +23,8 @@ class Every {
   double next_ = 0;
 };
 
-/// Tells a robot where to go. While the hand is not known, or its button is up, it is told nothing,
-/// and stops by its own controller's watchdog.
+/// Tells a robot where to go. While the hand is not known, its button is up, or no surface keeps the
+/// proxy out of things, it is told nothing, and stops by its own controller's watchdog.
 class RobotTarget {
  public:
   /// @throws Error when the preset is none.

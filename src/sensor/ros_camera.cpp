@@ -30,6 +30,12 @@ using message::Transforms;
 constexpr double kOtherClock = 10;      // s: stamps so far from now are of another clock
 constexpr double kTransformWait = 0.1;  // s that a frame waits for its transform
 constexpr double kLook = 0.05;          // s between looks for a publisher
+constexpr const char* kNoneArrived =
+    " has a publisher, but none of its images arrives; where the network loses packets, take its "
+    "compressedDepth topic (docs/ros2.md, \"Several machines\")";
+constexpr const char* kLost =
+    "an image was lost on its way; a larger receive buffer or compressedDepth may help "
+    "(docs/ros2.md, \"Several machines\")";
 constexpr Quality kSensor{.reliable = false, .depth = 2};
 constexpr Quality kTf{.reliable = true, .depth = 100};
 constexpr Quality kTfStatic{.reliable = true, .depth = 100, .stays = true};
@@ -124,6 +130,8 @@ class RosCamera final : public DepthCamera {
   std::optional<TransformListener> transforms_;
   std::optional<Reader<message::CameraInfo>> infos_;
   Images images_;
+  bool arrived_ = false;    // a message
+  std::uint64_t lost_ = 0;  // messages that never arrived, as far as they were told
   std::string reason_;
 };
 
@@ -172,7 +180,16 @@ DepthCamera::Status RosCamera::read(DepthFrame& frame, double timeout) {
 
 template <class Message>
 DepthCamera::Status RosCamera::take(Reader<Message>& reader, DepthFrame& frame, double timeout) {
-  if (!reader.wait(timeout)) return DepthCamera::Status::waiting;
+  if (lost_ < reader.lost()) {
+    ++lost_;
+    reason_ = kLost;
+    return DepthCamera::Status::damaged;
+  }
+  if (!reader.wait(timeout)) {
+    if (!arrived_) reason_ = name_.topic + kNoneArrived;
+    return DepthCamera::Status::waiting;
+  }
+  arrived_ = true;
   take_infos();
   try {
     Message message;

@@ -145,7 +145,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
 TEST(Replay, StepsThatFindNoRoomAreCounted) {
   StepTraces steps(2);
   ServoState state;
-  for (state.step = 1; state.step <= 3; ++state.step) steps.push(state, {});
+  for (state.step = 1; state.step <= 3; ++state.step) steps.push({state, {}});
   EXPECT_EQ(steps.dropped(), 1u);
   ASSERT_NE(steps.front(), nullptr);
   EXPECT_EQ(steps.front()->state.step, 1u);

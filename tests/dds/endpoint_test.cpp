@@ -60,6 +60,20 @@ TEST(Endpoint, GivesLateReadersWhatStays) {
   EXPECT_EQ(received.pose.position.x, 5);
 }
 
+TEST(Endpoint, WaitsForNothingWhileAMessageWaits) {
+  const Participant participant(domain());
+  Writer<PoseStamped> writer(participant, "/pose", {.reliable = true, .depth = 2});
+  Reader<PoseStamped> reader(participant, "/pose", {.reliable = true, .depth = 2});
+  ASSERT_TRUE(soon([&] { return writer.readers() == 1 && reader.writers() == 1; }));
+  writer.write({});
+  writer.write({});
+  PoseStamped received;
+  ASSERT_TRUE(soon([&] { return reader.take(received); }));
+  ASSERT_TRUE(reader.wait(10));
+  ASSERT_TRUE(reader.take(received));
+  EXPECT_FALSE(reader.wait(0));
+}
+
 TEST(Endpoint, DoesNotHearAnotherTypeUnderItsName) {
   const Participant participant(domain());
   Writer<Image> writer(participant, "/mixed", {.reliable = true});

@@ -1,7 +1,7 @@
 // A simulated device that a node of ROS 2 owns, in real time, with the preset fd's topics:
 // hand_node RATE DELAY_MS SECONDS DAMPING. Its hand goes from 10 mm above z = 0 to 10 mm below in
-// the fifth second. What it measured is sent DELAY_MS later. Prints how far the device moved up and
-// down (mm) from 60 to 85 % of the time.
+// the fifth second. What it measured is sent DELAY_MS later, and what it is told acts DELAY_MS
+// later. Prints how far the device moved up and down (mm) from 60 to 85 % of the time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,9 +21,10 @@ namespace {
 using namespace palpate;
 using Eigen::Vector3d;
 
+template <class T>
 struct Waiting {
   double due = 0;
-  message::PoseStamped pose;
+  T message;
 };
 
 }  // namespace
@@ -48,7 +49,8 @@ int main(int count, char** arguments) {
                                                  {.reliable = true});
   static_cast<void>(make_realtime({.priority = 70}));
   SteadyClock clock;
-  std::deque<Waiting> waiting;
+  std::deque<Waiting<message::PoseStamped>> waiting;
+  std::deque<Waiting<Vector3d>> told;
   message::Float64MultiArray force;
   double lowest = 1;
   double highest = -1;
@@ -60,12 +62,13 @@ int main(int count, char** arguments) {
     message::PoseStamped pose{{message::to_time(message::system_now()), "fd_base"},
                               {{-at.y(), at.x(), at.z()}, {}}};
     waiting.push_back({clock.now() + delay, pose});
-    for (; !waiting.empty() && waiting.front().due <= clock.now() + 0.5e-3 * (delay > 0 ? 1 : 0);
-         waiting.pop_front()) {
-      poses.write(waiting.front().pose);
-    }
-    forces.take(force);
-    if (force.data.size() >= 3) device.write({force.data[1], -force.data[0], force.data[2]});
+    const auto is_due = [&](const auto& queue) {
+      return !queue.empty() && queue.front().due <= clock.now() + (delay > 0 ? 0.5e-3 : 0);
+    };
+    for (; is_due(waiting); waiting.pop_front()) poses.write(waiting.front().message);
+    if (forces.take(force) && force.data.size() >= 3)
+      told.push_back({clock.now() + delay, {force.data[1], -force.data[0], force.data[2]}});
+    for (; is_due(told); told.pop_front()) device.write(told.front().message);
     const double share = static_cast<double>(step) / (seconds * rate);
     if (share < 0.6 || share > 0.85) continue;
     lowest = std::min(lowest, device.true_position().z());

@@ -1,6 +1,6 @@
 """Is the delay of a device that another process owns measured right? stiffness.py HAND_NODE WALL_OVER_DDS.
 
-A simulated device at 500 Hz and 1 kHz sends its poses 1 and 3 ms late. With the stiffness that palpate chooses for the delay that it
+A simulated device at 500 Hz and 1 kHz sends its poses 1 and 3 ms late, and its forces act as much later. With the stiffness that palpate chooses for the delay that it
 measures (0.8 of Colgate and Schenkel's condition) the wall is stable; with twice that it is not. Run in a network namespace of its own
 (unshare -rn), on an idle machine: this is about real time.
 """

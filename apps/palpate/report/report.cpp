@@ -76,19 +76,20 @@ Json json_drops(const StreamState::Drops& drops) {
 }
 
 // Of the preparation of a frame, ms.
-struct PrepareQuantiles {
+struct Quantiles {
   double p50 = 0;
-  double longest = 0;
+  double p99 = 0;
+  double most = 0;
 };
 
-PrepareQuantiles prepare_times(std::vector<double> ms) {
-  std::ranges::sort(ms);
-  return {quantile(ms, 0.5), quantile(ms, 1)};
+Quantiles quantiles_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  return {quantile(values, 0.5), quantile(values, 0.99), quantile(values, 1)};
 }
 
 // The share of frames of a run in simulated time that live would have been overtaken while others
 // were prepared; 0 for a run that was live.
-double share_too_fast(const FeedReport& feed, const PrepareQuantiles& times) {
+double share_too_fast(const FeedReport& feed, const Quantiles& times) {
   if (!feed.simulated || !(times.p50 > 0) || !(feed.state.rate > 0)) return 0;
   return std::max(0.0, 1 - 1e3 / (times.p50 * feed.state.rate));
 }
@@ -207,12 +208,15 @@ void add_frames(Report& report, const FeedReport& feed) {
 
 void add_latency(Report& report, const FeedReport& feed) {
   const StreamState& state = feed.state;
-  const PrepareQuantiles times = prepare_times(feed.prepare_ms);
+  const Quantiles latency = quantiles_of(feed.latency_s);
+  const Quantiles times = quantiles_of(feed.prepare_ms);
   const double dropped = share_too_fast(feed, times);
-  report.line("latency",
-              fmt::format("{} from frame to touchable, {} at worst; preparation {} (p50), {} (max)",
-                          duration(state.latency_mean), duration(state.latency_worst),
-                          duration(1e-3 * times.p50), duration(1e-3 * times.longest)));
+  report.line(
+      "latency",
+      fmt::format("{} (p50), {} (p99), {} (max) from frame to touchable; preparation {} (p50), "
+                  "{} (max)",
+                  duration(latency.p50), duration(latency.p99), duration(latency.most),
+                  duration(1e-3 * times.p50), duration(1e-3 * times.most)));
   if (dropped > 0) {
     report.line("too slow",
                 fmt::format("preparing a frame takes {}, but frames arrive every {}: live, {:.0f} "
@@ -221,9 +225,10 @@ void add_latency(Report& report, const FeedReport& feed) {
                             std::min(99.0, std::ceil(100 * dropped))),
                 Mark::warning);
   }
-  report.data.update({{"latency_s", {{"mean", state.latency_mean}, {"worst", state.latency_worst}}},
-                      {"prepare_ms", {{"p50", times.p50}, {"max", times.longest}}},
-                      {"would_drop_live", dropped}});
+  report.data.update(
+      {{"latency_s", {{"p50", latency.p50}, {"p99", latency.p99}, {"max", latency.most}}},
+       {"prepare_ms", {{"p50", times.p50}, {"max", times.most}}},
+       {"would_drop_live", dropped}});
 }
 
 void add_policy(Report& report, const SourcePlan& plan) {

@@ -228,7 +228,11 @@ Stream::Sink feeding(LoadedSource& from, Source& to, double (*computing)()) {
     feed.width = frame.camera.width;
     feed.height = frame.camera.height;
     const double begin = computing();
-    push_frame(from, to, frame, start);
+    push_frame(from, to, frame, [&] {
+      const double felt = start();
+      feed.latency_s.push_back(felt - frame.stamp);
+      return felt;
+    });
     feed.prepare_ms.push_back(1e3 * (computing() - begin));
   };
 }

@@ -22,6 +22,7 @@ struct FeedReport {
   int height = 0;
   bool simulated = false;          ///< in simulated time, where no frame is overtaken
   std::vector<double> prepare_ms;  ///< computing time of each frame's preparation, ms
+  std::vector<double> latency_s;   ///< from each frame's stamp until its surface was felt, s
 };
 
 /// One source of a run. Points themselves live in the scene.
