@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -28,8 +30,14 @@ constexpr const char* kAbout =
     "from the points and computes the force on the hand at 1 kHz.";
 
 int complain(const std::string& what, int code) {
-  fmt::print(stderr, "{} {}\n", Style(stderr).error("palpate:"), what);
+  fmt::print(stderr, "{} {}\n", Style(stderr).error("palpate:"), without_controls(what));
   return code;
+}
+
+// `code`, unless what was printed did not all get where it was to go.
+int printed(int code) {
+  if (code != kSuccess || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
+  return complain(fmt::format("standard output: {}", std::strerror(errno)), kFailure);
 }
 
 struct Command {
@@ -150,7 +158,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace palpate::app;
   try {
-    return run(argc, argv);
+    return printed(run(argc, argv));
   } catch (const UsageError& error) {
     return complain(error.what(), kUsage);
   } catch (const std::bad_alloc&) {

@@ -12,6 +12,7 @@ namespace palpate::bag {
 namespace {
 
 constexpr std::uint64_t kLargestNote = 16 << 20;  // bytes of a schema, a channel, metadata
+constexpr std::uint64_t kAllNotes = 256 << 20;    // bytes of all of them
 constexpr std::uint64_t kLargestRun = 1 << 20;    // bytes of messages without chunk, read at once
 constexpr std::uint64_t kAttachmentHead = 64 << 10;  // bytes, of names mostly
 constexpr std::size_t kMostLosses = 20;
@@ -40,6 +41,7 @@ class Walk {
   };
 
   const RandomFile& file_;
+  std::uint64_t notes_ = 0;  // bytes of those that were kept
   Contents contents_;
   std::vector<Known> known_;
   std::uint64_t data_end_ = 0;
@@ -198,6 +200,9 @@ void Walk::take(Op op, std::uint64_t at, std::uint64_t length) {
       op == Op::header || op == Op::schema || op == Op::channel || op == Op::metadata;
   if (!wanted) return;
   if (length > kLargestNote) throw Error("a record is longer than any honest one");
+  notes_ += length;
+  if (notes_ > kAllNotes)
+    throw Error("more schemas, channels and metadata than any honest file has");
   const Bytes content = file_.read(at, length);
   Fields fields(content);
   if (op == Op::header) {

@@ -174,6 +174,12 @@ void McapWriter::append_chunk(Bytes& out, std::uint64_t start, std::uint64_t end
 
 void McapWriter::attach(const Attachment& attachment) {
   check_open();
+  if (attachment.data.size() > kLargestChunk) {
+    throw Error(
+        fmt::format("{}: {} of {} MB is larger than the {} MB that readers take in one "
+                    "piece",
+                    path_, attachment.name, attachment.data.size() >> 20, kLargestChunk >> 20));
+  }
   write_chunk();
   Bytes data;
   Record(data, Op::attachment)

@@ -11,7 +11,7 @@
 namespace palpate::bag {
 
 RandomFile::RandomFile(std::string path) : path_(std::move(path)) {
-  file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe has no end
   struct stat facts = {};
   if (file_ < 0 || ::fstat(file_, &facts) != 0) {
     throw Error(fmt::format("{}: cannot be read: {}; check the name", path_, std::strerror(errno)));

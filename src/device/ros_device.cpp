@@ -44,7 +44,8 @@ class RosDriver final : public DeviceDriver {
  public:
   RosDriver(const DeviceName& name, const Clock& clock)
       : link_(dds::environment_options()), clock_(clock) {
-    check_options(name, {"ns", "pose", "wrench", "twist", "joy", "profile", "delay"});
+    check_options(
+        name, {"ns", "pose", "wrench", "twist", "joy", "profile", "delay", "rotation", "joints"});
     set_up(link_, name);
     info_ = info_of(device_profile(name.option("profile", "unknown")), "ros:" + name.device);
     connect();
@@ -62,8 +63,10 @@ class RosDriver final : public DeviceDriver {
   void connect();
   void measure(const DeviceName& name);
   void check_clocks(const std::vector<double>& ages) const;
+  void check_age() const;
+  void check_one_owner() const;
   bool take();
-  [[nodiscard]] std::optional<double> age() const;
+  [[nodiscard]] double age() const { return message::system_now() - *told_.stamp; }
   void estimate_velocity(double now);
   [[nodiscard]] DeviceState ours() const;
 
@@ -71,21 +74,31 @@ class RosDriver final : public DeviceDriver {
   const Clock& clock_;
   DeviceInfo info_;
   RosReading told_;
+  std::optional<double> usual_age_;   // of a pose by its stamp, s; unset: there are no stamps
+  double velocity_time_ = 0;          // when a velocity was told last
   Vector3d from_ = Vector3d::Zero();  // a position from which the velocity is told, and its time
   double from_time_ = 0;
 };
 
 void RosDriver::connect() {
   const double end = clock_.now() + kDiscovery;
-  while (!link_.pose->connected() || !link_.listened()) {
+  while (link_.pose->writers() == 0 || !link_.listened()) {
     if (clock_.now() > end) {
-      const bool silent = !link_.pose->connected();
+      const bool silent = link_.pose->writers() == 0;
       throw Error(fmt::format(
           "{}: nobody {} {}; start its node, or see 'palpate ros' for what is there", info_.name,
           silent ? "publishes" : "takes forces on", silent ? link_.pose_topic : link_.force_topic));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+  check_one_owner();
+}
+
+void RosDriver::check_one_owner() const {
+  const std::size_t writers = link_.pose->writers();
+  if (writers < 2) return;
+  throw Error(fmt::format("{}: {} nodes publish poses on {}; stop all but the device's", info_.name,
+                          writers, link_.pose_topic));
 }
 
 // How often poses come, and how long it takes from a pose's stamp until its force is at the node.
@@ -96,49 +109,71 @@ void RosDriver::measure(const DeviceName& name) {
   while (clock_.now() < begin + kMeasuring) {
     if (!link_.pose->wait(0.05) || !take()) continue;
     arrivals.push_back(clock_.now());
-    if (const auto aged = age()) ages.push_back(*aged);
+    if (told_.stamp) ages.push_back(age());
   }
   if (arrivals.size() < 10) {
     throw Error(fmt::format("{}: {} poses came on {} in {} s; a hand needs hundreds", info_.name,
                             arrivals.size(), link_.pose_topic, kMeasuring));
   }
   info_.rate = (static_cast<double>(arrivals.size()) - 1) / (arrivals.back() - arrivals.front());
+  if (!ages.empty()) usual_age_ = most_of(ages);
   if (const std::string told = name.option("delay"); !told.empty()) {
     info_.delay = milliseconds(told) / 1e3;
-  } else if (!ages.empty()) {
-    check_clocks(ages);
-    // How long forces take nobody tells: no less than the quickest pose.
-    info_.delay = most_of(ages) + std::max(0.0, std::ranges::min(ages));
+    return;
   }
+  check_clocks(ages);
+  // How long forces take nobody tells: no less than the quickest pose.
+  info_.delay = *usual_age_ + std::max(0.0, std::ranges::min(ages));
 }
 
-// Of poses that come before they were measured nobody knows how old they are.
+// Nobody knows how old poses are that have no stamps, or those of another clock.
 void RosDriver::check_clocks(const std::vector<double>& ages) const {
-  const double youngest = *std::ranges::min_element(ages);
-  if (youngest >= -kClockError) return;
-  throw Error(fmt::format(
-      "{}: stamps on {} are {:.1f} ms in the future, so the delay, and with it the stiffness that "
-      "is "
-      "stable, cannot be told; synchronise the two machines' clocks (chrony), or give delay=MS",
-      info_.name, link_.pose_topic, -1e3 * youngest));
+  constexpr const char* kRemedy =
+      "so the delay, and with it the stiffness that is stable, cannot be told";
+  if (ages.empty()) {
+    throw Error(
+        fmt::format("{}: poses on {} have no stamps, {}; give delay=MS, from a pose until "
+                    "its force acts",
+                    info_.name, link_.pose_topic, kRemedy));
+  }
+  const auto [youngest, oldest] = std::ranges::minmax(ages);
+  if (youngest >= -kClockError && oldest <= kOldest) return;
+  throw Error(
+      fmt::format("{}: stamps on {} are {:.1f} ms in the {}, {}; synchronise the two machines' "
+                  "clocks (chrony), "
+                  "or give delay=MS",
+                  info_.name, link_.pose_topic, 1e3 * (oldest > kOldest ? oldest : -youngest),
+                  oldest > kOldest ? "past" : "future", kRemedy));
+}
+
+// By how much stamps are off now, beside how they were.
+void RosDriver::check_age() const {
+  if (!usual_age_) return;
+  const double off = told_.stamp ? age() - *usual_age_ : kOldest;
+  if (off > -kOldest && off < std::max(*info_.delay, kSilence)) return;
+  throw Error(
+      fmt::format("{}: a pose with a stamp {:.3g} s from now, when {:.3g} ms were usual; is the "
+                  "network slow, or was a clock set?",
+                  info_.name, told_.stamp ? age() : 0, 1e3 * *usual_age_));
 }
 
 // Everything that waits; false: no pose does.
 bool RosDriver::take() {
+  told_.stamp.reset();
+  told_.has_velocity = false;
   for (const auto& other : link_.others) other->take(told_);
-  return link_.pose->take(told_);
-}
-
-std::optional<double> RosDriver::age() const {
-  if (!told_.stamp) return {};
-  const double age = message::system_now() - *told_.stamp;
-  if (std::abs(age) > kOldest) return {};
-  return age;
+  if (link_.buttons) {
+    link_.buttons->take(told_);
+    if (link_.buttons->writers() == 0) told_.state.buttons = 0;
+  }
+  const bool posed = link_.pose->take(told_);
+  if (told_.has_velocity) velocity_time_ = clock_.now();
+  return posed;
 }
 
 DeviceState RosDriver::exchange(const Vector3d& force) {
   const double begin = clock_.now();
-  if (!link_.write(link_.axes.to_ours.transpose() * force)) {
+  if (!link_.write(link_.axes.forces.transpose() * force)) {
     throw Error(
         fmt::format("{}: the force could not be sent on {}", info_.name, link_.force_topic));
   }
@@ -150,16 +185,11 @@ DeviceState RosDriver::exchange(const Vector3d& force) {
     }
     link_.pose->wait(left);
   }
+  check_one_owner();
   if (!link_.listened())
     throw Error(fmt::format("{}: nobody takes forces on {}", info_.name, link_.force_topic));
-  const std::optional<double> aged = age();
-  if (info_.delay && told_.stamp && (!aged || *aged > *info_.delay + kSilence)) {
-    throw Error(
-        fmt::format("{}: a pose with a stamp {:.3g} s from now, when {:.3g} ms were usual; is the "
-                    "network slow, or was a clock set?",
-                    info_.name, message::system_now() - *told_.stamp, 1e3 * *info_.delay));
-  }
-  if (!told_.has_velocity) estimate_velocity(clock_.now());
+  check_age();
+  if (const double now = clock_.now(); now - velocity_time_ > kSilence) estimate_velocity(now);
   return ours();
 }
 
@@ -174,10 +204,10 @@ void RosDriver::estimate_velocity(double now) {
 
 DeviceState RosDriver::ours() const {
   DeviceState state = told_.state;
-  const RosAxes& axes = link_.axes;
-  state.position = axes.unit * (axes.to_ours * state.position);
-  state.velocity = axes.unit * (axes.to_ours * state.velocity);
-  state.orientation = Eigen::Quaterniond(axes.to_ours) * state.orientation;
+  const Eigen::Matrix3d& to_ours = link_.axes.poses;
+  state.position = to_ours * state.position;
+  state.velocity = to_ours * state.velocity;
+  state.orientation = Eigen::Quaterniond(to_ours) * state.orientation;
   return state;
 }
 

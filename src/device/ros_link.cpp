@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <chrono>
+#include <charconv>
 
 #include "message/sensor_types.hpp"
 #include "palpate/base/error.hpp"
@@ -16,14 +17,16 @@ using namespace message;
 using Eigen::Vector3d;
 
 // Force Dimension's: x towards the operator, y to the right.
-const RosAxes kForceDimension{(Eigen::Matrix3d() << 0, 1, 0, -1, 0, 0, 0, 0, 1).finished()};
+const Eigen::Matrix3d kForceDimension =
+    (Eigen::Matrix3d() << 0, 1, 0, -1, 0, 0, 0, 0, 1).finished();
 
 void put_pose(const PoseStamped& message, RosReading& told) {
   const auto pose = isometry(message.pose);
   if (!pose) throw Error("a pose that is not one: not finite, or a quaternion not of unit length");
   told.state.position = pose->translation();
   told.state.orientation = Eigen::Quaterniond(pose->linear());
-  told.stamp = to_seconds(message.header.stamp);
+  const double stamp = to_seconds(message.header.stamp);
+  if (stamp > 0) told.stamp = stamp;
 }
 
 void put_velocity(const TwistStamped& message, RosReading& told) {
@@ -42,7 +45,7 @@ void put_wrench(const Vector3d& force, WrenchStamped& message) {
 // The presets: docs/ros2.md names the packages.
 void crtk(RosLink& link, const DeviceName& name) {
   const std::string ns = name.option("ns", "/arm");
-  link.axes = kForceDimension;
+  link.axes = {kForceDimension, kForceDimension};
   link.on_pose<PoseStamped>(ns + "/measured_cp", put_pose);
   link.on<TwistStamped>(ns + "/measured_cv", put_velocity);
   link.on<JointState>(ns + "/gripper/measured_js", [](const JointState& message, RosReading& told) {
@@ -51,21 +54,58 @@ void crtk(RosLink& link, const DeviceName& name) {
   link.force_to<WrenchStamped>(ns + "/body/servo_cf", put_wrench);
 }
 
+// The parameter transform_rotation of fd's ee_pose_broadcaster: radians about z, y and x, as its
+// package has it unless they are given.
+Eigen::Matrix3d broadcast_rotation(const DeviceName& name) {
+  const std::string text = name.option("rotation", "0/1.5707/0");
+  Vector3d angles = Vector3d::Zero();
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  bool good = true;
+  for (int i = 0; i < 3; ++i) {
+    const auto [stop, error] = std::from_chars(at, end, angles[i]);
+    good = good && error == std::errc{} && (i < 2 ? stop < end && *stop == '/' : stop == end);
+    at = std::min(stop + 1, end);
+  }
+  if (!good || !angles.allFinite()) {
+    throw Error(fmt::format(
+        "device ros:fd: rotation={} is not three angles; write what transform_rotation of its "
+        "ee_pose_broadcaster is, as in rotation=0/1.5707/0",
+        text));
+  }
+  return (Eigen::AngleAxisd(angles.x(), Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(angles.y(), Vector3d::UnitY()) *
+          Eigen::AngleAxisd(angles.z(), Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+// How many numbers its controller of efforts takes: forces, then torques and the gripper's.
+std::size_t joints_of(const DeviceName& name) {
+  const std::string text = name.option("joints", "3");
+  if (text.size() == 1 && text[0] >= '3' && text[0] <= '7')
+    return static_cast<std::size_t>(text[0] - '0');
+  throw Error(fmt::format("device ros:fd: joints={} is not a number from 3 to 7", text));
+}
+
 void fd(RosLink& link, const DeviceName& name) {
   const std::string ns = name.option("ns", "/fd");
-  link.axes = kForceDimension;
+  // Its broadcaster turns poses; forces are in the device's own axes.
+  link.axes = {kForceDimension * broadcast_rotation(name).transpose(), kForceDimension};
   link.on_pose<PoseStamped>(ns + "/ee_pose", put_pose);
-  link.on<Bool>(ns + "/button_state",
-                [](const Bool& message, RosReading& told) { put_button(0, message.data, told); });
+  link.on_buttons<Bool>(ns + "/button_state", [](const Bool& message, RosReading& told) {
+    put_button(0, message.data, told);
+  });
+  const std::size_t joints = joints_of(name);
   link.force_to<Float64MultiArray>(ns + "/fd_controller/commands",
-                                   [](const Vector3d& force, Float64MultiArray& message) {
+                                   [=](const Vector3d& force, Float64MultiArray& message) {
                                      message.data.assign(force.data(), force.data() + 3);
+                                     message.data.resize(joints, 0);
                                    });
 }
 
 void ros_force_dimension(RosLink& link, const DeviceName& name) {
   const std::string ns = name.option("ns", "/robot");
-  link.axes = kForceDimension;
+  link.axes = {kForceDimension, kForceDimension};
   link.on_pose<Point>(ns + "/feedback/position", [](const Point& message, RosReading& told) {
     told.state.position = {message.x, message.y, message.z};
   });
@@ -73,7 +113,7 @@ void ros_force_dimension(RosLink& link, const DeviceName& name) {
     told.state.velocity = eigen(message);
     told.has_velocity = true;
   });
-  link.on<Int32>(ns + "/feedback/button", [](const Int32& message, RosReading& told) {
+  link.on_buttons<Int32>(ns + "/feedback/button", [](const Int32& message, RosReading& told) {
     put_button(0, message.data != 0, told);
   });
   link.on<Float64>(ns + "/feedback/gripper_gap", [](const Float64& message, RosReading& told) {
@@ -86,12 +126,12 @@ void ros_force_dimension(RosLink& link, const DeviceName& name) {
 
 void omni(RosLink& link, const DeviceName& name) {
   const std::string ns = name.option("ns", "/phantom");
-  link.axes.unit = 1e-3;
   link.on_pose<PoseStamped>(ns + "/pose", put_pose);
-  link.on<OmniButtonEvent>(ns + "/button", [](const OmniButtonEvent& message, RosReading& told) {
-    put_button(0, message.grey_button != 0, told);
-    put_button(1, message.white_button != 0, told);
-  });
+  link.on_buttons<OmniButtonEvent>(ns + "/button",
+                                   [](const OmniButtonEvent& message, RosReading& told) {
+                                     put_button(0, message.grey_button != 0, told);
+                                     put_button(1, message.white_button != 0, told);
+                                   });
   link.force_to<OmniFeedback>(
       ns + "/force_feedback",
       [](const Vector3d& force, OmniFeedback& message) { message.force = vector_of(force); });
@@ -125,7 +165,7 @@ void generic(RosLink& link, const DeviceName& name) {
   if (const std::string twist = name.option("twist"); !twist.empty())
     link.on<TwistStamped>(twist, put_velocity);
   if (const std::string joy = name.option("joy"); !joy.empty()) {
-    link.on<Joy>(joy, [](const Joy& message, RosReading& told) {
+    link.on_buttons<Joy>(joy, [](const Joy& message, RosReading& told) {
       for (std::uint32_t i = 0; i < std::min<std::size_t>(message.buttons.size(), 32); ++i) {
         put_button(i, message.buttons[i] != 0, told);
       }

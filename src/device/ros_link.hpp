@@ -13,17 +13,18 @@
 
 namespace palpate::device {
 
-// From a node's axes to ours (x right, y away from the operator, z up), and their unit.
+// From a node's axes, which may be others for poses than for forces, to ours (x right, y away from
+// the operator, z up).
 struct RosAxes {
-  Eigen::Matrix3d to_ours = Eigen::Matrix3d::Identity();
-  double unit = 1;  // m
+  Eigen::Matrix3d poses = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d forces = Eigen::Matrix3d::Identity();
 };
 
 /// Where the hand is, in the node's axes.
 struct RosReading {
   DeviceState state;
   std::optional<double> stamp;  // s, system time; unset: the message has none
-  bool has_velocity = false;
+  bool has_velocity = false;    // a new one, since it was last false
 };
 
 class RosInput {
@@ -32,7 +33,7 @@ class RosInput {
   // Takes what is new; false: nothing was.
   virtual bool take(RosReading& told) = 0;
   virtual bool wait(double timeout) = 0;
-  [[nodiscard]] virtual bool connected() const = 0;
+  [[nodiscard]] virtual std::size_t writers() const = 0;
 };
 
 template <message::Message T>
@@ -40,8 +41,9 @@ class RosTopicInput final : public RosInput {
  public:
   using Put = std::function<void(const T&, RosReading&)>;
 
-  RosTopicInput(const dds::Participant& participant, const std::string& topic, Put put)
-      : reader_(participant, topic, dds::Quality{.reliable = false, .depth = 1}),
+  RosTopicInput(const dds::Participant& participant, const std::string& topic, Put put,
+                bool reliable = false)
+      : reader_(participant, topic, dds::Quality{.reliable = reliable, .depth = 1}),
         put_(std::move(put)) {}
 
   bool take(RosReading& told) override {
@@ -53,7 +55,7 @@ class RosTopicInput final : public RosInput {
     return any;
   }
   bool wait(double timeout) override { return reader_.wait(timeout); }
-  [[nodiscard]] bool connected() const override { return reader_.writers() > 0; }
+  [[nodiscard]] std::size_t writers() const override { return reader_.writers(); }
 
  private:
   dds::Reader<T> reader_;
@@ -74,6 +76,11 @@ struct RosLink {
   void on(const std::string& topic, typename RosTopicInput<T>::Put put) {
     others.push_back(std::make_unique<RosTopicInput<T>>(participant, topic, std::move(put)));
   }
+  // Some nodes tell of buttons only when they change: no message may be lost.
+  template <message::Message T>
+  void on_buttons(const std::string& topic, typename RosTopicInput<T>::Put put) {
+    buttons = std::make_unique<RosTopicInput<T>>(participant, topic, std::move(put), true);
+  }
   template <message::Message T>
   void force_to(const std::string& topic, std::function<void(const Eigen::Vector3d&, T&)> put) {
     auto writer = std::make_shared<dds::Writer<T>>(participant, topic,
@@ -90,6 +97,7 @@ struct RosLink {
 
   dds::Participant participant;
   std::unique_ptr<RosInput> pose;
+  std::unique_ptr<RosInput> buttons;  // null: there are none
   std::vector<std::unique_ptr<RosInput>> others;
   std::function<bool(const Eigen::Vector3d&)> write;
   std::function<bool()> listened;

@@ -127,14 +127,23 @@ CameraModel camera_of(const CameraInfo& info, bool rectified) {
   return camera;
 }
 
+namespace {
+
+// Where the topic's own name begins, before "/compressed..." at its end.
+std::size_t name_in(const std::string& topic) {
+  const std::size_t last = topic.rfind('/');
+  if (last == std::string::npos || last == 0) return 0;
+  return topic.compare(last, 11, "/compressed") == 0 ? topic.rfind('/', last - 1) : last;
+}
+
+}  // namespace
+
 bool is_rectified(const std::string& topic) {
-  const std::size_t last = topic.rfind('/', topic.rfind("/compressed") - 1);
-  return topic.find("rect", last == std::string::npos ? 0 : last) != std::string::npos;
+  return topic.find("rect", name_in(topic)) != std::string::npos;
 }
 
 std::string info_topic(const std::string& image_topic) {
-  std::string topic = image_topic.substr(0, image_topic.rfind("/compressed"));
-  return topic.substr(0, topic.rfind('/')) + "/camera_info";
+  return image_topic.substr(0, name_in(image_topic)) + "/camera_info";
 }
 
 void read_depth(const Image& image, DepthFrame& frame) {

@@ -74,8 +74,12 @@ struct HandTopics {
   dds::Reader<WrenchStamped> servo_cf;
 };
 
-const RosBridgeOptions& checked(const RosBridgeOptions& options) {
+const RosBridgeOptions& checked(const RosBridgeOptions& options,
+                                const std::vector<RosBridge::Hand>& hands) {
   const Requirement require{"ROS bridge"};
+  const bool servos =
+      std::ranges::all_of(hands, [](const auto& hand) { return hand.servo != nullptr; });
+  require(!hands.empty() && servos, "hands", hands.size(), "give one or more, with their servos");
   const auto check_rate = [&](const char* what, double rate) {
     require(rate >= 1 && rate <= 1000, what, rate, "give 1 to 1000 Hz");
   };
@@ -87,6 +91,11 @@ const RosBridgeOptions& checked(const RosBridgeOptions& options) {
   const int button = robot.dead_man.value_or(0);
   require(button >= 0 && button < 32, "the dead man's button", button, "give 0 to 31");
   return options;
+}
+
+// Is a hand where its last step has it?
+bool is_known(const ServoState& state) {
+  return state.step > 0 && state.device == DeviceState::Status::ok;
 }
 
 double extent_of(const Scene& scene) {
@@ -103,7 +112,7 @@ double extent_of(const Scene& scene) {
 struct RosBridge::Inside {
   Inside(std::vector<Hand> the_hands, const Scene& the_scene,
          std::function<std::vector<StreamState>()> the_streams, const RosBridgeOptions& the_options)
-      : options(checked(the_options)),
+      : options(checked(the_options, the_hands)),
         hands(std::move(the_hands)),
         scene(the_scene),
         streams(std::move(the_streams)),
@@ -191,7 +200,8 @@ void RosBridge::Inside::look(double now) {
   if (robot) robot->look(hands.front().servo->state(), now, header.stamp);
   if (hand_due.due(now)) {
     for (std::size_t i = 0; i < hands.size(); ++i) {
-      topics[i]->tell(header, hands[i].servo->state());
+      if (const ServoState state = hands[i].servo->state(); is_known(state))
+        topics[i]->tell(header, state);
       take_forces(i);
     }
   }
@@ -201,17 +211,30 @@ void RosBridge::Inside::look(double now) {
   if (diagnostics_due.due(now)) tell_diagnostics(header);
 }
 
+// What a sensor says may stop neither other hands nor what is told.
 void RosBridge::Inside::take_forces(std::size_t hand) {
-  WrenchStamped told;
-  if (!topics[hand]->servo_cf.take(told)) return;
-  hands[hand].servo->add_force(eigen(told.wrench.force));
+  try {
+    WrenchStamped told;
+    if (!topics[hand]->servo_cf.take(told)) return;
+    const std::string& frame = told.header.frame_id;
+    if (!frame.empty() && frame != options.frame) {
+      throw Error(fmt::format("servo_cf of {}: a force in the frame '{}'; give it in '{}'",
+                              hands[hand].name, frame, options.frame));
+    }
+    hands[hand].servo->add_force(eigen(told.wrench.force));
+  } catch (const std::exception& error) {
+    const std::lock_guard lock(mutex);
+    problem = error.what();
+  }
 }
 
 void RosBridge::Inside::tell_frames(const Header& header) {
   TFMessage message;
-  for (const Hand& hand : hands)
-    message.transforms.push_back(ros::proxy_frame(header, hand.name, hand.servo->state()));
-  frames.write(message);
+  for (const Hand& hand : hands) {
+    if (const ServoState state = hand.servo->state(); is_known(state))
+      message.transforms.push_back(ros::proxy_frame(header, hand.name, state));
+  }
+  if (!message.transforms.empty()) frames.write(message);
 }
 
 void RosBridge::Inside::tell_markers(const Header& header) {

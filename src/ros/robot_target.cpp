@@ -10,6 +10,8 @@
 namespace palpate::ros {
 namespace {
 
+constexpr double kStill = 0.05;  // s without a step: nobody computes where the proxy is
+
 struct RobotPreset {
   std::string_view name;
   std::string_view ns;
@@ -44,7 +46,9 @@ RobotTarget::RobotTarget(const dds::Participant& participant,
       due_(options.rate) {}
 
 void RobotTarget::look(const ServoState& state, double now, const message::Time& stamp) {
-  if (!due_.due(now) || !may_go(state)) return;
+  if (state.step != step_) stepped_ = now;
+  step_ = state.step;
+  if (!due_.due(now) || now - stepped_ > kStill || !may_go(state)) return;
   const Eigen::Vector3d position = options_.hand ? state.hip : state.contact.proxy;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = options_.T_robot_world.linear() * state.orientation.toRotationMatrix();

@@ -23,8 +23,9 @@ class Every {
   double next_ = 0;
 };
 
-/// Tells a robot where to go. While the hand is not known, its button is up, or no surface keeps the
-/// proxy out of things, it is told nothing, and stops by its own controller's watchdog.
+/// Tells a robot where to go. While the hand is not known, its servo stands still, its button is
+/// up, or no surface keeps the proxy out of things, it is told nothing, and stops by its own
+/// controller's watchdog.
 class RobotTarget {
  public:
   /// @throws Error when the preset is none.
@@ -39,6 +40,8 @@ class RobotTarget {
   RosBridgeOptions::Robot options_;
   dds::Writer<message::PoseStamped> target_;
   Every due_;
+  std::uint64_t step_ = 0;  // the last that was seen
+  double stepped_ = 0;      // when it was new, s
 };
 
 }  // namespace palpate::ros

@@ -55,8 +55,9 @@ void add(std::vector<RosTopic>& topics, const dds::Endpoint& there) {
     topic->type = there.type;
     topic->reliable = true;
   }
+  if (there.writes || topic->writers == 0)  // writers come first
+    topic->reliable = topic->reliable && there.reliable;
   (there.writes ? topic->writers : topic->readers) += 1;
-  topic->reliable = topic->reliable && there.reliable;
   const Known* type = known(there.type);
   if (type == nullptr) return;
   if (!there.hash.empty() && there.hash != fmt::format("RIHS01_{}", type->hash)) {
@@ -100,8 +101,13 @@ struct Ear {
 void listen(const dds::Participant& participant, std::vector<RosTopic>& topics, double seconds) {
   std::vector<std::unique_ptr<Ear>> ears;
   for (RosTopic& topic : topics) {
-    if (topic.writers > 0 && known(topic.type) != nullptr)
+    if (topic.writers == 0 || known(topic.type) == nullptr) continue;
+    try {
       ears.push_back(std::make_unique<Ear>(participant, topic));
+    } catch (const Error& error) {  // not a name that ROS 2 would give
+      topic.mismatch = error.what();
+      topic.use.clear();
+    }
   }
   SteadyClock clock;
   for (const double end = clock.now() + seconds; clock.now() < end;) {

@@ -27,7 +27,8 @@ using message::PointCloud2;
 using message::TFMessage;
 using message::Transforms;
 
-constexpr double kOtherClock = 10;      // s: stamps so far from now are of another clock
+constexpr double kOldest = 10;          // s: older stamps are of another clock
+constexpr double kNewest = -0.5;        // s: so are those of the future (streams refuse 1 s)
 constexpr double kTransformWait = 0.1;  // s that a frame waits for its transform
 constexpr double kLook = 0.05;          // s between looks for a publisher
 constexpr const char* kNoneArrived =
@@ -114,7 +115,8 @@ class RosCamera final : public DepthCamera {
       std::variant<std::monostate, std::unique_ptr<Reader<Image>>,
                    std::unique_ptr<Reader<CompressedImage>>, std::unique_ptr<Reader<PointCloud2>>>;
 
-  bool connect(double timeout);
+  [[nodiscard]] std::size_t writers() const;
+  bool connect();
   void take_infos();
   template <class Message>
   DepthCamera::Status take(Reader<Message>& reader, DepthFrame& frame, double timeout);
@@ -135,9 +137,24 @@ class RosCamera final : public DepthCamera {
   std::string reason_;
 };
 
+std::size_t RosCamera::writers() const {
+  return std::visit(
+      [](const auto& reader) -> std::size_t {
+        if constexpr (std::is_same_v<decltype(reader), const std::monostate&>) {
+          return 0;
+        } else {
+          return reader->writers();
+        }
+      },
+      images_);
+}
+
 // Once there is a publisher, its type decides what is read.
-bool RosCamera::connect(double timeout) {
+bool RosCamera::connect() {
+  if (arrived_ && writers() == 0) images_ = {};  // the next publisher's type may be another
   if (!std::holds_alternative<std::monostate>(images_)) return true;
+  arrived_ = false;
+  lost_ = 0;
   std::string other;
   for (const dds::Endpoint& there : dds::endpoints(participant_)) {
     if (!there.writes || there.topic != name_.topic) continue;
@@ -160,13 +177,17 @@ bool RosCamera::connect(double timeout) {
                       "{} has type {}; depth comes as sensor_msgs Image, CompressedImage or "
                       "PointCloud2",
                       name_.topic, other);
-  std::this_thread::sleep_for(std::chrono::duration<double>(std::min(timeout, kLook)));
   return false;
 }
 
 DepthCamera::Status RosCamera::read(DepthFrame& frame, double timeout) {
   reason_.clear();
-  if (!connect(timeout)) return DepthCamera::Status::waiting;
+  for (const double end = clock_.now() + timeout; !connect();) {
+    const double left = end - clock_.now();
+    if (left <= 0) return DepthCamera::Status::waiting;
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left, kLook)));
+  }
+  reason_.clear();
   return std::visit(
       [&](auto& reader) {
         if constexpr (std::is_same_v<decltype(reader), std::monostate&>) {
@@ -218,14 +239,15 @@ void RosCamera::take_infos() {
 double RosCamera::stamp_of(const Header& header) const {
   const double now = clock_.now();
   const double age = message::system_now() - to_seconds(header.stamp);
-  return std::abs(age) < kOtherClock ? now - age : now;
+  return age < kOldest && age > kNewest ? now - age : now;
 }
 
 bool RosCamera::place(const Header& header, DepthFrame& frame) {
   frame.T_world_sensor.reset();
   if (!transforms_) return true;
   const double stamp = to_seconds(header.stamp);
-  for (const double end = clock_.now() + kTransformWait; !frame.T_world_sensor;) {
+  // Counted from the stamp: an image that waited already does not keep the next ones waiting.
+  for (const double end = frame.stamp + kTransformWait; !frame.T_world_sensor;) {
     frame.T_world_sensor =
         transforms_->newest().find(name_.frame, header.frame_id, stamp, &reason_);
     const double left = end - clock_.now();

@@ -79,6 +79,17 @@ TEST(HandsProgram, AnotherProgramsHandFeelsTheSurface) {
   EXPECT_EQ(columns(shell.read("forces.csv"))["fz"].size(), report["steps"]);
 }
 
+TEST(HandsProgram, AClosedTerminalEndsARunAsCtrlCDoes) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  const auto run = shell.start("touch plane.xyz --device remote:hand --log steps.csv");
+  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 1: listening on hand"); }));
+  test::RemoteClient client(shell.path("hand"), shell.path("client"));
+  EXPECT_TRUE(arrives(client, kAbove));
+  EXPECT_EQ(run->interrupt(SIGHUP), 0) << shell.read("stderr");
+  EXPECT_GT(columns(shell.read("steps.csv"))["fz"].size(), 0U);
+}
+
 // It presses the tool into the plane, goes up with the clutch held, and feels the plane there.
 TEST(HandsProgram, AClutchTakesTheSurfaceToTheHand) {
   constexpr double kHigh = 50e-3;

@@ -17,6 +17,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
+TEST(Output, AFullStandardOutputIsAnError) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  for (const std::string arguments : {"info plane.xyz", "--help", "cameras"}) {
+    EXPECT_EQ(shell.run(arguments + " >/dev/full 2>said #").code, 1) << arguments;
+    EXPECT_NE(shell.read("said").find("standard output: No space"), std::string::npos);
+  }
+}
+
+TEST(Output, NothingThatIsNotOursMovesTheTerminal) {
+  Shell shell;
+  shell.write("\033[31mred.xyz", plane_xyz());
+  shell.write("way.csv", "t,hip_x,hip_y,hip_z\n0,0,0,\033[31mRED\n");
+  const Outcome info = shell.run("info '\033[31mred.xyz'");
+  EXPECT_EQ(info.code, 0);
+  EXPECT_EQ((info.out + info.err).find('\033'), std::string::npos);
+  EXPECT_EQ(shell.run("touch synthetic:sphere --trajectory way.csv").err.find('\033'),
+            std::string::npos);
+}
+
 TEST(Output, FileThatIsReadOrWrittenTwiceIsRefusedAndStaysAsItWas) {
   Shell shell;
   shell.write("plane.xyz", plane_xyz());

@@ -31,9 +31,9 @@ Running::~Running() {
   if (process_ != 0) interrupt();
 }
 
-int Running::interrupt() {
+int Running::interrupt(int signal) {
   int status = 0;
-  kill(process_, SIGINT);
+  kill(process_, signal);
   waitpid(std::exchange(process_, 0), &status, 0);
   return code_of(status);
 }

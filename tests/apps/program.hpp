@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <map>
 #include <memory>
 #include <string>
@@ -24,8 +25,8 @@ class Running {
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
 
-  /// Ctrl-C; returns the exit code, once it has ended.
-  int interrupt();
+  /// Ctrl-C, or another signal; returns the exit code, once it has ended.
+  int interrupt(int signal = SIGINT);
 
  private:
   int process_;  // 0: it has ended

@@ -5,6 +5,7 @@
 
 #include "apps/program.hpp"
 #include "bag/bags.hpp"
+#include "bag/mcap_peer.hpp"
 #include "support/contains.hpp"
 
 namespace palpate::bag {
@@ -84,6 +85,22 @@ TEST(BagProgram, RefusesWhatMakesNoSenseWithWords) {
   refuses("bag recover run.mcap run.mcap", 2, "already exists");
   refuses("bag recover run.mcap no/such/new.mcap", 1, "cannot be made");
   EXPECT_EQ(McapReader(shell.path("run.mcap")).contents().messages, 500u) << "as it was";
+}
+
+TEST_F(McapPeer, DecodesEveryMessageOfARecordedRun) {
+  Shell shell;
+  ASSERT_EQ(shell
+                .run("touch camera:simulated:wander synthetic:sphere --simulated-time --no-view "
+                     "--duration 0.5 --record run.mcap")
+                .code,
+            0);
+  const nlohmann::json found = nlohmann::json::parse(run("read.mjs", shell.path("run.mcap")))[0];
+  EXPECT_EQ(found["indexed"]["counts"], found["streamed"]["counts"]);
+  EXPECT_EQ(found["indexed"]["attachments"].size(), 2u);  // set-up and the sphere's surface
+  const nlohmann::json& last = found["indexed"]["last"];
+  EXPECT_EQ(last.size(), 9u);
+  EXPECT_EQ(last["/palpate/hand/tick"]["step"], found["indexed"]["counts"]["/palpate/hand/tick"]);
+  EXPECT_EQ(last["/palpate/simulated_wander_0/depth/image_raw"]["encoding"], "32FC1");
 }
 
 }  // namespace

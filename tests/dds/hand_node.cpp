@@ -60,7 +60,7 @@ int main(int count, char** arguments) {
     const DeviceState state = device.read();
     const Vector3d& at = state.position;
     message::PoseStamped pose{{message::to_time(message::system_now()), "fd_base"},
-                              {{-at.y(), at.x(), at.z()}, {}}};
+                              {{at.z(), at.x(), at.y()}, {}}};
     waiting.push_back({clock.now() + delay, pose});
     const auto is_due = [&](const auto& queue) {
       return !queue.empty() && queue.front().due <= clock.now() + (delay > 0 ? 0.5e-3 : 0);

@@ -89,6 +89,7 @@ TEST(DepthImages, KnowsTheTopicBesideThem) {
   EXPECT_TRUE(is_rectified("/camera/depth/image_rect_raw"));
   EXPECT_TRUE(is_rectified("/camera/depth/image_rect/compressedDepth"));
   EXPECT_FALSE(is_rectified("/rect/depth/image_raw"));
+  EXPECT_EQ(info_topic("/compressed_camera/depth/image"), "/compressed_camera/depth/camera_info");
 }
 
 TEST(CameraOf, TakesThePinholeOfRectifiedImagesFromP) {

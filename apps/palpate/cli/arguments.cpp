@@ -39,12 +39,6 @@ std::string name_of_camera(std::string_view text) {
   return name.empty() ? "camera" : name;
 }
 
-// Of "runs/monday.mcap:/camera/depth,frame=world" the file.
-std::string file_of_bag(const std::string& text) {
-  const std::size_t topic = text.rfind(":/");
-  return text.substr(0, topic != std::string::npos ? topic : text.rfind(",frame="));
-}
-
 std::string name_of_path(const std::string& path) {
   if (path == "-") return "stdin";
   if (path.starts_with(kSynthetic)) return path.substr(kSynthetic.size());
@@ -52,7 +46,7 @@ std::string name_of_path(const std::string& path) {
   std::filesystem::path file(path);
   if (path.starts_with(kSequence)) file = path.substr(kSequence.size());
   if (path.starts_with(kRos)) file = path.substr(0, path.find(','));
-  if (path.starts_with(kBag)) file = file_of_bag(path.substr(kBag.size()));
+  if (path.starts_with(kBag)) file = file_of(path);
   if (!file.has_filename()) file = file.parent_path();  // a folder with a slash behind it
   std::filesystem::path name = file.filename();
   if (name.extension() == ".gz") name = name.stem();
@@ -66,6 +60,16 @@ std::string free_name(const std::string& wanted, const std::set<std::string>& ta
 }
 
 }  // namespace
+
+std::string file_of(const std::string& source) {
+  if (!source.starts_with(kBag)) return source;
+  // Of "runs/monday.mcap:/camera/depth,frame=world" the file.
+  const std::string text = source.substr(kBag.size());
+  std::error_code none;
+  if (std::filesystem::exists(text, none)) return text;
+  const std::size_t topic = text.rfind(":/");
+  return text.substr(0, topic != std::string::npos ? topic : text.rfind(",frame="));
+}
 
 std::vector<double> parse_numbers(const std::string& text, std::size_t count,
                                   const std::string& option, const std::string& form) {

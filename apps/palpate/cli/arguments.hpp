@@ -32,6 +32,9 @@ struct PoseArgument {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< T_world_cloud
 };
 
+/// The path that a source's text names: of "bag:run.mcap:/camera/depth,frame=odom" run.mcap.
+[[nodiscard]] std::string file_of(const std::string& source);
+
 /// The numbers in `text`, separated by commas.
 /// @throws UsageError when it is not `count` finite numbers; `option` and `form` go into the
 /// message.

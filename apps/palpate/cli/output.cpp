@@ -162,7 +162,12 @@ std::string numbered_path(const std::string& path, std::size_t hand) {
 std::vector<NamedFile> inputs(const std::vector<CloudArgument>& clouds) {
   std::vector<NamedFile> result;
   for (const CloudArgument& cloud : clouds) {
-    result.push_back({fmt::format("the cloud '{}'", cloud.name), cloud.path});
+    const std::string name = fmt::format("the source '{}'", cloud.name);
+    const std::string path = file_of(cloud.path);
+    result.push_back({name, path});
+    std::error_code none;
+    for (const auto& file : std::filesystem::directory_iterator(path, none))
+      result.push_back({name, file.path().string()});
   }
   return result;
 }

@@ -64,7 +64,7 @@ void write_whole(const std::string& path, std::string_view text);
 /// "forces-2.csv", "forces-3.csv"; empty where it is.
 [[nodiscard]] std::string numbered_path(const std::string& path, std::size_t hand);
 
-/// A file that a command names, and by what: "--log", "the cloud 'bunny'".
+/// A file that a command names, and by what: "--log", "the source 'bunny'".
 struct NamedFile {
   std::string name;
   std::string path;  ///< empty: not named; "-" and "synthetic:NAME" are no files

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <csignal>
 #include <string>
 #include <vector>
@@ -10,8 +11,9 @@ namespace palpate::app {
 /// 127: it is not there, 126: a signal ended it.
 [[nodiscard]] int run_program(const std::vector<std::string>& words, const std::string& output);
 
-/// While it lives, Ctrl-C (SIGINT) and SIGTERM ask the program to come to an end instead of ending
-/// it. Once: the second one ends it. One at a time.
+/// While it lives, Ctrl-C (SIGINT), SIGTERM and a terminal that is closed (SIGHUP, unless the
+/// program was started to outlive it: nohup) ask the program to come to an end instead of ending
+/// it. Once: the second one of a kind ends it. One at a time.
 class Interruption {
  public:
   Interruption();
@@ -22,8 +24,9 @@ class Interruption {
   [[nodiscard]] bool asked() const noexcept;
 
  private:
-  struct sigaction interrupt_before_ = {};
-  struct sigaction terminate_before_ = {};
+  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
+
+  std::array<struct sigaction, kSignals.size()> before_ = {};
 };
 
 /// The person's browser, opened at an address that others of the machine must not learn: it is in

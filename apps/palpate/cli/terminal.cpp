@@ -58,6 +58,12 @@ void wait(const std::stop_token& stop, const std::string& what) {
 
 }  // namespace
 
+std::string without_controls(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c != '\n' && (c < ' ' || c == 0x7f); }, '?');
+  return text;
+}
+
 std::string grouped(std::size_t number) {
   if (number < 1000) return fmt::format("{}", number);
   return fmt::format("{} {:03}", grouped(number / 1000), number % 1000);

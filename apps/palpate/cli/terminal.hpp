@@ -11,6 +11,10 @@
 
 namespace palpate::app {
 
+/// `text` without what would move a terminal's cursor or colour it: control characters but line
+/// ends become '?'. File names and what is in files are not ours.
+[[nodiscard]] std::string without_controls(std::string text);
+
 // Numbers for people.
 
 /// "12 345 678".

@@ -30,13 +30,18 @@ std::string ends_of(const RosTopic& topic) {
 }
 
 void print(const RosTopic& topic, const Style& style, std::FILE* stream) {
-  fmt::print(stream, "{}  {}\n", style.heading(topic.name), topic.type);
+  const auto line = [&](const std::string& text) {
+    fmt::print(stream, "{}\n", without_controls(text));
+  };
+  fmt::print(stream, "{}", style.heading(without_controls(topic.name)));
+  line("  " + topic.type);
   std::string facts = ends_of(topic) + (topic.reliable ? ", reliable" : ", best effort");
   if (topic.rate > 0) facts += fmt::format(", {:.4g} Hz", topic.rate);
-  if (!topic.frame.empty()) facts += fmt::format(", frame {}", topic.frame);
-  fmt::print(stream, "  {}\n", facts);
-  if (!topic.mismatch.empty()) fmt::print(stream, "  {}\n", style.warning(topic.mismatch));
-  if (!topic.use.empty()) fmt::print(stream, "  use: {}\n", topic.use);
+  if (!topic.frame.empty()) facts += ", frame " + topic.frame;
+  line("  " + facts);
+  if (!topic.mismatch.empty())
+    fmt::print(stream, "  {}\n", style.warning(without_controls(topic.mismatch)));
+  if (!topic.use.empty()) line("  use: " + topic.use);
 }
 
 void write(const std::vector<RosTopic>& topics, const std::string& path) {

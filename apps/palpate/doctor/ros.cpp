@@ -11,10 +11,9 @@ namespace palpate::app::doctor {
 namespace {
 
 constexpr const char* kRos2 = "ROS 2";
-// A cloud of 640 x 480 points of 16 bytes, which comes in one burst.
-constexpr long kLargeCloud = 640L * 480 * 16;
-constexpr const char* kLargestBuffer = "2147483647";  // what ROS 2's guide to DDS tells
-constexpr int kLargestDomain = 232;                   // whose ports are below 65536
+// What palpate asks for: a cloud of 640 x 480 points comes in one burst.
+constexpr long kReceiveBuffer = 4L << 20;
+constexpr int kLargestDomain = 232;     // whose ports are below 65536
 constexpr int kFirstTakenDomain = 102;  // whose ports Linux gives to programs that ask for any
 constexpr int kLastTakenDomain = 214;
 constexpr std::array<std::string_view, 4> kRanges = {"LOCALHOST", "SUBNET", "OFF",
@@ -108,14 +107,14 @@ Answer network_buffer(const Machine& machine) {
   if (!bytes) return good("unknown (net.core.rmem_max)");
   const std::string words =
       fmt::format("net.core.rmem_max is {:.1f} MB", 1e-6 * static_cast<double>(*bytes));
-  if (*bytes >= kLargeCloud) return good(words);
+  if (*bytes >= kReceiveBuffer) return good(words);
   return note(
-      fmt::format(
-          "{}; a cloud of 640 x 480 points over DDS (ROS 2) takes {:.1f} MB and may be lost", words,
-          1e-6 * kLargeCloud),
+      fmt::format("{}; images and clouds over DDS (ROS 2) come in bursts of more and may be lost: "
+                  "{:.1f} MB are enough",
+                  words, 1e-6 * kReceiveBuffer),
       fmt::format("echo net.core.rmem_max={} | sudo tee /etc/sysctl.d/60-palpate.conf && sudo "
                   "sysctl --system",
-                  kLargestBuffer));
+                  kReceiveBuffer));
 }
 
 constexpr std::array kRosChecks = {

@@ -16,12 +16,13 @@ namespace palpate::app {
 
 void Report::print(std::FILE* out) const {
   const Style style(out);
-  fmt::print(out, "{}{}{}\n", style.heading(title_), rest_.empty() ? "" : " ", rest_);
+  fmt::print(out, "{}{}{}\n", style.heading(without_controls(title_)), rest_.empty() ? "" : " ",
+             without_controls(rest_));
   for (const Line& line : lines_) {
     std::string label = fmt::format("{:<10}", line.label);
     if (line.mark == Mark::warning) label = style.warning(label);
     if (line.mark == Mark::error) label = style.error(label);
-    fmt::print(out, "  {} {}\n", label, line.text);
+    fmt::print(out, "  {} {}\n", label, without_controls(line.text));
   }
 }
 

@@ -63,8 +63,8 @@ class PosedCamera final : public DepthCamera {
 // s; a sensor's motor and lamp may take one or two to start.
 constexpr double kPatience = 5;
 constexpr double kAnswerWait = 0.1;  // s, for one answer
-// Answers of a camera that waits for nothing.
-constexpr int kAnswerTries = 100;
+// Answers of a camera that waits for nothing: of a recording whose first minutes are of no use.
+constexpr int kAnswerTries = 5000;
 
 std::unique_ptr<DepthCamera> open(const SourcePlan& source, const Clock* clock) {
   const std::string& path = source.argument.path;

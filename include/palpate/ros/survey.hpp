@@ -21,7 +21,7 @@ struct RosTopic {
 };
 
 /// Looks for `seconds` s at what is on ROS 2 and listens to what can be used. The environment says
-/// in which domain; `subnet`: on the whole network. Any thread but a servo's.
+/// in which domain and how far. Any thread but a servo's.
 /// @throws Error when DDS fails, or the build has none.
 [[nodiscard]] std::vector<RosTopic> survey_ros(double seconds);
 
