@@ -73,7 +73,7 @@ TEST(Replay, ChangesOfSettingsInContactAreDoneAgainInTheirSteps) {
     servo.show();
     recorder.keep_up();
   }
-  const RecordReport report = recorder.finish();
+  const RecordReport report = recorder.finish().at(0);
   EXPECT_EQ(report.steps, 1200u);
   EXPECT_EQ(report.problem, "");
   const auto felt = std::ranges::count_if(forces, [](const auto& f) { return f.norm() > 0.05; });
@@ -134,7 +134,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
     servo.show();
     recorder.keep_up();
   }
-  EXPECT_EQ(recorder.finish().frames, 19u);
+  EXPECT_EQ(recorder.finish().at(0).frames, 19u);
   EXPECT_GT(largest, 0.05);
   const ForceDifference difference =
       ReplayedRun(shell.path("run.mcap")).replay(0, [](const ServoState&, const DeviceInfo&) {});
@@ -145,7 +145,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
 TEST(Replay, StepsThatFindNoRoomAreCounted) {
   StepTraces steps(2);
   ServoState state;
-  for (state.step = 1; state.step <= 3; ++state.step) steps.push(state, {});
+  for (state.step = 1; state.step <= 3; ++state.step) steps.push({state, {}});
   EXPECT_EQ(steps.dropped(), 1u);
   ASSERT_NE(steps.front(), nullptr);
   EXPECT_EQ(steps.front()->state.step, 1u);

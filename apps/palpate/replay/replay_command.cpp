@@ -54,9 +54,11 @@ ForceDifference replay_hand(const ReplayedRun& run, std::size_t hand, const std:
   std::optional<TouchLog> steps;
   if (!log.empty()) steps.emplace(numbered_path(log, hand));
   const Waiting waiting(fmt::format("replaying hand {}", hand + 1));
-  ForceDifference found = run.replay(hand, [&](const ServoState& step, const DeviceInfo& device) {
+  const auto add = [&](const ServoState& step, const DeviceInfo& device) {
     if (steps) steps->add(step, device);
-  });
+  };
+  ForceDifference found = run.replay(hand, add);
+  if (found.steps == 0 && steps) run.recorded(hand, add);  // then as they were
   if (steps) steps->close();
   return found;
 }
