@@ -1,6 +1,7 @@
 #include "apps/palpate/replay/shown_run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -13,9 +14,12 @@ namespace palpate::app {
 
 namespace {
 
-constexpr double kFar = 1.5;       // of a frustum as drawn, in medians of depth
-constexpr double kReadOn = 2;      // s that are read on to come to a later frame
-constexpr double kFrameBack = 10;  // s that are looked through for a frame before a moment
+constexpr double kFar = 1.5;     // of a frustum as drawn, in medians of depth
+constexpr double kReadOn = 0.5;  // s that are read on to come to a later frame
+
+// s that are looked through for a frame before a moment. Most often there is one just before it,
+// and a second of them is some 40 MB.
+constexpr std::array<double, 4> kFramesBack{0.2, 1, 10, std::numeric_limits<double>::infinity()};
 
 void count(GuardNote notes, Guard::State::Counts& counts) {
   const auto add = [notes](GuardNote bit, std::uint64_t& count) {
@@ -110,7 +114,7 @@ void ShownSource::show(double time) {
     read_on();
     if (newest) prepare(*newest);
   } else {
-    for (const double back : {kFrameBack, std::numeric_limits<double>::infinity()}) {
+    for (const double back : kFramesBack) {
       frames_->seek(logged_at(time - back, epoch_));
       upcoming_ = next_felt();
       read_on();
