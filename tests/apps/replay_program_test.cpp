@@ -188,6 +188,9 @@ TEST(ReplayProgram, RefusesWhatIsNoRecordingOfARun) {
   EXPECT_EQ(other.code, 1);
   EXPECT_TRUE(contains(other.err, "palpate touch --record")) << other.err;
   EXPECT_EQ(shell.run("replay missing.mcap").code, 1);
+  EXPECT_EQ(shell.run("replay missing.mcap --view --headless").code, 1);
+  EXPECT_EQ(shell.run("replay other.mcap --port 0").code, 2);
+  EXPECT_EQ(shell.run("replay other.mcap --view --log steps.csv").code, 2);
   shell.write("plane.xyz", plane_xyz());
   EXPECT_EQ(shell.run("touch plane.xyz --record -").code, 2);
   EXPECT_EQ(shell.run("touch plane.xyz --record plane.xyz").code, 2);

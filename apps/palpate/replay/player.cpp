@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <iterator>
+#include <map>
 #include <utility>
 
+#include "apps/palpate/record/options_json.hpp"
 #include "apps/palpate/replay/replayed_run.hpp"
-#include "message/palpate_types.hpp"
 #include "message/transforms.hpp"
 
 namespace palpate::app {
@@ -26,13 +28,15 @@ Player::Player(const std::string& path)
       setup_(recorded_setup(reader_, path)),
       stretch_(stretch_of(path, reader_, setup_)),
       envelope_(kEnvelope, 0.0F),
-      pasts_(setup_.at("hands").size()) {
+      pasts_(setup_.at("hands").size()),
+      fields_(pasts_.size()) {
   for (std::size_t i = 0; i < setup_.at("sources").size(); ++i) {
     sources_.emplace_back(path, reader_, setup_, i, scene_);
   }
   for (std::size_t i = 0; i < pasts_.size(); ++i) {
     hands_.emplace_back(path, reader_, setup_, i, scene_);
     hands_.back().seek(stretch_.begin);
+    fields_[i].push_back({stretch_.begin, hands_.back().servo().field()});
   }
 }
 
@@ -136,6 +140,7 @@ void Player::show_steps(const std::stop_token& stop) {
 
 void Player::jump(double time, const std::stop_token& stop) {
   for (ShownHand& hand : hands_) hand.seek(stretch_.begin + time);
+  show_fields(stretch_.begin + time);
   const auto cancelled = [&] {
     const std::lock_guard lock(mutex_);
     return sought_.has_value() || stop.stop_requested();
@@ -157,6 +162,20 @@ void Player::advance(double elapsed) {
     moment_.playing = time < length();
   }
   for (ShownHand& hand : hands_) hand.advance(stretch_.begin + time);
+  show_fields(stretch_.begin + time);
+}
+
+// The surface around a tool is that of the field which its hand felt.
+void Player::show_fields(double time) {
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    FieldOptions field;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto after = std::ranges::upper_bound(fields_[i], time, {}, &FieldChange::time);
+      field = (after == fields_[i].begin() ? after : std::prev(after))->field;
+    }
+    if (field != hands_[i].servo().field()) hands_[i].servo().set_field(field);
+  }
 }
 
 void Player::show_frames(const std::stop_token& stop) {
@@ -172,29 +191,51 @@ void Player::show_frames(const std::stop_token& stop) {
 }
 
 void Player::read_forces(const std::stop_token& stop) {
+  std::map<std::string, std::size_t> topics;  // with the hand
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    const auto topic = setup_.at("hands").at(i).at("topic").get<std::string>();
+    topics[topic + "/tick"] = topics[topic + "/change"] = i;
+  }
   bag::McapReader reader(path_, reader_.contents());
-  reader.choose([&](const bag::Channel& each) {
-    return std::ranges::any_of(setup_.at("hands"), [&](const Json& hand) {
-      return each.topic == hand.at("topic").get<std::string>() + "/tick";
-    });
-  });
-  const double part = std::max(length(), 1e-3) / static_cast<double>(kEnvelope);
+  reader.choose([&](const bag::Channel& each) { return topics.contains(each.topic); });
   double told = clock_.now();
   for (bag::Message message; !stop.stop_requested() && reader.next(message);) {
-    message::Tick tick;
-    message::decode(message.data, tick);
-    const double at = std::floor((tick.time - stretch_.begin) / part);
-    const auto i = static_cast<std::size_t>(std::clamp(at, 0.0, double{kEnvelope - 1}));
-    const auto force = static_cast<float>(message::eigen(tick.force).norm());
-    {
-      const std::lock_guard lock(mutex_);
-      envelope_[i] = std::max(envelope_[i], force);
+    const bag::Channel& channel = reader.channel_of(message);
+    if (channel.topic.ends_with("/tick")) {
+      message::Tick tick;
+      message::decode(message.data, tick);
+      take(tick);
+    } else {
+      message::Change change;
+      message::decode(message.data, change);
+      take(topics.at(channel.topic), change);
     }
     if (clock_.now() - told < kNews) continue;
     told = clock_.now();
     listener_.changed();
   }
   if (!stop.stop_requested()) listener_.changed();
+}
+
+void Player::take(const message::Tick& tick) {
+  const double part = std::max(length(), 1e-3) / static_cast<double>(kEnvelope);
+  const double at = std::floor((tick.time - stretch_.begin) / part);
+  const auto i = static_cast<std::size_t>(std::clamp(at, 0.0, double{kEnvelope - 1}));
+  const auto force = static_cast<float>(message::eigen(tick.force).norm());
+  const std::lock_guard lock(mutex_);
+  envelope_[i] = std::max(envelope_[i], force);
+}
+
+void Player::take(std::size_t hand, const message::Change& change) {
+  if (change.what != "field") return;
+  FieldChange field;
+  const auto epoch = setup_.at("epoch_ns").get<std::int64_t>();
+  const std::int64_t stamp =
+      std::int64_t{1'000'000'000} * change.header.stamp.sec + change.header.stamp.nanosec;
+  field.time = 1e-9 * static_cast<double>(stamp - epoch) - 1e-6;  // before its step
+  take_exact(Json::parse(change.value), field.field);
+  const std::lock_guard lock(mutex_);
+  fields_[hand].push_back(field);
 }
 
 }  // namespace palpate::app

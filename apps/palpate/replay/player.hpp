@@ -13,6 +13,7 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/replay/shown_run.hpp"
 #include "bag/mcap_reader.hpp"
+#include "message/palpate_types.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
@@ -60,12 +61,20 @@ class Player {
   [[nodiscard]] std::vector<ViewerOptions::Stream> streams() const;
 
  private:
+  struct FieldChange {
+    double time = 0;  // s, on the run's clock
+    FieldOptions field;
+  };
+
   void guard(const std::function<void()>& work);
   void show_steps(const std::stop_token& stop);
   void jump(double time, const std::stop_token& stop);
   void advance(double elapsed);
+  void show_fields(double time);
   void show_frames(const std::stop_token& stop);
   void read_forces(const std::stop_token& stop);
+  void take(const message::Tick& tick);
+  void take(std::size_t hand, const message::Change& change);
 
   std::string path_;
   bag::McapReader reader_;
@@ -83,6 +92,7 @@ class Player {
   std::optional<double> sought_;  // not shown yet
   std::vector<float> envelope_;
   std::vector<std::vector<TimeLine::Force>> pasts_;  // of each hand
+  std::vector<std::vector<FieldChange>> fields_;     // of each hand, as far as they are known
   std::vector<std::jthread> threads_;                // last: they use all of the above
 };
 

@@ -155,6 +155,26 @@ test("a recording is written while it is asked for, can be read, and is shown ag
   await scrub(await openPage(browser, shown.address, kSmall, listen), file);
 });
 
+test("a run that is recorded from its beginning shows so; the button ends that file and begins another", async (context) => {
+  const program = await startProgram([...kTable, "--record", "run.mcap"]);
+  context.after(() => program.stop());
+  const page = await open(program.address);
+  const pressed = (wanted) => until(`recording: ${wanted}`, async () =>
+    (await page.getAttribute("#record", "aria-pressed")) === String(wanted));
+  await pressed(true);
+  await page.click("#record");
+  await pressed(false);
+  await until("told", async () => /recorded run\.mcap/.test(await text(page, "#notices")));
+  await page.click("#record");
+  await pressed(true);
+  const files = (await readdir(program.folder)).filter((name) => name.endsWith(".mcap")).sort();
+  assert.equal(files.length, 2);
+  assert.match(files[0], /^palpate-/);
+  const first = await run(["replay", join(program.folder, "run.mcap"), "--json", "-"]);
+  assert.ok(JSON.parse(first.out).exact, "done again bit for bit");
+  await page.context().close();
+});
+
 test("two pages see the same; one holds the tool, and it is free when that one is gone", () =>
   onTable(async (first) => {
     const second = await open(table.address);
