@@ -155,7 +155,8 @@ TEST_F(TimeLineTest, APlayerSeeksPlaysToTheEndAndBeginsAgain) {
   player.play(true, 4);
   Playing::wait([&] { return playing.shown(0) > 0.01 && playing.shown(0) < 5; });
   player.seek(player.length() - 0.1);
-  Playing::wait([&] { return !player.moment().playing; });
+  Playing::wait([&] { return playing.shown(0) > player.length() - 1e-6; });
+  EXPECT_FALSE(player.moment().playing);
   EXPECT_EQ(player.moment().time, player.length()) << "it ends there";
   EXPECT_EQ(player.moment().speed, 4);
   expect_same(player.servos()[0]->state(), felt_[0].back());
