@@ -90,9 +90,9 @@ std::vector<Command> add_commands(CLI::App& p) {
       command(p, "info", "Describe clouds, cameras and sequences", add_info_options, info),
       command(p, "bag", "Describe recordings, and recover what can be read of damaged ones",
               add_bag_options, bag),
-      command<ReplayCommand>(p, "replay", "Do a recorded run again and compare the forces",
-                             add_replay_options,
-                             [](const CLI::App&, const auto& options) { return replay(options); }),
+      command<ReplayCommand>(
+          p, "replay", "Do a recorded run again and compare the forces, or view it",
+          add_replay_options, [](const CLI::App&, const auto& options) { return replay(options); }),
       command(p, "cameras", "List cameras, and what is missing to use others", add_cameras_options,
               cameras),
       command<DoctorOptions>(p, "doctor",

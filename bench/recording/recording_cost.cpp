@@ -1,15 +1,17 @@
-// What a recording costs a servo's step and what shows it: pairs of runs at 1 kHz in real time over
-// one way on a torus, one of each pair recorded, one not, in turns.
+// What a recording costs a servo's step and what shows it, and what a recorder costs that records
+// nothing: runs at 1 kHz in real time over one way on a torus, in turns.
 //
-//   recording_cost [PAIRS [SECONDS]]
+//   recording_cost [TURNS [SECONDS]]
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "apps/palpate/record/recorder.hpp"
@@ -42,9 +44,12 @@ double median_of(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// Of each run, and how much more it is in the recorded one of a pair.
-void tell(const char* name, double Times::*which, const std::vector<Times>& without,
-          const std::vector<Times>& with) {
+enum class Kind { alone, idle, recorded };
+constexpr std::array<Kind, 3> kKinds{Kind::alone, Kind::idle, Kind::recorded};
+
+// Of each run, and how much more it is in one of another kind.
+void tell(const char* name, double Times::*which, const char* kind,
+          const std::vector<Times>& without, const std::vector<Times>& with) {
   std::vector<double> alone;
   std::vector<double> more;
   for (std::size_t i = 0; i < with.size(); ++i) {
@@ -52,22 +57,22 @@ void tell(const char* name, double Times::*which, const std::vector<Times>& with
     more.push_back(with[i].*which - without[i].*which);
   }
   const auto [least, most] = std::ranges::minmax(more);
-  fmt::print("{:8} {:7.2f} us, recorded {:+.2f} us ({:+.2f} to {:+.2f}): {:+.1f} %\n", name,
-             median_of(alone), median_of(more), least, most,
+  fmt::print("{:8} {:7.2f} us, {:8} {:+.2f} us ({:+.2f} to {:+.2f}): {:+.1f} %\n", name,
+             median_of(alone), kind, median_of(more), least, most,
              100 * median_of(more) / median_of(alone));
 }
 
-Times run(LoadedScene& loaded, const Placement& plan, bool recorded) {
+Times run(LoadedScene& loaded, const Placement& plan, Kind kind) {
   const std::string path =
       (std::filesystem::temp_directory_path() / "recording_cost.mcap").string();
   SteadyClock clock;
   std::optional<Recorder> recorder;
-  if (recorded) recorder.emplace(path);
+  if (kind != Kind::alone) recorder.emplace(kind == Kind::recorded ? path : "");
   ScriptedDevice device(plan.target);
   ServoOptions options;
   options.workspace = plan.workspace;
   options.proxy.stiffness = plan.stiffness;
-  options.traces = recorded ? recorder->add_hand() : nullptr;
+  options.traces = recorder ? recorder->add_hand() : nullptr;
   Servo servo(device, loaded.scene, options);
   if (recorder) recorder->begin(loaded, {&servo}, clock.now(), false);
   std::vector<double> seconds;
@@ -82,14 +87,15 @@ Times run(LoadedScene& loaded, const Placement& plan, bool recorded) {
     seconds.push_back(thread_cpu_seconds() - begin);
   }
   if (recorder) {
-    const RecordReport report = recorder->finish();
-    if (report.lost_steps > 0) fmt::print("{} steps were lost\n", report.lost_steps);
+    for (const RecordReport& report : recorder->finish()) {
+      if (report.lost_steps > 0) fmt::print("{} steps were lost\n", report.lost_steps);
+    }
     std::filesystem::remove(path);
   }
   return times_of(std::move(seconds));
 }
 
-int measure(int pairs, double duration) {
+int measure(int turns, double duration) {
   LoadedScene loaded;
   LoadedSource& source = loaded.sources.emplace_back();
   source.cloud = std::make_shared<PointCloud>(synthetic_cloud("torus"));
@@ -98,16 +104,18 @@ int measure(int pairs, double duration) {
   exploration.duration = duration;
   exploration.hand.stiffness = std::numeric_limits<double>::infinity();
   const Placement plan = plan_exploration(loaded.scene, {}, exploration);
-  std::vector<Times> without;
-  std::vector<Times> with;
-  for (int i = 0; i < pairs; ++i) {
-    for (const bool recorded : {i % 2 == 0, i % 2 != 0}) {
-      (recorded ? with : without).push_back(run(loaded, plan, recorded));
+  std::array<std::vector<Times>, 3> runs;  // of each kind
+  for (int i = 0; i < turns; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const auto which = static_cast<std::size_t>((i + k) % 3);
+      runs[which].push_back(run(loaded, plan, kKinds[which]));
     }
   }
-  tell("p50", &Times::p50, without, with);
-  tell("p99", &Times::p99, without, with);
-  tell("longest", &Times::longest, without, with);
+  for (const auto& [kind, with] : {std::pair("idle", &runs[1]), std::pair("recorded", &runs[2])}) {
+    tell("p50", &Times::p50, kind, runs[0], *with);
+    tell("p99", &Times::p99, kind, runs[0], *with);
+    tell("longest", &Times::longest, kind, runs[0], *with);
+  }
   return 0;
 }
 
@@ -115,6 +123,6 @@ int measure(int pairs, double duration) {
 }  // namespace palpate::app
 
 int main(int argc, char** argv) {
-  const int pairs = argc > 1 ? std::atoi(argv[1]) : 9;
-  return palpate::app::measure(std::max(pairs, 1), argc > 2 ? std::atof(argv[2]) : 3);
+  const int turns = argc > 1 ? std::atoi(argv[1]) : 9;
+  return palpate::app::measure(std::max(turns, 1), argc > 2 ? std::atof(argv[2]) : 3);
 }

@@ -16,7 +16,10 @@ constexpr std::uint64_t kMostLoaded = 1 << 30;  // bytes
 
 }  // namespace
 
-McapReader::McapReader(std::string path) : file_(std::move(path)), contents_(walk(file_)) {
+McapReader::McapReader(std::string path) : McapReader(path, walk(RandomFile(path))) {}
+
+McapReader::McapReader(std::string path, Contents contents)
+    : file_(std::move(path)), contents_(std::move(contents)) {
   order_.resize(contents_.chunks.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::ranges::stable_sort(order_, {}, [&](std::size_t i) { return contents_.chunks[i].start; });

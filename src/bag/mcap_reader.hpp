@@ -15,6 +15,8 @@ class McapReader {
  public:
   /// @throws Error when the file cannot be read or is no MCAP file.
   explicit McapReader(std::string path);
+  /// The same of a file that was looked at already: `contents` are a reader's of it.
+  McapReader(std::string path, Contents contents);
 
   /// What there is; `losses` grow as messages are read.
   [[nodiscard]] const Contents& contents() const { return contents_; }

@@ -23,8 +23,17 @@ struct Tick {
   bool paused = false;
   std::vector<std::uint64_t> publications;  // of each source, the last that was taken
   std::vector<double> least_radii;          // of each source's supports, m
+  Vector3 hip;                              // where the hand has the tool, world, m
   Vector3 force;                            // behind the guard, world, N
   Vector3 proxy;                            // m
+  Vector3 normal;                           // of the contact
+  double stiffness = 0;                     // of all springs in the force, N/m
+  bool touching = false;
+  bool sliding = false;
+  std::int32_t iterations = 0;
+  std::int32_t evaluations = 0;
+  std::uint64_t patch_points = 0;
+  std::int32_t source = -1;  // that is touched
   std::uint32_t contact_notes = 0;
   std::uint32_t field_notes = 0;
   std::uint32_t guard_notes = 0;
@@ -46,8 +55,17 @@ struct Tick {
     f("paused", m.paused);
     f("publications", m.publications);
     f("least_radii", m.least_radii);
+    f("hip", m.hip);
     f("force", m.force);
     f("proxy", m.proxy);
+    f("normal", m.normal);
+    f("stiffness", m.stiffness);
+    f("touching", m.touching);
+    f("sliding", m.sliding);
+    f("iterations", m.iterations);
+    f("evaluations", m.evaluations);
+    f("patch_points", m.patch_points);
+    f("source", m.source);
     f("contact_notes", m.contact_notes);
     f("field_notes", m.field_notes);
     f("guard_notes", m.guard_notes);

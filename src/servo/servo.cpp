@@ -19,7 +19,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSilencePeriods = 2.5;
 constexpr int kButtons = 32;
 
 // Of a device that does not tell its rate: what the first step takes, s.
@@ -60,21 +59,6 @@ Guard::Fault known_fault(const ServoState& state) noexcept {
 
 }  // namespace
 
-GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
-  if (device.maximum_force > 0) {
-    options.maximum_force =
-        std::min(options.maximum_force, Servo::kForceShare * device.maximum_force);
-  }
-  if (device.mass > 0) options.passivity.mass = device.mass;
-  if (device.delay) {
-    const double steps = std::round(*device.delay * device.rate);
-    options.passivity.delay =
-        static_cast<int>(std::clamp<double>(steps, 0, Passivity::kMaximumDelay));
-  }
-  if (device.rate > 0) options.silence = std::max(options.silence, kSilencePeriods / device.rate);
-  return options;
-}
-
 struct Servo::Inside {
   Inside(Device& its_device, Scene& scene, const ServoOptions& its_options)
       : device(its_device),
@@ -84,6 +68,7 @@ struct Servo::Inside {
         field(scene, options.field, "a field", options.workspace.scale),
         proxy(softened(options.proxy, stiffness_limit)),
         guard(in_world(options.guard, options.workspace.scale)),
+        wanted_contact({options.proxy.stiffness, options.proxy.friction, options.proxy.texture}),
         wanted_field(options.field) {}
 
   void step(const DeviceState& read, double now) noexcept;
@@ -230,7 +215,16 @@ void Servo::show(const ServoState::Timing& timing) noexcept {
   inside_->shown.set(state);
   inside_->recent_forces.add(state.force.cast<float>());
   if (inside_->options.steps != nullptr) inside_->options.steps->push(state);
-  if (inside_->options.traces != nullptr) inside_->options.traces->push({state, inside_->basis});
+  Ring<StepTrace>* const traces = inside_->options.traces;
+  if (traces != nullptr && traces->accepts()) traces->push({state, inside_->basis});
+}
+
+void ServoTrace::show(const ServoState& state) noexcept {
+  ServoState& shown = servo_->inside_->state;
+  const std::uint64_t step = shown.step + 1;
+  shown = state;
+  shown.step = step;
+  servo_->show(state.timing);
 }
 
 Vector3d Servo::device_force() const noexcept {
@@ -258,6 +252,10 @@ Durations Servo::computing() const noexcept {
 }
 std::vector<Eigen::Vector3f> Servo::forces_since(std::uint64_t& seen) const {
   return inside_->recent_forces.since(seen);
+}
+
+ContactSettings Servo::contact() const noexcept {
+  return inside_->wanted_contact.get();
 }
 
 FieldOptions Servo::field() const noexcept {

@@ -1,14 +1,19 @@
-// What a servo records: durations of steps, recent forces.
+// What a servo records, durations of steps and recent forces, and what its device makes of its
+// guard.
 #include "servo/servo_inside.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "servo/passivity.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr double kShortest = 1.25e-7;  // s, the lower end of the first bin
 constexpr double kLongest = 1e6;       // s
+
+constexpr double kSilencePeriods = 2.5;
 
 std::size_t bin_of(double duration) noexcept {
   if (duration <= kShortest) return 0;
@@ -101,6 +106,21 @@ std::vector<Eigen::Vector3f> RecentForces::since(std::uint64_t& seen) const {
   forces.erase(forces.begin(), forces.begin() + static_cast<std::ptrdiff_t>(lost));
   seen = end;
   return forces;
+}
+
+GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {
+  if (device.maximum_force > 0) {
+    options.maximum_force =
+        std::min(options.maximum_force, Servo::kForceShare * device.maximum_force);
+  }
+  if (device.mass > 0) options.passivity.mass = device.mass;
+  if (device.delay) {
+    const double steps = std::round(*device.delay * device.rate);
+    options.passivity.delay =
+        static_cast<int>(std::clamp<double>(steps, 0, Passivity::kMaximumDelay));
+  }
+  if (device.rate > 0) options.silence = std::max(options.silence, kSilencePeriods / device.rate);
+  return options;
 }
 
 }  // namespace palpate

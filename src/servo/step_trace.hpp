@@ -25,4 +25,17 @@ struct StepTrace {
 
 using StepTraces = Ring<StepTrace>;
 
+/// Shows on a servo that nobody steps what another one did: of recordings. The servo outlives it.
+class ServoTrace {
+ public:
+  explicit ServoTrace(Servo& servo) : servo_(&servo) {}
+
+  /// The servo's state is this one from now on, but that its steps count what was shown. One
+  /// thread.
+  void show(const ServoState& state) noexcept;
+
+ private:
+  Servo* servo_;
+};
+
 }  // namespace palpate

@@ -18,6 +18,8 @@ using Eigen::Vector3f;
 constexpr std::uint8_t kStateKind = 1;
 constexpr std::uint8_t kCloudKind = 2;
 constexpr std::uint8_t kSurfaceKind = 3;
+constexpr std::uint8_t kPastKind = 4;
+constexpr std::size_t kPastHeader = 16;
 constexpr std::size_t kStateHeader = 92;
 constexpr std::size_t kCloudHeader = 40;
 constexpr std::size_t kSurfaceHeader = 24;
@@ -156,6 +158,21 @@ std::string encode_surface(std::uint8_t device, const Eigen::Vector3f& center, c
   }
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint16_t corner : triangle) bytes.put(corner);
+  }
+  return bytes.take();
+}
+
+std::string encode_past(std::uint8_t device, std::span<const TimeLine::Force> forces) {
+  const double time = forces.empty() ? 0 : forces.back().time;
+  ByteWriter bytes(kPastHeader + forces.size() * 4 * sizeof(float));
+  bytes.put(kPastKind);
+  bytes.put(device);
+  bytes.put(std::uint16_t{0});
+  bytes.put(static_cast<std::uint32_t>(forces.size()));
+  bytes.put(time);
+  for (const TimeLine::Force& each : forces) {
+    bytes.put(static_cast<float>(each.time - time));
+    bytes.put(each.force);
   }
   return bytes.take();
 }

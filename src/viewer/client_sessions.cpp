@@ -1,6 +1,5 @@
 #include "viewer/client_sessions.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -12,32 +11,6 @@
 #include "viewer/access.hpp"
 
 namespace palpate::viewer {
-
-void Outbox::put(Topic topic, Message message) {
-  if (topic.kind == Topic::Kind::answer) {
-    if (answers_.size() == kMostAnswers) answers_.pop_front();
-    answers_.push_back(std::move(message));
-    return;
-  }
-  const auto same = std::ranges::find(row_, topic, &Waiting::topic);
-  if (same == row_.end()) {
-    row_.push_back({topic, std::move(message)});
-  } else {
-    same->message = std::move(message);
-  }
-}
-
-std::optional<Message> Outbox::take() {
-  std::optional<Message> message;
-  if (!answers_.empty()) {
-    message = std::move(answers_.front());
-    answers_.pop_front();
-  } else if (!row_.empty()) {
-    message = std::move(row_.front().message);
-    row_.pop_front();
-  }
-  return message;
-}
 
 namespace {
 
@@ -150,11 +123,14 @@ void ClientSessions::welcome(Session& session) {
   welcome.devices = options_.devices;
   welcome.settings = settings();
   welcome.presets = options_.controls.presets;
+  if (const auto& line = options_.controls.time_line) welcome.time_line = line->length;
   answer(session, welcome_text(welcome));
   for (const Notice& notice : welcome.notices) answer(session, notice_text(notice));
   if (!recording_.empty()) {
     session.outbox.put({Topic::Kind::record}, text_message(record_text(true, recording_)));
   }
+  moment_.reset();  // for the new one
+  show_time_line({&session});
 }
 
 void ClientSessions::act(Session& session, const Hand& hand) {
@@ -221,6 +197,41 @@ void ClientSessions::act(Session&, const Record& record) {
   const std::string file = options_.controls.record(record.on);
   recording_ = record.on ? file : "";
   send_to_all({Topic::Kind::record}, text_message(record_text(record.on, file)));
+}
+
+void ClientSessions::act(Session&, const Seek& seek) {
+  require(options_.controls.time_line, "seek");
+  options_.controls.time_line->seek(seek.time);
+}
+
+void ClientSessions::act(Session&, const Play& play) {
+  require(options_.controls.time_line, "play a recording");
+  options_.controls.time_line->play(play.on, play.speed);
+}
+
+void ClientSessions::send_moment() {
+  const auto& line = options_.controls.time_line;
+  if (!line) return;
+  const TimeLine::Moment moment = line->moment();
+  if (std::exchange(moment_, moment) == moment) return;
+  send_to_all({Topic::Kind::time}, text_message(moment_text(moment)));
+}
+
+void ClientSessions::show_time_line(const std::vector<Session*>& sessions) const {
+  const auto& line = options_.controls.time_line;
+  if (!line) return;
+  std::vector<std::pair<Topic, Message>> messages;
+  messages.emplace_back(Topic{Topic::Kind::envelope},
+                        text_message(envelope_text(line->envelope())));
+  for (std::size_t i = 0; i < options_.devices.size(); ++i) {
+    std::string past = encode_past(static_cast<std::uint8_t>(i), line->past(i));
+    messages.emplace_back(Topic{Topic::Kind::past, i},
+                          Message{std::make_shared<const std::string>(std::move(past)), false});
+  }
+  for (Session* session : sessions) {
+    for (const auto& [topic, message] : messages) session->outbox.put(topic, message);
+    if (session->wake) session->wake();
+  }
 }
 
 void ClientSessions::send_to_all(Topic topic, const Message& message) {

@@ -33,6 +33,9 @@ struct Topic {
     devices,
     sources,
     record,
+    time,
+    envelope,
+    past,
     answer
   };
   Kind kind = Kind::answer;
@@ -140,7 +143,8 @@ struct ClientSessionsOptions {
 /// Knows neither sockets nor clocks; one thread uses it.
 class ClientSessions {
  public:
-  explicit ClientSessions(ClientSessionsOptions options) : options_(std::move(options)) {
+  explicit ClientSessions(ClientSessionsOptions options)
+      : options_(std::move(options)), recording_(options_.controls.recording) {
     holders_.resize(options_.devices.size(), nullptr);
   }
 
@@ -162,6 +166,10 @@ class ClientSessions {
   void send(const Notice& notice);
   /// What was being recorded has ended by itself.
   void end_record();
+  /// Says of a time line what is shown now, if that is new.
+  void send_moment();
+  /// The envelope and the past of a time line.
+  void send_time_line() { show_time_line(greeted()); }
   /// To one client, unless it was shown these very bytes last.
   static void show(Session& session, Topic topic, const SharedBytes& bytes);
 
@@ -181,11 +189,14 @@ class ClientSessions {
   void act(Session& session, const Pause& pause);
   void act(Session& session, const Reset& reset);
   void act(Session& session, const Record& record);
+  void act(Session& session, const Seek& seek);
+  void act(Session& session, const Play& play);
   static void act(Session& session, const Points& points) { session.points = points.points; }
   void act(Session& session, const Ping& ping) { answer(session, pong_text(ping.id)); }
   static void act(Session&, const Unreadable& unreadable) { throw Error(unreadable.text); }
 
   void welcome(Session& session);
+  void show_time_line(const std::vector<Session*>& sessions) const;
   void answer(Session& session, std::string text);
   void refuse(Session& session, std::string_view text, double now);
   void close(Session& session, std::uint16_t code, std::string reason);
@@ -195,8 +206,9 @@ class ClientSessions {
 
   ClientSessionsOptions options_;
   std::vector<Session*> sessions_;
-  std::vector<Session*> holders_;  // of each device's tool
-  std::string recording_;          // the newest answer to `record`, while it is on
+  std::vector<Session*> holders_;           // of each device's tool
+  std::string recording_;                   // the file, while one is recorded
+  std::optional<TimeLine::Moment> moment_;  // that was told last
   std::uint64_t refused_ = 0;
   std::uint64_t wrong_tokens_ = 0;
   std::uint64_t turned_away_ = 0;

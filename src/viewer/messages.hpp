@@ -20,6 +20,7 @@ namespace palpate::viewer {
 
 using Setting = ViewerControls::Setting;
 using ViewedStream = ViewerOptions::Stream;
+using TimeLine = ViewerControls::TimeLine;
 
 struct Mesh;  // local_surface.hpp
 
@@ -51,6 +52,13 @@ struct Reset {};
 struct Record {
   bool on = false;
 };
+struct Seek {
+  double time = 0;  ///< s
+};
+struct Play {
+  bool on = false;
+  double speed = 1;
+};
 struct Points {
   std::size_t points = 0;
 };
@@ -63,8 +71,8 @@ struct Unreadable {
   std::string text;
 };
 
-using ClientMessage =
-    std::variant<Unreadable, Hello, Hand, Release, Set, Preset, Pause, Reset, Record, Points, Ping>;
+using ClientMessage = std::variant<Unreadable, Hello, Hand, Release, Set, Preset, Pause, Reset,
+                                   Record, Seek, Play, Points, Ping>;
 
 constexpr std::size_t kMostPoints = 10'000'000;  ///< that a page may ask for
 constexpr std::size_t kLongestWord = 256;        ///< bytes of a text
@@ -103,7 +111,8 @@ struct Welcome {
   std::vector<SourceLabel> sources;
   std::vector<Setting> settings;
   std::vector<std::string> presets;
-  std::vector<Notice> notices;  ///< what is wrong already; messages of their own
+  std::optional<double> time_line;  ///< its length, s; unset: a run is shown
+  std::vector<Notice> notices;      ///< what is wrong already; messages of their own
 };
 
 /// How a device is doing; `reason`: why it is silent or has failed, and what to do.
@@ -133,6 +142,8 @@ struct SourceReport {
 [[nodiscard]] std::string sources_text(std::span<const SourceReport> sources);
 [[nodiscard]] std::string notice_text(const Notice& notice);
 [[nodiscard]] std::string record_text(bool on, std::string_view file);
+[[nodiscard]] std::string moment_text(const TimeLine::Moment& moment);
+[[nodiscard]] std::string envelope_text(std::span<const float> forces);
 [[nodiscard]] std::string refused_text(std::string_view text);
 [[nodiscard]] std::string lost_text(std::size_t device, std::string_view why);
 [[nodiscard]] std::string pong_text(double id);
@@ -191,6 +202,9 @@ struct CloudMessage {
 /// Message 3: `mesh` around `center` (m, relative to the origin). At most 65535 vertices.
 [[nodiscard]] std::string encode_surface(std::uint8_t device, const Eigen::Vector3f& center,
                                          const Mesh& mesh);
+
+/// Message 4: the forces before the moment that was sought last.
+[[nodiscard]] std::string encode_past(std::uint8_t device, std::span<const TimeLine::Force> forces);
 
 /// A unit normal in two bytes; what has no direction becomes +z.
 [[nodiscard]] std::array<std::int8_t, 2> octahedral(const Eigen::Vector3f& normal) noexcept;

@@ -16,6 +16,9 @@ using nlohmann::json;
 
 constexpr double kLargestId = 9007199254740992.0;  // 2^53
 constexpr double kMostDevices = 256;
+constexpr double kLongestTime = 1e9;  // s
+constexpr double kSlowest = 0.1;
+constexpr double kFastest = 4;
 constexpr double kAllButtons = 4294967295.0;  // 2^32 - 1
 
 // Thrown in here alone: becomes Unreadable.
@@ -97,6 +100,10 @@ ClientMessage read_object(const json& object) {
   if (type == "pause") return Pause{on(object)};
   if (type == "reset") return Reset{};
   if (type == "record") return Record{on(object)};
+  if (type == "seek") return Seek{number(member(object, "time"), "time", 0, kLongestTime)};
+  if (type == "play") {
+    return Play{on(object), number(member(object, "speed"), "speed", kSlowest, kFastest)};
+  }
   if (type == "points") return Points{points(object)};
   throw Unread{"unknown message type"};
 }
@@ -181,6 +188,7 @@ std::string welcome_text(const Welcome& welcome) {
                {"scene", welcome.scene},    {"origin", json_of(welcome.origin)},
                {"up", json_of(welcome.up)}, {"radius", welcome.radius},
                {"presets", welcome.presets}};
+  if (welcome.time_line) message["timeline"] = {{"length", *welcome.time_line}};
   json& devices = message["devices"] = json::array();
   for (const DeviceLabel& device : welcome.devices) {
     devices.push_back({{"name", device.name}, {"takeable", device.takeable}});
@@ -221,6 +229,17 @@ std::string notice_text(const Notice& notice) {
 
 std::string record_text(bool on, std::string_view file) {
   return text_of({{"type", "record"}, {"on", on}, {"file", file}});
+}
+
+std::string moment_text(const TimeLine::Moment& moment) {
+  return text_of({{"type", "time"},
+                  {"time", moment.time},
+                  {"playing", moment.playing},
+                  {"speed", moment.speed}});
+}
+
+std::string envelope_text(std::span<const float> forces) {
+  return text_of({{"type", "envelope"}, {"forces", forces}});
 }
 
 std::string refused_text(std::string_view text) {

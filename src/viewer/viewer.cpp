@@ -71,6 +71,7 @@ ViewerOptions complete(ViewerOptions options, const Scene& scene) {
 }
 
 ViewerControls complete(ViewerControls controls, const std::vector<Servo*>& servos) {
+  if (controls.time_line) return controls;
   if (!controls.pause) {
     controls.pause = [servos](bool on) {
       for (Servo* servo : servos) servo->pause(on);
@@ -213,6 +214,7 @@ void Viewer::Parts::tick() {
       sessions.send_to_all({Topic::Kind::state, i}, binary(encode(*state)));
     }
   }
+  if (seen) sessions.send_moment();
   counts.set(server.counts());
 }
 
@@ -262,6 +264,11 @@ void Viewer::notice(Viewer::NoticeLevel level, std::string text) {
 void Viewer::settings_changed() {
   Parts& parts = *parts_;
   parts.server.post([&parts] { parts.sessions.send_settings(); });
+}
+
+void Viewer::time_line_changed() {
+  Parts& parts = *parts_;
+  parts.server.post([&parts] { parts.sessions.send_time_line(); });
 }
 
 void Viewer::record_ended() {

@@ -35,8 +35,8 @@ Json record_and_replay(Shell& shell, const std::string& arguments) {
     EXPECT_GT(hand["steps"], 100);
   }
   Json report = Json::parse(shell.read("run.json"));
-  EXPECT_EQ(report["recording"]["lost_steps"], 0);
-  EXPECT_EQ(report["recording"]["lost_frames"], 0);
+  EXPECT_EQ(report["recordings"][0]["lost_steps"], 0);
+  EXPECT_EQ(report["recordings"][0]["lost_frames"], 0);
   return report;
 }
 
@@ -64,7 +64,7 @@ TEST(ReplayProgram, ACameraInSimulatedTimeWhichRecordingDoesNotChange) {
   Shell shell;
   const std::string camera = "camera:simulated --simulated-time --duration 1 --log ";
   const Json report = record_and_replay(shell, camera + "recorded.csv");
-  EXPECT_GT(report["recording"]["frames"], 20);
+  EXPECT_GT(report["recordings"][0]["frames"], 20);
   ASSERT_EQ(shell.run("touch " + camera + "alone.csv").code, 0);
   EXPECT_EQ(without_times(shell, "recorded.csv"), without_times(shell, "alone.csv"));
 }
@@ -73,7 +73,7 @@ TEST(ReplayProgram, ACameraInRealTime) {
   if (test::is_slow_build()) GTEST_SKIP() << "no surface is ready in time";
   Shell shell;
   const Json report = record_and_replay(shell, "camera:simulated --duration 1.5");
-  EXPECT_GT(report["recording"]["frames"], 2);
+  EXPECT_GT(report["recordings"][0]["frames"], 2);
 }
 
 TEST(ReplayProgram, TwoCamerasInRealTime) {
@@ -83,7 +83,7 @@ TEST(ReplayProgram, TwoCamerasInRealTime) {
       record_and_replay(shell,
                         "left=camera:simulated:table,view=40,phase=0.011,seed=2,error=0.002 "
                         "right=camera:simulated:table,view=-40 --duration 1.5");
-  EXPECT_GT(report["recording"]["frames"], 2);
+  EXPECT_GT(report["recordings"][0]["frames"], 2);
 }
 
 // To its end, and beyond: the last surface stays.
@@ -99,7 +99,7 @@ TEST(ReplayProgram, AMovingCameraInRealTime) {
                   "depth_unit_m": 0.001, "fps": 30, "pose": "groundtruth.txt"})");
   shell.write("way.csv", into_wall(1200));
   const Json report = record_and_replay(shell, "sequence:wall --trajectory way.csv");
-  EXPECT_GT(report["recording"]["frames"], 2);
+  EXPECT_GT(report["recordings"][0]["frames"], 2);
   EXPECT_GT(report["largest_force_N"], 0.1);
   EXPECT_TRUE(contains(shell.run("bag info run.mcap").out, "/tf"));
 }
@@ -188,6 +188,9 @@ TEST(ReplayProgram, RefusesWhatIsNoRecordingOfARun) {
   EXPECT_EQ(other.code, 1);
   EXPECT_TRUE(contains(other.err, "palpate touch --record")) << other.err;
   EXPECT_EQ(shell.run("replay missing.mcap").code, 1);
+  EXPECT_EQ(shell.run("replay missing.mcap --view --headless").code, 1);
+  EXPECT_EQ(shell.run("replay other.mcap --port 0").code, 2);
+  EXPECT_EQ(shell.run("replay other.mcap --view --log steps.csv").code, 2);
   shell.write("plane.xyz", plane_xyz());
   EXPECT_EQ(shell.run("touch plane.xyz --record -").code, 2);
   EXPECT_EQ(shell.run("touch plane.xyz --record plane.xyz").code, 2);

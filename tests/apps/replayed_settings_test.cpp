@@ -73,7 +73,7 @@ TEST(Replay, ChangesOfSettingsInContactAreDoneAgainInTheirSteps) {
     servo.show();
     recorder.keep_up();
   }
-  const RecordReport report = recorder.finish();
+  const RecordReport report = recorder.finish().at(0);
   EXPECT_EQ(report.steps, 1200u);
   EXPECT_EQ(report.problem, "");
   const auto felt = std::ranges::count_if(forces, [](const auto& f) { return f.norm() > 0.05; });
@@ -134,7 +134,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
     servo.show();
     recorder.keep_up();
   }
-  EXPECT_EQ(recorder.finish().frames, 19u);
+  EXPECT_EQ(recorder.finish().at(0).frames, 19u);
   EXPECT_GT(largest, 0.05);
   const ForceDifference difference =
       ReplayedRun(shell.path("run.mcap")).replay(0, [](const ServoState&, const DeviceInfo&) {});

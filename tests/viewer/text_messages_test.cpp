@@ -38,6 +38,8 @@ TEST(ClientMessage, EveryKindOfTheProtocolIsRead) {
   EXPECT_TRUE(read<Pause>(R"({"type":"pause","on":true})").on);
   read<Reset>(R"({"type":"reset"})");
   EXPECT_FALSE(read<Record>(R"({"type":"record","on":false})").on);
+  EXPECT_EQ(read<Seek>(R"({"type":"seek","time":2.5})").time, 2.5);
+  EXPECT_EQ(read<Play>(R"({"type":"play","on":true,"speed":4})").speed, 4);
   EXPECT_EQ(read<Points>(R"({"type":"points","points":0})").points, 0u);
   EXPECT_EQ(read<Ping>(R"({"type":"ping","id":9007199254740992})").id, 9007199254740992.0);
 }

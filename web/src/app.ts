@@ -19,6 +19,7 @@ import { SettingsPanel } from "./panel/settings";
 import { SourcesPanel } from "./panel/sources";
 import { Status } from "./panel/status";
 import { Tags } from "./panel/tags";
+import { TimeLinePanel } from "./panel/time_line";
 import { Backoff } from "./protocol/backoff";
 import { Connection } from "./protocol/connection";
 import { Kind, type BinaryMessage } from "./protocol/decode";
@@ -50,6 +51,8 @@ export class App {
   private readonly hand: Hand;
   private readonly hold: HoldPanel;
   private readonly bar: Bar;
+  private readonly keys: Keys;
+  private readonly timeLine: TimeLinePanel;
   private readonly input: Input;
   private readonly connection: Connection;
   private readonly plotInterval: number;
@@ -71,17 +74,18 @@ export class App {
     this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
     const take = () => this.hold.take();
     this.bar = new Bar(this.session, this.world, this.sound, this.notices, link.token, send);
-    const keys = new Keys({
+    this.timeLine = new TimeLinePanel(send);
+    const keys = (this.keys = new Keys({
       toggleTool: () => this.hold.toggle(),
       letGo: () => this.hand.letGo(),
       togglePause: () => this.bar.pause(),
-      reset: () => send({ type: "reset" }),
+      reset: () => this.bar.reset(),
       fit: () => this.world.followTool(undefined),
       follow: () => this.bar.follow(),
       help: () => this.bar.help(),
       freeze: () => this.freeze(),
       sayForce: () => (byId("polite").textContent = this.readout.sentence(this.session.tool)),
-    });
+    }));
     const spaceMouse = new SpaceMouse();
     this.input = new Input(this.world, this.hand, keys, spaceMouse, take);
     this.hold.offer(spaceMouse, keys, this.notices);
@@ -145,6 +149,10 @@ export class App {
         return this.notices.add(message.level, message.text);
       case "record":
         return this.bar.recording(message.on, message.file);
+      case "time":
+        return this.timeLine.take(message);
+      case "envelope":
+        return this.timeLine.takeEnvelope(message.forces);
       case "lost":
         return this.lose(message.device, message.text);
       case "refused":
@@ -177,6 +185,8 @@ export class App {
     this.hold.begin();
     this.tags.begin(welcome);
     this.bar.begin(welcome);
+    this.timeLine.begin(welcome.timeline?.length);
+    this.keys.timeLine = this.session.recorded ? this.timeLine : undefined;
     this.relook();
     if (first) this.applyLink(welcome);
   }
@@ -200,6 +210,8 @@ export class App {
       this.world.takeCloud(message);
     } else if (message.kind === Kind.surface) {
       this.world.takeSurface(message);
+    } else if (message.kind === Kind.past) {
+      this.session.devices[message.device]?.takePast(message);
     } else {
       const tool = this.session.devices[message.device];
       if (tool === undefined) return;
@@ -252,6 +264,7 @@ export class App {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.world.retint();
       this.plots.redraw();
+      this.timeLine.draw();
     });
     document.addEventListener("visibilitychange", () => {
       if (document.hidden) this.hand.letGo();

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { decode, DecodeError, Flag, Kind, type CloudMessage, type StateMessage, type SurfaceMessage } from "../src/protocol/decode";
+import { decode, DecodeError, Flag, Kind, type CloudMessage, type PastMessage, type StateMessage, type SurfaceMessage } from "../src/protocol/decode";
 
 /** Bytes written one by one, as docs/viewer_protocol.md lists them. */
 class Writer {
@@ -124,13 +124,24 @@ test("a surface is read, and must not point beyond its vertices", () => {
   assert.throws(() => decode(surface(3)), DecodeError);
 });
 
+function past(): ArrayBuffer {
+  return new Writer().u8(4, 1).u16(0).u32(2).f64(12.5).f32(-0.5, 1, 2, 3).f32(0, 4, 5, 6).buffer;
+}
+
+test("the past of a recording is read as it was written", () => {
+  const message = decode(past()) as PastMessage;
+  assert.equal(message.device, 1);
+  assert.equal(message.time, 12.5);
+  assert.deepEqual([...message.samples], [-0.5, 1, 2, 3, 0, 4, 5, 6]);
+});
+
 test("a surface may be empty: nothing is near", () => {
   const message = decode(new Writer().u8(3, 0).u16(0).u32(0).f32(0, 0, 0).f32(0).buffer) as SurfaceMessage;
   assert.equal(message.vertices.length + message.triangles.length, 0);
 });
 
 test("what is cut short anywhere is refused, never read beyond its end", () => {
-  for (const whole of [state(2), oriented(), cloud(7), surface(2)]) {
+  for (const whole of [state(2), oriented(), cloud(7), surface(2), past()]) {
     for (let bytes = 0; bytes < whole.byteLength; bytes += 1) {
       assert.throws(() => decode(whole.slice(0, bytes)), DecodeError, `${bytes} of ${whole.byteLength}`);
     }

@@ -43,3 +43,20 @@ test("a page that stood still moves the tool no farther than half a second's way
   key("keyup", "ArrowDown", 60_100);
   near(keys.take(60_200), [0, -0.1, 0]);
 });
+
+test("arrows and the space bar go through a recording, and up and down still turn the view", () => {
+  const keys = new Keys({} as Actions);
+  const steps: number[] = [];
+  let toggled = 0;
+  keys.timeLine = { step: (seconds) => steps.push(seconds), toggle: () => (toggled += 1) };
+  key("keydown", "ArrowRight", 1000);
+  key("keydown", "ArrowLeft", 1010, { shiftKey: true });
+  key("keydown", "ArrowLeft", 1020, { altKey: true });
+  key("keydown", " ", 1030);
+  key("keydown", " ", 1040, { repeat: true });
+  assert.deepEqual(steps, [1, -10, -0.05]);
+  assert.equal(toggled, 1);
+  key("keydown", "ArrowUp", 1100);
+  key("keyup", "ArrowUp", 1200);
+  near(keys.take(1200), [0, 0.1, 0]);
+});

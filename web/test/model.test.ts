@@ -4,7 +4,7 @@ import { fft } from "../src/model/fft";
 import { Ring } from "../src/model/ring";
 import { DeviceHistory, SourceHistory } from "../src/model/session";
 import { kWindow, Spectrum } from "../src/model/spectrum";
-import { decode, type CloudMessage, type StateMessage } from "../src/protocol/decode";
+import { decode, Kind, type CloudMessage, type StateMessage } from "../src/protocol/decode";
 
 test("the fast transform agrees with the sum it stands for", () => {
   const n = 16;
@@ -89,4 +89,14 @@ test("a program that begins again begins a new history", () => {
   history.take(stateAt(100, [1, 0, 0]), 0);
   history.take(stateAt(1, [2, 0, 0]), 1);
   assert.deepEqual([...history.force.copy(0)], [1]);
+});
+
+test("the past of a recording takes the place of what was shown, and what follows is put behind it", () => {
+  const history = new DeviceHistory();
+  history.force.push(80, 1, 1, 1, 2);
+  history.takePast({ kind: Kind.past, device: 0, time: 12, samples: Float32Array.of(-0.5, 3, 0, 4, 0, 0, 1, 0) });
+  assert.deepEqual([...history.force.copy(0)], [11.5, 12]);
+  assert.deepEqual([...history.force.copy(4)], [5, 1]);
+  history.takePast({ kind: Kind.past, device: 0, time: 0, samples: new Float32Array() });
+  assert.equal(history.force.length, 0);
 });

@@ -1,9 +1,13 @@
 #include "apps/palpate/record/recorder.hpp"
 
+#include <fmt/chrono.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <exception>
+#include <filesystem>
 #include <utility>
 
 #include "apps/palpate/record/options_json.hpp"
@@ -29,6 +33,15 @@ std::vector<double> rows(const Eigen::Isometry3d& pose) {
   return values;
 }
 
+// After the time of day, and of no file that is there.
+std::string free_name() {
+  const std::string stem =
+      fmt::format("palpate-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
+  std::string name = stem + ".mcap";
+  for (int i = 2; std::filesystem::exists(name); ++i) name = fmt::format("{}-{}.mcap", stem, i);
+  return name;
+}
+
 // Without what no surface depends on.
 DepthFrame without_colors(const DepthFrame& frame) {
   DepthFrame kept;
@@ -42,8 +55,11 @@ DepthFrame without_colors(const DepthFrame& frame) {
 
 }  // namespace
 
-Recorder::Recorder(const std::string& path) : file_(std::make_unique<RecordingFile>(path)) {
+Recorder::Recorder(const std::string& path) : name_(path) {
+  if (path.empty()) return;
+  file_ = std::make_unique<RecordingFile>(path);
   report_.path = path;
+  takes_frames_ = true;
 }
 
 Recorder::~Recorder() {
@@ -51,21 +67,52 @@ Recorder::~Recorder() {
 }
 
 StepTraces* Recorder::add_hand() {
-  return &hands_.emplace_back(kSteps);
+  StepTraces& hand = hands_.emplace_back(kSteps);
+  hand.accept(file_ != nullptr);
+  return &hand;
 }
 
-void Recorder::begin(LoadedScene& loaded, const std::vector<const Servo*>& servos, double now,
+void Recorder::begin(LoadedScene& loaded, std::vector<const Servo*> servos, double now,
                      bool waits) {
   loaded_ = &loaded;
+  servos_ = std::move(servos);
   waits_ = waits;
+  epoch_ = wall_clock() - std::llround(1e9 * now);
   changes_.assign(loaded.scene.size(), 0);
-  file_->begin(loaded, servos, wall_clock() - std::llround(1e9 * now));
+  if (file_) file_->begin(setup_of(loaded, servos_, epoch_));
   thread_ = std::thread([this] { work(); });
+}
+
+std::string Recorder::record(bool on) {
+  const std::lock_guard lock(mutex_);
+  if (on != name_.empty()) return name_;
+  Order order;
+  if (on) {
+    order.path = free_name();
+    order.file = std::make_unique<RecordingFile>(order.path);
+    order.setup = setup_of(*loaded_, servos_, epoch_);
+  }
+  std::string name = on ? order.path : name_;
+  name_ = order.path;
+  orders_.push_back(std::move(order));
+  called_.notify_one();
+  return name;
+}
+
+std::string Recorder::recording() const {
+  const std::lock_guard lock(mutex_);
+  return name_;
+}
+
+void Recorder::on_broken(Broken broken) {
+  const std::lock_guard lock(broken_mutex_);
+  broken_ = std::move(broken);
 }
 
 Stream::Sink Recorder::watching(std::size_t source, Stream::Sink sink) {
   return [this, source, sink = std::move(sink)](const DepthFrame& frame,
                                                 const Source::StartTime& start) {
+    if (!takes_frames_) return sink(frame, start);
     message::FrameUse use;
     use.kind = frame.cloud ? "cloud" : "image";
     use.stamp = frame.stamp;
@@ -93,6 +140,7 @@ Stream::Sink Recorder::watching(std::size_t source, Stream::Sink sink) {
 std::function<void()> Recorder::watching(std::size_t source, std::function<void()> ended) {
   return [this, source, ended = std::move(ended)] {
     ended();
+    if (!takes_frames_) return;
     message::FrameUse use;
     use.kind = "end";
     put(source, std::move(use), {});
@@ -113,7 +161,7 @@ void Recorder::put(std::size_t source, message::FrameUse use, DepthFrame frame) 
   }
   if (waits_) room_.wait(lock, [this] { return frames_.size() < kMostFrames; });
   if (frames_.size() >= kMostFrames && use.kind != "end") {
-    ++report_.lost_frames;
+    ++lost_frames_;
     return;
   }
   frames_.push_back({source, std::move(frame), std::move(use)});
@@ -126,53 +174,114 @@ void Recorder::keep_up() {
 void Recorder::work() {
   bool last = false;
   while (!last) {
+    std::deque<Order> orders;
     {
       std::unique_lock lock(mutex_);
-      ended_.wait_for(lock, kLook, [this] { return ending_; });
+      const auto called = [this] { return ending_ || !orders_.empty(); };
+      if (file_) {
+        called_.wait_for(lock, kLook, called);
+      } else {
+        called_.wait(lock, called);
+      }
+      orders.swap(orders_);
       last = ending_;
     }
-    try {
-      drain(report_.problem.empty());
-    } catch (const std::exception& error) {
-      report_.problem = error.what();
-    }
+    drain();
+    for (Order& order : orders) carry_out(std::move(order));
+  }
+  close();
+}
+
+void Recorder::carry_out(Order order) {
+  close();
+  if (!order.file) return;
+  drain();  // a step that came while the file before was closed
+  dropped_ = dropped();
+  report_ = {};
+  report_.path = order.path;
+  file_ = std::move(order.file);
+  accept(true);  // recorded is what comes from now on, though what follows takes its time
+  try {
+    file_->begin(order.setup);
+  } catch (const std::exception& error) {
+    fail(error.what());
   }
 }
 
-void Recorder::drain(bool writes) {
+void Recorder::accept(bool on) {
+  for (StepTraces& hand : hands_) hand.accept(on);
+  takes_frames_ = on;
+}
+
+void Recorder::drain() {
   std::deque<RecordedFrame> frames;
   {
     const std::lock_guard lock(mutex_);
     frames.swap(frames_);
   }
   room_.notify_all();
-  for (const RecordedFrame& frame : frames) {
-    if (writes) file_->write(frame);
-    if (writes && frame.use.kind != "end") ++report_.frames;
-  }
-  for (std::size_t i = 0; i < hands_.size(); ++i) {
-    while (const StepTrace* const step = hands_[i].front()) {
-      if (writes) file_->write(i, *step);
-      if (writes) ++report_.steps;
-      hands_[i].drop();
+  try {
+    for (const RecordedFrame& frame : frames) {
+      if (file_) file_->write(frame);
+      if (frame.use.kind != "end") ++report_.frames;
     }
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      while (const StepTrace* const step = hands_[i].front()) {
+        if (file_) file_->write(i, *step);
+        ++report_.steps;
+        hands_[i].drop();
+      }
+    }
+  } catch (const std::exception& error) {
+    fail(error.what());
   }
 }
 
-RecordReport Recorder::finish() {
+void Recorder::fail(const std::string& why) {
+  report_.problem = why;
   {
     const std::lock_guard lock(mutex_);
-    ending_ = true;
+    if (name_ == report_.path) name_.clear();
   }
-  ended_.notify_one();
-  if (thread_.joinable()) thread_.join();
+  close();
+  drain();  // into nothing
+  const std::lock_guard lock(broken_mutex_);
+  if (broken_) broken_(why);
+}
+
+// What is recorded until now.
+void Recorder::close() {
+  if (!file_) return;
+  accept(false);
+  if (report_.problem.empty()) drain();
+  if (!file_) return;  // that failed
   try {
     file_->close();
   } catch (const std::exception& error) {
     if (report_.problem.empty()) report_.problem = error.what();
   }
-  for (const StepTraces& hand : hands_) report_.lost_steps += hand.dropped();
-  return report_;
+  file_.reset();
+  report_.lost_steps = dropped() - dropped_;
+  const std::lock_guard lock(mutex_);
+  report_.lost_frames = std::exchange(lost_frames_, 0);
+  reports_.push_back(std::move(report_));
+}
+
+std::uint64_t Recorder::dropped() const {
+  std::uint64_t sum = 0;
+  for (const StepTraces& hand : hands_) sum += hand.dropped();
+  return sum;
+}
+
+std::vector<RecordReport> Recorder::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  called_.notify_one();
+  if (thread_.joinable()) thread_.join();
+  close();  // where it had not begun
+  return reports_;
 }
 
 }  // namespace palpate::app

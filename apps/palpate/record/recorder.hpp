@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -30,14 +31,16 @@ struct RecordReport {
   std::string problem;  ///< why it ended early; empty: it did not
 };
 
-/// Writes a run to an MCAP file, with all that `palpate replay` does it again from (docs/bags.md).
-/// A servo puts its steps into a queue, a stream's thread its frames into another; a thread of the
-/// recorder's own writes them. Where it falls behind, steps and frames are left out and counted;
-/// nothing waits for it but simulated time.
+/// Writes a run to MCAP files, one at a time: a first one from the run's beginning, with all that
+/// `palpate replay` does it again from (docs/bags.md), others from any moment on. A servo puts its
+/// steps into a queue, a stream's thread its frames into another; a thread of the recorder's own
+/// writes them. Where it falls behind, steps and frames are left out and counted; nothing waits for
+/// it but simulated time. While nothing is recorded, queues take nothing and the thread sleeps.
 class Recorder {
  public:
-  /// Makes the file. @throws Error when it cannot.
-  explicit Recorder(const std::string& path);
+  /// Makes the file of the run from its beginning; none where `path` is empty.
+  /// @throws Error when it cannot.
+  explicit Recorder(const std::string& path = {});
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -45,10 +48,23 @@ class Recorder {
   /// One more hand: what its servo puts its steps into.
   [[nodiscard]] StepTraces* add_hand();
 
-  /// Writes what the run is made of and starts the thread. All hands are there, no stream is yet;
-  /// scene and servos outlive finish(). `now`: s, on the run's clock. `waits`: frames wait for the
-  /// file. @throws Error when the file cannot be written.
-  void begin(LoadedScene& loaded, const std::vector<const Servo*>& servos, double now, bool waits);
+  /// Writes what the run is made of into the first file and starts the thread. All hands are there,
+  /// no stream is yet; scene and servos outlive the calls of record(). `now`: s, on the run's
+  /// clock. `waits`: frames wait for the file. @throws Error when the file cannot be written.
+  void begin(LoadedScene& loaded, std::vector<const Servo*> servos, double now, bool waits);
+
+  /// Begins a file in the working folder that is named after the time of day, or ends the present
+  /// one; what goes on already goes on. Returns its name; empty: there was none to end. Any thread,
+  /// after begin(); returns at once, and the recorder's thread does the rest.
+  /// @throws Error when the file cannot be made, and nothing changes.
+  std::string record(bool on);
+  /// The file that is being recorded; empty: none. Any thread.
+  [[nodiscard]] std::string recording() const;
+
+  /// Is told on the recorder's thread why a file ended by itself, the run going on. When
+  /// on_broken() has returned, the one before is called no more.
+  using Broken = std::function<void(const std::string& why)>;
+  void on_broken(Broken broken);
 
   /// `sink`, whose frames are recorded with what became of them.
   [[nodiscard]] Stream::Sink watching(std::size_t source, Stream::Sink sink);
@@ -58,25 +74,50 @@ class Recorder {
   /// Waits until there is room for steps: for simulated time.
   void keep_up();
 
-  /// Writes the rest and closes the file. Servos and streams have stopped.
-  [[nodiscard]] RecordReport finish();
+  /// Writes the rest and closes the file. Servos and streams have stopped. How each file went.
+  [[nodiscard]] std::vector<RecordReport> finish();
 
  private:
+  // To begin a file, or, where that is null, to end the present one.
+  struct Order {
+    std::unique_ptr<RecordingFile> file;
+    std::string path;
+    RecordedSetup setup;
+  };
+
   void put(std::size_t source, message::FrameUse use, DepthFrame frame);
   void work();
-  void drain(bool writes);
+  void carry_out(Order order);
+  void open(Order order);
+  void close();
+  void fail(const std::string& why);
+  void accept(bool on);
+  void drain();
+  [[nodiscard]] std::uint64_t dropped() const;
 
-  std::unique_ptr<RecordingFile> file_;  // the thread's, once it has begun
+  // The thread's, once it has begun.
+  std::unique_ptr<RecordingFile> file_;  // null: nothing is recorded
+  RecordReport report_;                  // of it
+  std::uint64_t dropped_ = 0;            // steps before it
+  std::vector<RecordReport> reports_;
+
   std::deque<StepTraces> hands_;
   LoadedScene* loaded_ = nullptr;
+  std::vector<const Servo*> servos_;
+  std::int64_t epoch_ = 0;  // ns
   bool waits_ = false;
-  std::mutex mutex_;  // of what follows, but that changes_[i] is source i's stream's
+  std::atomic<bool> takes_frames_{false};
+  mutable std::mutex mutex_;  // of what follows, but that changes_[i] is source i's stream's
   std::condition_variable room_;
-  std::condition_variable ended_;
+  std::condition_variable called_;
+  std::string name_;  // of the file that was asked for last; empty: it was ended
+  std::deque<Order> orders_;
   std::deque<RecordedFrame> frames_;
+  std::uint64_t lost_frames_ = 0;       // of the present file
   std::vector<std::uint64_t> changes_;  // of each source's options, that were told
   bool ending_ = false;
-  RecordReport report_;  // the thread's but for lost_frames
+  std::mutex broken_mutex_;
+  Broken broken_;
   std::thread thread_;
 };
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
-#include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/record/options_json.hpp"
+#include "apps/palpate/record/recorded_messages.hpp"
 #include "message/depth_images.hpp"
 #include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
@@ -27,140 +29,108 @@ std::string plain(std::string name) {
   return name;
 }
 
-std::vector<float> floats(const std::vector<Eigen::Vector3f>& vectors) {
-  std::vector<float> values;
-  for (const Eigen::Vector3f& v : vectors) values.insert(values.end(), {v.x(), v.y(), v.z()});
-  return values;
+}  // namespace
+
+std::string last_part(const std::string& topic) {
+  return topic.substr(topic.rfind('/') + 1);
 }
 
-std::vector<Eigen::Vector3f> vectors(const std::vector<float>& values) {
-  std::vector<Eigen::Vector3f> made;
-  for (std::size_t i = 0; i + 2 < values.size(); i += 3) made.emplace_back(values.data() + i);
-  return made;
+namespace {
+
+// As it is now, not as it began.
+Json hand_json(const Servo& servo, const std::string& topic) {
+  ServoOptions options = servo.options();
+  const ContactSettings contact = servo.contact();
+  options.field = servo.field();
+  options.proxy.stiffness = contact.stiffness;
+  options.proxy.friction = contact.friction;
+  options.proxy.texture = contact.texture;
+  return {{"topic", topic},
+          {"device", exact_json(servo.device().info())},
+          {"options", exact_json(options)}};
 }
 
-message::Tick tick_of(const StepTrace& step, std::size_t sources) {
-  const ServoState& state = step.state;
-  const DeviceState& device = step.input.device;
-  const SceneField::Found& found = step.input.found;
-  const auto count = static_cast<std::ptrdiff_t>(sources);
-  message::Tick tick;
-  tick.step = state.step;
-  tick.time = state.time;
-  tick.dt = state.dt;
-  tick.status = static_cast<std::uint8_t>(device.status);
-  tick.device_time = device.time;
-  tick.position = message::vector_of(device.position);
-  tick.velocity = message::vector_of(device.velocity);
-  const Eigen::Quaterniond& q = device.orientation;
-  tick.orientation = {q.x(), q.y(), q.z(), q.w()};
-  tick.buttons = device.buttons;
-  tick.gripper = device.gripper;
-  tick.paused = state.paused;
-  tick.publications.assign(found.publications.begin(), found.publications.begin() + count);
-  tick.least_radii.assign(found.least_radii.begin(), found.least_radii.begin() + count);
-  tick.force = message::vector_of(state.force);
-  tick.proxy = message::vector_of(state.contact.proxy);
-  tick.contact_notes = static_cast<std::uint32_t>(state.contact.notes);
-  tick.field_notes = static_cast<std::uint32_t>(state.field_notes);
-  tick.guard_notes = static_cast<std::uint32_t>(state.guard.notes);
-  tick.guard_fault = static_cast<std::uint8_t>(state.guard.fault);
-  tick.computing = state.timing.computing;
-  return tick;
+Json source_json(const LoadedSource& loaded, const Source& source, std::size_t index) {
+  SourceOptions options = source.options();
+  options.T_world_sensor = source.pose();
+  Json json = {{"name", source.name()},
+               {"topic", fmt::format("/palpate/{}_{}", plain(source.name()), index)},
+               {"lives", loaded.camera != nullptr},
+               {"as_cloud", loaded.plan.as_cloud},
+               {"options", exact_json(options)}};
+  if (loaded.camera || !loaded.image) return json;
+  json["lens"] = exact_json(loaded.image->camera);
+  json["pose"] = exact_json(loaded.image->T_world_sensor);
+  return json;
 }
 
 }  // namespace
 
-message::Cloud recorded(const PointCloud& cloud) {
-  message::Cloud made;
-  made.origin = message::vector_of(cloud.origin);
-  made.positions = floats(cloud.positions);
-  made.normals = floats(cloud.normals);
-  made.intensities = cloud.intensities;
-  if (const auto& from = cloud.viewpoint) made.viewpoint = {from->x(), from->y(), from->z()};
-  made.width = cloud.width;
-  made.height = cloud.height;
-  made.pixels = cloud.pixels;
-  return made;
-}
-
-PointCloud cloud_of(const message::Cloud& message) {
-  PointCloud cloud;
-  cloud.origin = message::eigen(message.origin);
-  cloud.positions = vectors(message.positions);
-  cloud.normals = vectors(message.normals);
-  cloud.intensities = message.intensities;
-  if (message.viewpoint.size() == 3) cloud.viewpoint.emplace(message.viewpoint.data());
-  cloud.width = message.width;
-  cloud.height = message.height;
-  cloud.pixels = message.pixels;
-  return cloud;
-}
-
-void RecordingFile::begin(LoadedScene& loaded, const std::vector<const Servo*>& servos,
-                          std::int64_t epoch) {
-  epoch_ = epoch;
-  sources_ = loaded.scene.size();
-  Json setup = {{"kind", kSetupKind}, {"palpate", std::string(version())}, {"epoch_ns", epoch}};
-  setup["sources"] = Json::array();
-  setup["hands"] = Json::array();
-  for (std::size_t i = 0; i < sources_; ++i) {
-    setup["sources"].push_back(add_source(loaded.sources[i], loaded.scene.source(i)));
+RecordedSetup setup_of(const LoadedScene& loaded, const std::vector<const Servo*>& servos,
+                       std::int64_t epoch) {
+  RecordedSetup setup;
+  setup.epoch = epoch;
+  Json sources = Json::array();
+  Json hands = Json::array();
+  for (std::size_t i = 0; i < loaded.scene.size(); ++i) {
+    const LoadedSource& source = loaded.sources[i];
+    sources.push_back(source_json(source, loaded.scene.source(i), i));
+    setup.clouds.push_back(source.camera ? nullptr : source.cloud);
+    setup.images.push_back(source.camera ? nullptr : source.image);
   }
   for (const Servo* servo : servos) {
-    const std::string number = servos.size() > 1 ? std::to_string(hands_.size() + 1) : "";
-    setup["hands"].push_back(add_hand(*servo, "hand" + number));
+    const std::string number = servos.size() > 1 ? std::to_string(hands.size() + 1) : "";
+    hands.push_back(hand_json(*servo, "/palpate/hand" + number));
   }
+  setup.json = {{"kind", kSetupKind},
+                {"palpate", std::string(version())},
+                {"epoch_ns", epoch},
+                {"sources", std::move(sources)},
+                {"hands", std::move(hands)}};
+  return setup;
+}
+
+void RecordingFile::begin(const RecordedSetup& setup) {
+  epoch_ = setup.epoch;
+  for (const Json& source : setup.json.at("sources")) {
+    add_source(source.at("topic").get<std::string>(), source.at("lives").get<bool>());
+  }
+  for (const Json& hand : setup.json.at("hands")) add_hand(hand.at("topic").get<std::string>());
   transforms_ = writer_.add_topic<message::TFMessage>("/tf", {.reliable = true, .depth = 100});
-  const std::string text = text_of(setup);
+  bag::Bytes bytes;
+  for (std::size_t i = 0; i < live_.size(); ++i) {
+    if (!setup.images[i] && !setup.clouds[i]) continue;
+    if (setup.images[i]) {
+      message::encode(message::image_of(*setup.images[i]), bytes);
+    } else {
+      message::encode(recorded(*setup.clouds[i]), bytes);
+    }
+    attach(surface_name(i), bytes, "application/octet-stream");
+  }
+  const std::string text = text_of(setup.json);
   attach(kSetupName, {text.begin(), text.end()}, "application/json");
 }
 
-Json RecordingFile::add_hand(const Servo& servo, const std::string& name) {
-  const std::string topic = "/palpate/" + name;
+void RecordingFile::add_hand(const std::string& topic) {
   HandTopics& hand = hands_.emplace_back();
-  hand.name = name;
+  hand.name = last_part(topic);
   hand.tick = writer_.add_topic<message::Tick>(topic + "/tick");
   hand.change = writer_.add_topic<message::Change>(topic + "/change");
   hand.pose = writer_.add_topic<message::PoseStamped>(topic + "/pose");
   hand.proxy = writer_.add_topic<message::PoseStamped>(topic + "/proxy");
   hand.wrench = writer_.add_topic<message::WrenchStamped>(topic + "/wrench");
   hand.joy = writer_.add_topic<message::Joy>(topic + "/joy");
-  return {{"topic", topic},
-          {"device", exact_json(servo.device().info())},
-          {"options", exact_json(servo.options())}};
 }
 
-Json RecordingFile::add_source(const LoadedSource& loaded, const Source& source) {
-  SourceOptions options = source.options();
-  options.T_world_sensor = source.pose();
-  const std::string name = fmt::format("{}_{}", plain(source.name()), live_.size());
-  const std::string topic = "/palpate/" + name;
+void RecordingFile::add_source(const std::string& topic, bool lives) {
   SourceTopics& topics = live_.emplace_back();
-  topics.name = name;
-  Json json = {{"name", source.name()},
-               {"topic", topic},
-               {"lives", loaded.camera != nullptr},
-               {"as_cloud", loaded.plan.as_cloud},
-               {"options", exact_json(options)}};
-  if (loaded.camera) {
-    topics.use = writer_.add_topic<message::FrameUse>(topic + "/use");
-    topics.image = writer_.add_topic<message::Image>(topic + "/depth/image_raw");
-    topics.info = writer_.add_topic<message::CameraInfo>(topic + "/depth/camera_info");
-    topics.points = writer_.add_topic<message::PointCloud2>(topic + "/points");
-    topics.cloud = writer_.add_topic<message::Cloud>(topic + "/cloud");
-    return json;
-  }
-  bag::Bytes bytes;
-  if (loaded.image) {
-    message::encode(message::image_of(*loaded.image), bytes);
-    json["lens"] = exact_json(loaded.image->camera);
-    json["pose"] = exact_json(loaded.image->T_world_sensor);
-  } else {
-    message::encode(recorded(*loaded.cloud), bytes);
-  }
-  attach(surface_name(live_.size() - 1), bytes, "application/octet-stream");
-  return json;
+  topics.name = last_part(topic);
+  if (!lives) return;
+  topics.use = writer_.add_topic<message::FrameUse>(topic + "/use");
+  topics.image = writer_.add_topic<message::Image>(topic + "/depth/image_raw");
+  topics.info = writer_.add_topic<message::CameraInfo>(topic + "/depth/camera_info");
+  topics.points = writer_.add_topic<message::PointCloud2>(topic + "/points");
+  topics.cloud = writer_.add_topic<message::Cloud>(topic + "/cloud");
 }
 
 void RecordingFile::attach(const std::string& name, const bag::Bytes& bytes, const char* type) {
@@ -195,10 +165,10 @@ void RecordingFile::write(std::size_t index, const StepTrace& step) {
   if (input.contact) change(hand, state, "contact", exact_json(*input.contact));
   if (input.field) change(hand, state, "field", exact_json(*input.field));
   if (input.added) change(hand, state, "force", exact_json(*input.added));
-  message::Tick tick = tick_of(step, sources_);
+  message::Tick tick = tick_of(step, live_.size());
   tick.header = header(state.time, kWorld);
   put(hand.tick, state.time, tick);
-  if (state.step == 1 || state.time - hand.shown >= kShown) show(hand, state);
+  if (state.time - hand.shown >= kShown) show(hand, state);
 }
 
 void RecordingFile::show(HandTopics& hand, const ServoState& state) {

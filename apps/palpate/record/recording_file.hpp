@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,7 +19,7 @@ namespace palpate::app {
 
 /// Names that a recording's parts go by.
 inline constexpr const char* kSetupName = "setup.json";
-inline constexpr const char* kSetupKind = "palpate recording 1";
+inline constexpr const char* kSetupKind = "palpate recording 2";
 [[nodiscard]] inline std::string surface_name(std::size_t source) {
   return fmt::format("surface-{}.cdr", source);
 }
@@ -31,14 +31,27 @@ struct RecordedFrame {
   message::FrameUse use;
 };
 
+/// What a run is made of at a moment, to be written without the run.
+struct RecordedSetup {
+  Json json;
+  std::int64_t epoch = 0;  ///< when the run's clock was 0, ns since 1970
+  /// Of each source that stands still; of the others null.
+  std::vector<std::shared_ptr<const PointCloud>> clouds;
+  std::vector<std::shared_ptr<const DepthFrame>> images;
+};
+
+/// With the settings that hold now.
+[[nodiscard]] RecordedSetup setup_of(const LoadedScene& loaded,
+                                     const std::vector<const Servo*>& servos, std::int64_t epoch);
+
 /// The messages of a run in an MCAP file. One thread. Every function throws Error when the file
 /// cannot be written.
 class RecordingFile {
  public:
   explicit RecordingFile(const std::string& path) : writer_(path) {}
 
-  /// What the run is made of. `epoch`: when the run's clock was 0, ns since 1970.
-  void begin(LoadedScene& loaded, const std::vector<const Servo*>& servos, std::int64_t epoch);
+  /// Writes what the run is made of.
+  void begin(const RecordedSetup& setup);
 
   void write(std::size_t hand, const StepTrace& step);
   void write(const RecordedFrame& recorded);
@@ -50,7 +63,7 @@ class RecordingFile {
   struct HandTopics {
     std::string name;
     std::uint16_t tick, change, pose, proxy, wrench, joy;
-    double shown = 0;  // last message but ticks, s
+    double shown = -1e300;  // last message but ticks, s
   };
   struct SourceTopics {
     std::string name;
@@ -58,8 +71,8 @@ class RecordingFile {
     double time = 0;  // of its last message, s
   };
 
-  Json add_hand(const Servo& servo, const std::string& name);
-  Json add_source(const LoadedSource& loaded, const Source& source);
+  void add_hand(const std::string& topic);
+  void add_source(const std::string& topic, bool lives);
   void attach(const std::string& name, const bag::Bytes& bytes, const char* type);
   template <class T>
   void put(std::uint16_t channel, double time, const T& message);
@@ -69,14 +82,12 @@ class RecordingFile {
 
   bag::McapWriter writer_;
   std::int64_t epoch_ = 0;
-  std::size_t sources_ = 0;
   std::vector<HandTopics> hands_;
   std::vector<SourceTopics> live_;  // by source
   std::uint16_t transforms_ = 0;
 };
 
-/// A cloud as a recording holds it, and back.
-[[nodiscard]] message::Cloud recorded(const PointCloud& cloud);
-[[nodiscard]] PointCloud cloud_of(const message::Cloud& message);
+/// A topic's last part: "hand" of "/palpate/hand".
+[[nodiscard]] std::string last_part(const std::string& topic);
 
 }  // namespace palpate::app

@@ -9,6 +9,8 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/options/touch_options.hpp"
+#include "apps/palpate/replay/replay_view.hpp"
 #include "apps/palpate/replay/replayed_run.hpp"
 #include "apps/palpate/report/log.hpp"
 #include "apps/palpate/report/report.hpp"
@@ -20,9 +22,11 @@ namespace {
 constexpr const char* kReplayFooter = R"(Examples:
   palpate touch synthetic:torus --record run.mcap
   palpate replay run.mcap
+  palpate replay run.mcap --view
 
 The same program on the same kind of processor gives the same forces, bit for bit: the largest
-difference is 0. docs/bags.md says what is recorded.
+difference is 0. --view shows what was recorded, at any moment, and computes no force.
+docs/bags.md says what is recorded.
 
 Exit codes: 0 the forces are the same, 1 they differ or the file cannot be read, 2 the command line
 is wrong.)";
@@ -54,9 +58,11 @@ ForceDifference replay_hand(const ReplayedRun& run, std::size_t hand, const std:
   std::optional<TouchLog> steps;
   if (!log.empty()) steps.emplace(numbered_path(log, hand));
   const Waiting waiting(fmt::format("replaying hand {}", hand + 1));
-  ForceDifference found = run.replay(hand, [&](const ServoState& step, const DeviceInfo& device) {
+  const auto add = [&](const ServoState& step, const DeviceInfo& device) {
     if (steps) steps->add(step, device);
-  });
+  };
+  ForceDifference found = run.replay(hand, add);
+  if (found.steps == 0 && steps) run.recorded(hand, add);  // then as they were
   if (steps) steps->close();
   return found;
 }
@@ -75,9 +81,37 @@ void add_replay_options(CLI::App& command, ReplayCommand& replay) {
                   "CSV with one row per servo step of the replay, as touch --log; - is standard "
                   "output")
       ->type_name("FILE");
+  OptionTable table(command);
+  table.under("Page");
+  table.add_flag("--view", replay.page.wanted,
+                 "show what was recorded on a page in a browser, with a time line, until Ctrl-C");
+  table.add_flag("--headless", replay.headless, "do not open a browser");
+  add_page_options(table, replay.page);
 }
 
+namespace {
+
+// The page alone, or what is done again alone.
+void check(const ReplayCommand& command) {
+  const PagePlan& page = command.page;
+  if (page.wanted && !(command.json.empty() && command.log.empty())) {
+    throw UsageError("--view does nothing again; remove --json and --log, or --view");
+  }
+  if (!page.wanted && (command.headless || page.port || !page.address.empty())) {
+    throw UsageError("--headless, --listen and --port apply only to the page; add --view");
+  }
+}
+
+}  // namespace
+
 int replay(const ReplayCommand& command) {
+  check(command);
+  if (command.page.wanted) {
+    PagePlan page = command.page;
+    page.open_browser = !command.headless;
+    view_recording(command.input, page);
+    return kSuccess;
+  }
   const ReplayedRun run(command.input);
   if (command.log == "-" && (command.json == "-" || run.hands() > 1)) {
     throw UsageError("--log cannot go to standard output beside --json or another hand's log");

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "apps/palpate/options/touch_plan.hpp"
+
 namespace CLI {
 class App;
 }
@@ -12,6 +14,8 @@ struct ReplayCommand {
   std::string input;
   std::string json;
   std::string log;
+  PagePlan page;
+  bool headless = false;  ///< opens no browser
 };
 
 void add_replay_options(CLI::App& command, ReplayCommand& replay);

@@ -8,8 +8,10 @@
 #include <limits>
 #include <utility>
 
+#include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/record/options_json.hpp"
 #include "apps/palpate/record/recording_file.hpp"
+#include "apps/palpate/replay/recorded_hand.hpp"
 #include "apps/palpate/replay/replayed_source.hpp"
 #include "bag/mcap_reader.hpp"
 #include "message/transforms.hpp"
@@ -21,19 +23,6 @@ namespace palpate::app {
 namespace {
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-
-// What was said to be so long ago is at hand again.
-class RecordedDevice final : public Device {
- public:
-  explicit RecordedDevice(const Json& info) { take_exact(info, info_); }
-  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
-  [[nodiscard]] DeviceState read() noexcept override { return {}; }
-  void write(const Eigen::Vector3d& /*force*/) noexcept override {}
-  [[nodiscard]] std::string reason() const override { return {}; }
-
- private:
-  DeviceInfo info_;
-};
 
 DeviceState device_state(const message::Tick& tick) {
   DeviceState state;
@@ -78,13 +67,23 @@ void compare(const message::Tick& tick, const Eigen::Vector3d& force, double sta
   difference.first_time = tick.time - start;
 }
 
+// Why it cannot be gone on with this step, `done` having been done.
+std::string words_without(std::uint64_t step, std::uint64_t done) {
+  if (done > 0) return fmt::format("the steps before step {} were not recorded", grouped(step));
+  return fmt::format(
+      "recorded from step {} of its run on: it can be viewed (--view), not done again; use "
+      "--record "
+      "to record a run from its beginning",
+      grouped(step));
+}
+
 // One hand on a scene of its own.
 class ReplayedHand {
  public:
   ReplayedHand(const std::string& path, const Json& setup, const Json& json)
       : reader_(path), device_(json.at("device")) {
     for (std::size_t i = 0; i < setup.at("sources").size(); ++i) {
-      sources_.emplace_back(path, setup.at("sources").at(i), i, scene_);
+      sources_.emplace_back(path, setup.at("sources").at(i), i, scene_, reader_);
     }
     ServoOptions options;
     take_exact(json.at("options"), options);
@@ -115,7 +114,7 @@ class ReplayedHand {
   void step(const message::Tick& tick, ForceDifference& difference,
             const ReplayedRun::EachStep& each) {
     if (tick.step != difference.steps + 1) {
-      difference.ended = fmt::format("the steps before step {} were not recorded", tick.step);
+      difference.ended = words_without(tick.step, difference.steps);
       return;
     }
     for (std::size_t i = 0; i < sources_.size(); ++i) {
@@ -151,15 +150,19 @@ double ForceDifference::rms() const {
   return steps > 0 ? std::sqrt(squares / static_cast<double>(steps)) : 0;
 }
 
-ReplayedRun::ReplayedRun(const std::string& path) : path_(path) {
-  const bag::McapReader reader(path);
+Json recorded_setup(const bag::McapReader& reader, const std::string& path) {
   try {
-    const bag::Attachment setup = attachment_named(reader, kSetupName);
-    setup_ = Json::parse(setup.data.begin(), setup.data.end());
-    if (setup_.at("kind") != kSetupKind) throw Error("another version of palpate recorded it");
+    const bag::Attachment text = attachment_named(reader, kSetupName);
+    Json setup = Json::parse(text.data.begin(), text.data.end());
+    if (setup.at("kind") != kSetupKind) throw Error("another version of palpate recorded it");
+    return setup;
   } catch (const std::exception& error) {
-    throw Error(fmt::format("{}: no run can be done again from it: {}", path, error.what()));
+    throw Error(fmt::format("{}: no recording of a run: {}", path, error.what()));
   }
+}
+
+ReplayedRun::ReplayedRun(const std::string& path) : path_(path) {
+  setup_ = recorded_setup(bag::McapReader(path), path);
 }
 
 ForceDifference ReplayedRun::replay(std::size_t hand, const EachStep& each) const {
@@ -171,6 +174,17 @@ ForceDifference ReplayedRun::replay(std::size_t hand, const EachStep& each) cons
     return difference;
   } catch (const std::exception& error) {
     throw Error(fmt::format("{}: damaged: {}", path_, error.what()));
+  }
+}
+
+void ReplayedRun::recorded(std::size_t hand, const EachStep& each) const {
+  RecordedHand steps(path_, bag::McapReader(path_), setup_, hand);
+  const RecordedDevice device(setup_.at("hands").at(hand).at("device"));
+  double start = kNotANumber;
+  while (std::optional<ServoState> step = steps.next()) {
+    if (std::isnan(start)) start = step->time;
+    step->time -= start;
+    each(*step, device.info());
   }
 }
 

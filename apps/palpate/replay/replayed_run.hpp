@@ -2,13 +2,10 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "apps/palpate/cli/output.hpp"
-#include "message/palpate_types.hpp"
+#include "bag/mcap_reader.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
 
@@ -29,6 +26,10 @@ struct ForceDifference {
   [[nodiscard]] double rms() const;
 };
 
+/// What `path`, which `reader` reads, says of its run. @throws Error when it is no recording of
+/// one.
+[[nodiscard]] Json recorded_setup(const bag::McapReader& reader, const std::string& path);
+
 /// A recorded run that is done again, hand by hand: to each hand's field a source shows in each
 /// step what it showed in the run, so that it does not matter how hands and streams went side by
 /// side. Reads the file as it goes. One thread.
@@ -44,6 +45,10 @@ class ReplayedRun {
 
   /// Does what that hand did. @throws Error when the file's messages are damaged.
   [[nodiscard]] ForceDifference replay(std::size_t hand, const EachStep& each) const;
+
+  /// The steps of that hand as they were recorded, whether they can be done again or not.
+  /// @throws Error as replay() does.
+  void recorded(std::size_t hand, const EachStep& each) const;
 
  private:
   std::string path_;

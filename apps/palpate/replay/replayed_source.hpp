@@ -4,24 +4,21 @@
 #include <string>
 
 #include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/replay/recorded_frames.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
 #include "bag/mcap_reader.hpp"
-#include "message/palpate_types.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::app {
-
-/// The attachment of that name. @throws Error when the file has none, or it is damaged.
-[[nodiscard]] bag::Attachment attachment_named(const bag::McapReader& reader,
-                                               const std::string& name);
 
 /// What came to one source of a recorded run, in order, into a source of `scene`, which outlives
 /// it. One thread. What is damaged throws Error or nlohmann::json::exception.
 class ReplayedSource {
  public:
   /// `json`: the source's part of the set-up, the one at `index`. One that stands still has its
-  /// surface.
-  ReplayedSource(const std::string& path, const Json& json, std::size_t index, Scene& scene);
+  /// surface. `reader`: of the file.
+  ReplayedSource(const std::string& path, const Json& json, std::size_t index, Scene& scene,
+                 const bag::McapReader& reader);
 
   /// Pushes until so many snapshots are published. False: the file does not tell how they came
   /// about.
@@ -32,13 +29,12 @@ class ReplayedSource {
 
  private:
   bool push_next();
-  void do_again(const message::FrameUse& use);
+  void do_again(const RecordedFrame& recorded);
 
-  bag::McapReader reader_;
+  RecordedFrames frames_;
   LoadedSource from_;
   Source* source_;
   bool lives_;
-  DepthFrame frame_;
   std::uint64_t done_ = 0;  // publications
 };
 

@@ -189,10 +189,10 @@ Json report_on(const TouchReport& report, std::FILE* stream) {
       json["hands"].push_back(part.data);
     }
   }
-  if (report.recorded) {
-    const Report part = report_of(*report.recorded);
+  for (const RecordReport& each : report.recorded) {
+    const Report part = report_of(each);
     part.print(stream);
-    json["recording"] = part.data;
+    json["recordings"].push_back(part.data);
   }
   return json;
 }

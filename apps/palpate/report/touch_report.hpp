@@ -62,7 +62,7 @@ struct TouchReport {
   FieldOptions field;
   ProxyOptions proxy;
   std::vector<HandReport> hands;
-  std::optional<RecordReport> recorded = {};
+  std::vector<RecordReport> recorded = {};  ///< files, in order
 };
 
 /// For a person, to `stream`; the same as data: SI units, named in the keys. What is of a hand is

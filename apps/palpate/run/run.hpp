@@ -43,7 +43,7 @@ struct Run {
   std::vector<Hand>& hands;
   FieldOptions field;
   ProxyOptions proxy;
-  Recorder* recorder = nullptr;  ///< who writes all of it down, if anybody
+  Recorder* recorder = nullptr;  ///< who can write all of it down; null: no page, and no --record
 };
 
 /// What the servo of the next of the hands is made with; `steps`: who takes its steps, if anybody.

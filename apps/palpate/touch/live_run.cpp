@@ -231,20 +231,16 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
         told_hands(hands), run.loaded.scene, [&] { return feed.states(); }, run.ros.bridge);
   }
   if (run.page.served) view.emplace(run, servos_of(hands), feed);
-  const EachStep keep = [&](std::size_t hand, const ServoState& step) {
-    each(hand, step);
-    if (view) view->add(hand, step);
-  };
   while (any_goes_on(hands, clock.now()) && !interruption.asked()) {
     std::this_thread::sleep_for(kLook);
-    for (LiveHand& hand : hands) hand.take_steps(keep);
+    for (LiveHand& hand : hands) hand.take_steps(each);
     if (view) view->look();
     const double now = clock.now();
     failures.look(hands, now, status);
     if (status.due(now - start)) status.show(moment_of(hands, feed, now, start));
   }
   for (LiveHand& hand : hands) hand.stop();
-  for (LiveHand& hand : hands) hand.take_steps(keep);
+  for (LiveHand& hand : hands) hand.take_steps(each);
   if (bridge && !bridge->problem().empty()) status.tell("ROS 2: " + bridge->problem());
   bridge.reset();  // these look at what the feed takes down
   view.reset();

@@ -81,10 +81,11 @@ struct TouchOutputs {
   std::optional<Recorder> recorder;
   std::optional<Unguarded> unguarded;  // of a run in simulated time
 
-  TouchOutputs(const OutputPlan& plan, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) hands.emplace_back(plan, i);
-    if (!plan.json.empty()) json.emplace(plan.json);
-    if (!plan.record.empty()) recorder.emplace(plan.record);
+  explicit TouchOutputs(const TouchPlan& plan) {
+    const OutputPlan& files = plan.outputs;
+    for (std::size_t i = 0; i < plan.devices.size(); ++i) hands.emplace_back(files, i);
+    if (!files.json.empty()) json.emplace(files.json);
+    if (!files.record.empty() || plan.page.served) recorder.emplace(files.record);
   }
 };
 
@@ -178,7 +179,7 @@ void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
 void touch(const TouchPlan& plan) {
   use_range(plan.ros.range);
   const Trajectory trajectory = trajectory_of(plan.motion, plan.devices);
-  TouchOutputs outputs(plan.outputs, plan.devices.size());
+  TouchOutputs outputs(plan);
   SteadyClock steady;
   WaitingClock* clock = plan.time.real_time ? &steady : nullptr;
   std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, clock);
@@ -186,8 +187,7 @@ void touch(const TouchPlan& plan) {
   const double texture = surface.proxy.texture.amplitude;
   const bool explored = trajectory.empty() || hands.size() > 1 || texture > 0;
   const std::optional<RealtimeReport::Request> left = leave_to_servo(plan.time);
-  LoadedScene loaded =
-      load_sources(plan.sources, {explored, plan.page.served || outputs.recorder, clock});
+  LoadedScene loaded = load_sources(plan.sources, {explored, outputs.recorder.has_value(), clock});
   check_texture(texture, loaded.scene);
   place_hands(hands, {plan.motion, surface, plan.page}, trajectory, loaded.scene);
   const double stiffness = hands.front().stiffness;
@@ -204,7 +204,7 @@ void touch(const TouchPlan& plan) {
   for (LiveReport& each : outcome.hands) {
     if (left) each.realtime.requests.push_back(*left);
   }
-  std::optional<RecordReport> recorded;
+  std::vector<RecordReport> recorded;
   if (outputs.recorder) recorded = outputs.recorder->finish();
   tell({loaded, surface.paper, surface.field, run.proxy, hand_reports(run, outputs, outcome),
         recorded},

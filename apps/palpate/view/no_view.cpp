@@ -11,7 +11,6 @@ View::View(Run& run, std::vector<Servo*> /*servos*/, const LiveFeed& /*feed*/) {
   throw Error("this build has no page; install libboost-dev and rebuild, or remove --view");
 }
 View::~View() = default;
-void View::add(std::size_t /*hand*/, const ServoState& /*step*/) {}
 void View::look() {}
 
 }  // namespace palpate::app

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "apps/palpate/cli/process.hpp"
-#include "apps/palpate/report/log.hpp"
+#include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/viewer/viewer.hpp"
@@ -115,12 +115,18 @@ struct View::Parts {
         initial(initial_settings(r)),
         settings(initial),
         holds(r.hands.begin(), r.hands.end()),
-        recording(r.hands.size(), [this](const std::string& why) { recording_broke(why); }),
         preparer(r, initial.preparation,
                  [this](const std::string& why, const auto& held) { go_back(why, held); }),
-        viewer(r.loaded.scene, servos, viewer_options(), controls()) {}
+        viewer(r.loaded.scene, servos, viewer_options(), controls()) {
+    run.recorder->on_broken([this](const std::string& why) { recording_broke(why); });
+    if (run.recorder->recording().empty()) viewer.record_ended();
+  }
 
-  ~Parts() { preparer.stop(); }  // what it tells, it tells the viewer
+  // These tell the viewer.
+  ~Parts() {
+    run.recorder->on_broken({});
+    preparer.stop();
+  }
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
@@ -146,7 +152,8 @@ struct View::Parts {
     controls.preset = [this](const std::string& name) {
       apply(preset(initial, name, scope_of(run, servos)));
     };
-    controls.record = [this](bool on) { return recording.record(on); };
+    controls.record = [this](bool on) { return run.recorder->record(on); };
+    controls.recording = run.recorder->recording();
     controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };
     controls.hand = [this](std::size_t hand, const Eigen::Vector3d& place, std::uint32_t buttons) {
       holds[hand].move(place, buttons);
@@ -194,7 +201,6 @@ struct View::Parts {
   std::mutex settings_mutex;
   ViewSettings settings;
   std::deque<PageHold> holds;  // of each hand
-  Recording recording;
   Preparer preparer;
   std::optional<Browser> browser;
   Viewer viewer;  // last: it uses all of the above
@@ -207,10 +213,6 @@ View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
 }
 
 View::~View() = default;
-
-void View::add(std::size_t hand, const ServoState& step) {
-  parts_->recording.add(hand, step, parts_->run.hands[hand].device->info());
-}
 
 void View::look() {
   for (PageHold& hold : parts_->holds) {

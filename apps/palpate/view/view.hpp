@@ -19,9 +19,6 @@ class View {
   View(const View&) = delete;
   View& operator=(const View&) = delete;
 
-  /// Every step of each hand, in order; one thread, that of look().
-  void add(std::size_t hand, const ServoState& step);
-
   /// Some tens of times a second: says of pages that have a tool that they still have.
   void look();
 

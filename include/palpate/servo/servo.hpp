@@ -59,6 +59,10 @@ class Ring {
     return step;
   }
 
+  /// The recorder's: does it want steps from now on? At first it does.
+  void accept(bool on) noexcept { accepts_.store(on, std::memory_order_relaxed); }
+  [[nodiscard]] bool accepts() const noexcept { return accepts_.load(std::memory_order_relaxed); }
+
   /// Is half of the room taken? Any thread.
   [[nodiscard]] bool fills() const noexcept { return 2 * (pushed_ - popped_) > size_; }
 
@@ -71,6 +75,7 @@ class Ring {
   // Threads that write into one cache line wait for each other.
   std::size_t size_;
   std::unique_ptr<Step[]> steps_;
+  std::atomic<bool> accepts_{true};
   alignas(kCacheLine) std::atomic<std::uint64_t> pushed_{0};  // the servo writes it, and the next
   std::atomic<std::uint64_t> dropped_{0};
   alignas(kCacheLine) std::atomic<std::uint64_t> popped_{0};  // the recorder writes it
@@ -139,7 +144,7 @@ struct ServoOptions {
   /// While this button of the device is down, 0 to 31, the hand moves without the tool.
   std::optional<int> clutch_button = {};
   ServoState::Queue* steps = nullptr;  ///< every step is put into it; outlives the servo
-  Ring<StepTrace>* traces = nullptr;   ///< the same with what each was made of
+  Ring<StepTrace>* traces = nullptr;   ///< the same with what each was made of, while it accepts
 };
 
 /// What may change while a servo runs.
@@ -220,6 +225,8 @@ class Servo {
   /// real-time.
   /// @throws Error when a value is out of its range.
   void set_contact(const ContactSettings& contact);
+  /// What was set last, from the next step on at the latest. Any thread.
+  [[nodiscard]] ContactSettings contact() const noexcept;
 
   /// A force from outside, such as what a robot's sensor feels, N, world frame: it goes through the
   /// guard with the surface's and fades in kAddedForceFade unless the next one comes. Any thread;
@@ -235,6 +242,8 @@ class Servo {
   [[nodiscard]] FieldOptions field() const noexcept;
 
  private:
+  friend class ServoTrace;  // of recordings that are looked at
+
   struct Inside;
   std::unique_ptr<Inside> inside_;
 };

@@ -56,8 +56,37 @@ struct ViewerControls {
   std::function<void(bool on)> pause = {};  ///< empty: Servo::pause of every servo
   std::function<void()> reset = {};         ///< empty: Servo::reset of every servo
 
-  /// Begins or ends a log of steps. Returns the file's name.
+  /// Begins or ends a recording. Returns the file's name.
   std::function<std::string(bool on)> record = {};
+  /// What is recorded already when the viewer begins; empty: nothing.
+  std::string recording = {};
+
+  /// A recording that is shown in place of a run: servos show its states, and nobody steps them.
+  struct TimeLine {
+    /// What is shown.
+    struct Moment {
+      double time = 0;  ///< from 0 to `length`, s
+      bool playing = false;
+      double speed = 1;  ///< s of the recording a second
+
+      bool operator==(const Moment&) const = default;
+    };
+    struct Force {
+      double time = 0;                                  ///< of the step, on the servos' clock, s
+      Eigen::Vector3f force = Eigen::Vector3f::Zero();  ///< N
+    };
+
+    double length = 0;  ///< s
+    std::function<Moment()> moment = {};
+    std::function<void(double time)> seek = {};
+    std::function<void(bool on, double speed)> play = {};
+    /// The largest force in each of equal parts of the length, N; 0 where it is not known yet.
+    std::function<std::vector<float>()> envelope = {};
+    /// The forces before the moment that was sought last, oldest first.
+    std::function<std::vector<Force>(std::size_t device)> past = {};
+  };
+  /// Unset: a run is shown. Where it is set, `pause` and `reset` that are empty are refused, too.
+  std::optional<TimeLine> time_line = {};
 
   /// Can a page move this device's hand? Empty: where `hand` is there, all.
   std::function<bool(std::size_t device)> takeable = {};
@@ -158,7 +187,9 @@ class Viewer {
   void notice(NoticeLevel level, std::string text);
   /// The program itself changed a setting: tells every page. Any thread but a servo's.
   void settings_changed();
-  /// What a page began to record has ended by itself: tells every page. Any thread but a servo's.
+  /// There is another envelope or another past: tells every page. Any thread but a servo's.
+  void time_line_changed();
+  /// What was being recorded has ended by itself: tells every page. Any thread but a servo's.
   void record_ended();
 
  private:

@@ -1,5 +1,11 @@
 // Keys. Those that move are held down; the others act once. None acts while one writes into a field.
 
+/** What goes to and fro in a recording. */
+export interface TimeKeys {
+  toggle(): void;
+  step(seconds: number): void;
+}
+
 export interface Actions {
   toggleTool(): void;
   letGo(): void;
@@ -23,10 +29,14 @@ const kMoves: Record<string, readonly [number, number, number]> = {
 
 const kFast = 4;
 const kFine = 0.2;
+const kStep = 1; // s of a recording
+const kLongStep = 10;
+const kShortStep = 0.05;
 const kLongest = 0.5; // s that a key counts between two looks, however slow pictures are
 
 export class Keys {
   single = true; // letters act by themselves
+  timeLine: TimeKeys | undefined; // of a recording
   private readonly down = new Map<string, number>(); // from when on its time is to be counted, ms
   private held: [number, number, number] = [0, 0, 0]; // s
   private pace = 1;
@@ -45,6 +55,10 @@ export class Keys {
     window.addEventListener("keydown", (event) => {
       if (event.key === "Escape" && !dialogIsOpen()) actions.letGo();
       if (event.ctrlKey || event.metaKey || writes(event.target) || dialogIsOpen()) return;
+      if (this.movesTime(event)) {
+        event.preventDefault();
+        return;
+      }
       const act = event.altKey || !this.single ? undefined : once[event.key.toLowerCase()];
       if (act !== undefined && !event.repeat) act();
       else if (!this.press(event)) return;
@@ -71,6 +85,21 @@ export class Keys {
     this.down.set(key, now);
     const seconds = Math.min(kLongest, (now - since) / 1000);
     kMoves[key]?.forEach((part, axis) => (this.held[axis as 0 | 1 | 2] += part * this.pace * seconds));
+  }
+
+  /** Arrows and the space bar, where a recording is shown; a button keeps its space bar. */
+  private movesTime(event: KeyboardEvent): boolean {
+    if (this.timeLine === undefined) return false;
+    const direction = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    const presses = event.target instanceof Element && event.target.closest("button, input[type='checkbox']") !== null;
+    if (direction !== undefined) {
+      this.timeLine.step(direction * (event.shiftKey ? kLongStep : event.altKey ? kShortStep : kStep));
+    } else if (event.key === " " && !presses) {
+      if (!event.repeat) this.timeLine.toggle();
+    } else {
+      return false;
+    }
+    return true;
   }
 
   private press(event: KeyboardEvent): boolean {

@@ -1,6 +1,6 @@
 // What the page knows of the program now: the newest of everything, and the past that plots need.
 
-import { Flag, type CloudMessage, type StateMessage } from "../protocol/decode";
+import { Flag, type CloudMessage, type PastMessage, type StateMessage } from "../protocol/decode";
 import type { DeviceReport, SettingValue, SourceReport, Welcome } from "../protocol/messages";
 import { Ring } from "./ring";
 
@@ -31,6 +31,17 @@ export class DeviceHistory {
     const [p50, p99] = state.step;
     const [late50, late99] = state.lateness;
     this.timing.push(state.time, p50 * 1e6, p99 * 1e6, late50 * 1e6, late99 * 1e6);
+  }
+
+  /** What was before the moment of a recording that is shown now; what was shown before goes. */
+  takePast({ time, samples }: PastMessage): void {
+    this.force.clear();
+    this.timing.clear();
+    for (let i = 0; i + 3 < samples.length; i += 4) {
+      const [before, x, y, z] = samples.subarray(i, i + 4) as unknown as [number, number, number, number];
+      this.force.push(time + before, x, y, z, Math.hypot(x, y, z));
+    }
+    if (this.latest !== undefined && samples.length > 0) this.latest = { ...this.latest, time };
   }
 
   has(flag: keyof typeof Flag): boolean {
@@ -91,6 +102,11 @@ export class Session {
     });
     this.values = new Map(welcome.settings.map(({ key, value }) => [key, value]));
     if (this.device >= this.devices.length) this.device = 0;
+  }
+
+  /** Is a recording shown, which nobody can change? */
+  get recorded(): boolean {
+    return this.welcome?.timeline !== undefined;
   }
 
   get tool(): DeviceHistory | undefined {

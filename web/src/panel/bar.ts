@@ -23,7 +23,7 @@ export class Bar {
   ) {
     const click = (id: string, act: () => unknown) => byId(id).addEventListener("click", () => void act());
     click("pause", () => this.pause());
-    click("reset", () => this.send({ type: "reset" }));
+    click("reset", () => this.reset());
     click("record", () => this.send({ type: "record", on: !this.isRecording }));
     click("sound", () => this.toggleSound());
     click("picture", () => this.savePicture());
@@ -36,6 +36,7 @@ export class Bar {
   begin(welcome: Welcome): void {
     say(byId("scene"), welcome.scene);
     document.title = `${welcome.scene} – palpate`;
+    if (this.session.recorded) say(byId("link-words"), "replay");
     this.showRecording(false);
   }
 
@@ -46,13 +47,18 @@ export class Bar {
     byId("follow").setAttribute("aria-pressed", String(this.world.followed !== undefined));
     const open = byId("link-state").dataset["phase"] === "open";
     const rate = this.session.tool?.latest?.rate;
-    if (open && rate !== undefined) say(byId("link-words"), `${whole(rate)} steps/s`);
+    if (open && rate !== undefined && !this.session.recorded) say(byId("link-words"), `${whole(rate)} steps/s`);
     const delay = Number.isNaN(this.delay) ? "" : `; latency ${(1000 * this.delay).toFixed(1)} ms`;
     byId("link-state").title = `connected${delay}; a frame every ${this.world.stage.frameTime.toFixed(0)} ms`;
   }
 
   pause(): void {
+    if (this.session.recorded) return;
     this.send({ type: "pause", on: !(this.session.tool?.has("paused") ?? false) });
+  }
+
+  reset(): void {
+    if (!this.session.recorded) this.send({ type: "reset" });
   }
 
   recording(on: boolean, file: string | undefined): void {

@@ -31,6 +31,13 @@ export function seconds(value: number): string {
   return value < 9.95 ? `${value.toFixed(1)} s` : `${whole(value)} s`;
 }
 
+/** "1:02.35", from 0 on. */
+export function clock(value: number): string {
+  const hundredths = Math.round(100 * value);
+  const rest = (hundredths % 6000) / 100;
+  return `${Math.floor(hundredths / 6000)}:${rest.toFixed(2).padStart(5, "0")}`;
+}
+
 export function millimetres(value: number): string {
   const mm = value * 1000;
   return `${mm.toFixed(mm < 10 ? 2 : 1)} mm`;

@@ -49,7 +49,7 @@ export class Plots {
       { label: `${source.name}${i === 0 ? " latency" : ""}`, colour: sourceColour(index), width: 1.75 },
       { label: i === 0 ? "age" : "", colour: sourceColour(index), dash: [3, 3] },
     ]));
-    this.frames.figure.classList.toggle("none", cameras.length === 0);
+    this.frames.figure.classList.toggle("none", cameras.length === 0 || this.session.recorded);
   }
 
   update(now: number): void {

@@ -4,7 +4,7 @@
 
 import type { Quaternion, Vector } from "./messages";
 
-export const Kind = { state: 1, cloud: 2, surface: 3 } as const;
+export const Kind = { state: 1, cloud: 2, surface: 3, past: 4 } as const;
 
 export const Flag = {
   touching: 1,
@@ -63,7 +63,15 @@ export interface SurfaceMessage {
   triangles: Uint16Array;
 }
 
-export type BinaryMessage = StateMessage | CloudMessage | SurfaceMessage;
+/** The forces before the moment of a recording that was sought last. */
+export interface PastMessage {
+  kind: typeof Kind.past;
+  device: number;
+  time: number; // s, of the last one
+  samples: Float32Array; // s before that, N x y z of each step, oldest first
+}
+
+export type BinaryMessage = StateMessage | CloudMessage | SurfaceMessage | PastMessage;
 
 export class DecodeError extends Error {}
 
@@ -156,6 +164,18 @@ function decodeSurface(buffer: ArrayBuffer, view: DataView): SurfaceMessage {
   return message;
 }
 
+function decodePast(buffer: ArrayBuffer, view: DataView): PastMessage {
+  need(buffer, 16, "past");
+  const samples = view.getUint32(4, true);
+  need(buffer, 16 + 16 * samples, `past with ${samples} samples`);
+  return {
+    kind: Kind.past,
+    device: view.getUint8(1),
+    time: view.getFloat64(8, true),
+    samples: new Float32Array(buffer, 16, 4 * samples),
+  };
+}
+
 /** Throws DecodeError for what is cut short or of an unknown kind. */
 export function decode(buffer: ArrayBuffer): BinaryMessage {
   need(buffer, 1, "message");
@@ -164,5 +184,6 @@ export function decode(buffer: ArrayBuffer): BinaryMessage {
   if (kind === Kind.state) return decodeState(buffer, view);
   if (kind === Kind.cloud) return decodeCloud(buffer, view);
   if (kind === Kind.surface) return decodeSurface(buffer, view);
+  if (kind === Kind.past) return decodePast(buffer, view);
   throw new DecodeError(`unknown message kind ${kind}`);
 }

@@ -58,6 +58,14 @@ export interface Welcome {
   sources: SourceInfo[];
   settings: Setting[];
   presets: string[];
+  timeline?: { length: number }; // s, of a recording that is shown in place of a run
+}
+
+/** What is shown of a recording. */
+export interface Moment {
+  time: number; // s
+  playing: boolean;
+  speed: number; // s of the recording a second
 }
 
 export type NoticeLevel = "info" | "warning" | "fault";
@@ -69,6 +77,8 @@ export type FromProgram =
   | { type: "sources"; sources: SourceReport[] }
   | { type: "notice"; level: NoticeLevel; text: string }
   | { type: "record"; on: boolean; file?: string }
+  | ({ type: "time" } & Moment)
+  | { type: "envelope"; forces: number[] } // N, the largest in equal parts of the length
   | { type: "lost"; device: number; text: string }
   | { type: "refused"; text: string }
   | { type: "pong"; id: number };
@@ -82,10 +92,14 @@ export type ToProgram =
   | { type: "pause"; on: boolean }
   | { type: "reset" }
   | { type: "record"; on: boolean }
+  | { type: "seek"; time: number }
+  | { type: "play"; on: boolean; speed: number }
   | { type: "points"; points: number }
   | { type: "ping"; id: number };
 
-const kTypes = new Set(["welcome", "settings", "devices", "sources", "notice", "record", "lost", "refused", "pong"]);
+const kTypes = new Set([
+  "welcome", "settings", "devices", "sources", "notice", "record", "time", "envelope", "lost", "refused", "pong",
+]);
 
 /** A text message; undefined where this page does not know its type. Throws SyntaxError. */
 export function parseMessage(text: string): FromProgram | undefined {

@@ -64,7 +64,7 @@ export class Cloud {
   }
 
   take(message: CloudMessage): void {
-    if (message.count > this.capacity) this.grow(message.count);
+    if (message.count >= this.capacity) this.grow(message.count + 1); // an empty one, too, has its columns
     this.count = message.count;
     this.stamp = message.stamp;
     this.hasColours = message.colours !== undefined;

@@ -4,6 +4,7 @@ import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, type Vector3 
 import { colourOf } from "./colours";
 
 const kPlaces = 150; // 2.5 s at 60 a second
+const kGap = 0.5; // s that nothing was told, or that were passed over in a recording
 
 export class Trail {
   readonly line: Line<BufferGeometry, LineBasicMaterial>;
@@ -30,7 +31,7 @@ export class Trail {
   }
 
   take(place: Vector3, time: number): void {
-    if (!(time >= this.time)) this.count = 0;
+    if (!(time >= this.time && time - this.time < kGap)) this.count = 0;
     this.time = time;
     const array = this.places.array as Float32Array;
     array.copyWithin(0, 3);

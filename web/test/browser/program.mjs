@@ -1,15 +1,16 @@
 // The page in a headless chromium against palpate itself: PALPATE_PROGRAM=.../palpate npm run program.
 
 import assert from "node:assert/strict";
-import { readdir, readFile } from "node:fs/promises";
+import { readdir } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { openBrowser, openPage, until } from "./browser.mjs";
 import { distance, felt, heard, listen } from "./heard.mjs";
 import { picture } from "./picture.mjs";
 import { changed } from "./pixels.mjs";
-import { kTable, kTwoHands, startProgram } from "./real_program.mjs";
+import { kTable, kTwoHands, run, startProgram } from "./real_program.mjs";
 import { relayTo } from "./relay.mjs";
+import { scrub } from "./scrub.mjs";
 import { hold, lift, press, pressUntil, staysOnTable, touchDown } from "./touching.mjs";
 
 const kStiffness = 500; // N/m, of kTable
@@ -130,19 +131,49 @@ test("plots move, and stand still when they are held", () =>
     await until("moving again", async () => (await drawn()) !== held);
   }));
 
-test("a log of steps is written while it is asked for", () =>
-  onTable(async (page) => {
+test("a recording is written while it is asked for, can be read, and is shown again", async (context) => {
+  const { folder } = table;
+  await onTable(async (page) => {
     await page.click("#record");
     await until("recording", async () => (await page.getAttribute("#record", "aria-pressed")) === "true");
     const { states } = await heard(page);
-    await until("half a second", async () => (await heard(page)).states > states + 30);
+    await until("five seconds", async () => (await heard(page)).states > states + 300);
     await page.click("#record");
     await until("at its end", async () => (await page.getAttribute("#record", "aria-pressed")) === "false");
-    const [log] = (await readdir(table.folder)).filter((name) => /^palpate-.*\.csv$/.test(name));
-    const rows = (await readFile(join(table.folder, log), "utf8")).trim().split("\n");
-    assert.ok(rows.length > 200, `${rows.length} rows`);
-    assert.equal(new Set(rows.map((row) => row.split(",").length)).size, 1, "every row is whole");
-  }));
+  });
+  const files = (await readdir(folder)).filter((name) => /^palpate-\d{8}-\d{6}\.mcap$/.test(name));
+  assert.equal(files.length, 1);
+  const file = join(folder, files[0]);
+  const said = async () => (await run(["bag", "info", file, "--json", "-"])).out;
+  await until("closed", async () => JSON.parse(await said()).closed);
+  const ticks = JSON.parse(await said()).topics.find(({ topic }) => topic === "/palpate/hand/tick");
+  assert.ok(ticks.messages > 2000, `${ticks.messages} steps`);
+  const replay = await run(["replay", file]);
+  assert.match(replay.out, /recorded from step .* of its run on: it can be viewed/);
+  const shown = await startProgram(["replay", file, "--view", "--headless", "--port", "0"]);
+  context.after(() => shown.stop());
+  await scrub(await openPage(browser, shown.address, kSmall, listen), file);
+});
+
+test("a run that is recorded from its beginning shows so; the button ends that file and begins another", async (context) => {
+  const program = await startProgram([...kTable, "--record", "run.mcap"]);
+  context.after(() => program.stop());
+  const page = await open(program.address);
+  const pressed = (wanted) => until(`recording: ${wanted}`, async () =>
+    (await page.getAttribute("#record", "aria-pressed")) === String(wanted));
+  await pressed(true);
+  await page.click("#record");
+  await pressed(false);
+  await until("told", async () => /recorded run\.mcap/.test(await text(page, "#notices")));
+  await page.click("#record");
+  await pressed(true);
+  const files = (await readdir(program.folder)).filter((name) => name.endsWith(".mcap")).sort();
+  assert.equal(files.length, 2);
+  assert.match(files[0], /^palpate-/);
+  const first = await run(["replay", join(program.folder, "run.mcap"), "--json", "-"]);
+  assert.ok(JSON.parse(first.out).exact, "done again bit for bit");
+  await page.context().close();
+});
 
 test("two pages see the same; one holds the tool, and it is free when that one is gone", () =>
   onTable(async (first) => {

@@ -59,6 +59,17 @@ export async function startProgram(args) {
   };
 }
 
+/** Runs it to its end in `folder`; resolves to what it wrote. */
+export function run(args, folder = tmpdir()) {
+  return new Promise((done, failed) => {
+    const child = spawn(resolve(process.env.PALPATE_PROGRAM), args, { cwd: folder, stdio: ["ignore", "pipe", "ignore"] });
+    let out = "";
+    child.stdout.on("data", (data) => (out += data));
+    child.once("error", failed);
+    child.once("close", (code) => done({ code, out }));
+  });
+}
+
 function addressOf(child, ended) {
   return new Promise((found, failed) => {
     let said = "";

@@ -6,6 +6,7 @@ import { serve } from "../fake_server.mjs";
 import { openPage, until } from "./browser.mjs";
 import { browser, hands, kPhone, kSmall, ready, sent, text, withPage } from "./with_page.mjs";
 import "./finer.mjs";
+import "./time_line.mjs";
 
 test("shows the scene and its force, and the browser has nothing to complain of", () =>
   withPage(kSmall, async (page) => {

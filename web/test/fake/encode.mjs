@@ -23,6 +23,17 @@ export function encodeState(state) {
   return bytes;
 }
 
+/** Steps are times before the last, and forces. */
+export function encodePast(device, time, steps) {
+  const bytes = Buffer.alloc(16 + 16 * steps.length);
+  bytes.writeUInt8(4, 0);
+  bytes.writeUInt8(device, 1);
+  bytes.writeUInt32LE(steps.length, 4);
+  bytes.writeDoubleLE(time, 8);
+  steps.flat().forEach((value, i) => bytes.writeFloatLE(value, 16 + 4 * i));
+  return bytes;
+}
+
 /** bare: without colours and normals. */
 export function encodeCloud(source, stamp, points, bare = false) {
   const n = points.length;

@@ -1,6 +1,6 @@
 // The fake program behind the socket: settings, messages of pages, what is sent when.
 
-import { encodeCloud, encodeState } from "./encode.mjs";
+import { encodeCloud, encodePast, encodeState } from "./encode.mjs";
 import { kCameras, lookAtOrigin, randomFrom, seenPoints } from "./scene.mjs";
 import { Servo } from "./servo.mjs";
 import { patchAround } from "./surface.mjs";
@@ -29,8 +29,10 @@ export class FakeProgram {
   near = false;
   holder; // the client whose hand moves the tool
 
-  constructor({ points = 30000, token, still = false, silent }) {
+  constructor({ points = 30000, token, still = false, silent, length }) {
     this.token = token;
+    this.length = length; // s, of a recording that is shown; undefined: a run
+    this.moment = { time: 0, playing: false, speed: 1 };
     this.still = still;
     this.silent = silent; // why a second hand, which no page can take, is; undefined later: it is heard
     this.hands = silent === undefined ? 1 : 2;
@@ -69,8 +71,23 @@ export class FakeProgram {
     this.servo.advance(Math.min(0.1, (now - this.last) / 1000));
     this.last = now;
     const state = this.servo.report();
-    this.broadcast(encodeState(state));
+    if (this.length === undefined) this.broadcast(encodeState(state));
+    else this.tellMoment(state);
     if (this.hands > 1) this.broadcast(encodeState({ ...state, device: 1, flags: 0, hip: kOther, proxy: kOther, force: [0, 0, 0], samples: [] }));
+  }
+
+  /** A recording in which the hand goes along x. */
+  tellMoment(state) {
+    const { moment } = this;
+    if (moment.playing) moment.time = Math.min(this.length, moment.time + moment.speed / kStateHz);
+    const place = [0.01 * moment.time, 0, 0.05];
+    this.broadcast(encodeState({ ...state, time: 100 + moment.time, hip: place, proxy: place, samples: [[1, 0, 0]], interval: 1e-3 }));
+    this.tell({ type: "time", ...moment });
+  }
+
+  tellPast() {
+    const steps = Array.from({ length: 1000 }, (_, i) => [1e-3 * (i - 999), 1, 0, 0]);
+    this.broadcast(encodePast(0, 100 + this.moment.time, steps));
   }
 
   tellClouds() {
@@ -123,8 +140,9 @@ export class FakeProgram {
   welcome() {
     return {
       type: "welcome", version: 1, scene: "table with a ball", origin: [0, 0, 0], up: [0, 0, 1], radius: 0.35,
-      devices: [{ name: "simulated", takeable: true }, ...(this.hands > 1 ? [{ name: "remote", takeable: false }] : [])], sources: kCameras.map(({ name }) => ({ name, camera: !this.still })),
-      settings: this.settings, presets: Object.keys(kPresets),
+      devices: [{ name: "simulated", takeable: this.length === undefined }, ...(this.hands > 1 ? [{ name: "remote", takeable: false }] : [])], sources: kCameras.map(({ name }) => ({ name, camera: !this.still })),
+      ...(this.length === undefined ? { settings: this.settings, presets: Object.keys(kPresets) }
+        : { settings: [], presets: [], timeline: { length: this.length } }),
     };
   }
 
@@ -161,6 +179,8 @@ export class FakeProgram {
       pause: () => (this.servo.paused = message.on),
       reset: () => this.tell({ type: "notice", level: "info", text: "reset: the proxy is at the hand" }),
       record: () => this.record(message.on),
+      seek: () => Object.assign(this.moment, { time: message.time }) && this.tellPast(),
+      play: () => Object.assign(this.moment, { playing: message.on, speed: message.speed }),
       points: () => (client.points = message.points),
       ping: () => answer({ type: "pong", id: message.id }),
     }[message.type];
@@ -172,6 +192,9 @@ export class FakeProgram {
     if (token !== this.token) return client.socket.close(1008, "wrong token");
     Object.assign(client, { welcome: true, points });
     client.socket.send(JSON.stringify(this.welcome()));
+    if (this.length === undefined) return;
+    const forces = Array.from({ length: 100 }, (_, i) => (i > 40 && i < 60 ? 2 : 0));
+    client.socket.send(JSON.stringify({ type: "envelope", forces }));
   }
 
   move(client, place) {
@@ -196,6 +219,6 @@ export class FakeProgram {
 
   record(on) {
     this.recording = on;
-    this.tell({ type: "record", on, file: "steps_2026-11-20.csv" });
+    this.tell({ type: "record", on, file: "palpate-20261120-101112.mcap" });
   }
 }

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+
+#include "message/palpate_types.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+#include "palpate/servo/servo.hpp"
+#include "servo/step_trace.hpp"
+
+namespace palpate::app {
+
+/// A step of a run of `sources` as a recording holds it.
+[[nodiscard]] message::Tick tick_of(const StepTrace& step, std::size_t sources);
+
+/// What was shown of that step. `options`: of its servo. Counts of the guard are not recorded.
+[[nodiscard]] ServoState state_of(const message::Tick& tick, const ServoOptions& options);
+
+/// A cloud as a recording holds it, and back.
+[[nodiscard]] message::Cloud recorded(const PointCloud& cloud);
+[[nodiscard]] PointCloud cloud_of(const message::Cloud& message);
+
+}  // namespace palpate::app

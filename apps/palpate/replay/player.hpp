@@ -1,0 +1,99 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/replay/shown_run.hpp"
+#include "bag/mcap_reader.hpp"
+#include "message/palpate_types.hpp"
+#include "palpate/base/clock.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/servo/servo.hpp"
+#include "palpate/viewer/viewer.hpp"
+
+namespace palpate::app {
+
+/// A recorded run that goes by as it did, or is shown at any moment, in a scene and servos that
+/// nobody steps. Threads of its own read the file: one the steps, one the frames, one all forces
+/// once. Times from 0 at the run's first step. Holds no more of the file than what is shown.
+class Player {
+ public:
+  using TimeLine = ViewerControls::TimeLine;
+
+  /// What the player tells, on its threads.
+  struct Listener {
+    std::function<void()> changed;  ///< there is another envelope, or another past
+    std::function<void(const std::string&)> complain;  ///< what is damaged
+  };
+
+  static constexpr double kPast = 5;               ///< s that past() goes back
+  static constexpr std::size_t kEnvelope = 1'000;  ///< parts of the envelope
+
+  /// Shows the first moment. @throws Error when the file is no recording of a run.
+  explicit Player(const std::string& path);
+  ~Player();
+  Player(const Player&) = delete;
+  Player& operator=(const Player&) = delete;
+
+  [[nodiscard]] Scene& scene() { return scene_; }
+  [[nodiscard]] std::vector<Servo*> servos();
+  [[nodiscard]] double length() const { return stretch_.end - stretch_.begin; }
+
+  /// Starts the threads. From now on any thread may call the rest; stop() ends what is told.
+  void start(Listener listener);
+  void stop();
+
+  [[nodiscard]] TimeLine::Moment moment() const;
+  /// Beyond the length: the end.
+  void seek(double time);
+  /// At the end it begins again.
+  void play(bool on, double speed);
+  [[nodiscard]] std::vector<float> envelope() const;
+  [[nodiscard]] std::vector<TimeLine::Force> past(std::size_t hand) const;
+  [[nodiscard]] std::vector<ViewerOptions::Stream> streams() const;
+
+ private:
+  struct FieldChange {
+    double time = 0;  // s, on the run's clock
+    FieldOptions field;
+  };
+
+  void guard(const std::function<void()>& work);
+  void show_steps(const std::stop_token& stop);
+  void jump(double time, const std::stop_token& stop);
+  void advance(double elapsed);
+  void show_fields(double time);
+  void show_frames(const std::stop_token& stop);
+  void read_forces(const std::stop_token& stop);
+  void take(const message::Tick& tick);
+  void take(std::size_t hand, const message::Change& change);
+
+  std::string path_;
+  bag::McapReader reader_;
+  Json setup_;
+  Stretch stretch_;
+  Scene scene_;
+  std::deque<ShownSource> sources_;
+  std::deque<ShownHand> hands_;
+  SteadyClock clock_;
+  Listener listener_;
+
+  mutable std::mutex mutex_;  // of what follows
+  std::condition_variable_any changed_;
+  TimeLine::Moment moment_;
+  std::optional<double> sought_;  // not shown yet
+  std::vector<float> envelope_;
+  std::vector<std::vector<TimeLine::Force>> pasts_;  // of each hand
+  std::vector<std::vector<FieldChange>> fields_;     // of each hand, as far as they are known
+  std::vector<std::jthread> threads_;                // last: they use all of the above
+};
+
+}  // namespace palpate::app

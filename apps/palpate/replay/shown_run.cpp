@@ -1,0 +1,171 @@
+#include "apps/palpate/replay/shown_run.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "apps/palpate/record/options_json.hpp"
+#include "apps/palpate/sources/load.hpp"
+#include "palpate/base/error.hpp"
+#include "servo/step_trace.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr double kFar = 1.5;     // of a frustum as drawn, in medians of depth
+constexpr double kReadOn = 0.5;  // s that are read on to come to a later frame
+
+// s that are looked through for a frame before a moment. Most often there is one just before it,
+// and a second of them is some 40 MB.
+constexpr std::array<double, 4> kFramesBack{0.2, 1, 10, std::numeric_limits<double>::infinity()};
+
+void count(GuardNote notes, Guard::State::Counts& counts) {
+  const auto add = [notes](GuardNote bit, std::uint64_t& count) {
+    count += has(notes, bit) ? 1 : 0;
+  };
+  ++counts.steps;
+  add(GuardNote::slewed, counts.slewed);
+  add(GuardNote::clamped, counts.clamped);
+  add(GuardNote::silence, counts.silences);
+  add(GuardNote::braked, counts.braked);
+  add(GuardNote::starting, counts.starting);
+  add(GuardNote::softened, counts.softened);
+}
+
+Source& add_source(const Json& json, Scene& scene) {
+  SourceOptions options;
+  take_exact(json.at("options"), options);
+  return scene.add(json.at("name").get<std::string>(), options);
+}
+
+}  // namespace
+
+ShownHand::ShownHand(const std::string& path, const bag::McapReader& reader, const Json& setup,
+                     std::size_t index, Scene& scene)
+    : steps_(path, reader, setup, index),
+      earlier_(path, reader, setup, index),
+      device_(setup.at("hands").at(index).at("device")),
+      servo_(device_, scene, steps_.options()) {}
+
+void ShownHand::show(ServoState state) {
+  count(state.guard.notes, counts_);
+  state.guard.counts = counts_;
+  ServoTrace(servo_).show(state);
+}
+
+void ShownHand::seek(double time) {
+  if (const std::optional<ServoState> state = steps_.at(time)) show(*state);
+}
+
+void ShownHand::advance(double time) {
+  while (const std::optional<ServoState> state = steps_.next(time)) show(*state);
+}
+
+std::vector<ViewerControls::TimeLine::Force> ShownHand::past(
+    double span, const std::function<bool()>& cancelled) {
+  std::vector<ViewerControls::TimeLine::Force> forces;
+  const double now = servo_.state().time;
+  earlier_.seek(now - span);
+  while (const std::optional<ServoState> state = earlier_.next(now)) {
+    if (cancelled()) return {};
+    forces.push_back({state->time, state->force.cast<float>()});
+  }
+  return forces;
+}
+
+ShownSource::ShownSource(const std::string& path, const bag::McapReader& reader, const Json& setup,
+                         std::size_t index, Scene& scene)
+    : source_(&add_source(setup.at("sources").at(index), scene)),
+      epoch_(setup.at("epoch_ns").get<std::int64_t>()) {
+  const Json& json = setup.at("sources").at(index);
+  lives_ = json.at("lives").get<bool>();
+  as_cloud_ = json.at("as_cloud").get<bool>();
+  if (!lives_) show_surface(reader, index, json, *source_);
+  if (!lives_) return;
+  stream_.state.source = source_->name();
+  stream_.state.phase = StreamState::Phase::running;
+  frames_.emplace(path, reader, json.at("topic").get<std::string>());
+  upcoming_ = next_felt();
+  if (!upcoming_) return;
+  shown_until_ = upcoming_->use.start;
+  prepare(*upcoming_);
+}
+
+std::optional<RecordedFrame> ShownSource::next_felt() {
+  while (std::optional<RecordedFrame> frame = frames_->next()) {
+    const message::FrameUse& use = frame->use;
+    if (use.kind != "end" && use.why_not.empty() && !use.dropped) return frame;
+  }
+  return std::nullopt;
+}
+
+void ShownSource::show(double time) {
+  std::optional<RecordedFrame> newest;
+  const auto read_on = [&] {
+    while (upcoming_ && upcoming_->use.start <= time) {
+      newest = std::move(upcoming_);
+      upcoming_ = next_felt();
+    }
+  };
+  const bool goes_on = time >= shown_until_ && time - shown_until_ < kReadOn;
+  if (goes_on) {
+    read_on();
+    if (newest) prepare(*newest);
+  } else {
+    for (const double back : kFramesBack) {
+      frames_->seek(logged_at(time - back, epoch_));
+      upcoming_ = next_felt();
+      read_on();
+      if (newest) break;
+    }
+    newest ? prepare(*newest) : source_->publish(nullptr);
+  }
+  shown_until_ = time;
+}
+
+// Of its own: neither what came before it nor where tools were is asked for.
+void ShownSource::prepare(const RecordedFrame& recorded) {
+  const DepthFrame& frame = recorded.frame;
+  Source prepared(source_->name(), source_->options());
+  if (frame.cloud) {
+    if (frame.T_world_sensor) prepared.set_pose(*frame.T_world_sensor);
+    prepared.set(*frame.cloud);
+  } else if (as_cloud_) {
+    if (frame.T_world_sensor) prepared.set_pose(*frame.T_world_sensor);
+    prepared.set(cloud_of(frame));
+  } else {
+    prepared.set(frame);
+  }
+  publish_surface(prepared, *source_);
+  const std::lock_guard lock(mutex_);
+  stream_.T_world_sensor = frame.T_world_sensor;
+  stream_.frustum.reset();
+  if (frame.cloud) return;
+  const Pinhole& lens = frame.camera.pinhole;
+  stream_.frustum = {0.5 * frame.camera.width / lens.fx, 0.5 * frame.camera.height / lens.fy,
+                     kFar * prepared.state().depth};
+}
+
+ShownSource::Stream ShownSource::stream() const {
+  const std::lock_guard lock(mutex_);
+  return stream_;
+}
+
+Stretch stretch_of(const std::string& path, const bag::McapReader& reader, const Json& setup) {
+  Stretch stretch{std::numeric_limits<double>::infinity(), 0};
+  const auto epoch = setup.at("epoch_ns").get<std::int64_t>();
+  const double end = 1e-9 * static_cast<double>(reader.contents().end - epoch) + 1e-3;
+  for (std::size_t i = 0; i < setup.at("hands").size(); ++i) {
+    RecordedHand hand(path, reader, setup, i);
+    const std::optional<ServoState> first = hand.next();
+    if (!first) continue;
+    stretch.begin = std::min(stretch.begin, first->time);
+    stretch.end = std::max(stretch.end, hand.at(end)->time);
+  }
+  if (!(stretch.begin <= stretch.end)) throw Error(path + ": there is no step in it");
+  return stretch;
+}
+
+}  // namespace palpate::app

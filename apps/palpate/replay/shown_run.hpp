@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/replay/recorded_frames.hpp"
+#include "apps/palpate/replay/recorded_hand.hpp"
+#include "bag/mcap_reader.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/servo/servo.hpp"
+#include "palpate/viewer/viewer.hpp"
+
+namespace palpate::app {
+
+/// A recorded hand as a servo shows it that nobody steps. One thread; the servo's watchers may be
+/// on others.
+class ShownHand {
+ public:
+  /// `scene` outlives it.
+  ShownHand(const std::string& path, const bag::McapReader& reader, const Json& setup,
+            std::size_t index, Scene& scene);
+
+  [[nodiscard]] Servo& servo() { return servo_; }
+
+  /// Shows the last step at or before `time`, s on the run's clock.
+  void seek(double time);
+  /// Shows all steps up to `time` that were not shown yet.
+  void advance(double time);
+
+  /// The forces in the `span` (s) before the step that is shown; none where `cancelled`.
+  [[nodiscard]] std::vector<ViewerControls::TimeLine::Force> past(
+      double span, const std::function<bool()>& cancelled);
+
+ private:
+  void show(ServoState state);
+
+  RecordedHand steps_;
+  RecordedHand earlier_;
+  RecordedDevice device_;
+  Servo servo_;
+  Guard::State::Counts counts_;  // of what was shown
+};
+
+/// What a source of a recorded run showed. One thread shows, others may ask for the stream.
+class ShownSource {
+ public:
+  using Stream = ViewerOptions::Stream;
+
+  /// One that stands still shows its surface, one that lives its first one. `scene` outlives it.
+  ShownSource(const std::string& path, const bag::McapReader& reader, const Json& setup,
+              std::size_t index, Scene& scene);
+
+  /// Shows the newest frame that was felt at `time` (s, on the run's clock), prepared by itself.
+  void show(double time);
+
+  [[nodiscard]] bool lives() const { return lives_; }
+  /// Of one that lives.
+  [[nodiscard]] Stream stream() const;
+
+ private:
+  [[nodiscard]] std::optional<RecordedFrame> next_felt();
+  void prepare(const RecordedFrame& recorded);
+
+  Source* source_;
+  bool lives_ = false;
+  bool as_cloud_ = false;
+  std::int64_t epoch_;                     // ns
+  std::optional<RecordedFrames> frames_;   // of one that lives
+  double shown_until_ = 0;                 // frames up to that time were looked at, s
+  std::optional<RecordedFrame> upcoming_;  // the first after that
+  mutable std::mutex mutex_;
+  Stream stream_;
+};
+
+/// When a run's first and last step were, s on its clock.
+struct Stretch {
+  double begin = 0;
+  double end = 0;
+};
+/// @throws Error when there is no step.
+[[nodiscard]] Stretch stretch_of(const std::string& path, const bag::McapReader& reader,
+                                 const Json& setup);
+
+}  // namespace palpate::app

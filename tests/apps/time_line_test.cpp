@@ -1,0 +1,270 @@
+// What a recording shows at each of its moments.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <thread>
+
+#include "apps/palpate/record/recorder.hpp"
+#include "apps/palpate/replay/player.hpp"
+#include "apps/palpate/replay/replayed_run.hpp"
+#include "apps/palpate/replay/shown_run.hpp"
+#include "apps/program.hpp"
+#include "apps/setup_parsed.hpp"
+#include "bag/mcap_writer.hpp"
+#include "palpate/device/simulated.hpp"
+#include "support/folder.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr double kBegin = 7;  // s, on the run's clock
+constexpr int kSteps = 6000;
+
+using States = std::vector<ServoState>;
+
+// Two hands that dip into a plane, each in its rhythm, are recorded.
+class TimeLineTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<test::Folder>();
+    folder_->write("plane.xyz", plane_xyz());
+    LoadedScene loaded =
+        load_sources(planned(*folder_ / "plane.xyz").sources, {.keep_clouds = true});
+    begin_run(loaded, {});
+    ScriptedDevice device({{0, Eigen::Vector3d::Zero()}, {1, Eigen::Vector3d::Zero()}});
+    Recorder recorder(path());
+    ServoOptions options;
+    options.traces = recorder.add_hand();
+    Servo first(device, loaded.scene, options);
+    options.traces = recorder.add_hand();
+    Servo second(device, loaded.scene, options);
+    recorder.begin(loaded, {&first, &second}, 0, true);
+    felt_.assign(2, {});
+    for (int i = 0; i < kSteps; ++i) {
+      if (i == kSteps / 2) first.set_field({.kind = FieldOptions::Kind::metaball});
+      dip(first, i, 3e-3, felt_[0]);
+      dip(second, i, 5e-3, felt_[1]);
+      recorder.keep_up();
+    }
+    EXPECT_EQ(recorder.finish().at(0).steps, 2u * kSteps);
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static void dip(Servo& servo, int i, double pace, States& felt) {
+    DeviceState hand;
+    hand.position = {5e-3 * std::sin(pace * i), 0, -2e-3 * std::sin(pace * i)};
+    servo.step(hand, kBegin + 1e-3 * i);
+    servo.show();
+    felt.push_back(servo.state());
+  }
+  [[nodiscard]] static std::string path() { return *folder_ / "run.mcap"; }
+
+  // The last of them at or before `time`, s on the run's clock.
+  [[nodiscard]] static const ServoState& at(std::size_t hand, double time) {
+    const States& felt = felt_[hand];
+    auto after = std::ranges::upper_bound(felt, time, {}, &ServoState::time);
+    return after == felt.begin() ? *after : *--after;
+  }
+  static void expect_same(const ServoState& shown, const ServoState& felt) {
+    EXPECT_EQ(shown.time, felt.time);
+    EXPECT_EQ(shown.hip, felt.hip);
+    EXPECT_EQ(shown.force, felt.force);
+    EXPECT_EQ(shown.contact.proxy, felt.contact.proxy);
+    EXPECT_EQ(shown.contact.normal, felt.contact.normal);
+    EXPECT_EQ(shown.contact.touching, felt.contact.touching);
+    EXPECT_EQ(shown.guard.fault, felt.guard.fault);
+  }
+
+  inline static std::unique_ptr<test::Folder> folder_;
+  inline static std::vector<States> felt_;  // of each hand
+};
+
+TEST_F(TimeLineTest, ASeekToAnyMomentShowsItsStepExactly) {
+  const bag::McapReader reader(path());
+  const Json setup = recorded_setup(reader, path());
+  Scene scene;
+  const ShownSource source(path(), reader, setup, 0, scene);
+  EXPECT_FALSE(source.lives());
+  EXPECT_GT(scene.source(0).points()->size(), 100u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    ShownHand hand(path(), reader, setup, i, scene);
+    for (const double time : {0.0, 5.5, 1.2345, 1.2344, 5.999, 99.0, 3.0, -1.0, 3.0004}) {
+      hand.seek(kBegin + time);
+      expect_same(hand.servo().state(), at(i, kBegin + time));
+      hand.advance(kBegin + time + 0.25);
+      expect_same(hand.servo().state(), at(i, kBegin + time + 0.25));
+    }
+  }
+}
+
+TEST_F(TimeLineTest, ThePastIsOfTheStepsBefore) {
+  const bag::McapReader reader(path());
+  Scene scene;
+  ShownHand hand(path(), reader, recorded_setup(reader, path()), 0, scene);
+  hand.seek(kBegin + 4);
+  const auto past = hand.past(1.5, [] { return false; });
+  ASSERT_NEAR(static_cast<double>(past.size()), 1501, 1);
+  for (const auto& each : past) {
+    EXPECT_EQ(each.force, at(0, each.time).force.cast<float>());
+  }
+  EXPECT_EQ(past.back().time, hand.servo().state().time);
+  EXPECT_TRUE(hand.past(1.5, [] { return true; }).empty());
+}
+
+// A player whose threads run, and what it told.
+struct Playing {
+  explicit Playing(const std::string& path) : player(path) {
+    player.start({[this] { ++changes; }, [this](const std::string& why) { complaint = why; }});
+  }
+  ~Playing() { player.stop(); }
+  Playing(const Playing&) = delete;
+  Playing& operator=(const Playing&) = delete;
+
+  // Hangs until the test's time is over if that never comes.
+  static void wait(const std::function<bool()>& so) {
+    while (!so()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  [[nodiscard]] double shown(std::size_t hand) {
+    return player.servos()[hand]->state().time - kBegin;
+  }
+
+  Player player;
+  std::atomic<int> changes{0};
+  std::string complaint;
+};
+
+TEST_F(TimeLineTest, APlayerSeeksPlaysToTheEndAndBeginsAgain) {
+  Playing playing(path());
+  Player& player = playing.player;
+  EXPECT_NEAR(player.length(), 1e-3 * (kSteps - 1), 1e-9);
+  EXPECT_EQ(player.servos().size(), 2u);
+  EXPECT_NEAR(playing.shown(0), 0, 1e-9);
+  player.seek(2.5);
+  Playing::wait([&] { return playing.shown(1) > 2.4 && player.past(1).size() > 2400; });
+  EXPECT_EQ(player.past(0).back().time, player.servos()[0]->state().time);
+  expect_same(player.servos()[1]->state(), at(1, kBegin + 2.5));
+  player.seek(1e6);
+  Playing::wait([&] { return playing.shown(0) > 5.9; });
+  EXPECT_EQ(player.moment().time, player.length());
+  player.play(true, 4);
+  Playing::wait([&] { return playing.shown(0) > 0.01 && playing.shown(0) < 5; });
+  player.seek(player.length() - 0.1);
+  Playing::wait([&] { return playing.shown(0) > player.length() - 1e-6; });
+  EXPECT_FALSE(player.moment().playing);
+  EXPECT_EQ(player.moment().time, player.length()) << "it ends there";
+  EXPECT_EQ(player.moment().speed, 4);
+  expect_same(player.servos()[0]->state(), felt_[0].back());
+  EXPECT_EQ(playing.complaint, "");
+}
+
+TEST_F(TimeLineTest, TheEnvelopeHasTheLargestForceOfEachPart) {
+  Playing playing(path());
+  const double part = playing.player.length() / Player::kEnvelope;
+  std::vector<float> largest(Player::kEnvelope);
+  for (const States& felt : felt_) {
+    for (const ServoState& state : felt) {
+      const auto i = static_cast<std::size_t>((state.time - kBegin) / part);
+      float& top = largest[std::min(i, Player::kEnvelope - 1)];
+      top = std::max(top, static_cast<float>(state.force.norm()));
+    }
+  }
+  Playing::wait([&] { return playing.player.envelope() == largest; });
+  EXPECT_GT(*std::ranges::max_element(largest), 0.1F);
+}
+
+TEST_F(TimeLineTest, TheFieldIsTheOneThatWasFeltThen) {
+  Playing playing(path());
+  Player& player = playing.player;
+  // Hangs until the test's time is over if it never is.
+  const auto wait_for = [&](double time, FieldOptions::Kind kind) {
+    Playing::wait([&] {
+      player.seek(time);
+      return std::abs(playing.shown(0) - time) < 1e-3 && player.servos()[0]->field().kind == kind;
+    });
+  };
+  wait_for(4, FieldOptions::Kind::metaball);
+  wait_for(2, FieldOptions::Kind::balanced);
+  wait_for(3.5, FieldOptions::Kind::metaball);
+  EXPECT_EQ(player.servos()[1]->field().kind, FieldOptions::Kind::balanced);
+}
+
+TEST_F(TimeLineTest, AFileThatWasCutShowsWhatIsThere) {
+  const std::string cut = *folder_ / "cut.mcap";
+  std::filesystem::copy(path(), cut);
+  std::filesystem::resize_file(cut, 3 * std::filesystem::file_size(cut) / 5);
+  EXPECT_FALSE(bag::McapReader(cut).contents().closed);
+  Playing playing(cut);
+  EXPECT_GT(playing.player.length(), 1);
+  playing.player.seek(1);
+  Playing::wait([&] { return playing.shown(1) > 0.9; });
+  expect_same(playing.player.servos()[1]->state(), at(1, kBegin + 1));
+}
+
+TEST_F(TimeLineTest, InAGapTheLastStepBeforeItStays) {
+  const std::string gap = *folder_ / "gap.mcap";
+  {
+    bag::McapReader reader(path());
+    bag::McapWriter writer(gap);
+    for (std::size_t i = 0; i < reader.contents().attachments.size(); ++i) {
+      writer.attach(reader.attachment(i));
+    }
+    std::map<std::uint16_t, std::uint16_t> numbers;
+    for (const auto& [number, channel] : reader.contents().channels) {
+      numbers[number] = writer.add_channel(channel);
+    }
+    const auto epoch = recorded_setup(reader, path()).at("epoch_ns").get<std::int64_t>();
+    for (bag::Message message; reader.next(message);) {
+      const auto at = static_cast<std::int64_t>(message.stamp.log) - epoch;
+      if (at > 8'000'000'000 && at < 11'000'000'000) continue;
+      writer.write(numbers[message.channel], message.stamp, message.data);
+    }
+    writer.close();
+  }
+  const bag::McapReader reader(gap);
+  Scene scene;
+  ShownHand hand(gap, reader, recorded_setup(reader, gap), 0, scene);
+  for (const double time : {10.5, 8.5, 11.2, 10.9}) {
+    hand.seek(time);
+    expect_same(hand.servo().state(), at(0, time < 11 ? 8 : time));
+  }
+}
+
+// The camera's surface is that of the newest frame that was felt.
+TEST(TimeLine, ACameraShowsItsFramesOneByOne) {
+  Shell shell;
+  ASSERT_EQ(shell
+                .run("touch camera:simulated --simulated-time --duration 1 --no-view --record "
+                     "run.mcap")
+                .code,
+            0);
+  const bag::McapReader reader(shell.path("run.mcap"));
+  const Json setup = recorded_setup(reader, shell.path("run.mcap"));
+  const double begin = stretch_of(shell.path("run.mcap"), reader, setup).begin;
+  Scene scene;
+  ShownSource source(shell.path("run.mcap"), reader, setup, 0, scene);
+  ASSERT_TRUE(source.lives());
+  EXPECT_TRUE(source.stream().frustum);
+  const auto shown = [&](double time) {
+    source.show(begin + time);
+    return scene.source(0).points();
+  };
+  EXPECT_EQ(shown(-1), nullptr) << "nothing was felt yet";
+  const auto first = shown(0.5);
+  ASSERT_NE(first, nullptr);
+  EXPECT_GT(first->size(), 1000u);
+  EXPECT_EQ(shown(0.501), first) << "no other frame has come";
+  const auto later = shown(0.7);
+  EXPECT_NE(later, first);
+  const auto again = shown(0.5);
+  EXPECT_TRUE(std::ranges::equal(again->grid.points(), first->grid.points())) << "the same again";
+  EXPECT_EQ(shown(50)->size(), shown(60)->size()) << "the last one stays";
+}
+
+}  // namespace
+}  // namespace palpate::app
