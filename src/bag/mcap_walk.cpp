@@ -199,10 +199,8 @@ void Walk::take(Op op, std::uint64_t at, std::uint64_t length) {
   const bool wanted =
       op == Op::header || op == Op::schema || op == Op::channel || op == Op::metadata;
   if (!wanted) return;
-  if (length > kLargestNote) throw Error("a record is longer than any honest one");
-  notes_ += length;
-  if (notes_ > kAllNotes)
-    throw Error("more schemas, channels and metadata than any honest file has");
+  if (length > kLargestNote || (notes_ += length) > kAllNotes)
+    throw Error("a record is longer than any honest one");
   const Bytes content = file_.read(at, length);
   Fields fields(content);
   if (op == Op::header) {

@@ -132,7 +132,8 @@ namespace {
 // Where the topic's own name begins, before "/compressed..." at its end.
 std::size_t name_in(const std::string& topic) {
   const std::size_t last = topic.rfind('/');
-  if (last == std::string::npos || last == 0) return 0;
+  if (last == std::string::npos) return topic.size();
+  if (last == 0) return 0;
   return topic.compare(last, 11, "/compressed") == 0 ? topic.rfind('/', last - 1) : last;
 }
 

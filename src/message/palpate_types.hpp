@@ -88,6 +88,7 @@ struct FrameUse {
   std::vector<double> reach;  // balls where tools could be: x, y, z, radius each, m
   std::uint64_t publication = 0;  // of the source, with this one
   std::string options;            // of the source from here on, JSON; empty: as before
+  bool gap = false;               // frames just before it were not recorded
 
   static void each(auto& m, auto&& f) {
     f("header", m.header);
@@ -100,6 +101,7 @@ struct FrameUse {
     f("reach", m.reach);
     f("publication", m.publication);
     f("options", m.options);
+    f("gap", m.gap);
   }
 };
 

@@ -109,6 +109,7 @@ void Source::Inside::take_change() {
   const std::lock_guard lock(mutex);
   if (!changed) return;
   builder = std::move(changed);
+  taken = options;
   ++changes;
 }
 

@@ -145,6 +145,7 @@ struct Source::Inside {
   std::vector<Reach> found;                  // the same thread's
   std::uint64_t publications = 0;            // the same thread's
   std::uint64_t changes = 0;                 // taken; the same thread's
+  SourceOptions taken;                       // with the last of them; the same thread's
   ReachTable reaches;
   std::shared_ptr<Seams> seams;  // of the scene
   std::size_t place = 0;         // in it

@@ -18,6 +18,10 @@ std::uint64_t SourceTrace::changes() const {
   return source_->inside_->changes;
 }
 
+const SourceOptions& SourceTrace::options() const {
+  return source_->inside_->taken;
+}
+
 void SourceTrace::impose_reach(std::span<const Reach> reach) {
   ReachTable& table = source_->inside_->reaches;
   for (std::size_t i = 0; i < ReachTable::kPlaces; ++i) {

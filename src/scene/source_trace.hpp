@@ -23,6 +23,9 @@ class SourceTrace {
   /// Options of change() that pushes have taken so far.
   [[nodiscard]] std::uint64_t changes() const;
 
+  /// Those that the last push was made with.
+  [[nodiscard]] const SourceOptions& options() const;
+
   /// The next push reads these, at most ReachTable::kPlaces, and nothing of fields.
   void impose_reach(std::span<const Reach> reach);
 

@@ -16,15 +16,13 @@
 #include "palpate/ros/bridge.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 #include "palpate/servo/servo_thread.hpp"
+#include "servo/step_trace.hpp"
 
 namespace {
 
 using namespace palpate;
 using Eigen::Vector3d;
 using Place = std::array<double, 3>;
-
-// Of later steps the second field may already have another surface, s.
-constexpr double kLatest = 0.02;
 
 Place place_of(const Vector3d& position) {
   return {position.x(), position.y(), position.z()};
@@ -46,20 +44,22 @@ struct Result {
   double hand = 0;
 };
 
-void check(const ServoState& step, SceneField& field, Result& result) {
+// Where the second field still has the surface that the step had.
+void check(const StepTrace& trace, SceneField& field, Result& result) {
+  const ServoState& step = trace.state;
   field.update(step.time, step.hip, step.contact.proxy);
   field.begin_step();
-  const double depth = depth_at(field, step.contact.proxy);
-  if (!has(step.field_notes, FieldNote::no_surface | FieldNote::behind)) {
+  const bool same = field.found().publications == trace.input.found.publications;
+  if (same && !has(step.field_notes, FieldNote::no_surface | FieldNote::behind)) {
     ++result.judged;
-    result.proxy = std::max(result.proxy, depth);
-    result.touching += step.contact.touching ? 1 : 0;
+    result.proxy = std::max(result.proxy, depth_at(field, step.contact.proxy));
     result.hand = std::max(result.hand, depth_at(field, step.hip));
+    result.touching += step.contact.touching ? 1 : 0;
   }
   field.end_step(step.contact.proxy, step.contact.normal);
 }
 
-Result run(Servo& servo, Scene& scene, ServoState::Queue& steps, WaitingClock& clock, double end) {
+Result run(Servo& servo, Scene& scene, StepTraces& steps, WaitingClock& clock, double end) {
   const RosBridge bridge({{"hand", &servo}}, scene, {}, {.robot = {{.preset = "crisp"}}});
   const dds::Participant participant(dds::environment_options());
   dds::Reader<message::PoseStamped> targets(participant, "/target_pose",
@@ -75,9 +75,9 @@ Result run(Servo& servo, Scene& scene, ServoState::Queue& steps, WaitingClock& c
       const message::Point& p = told.pose.position;
       taken.push_back({p.x, p.y, p.z});
     }
-    while (const std::optional<ServoState> step = steps.pop()) {
-      if (clock.now() - step->time < kLatest) check(*step, field, result);
-      places.insert(place_of(step->contact.proxy));
+    while (const std::optional<StepTrace> step = steps.pop()) {
+      check(*step, field, result);
+      places.insert(place_of(step->state.contact.proxy));
     }
   }
   result.targets = taken.size();
@@ -99,11 +99,11 @@ int main(int count, char** arguments) {
   const Placement plan =
       plan_exploration(scene, {}, {.duration = seconds, .seed = std::stoul(arguments[3])});
   SimulatedDevice device({}, plan.target);
-  ServoState::Queue steps(1 << 16);
+  StepTraces steps(1 << 16);
   ServoOptions options;
   options.workspace = plan.workspace;
   options.proxy.stiffness = plan.stiffness;
-  options.steps = &steps;
+  options.traces = &steps;
   Servo servo(device, scene, options);
   const Result found = run(servo, scene, steps, clock, clock.now() + seconds);
   if (steps.dropped() > 0) fmt::print("{} steps were left out\n", steps.dropped());
@@ -113,5 +113,5 @@ int main(int count, char** arguments) {
       "{:.2f} mm\n",
       found.targets, found.strange, found.judged, found.touching, 1e3 * found.proxy,
       1e3 * found.hand);
-  return found.targets > 0 && found.strange == 0 && found.proxy <= 1e-4 ? 0 : 1;
+  return found.targets > 0 && found.judged > 0 && found.strange == 0 && found.proxy <= 1e-4 ? 0 : 1;
 }

@@ -104,7 +104,8 @@ Interruption::Interruption() {
   sigemptyset(&action.sa_mask);
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
     sigaction(kSignals[i], &action, &before_[i]);
-    if (before_[i].sa_handler == SIG_IGN) sigaction(kSignals[i], &before_[i], nullptr);
+    const bool outlives = kSignals[i] == SIGHUP && before_[i].sa_handler == SIG_IGN;
+    if (outlives) sigaction(kSignals[i], &before_[i], nullptr);
   }
 }
 

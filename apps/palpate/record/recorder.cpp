@@ -57,9 +57,10 @@ DepthFrame without_colors(const DepthFrame& frame) {
 
 Recorder::Recorder(const std::string& path) : name_(path) {
   if (path.empty()) return;
-  file_ = std::make_unique<RecordingFile>(path);
   report_.path = path;
   takes_frames_ = true;
+  // What was recorded before is not overwritten by a run that does not begin.
+  if (!std::filesystem::is_regular_file(path)) file_ = std::make_unique<RecordingFile>(path);
 }
 
 Recorder::~Recorder() {
@@ -68,7 +69,7 @@ Recorder::~Recorder() {
 
 StepTraces* Recorder::add_hand() {
   StepTraces& hand = hands_.emplace_back(kSteps);
-  hand.accept(file_ != nullptr);
+  hand.accept(takes_frames_);
   return &hand;
 }
 
@@ -79,6 +80,8 @@ void Recorder::begin(LoadedScene& loaded, std::vector<const Servo*> servos, doub
   waits_ = waits;
   epoch_ = wall_clock() - std::llround(1e9 * now);
   changes_.assign(loaded.scene.size(), 0);
+  gaps_.assign(loaded.scene.size(), 0);
+  if (!file_ && !report_.path.empty()) file_ = std::make_unique<RecordingFile>(report_.path);
   if (file_) file_->begin(setup_of(loaded, servos_, epoch_));
   thread_ = std::thread([this] { work(); });
 }
@@ -156,13 +159,15 @@ void Recorder::put(std::size_t source, message::FrameUse use, DepthFrame frame) 
                      {ball.center.x(), ball.center.y(), ball.center.z(), ball.radius});
   }
   std::unique_lock lock(mutex_);
-  if (trace.changes() != std::exchange(changes_[source], trace.changes())) {
-    use.options = exact_json(loaded_->scene.source(source).options()).dump();
-  }
   if (waits_) room_.wait(lock, [this] { return frames_.size() < kMostFrames; });
   if (frames_.size() >= kMostFrames && use.kind != "end") {
     ++lost_frames_;
+    gaps_[source] = 1;
     return;
+  }
+  use.gap = std::exchange(gaps_[source], 0) != 0;
+  if (trace.changes() != std::exchange(changes_[source], trace.changes())) {
+    use.options = exact_json(trace.options()).dump();
   }
   frames_.push_back({source, std::move(frame), std::move(use)});
 }
@@ -200,6 +205,10 @@ void Recorder::carry_out(Order order) {
   report_ = {};
   report_.path = order.path;
   file_ = std::move(order.file);
+  {
+    const std::lock_guard lock(mutex_);
+    gaps_.assign(gaps_.size(), 0);
+  }
   accept(true);  // recorded is what comes from now on, though what follows takes its time
   try {
     file_->begin(order.setup);

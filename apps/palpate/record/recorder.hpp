@@ -88,7 +88,6 @@ class Recorder {
   void put(std::size_t source, message::FrameUse use, DepthFrame frame);
   void work();
   void carry_out(Order order);
-  void open(Order order);
   void close();
   void fail(const std::string& why);
   void accept(bool on);
@@ -115,6 +114,7 @@ class Recorder {
   std::deque<RecordedFrame> frames_;
   std::uint64_t lost_frames_ = 0;       // of the present file
   std::vector<std::uint64_t> changes_;  // of each source's options, that were told
+  std::vector<char> gaps_;              // of each source: its last frame was not recorded
   bool ending_ = false;
   std::mutex broken_mutex_;
   Broken broken_;

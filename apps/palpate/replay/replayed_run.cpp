@@ -57,7 +57,8 @@ void apply(const message::Change& change, Servo& servo) {
 
 void compare(const message::Tick& tick, const Eigen::Vector3d& force, double start,
              ForceDifference& difference) {
-  const double error = (force - message::eigen(tick.force)).norm();
+  const double norm = (force - message::eigen(tick.force)).norm();
+  const double error = std::isnan(norm) ? std::numeric_limits<double>::infinity() : norm;
   ++difference.steps;
   difference.squares += error * error;
   difference.largest = std::max(difference.largest, error);
@@ -106,6 +107,9 @@ class ReplayedHand {
         step(tick, difference, each);
       }
     }
+    const std::vector<std::string>& losses = reader_.contents().losses;
+    if (difference.ended.empty() && !losses.empty())
+      difference.ended = "damaged: " + losses.front();
     if (difference.steps == 0 && difference.ended.empty()) difference.ended = "there is no step";
     return difference;
   }
@@ -155,6 +159,7 @@ Json recorded_setup(const bag::McapReader& reader, const std::string& path) {
     const bag::Attachment text = attachment_named(reader, kSetupName);
     Json setup = Json::parse(text.data.begin(), text.data.end());
     if (setup.at("kind") != kSetupKind) throw Error("another version of palpate recorded it");
+    if (!setup.at("hands").is_array() || setup["hands"].empty()) throw Error("no hand is in it");
     return setup;
   } catch (const std::exception& error) {
     throw Error(fmt::format("{}: no recording of a run: {}", path, error.what()));

@@ -33,19 +33,20 @@ void ReplayedSource::widen(double least_radius) {
 
 bool ReplayedSource::push_next() {
   const std::optional<RecordedFrame> frame = frames_.next();
-  if (frame) do_again(*frame);
-  return frame.has_value();
+  if (!frame || frame->use.gap) return false;
+  do_again(*frame);
+  return true;
 }
 
 void ReplayedSource::do_again(const RecordedFrame& recorded) {
   const message::FrameUse& use = recorded.use;
   done_ = use.publication;
-  if (use.dropped) return;
   if (!use.options.empty()) {
     SourceOptions options;
     take_exact(Json::parse(use.options), options);
     source_->change(options);
   }
+  if (use.dropped) return;
   std::vector<Reach> reach;
   for (std::size_t i = 0; i + 3 < use.reach.size(); i += 4) {
     reach.push_back({Eigen::Vector3d(use.reach.data() + i), use.reach[i + 3]});
