@@ -21,7 +21,7 @@ if [ "${1:-}" = --soak ]; then
 fi
 
 say "packages"
-need_packages build cameras viewer ros test peers fuzz lint bench
+need_packages build cameras viewer ros python test peers fuzz lint bench
 need_npm
 need_modules tests/peer
 need_browser
