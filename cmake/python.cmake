@@ -30,3 +30,13 @@ if(NOT Python_Development.Module_FOUND OR NOT pybind11_FOUND)
 elseif(CMAKE_CXX_FLAGS MATCHES "-fsanitize=thread")
   set(PALPATE_BUILD_PYTHON OFF)  # Python itself is not instrumented
 endif()
+
+# What a Python without sanitizers has to load before a module with them.
+if(PALPATE_BUILD_PYTHON AND PALPATE_SANITIZED)
+  set(library libasan.so)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    set(library libclang_rt.asan-x86_64.so)
+  endif()
+  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=${library}
+    OUTPUT_VARIABLE PALPATE_ASAN_LIBRARY OUTPUT_STRIP_TRAILING_WHITESPACE)
+endif()

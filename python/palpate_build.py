@@ -14,6 +14,8 @@ import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / f"wheel-{sys.implementation.cache_tag}"
+PYTHON = f"cp{sys.version_info[0]}{sys.version_info[1]}"
+TAG = f"{PYTHON}-{PYTHON}-{re.sub('[-.]', '_', sysconfig.get_platform())}"
 
 
 def installed(staging):
@@ -28,25 +30,39 @@ def installed(staging):
     return BUILD / "apps/palpate/palpate"
 
 
-def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+def description():
+    """Files of a wheel's dist-info folder, and that folder's name."""
     version = re.search(r"project\(palpate VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]
-    python = f"cp{sys.version_info[0]}{sys.version_info[1]}"
-    tag = f"{python}-{python}-{re.sub('[-.]', '_', sysconfig.get_platform())}"
-    info = f"palpate-{version}.dist-info"
-    name = f"palpate-{version}-{tag}.whl"
+    metadata = (f"Metadata-Version: 2.1\nName: palpate\nVersion: {version}\nSummary: Feel a point cloud\n"
+                "Requires-Python: >=3.9\nRequires-Dist: numpy\n")
+    wheel = f"Wheel-Version: 1.0\nGenerator: palpate\nRoot-Is-Purelib: false\nTag: {TAG}\n"
+    return f"palpate-{version}", {"METADATA": metadata.encode(), "WHEEL": wheel.encode(),
+                                  "LICENSE": (ROOT / "LICENSE").read_bytes()}
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    name, files = description()
+    info = pathlib.Path(metadata_directory, f"{name}.dist-info")
+    info.mkdir()
+    for file, data in files.items():
+        (info / file).write_bytes(data)
+    return info.name
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    name, info = description()
     with tempfile.TemporaryDirectory() as staging, zipfile.ZipFile(
-            pathlib.Path(wheel_directory, name), "w", zipfile.ZIP_DEFLATED) as wheel:
+            pathlib.Path(wheel_directory, f"{name}-{TAG}.whl"), "w", zipfile.ZIP_DEFLATED) as wheel:
         program = installed(staging)
         files = {str(path.relative_to(staging)): path.read_bytes() for path in sorted(pathlib.Path(staging).rglob("*.*"))}
-        files[f"palpate-{version}.data/scripts/palpate"] = program.read_bytes()
-        files[f"{info}/METADATA"] = (f"Metadata-Version: 2.1\nName: palpate\nVersion: {version}\nSummary: Feel a point cloud\n"
-                                     "Requires-Python: >=3.9\nRequires-Dist: numpy\n").encode()
-        files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: palpate\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
-        files[f"{info}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
+        files[f"{name}.data/scripts/palpate"] = program.read_bytes()
+        files.update({f"{name}.dist-info/{file}": data for file, data in info.items()})
         record = ""
         for path, data in files.items():
-            wheel.writestr(zipfile.ZipInfo(path), data, zipfile.ZIP_DEFLATED)
+            entry = zipfile.ZipInfo(path)
+            entry.external_attr = (0o100755 if "/scripts/" in path else 0o100644) << 16
+            wheel.writestr(entry, data, zipfile.ZIP_DEFLATED)
             digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
             record += f"{path},sha256={digest},{len(data)}\n"
-        wheel.writestr(f"{info}/RECORD", f"{record}{info}/RECORD,,\n")
-    return name
+        wheel.writestr(f"{name}.dist-info/RECORD", f"{record}{name}.dist-info/RECORD,,\n")
+    return f"{name}-{TAG}.whl"

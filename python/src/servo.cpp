@@ -72,6 +72,8 @@ std::unique_ptr<ServoHandle> new_servo(const std::shared_ptr<SharedScene>& scene
                                        const std::string& device, const py::object& hand, double dt,
                                        const Eigen::Matrix4d& pose, double scale,
                                        const py::kwargs& given) {
+  if (!(scale > 0))
+    throw Error(fmt::format("a servo's scale cannot be {}; give one above 0", scale));
   Keywords keywords(given, "Servo");
   ServoPlan plan{.device = device, .hand = trajectory_of(hand, dt)};
   plan.realtime.lock_memory = false;  // Python's memory is the whole process's
