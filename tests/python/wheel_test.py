@@ -21,7 +21,7 @@ import pathlib, sys, numpy as np, palpate as pp
 assert pathlib.Path(pp.__file__).is_relative_to(sys.prefix), pp.__file__
 assert pp.rollout(pp.Plane(), pp.Proxy(), np.array([[0, 0, -1e-3]])).touching.all()
 assert pathlib.Path(pp.program()).is_relative_to(sys.prefix)
-assert pp.demo("--version") == 0
+assert pp.demo("--help") == 0
 assert (pathlib.Path(pp.__file__).parent / "py.typed").exists()
 """
 
