@@ -21,22 +21,19 @@ else()
   palpate_find_python(Python_EXECUTABLE)
   set(needed QUIET)
 endif()
+set(found ${Python_EXECUTABLE})
 set(PYBIND11_NOPYTHON ON)  # which Python it is, is said here
 find_package(Python 3.9 COMPONENTS Interpreter Development.Module ${needed})
 find_package(pybind11 2.10 ${needed})
-if(NOT Python_Development.Module_FOUND OR NOT pybind11_FOUND)
+if(NOT found OR NOT Python_Development.Module_FOUND OR NOT pybind11_FOUND)
   message(STATUS "python: pybind11-dev, python3-dev or python3-numpy is absent; built without a Python module")
   set(PALPATE_BUILD_PYTHON OFF)
-elseif(CMAKE_CXX_FLAGS MATCHES "-fsanitize=thread")
-  set(PALPATE_BUILD_PYTHON OFF)  # Python itself is not instrumented
-endif()
-
-# What a Python without sanitizers has to load before a module with them.
-if(PALPATE_BUILD_PYTHON AND PALPATE_SANITIZED)
-  set(library libasan.so)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-    set(library libclang_rt.asan-x86_64.so)
-  endif()
-  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=${library}
-    OUTPUT_VARIABLE PALPATE_ASAN_LIBRARY OUTPUT_STRIP_TRAILING_WHITESPACE)
+elseif(PALPATE_SANITIZED AND NOT (CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_FLAGS MATCHES "=address"))
+  set(PALPATE_BUILD_PYTHON OFF)  # Python itself is not instrumented, so it has to load the sanitizer as a library
+elseif(PALPATE_SANITIZED)
+  foreach(library asan stdc++)  # the sanitizer looks at exceptions from its start on, and Python has none
+    execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=lib${library}.so
+      OUTPUT_VARIABLE path OUTPUT_STRIP_TRAILING_WHITESPACE)
+    string(APPEND PALPATE_PRELOADED ${path}:)
+  endforeach()
 endif()

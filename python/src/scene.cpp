@@ -129,8 +129,13 @@ bool push_points(CloudStream& stream, const py::object& points, const std::optio
   return stream.source->push(*cloud, stamp.value_or(SteadyClock().now()), start_of(stamp, latency));
 }
 
-Source::State state_of(const SharedScene& scene, std::size_t index) {
-  if (index >= scene.scene.size()) throw py::index_error("there is no such source");
+std::size_t size_of(SharedScene& scene) {
+  const Away away(scene.mutex);
+  return scene.scene.size();
+}
+
+Source::State state_of(SharedScene& scene, std::size_t index) {
+  if (index >= size_of(scene)) throw py::index_error("there is no such source");
   const Away away;
   return scene.scene.state(index);
 }
@@ -149,7 +154,8 @@ std::string words(const SharedSource& source) {
   return fmt::format("<palpate source {}>", words(*source.source));
 }
 
-std::string words(const SharedScene& scene) {
+std::string words(SharedScene& scene) {
+  const Away away(scene.mutex);
   std::string text;
   for (std::size_t i = 0; i < scene.scene.size(); ++i) {
     text += (i > 0 ? ", " : "") + words(scene.scene.source(i));
@@ -244,8 +250,8 @@ void define_scene(py::module_& module) {
   const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
   py::class_<SharedScene, ScenePointer>(module, "Scene", "Up to eight sources touched together")
       .def(py::init())
-      .def("__len__", [](const SharedScene& scene) { return scene.scene.size(); })
-      .def("__repr__", [](const SharedScene& scene) { return words(scene); })
+      .def("__len__", &size_of)
+      .def("__repr__", [](SharedScene& scene) { return words(scene); })
       .def("add", &add_cloud, arg("name"), arg("cloud"), arg("pose") = identity, kAdd)
       .def("add_stream", &add_stream, arg("name"), arg("pose") = identity, kAddStream)
       .def("add_camera", &add_camera, arg("name"), py::kw_only(), arg("K"), arg("size"),

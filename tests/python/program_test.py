@@ -33,7 +33,7 @@ class Program(unittest.TestCase):
             pp.replay("absent.mcap")
 
     def test_demo_runs(self):
-        self.assertEqual(pp.demo("scan", "--headless", "--duration", "1"), 0)
+        self.assertEqual(pp.demo("scan", "--headless", "--port", "0", "--duration", "1"), 0)
 
     def test_absent_program_is_told(self):
         os.environ["PATH"] = os.path.join(self.path.split(os.pathsep)[0], "nowhere")
