@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <string>
 #include <utility>
@@ -12,7 +13,6 @@
 #include "io/cloud_builder.hpp"
 #include "module.hpp"
 #include "palpate/io/files.hpp"
-#include "palpate/io/synthetic.hpp"
 
 namespace palpate::python {
 namespace {
@@ -65,24 +65,6 @@ std::shared_ptr<PointCloud> new_cloud(const py::object& points, const py::kwargs
   return cloud;
 }
 
-CloudFile read(const std::filesystem::path& path, double scale,
-               const std::optional<std::array<double, 4>>& intrinsics, double unit) {
-  ReadOptions options{.scale = scale, .depth_unit = unit};
-  if (intrinsics) {
-    options.intrinsics = {(*intrinsics)[0], (*intrinsics)[1], (*intrinsics)[2], (*intrinsics)[3]};
-  }
-  return read_cloud_file(path, options);
-}
-
-void write(const std::filesystem::path& path, const py::object& cloud, bool ascii,
-           const py::kwargs& given) {
-  Keywords keywords(given, "write_cloud");
-  const auto points = cloud_of(cloud, keywords);
-  keywords.finish();
-  const Away away;
-  write_cloud(path, *points, {.ascii = ascii});
-}
-
 std::shared_ptr<Prepared> prepare_cloud(const py::object& cloud, const Eigen::Matrix4d& pose,
                                         const py::kwargs& given) {
   Keywords keywords(given, "prepare");
@@ -93,10 +75,6 @@ std::shared_ptr<Prepared> prepare_cloud(const py::object& cloud, const Eigen::Ma
   const Eigen::Isometry3d T_world_sensor = pose_of(pose);
   const Away away;
   return std::make_shared<Prepared>(palpate::prepare(*points, options, T_world_sensor));
-}
-
-PointCloud synthetic(const std::string& name, double spacing, double noise, std::uint64_t seed) {
-  return synthetic_cloud(name, {.spacing = spacing, .noise = noise, .seed = seed});
 }
 
 std::string words(const PointCloud& cloud) {
@@ -152,14 +130,26 @@ py::array_t<double> absolute(std::span<const Eigen::Vector3f> positions,
   return result;
 }
 
+constexpr const char* kCloud = R"(Points of one file or sensor, m, in its own frame.
+
+Made of an (n, 3) array, float64 or float32, and keywords: normals (n, 3), colors (n, 3) uint8, intensities (n,)
+float32, viewpoint (3,). What is given is copied once. Arrays are views that cannot be written to.)";
+
+constexpr const char* kPoints =
+    R"(Indexed points with all that a field needs, world frame, in the index's order.
+
+Arrays are views that cannot be written to.)";
+
+constexpr const char* kPrepare = R"(Filters and indexes a cloud and finds its sheets, on every core.
+
+cloud: a PointCloud, a file, or an (n, 3) array with the keywords of PointCloud. pose: (4, 4), cloud to world.
+Keywords: voxel (m), radius (m), radius_multiple, minimum_radius (m), normal_error (rad), viewpoint (3,), orientation
+(automatic, viewpoint, outward, given), clip (lower, upper), remove_speckle, estimate_normals,
+material_from_intensity, paper, kernel (wyvill, wendland).)";
+
 void define_cloud(py::module_& module) {
   using Cloud = PointCloud;
-  py::class_<Cloud, std::shared_ptr<Cloud>>(
-      module, "PointCloud",
-      "Points of one file or sensor, m, in its own frame. Made of an (n, 3) array, float64 or "
-      "float32, and keywords: "
-      "normals (n, 3), colors (n, 3) uint8, intensities (n,) float32, viewpoint (3,). What is "
-      "given is copied once.")
+  py::class_<Cloud, std::shared_ptr<Cloud>>(module, "PointCloud", kCloud)
       .def(py::init(&new_cloud))
       .def("__len__", &Cloud::size)
       .def("__repr__", [](const Cloud& cloud) { return words(cloud); })
@@ -167,9 +157,9 @@ void define_cloud(py::module_& module) {
           "points", [](const Cloud& cloud) { return absolute(cloud.positions, cloud.origin); },
           "(n, 3) float64, m: a new array of origin + positions")
       .def_readonly("origin", &Cloud::origin, "(3,) m: positions are relative to it")
-      .def_property_readonly(
-          "positions", vectors<Cloud>([](auto& c) { return std::span(c.positions); }),
-          "(n, 3) float32, m, relative to origin; a view that cannot be written to")
+      .def_property_readonly("positions",
+                             vectors<Cloud>([](auto& c) { return std::span(c.positions); }),
+                             "(n, 3) float32, m, relative to origin; a view")
       .def_property_readonly("normals",
                              vectors<Cloud>([](auto& c) { return std::span(c.normals); }),
                              "(n, 3) float32, unit or zero; (0, 3) where there are none")
@@ -183,11 +173,7 @@ void define_cloud(py::module_& module) {
 
 void define_surface_points(py::module_& module) {
   using Points = SurfacePoints;
-  py::class_<Points, std::shared_ptr<Points>>(
-      module, "SurfacePoints",
-      "Indexed points with all that a field needs, world frame, in the index's order. Arrays are "
-      "views that cannot "
-      "be written to.")
+  py::class_<Points, std::shared_ptr<Points>>(module, "SurfacePoints", kPoints)
       .def("__len__", &Points::size)
       .def("__repr__",
            [](const Points& points) {
@@ -235,18 +221,13 @@ void define_report(py::module_& module) {
 
 }  // namespace
 
-std::optional<std::filesystem::path> path_of(const py::object& given) {
-  const bool is_path = py::isinstance<py::str>(given) || py::hasattr(given, "__fspath__");
-  if (!is_path) return std::nullopt;
-  return py::module_::import("os").attr("fspath")(given).cast<std::string>();
-}
-
 std::shared_ptr<const PointCloud> cloud_of(const py::object& given, Keywords& keywords) {
   if (py::isinstance<PointCloud>(given)) return given.cast<std::shared_ptr<PointCloud>>();
-  const auto path = path_of(given);
-  if (!path) return cloud_of_arrays(given, keywords);
+  const bool is_path = py::isinstance<py::str>(given) || py::hasattr(given, "__fspath__");
+  if (!is_path) return cloud_of_arrays(given, keywords);
+  const auto path = given.cast<std::filesystem::path>();
   const Away away;
-  return std::make_shared<PointCloud>(read_cloud(*path));
+  return std::make_shared<PointCloud>(read_cloud(path));
 }
 
 py::object shared(const std::shared_ptr<const SurfacePoints>& points) {
@@ -257,41 +238,8 @@ void define_clouds(py::module_& module) {
   define_cloud(module);
   define_surface_points(module);
   define_report(module);
-  module.def(
-      "read_cloud",
-      [](const py::object& path, double scale, const std::optional<std::array<double, 4>>& K,
-         double unit) {
-        const auto file = path_of(path);
-        if (!file) throw py::type_error("path is neither a string nor a path");
-        const Away away;
-        return std::make_shared<PointCloud>(read(*file, scale, K, unit).cloud);
-      },
-      py::arg("path"), py::kw_only(), py::arg("scale") = 1.0, py::arg("K") = py::none(),
-      py::arg("unit") = 1e-3,
-      "Reads PLY, PCD, XYZ, OBJ, LAS, LAZ and depth images (these with K = (fx, fy, cx, cy) in "
-      "pixels and unit, "
-      "metres a step). scale: metres for one of the file's units.");
-  module.def(
-      "write_cloud",
-      [](const py::object& path, const py::object& cloud, bool ascii, const py::kwargs& given) {
-        const auto file = path_of(path);
-        if (!file) throw py::type_error("path is neither a string nor a path");
-        write(*file, cloud, ascii, given);
-      },
-      py::arg("path"), py::arg("cloud"), py::kw_only(), py::arg("ascii") = false,
-      "Writes a PointCloud or an (n, 3) array, with the keywords of PointCloud, as PLY or PCD by "
-      "the path's ending.");
-  module.def(
-      "prepare", &prepare_cloud, py::arg("cloud"),
-      py::arg("pose") = Eigen::Matrix4d::Identity().eval(),
-      "Filters and indexes a PointCloud, file or (n, 3) array and finds its sheets; on every core. "
-      "pose: (4, 4), "
-      "sensor to world. Keywords are those of PrepareOptions: voxel, radius, viewpoint, ...");
-  module.def("synthetic_cloud", &synthetic, py::arg("name"), py::kw_only(),
-             py::arg("spacing") = 2e-3, py::arg("noise") = 0.0, py::arg("seed") = 1,
-             py::call_guard<py::gil_scoped_release>(),
-             "A cloud that a formula makes: sphere, torus, table, rabbit, room, ...; spacing and "
-             "noise in m");
+  module.def("prepare", &prepare_cloud, py::arg("cloud"),
+             py::arg("pose") = Eigen::Matrix4d::Identity().eval(), kPrepare);
 }
 
 }  // namespace palpate::python

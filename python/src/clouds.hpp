@@ -2,9 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "options.hpp"
 #include "palpate/field/surface_points.hpp"
@@ -17,9 +15,6 @@ namespace palpate::python {
 /// @throws py::type_error for arrays that would have to be cast; Error as reading does.
 [[nodiscard]] std::shared_ptr<const PointCloud> cloud_of(const py::object& given,
                                                          Keywords& keywords);
-
-/// Where os.PathLike and strings lead. Empty: `given` is neither.
-[[nodiscard]] std::optional<std::filesystem::path> path_of(const py::object& given);
 
 /// What Python holds of them cannot be changed there.
 [[nodiscard]] py::object shared(const std::shared_ptr<const SurfacePoints>& points);

@@ -6,6 +6,7 @@ namespace palpate::python {
 
 /// Each puts one concept into the module.
 void define_clouds(pybind11::module_& module);
+void define_files(pybind11::module_& module);
 void define_scene(pybind11::module_& module);
 void define_cameras(pybind11::module_& module);
 void define_fields(pybind11::module_& module);
