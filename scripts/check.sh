@@ -21,7 +21,7 @@ if [ "${1:-}" = --soak ]; then
 fi
 
 say "packages"
-need_packages build cameras viewer ros test peers fuzz lint bench
+need_packages build cameras viewer ros python test peers fuzz lint bench
 need_npm
 need_modules tests/peer
 need_browser
@@ -43,6 +43,11 @@ say "address and undefined-behaviour sanitizers, arithmetic and long tests among
 configure fuzz -DPALPATE_TEST_ARITHMETIC=ON
 build fuzz
 test_preset fuzz || status=1
+say "the Python module under address and undefined-behaviour sanitizers"
+configure asan
+build asan palpate_python palpate_app fake_dhd
+test_preset asan -R '^python/' || status=1
+
 say "long tests in a release build"
 configure release -DPALPATE_BUILD_TESTS=ON -DPALPATE_BUILD_BENCH=ON
 build release
@@ -71,5 +76,5 @@ else
 fi
 
 say "summary (after $((SECONDS - started)) s)"
-for preset in dev tsan fuzz release; do summary "$preset"; done
+for preset in dev tsan fuzz asan release; do summary "$preset"; done
 exit $status

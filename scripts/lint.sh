@@ -22,7 +22,7 @@ sources() {
   if git rev-parse --git-dir >/dev/null 2>&1; then
     git ls-files '*.cpp' '*.hpp'
   else
-    find apps bench examples fuzz include src tests -name '*.cpp' -o -name '*.hpp'
+    find apps bench examples fuzz include python src tests -name '*.cpp' -o -name '*.hpp'
   fi
 }
 
@@ -37,7 +37,7 @@ changed_sources() {
   if [ -z "$base" ]; then sources; else git diff --name-only --diff-filter=d "$base" -- '*.cpp' '*.hpp'; fi
 }
 
-need_packages build cameras viewer ros test peers lint
+need_packages build cameras viewer ros python test peers lint
 if [ "$mode" = fix ]; then
   sources | xargs clang-format-14 -i
   exit
@@ -62,6 +62,6 @@ fi
 started=$SECONDS
 # The flags are g++'s, some of which clang does not know.
 xargs -P "$(jobs_that_fit)" -n 4 clang-tidy-14 -p build/tidy --quiet --extra-arg=-Wno-unknown-warning-option \
-  --header-filter="^$PWD/(apps|bench|examples|fuzz|include|src|tests)/" <<<"$picked" \
+  --header-filter="^$PWD/(apps|bench|examples|fuzz|include|python|src|tests)/" <<<"$picked" \
   >build/tidy.log 2>build/tidy.err || { cat build/tidy.log; fail "clang-tidy reported problems"; }
 note "$(wc -l <<<"$picked") sources are clean ($((SECONDS - started)) s)"

@@ -22,7 +22,7 @@ started=$SECONDS
 status=0
 
 say "packages"
-need_packages build cameras viewer ros test peers
+need_packages build cameras viewer ros python test peers
 need_npm
 need_modules tests/peer
 need_browser

@@ -32,6 +32,7 @@ FLOORS = {
             "sensor", "device", "servo"},
     "apps": {"base", "geometry", "depth", "io", "message", "bag", "field", "contact", "prepare", "align",
              "scene", "sensor", "device", "servo", "ros", "viewer"},
+    "python": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "sensor", "device", "servo"},
 }
 # The rooms of the program, from the top down: what stands in one line sees what stands below it.
 ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "replay", "touch", "zwidth"}, {"view"},
@@ -42,7 +43,7 @@ ALLOWED = {("contact", "palpate/field/field.hpp"), ("sim", "palpate/sensor/depth
 # The one file that asks what machine it is compiled for.
 PLATFORM_FILES = {"src/base/cpu.hpp"}
 
-SOURCE_FOLDERS = ("apps", "bench", "examples", "fuzz", "include", "src", "tests")
+SOURCE_FOLDERS = ("apps", "bench", "examples", "fuzz", "include", "python", "src", "tests")
 TEXT_SUFFIXES = {".cpp", ".hpp", ".inl", ".in", ".cmake", ".md", ".mjs", ".py", ".sh", ".ts", ".txt"}
 LONGEST_FILE = 300  # lines
 LARGEST_MODULE = 250  # lines of a header and its sources, about
@@ -70,9 +71,9 @@ def floor_of(parts):
 
 def floors(root):
     """Includes point down the floors only."""
-    for path in sources(root, ("include", "src", "apps")):
+    for path in sources(root, ("include", "src", "apps", "python")):
         name = path.relative_to(root)
-        here = "apps" if name.parts[0] == "apps" else floor_of(name.parts)
+        here = name.parts[0] if name.parts[0] in {"apps", "python"} else floor_of(name.parts)
         if here is None:  # palpate.hpp, which gathers
             continue
         for number, line in enumerate(lines(path), 1):
@@ -145,7 +146,7 @@ def size(root):
 
 def functions(root):
     """Functions that one sees at once."""
-    for path in sources(root, ("include", "src", "apps")):
+    for path in sources(root, ("include", "src", "apps", "python")):
         for head, number, length in counts.functions(path):
             if length > counts.LONGEST_FUNCTION:
                 yield (f"{path.relative_to(root)}:{number}: {length} lines, more than "

@@ -23,6 +23,9 @@ class Rules(unittest.TestCase):
         self.assertEqual(len(self.found(rules.floors, {"src/geometry/a.cpp": up})), 1)
         self.assertEqual(len(self.found(rules.floors, {"include/palpate/field/a.hpp": up})), 1)
         self.assertEqual(self.found(rules.floors, {"src/device/a.cpp": up}), [])
+        self.assertEqual(self.found(rules.floors, {"python/src/a.cpp": up}), [])
+        viewer = '#include "palpate/viewer/viewer.hpp"\n'
+        self.assertEqual(len(self.found(rules.floors, {"python/src/a.cpp": viewer})), 1)
 
     def test_an_include_of_a_private_header_above_is_found(self):
         up = '#include "io/input.hpp"\n'

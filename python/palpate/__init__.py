@@ -1,0 +1,11 @@
+"""palpate: feel a point cloud. Arrays in, forces out; docs/python.md is the user's page."""
+
+from ._palpate import (
+    AnyField, Box, Camera, CloudStream, Contact, DepthCamera, Error, Field, Frame, Plane, PointCloud, PrepareReport,
+    Prepared, Proxy, Rollout, Scene, Servo, Source, SourceState, Sphere, SurfacePoints, Torus, list_cameras, list_devices,
+    note_names, open_camera, prepare, read_cloud, rollout, synthetic_cloud, write_cloud,
+)
+from .plot import plot
+from .program import Replay, demo, program, replay
+
+__version__ = "@PROJECT_VERSION@"

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+
+#include "options.hpp"
+#include "palpate/field/surface_points.hpp"
+#include "palpate/geometry/point_cloud.hpp"
+
+namespace palpate::python {
+
+/// The cloud that `given` is: a PointCloud, the path of a file, or an array of points with what
+/// `keywords` have beside them (normals, colors, intensities).
+/// @throws py::type_error for arrays that would have to be cast; Error as reading does.
+[[nodiscard]] std::shared_ptr<const PointCloud> cloud_of(const py::object& given,
+                                                         Keywords& keywords);
+
+/// What Python holds of them cannot be changed there.
+[[nodiscard]] py::object shared(const std::shared_ptr<const SurfacePoints>& points);
+
+}  // namespace palpate::python

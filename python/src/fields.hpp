@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+
+#include "palpate/field/analytic.hpp"
+#include "palpate/scene/scene_field.hpp"
+#include "scene.hpp"
+
+namespace palpate::python {
+
+/// A field that Python holds. One thread uses it at a time: who holds the mutex.
+class AnyField {
+ public:
+  virtual ~AnyField() = default;
+  AnyField(const AnyField&) = delete;
+  AnyField& operator=(const AnyField&) = delete;
+
+  [[nodiscard]] virtual const Field& field() const noexcept = 0;
+  /// As SceneField::update(), where there is a scene.
+  virtual void update(double /*now*/, const Eigen::Vector3d& /*hip*/,
+                      const Eigen::Vector3d& /*proxy*/) noexcept {}
+  /// Null: it is a formula.
+  [[nodiscard]] virtual const SceneField* of_scene() const noexcept { return nullptr; }
+
+  std::mutex mutex;
+
+ protected:
+  AnyField() = default;
+};
+
+}  // namespace palpate::python

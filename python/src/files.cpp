@@ -1,0 +1,60 @@
+#include "palpate/io/files.hpp"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "arrays.hpp"
+#include "clouds.hpp"
+#include "module.hpp"
+#include "palpate/io/synthetic.hpp"
+
+namespace palpate::python {
+namespace {
+
+constexpr const char* kRead = R"(Reads PLY, PCD, XYZ, OBJ, LAS, LAZ or a depth image, also gzipped.
+
+scale: metres for one of the file's units. Of a depth image: K = (fx, fy, cx, cy), pixels; unit: metres a step.)";
+
+constexpr const char* kWrite = R"(Writes PLY or PCD, by the path's ending.
+
+cloud: a PointCloud or an (n, 3) array with the keywords of PointCloud. ascii: text instead of binary.)";
+
+constexpr const char* kSynthetic =
+    R"(A cloud that a formula makes: bumps, sheet, sphere, torus, table, rabbit, room.
+
+spacing: m between points; noise: its standard deviation along the normal, m.)";
+
+PointCloud read_file(const std::filesystem::path& path, double scale,
+                     const std::optional<std::array<double, 4>>& K, double unit) {
+  ReadOptions options{.scale = scale, .depth_unit = unit};
+  if (K) options.intrinsics = {(*K)[0], (*K)[1], (*K)[2], (*K)[3]};
+  return read_cloud(path, options);
+}
+
+void write_file(const std::filesystem::path& path, const py::object& cloud, bool ascii,
+                const py::kwargs& given) {
+  Keywords keywords(given, "write_cloud");
+  const auto points = cloud_of(cloud, keywords);
+  keywords.finish();
+  const Away away;
+  write_cloud(path, *points, {.ascii = ascii});
+}
+
+PointCloud synthetic(const std::string& name, double spacing, double noise, std::uint64_t seed) {
+  return synthetic_cloud(name, {.spacing = spacing, .noise = noise, .seed = seed});
+}
+
+}  // namespace
+
+void define_files(py::module_& module) {
+  using py::arg;
+  using Free = py::call_guard<py::gil_scoped_release>;
+  module.def("read_cloud", &read_file, Free(), arg("path"), py::kw_only(), arg("scale") = 1.0,
+             arg("K") = py::none(), arg("unit") = 1e-3, kRead);
+  module.def("write_cloud", &write_file, arg("path"), arg("cloud"), py::kw_only(),
+             arg("ascii") = false, kWrite);
+  module.def("synthetic_cloud", &synthetic, Free(), arg("name"), py::kw_only(),
+             arg("spacing") = 2e-3, arg("noise") = 0.0, arg("seed") = 1, kSynthetic);
+}
+
+}  // namespace palpate::python

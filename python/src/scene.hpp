@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "palpate/depth/depth_frame.hpp"
+#include "palpate/scene/scene.hpp"
+
+namespace palpate::python {
+
+/// A scene that Python, fields and servos share: it stays as long as any of them.
+struct SharedScene {
+  Scene scene;
+  std::mutex mutex;  ///< of those who add sources or fields
+};
+
+/// One of its sources.
+struct SharedSource {
+  [[nodiscard]] std::string name() const { return source->name(); }
+  [[nodiscard]] Eigen::Matrix4d pose() const { return source->pose().matrix(); }
+  void set_pose(const Eigen::Matrix4d& T_world_sensor);
+  [[nodiscard]] Prepared::Report report() const { return source->report(); }
+  [[nodiscard]] Source::State state() const { return source->state(); }
+  void keep();
+
+  std::shared_ptr<SharedScene> scene;
+  Source* source = nullptr;
+  std::mutex mutex = {};  ///< of those who push
+};
+
+/// A sensor that delivers points.
+struct CloudStream : SharedSource {};
+
+/// A depth camera.
+struct Camera : SharedSource {
+  CameraModel model = {};
+  double unit = 1e-3;     ///< metres a step of its 16-bit images
+  DepthFrame frame = {};  ///< memory of the last image
+};
+
+}  // namespace palpate::python
