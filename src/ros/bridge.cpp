@@ -133,6 +133,10 @@ struct RosBridge::Inside {
            nullptr});
     }
     if (options.robot) robot.emplace(participant, *options.robot);
+    if (!unused.empty()) {
+      throw Error(fmt::format("ROS bridge: no topic of palpate's is called {}, so it cannot be {}",
+                              unused.begin()->first, unused.begin()->second));
+    }
     thread = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
 
@@ -145,7 +149,8 @@ struct RosBridge::Inside {
     Durations lateness;
   };
 
-  [[nodiscard]] std::string topic(const std::string& name) const {
+  [[nodiscard]] std::string topic(const std::string& name) {
+    unused.erase(name);
     const auto found = options.remap.find(name);
     return found == options.remap.end() ? name : found->second;
   }
@@ -159,6 +164,7 @@ struct RosBridge::Inside {
   void tell_diagnostics(const Header& header);
 
   const RosBridgeOptions options;
+  std::map<std::string, std::string> unused = options.remap;  // of the other names
   const std::vector<Hand> hands;
   const Scene& scene;
   const std::function<std::vector<StreamState>()> streams;

@@ -45,6 +45,13 @@ const Known* known(const std::string& type) {
   return found == kKnown.end() ? nullptr : found;
 }
 
+// How palpate uses such a topic; null: it does not. What it says itself is for others.
+const char* use_of(const dds::Endpoint& there, const Known& type) {
+  if (there.topic.starts_with("/palpate/")) return nullptr;
+  if (there.writes && there.topic.ends_with("/ee_pose")) return "--device ros:fd,ns=NAMESPACE";
+  return there.writes ? type.read : type.write;
+}
+
 void add(std::vector<RosTopic>& topics, const dds::Endpoint& there) {
   auto topic = std::ranges::find_if(topics, [&](const RosTopic& each) {
     return each.name == there.topic && each.type == there.type;
@@ -64,7 +71,7 @@ void add(std::vector<RosTopic>& topics, const dds::Endpoint& there) {
     topic->mismatch =
         fmt::format("its {} is another version of the type than palpate's", there.type);
   }
-  const char* use = there.writes ? type->read : type->write;
+  const char* use = use_of(there, *type);
   if (use != nullptr && (there.writes || topic->use.empty()))
     topic->use = fmt::format(fmt::runtime(use), there.topic);
 }

@@ -50,6 +50,8 @@ struct CameraName {
 CameraName parse(const std::string& name) {
   const std::size_t comma = std::min(name.find(','), name.size());
   CameraName parsed{name.substr(0, comma), {}};
+  if (!parsed.topic.starts_with('/'))
+    throw Error(fmt::format("ros:{}: names of topics begin with '/'", name));
   if (comma == name.size()) return parsed;
   const std::string option = name.substr(comma + 1);
   if (!option.starts_with("frame=") || option.size() == 6 ||

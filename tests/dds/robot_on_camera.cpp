@@ -24,6 +24,8 @@ using namespace palpate;
 using Eigen::Vector3d;
 using Place = std::array<double, 3>;
 
+constexpr double kLatest = 0.02;  // s; of steps before that the surface may be gone
+
 Place place_of(const Vector3d& position) {
   return {position.x(), position.y(), position.z()};
 }
@@ -76,7 +78,7 @@ Result run(Servo& servo, Scene& scene, StepTraces& steps, WaitingClock& clock, d
       taken.push_back({p.x, p.y, p.z});
     }
     while (const std::optional<StepTrace> step = steps.pop()) {
-      check(*step, field, result);
+      if (clock.now() - step->state.time < kLatest) check(*step, field, result);
       places.insert(place_of(step->state.contact.proxy));
     }
   }

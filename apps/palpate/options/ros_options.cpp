@@ -56,7 +56,10 @@ void take(RosBridgeOptions::Robot& robot, const std::string& key, const std::str
   } else if (key == "origin") {
     robot.T_robot_world = pose_in(value);
   } else if (key == "button") {
-    robot.dead_man = static_cast<int>(std::floor(number_of(key, value, 0, 31)));
+    const double number = number_of(key, value, 0, 31);
+    if (number != std::floor(number))
+      throw UsageError(fmt::format("--robot: button={} is not a whole number", value));
+    robot.dead_man = static_cast<int>(number);
   } else if (key == "follow" && (value == "proxy" || value == "hand")) {
     robot.hand = value == "hand";
   } else {

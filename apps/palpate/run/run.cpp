@@ -56,7 +56,11 @@ void open_hardware(Hand& hand, const MotionPlan& motion, RealtimeOptions asked,
   device.begin = [asked] { (void)make_realtime(asked); };
   hand.device = open_device(hand.chosen.path, clock, device);
   hand.duration = motion.duration;
-  fmt::print(stderr, "{}: using {}\n", hand.name, hand.device->info().name);
+  const DeviceInfo& info = hand.device->info();
+  const std::string late =
+      info.delay ? ", a force " + duration(*info.delay) + " after its position" : "";
+  fmt::print(stderr, "{}: using {}, {:.0f} Hz{}, at most {:.3g} N\n", hand.name, info.name,
+             info.rate, late, info.maximum_force);
 }
 
 // The hand is where `trajectory` says, whatever the force.
