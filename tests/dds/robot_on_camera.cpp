@@ -100,7 +100,8 @@ int main(int count, char** arguments) {
   while (!source.points()) clock.wait_until(clock.now() + 0.01);
   const Placement plan =
       plan_exploration(scene, {}, {.duration = seconds, .seed = std::stoul(arguments[3])});
-  SimulatedDevice device({}, plan.target);
+  SimulatedDevice simulated({}, plan.target);
+  PacedDevice device(simulated, clock);
   StepTraces steps(1 << 16);
   ServoOptions options;
   options.workspace = plan.workspace;
@@ -115,5 +116,6 @@ int main(int count, char** arguments) {
       "{:.2f} mm\n",
       found.targets, found.strange, found.judged, found.touching, 1e3 * found.proxy,
       1e3 * found.hand);
-  return found.targets > 0 && found.judged > 0 && found.strange == 0 && found.proxy <= 1e-4 ? 0 : 1;
+  const bool followed = static_cast<double>(found.targets) > 50 * seconds && found.judged > 0;
+  return followed && found.strange == 0 && found.proxy <= 1e-4 ? 0 : 1;
 }
