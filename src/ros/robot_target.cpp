@@ -59,7 +59,10 @@ void RobotTarget::look(const ServoState& state, double now, const message::Time&
 bool RobotTarget::may_go(const ServoState& state) const {
   // Without a surface, or behind one, a proxy is where the hand is: perhaps inside of things.
   const bool unbounded = has(state.field_notes, FieldNote::no_surface | FieldNote::behind);
-  if (unbounded && !options_.hand) return false;
+  // And in the step in which a surface moved over it, it may still be a little inside.
+  const bool inside =
+      has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged);
+  if ((unbounded || inside) && !options_.hand) return false;
   const bool held = !options_.dead_man || ((state.buttons >> *options_.dead_man) & 1U) != 0;
   return held && state.step > 0 && state.device == DeviceState::Status::ok &&
          state.guard.fault == Guard::Fault::none && !state.paused;

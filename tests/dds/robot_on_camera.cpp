@@ -24,7 +24,8 @@ using namespace palpate;
 using Eigen::Vector3d;
 using Place = std::array<double, 3>;
 
-constexpr double kLatest = 0.02;  // s; of steps before that the surface may be gone
+constexpr double kDeepest = 1e-4;  // m
+constexpr double kLatest = 0.02;   // s; of steps before that the surface may be gone
 
 Place place_of(const Vector3d& position) {
   return {position.x(), position.y(), position.z()};
@@ -42,6 +43,8 @@ struct Result {
   std::uint64_t strange = 0;
   std::uint64_t judged = 0;
   std::uint64_t touching = 0;
+  std::uint64_t deep = 0;                 // judged, whose proxy was deeper than kDeepest
+  ContactNote notes = ContactNote::none;  // of the deepest
   double proxy = 0;
   double hand = 0;
 };
@@ -52,9 +55,14 @@ void check(const StepTrace& trace, SceneField& field, Result& result) {
   field.update(step.time, step.hip, step.contact.proxy);
   field.begin_step();
   const bool same = field.found().publications == trace.input.found.publications;
-  if (same && !has(step.field_notes, FieldNote::no_surface | FieldNote::behind)) {
+  const bool told = !has(step.field_notes, FieldNote::no_surface | FieldNote::behind) &&
+                    !has(step.contact.notes, ContactNote::reanchored | ContactNote::not_converged);
+  if (same && told) {
     ++result.judged;
-    result.proxy = std::max(result.proxy, depth_at(field, step.contact.proxy));
+    const double depth = depth_at(field, step.contact.proxy);
+    result.deep += depth > kDeepest ? 1 : 0;
+    if (depth > result.proxy) result.notes = step.contact.notes;
+    result.proxy = std::max(result.proxy, depth);
     result.hand = std::max(result.hand, depth_at(field, step.hip));
     result.touching += step.contact.touching ? 1 : 0;
   }
@@ -112,10 +120,9 @@ int main(int count, char** arguments) {
   if (steps.dropped() > 0) fmt::print("{} steps were left out\n", steps.dropped());
   fmt::print(
       "{} targets, {} of them no proxy; {} steps looked at, {} in contact; proxy at most {:.4f} mm "
-      "deep, hand "
-      "{:.2f} mm\n",
+      "deep (notes {:x}; {} steps deeper than 0.1), hand {:.2f} mm\n",
       found.targets, found.strange, found.judged, found.touching, 1e3 * found.proxy,
-      1e3 * found.hand);
+      static_cast<unsigned>(found.notes), found.deep, 1e3 * found.hand);
   const bool followed = static_cast<double>(found.targets) > 50 * seconds && found.judged > 0;
-  return followed && found.strange == 0 && found.proxy <= 1e-4 ? 0 : 1;
+  return followed && found.strange == 0 && found.proxy <= kDeepest ? 0 : 1;
 }
