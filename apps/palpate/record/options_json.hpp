@@ -126,9 +126,9 @@ concept Listed = requires(T& value) {
   members(Unlisted(), value);
 };
 template <class T>
-inline constexpr bool is_optional = false;
+inline constexpr bool kIsOptional = false;
 template <class T>
-inline constexpr bool is_optional<std::optional<T>> = true;
+inline constexpr bool kIsOptional<std::optional<T>> = true;
 template <class T>
 concept Numbers = std::is_same_v<T, Eigen::Vector3d> || std::is_same_v<T, std::array<double, 3>>;
 
@@ -140,7 +140,7 @@ template <class T>
     json = std::isfinite(value) ? Json(value) : Json(fmt::format("{}", value));
   } else if constexpr (std::is_enum_v<T>) {
     json = static_cast<int>(value);
-  } else if constexpr (is_optional<T>) {
+  } else if constexpr (kIsOptional<T>) {
     if (value) json = exact_json(*value);
   } else if constexpr (Numbers<T>) {
     for (const double number : value) json.push_back(exact_json(number));
@@ -168,7 +168,7 @@ void take_exact(const Json& json, T& value) {
                              : json.get<double>();
   } else if constexpr (std::is_enum_v<T>) {
     value = static_cast<T>(json.get<int>());
-  } else if constexpr (is_optional<T>) {
+  } else if constexpr (kIsOptional<T>) {
     value.reset();
     if (!json.is_null()) take_exact(json, value.emplace());
   } else if constexpr (Numbers<T>) {

@@ -7,6 +7,7 @@
 
 #include "apps/palpate/record/options_json.hpp"
 #include "apps/palpate/record/recorded_messages.hpp"
+#include "message/cdr.hpp"
 
 namespace palpate::app {
 
