@@ -21,7 +21,7 @@ using test::u8;
 // A recording of 10 s and of one hand.
 struct Recorded {
   Recorded() {
-    TimeLine& line = controls.time_line.emplace();
+    TimeLine line;
     line.length = 10;
     line.moment = [this] { return moment; };
     line.seek = [this](double time) { moment.time = time; };
@@ -33,6 +33,7 @@ struct Recorded {
     line.past = [](std::size_t) {
       return std::vector<TimeLine::Force>{{7, {1, 2, 3}}, {7.5, {4, 5, 6}}};
     };
+    controls.time_line = line;
   }
 
   TimeLine::Moment moment;
