@@ -100,7 +100,7 @@ py::object ticks(const ServoHandle& handle) {
 }
 
 py::object state(const ServoHandle& handle) {
-  return record_array({tick_of(handle.running().servo().state())})[py::int_(0)];
+  return record(tick_of(handle.running().servo().state()));
 }
 
 void set_contact(const ServoHandle& handle, const py::kwargs& given) {

@@ -56,4 +56,10 @@ py::object record_array(const std::vector<Tick>& ticks) {
   return rows.attr("view")(py::module_::import("numpy").attr("recarray"));
 }
 
+py::object record(const Tick& tick) {
+  const py::object kind = py::module_::import("numpy").attr("record");
+  const py::dtype named = py::dtype::from_args(py::make_tuple(kind, py::dtype::of<Tick>()));
+  return py::array(named, std::vector<py::ssize_t>{1}, &tick)[py::int_(0)];
+}
+
 }  // namespace palpate::python

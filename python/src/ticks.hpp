@@ -31,4 +31,8 @@ void register_tick();
 /// A record array: rows.force and rows["force"].
 [[nodiscard]] pybind11::object record_array(const std::vector<Tick>& ticks);
 
+/// A row of it. Runs no code of Python's: a daemon thread that asks for it as the interpreter ends
+/// is ended inside of such code, and would take what C++ holds with it.
+[[nodiscard]] pybind11::object record(const Tick& tick);
+
 }  // namespace palpate::python
