@@ -24,6 +24,16 @@ using ScenePointer = std::shared_ptr<SharedScene>;
 constexpr double kLead = 2e-3;
 constexpr double kLatency = 0.01;  // s from a stamp to its surface, in simulated time
 
+// A source more; `parts`: what Scene::add() takes.
+template <class Made, class... Parts>
+std::shared_ptr<Made> added(const ScenePointer& scene, const Parts&... parts) {
+  const Away away(scene->mutex);
+  auto made = std::make_shared<Made>();
+  made->scene = scene;
+  made->source = &scene->scene.add(parts...);
+  return made;
+}
+
 std::shared_ptr<SharedSource> add_cloud(const ScenePointer& scene, const std::string& name,
                                         const py::object& given_cloud, const Eigen::Matrix4d& pose,
                                         const py::kwargs& given) {
@@ -36,11 +46,7 @@ std::shared_ptr<SharedSource> add_cloud(const ScenePointer& scene, const std::st
   keywords.take("soft_stiffness", options.soft.stiffness_factor);
   keywords.take("soft_friction", options.soft.friction_factor);
   keywords.finish();
-  const Away away(scene->mutex);
-  auto added = std::make_shared<SharedSource>();
-  added->scene = scene;
-  added->source = &scene->scene.add(name, *cloud, options);
-  return added;
+  return added<SharedSource>(scene, name, *cloud, options);
 }
 
 std::shared_ptr<CloudStream> add_stream(const ScenePointer& scene, const std::string& name,
@@ -51,11 +57,7 @@ std::shared_ptr<CloudStream> add_stream(const ScenePointer& scene, const std::st
   take(keywords, options.prepare);
   take(keywords, options.policy);
   keywords.finish();
-  const Away away(scene->mutex);
-  auto added = std::make_shared<CloudStream>();
-  added->scene = scene;
-  added->source = &scene->scene.add(name, options);
-  return added;
+  return added<CloudStream>(scene, name, options);
 }
 
 CameraModel model_of(const std::array<double, 4>& K, const std::array<int, 2>& size,
@@ -77,13 +79,10 @@ std::shared_ptr<Camera> add_camera(const ScenePointer& scene, const std::string&
   take(keywords, options.policy);
   take(keywords, options.depth);
   keywords.finish();
-  const Away away(scene->mutex);
-  auto added = std::make_shared<Camera>();
-  added->scene = scene;
-  added->model = model_of(K, size, distortion);
-  added->unit = unit;
-  added->source = &scene->scene.add(name, options);
-  return added;
+  auto camera = added<Camera>(scene, name, options);
+  camera->model = model_of(K, size, distortion);
+  camera->unit = unit;
+  return camera;
 }
 
 // With a stamp time is simulated; without, it is that of the clock of servos.

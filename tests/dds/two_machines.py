@@ -61,12 +61,10 @@ class Machines:
 
 
 def traffic():
-    folder = pathlib.Path("/sys/class/net/one/statistics")
-    if not folder.exists():  # the file system is another namespace's: /proc follows the process
-        line = next(line for line in pathlib.Path("/proc/self/net/dev").read_text(encoding="ascii").splitlines() if "one:" in line)
-        values = list(map(int, line.split(":")[1].split()))
-        return values[0] + values[8], values[1] + values[9]
-    return tuple(sum(int((folder / f"{way}_{what}").read_text(encoding="ascii")) for way in ("rx", "tx")) for what in ("bytes", "packets"))
+    """Bytes and packets that have come and gone over palpate's link."""
+    lines = pathlib.Path("/proc/self/net/dev").read_text(encoding="ascii").splitlines()
+    values = list(map(int, next(line for line in lines if "one:" in line).split(":")[1].split()))
+    return values[0] + values[8], values[1] + values[9]
 
 
 def stopped(process):

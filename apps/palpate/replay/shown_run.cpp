@@ -7,6 +7,7 @@
 
 #include "apps/palpate/record/options_json.hpp"
 #include "apps/palpate/sources/load.hpp"
+#include "apps/palpate/view/view.hpp"
 #include "palpate/base/error.hpp"
 #include "servo/step_trace.hpp"
 
@@ -14,7 +15,6 @@ namespace palpate::app {
 
 namespace {
 
-constexpr double kFar = 1.5;     // of a frustum as drawn, in medians of depth
 constexpr double kReadOn = 0.5;  // s that are read on to come to a later frame
 
 // s that are looked through for a frame before a moment. Most often there is one just before it,
@@ -143,9 +143,7 @@ void ShownSource::prepare(const RecordedFrame& recorded) {
   stream_.T_world_sensor = frame.T_world_sensor;
   stream_.frustum.reset();
   if (frame.cloud) return;
-  const Pinhole& lens = frame.camera.pinhole;
-  stream_.frustum = {0.5 * frame.camera.width / lens.fx, 0.5 * frame.camera.height / lens.fy,
-                     kFar * prepared.state().depth};
+  stream_.frustum = frustum_of(frame.camera, prepared.state().depth);
 }
 
 ShownSource::Stream ShownSource::stream() const {

@@ -52,8 +52,6 @@ class PageHold {
 
 namespace {
 
-constexpr double kFar = 1.5;  // of a frustum as drawn, in medians of depth
-
 ViewSettings initial_settings(const Run& run) {
   ViewSettings settings;
   settings.field = run.field;
@@ -80,16 +78,9 @@ ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
     scope.lives = scope.lives || source.camera;
     scope.depth = scope.depth || (source.camera && !source.plan.as_cloud);
     scope.clouds = scope.clouds || source.cloud || source.plan.as_cloud;
+    scope.spacing = std::max(scope.spacing, source.prepared.spacing);
   }
   return scope;
-}
-
-std::optional<ViewerOptions::Stream::Frustum> frustum_of(const LoadedSource& source,
-                                                         const Source::State& state) {
-  if (!source.camera) return std::nullopt;
-  const CameraModel& lens = source.lens;
-  return ViewerOptions::Stream::Frustum{0.5 * lens.width / lens.pinhole.fx,
-                                        0.5 * lens.height / lens.pinhole.fy, kFar * state.depth};
 }
 
 std::vector<ViewerOptions::Stream> streams_of(const Run& run, const LiveFeed& feed) {
@@ -98,7 +89,9 @@ std::vector<ViewerOptions::Stream> streams_of(const Run& run, const LiveFeed& fe
     ViewerOptions::Stream& stream = streams.emplace_back();
     for (std::size_t i = 0; i < run.loaded.scene.size(); ++i) {
       if (run.loaded.scene.source(i).name() != state.source) continue;
-      stream.frustum = frustum_of(run.loaded.sources[i], run.loaded.scene.source(i).state());
+      const LoadedSource& source = run.loaded.sources[i];
+      const double depth = run.loaded.scene.source(i).state().depth;
+      if (source.camera) stream.frustum = frustum_of(source.lens, depth);
     }
     stream.state = std::move(state);
   }
@@ -145,7 +138,7 @@ struct View::Parts {
     controls.settings = [this] { return list_settings(present(), scope_of(run, servos)); };
     controls.set = [this](const std::string& key, const Setting::Value& value) {
       ViewSettings wanted = present();
-      set(wanted, key, value);
+      set(wanted, scope_of(run, servos), key, value);
       apply(wanted);
     };
     controls.presets = preset_names();
