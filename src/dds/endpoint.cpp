@@ -119,8 +119,8 @@ void RawReader::count(std::uint64_t writer, std::uint64_t number) {
   number_ = number;
 }
 
-RawWriter::RawWriter(const Participant& participant, const TopicType& topic,
-                     const Quality& quality) {
+RawWriter::RawWriter(const Participant& participant, const TopicType& topic, const Quality& quality)
+    : topic_(topic.topic) {
   ddsi_sertype* type = nullptr;
   const dds_entity_t made = make_topic(participant, topic, type);
   writer_ = dds_create_writer(participant.entity(), made, qos_of(quality, topic).get(), nullptr);

@@ -69,8 +69,10 @@ class RawWriter {
 
   /// Readers that hear it.
   [[nodiscard]] std::size_t readers() const;
+  [[nodiscard]] const std::string& topic() const { return topic_; }
 
  private:
+  std::string topic_;
   std::int32_t writer_ = 0;
   void* type_ = nullptr;
 };

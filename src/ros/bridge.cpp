@@ -290,4 +290,9 @@ std::string RosBridge::problem() const {
   return inside_->problem;
 }
 
+std::optional<RosBridge::RobotState> RosBridge::robot() const {
+  if (!inside_->robot) return std::nullopt;
+  return inside_->robot->state();
+}
+
 }  // namespace palpate

@@ -43,12 +43,21 @@ RobotTarget::RobotTarget(const dds::Participant& participant,
                          const RosBridgeOptions::Robot& options)
     : options_(options),
       target_(participant, robot_topic(options), {.reliable = true}),
-      due_(options.rate) {}
+      due_(options.rate),
+      told_{.topic = target_.topic()} {}
 
 void RobotTarget::look(const ServoState& state, double now, const message::Time& stamp) {
   if (state.step != step_) stepped_ = now;
   step_ = state.step;
-  if (!due_.due(now) || now - stepped_ > kStill || !may_go(state)) return;
+  if (!due_.due(now)) return;
+  const std::string_view why = obstacle(state, now);
+  {
+    const std::lock_guard lock(mutex_);
+    told_.readers = target_.readers();
+    told_.why = why;
+    ++(why.empty() ? told_.told : told_.held);
+  }
+  if (!why.empty()) return;
   const Eigen::Vector3d position = options_.hand ? state.hip : state.contact.proxy;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = options_.T_robot_world.linear() * state.orientation.toRotationMatrix();
@@ -56,16 +65,27 @@ void RobotTarget::look(const ServoState& state, double now, const message::Time&
   target_.write({{stamp, options_.frame}, message::pose_of(pose)});
 }
 
-bool RobotTarget::may_go(const ServoState& state) const {
+RosBridge::RobotState RobotTarget::state() const {
+  const std::lock_guard lock(mutex_);
+  return told_;
+}
+
+// Why no target may be told; empty: it may be.
+std::string_view RobotTarget::obstacle(const ServoState& state, double now) const {
+  if (state.step == 0 || now - stepped_ > kStill) return "the servo stands still";
+  if (state.device != DeviceState::Status::ok) return "the hand is not heard";
+  if (state.guard.fault != Guard::Fault::none) return "the hand has a fault";
+  if (state.paused) return "the hand is paused";
+  if (options_.dead_man && ((state.buttons >> *options_.dead_man) & 1U) == 0)
+    return "its button is up";
+  if (options_.hand) return {};
   // Without a surface, or behind one, a proxy is where the hand is: perhaps inside of things.
-  const bool unbounded = has(state.field_notes, FieldNote::no_surface | FieldNote::behind);
-  // And in the step in which a surface moved over it, it may still be a little inside.
-  const bool inside =
-      has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged);
-  if ((unbounded || inside) && !options_.hand) return false;
-  const bool held = !options_.dead_man || ((state.buttons >> *options_.dead_man) & 1U) != 0;
-  return held && state.step > 0 && state.device == DeviceState::Status::ok &&
-         state.guard.fault == Guard::Fault::none && !state.paused;
+  if (has(state.field_notes, FieldNote::no_surface)) return "no source has a surface";
+  if (has(state.field_notes, FieldNote::behind)) return "the tool is behind what a camera sees";
+  // In the step in which a surface moved over it, it may still be a little inside.
+  if (has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged))
+    return "a surface moved over the tool";
+  return {};
 }
 
 }  // namespace palpate::ros

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <mutex>
+#include <string_view>
 
 #include "dds/endpoint.hpp"
 #include "palpate/ros/bridge.hpp"
@@ -34,14 +36,19 @@ class RobotTarget {
   /// `now`: s. Tells the target where one is due.
   void look(const ServoState& state, double now, const message::Time& stamp);
 
+  /// Any thread.
+  [[nodiscard]] RosBridge::RobotState state() const;
+
  private:
-  [[nodiscard]] bool may_go(const ServoState& state) const;
+  [[nodiscard]] std::string_view obstacle(const ServoState& state, double now) const;
 
   RosBridgeOptions::Robot options_;
   dds::Writer<message::PoseStamped> target_;
   Every due_;
-  std::uint64_t step_ = 0;  // the last that was seen
-  double stepped_ = 0;      // when it was new, s
+  std::uint64_t step_ = 0;    // the last that was seen
+  double stepped_ = 0;        // when it was new, s
+  mutable std::mutex mutex_;  // of what follows
+  RosBridge::RobotState told_;
 };
 
 }  // namespace palpate::ros

@@ -28,4 +28,8 @@ std::string RosBridge::problem() const {
   return {};
 }
 
+std::optional<RosBridge::RobotState> RosBridge::robot() const {
+  return std::nullopt;
+}
+
 }  // namespace palpate

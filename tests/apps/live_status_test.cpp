@@ -86,6 +86,18 @@ TEST(LiveStatus, TellsOfEachHandByName) {
   }
 }
 
+TEST(LiveStatus, TellsWhatARobotIsToldAndWhyNot) {
+  LiveMoment moment = second();
+  RosBridge::RobotState& robot = moment.robot.emplace();
+  robot.topic = "/target_pose";
+  robot.told = 250;
+  EXPECT_TRUE(in_words(moment).ends_with(" | robot: nobody takes /target_pose"));
+  robot.readers = 1;
+  EXPECT_TRUE(in_words(moment).ends_with(" | robot: 250 targets"));
+  robot.why = "no source has a surface";
+  EXPECT_TRUE(in_words(moment).ends_with(" | robot WAITS: no source has a surface"));
+}
+
 TEST(LiveStatus, KnowsOfNothingBeforeTheFirstStep) {
   LiveMoment moment;
   moment.hands.resize(1);

@@ -1,9 +1,10 @@
 """A robot in another process follows the proxy on a ball: robot.py PALPATE ROBOT_NODE SEED [SECONDS].
 
-Its target is never more than 0.1 mm inside the ball, and it stops when palpate has ended. Run in a network namespace of its own
-(unshare -rn).
+Its target is never more than 0.1 mm inside the ball, and it stops when palpate has ended; palpate's report
+tells of as many targets or more. Run in a network namespace of its own (unshare -rn).
 """
 
+import json
 import re
 import subprocess
 import sys
@@ -24,11 +25,12 @@ def main():
         sys.exit(77)
     robot = subprocess.Popen([robot_node, str(seconds + 6)], stdout=subprocess.PIPE, text=True)
     run = subprocess.run([palpate, "touch", "synthetic:sphere", "--device", "simulated", "--robot", "crisp", "--no-view",
-                          "--duration", str(seconds), "--seed", seed], capture_output=True, text=True)
+                          "--duration", str(seconds), "--seed", seed, "--json", "-"], capture_output=True, text=True)
     told = robot.communicate()[0]
     print(told, run.stderr if run.returncode else "")
     count, depth, after = re.search(r"^(\d+) targets; target at most (\S+) mm deep, .*; (\S+) mm after", told).groups()
-    good = run.returncode == 0 and int(count) > 100 * seconds and float(depth) <= DEEPEST and float(after) < FARTHEST
+    report = json.loads(run.stdout)["robot"] if run.returncode == 0 else {"told": 0}
+    good = report["told"] >= int(count) and int(count) > 100 * seconds and float(depth) <= DEEPEST and float(after) < FARTHEST
     sys.exit(not good)
 
 

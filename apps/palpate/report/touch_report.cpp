@@ -143,6 +143,20 @@ void HandOutputs::draw(const Scene& scene, const std::string& title, const HandR
 
 namespace {
 
+Report report_of(const RosBridge::RobotState& robot) {
+  Report part("robot", robot.topic);
+  part.line("targets",
+            fmt::format("{} told, {} held back", grouped(robot.told), grouped(robot.held)));
+  if (!robot.why.empty()) part.line("at last", robot.why, Mark::warning);
+  if (robot.readers == 0) part.line("readers", "nobody takes them", Mark::warning);
+  part.data = {{"topic", robot.topic},
+               {"told", robot.told},
+               {"held_back", robot.held},
+               {"held_back_at_last", robot.why},
+               {"readers", robot.readers}};
+  return part;
+}
+
 Report report_of(const RecordReport& recorded) {
   Report part("recorded", recorded.path);
   part.line("steps", grouped(recorded.steps));
@@ -188,6 +202,11 @@ Json report_on(const TouchReport& report, std::FILE* stream) {
     } else {
       json["hands"].push_back(part.data);
     }
+  }
+  if (report.robot) {
+    const Report part = report_of(*report.robot);
+    part.print(stream);
+    json["robot"] = part.data;
   }
   for (const RecordReport& each : report.recorded) {
     const Report part = report_of(each);

@@ -11,6 +11,7 @@
 #include "apps/palpate/report/log.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
 #include "palpate/contact/proxy.hpp"
+#include "palpate/ros/bridge.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
 
@@ -62,6 +63,7 @@ struct TouchReport {
   FieldOptions field;
   ProxyOptions proxy;
   std::vector<HandReport> hands;
+  std::optional<RosBridge::RobotState> robot = {};
   std::vector<RecordReport> recorded = {};  ///< files, in order
 };
 

@@ -237,15 +237,20 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
     if (view) view->look();
     const double now = clock.now();
     failures.look(hands, now, status);
-    if (status.due(now - start)) status.show(moment_of(hands, feed, now, start));
+    if (!status.due(now - start)) continue;
+    LiveMoment moment = moment_of(hands, feed, now, start);
+    if (bridge) moment.robot = bridge->robot();
+    status.show(moment);
   }
   for (LiveHand& hand : hands) hand.stop();
   for (LiveHand& hand : hands) hand.take_steps(each);
+  LiveOutcome outcome = outcome_of(hands, interruption.asked());
+  if (bridge) outcome.robot = bridge->robot();
   if (bridge && !bridge->problem().empty()) status.tell("ROS 2: " + bridge->problem());
   bridge.reset();  // these look at what the feed takes down
   view.reset();
   feed.finish();
-  return outcome_of(hands, interruption.asked());
+  return outcome;
 }
 
 }  // namespace palpate::app

@@ -60,6 +60,12 @@ std::string stream_words(const StreamState& stream) {
   return words;
 }
 
+std::string robot_words(const RosBridge::RobotState& robot) {
+  if (robot.readers == 0) return "robot: nobody takes " + robot.topic;
+  if (!robot.why.empty()) return "robot WAITS: " + robot.why;
+  return fmt::format("robot: {} targets", robot.told);
+}
+
 }  // namespace
 
 std::string in_words(const LiveMoment& moment) {
@@ -71,6 +77,7 @@ std::string in_words(const LiveMoment& moment) {
     }
   }
   for (const StreamState& stream : moment.streams) words += " | " + stream_words(stream);
+  if (moment.robot) words += " | " + robot_words(*moment.robot);
   return words;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/ros/bridge.hpp"
 #include "palpate/sensor/stream.hpp"
 #include "palpate/servo/servo.hpp"
 
@@ -26,11 +27,12 @@ struct LiveMoment {
   double time = 0;  ///< since the run began, s
   std::vector<HandMoment> hands;
   std::vector<StreamState> streams;
+  std::optional<RosBridge::RobotState> robot;
 };
 
 /// One line: "12.3 s  1.42 N  1000 Hz, 24 us (p99 61), late p99 0.09 ms | table 30.0 Hz, 11 ms".
-/// Several hands are told by name. A stream that does not run, a device that is not heard and a
-/// servo that holds back say why.
+/// Several hands are told by name. A stream that does not run, a device that is not heard, a servo
+/// that holds back and a robot that is told nothing say why.
 [[nodiscard]] std::string in_words(const LiveMoment& moment);
 
 /// Shows moments on standard error: in one line that is rewritten ten times a second on a terminal,

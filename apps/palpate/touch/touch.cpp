@@ -207,7 +207,7 @@ void touch(const TouchPlan& plan) {
   std::vector<RecordReport> recorded;
   if (outputs.recorder) recorded = outputs.recorder->finish();
   tell({loaded, surface.paper, surface.field, run.proxy, hand_reports(run, outputs, outcome),
-        recorded},
+        outcome.robot, recorded},
        plan.outputs.takes_stdout() ? stderr : stdout, outputs);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "apps/palpate/report/hand_report.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "palpate/base/clock.hpp"
+#include "palpate/ros/bridge.hpp"
 
 namespace palpate::app {
 
@@ -35,7 +37,8 @@ bool run_simulated(Run& run, const EachStep& each);
 /// How a run in real time went.
 struct LiveOutcome {
   std::vector<LiveReport> hands;
-  bool interrupted = false;  ///< by Ctrl-C
+  std::optional<RosBridge::RobotState> robot;  ///< at the end
+  bool interrupted = false;                    ///< by Ctrl-C
 };
 
 /// Cameras, preparation and the servo of each hand on threads of their own, in the time of `clock`,

@@ -61,8 +61,20 @@ class RosBridge {
   RosBridge(const RosBridge&) = delete;
   RosBridge& operator=(const RosBridge&) = delete;
 
+  /// What the robot was told.
+  struct RobotState {
+    std::string topic;
+    std::uint64_t told = 0;   ///< targets
+    std::uint64_t held = 0;   ///< targets that were due and not told
+    std::string why = {};     ///< why the last that was due was held back; empty: it was told
+    std::size_t readers = 0;  ///< controllers that hear it
+  };
+
   /// What went wrong while it ran, if anything did: the last, in words. Any thread but a servo's.
   [[nodiscard]] std::string problem() const;
+
+  /// Of the robot, where there is one. Any thread but a servo's.
+  [[nodiscard]] std::optional<RobotState> robot() const;
 
  private:
   struct Inside;
