@@ -137,6 +137,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   hand = options.workspace.position_to_world(read.position);
   basis.device = read;
   heard = heard || read.status != DeviceState::Status::silent;
+  if (options.traces != nullptr && options.traces->accepts()) options.traces->prefetch();
   apply_pending();
   place_tool(read);
   field.update(now, state.hip, started ? proxy.position() : state.hip);
