@@ -154,17 +154,18 @@ uInt chunk(std::size_t size) {
   return static_cast<uInt>(std::min<std::size_t>(size, std::numeric_limits<uInt>::max() / 2));
 }
 
-std::size_t first_guess(std::size_t packed) {
-  return std::clamp<std::size_t>(packed * 4, std::size_t{1} << 12U, std::size_t{1} << 30U);
+std::size_t first_guess(std::size_t packed, std::size_t most) {
+  return std::min(
+      most, std::clamp<std::size_t>(packed * 4, std::size_t{1} << 12U, std::size_t{1} << 30U));
 }
 
 class Gunzip {
  public:
-  explicit Gunzip(const Input& input)
-      : input_(input), inflater_(input), out_(first_guess(input.bytes.size())) {}
+  Gunzip(const Input& input, std::size_t most)
+      : input_(input), inflater_(input), out_(first_guess(input.bytes.size(), most)), most_(most) {}
 
   Bytes run() {
-    while (true) {
+    while (done_ < most_) {
       const int status = step();
       if (status == Z_STREAM_END) {
         if (!next_member()) break;
@@ -216,14 +217,15 @@ class Gunzip {
   const Input& input_;
   Inflater inflater_;
   Bytes out_;
+  std::size_t most_;
   std::size_t in_ = 0;
   std::size_t done_ = 0;
 };
 
 }  // namespace
 
-Bytes gunzip(const Input& input) {
-  return Gunzip(input).run();
+Bytes gunzip(const Input& input, std::size_t most) {
+  return Gunzip(input, most).run();
 }
 
 MemoryFile::MemoryFile(std::span<const std::byte> bytes)

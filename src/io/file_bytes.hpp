@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -36,8 +37,9 @@ class Bytes {
 
 /// The bytes inside gzip (one member or several in a row). Refuses what grows beyond any honest
 /// cloud: more than 64 MiB and more than 250 times the packed size.
-/// @throws Error for broken, cut or oversized data.
-[[nodiscard]] Bytes gunzip(const Input& input);
+/// `most`: bytes after which it may stop. @throws Error for broken, cut or oversized data.
+[[nodiscard]] Bytes gunzip(const Input& input,
+                           std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// Bytes under a path, for libraries that read nothing but files: a file in memory (Linux memfd),
 /// gone with this object.

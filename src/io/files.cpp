@@ -46,7 +46,15 @@ std::string name_inside(const std::string& name) {
   return extension(name) == ".gz" ? name.substr(0, name.size() - 3) : name;
 }
 
+// What is no cloud is refused by its first bytes, however much it unpacks to.
+void check_start(const Input& input) {
+  constexpr std::size_t kStart = std::size_t{1} << 16U;
+  const Bytes start = gunzip(input, kStart);
+  (void)kind_of({start.span(), name_inside(input.name), input.options});
+}
+
 CloudFile read_packed(const Input& input) {
+  check_start(input);
   const Bytes unpacked = gunzip(input);
   const Input inside{unpacked.span(), name_inside(input.name), input.options};
   CloudFile file = read_kind(inside, kind_of(inside));

@@ -128,13 +128,8 @@ std::string_view first_word(const Input& input) {
   return {};
 }
 
-FileKind text_kind(const Input& input) {
-  const std::string_view word = first_word(input);
-  constexpr std::string_view kPcdWords[] = {"VERSION", "FIELDS", "COLUMNS"};
+FileKind text_kind(const Input& input, std::string_view word) {
   constexpr std::string_view kObjWords[] = {"v", "vn", "vt", "mtllib", "o", "g", "s", "usemtl"};
-  if (std::find(std::begin(kPcdWords), std::end(kPcdWords), word) != std::end(kPcdWords)) {
-    return FileKind::pcd;
-  }
   const bool is_obj =
       std::find(std::begin(kObjWords), std::end(kObjWords), word) != std::end(kObjWords);
   if (is_obj || extension(input.name) == ".obj") return FileKind::obj;
@@ -169,8 +164,11 @@ FileKind kind_of(const Input& input) {
     if (input.text().starts_with(entry.start)) return entry.kind;
   }
   refuse_known(input);
+  // The comment that begins a PCD may be missing, and its points may be no text.
+  const std::string_view word = first_word(input);
+  if (word == "VERSION" || word == "FIELDS" || word == "COLUMNS") return FileKind::pcd;
   if (!looks_like_text(input.text())) refuse_unknown(input);
-  return text_kind(input);
+  return text_kind(input, word);
 }
 
 }  // namespace palpate::io

@@ -229,8 +229,9 @@ class XyzReader {
     if (cells_.count != roles_.size() || cells_.too_many) {
       refuse_decimal_commas();
       fail_at_line(input_, line_begin_,
-                   fmt::format("{} columns, but the first line has {}: \"{}\"", cells_.count,
-                               roles_.size(), excerpt(line_)),
+                   fmt::format("{}{} columns, but the first line has {}: \"{}\"",
+                               cells_.too_many ? "more than " : "", cells_.count, roles_.size(),
+                               excerpt(line_)),
                    kRemedy);
     }
     for (std::size_t i = 0; i < roles_.size(); ++i) {

@@ -59,6 +59,9 @@ TEST(Gzip, NamesLinesOfTheTextInside) {
 TEST(Gzip, StopsABombEarly) {
   const std::string bomb = gzip(std::string(std::size_t{80} << 20U, ' '));
   EXPECT_THAT(refusal(bomb), HasSubstr("unpacks to more than 64 MiB"));
+  EXPECT_THAT(refusal(gzip(std::string(std::size_t{80} << 20U, '\0')), "a.xyz.gz"),
+              HasSubstr("a.xyz: unknown file type"))
+      << "its first bytes are enough";
 }
 
 TEST(Gzip, IsNotUnpackedTwice) {

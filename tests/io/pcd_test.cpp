@@ -107,6 +107,11 @@ TEST(Pcd, ReadsBinaryAndCompressedAlike) {
   expect_rich_pcd(read_text(rich("binary_compressed").text() + rich_compressed()));
 }
 
+TEST(Pcd, ReadsBinaryWithoutTheCommentThatBeginsIt) {
+  const std::string text = rich("binary").text();
+  expect_rich_pcd(read_text(text.substr(text.find('\n') + 1) + rich_rows()));
+}
+
 TEST(Pcd, ReadsPackedColoursInText) {
   Head head;
   head.fields += " rgb";

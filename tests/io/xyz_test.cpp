@@ -62,6 +62,13 @@ TEST(Xyz, DropsRowsWithMissingValues) {
   EXPECT_EQ(file.dropped, 2u);
 }
 
+TEST(Xyz, LeavesOutAByteOrderMark) {
+  EXPECT_EQ(first_point(read_text("\xEF\xBB\xBFx,y,z\n1,2,3\n")), Eigen::Vector3f(1, 2, 3));
+  EXPECT_EQ(first_point(read_text("\xEF\xBB\xBF"
+                                  "1 2 3\n")),
+            Eigen::Vector3f(1, 2, 3));
+}
+
 TEST(Xyz, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(refusal("1 2 3\n4 5 6\n7 8\n"),
               HasSubstr("line 3: 2 columns, but the first line has 3"));

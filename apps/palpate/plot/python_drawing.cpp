@@ -17,11 +17,20 @@ namespace palpate::app {
 
 namespace {
 
+std::filesystem::path temporary_folder() {
+  std::error_code error;
+  std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (!error) return folder;
+  const char* const named = std::getenv("TMPDIR");
+  throw Error(fmt::format("TMPDIR, {}, is no folder; set it to one with room, such as /tmp",
+                          named == nullptr ? "unset" : named));
+}
+
 // A folder of our own that vanishes with its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "palpate-XXXXXX").string();
+    std::string pattern = (temporary_folder() / "palpate-XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr) {
       throw Error(fmt::format(
           "{} cannot be created for the picture's data; set TMPDIR to a folder with room",
@@ -88,6 +97,7 @@ void check_picture(const std::string& path) {
     throw UsageError(fmt::format("--picture {}: pictures are PNG; name it {}", path,
                                  std::filesystem::path(file).replace_extension(".png").string()));
   }
+  (void)temporary_folder();
   if (run_program(drawing_trial(), "/dev/null") == 0) return;
   throw Error(
       fmt::format("{} cannot be drawn: Python 3 with matplotlib is missing; install it with 'apt "

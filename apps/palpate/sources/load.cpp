@@ -30,6 +30,10 @@ CloudFile read(const CloudArgument& argument, const ReadOptions& options) {
   if (argument.path.starts_with(kSynthetic)) {
     return make_synthetic(argument.path.substr(kSynthetic.size()), options.scale);
   }
+  std::error_code unknown;
+  if (std::filesystem::is_fifo(argument.path, unknown)) {
+    fmt::print(stderr, "{} is a pipe: waiting for a program that writes to it\n", argument.path);
+  }
   ReadOptions shown = options;
   Progress progress(fmt::format("reading {}", argument.path));
   shown.progress = [&](double done) { progress.update(done); };
