@@ -188,6 +188,11 @@ Sequence read_sequence(const fs::path& folder) {
   sequence.posed = !description.poses.empty();
   if (sequence.posed) add_poses(folder, description, sequence.frames);
   sequence.rate = rate_of(description, sequence.frames);
+  if (!is_file(folder / "sequence.json")) {
+    sequence.assumed =
+        "TUM layout: 1/5000 m a step, focal length 525 px; a sequence.json says otherwise, as for "
+        "depths in mm";
+  }
   return sequence;
 }
 

@@ -52,6 +52,7 @@ struct Sequence {
   std::vector<std::uint16_t> invalid;  ///< "nothing measured", besides 0 and 65535
   bool swapped = false;                ///< images hold the less significant byte first
   double rate = 30;                    ///< frames a second, Hz
+  std::string assumed = {};            ///< as CameraInfo has it
   bool posed = false;                  ///< poses are known; a frame without one is out of use
   std::vector<SequenceFrame> frames;   ///< stamps grow strictly
 };

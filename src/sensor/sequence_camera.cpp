@@ -66,7 +66,8 @@ std::unique_ptr<DepthCamera> open_sequence(Sequence sequence, const SequenceOpti
   }
   CameraInfo info{.name = "sequence:" + sequence.name,
                   .rate = sequence.rate,
-                  .repeats = options.loop && sequence.frames.size() == 1};
+                  .repeats = options.loop && sequence.frames.size() == 1,
+                  .assumed = sequence.assumed};
   return std::make_unique<sensor::PlayedCamera>(
       std::move(info), std::make_unique<sensor::SequenceRecording>(std::move(sequence)),
       CameraOptions{.clock = options.clock, .loop = options.loop});

@@ -180,12 +180,6 @@ DepthCamera::Status ask(DepthCamera& camera, DepthFrame& frame, double timeout,
   return DepthCamera::Status::failed;
 }
 
-namespace {
-
-constexpr std::uint64_t kMean = 8;  // intervals that the rate is a mean of, about
-
-}  // namespace
-
 StreamStatistics::StreamStatistics(std::string source, std::string camera, double stall, double now)
     : stall_(stall), useful_(now) {
   state_.source = std::move(source);
@@ -195,12 +189,15 @@ StreamStatistics::StreamStatistics(std::string source, std::string camera, doubl
 
 void StreamStatistics::frame_received(double now, const std::optional<Objection>& objection,
                                       std::uint64_t size_changes) {
+  // What the rate is a mean of: intervals at least, and the time that no bunch of frames fills.
+  constexpr std::size_t kIntervals = 8;
+  constexpr double kTime = 1;  // s
   const std::lock_guard lock(mutex_);
   failing_ = false;
   look(now);
-  const double interval = now - state_.last_frame;
-  if (state_.frames > 0) {
-    interval_ += (interval - interval_) / static_cast<double>(std::min(state_.frames, kMean));
+  arrivals_.push_back(now);
+  while (arrivals_.size() > kIntervals + 1 && now - arrivals_[1] >= kTime) {
+    arrivals_.pop_front();
   }
   ++state_.frames;
   state_.last_frame = now;
@@ -291,7 +288,9 @@ StreamState StreamStatistics::state(double now) {
   look(now);
   StreamState state = state_;
   const bool over = state_.phase == StreamState::Phase::ended;
-  const double interval = over ? interval_ : std::max(interval_, now - state_.last_frame);
+  const double intervals = static_cast<double>(arrivals_.size()) - 1;
+  const double mean = intervals > 0 ? (arrivals_.back() - arrivals_.front()) / intervals : 0;
+  const double interval = over ? mean : std::max(mean, now - state_.last_frame);
   state.rate = state_.frames > 1 && interval > 0 ? 1 / interval : 0;
   return state;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -103,10 +104,10 @@ class StreamStatistics {
   std::mutex mutex_;
   StreamState state_;
   double stall_;
-  double useful_;         // when the last frame of use came, or the stream began
-  bool failing_ = false;  // the camera's last answer was that it cannot
-  bool told_ = false;     // the stall since the last frame of use is counted
-  double interval_ = 0;   // mean time between frames
+  double useful_;                // when the last frame of use came, or the stream began
+  bool failing_ = false;         // the camera's last answer was that it cannot
+  bool told_ = false;            // the stall since the last frame of use is counted
+  std::deque<double> arrivals_;  // of the last frames, s
   double latency_sum_ = 0;
   std::uint64_t latencies_ = 0;
   std::string objection_;  // to the last frame; empty: none

@@ -82,6 +82,14 @@ TEST_F(StreamTest, LetsTheCameraBeginWhenItDoesOrWhenItIsTold) {
   EXPECT_EQ(cameras_.back().begun(), 6.5);
 }
 
+TEST_F(StreamTest, FramesInABunchAreNoHigherRate) {
+  const Stream stream = this->stream();
+  for (int bunch = 0; bunch < 6; ++bunch) {
+    for (int i = 0; i < 10; ++i) give(stream, bunch / 3. + 1e-3 * i);  // 30 a second
+  }
+  EXPECT_NEAR(stream.state().rate, 30, 8);
+}
+
 TEST_F(StreamTest, SaysTheRate) {
   const Stream stream = this->stream();
   for (int i = 0; i <= 10; ++i) give(stream, 0.125 * i);

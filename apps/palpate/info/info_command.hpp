@@ -74,8 +74,9 @@ struct InfoReport {
 /// What some frames of a camera or sequence show of it.
 struct LiveFacts {
   CloudArgument argument;
-  int width = 0;   ///< pixels
-  int height = 0;  ///< pixels
+  std::string assumed;  ///< CameraInfo::assumed
+  int width = 0;        ///< pixels
+  int height = 0;       ///< pixels
   Pinhole pinhole;
   bool distorted = false;
   bool posed = false;        ///< frames tell where they were taken

@@ -200,6 +200,7 @@ LiveFacts study_live(const CloudArgument& argument) {
   const std::unique_ptr<DepthCamera> camera = open_stream_at_any_pace(source);
   LiveFacts facts;
   facts.argument = argument;
+  facts.assumed = camera->info().assumed;
   DepthFrame frame = first_frame(*camera);
   const double start = frame.stamp;
   double last = start;
@@ -239,6 +240,7 @@ Report report_of(const LiveFacts& facts) {
                 fmt::format("{} ({} x {} pixels)", facts.argument.path, facts.width, facts.height));
   report.line("intrinsics", fmt::format("{:.6g}, {:.6g}, {:.6g}, {:.6g}{}", p.fx, p.fy, p.cx, p.cy,
                                         facts.distorted ? ", with distortion" : ""));
+  if (!facts.assumed.empty()) report.line("assumed", facts.assumed);
   report.line("frames", fmt::format("{:.1f} Hz; of the first {}: {} repeated, {} failed",
                                     facts.rate, facts.frames, facts.repeated, facts.failures));
   report.line(

@@ -17,6 +17,8 @@ struct CameraInfo {
   /// A frame may be the one before bit for bit though all is well: there is no noise in it, or one
   /// image is all there is. From other cameras such a frame says that the picture is frozen.
   bool repeats = false;
+  /// What was assumed of it because nothing said so, for people; empty: nothing was.
+  std::string assumed = {};
 };
 
 /// A source of depth frames. One thread uses it. Construction opens it and throws Error.

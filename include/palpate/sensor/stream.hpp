@@ -43,8 +43,9 @@ struct StreamState {
   std::string source;  ///< name of the source that is fed
   std::string camera;  ///< CameraInfo::name
   Phase phase = Phase::starting;
-  double rate = 0;           ///< of the last 8 frames, Hz; falls in silence, but not after the end
-  std::uint64_t frames = 0;  ///< that the camera delivered, whatever became of them
+  double rate = 0;              ///< of the last second or 8 frames, whichever is more, Hz; falls in
+                                ///< silence, but not after the end
+  std::uint64_t frames = 0;     ///< that the camera delivered, whatever became of them
   std::uint64_t touchable = 0;  ///< of them prepared and published
   Drops drops;
   std::uint64_t stalls = 0;        ///< times that it stalled
