@@ -27,7 +27,7 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
       {"policy", std::string("fusion")},
       {"history", 2.0},
       {"voxel", 4.0}};
-  for (const auto& [key, value] : wanted) set(settings, key, value);
+  for (const auto& [key, value] : wanted) set(settings, kAll, key, value);
   const std::vector<Setting> list = list_settings(settings, kAll);
   EXPECT_EQ(list.size(), wanted.size());
   for (const auto& [key, value] : wanted) {
@@ -78,16 +78,16 @@ TEST(ViewSettings, PresetsStartFromWhatTheRunBeganWith) {
 
 TEST(ViewSettings, AnotherKindOfThePapersSurfaceIsThePapers) {
   ViewSettings settings = preset({}, "paper", kAll);
-  set(settings, "field", std::string("pointset"));
+  set(settings, kAll, "field", std::string("pointset"));
   EXPECT_EQ(settings.field.kind, FieldOptions::Kind::pointset);
   EXPECT_EQ(settings.field.gradient, FieldOptions::Gradient::normal);
 }
 
 TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
   ViewSettings settings;
-  set(settings, "smoothing", 2.0);
-  set(settings, "voxel", 5.0);
-  set(settings, "policy", std::string("replace"));
+  set(settings, kAll, "smoothing", 2.0);
+  set(settings, kAll, "voxel", 5.0);
+  set(settings, kAll, "policy", std::string("replace"));
   const SourceOptions options = prepared_by(settings.preparation, {}, {});
   EXPECT_DOUBLE_EQ(options.depth.normal_error, DepthFilterOptions().normal_error / 2);
   EXPECT_DOUBLE_EQ(*options.prepare.radius_multiple, 5);
@@ -102,14 +102,14 @@ TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
       {"friction", 0.3},
       {"texture", 0.5}};
   ViewSettings settings;
-  for (const auto& [key, value] : felt) set(settings, key, value);
+  for (const auto& [key, value] : felt) set(settings, kAll, key, value);
   EXPECT_EQ(settings.preparation, ViewSettings::Preparation{});
   EXPECT_EQ(preset({}, "glass", kAll).preparation, ViewSettings::Preparation{});
   const std::vector<std::pair<std::string, Setting::Value>> prepared = {
       {"smoothing", 1.5}, {"policy", std::string("fusion")}, {"history", 2.0}, {"voxel", 4.0}};
   for (const auto& [key, value] : prepared) {
     ViewSettings other;
-    set(other, key, value);
+    set(other, kAll, key, value);
     EXPECT_NE(other.preparation, ViewSettings::Preparation{}) << key;
   }
 }
@@ -144,8 +144,8 @@ TEST(ViewSettings, WhatASourceHasOfItsOwnStaysUnlessThePageChangesIt) {
   EXPECT_EQ(options.prepare.voxel, 3e-3);
   EXPECT_EQ(options.policy.policy, Policy::replace);
   EXPECT_EQ(options.policy.history, 6);
-  set(settings, "smoothing", 2.0);
-  set(settings, "policy", std::string("average"));
+  set(settings, kAll, "smoothing", 2.0);
+  set(settings, kAll, "policy", std::string("average"));
   options = prepared_by(settings.preparation, initial.preparation, own);
   EXPECT_DOUBLE_EQ(options.depth.normal_error, 0.005);
   EXPECT_DOUBLE_EQ(*options.prepare.radius, 0.04);
@@ -154,9 +154,36 @@ TEST(ViewSettings, WhatASourceHasOfItsOwnStaysUnlessThePageChangesIt) {
   EXPECT_EQ(options.policy.history, 6);
 }
 
+// From the whole of a cloud of 0.1 m to one of 5 km: 40 000 points on a square, and the stiffness
+// of a hand of 0.1 m in it.
+TEST(ViewSettings, BoundsAndStepsAreThoseOfTheCloud) {
+  for (const double size : {0.1, 0.2, 1.0, 7.3, 50.0, 425.0, 5000.0}) {
+    const double scale = size / 0.1;
+    ViewScope scope = {.clouds = true};
+    scope.stiffest = 2000 / scale;
+    scope.spacing = size / 200;
+    scope.deepest_texture = 0.5 * scope.spacing;
+    ViewSettings settings;
+    settings.feel.stiffness = 0.43 * scope.stiffest;
+    settings.feel.texture.amplitude = 0.37 * scope.deepest_texture;
+    settings.preparation.voxel = 2.1 * scope.spacing;
+    for (const Setting& setting : list_settings(settings, scope)) {
+      if (setting.kind != Setting::Kind::number || setting.step == 1) continue;
+      const double steps = (setting.most - setting.least) / setting.step;
+      EXPECT_GE(steps, 20) << size << " m " << setting.key;
+      EXPECT_LE(steps, 160) << size << " m " << setting.key;
+      ViewSettings same = settings;
+      set(same, scope, setting.key, setting.value);
+      EXPECT_DOUBLE_EQ(same.feel.stiffness, settings.feel.stiffness);
+      EXPECT_DOUBLE_EQ(same.feel.texture.amplitude, settings.feel.texture.amplitude);
+      EXPECT_DOUBLE_EQ(*same.preparation.voxel, *settings.preparation.voxel);
+    }
+  }
+}
+
 TEST(ViewSettings, UnknownKeysAreRefused) {
   ViewSettings settings;
-  EXPECT_THROW(set(settings, "colour", 1.0), Error);
+  EXPECT_THROW(set(settings, kAll, "colour", 1.0), Error);
 }
 
 }  // namespace

@@ -27,6 +27,9 @@ test("numbers read well", () => {
   assert.equal(decimals(0.05), 2);
   assert.equal(decimals(10), 0);
   assert.equal(inStep(0.30000000000000004, 0.1), "0.3");
+  assert.equal(inStep(2.504, 10), "2.5");
+  assert.equal(inStep(0.000123456, 0.002), "0.000123");
+  assert.equal(inStep(500.12, 20), "500");
   assert.equal(whole(1234567), "1\u202f234\u202f567");
   assert.equal(threeDigits(-8.4e-11), "0");
   assert.equal(threeDigits(-1.2345), "−1.23");

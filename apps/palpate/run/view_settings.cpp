@@ -16,8 +16,34 @@ namespace palpate::app {
 
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr const char* kAutomatic = "automatic";
+constexpr double kSliderSteps = 80;   // of a slider, about
+constexpr double kWidestVoxel = 10;   // spacings
+constexpr double kUsualVoxel = 0.05;  // m, where no spacing is known
+
+// 1, 2 or 5 times a power of ten, next to `value` by ratio.
+double round_step(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  const double digit = value / power;
+  return power * (digit < std::sqrt(2.)    ? 1
+                  : digit < std::sqrt(10.) ? 2
+                  : digit < std::sqrt(50.) ? 5
+                                           : 10);
+}
+
+struct Unit {
+  const char* name;
+  double metres;
+};
+
+double widest_voxel(const ViewScope& scope) {
+  return scope.spacing > 0 ? kWidestVoxel * scope.spacing : kUsualVoxel;
+}
+
+// Of all lengths, through a whole run.
+Unit unit_of(const ViewScope& scope) {
+  return widest_voxel(scope) < 1 ? Unit{"mm", 1e-3} : Unit{"m", 1};
+}
 
 Setting number(const char* key, const char* label, const char* unit, double least, double most,
                double step, double value) {
@@ -28,6 +54,13 @@ Setting number(const char* key, const char* label, const char* unit, double leas
           .most = most,
           .step = step,
           .value = value};
+}
+
+// A length from 0 to `most`, m.
+Setting length(const char* key, const char* label, const Unit& unit, double most, double value) {
+  most = std::max(most, value) / unit.metres;
+  return number(key, label, unit.name, 0, most, round_step(most / kSliderSteps),
+                value / unit.metres);
 }
 
 Setting choice(const char* key, const char* label, std::vector<std::string> choices,
@@ -48,10 +81,7 @@ std::vector<std::string> policies(const ViewScope& scope) {
   return names;
 }
 
-void set_contact(ContactSettings& feel, const std::string& key, double value) {
-  if (key == "stiffness") feel.stiffness = value;
-  if (key == "texture") feel.texture.amplitude = value * kMillimetre;
-  if (key != "friction") return;
+void set_friction(ContactSettings& feel, double value) {
   feel.friction.dynamic_coefficient = value;
   feel.friction.static_coefficient = value;
 }
@@ -78,28 +108,29 @@ constexpr std::array<Preset, 4> kPresets = {{
     {"soft",
      [](ViewSettings& settings) {
        settings.feel.stiffness *= 0.3;
-       set_contact(settings.feel, "friction", 0.4);
+       set_friction(settings.feel, 0.4);
      }},
     {"glass",
      [](ViewSettings& settings) {
        settings.feel.stiffness *= 2.4;
-       set_contact(settings.feel, "friction", 0);
+       set_friction(settings.feel, 0);
      }},
 }};
 
 }  // namespace
 
 std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope& scope) {
+  const Unit unit = unit_of(scope);
   std::vector<Setting> list;
   list.push_back(
       choice("field", "Surface", names_of(kFields), name_in(kFields, settings.field.kind)));
-  list.push_back(
-      number("stiffness", "Stiffness", "N/m", 0, scope.stiffest, 10, settings.feel.stiffness));
+  list.push_back(number("stiffness", "Stiffness", "N/m", 0, scope.stiffest,
+                        round_step(scope.stiffest / kSliderSteps), settings.feel.stiffness));
   list.push_back(
       number("friction", "Friction", "", 0, 1.5, 0.05, settings.feel.friction.dynamic_coefficient));
   if (scope.deepest_texture > 0) {
-    list.push_back(number("texture", "Texture", "mm", 0, scope.deepest_texture / kMillimetre, 0.01,
-                          settings.feel.texture.amplitude / kMillimetre));
+    list.push_back(
+        length("texture", "Texture", unit, scope.deepest_texture, settings.feel.texture.amplitude));
   }
   if (scope.lives || scope.clouds) {
     list.push_back(
@@ -112,13 +143,14 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
     list.push_back(number("history", "History", "clouds", 1, 7, 1, settings.preparation.history));
   }
   if (scope.clouds) {
-    list.push_back(number("voxel", "Voxel (0: automatic)", "mm", 0, 50, 0.5,
-                          settings.preparation.voxel.value_or(0) / kMillimetre));
+    list.push_back(length("voxel", "Voxel (0: automatic)", unit, widest_voxel(scope),
+                          settings.preparation.voxel.value_or(0)));
   }
   return list;
 }
 
-void set(ViewSettings& settings, const std::string& key, const Setting::Value& value) {
+void set(ViewSettings& settings, const ViewScope& scope, const std::string& key,
+         const Setting::Value& value) {
   if (key == "field") {
     settings.field = other_kind(settings.field, *choice_of(kFields, std::get<std::string>(value)));
   } else if (key == "policy") {
@@ -128,10 +160,14 @@ void set(ViewSettings& settings, const std::string& key, const Setting::Value& v
   } else if (key == "smoothing") {
     settings.preparation.smoothing = std::get<double>(value);
   } else if (key == "voxel") {
-    const double voxel = std::get<double>(value) * kMillimetre;
+    const double voxel = std::get<double>(value) * unit_of(scope).metres;
     settings.preparation.voxel = voxel > 0 ? std::optional<double>(voxel) : std::nullopt;
-  } else if (key == "stiffness" || key == "friction" || key == "texture") {
-    set_contact(settings.feel, key, std::get<double>(value));
+  } else if (key == "stiffness") {
+    settings.feel.stiffness = std::get<double>(value);
+  } else if (key == "friction") {
+    set_friction(settings.feel, std::get<double>(value));
+  } else if (key == "texture") {
+    settings.feel.texture.amplitude = std::get<double>(value) * unit_of(scope).metres;
   } else {
     throw Error(fmt::format("unknown setting '{}'", key));
   }

@@ -39,17 +39,19 @@ struct ViewSettings {
 struct ViewScope {
   double stiffest = 2000;      ///< N/m, in the world
   double deepest_texture = 0;  ///< amplitude, m
+  double spacing = 0;          ///< of the clouds that stand still as they were read, the widest, m
   bool lives = false;          ///< frames or clouds follow one another in time
   bool depth = false;          ///< ... and are depth images
   bool clouds = false;         ///< clouds are prepared here
 };
 
-/// As a page shows them, with their bounds.
+/// As a page shows them, with their bounds: lengths in mm, or in m where voxels may be so large.
 [[nodiscard]] std::vector<Setting> list_settings(const ViewSettings& settings,
                                                  const ViewScope& scope);
 
-/// @throws Error when there is no such key.
-void set(ViewSettings& settings, const std::string& key, const Setting::Value& value);
+/// `value` as it is listed. @throws Error when there is no such key.
+void set(ViewSettings& settings, const ViewScope& scope, const std::string& key,
+         const Setting::Value& value);
 
 /// The names that preset() knows.
 [[nodiscard]] std::vector<std::string> preset_names();

@@ -39,7 +39,7 @@ struct ViewerControls {
     Kind kind = Kind::number;
     double least = 0;  ///< of a number
     double most = 1;
-    double step = 0;  ///< that its slider should take; 0: any
+    double step = 0;  ///< that its slider and keys take; 0: any
     std::vector<std::string> choices = {};
     Value value = 0.0;  ///< the present one, of the kind
   };

@@ -31,19 +31,22 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
   const inUnit = setting.unit ? `${setting.label}, ${setting.unit}` : setting.label;
   const slider = make("input", { type: "range", min: 0, max: kSlider, step: 1, "aria-label": inUnit });
   const field = make("input", {
-    type: "number", id, min: least, max: most, step: step ?? "any", inputmode: "decimal",
+    type: "number", id, min: least, max: most, step: "any", inputmode: "decimal",
   });
   const later = throttle<number>(kInterval, wanted);
+  let held = Number(setting.value); // what the program has
+  const clamped = (value: number) => Math.min(most, Math.max(least, value));
   const snapped = (value: number) => {
     const near = step ? least + Math.round((value - least) / step) * step : value;
-    return Math.min(most, Math.max(least, Number(near.toPrecision(9))));
+    return clamped(Number(near.toPrecision(9)));
   };
-  const shown = (value: number) => {
-    slider.value = String(Math.round(scale.place(value) * kSlider));
+  const place = (value: number) => String(Math.round(scale.place(value) * kSlider));
+  const moveSlider = (value: number) => {
+    slider.value = place(value);
     slider.setAttribute("aria-valuetext", `${inStep(value, step)} ${setting.unit ?? ""}`.trim());
   };
   slider.addEventListener("input", () => {
-    const value = snapped(scale.value(Number(slider.value) / kSlider));
+    const value = slider.value === place(held) ? held : snapped(scale.value(Number(slider.value) / kSlider));
     field.value = inStep(value, step);
     later(value);
   });
@@ -53,22 +56,23 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
     event.preventDefault();
     const value = snapped(Number(field.value) + notches * (step ?? (most - least) / 100));
     field.value = inStep(value, step);
-    shown(value);
+    moveSlider(value);
     later(value);
   });
   field.addEventListener("change", () => {
-    if (field.value === "" || !field.checkValidity()) {
-      field.reportValidity();
-      return;
-    }
-    shown(Number(field.value));
-    wanted(Number(field.value));
+    if (field.value === "" || field.value === inStep(held, step)) return;
+    const value = clamped(Number(field.value));
+    field.value = inStep(value, step);
+    moveSlider(value);
+    wanted(value);
   });
+  field.addEventListener("blur", () => (field.value = inStep(held, step)));
   return {
     row: make("div", { class: "field number" }, label(setting, id), field, slider),
     show: (value) => {
-      if (document.activeElement !== slider) shown(Number(value));
-      if (document.activeElement !== field) field.value = inStep(Number(value), step);
+      held = Number(value);
+      if (document.activeElement !== slider) moveSlider(held);
+      if (document.activeElement !== field) field.value = inStep(held, step);
     },
   };
 }

@@ -2,11 +2,14 @@
 
 export function decimals(step: number | undefined): number {
   if (step === undefined || !(step > 0)) return 3;
-  return Math.min(6, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
+  return Math.min(20, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
 }
 
+/** A value as its step has it, but never with fewer than three digits that matter. */
 export function inStep(value: number, step: number | undefined): string {
-  return Number(value.toFixed(decimals(step))).toString();
+  const digits = value === 0 ? 0 : 2 - Math.floor(Math.log10(Math.abs(value)));
+  const places = Math.min(20, Math.max(decimals(step), digits));
+  return Number(value.toFixed(places)).toString();
 }
 
 /** Three digits that matter; what is next to nothing is nothing. */

@@ -54,6 +54,27 @@ test("a page that nobody sees draws nothing until it is seen again", () =>
     await until("as before", () => sent(program, "points").at(-1)?.points === points);
   }));
 
+test("a number field takes any value within its bounds and shows the one that holds", () =>
+  withPage(kSmall, async (page, program) => {
+    const field = page.getByRole("spinbutton", { name: "Stiffness" });
+    const stiffness = () => program.settings.find(({ key }) => key === "stiffness").value;
+    const shows = (text) => until(`it shows ${text}`, async () => (await field.inputValue()) === text);
+    for (const [typed, value, shown] of [["2.504", 10, "10"], ["505", 505, "505"], ["99999", 2000, "2000"], ["512.25", 512.25, "512"]]) {
+      await field.fill(typed);
+      await page.keyboard.press("Enter");
+      await until(`${typed} is set`, () => stiffness() === value);
+      await page.focus("#view");
+      await shows(shown);
+    }
+    await field.fill("");
+    await page.focus("#view");
+    await shows("512");
+    const before = sent(program, "set").length;
+    await page.getByRole("slider", { name: /Stiffness/ }).evaluate((slider) => slider.dispatchEvent(new Event("input")));
+    await until("the slider is where it was", () => sent(program, "set").length > before);
+    assert.equal(stiffness(), 512.25);
+  }));
+
 test("a stiffness that is asked for in contact and not felt yet is said beside it", () =>
   withPage(kSmall, async (page, program) => {
     const softer = page.locator("#settings [role=status]");
