@@ -201,7 +201,7 @@ def readme(root):
 
 def links(root):
     """Relative links of the documents lead to files."""
-    for path in [*sorted(root.glob("*.md")), *sorted((root / "docs").rglob("*.md"))]:
+    for path in (path for part in ("*.md", "docs/**/*.md", "bench/*.md", "web/*.md") for path in sorted(root.glob(part))):
         for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):
             if "://" not in target and not (path.parent / target).exists():
                 yield f"{path.relative_to(root)}: {target} does not exist"
