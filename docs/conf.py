@@ -15,3 +15,5 @@ breathe_default_project = "palpate"
 html_theme = "furo"
 html_title = f"palpate {version}"
 html_copy_source = html_show_sphinx = html_show_copyright = False
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]

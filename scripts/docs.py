@@ -17,7 +17,7 @@ import tempfile
 from xml.etree import ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-sys.path += [str(ROOT / "tests" / "documents"), str(ROOT / "build" / "release" / "python")]
+sys.path += [str(ROOT / "tests" / "project"), str(ROOT / "build" / "release" / "python")]
 sys.dont_write_bytecode = True
 import blocks  # noqa: E402
 import palpate  # noqa: E402
@@ -27,8 +27,7 @@ XML = ROOT / "build" / "docs" / "xml"
 FENCE = re.compile(r"^( *)```(\w*)\n(.*?)^ *```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"(?<=\]\()([^)\s]+)(?=\))|(?<=<img src=\")([^\"]+)(?=\")")
 # What is generated, and what of the tree it describes.
-REFERENCE = {"tests/apps/golden": "reference/program.md", "python/palpate/__init__.pyi": "reference/python.md",
-             "include/palpate": "reference/cpp.md"}
+REFERENCE = {"tests/apps/golden": "program", "python/palpate/__init__.pyi": "python", "include/palpate": "cpp"}
 
 
 def pages():
@@ -51,7 +50,7 @@ def led(target, path, where, out):
     if to in where:
         page = out / where[to]
     elif inside in REFERENCE:
-        page = out / REFERENCE[inside]
+        page = out / "reference" / f"{REFERENCE[inside]}.md"
     elif inside.startswith("include/palpate/"):
         page = out / "reference" / "cpp" / (inside.split("/")[2] + ".md")
     elif inside == "examples":
@@ -104,7 +103,7 @@ def program_reference():
     """The help of every command."""
     def told(*words):
         return subprocess.run([PROGRAM, *words, "--help"], capture_output=True, text=True, check=True).stdout
-    yield "# The program's commands\n\n[The program](../touch.md) explains sources, reports, logs and pictures.\n"
+    yield "# The program's commands\n\n{doc}`/touch` explains sources, reports, logs and pictures.\n"
     yield f"```text\n{told()}```\n"
     for name in re.findall(r"^  ([a-z]+)  ", told().split("Subcommands:")[1], re.MULTILINE):
         yield f"## palpate {name}\n\n```text\n{told(name)}```\n"
@@ -114,7 +113,7 @@ def python_reference():
     """The stubs' signatures with what the module says of each."""
     tree = ast.parse((ROOT / "python" / "palpate" / "__init__.pyi").read_text(encoding="utf-8"))
     kinds = [f"{ast.unparse(node)}\n" for node in tree.body if isinstance(node, ast.Assign)]
-    yield f"# Python\n\n`import palpate`. [The guide](../python.md) shows how it is used.\n\n{in_python(''.join(kinds))}"
+    yield f"# Python\n\n`import palpate`. {doc}`/python` shows how it is used.\n\n{in_python(''.join(kinds))}"
     for node in tree.body:
         if isinstance(node, ast.FunctionDef):
             yield f"## {node.name}\n\n{signature(node.name, node)}{described(getattr(palpate, node.name))}"
@@ -174,7 +173,7 @@ def cpp_reference(out):
             text += f"## {header.name}\n\n```cpp\n#include <{name}>\n```\n\n" + "".join(
                 f"```{{doxygen{kind}}} {which}\n{options}```\n\n" for _, kind, which, options in sorted(entries))
         write(out / "reference" / "cpp" / f"{floor.name}.md", text)
-    yield "# C++\n\n`#include <palpate/palpate.hpp>` is what a loop of your own needs. A folder is a [floor](../architecture.md#floors).\n"
+    yield "# C++\n\n`#include <palpate/palpate.hpp>` is what a loop of your own needs. Each folder is a floor of the {doc}`/architecture`.\n"
     yield "```{toctree}\n" + "\n".join(f"cpp/{floor.name}" for floor in floors) + "\n```\n"
 
 
@@ -226,9 +225,8 @@ def main():
             text = relinked(path.read_text(encoding="utf-8"), path, where, out)
             text = FENCE.sub(lambda found: shown(found, desk, out / "pictures", page.stem), text)
             write(out / page, trees(text) if page.name == "index.md" else text)
-    write(out / "reference" / "program.md", "\n".join(program_reference()))
-    write(out / "reference" / "python.md", "\n".join(python_reference()))
-    write(out / "reference" / "cpp.md", "\n".join(cpp_reference(out)))
+    for name, parts in (("program", program_reference()), ("python", python_reference()), ("cpp", cpp_reference(out))):
+        write(out / "reference" / f"{name}.md", "\n".join(parts))
 
 
 if __name__ == "__main__":
