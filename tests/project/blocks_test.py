@@ -64,6 +64,8 @@ def of_others(block, words):
         yield from (f"{block}: {words[0]} has no {word}" for word in words[1:] if word.startswith("--") and word not in text)
     if "--preset" in words and f'"{words[words.index("--preset") + 1]}"' not in (ROOT / "CMakePresets.json").read_text():
         yield f"{block}: no preset {words[words.index('--preset') + 1]}"
+    if words[0] == "cmake":
+        yield from (f"{block}: {word}?" for word in words if word.startswith("--") and word not in {"--preset", "--build", "--install"})
     if words[:3] == ["sudo", "apt", "install"]:
         listed = re.findall(r"^\w+ +(\S+)", (ROOT / "scripts" / "packages.txt").read_text(), re.MULTILINE)
         known = {name for names in listed for name in names.split("|")}
@@ -154,7 +156,7 @@ class Quoted(Found):
         self.assertFalse(quoted(block("cpp", "  palpate::Scene scene;")))
         self.assertTrue(unlabelled(block("", "palpate demo")))
         for line, count in (("scripts/demo.sh --headless", 0), ("scripts/gone.sh", 2), ("build/release/examples/gone | python3 examples/draw.py a.png", 1), ("scripts/test.sh --no-fizz", 1), ("palpatte demo", 1),
-                            ("cmake --preset nothing", 1), ("sudo apt install nothing-dev", 1),
+                            ("cmake --preset nothing", 1), ("cmake --prset dev", 1), ("sudo apt install nothing-dev", 1),
                             ("sudo cp /usr/share/palpate/gone.rules /etc", 1)):
             found = [wrong for words in commands(line) for wrong in of_others(block("sh", line), words)]
             self.assertEqual(len(found), count, line)
