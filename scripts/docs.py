@@ -197,10 +197,8 @@ def cpp_member(node):
 
 
 def write(path, text):
-    """Writes only what changed: Sphinx reads that again."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    if not path.exists() or path.read_text(encoding="utf-8") != text:
-        path.write_text(text, encoding="utf-8")
+    path.write_text(text, encoding="utf-8")
 
 
 def make_desk(folder):
@@ -216,8 +214,7 @@ def make_desk(folder):
 def main():
     out = pathlib.Path(sys.argv[1]).resolve()
     os.environ["PATH"] = f"{PROGRAM.parent}:{os.environ['PATH']}"
-    (out / "pictures").mkdir(parents=True, exist_ok=True)
-    shutil.copytree(ROOT / "docs" / "images", out / "images", dirs_exist_ok=True)
+    (out / "pictures").mkdir(parents=True)
     where = pages()
     with tempfile.TemporaryDirectory() as folder:
         desk = make_desk(folder)

@@ -24,7 +24,8 @@ fi
 build release palpate_app palpate_python examples
 
 say "pages"
-mkdir -p build/docs
+rm -rf build/docs
+mkdir build/docs
 doxygen - >build/docs/doxygen.log 2>&1 <<'END' || { cat build/docs/doxygen.log >&2; fail "doxygen found something wrong"; }
 INPUT = include
 RECURSIVE = YES
@@ -41,6 +42,6 @@ END
 sed -i 's|<initializer>= {[.].*</initializer>||' build/docs/xml/*.xml  # Sphinx 5 reads no designated initializers
 PATH=/usr/bin:$PATH scripts/docs.py build/docs/pages
 note "pages and pictures: $((SECONDS - started)) s"
-/usr/bin/python3 -m sphinx -W --keep-going -q -E -a -j auto -c docs -d build/docs/doctrees build/docs/pages build/docs/html
+/usr/bin/python3 -m sphinx -W --keep-going -q -j auto -c docs -d build/docs/doctrees build/docs/pages build/docs/html
 note "build/docs/html/index.html ($(find build/docs/html -name '*.html' | wc -l) pages, $((SECONDS - started)) s)"
 if [ -n "${1:-}" ]; then exec /usr/bin/python3 -m http.server --bind 127.0.0.1 --directory build/docs/html "$1"; fi
