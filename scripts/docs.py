@@ -113,7 +113,7 @@ def python_reference():
     """The stubs' signatures with what the module says of each."""
     tree = ast.parse((ROOT / "python" / "palpate" / "__init__.pyi").read_text(encoding="utf-8"))
     kinds = [f"{ast.unparse(node)}\n" for node in tree.body if isinstance(node, ast.Assign)]
-    yield f"# Python\n\n`import palpate`. {doc}`/python` shows how it is used.\n\n{in_python(''.join(kinds))}"
+    yield f"# Python\n\n`import palpate`. {{doc}}`/python` shows how it is used.\n\n{in_python(''.join(kinds))}"
     for node in tree.body:
         if isinstance(node, ast.FunctionDef):
             yield f"## {node.name}\n\n{signature(node.name, node)}{described(getattr(palpate, node.name))}"

@@ -65,7 +65,7 @@ def of_others(block, words):
     if "--preset" in words and f'"{words[words.index("--preset") + 1]}"' not in (ROOT / "CMakePresets.json").read_text():
         yield f"{block}: no preset {words[words.index('--preset') + 1]}"
     if words[0] == "cmake":
-        yield from (f"{block}: {word}?" for word in words if word.startswith("--") and word not in {"--preset", "--build", "--install"})
+        yield from (f"{block}: {word}?" for word in words if word.startswith("--") and word not in {"--preset", "--build", "--install", "--target"})
     if words[:3] == ["sudo", "apt", "install"]:
         listed = re.findall(r"^\w+ +(\S+)", (ROOT / "scripts" / "packages.txt").read_text(), re.MULTILINE)
         known = {name for names in listed for name in names.split("|")}
