@@ -77,8 +77,9 @@ class Desk:
                 for x in range(60) for y in range(60)]
         text = "".join("%.5f %.5f %.5f\n" % row for row in rows)
         for name in ("scan", "bunny", "a", "b", "scans/bench"):
+            moved = "".join("%.5f %.5f %.5f\n" % (x + 0.006, y - 0.004, z + 0.005) for x, y, z in rows) if name == "b" else text
             self.write(f"{name}.ply", f"ply\nformat ascii 1.0\nelement vertex {len(rows)}\nproperty float x\n"
-                                      f"property float y\nproperty float z\nend_header\n{text}")
+                                      f"property float y\nproperty float z\nend_header\n{moved}")
         self.write("scan.pcd", f"VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {len(rows)}\n"
                                f"HEIGHT 1\nPOINTS {len(rows)}\nDATA ascii\n{text}")
         (self.folder / "scan.las").write_bytes(las(rows))
