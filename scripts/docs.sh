@@ -1,16 +1,14 @@
 #!/usr/bin/env bash
 # Builds the documentation as one static site: build/docs/html/index.html.
 #
-# scripts/docs.sh [PORT]   with a port, it is served on this machine until Ctrl-C
 # Pages are docs/ and what it links to; pictures and references are made by the program as it is.
 # A warning, a link that leads nowhere, or a command without its picture is an error.
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
-case "${1:-}" in -*)
-  sed -n '2,6s/^# \{0,1\}//p' "$0"
+if [ $# -gt 0 ]; then
+  sed -n '2,5s/^# \{0,1\}//p' "$0"
   exit
-  ;;
-esac
+fi
 started=$SECONDS
 
 say "packages"
@@ -44,4 +42,3 @@ PATH=/usr/bin:$PATH scripts/docs.py build/docs/pages
 note "pages and pictures: $((SECONDS - started)) s"
 /usr/bin/python3 -m sphinx -W --keep-going -q -j auto -c docs -d build/docs/doctrees build/docs/pages build/docs/html
 note "build/docs/html/index.html ($(find build/docs/html -name '*.html' | wc -l) pages, $((SECONDS - started)) s)"
-if [ -n "${1:-}" ]; then exec /usr/bin/python3 -m http.server --bind 127.0.0.1 --directory build/docs/html "$1"; fi
