@@ -23,7 +23,7 @@ int main() {
     const double t = 1e-3 * step;  // s
     left_stream.advance(t);        // prepares the frames that have come
     right_stream.advance(t);
-    const double angle = 1.7 * std::sin(3 * t);    // rad, from where both see it
+    const double angle = 1.7 * std::sin(3 * t);      // rad, from where both see it
     const double distance = t < 0.2 ? 0.08 : 0.057;  // m: first outside, then 3 mm deep
     const Eigen::Vector3d hand =
         ball + distance * Eigen::Vector3d(-std::cos(angle), -std::sin(angle), 0);
