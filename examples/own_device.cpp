@@ -50,9 +50,16 @@ int main() {
   palpate::Scene scene;
   scene.add("ball", palpate::synthetic_cloud("sphere"));
   Prodding device(clock);
-  palpate::Servo servo(device, scene);
+  palpate::ServoState::Queue steps(4096);  // every step comes here; the servo waits for nobody
+  palpate::Servo servo(device, scene, {.steps = &steps});
   palpate::ServoThread thread(servo, clock);
-  while (thread.running()) clock.wait_until(clock.now() + 0.1);
+  while (thread.running()) {
+    clock.wait_until(clock.now() + 0.1);
+    while (const auto step = steps.pop()) {  // a log would be written here
+      if (step->step % 10 != 0) continue;
+      std::printf("%.1f mm: %.2f N\n", 1e3 * step->hip.z(), step->force.norm());
+    }
+  }
   thread.stop();
   std::printf("largest force %.2f N in %llu steps\n", device.largest(),
               static_cast<unsigned long long>(servo.state().step));

@@ -51,7 +51,9 @@ void touch(const char* name) {
     const double done = std::min(1.0, 1e-3 * step);
     const Vector3d hand = way.outside + 1.05 * done * (way.place - way.outside);
     field.update(clock.now(), hand, step == 0 ? hand : proxy.position());
-    largest = std::max(largest, proxy.step(field, hand, 1e-3).force.norm());
+    const double force = proxy.step(field, hand, 1e-3).force.norm();
+    largest = std::max(largest, force);
+    if (step % 10 == 0) std::printf("%.3f s: %.3f N\n", 1e-3 * step, force);
   }
   const palpate::StreamState state = stream.state();
   std::printf("%s: %.1f frames per second, touchable after %.1f ms; largest force %.3f N\n",

@@ -42,6 +42,7 @@ void touch(const char* file) {
     field.update(step * period, hand, proxy.position());
     const palpate::Contact contact = proxy.step(field, hand, period);
     if (contact.force.norm() > largest) largest = contact.force.norm();
+    if (step % 10 == 0) std::printf("%.3f s: %.3f N\n", step * period, contact.force.norm());
   }
   std::printf("largest force %.3f N\n", largest);
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What takes longer than scripts/test.sh: Debug, TSan and ASan + UBSan builds with every test, the long
-# tests and the benches' tables in a release build, a minute of fuzzing a target and, where one can be
-# made, the trial of both README commands in a fresh Debian root.
+# tests and the benches' tables in a release build, the documents' site, a minute of fuzzing a target and,
+# where one can be made, the trial of both README commands in a fresh Debian root.
 #
 # --no-fresh-root leaves the last out. --soak does another thing instead: ten minutes of touching two
 # cameras in real time while other load rises and falls; no memory may leak and no step be a fault.
@@ -62,6 +62,9 @@ else
   tail -n 30 build/embedded.log >&2
   status=1
 fi
+
+say "the documents' site"
+scripts/docs.sh || status=1
 
 say "fuzz targets, 60 s each"
 fuzz_all 60 || status=1

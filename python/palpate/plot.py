@@ -22,6 +22,9 @@ def _contact(axes: Any, run: Any) -> None:
     touched = np.asarray(run.touching)
     axes.plot(*np.asarray(run.hip).T, lw=1, label="hand")
     axes.plot(*np.asarray(run.proxy)[touched].T, ".", ms=2, label="proxy in contact")
+    low, high = np.min(run.hip, axis=0), np.max(run.hip, axis=0)
+    (x, y, z), half = (low + high) / 2, max(float(np.max(high - low)) / 2, 1e-9)  # one scale for all axes
+    axes.set(xlim=(x - half, x + half), ylim=(y - half, y + half), zlim=(z - half, z + half))
     axes.set(xlabel="x / m", ylabel="y / m", zlabel="z / m")
     axes.legend()
 

@@ -6,7 +6,6 @@
 #include "apps/palpate/options/touch_options.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
-#include "support/effort.hpp"
 
 namespace palpate::app {
 namespace {
@@ -37,31 +36,6 @@ stiffness = 700
 trajectory = "hand.csv"
 seed = 9
 )";
-
-// The nth set-up in docs/setup.md.
-std::string documented(int n) {
-  std::ifstream file(PALPATE_DOCS "/setup.md");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const std::string_view fence = "```toml\n";
-  std::size_t begin = text.find(fence);
-  for (; n > 0; --n) begin = text.find(fence, begin + 1);
-  begin += fence.size();
-  return text.substr(begin, text.find("```", begin) - begin);
-}
-
-TEST(SetupFile, TheDocumentedOneRunsAsItIs) {
-  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
-  Shell shell;
-  shell.write("desk.toml", documented(0));
-  const Outcome outcome =
-      shell.run("touch --setup desk.toml --simulated-time --duration 1 --no-view");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("camera:simulated:desk"), std::string::npos) << outcome.out;
-  const std::vector<SourcePlan> hardware = planned(shell, documented(1), "").sources;
-  ASSERT_EQ(hardware.size(), 2u);
-  EXPECT_EQ(hardware[0].argument.path, "camera:openni2");
-  EXPECT_EQ(hardware[1].argument.path, shell.path("scans/bench.ply"));
-}
 
 TEST(SetupFile, FillsInWhatTheCommandLineDoesNotSay) {
   const Shell shell;

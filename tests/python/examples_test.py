@@ -8,7 +8,7 @@ import sys
 import tempfile
 import unittest
 
-from support import main, np, pp
+from support import ball, main, np, pp, stroke
 
 HERE = pathlib.Path(__file__).resolve().parent
 EXAMPLES = HERE.parents[1] / "examples" / "python"
@@ -47,6 +47,12 @@ class Examples(unittest.TestCase):
         pp.plot(pp.synthetic_cloud("sphere"))
         with self.assertRaises(TypeError):
             pp.plot(3)
+
+    def test_a_contact_is_drawn_to_one_scale(self):
+        needs_matplotlib()
+        axes = pp.plot(pp.rollout(pp.Field(ball()), pp.Proxy(), stroke())).axes[0]
+        spans = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())]
+        self.assertLess(max(spans), 1.001 * min(spans))
 
 
 class Notebook(unittest.TestCase):
