@@ -34,8 +34,9 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/palpateConfig.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/palpateConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
 
-# The licences, those of what is compiled in among them.
-install(FILES packaging/debian/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# The licences, those of what is compiled in among them, and the documents.
+install(FILES packaging/debian/copyright README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(NOT PALPATE_BUILD_APP)
   return()
 endif()
@@ -48,7 +49,6 @@ if(NOT CMAKE_CROSSCOMPILING)
   install(FILES ${texts}/palpate.bash RENAME palpate
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 endif()
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES packaging/60-palpate.rules packaging/palpate-limits.conf
   DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate)
 install(FILES packaging/palpate.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)

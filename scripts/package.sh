@@ -26,7 +26,10 @@ make_sources() {
   grep -q "VERSION $version " CMakeLists.txt || fail "packaging/debian/changelog is of another version, $version"
   mkdir "$tree"
   git archive HEAD | tar -x -C "$tree"
-  (cd "$tree/web" && npm ci --ignore-scripts && PALPATE_PAGE=page npm run build) >"$log.page.log" 2>&1 ||
+  # Debian wants a page that can be read beside the one that is small.
+  (cd "$tree/web" && npm ci --ignore-scripts && PALPATE_PAGE=page npm run build &&
+    node_modules/.bin/esbuild src/main.ts --bundle --format=iife --target=es2022 --line-limit=400 --outfile=page/app.debug.js) \
+    >"$log.page.log" 2>&1 ||
     { tail -n 20 "$log.page.log" >&2; fail "npm cannot build the page"; }
   rm -r "$tree/web/node_modules"
   tar -C "$root/root" --sort=name --owner=root:0 --group=root:0 --mtime="@$(git log -1 --format=%ct)" \
