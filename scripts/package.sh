@@ -39,10 +39,11 @@ make_sources() {
 
 # older PACKAGE FOLDER: the same of an earlier version, with a file more and another line in each configuration file.
 older() {
-  local parts=$2/parts name
+  local parts=$2/parts name version
   dpkg-deb -R "$1" "$parts"
   name=$(sed -n 's/^Package: //p' "$parts/DEBIAN/control")
-  sed -Ei '/^(Version|Depends):/s/([0-9.]+)-1\b/\1-0~old/g' "$parts/DEBIAN/control"
+  version=$(sed -n 's/^Version: //p' "$parts/DEBIAN/control")
+  sed -i "s/ $version\b/ ${version%-*}-0~old/" "$parts/DEBIAN/control"
   touch "$parts/usr/share/stale-$name"
   find "$parts/etc" -type f -exec sed -i '$a # older' {} + 2>/dev/null || true
   dpkg-deb -b "$parts" "$2/$name.deb" >/dev/null
