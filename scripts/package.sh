@@ -27,11 +27,11 @@ make_sources() {
   mkdir "$tree"
   git archive HEAD | tar -x -C "$tree"
   # Debian wants a page that can be read beside the one that is small.
-  (cd "$tree/web" && npm ci --ignore-scripts && PALPATE_PAGE=page npm run build &&
-    node_modules/.bin/esbuild src/main.ts --bundle --format=iife --target=es2022 --line-limit=400 --outfile=page/app.debug.js) \
-    >"$log.page.log" 2>&1 ||
+  ln -s "$PWD/web/node_modules" "$tree/web"
+  (cd "$tree/web" && PALPATE_PAGE=page npm run build && node_modules/.bin/esbuild src/main.ts --bundle --format=iife \
+    --target=es2022 --line-limit=400 --preserve-symlinks --outfile=page/app.debug.js) >"$log.page.log" 2>&1 ||
     { tail -n 20 "$log.page.log" >&2; fail "npm cannot build the page"; }
-  rm -r "$tree/web/node_modules"
+  rm "$tree/web/node_modules"
   tar -C "$root/root" --sort=name --owner=root:0 --group=root:0 --mtime="@$(git log -1 --format=%ct)" \
     --transform "s,^palpate,palpate-$version," -cJf "$root/root/palpate_$version.orig.tar.xz" palpate
   cp -r "$tree/packaging/debian" "$tree/debian"
@@ -53,6 +53,7 @@ older() {
 say "sources"
 can_make_roots "$@"
 need_npm
+need_modules web
 git diff --quiet HEAD || note "uncommitted changes are not packed"
 make_root package_root
 make_sources
@@ -74,7 +75,7 @@ cp "$root/root/lintian.txt" "$out"
 say "another root, with older packages"
 make_root trial_root
 mkdir "$root"/root/{palpate,old,new}
-git archive HEAD packaging/debian/tests examples tests/apps/golden | tar -x -C "$root/root/palpate"
+git archive HEAD packaging/debian/tests examples tests/apps/golden tests/project | tar -x -C "$root/root/palpate"
 for package in "$out"/*_amd64.deb; do
   if [[ $package == *dbgsym* ]]; then continue; fi
   cp "$package" "$root/root/new"
@@ -86,6 +87,8 @@ timed "$get ../new/*.deb && ! ls /usr/share/stale-* && test -z \"\$(dpkg --verif
 timed packaging/debian/tests/program
 timed "$get $(sed -n 's/^Depends: libpalpate-dev, //p' packaging/debian/tests/control | tr -d ,)" "$log.tools.log"
 timed packaging/debian/tests/library "$log.library.log"
+timed "$get qemu-user" "$log.qemu.log"
+timed "python3 tests/project/older_processor.py /usr/bin/palpate /tmp/older qemu64,-pni"  # no more than SSE2
 timed "apt-get remove -y -qq '?name(palpate)' && test -f /etc/security/limits.d/palpate-limits.conf" "$log.remove.log"
 timed "apt-get purge -y -qq '?name(palpate)'" "$log.purge.log"
 left=$(find "$root" -xdev -name '*palpate*' -not -path "$root/root/*")
