@@ -69,8 +69,8 @@ shared=
 rm -rf "$out"
 mkdir "$out"
 cp "$root"/root/*palpate*_* "$out"
-timed "lintian --allow-root --pedantic --display-info --fail-on error ../palpate_*_amd64.changes | tee /root/lintian.txt"
-cp "$root/root/lintian.txt" "$out"
+timed "lintian --allow-root --pedantic --display-info --fail-on error ../palpate_*_amd64.changes" "$out/lintian.txt"
+cat "$out/lintian.txt"
 
 say "another root, with older packages"
 make_root trial_root
