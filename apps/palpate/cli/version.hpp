@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace palpate::app {
@@ -8,6 +9,6 @@ namespace palpate::app {
 [[nodiscard]] std::string_view version();
 
 /// Lines on how the program was built: revision, compiler, libraries, where its documents lie.
-[[nodiscard]] std::string_view build_details();
+[[nodiscard]] std::string build_details();
 
 }  // namespace palpate::app
