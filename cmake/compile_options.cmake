@@ -5,11 +5,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   list(APPEND PALPATE_WARNINGS -Wno-restrict)
 endif()
 
-# The oldest x86 processor that runs palpate (2009: SSE4.2). Loops that gain from AVX2 are compiled
-# a second time by their owners and chosen at run time.
-set(PALPATE_BASELINE)
+# Loops that gain from AVX2 are compiled a second time by their owners and chosen at run time.
+set(PALPATE_BASELINE x86-64-v2 CACHE STRING
+  "The oldest x86-64 processor that runs palpate, as -march names it (x86-64-v2: SSE4.2, of 2009)")
+set(palpate_march)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
-  set(PALPATE_BASELINE -march=x86-64-v2)
+  set(palpate_march -march=${PALPATE_BASELINE})
 endif()
 
 # -ffp-contract=off: no fused multiply-add behind our backs, so that the same input gives the same
@@ -17,7 +18,7 @@ endif()
 function(palpate_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE
-    ${PALPATE_WARNINGS} ${PALPATE_BASELINE} -ffp-contract=off)
+    ${PALPATE_WARNINGS} ${palpate_march} -ffp-contract=off)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
 endfunction()
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # What takes longer than scripts/test.sh: Debug, TSan and ASan + UBSan builds with every test, the long
 # tests and the benches' tables in a release build, the documents' site, a minute of fuzzing a target and,
-# where one can be made, the trial of both README commands in a fresh Debian root.
+# where they can be made, the trials in fresh Debian roots of both README commands and of Debian packages.
 #
-# --no-fresh-root leaves the last out. --soak does another thing instead: ten minutes of touching two
+# --no-fresh-root leaves these two out. --soak does another thing instead: ten minutes of touching two
 # cameras in real time while other load rises and falls; no memory may leak and no step be a fault.
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
@@ -74,6 +74,7 @@ scripts/lint.sh --all || status=1
 
 if [ "$fresh" = yes ]; then
   scripts/fresh_root.sh --test || [ $? -eq 77 ] || status=1  # 77: no such root can be made here
+  scripts/package.sh || [ $? -eq 77 ] || status=1
 else
   note "fresh root: skipped"
 fi

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <exception>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "apps/palpate/align/align_command.hpp"
@@ -13,11 +15,11 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/manual.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/cli/version.hpp"
 #include "apps/palpate/devices/devices_command.hpp"
 #include "apps/palpate/doctor/checks.hpp"
 #include "apps/palpate/info/info_command.hpp"
 #include "apps/palpate/paper/paper_command.hpp"
-#include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/replay/replay_command.hpp"
 #include "apps/palpate/touch/touch.hpp"
 #include "apps/palpate/zwidth/zwidth_command.hpp"
@@ -120,9 +122,22 @@ std::string text_for_packages(CLI::App& program, std::string_view argument) {
   return "";
 }
 
+// As CLI11 takes them, the last one first; 'version' and 'help touch' are taken, too.
+std::vector<std::string> arguments(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words.front() == "version") words.front() = "--version";
+  if (!words.empty() && words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  std::ranges::reverse(words);
+  return words;
+}
+
 int run(int argc, char** argv) {
   CLI::App program(kAbout, "palpate");
-  program.set_version_flag("--version", fmt::format("palpate {}", version()));
+  program.set_version_flag("-V,--version",
+                           fmt::format("palpate {}\n{}", version(), build_details()));
   program.require_subcommand(0, 1);
   program.get_formatter()->column_width(34);
   program.footer("Run 'palpate COMMAND --help' for details and examples.");
@@ -133,7 +148,7 @@ int run(int argc, char** argv) {
     return kSuccess;
   }
   try {
-    program.parse(argc, argv);
+    program.parse(arguments(argc, argv));
   } catch (const CLI::Success& done) {  // --help, --version
     return program.exit(done);
   } catch (const CLI::ParseError& error) {

@@ -21,7 +21,7 @@ def program() -> str:
     mine = os.path.join(sysconfig.get_path("scripts"), "palpate")
     found = mine if os.access(mine, os.X_OK) else shutil.which("palpate")
     if found is None:
-        raise Error("the program palpate is not in PATH; install it: sudo cmake --install build/release")
+        raise Error("the program palpate is not in PATH; install it: sudo apt install palpate, or sudo cmake --install build/release")
     return found
 
 

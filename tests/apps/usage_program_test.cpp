@@ -20,6 +20,13 @@ TEST(Usage, HelpAndVersionSucceed) {
   const Outcome version = shell.run("--version");
   EXPECT_EQ(version.code, 0);
   EXPECT_EQ(version.out.find("palpate "), 0u);
+  for (const char* word : {"revision", "built by", "OpenNI2", "documents"}) {
+    EXPECT_NE(version.out.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(shell.run("-V").out, version.out);
+  EXPECT_EQ(shell.run("version").out, version.out);
+  EXPECT_EQ(shell.run("help").out, help.out);
+  EXPECT_EQ(shell.run("help touch").out, touch.out);
 }
 
 TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {

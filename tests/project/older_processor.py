@@ -1,6 +1,6 @@
-"""Runs the program as an x86-64-v2 processor (Nehalem) would: older_processor.py PROGRAM FOLDER.
+"""Runs the program as an x86-64-v2 processor (Nehalem) would, or another: older_processor.py PROGRAM FOLDER [CPU].
 
-Nothing newer than SSE4.2 may be executed, and the forces have to be those of this machine, bit for
+Nothing newer than what it has (SSE4.2) may be executed, and the forces have to be those of this machine, bit for
 bit: loops that are compiled twice add in the same order in both.
 """
 
@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 SKIPPED = 77  # what CMake takes for skipped
-EMULATOR = ["qemu-x86_64", "-cpu", "Nehalem"]
+EMULATOR = ["qemu-x86_64", "-cpu", sys.argv[3] if len(sys.argv) > 3 else "Nehalem"]
 CLOUDS = ["synthetic:bumps", "synthetic:torus"]
 
 

@@ -98,16 +98,19 @@ std::string cases_of(CLI::App& command, const std::string& name) {
 }  // namespace
 
 std::string manual_page(CLI::App& program) {
+  const std::string version = program.version();  // and below it how it was built
   std::string text = fmt::format(
       ".TH PALPATE 1 \"\" \"{}\"\n.SH NAME\npalpate \\- feel a point cloud\n"
       ".SH SYNOPSIS\n.B palpate\n.I COMMAND\n[\\fIOPTIONS\\fR]\n.SH DESCRIPTION\n{}\n"
       ".SH COMMANDS\n",
-      program.version(), troff(program.get_description()));
+      version.substr(0, version.find('\n')), troff(program.get_description()));
   for (CLI::App* each : commands_of(program)) text += manual_of(*each, each->get_name());
   return text +
          ".SH EXIT STATUS\n.TP\n.B 0\nThe command did what it was asked to do.\n"
          ".TP\n.B 1\nThe input was bad or the run failed; the message says why.\n"
-         ".TP\n.B 2\nThe command line makes no sense.\n";
+         ".TP\n.B 2\nThe command line makes no sense.\n"
+         ".SH FILES\nPages that messages name as docs/... lie where\n.B palpate "
+         "\\-\\-version\nsays.\n";
 }
 
 std::string bash_completion(CLI::App& program) {

@@ -124,6 +124,8 @@ void check_surroundings(const Machine& machine, Findings& findings);
 
 /// What is plugged in of one kind: may this user open it, does a driver of the kernel hold it?
 void check_usb(const Machine& machine, DeviceKind kind, const char* area, Findings& findings);
+/// Are palpate's rules where udev reads them, put there by a package or a command of the doctor's?
+[[nodiscard]] bool has_rules(const System& system);
 /// The command that lets this user open devices on USB: from within a container, where the kernel
 /// has no USB, or by rules for udev.
 [[nodiscard]] std::string usb_command(const System& system);

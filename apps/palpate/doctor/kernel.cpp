@@ -17,7 +17,6 @@ namespace {
 constexpr const char* kKernel = "kernel";
 constexpr const char* kRights = "real-time rights";
 constexpr const char* kClock = "sys/devices/system/clocksource/clocksource0/";
-constexpr const char* kLimits = "etc/security/limits.d/palpate-limits.conf";
 constexpr double kSchedulingPeriod = 1e6;  // us, the kernel's sched_rt_period_us
 constexpr double kEnough = 0.5;            // of it, for real-time threads
 constexpr double kStep = 1e-3;             // s, of the loop whose jitter is measured

@@ -99,8 +99,11 @@ Answer browser(const Machine& machine) {
       fmt::format("sudo apt install xdg-utils {}", is_ubuntu(system) ? "firefox" : "firefox-esr"));
 }
 
-// The files that other answers' commands copy.
+// The files that other answers' commands copy, unless a package has put them in place.
 Answer installation(const Machine& machine) {
+  if (has_rules(machine.system) && is_there(machine.system, kLimits)) {
+    return good("udev and logins read palpate's rules and limits");
+  }
   const std::string share = machine.system.share.string();
   for (const char* name : {"60-palpate.rules", "palpate-limits.conf"}) {
     std::error_code ignored;

@@ -71,6 +71,9 @@ struct System {
 /// Of the environment; empty where it is not set.
 [[nodiscard]] std::string variable(const System& system, const std::string& name);
 
+/// The limits where logins read them; a package puts them there, or a command of the doctor's.
+inline constexpr const char* kLimits = "etc/security/limits.d/palpate-limits.conf";
+
 /// What brings /sys where it is not mounted.
 inline constexpr const char* kMountSys = "sudo mount -t sysfs sysfs /sys";
 

@@ -158,16 +158,22 @@ bool any_reached_by(std::string_view driver, const std::vector<KnownUsbDevice>& 
       devices, [driver](const KnownUsbDevice& each) { return each.model.reached_by == driver; });
 }
 
+bool has_rules(const System& system) {
+  return is_there(system, "etc/udev/rules.d/60-palpate.rules") ||
+         is_there(system, "usr/lib/udev/rules.d/60-palpate.rules");
+}
+
 std::string usb_command(const System& system) {
   if (in_container(system)) {
     return "docker run -it -v /dev:/dev --device-cgroup-rule 'c 189:* rmw' "
            "--device-cgroup-rule 'c 166:* rmw' IMAGE";
   }
   if (!is_there(system, "sys/bus/usb")) return "sudo modprobe xhci_pci";
-  return fmt::format(
-      "sudo cp {}/60-palpate.rules /etc/udev/rules.d/ && sudo udevadm control --reload && "
-      "sudo udevadm trigger",
-      system.share.string());
+  const std::string copy = has_rules(system)
+                               ? ""
+                               : fmt::format("sudo cp {}/60-palpate.rules /etc/udev/rules.d/ && ",
+                                             system.share.string());
+  return copy + "sudo udevadm control --reload && sudo udevadm trigger";
 }
 
 void check_usb(const Machine& machine, DeviceKind kind, const char* area, Findings& findings) {

@@ -62,7 +62,4 @@ class FigureFiles {
 [[nodiscard]] std::string_view trust_script();
 [[nodiscard]] std::string_view align_script();
 
-/// The project's version.
-[[nodiscard]] std::string_view version();
-
 }  // namespace palpate::app

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/palpate/plot/python_drawing.hpp"
+#include "apps/palpate/cli/version.hpp"
 #include "apps/palpate/record/options_json.hpp"
 #include "apps/palpate/record/recorded_messages.hpp"
 #include "message/depth_images.hpp"

@@ -9,6 +9,7 @@
 #include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/cli/version.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/report/report.hpp"
 #include "palpate/base/error.hpp"

@@ -65,6 +65,9 @@ TEST(DoctorDevices, SaysWhoMayOpenANodeThatThisUserMayNot) {
   machine.system.groups = {"plugdev"};  // a member already: something else is in the way
   const Finding by_rules = about("Force Dimension", examined(machine));
   EXPECT_NE(by_rules.remedy.find("60-palpate.rules"), std::string::npos) << by_rules.remedy;
+  machine.file("usr/lib/udev/rules.d/60-palpate.rules", "");  // a package's
+  EXPECT_EQ(about("Force Dimension", examined(machine)).remedy,
+            "sudo udevadm control --reload && sudo udevadm trigger");
 }
 
 TEST(DoctorDevices, SaysSoWhereADeviceHasNoNode) {

@@ -123,6 +123,14 @@ TEST(DoctorLocale, WithADecimalCommaIsNamed) {
   EXPECT_EQ(finding_on("decimal point", machine).remedy, "export LC_ALL=C.UTF-8");
 }
 
+TEST(DoctorSurroundings, AreContentWithFilesThatAPackagePutInPlace) {
+  MadeUp machine;
+  machine.file("usr/lib/udev/rules.d/60-palpate.rules", "");
+  EXPECT_EQ(finding_on("palpate's files", machine).severity, Severity::warning);
+  machine.file("etc/security/limits.d/palpate-limits.conf", "");
+  EXPECT_EQ(finding_on("palpate's files", machine).severity, Severity::good);
+}
+
 TEST(DoctorSurroundings, MissAFolderForTheRemoteDevicesSocket) {
   MadeUp machine;
   EXPECT_EQ(finding_on("XDG_RUNTIME_DIR", machine).severity, Severity::note);
