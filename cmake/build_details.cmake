@@ -2,12 +2,12 @@
 set(PALPATE_REVISION "" CACHE STRING "A package's version, which the program tells; empty: git's commit")
 set(PALPATE_REVISION_TOLD "${PALPATE_REVISION}")
 if(NOT PALPATE_REVISION AND EXISTS ${PROJECT_SOURCE_DIR}/.git)
-  execute_process(COMMAND git rev-parse --short HEAD WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+  execute_process(COMMAND git describe --always --dirty --exclude * WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     OUTPUT_VARIABLE PALPATE_REVISION_TOLD OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   execute_process(COMMAND git rev-parse --git-path logs/HEAD WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     OUTPUT_VARIABLE log OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-  cmake_path(ABSOLUTE_PATH log BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
-  if(EXISTS ${log})  # the next commit is told, too
+  if(log)  # the next commit is told, too
+    cmake_path(ABSOLUTE_PATH log BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${log})
   endif()
 endif()

@@ -35,8 +35,8 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/palpateConfig.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
 
 # The licences, those of what is compiled in among them, and the documents.
-install(FILES packaging/debian/copyright README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES packaging/debian/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md PATTERN *.png)
 if(NOT PALPATE_BUILD_APP)
   return()
 endif()

@@ -1,6 +1,5 @@
 // Two hands on one ball, each with a servo and a thread of its own. Here both are simulated
 // devices whose hands press and let go; open_device() gives real ones.
-#include <algorithm>
 #include <cstdio>
 #include <palpate/device/simulated.hpp>
 #include <palpate/palpate.hpp>

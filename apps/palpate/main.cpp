@@ -123,12 +123,14 @@ std::string text_for_packages(CLI::App& program, std::string_view argument) {
 }
 
 // As CLI11 takes them, the last one first; 'version' and 'help touch' are taken, too.
-std::vector<std::string> arguments(int argc, char** argv) {
+std::vector<std::string> arguments(const CLI::App& program, int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front() == "version") words.front() = "--version";
   if (!words.empty() && words.front() == "help") {
     words.erase(words.begin());
-    words.emplace_back("--help");
+    const auto named = [&](const CLI::App* each) { return each->get_name() == words.front(); };
+    const bool known = words.empty() || !program.get_subcommands(named).empty();
+    if (known) words.emplace_back("--help");  // else it is refused as what it is
   }
   std::ranges::reverse(words);
   return words;
@@ -140,7 +142,8 @@ int run(int argc, char** argv) {
                            fmt::format("palpate {}\n{}", version(), build_details()));
   program.require_subcommand(0, 1);
   program.get_formatter()->column_width(34);
-  program.footer("Run 'palpate COMMAND --help' for details and examples.");
+  program.footer(
+      "Run 'palpate help COMMAND' or 'palpate COMMAND --help' for details and examples.");
   const std::vector<Command> commands = add_commands(program);
   if (const std::string text = text_for_packages(program, argc == 2 ? argv[1] : "");
       !text.empty()) {
@@ -148,7 +151,7 @@ int run(int argc, char** argv) {
     return kSuccess;
   }
   try {
-    program.parse(arguments(argc, argv));
+    program.parse(arguments(program, argc, argv));
   } catch (const CLI::Success& done) {  // --help, --version
     return program.exit(done);
   } catch (const CLI::ParseError& error) {
@@ -161,10 +164,7 @@ int run(int argc, char** argv) {
   }
   throw UsageError(
       "no command given; use touch, align, info, bag, replay, cameras, devices, ros, doctor, "
-      "paper, demo "
-      "or "
-      "zwidth "
-      "(see 'palpate --help')");
+      "paper, demo or zwidth (see 'palpate --help')");
 }
 
 }  // namespace

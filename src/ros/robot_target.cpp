@@ -50,19 +50,20 @@ void RobotTarget::look(const ServoState& state, double now, const message::Time&
   if (state.step != step_) stepped_ = now;
   step_ = state.step;
   if (!due_.due(now)) return;
-  const std::string_view why = obstacle(state, now);
-  {
-    const std::lock_guard lock(mutex_);
-    told_.readers = target_.readers();
-    told_.why = why;
-    ++(why.empty() ? told_.told : told_.held);
-  }
-  if (!why.empty()) return;
+  std::string_view why = obstacle(state, now);
+  if (why.empty() && !tell(state, stamp)) why = "the network is too slow";
+  const std::lock_guard lock(mutex_);
+  told_.readers = target_.readers();
+  told_.why = why;
+  ++(why.empty() ? told_.told : told_.held);
+}
+
+bool RobotTarget::tell(const ServoState& state, const message::Time& stamp) {
   const Eigen::Vector3d position = options_.hand ? state.hip : state.contact.proxy;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = options_.T_robot_world.linear() * state.orientation.toRotationMatrix();
   pose.translation() = options_.T_robot_world * Eigen::Vector3d(options_.scale * position);
-  target_.write({{stamp, options_.frame}, message::pose_of(pose)});
+  return target_.write({{stamp, options_.frame}, message::pose_of(pose)});
 }
 
 RosBridge::RobotState RobotTarget::state() const {
@@ -73,11 +74,12 @@ RosBridge::RobotState RobotTarget::state() const {
 // Why no target may be told; empty: it may be.
 std::string_view RobotTarget::obstacle(const ServoState& state, double now) const {
   if (state.step == 0 || now - stepped_ > kStill) return "the servo stands still";
-  if (state.device != DeviceState::Status::ok) return "the hand is not heard";
+  if (state.device == DeviceState::Status::silent) return "the hand is not heard";
+  if (state.device != DeviceState::Status::ok) return "the hand has ended";
   if (state.guard.fault != Guard::Fault::none) return "the hand has a fault";
   if (state.paused) return "the hand is paused";
   if (options_.dead_man && ((state.buttons >> *options_.dead_man) & 1U) == 0)
-    return "its button is up";
+    return "the hand's dead-man button is up";
   if (options_.hand) return {};
   // Without a surface, or behind one, a proxy is where the hand is: perhaps inside of things.
   if (has(state.field_notes, FieldNote::no_surface)) return "no source has a surface";

@@ -40,6 +40,8 @@ class RobotTarget {
   [[nodiscard]] RosBridge::RobotState state() const;
 
  private:
+  // False: it could not be sent in time.
+  bool tell(const ServoState& state, const message::Time& stamp);
   [[nodiscard]] std::string_view obstacle(const ServoState& state, double now) const;
 
   RosBridgeOptions::Robot options_;

@@ -190,8 +190,8 @@ Sequence read_sequence(const fs::path& folder) {
   sequence.rate = rate_of(description, sequence.frames);
   if (!is_file(folder / "sequence.json")) {
     sequence.assumed =
-        "TUM layout: 1/5000 m a step, focal length 525 px; a sequence.json says otherwise, as for "
-        "depths in mm";
+        "no sequence.json, so TUM's values: 5000 units of depth a metre, focal length 525 px; if "
+        "depths are in mm, say so in a sequence.json";
   }
   return sequence;
 }

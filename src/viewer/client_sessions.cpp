@@ -21,7 +21,7 @@ std::string why_not(const Setting& setting, double value) {
 }
 
 std::string why_not(const Setting& setting, const std::string& value) {
-  if (setting.kind != Setting::Kind::choice) return "give no text";
+  if (setting.kind != Setting::Kind::choice) return "it is no choice from a list";
   if (std::ranges::find(setting.choices, value) != setting.choices.end()) return {};
   return fmt::format("there are only {}", fmt::join(setting.choices, ", "));
 }

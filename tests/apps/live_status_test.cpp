@@ -91,7 +91,7 @@ TEST(LiveStatus, TellsWhatARobotIsToldAndWhyNot) {
   RosBridge::RobotState& robot = moment.robot.emplace();
   robot.topic = "/target_pose";
   robot.told = 250;
-  EXPECT_TRUE(in_words(moment).ends_with(" | robot: nobody takes /target_pose"));
+  EXPECT_TRUE(in_words(moment).ends_with(" | robot: no subscriber to /target_pose"));
   robot.readers = 1;
   EXPECT_TRUE(in_words(moment).ends_with(" | robot: 250 targets"));
   robot.why = "no source has a surface";

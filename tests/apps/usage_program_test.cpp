@@ -27,6 +27,7 @@ TEST(Usage, HelpAndVersionSucceed) {
   EXPECT_EQ(shell.run("version").out, version.out);
   EXPECT_EQ(shell.run("help").out, help.out);
   EXPECT_EQ(shell.run("help touch").out, touch.out);
+  EXPECT_EQ(shell.run("help tuoch").code, 2);
 }
 
 TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {

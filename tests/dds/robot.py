@@ -30,7 +30,7 @@ def main():
     print(told, run.stderr if run.returncode else "")
     count, depth, after = re.search(r"^(\d+) targets; target at most (\S+) mm deep, .*; (\S+) mm after", told).groups()
     report = json.loads(run.stdout)["robot"] if run.returncode == 0 else {"told": 0}
-    good = report["told"] >= int(count) and int(count) > 100 * seconds and float(depth) <= DEEPEST and float(after) < FARTHEST
+    good = int(count) <= report["told"] <= 250 * seconds + 10 and int(count) > 100 * seconds and float(depth) <= DEEPEST and float(after) < FARTHEST
     sys.exit(not good)
 
 

@@ -80,7 +80,7 @@ TEST(Sequence, KnowsTheTumLayout) {
   ASSERT_TRUE(sequence.frames[1].T_world_sensor);
   EXPECT_NEAR(sequence.frames[1].T_world_sensor->translation().x(), 0.5, 1e-9);
   const auto camera = open_sequence(sequence);
-  EXPECT_THAT(camera->info().assumed, HasSubstr("1/5000 m a step"));
+  EXPECT_THAT(camera->info().assumed, HasSubstr("5000 units of depth a metre"));
   DepthFrame frame;
   EXPECT_EQ(camera->read(frame, 0), DepthCamera::Status::unposed);
   EXPECT_THAT(camera->reason(), AllOf(HasSubstr("a.pgm"), HasSubstr("no pose")));

@@ -21,9 +21,7 @@ std::filesystem::path temporary_folder() {
   std::error_code error;
   std::filesystem::path folder = std::filesystem::temp_directory_path(error);
   if (!error) return folder;
-  const char* const named = std::getenv("TMPDIR");
-  throw Error(fmt::format("TMPDIR, {}, is no folder; set it to one with room, such as /tmp",
-                          named == nullptr ? "unset" : named));
+  throw Error("no folder for temporary files (TMPDIR, TMP); set TMPDIR to one with room");
 }
 
 // A folder of our own that vanishes with its contents.

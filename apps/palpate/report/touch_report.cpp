@@ -149,7 +149,7 @@ Report report_of(const RosBridge::RobotState& robot) {
   part.line("targets",
             fmt::format("{} told, {} held back", grouped(robot.told), grouped(robot.held)));
   if (!robot.why.empty()) part.line("at last", robot.why, Mark::warning);
-  if (robot.readers == 0) part.line("readers", "nobody takes them", Mark::warning);
+  if (robot.readers == 0) part.line("readers", "none now", Mark::warning);
   part.data = {{"topic", robot.topic},
                {"told", robot.told},
                {"held_back", robot.held},

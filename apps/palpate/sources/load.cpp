@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <filesystem>
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/terminal.hpp"
@@ -26,14 +27,19 @@ CloudFile make_synthetic(const std::string& name, double scale) {
   return file;
 }
 
+// Opening a named pipe waits for who writes; what a shell has opened (/dev/fd/63) does not.
+void tell_of_pipe(const std::string& path) {
+  std::error_code unknown;
+  if (path.starts_with("/dev/") || !std::filesystem::is_fifo(path, unknown)) return;
+  fmt::print(stderr, "{}: waiting for a program that writes to this pipe\n",
+             without_controls(path));
+}
+
 CloudFile read(const CloudArgument& argument, const ReadOptions& options) {
   if (argument.path.starts_with(kSynthetic)) {
     return make_synthetic(argument.path.substr(kSynthetic.size()), options.scale);
   }
-  std::error_code unknown;
-  if (std::filesystem::is_fifo(argument.path, unknown)) {
-    fmt::print(stderr, "{} is a pipe: waiting for a program that writes to it\n", argument.path);
-  }
+  tell_of_pipe(argument.path);
   ReadOptions shown = options;
   Progress progress(fmt::format("reading {}", argument.path));
   shown.progress = [&](double done) { progress.update(done); };

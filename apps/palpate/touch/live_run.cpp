@@ -242,10 +242,12 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
     if (bridge) moment.robot = bridge->robot();
     status.show(moment);
   }
+  std::optional<RosBridge::RobotState> robot;  // before its hand stands still
+  if (bridge) robot = bridge->robot();
   for (LiveHand& hand : hands) hand.stop();
   for (LiveHand& hand : hands) hand.take_steps(each);
   LiveOutcome outcome = outcome_of(hands, interruption.asked());
-  if (bridge) outcome.robot = bridge->robot();
+  outcome.robot = robot;
   if (bridge && !bridge->problem().empty()) status.tell("ROS 2: " + bridge->problem());
   bridge.reset();  // these look at what the feed takes down
   view.reset();

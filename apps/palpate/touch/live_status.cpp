@@ -61,7 +61,7 @@ std::string stream_words(const StreamState& stream) {
 }
 
 std::string robot_words(const RosBridge::RobotState& robot) {
-  if (robot.readers == 0) return "robot: nobody takes " + robot.topic;
+  if (robot.readers == 0) return "robot: no subscriber to " + robot.topic;
   if (!robot.why.empty()) return "robot WAITS: " + robot.why;
   return fmt::format("robot: {} targets", robot.told);
 }

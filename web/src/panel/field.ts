@@ -31,48 +31,57 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
   const inUnit = setting.unit ? `${setting.label}, ${setting.unit}` : setting.label;
   const slider = make("input", { type: "range", min: 0, max: kSlider, step: 1, "aria-label": inUnit });
   const field = make("input", {
-    type: "number", id, min: least, max: most, step: "any", inputmode: "decimal",
+    type: "text", role: "spinbutton", id, "aria-valuemin": least, "aria-valuemax": most, inputmode: "decimal", autocomplete: "off",
   });
   const later = throttle<number>(kInterval, wanted);
-  let held = Number(setting.value); // what the program has
+  let held = Number(setting.value); // what the program has, or was asked for last
   const clamped = (value: number) => Math.min(most, Math.max(least, value));
   const snapped = (value: number) => {
     const near = step ? least + Math.round((value - least) / step) * step : value;
     return clamped(Number(near.toPrecision(9)));
   };
   const place = (value: number) => String(Math.round(scale.place(value) * kSlider));
-  const moveSlider = (value: number) => {
-    slider.value = place(value);
-    slider.setAttribute("aria-valuetext", `${inStep(value, step)} ${setting.unit ?? ""}`.trim());
+  const say = (value: number) => {
+    field.value = inStep(value, step);
+    slider.setAttribute("aria-valuetext", `${field.value} ${setting.unit ?? ""}`.trim());
+  };
+  const typed = () => {
+    const text = field.value.trim().replace(",", ".");
+    return text === "" || text === inStep(held, step) || Number.isNaN(Number(text)) ? held : Number(text);
   };
   slider.addEventListener("input", () => {
     const value = slider.value === place(held) ? held : snapped(scale.value(Number(slider.value) / kSlider));
-    field.value = inStep(value, step);
+    say(value);
     later(value);
   });
-  slider.addEventListener("keydown", (event) => {
+  const move = (event: KeyboardEvent) => {
     const notches = kNotches[event.key];
     if (notches === undefined) return;
     event.preventDefault();
-    const value = snapped(Number(field.value) + notches * (step ?? (most - least) / 100));
-    field.value = inStep(value, step);
-    moveSlider(value);
+    const value = snapped(typed() + notches * (step ?? (most - least) / 100));
+    say(value);
+    slider.value = place(value);
     later(value);
-  });
+  };
+  slider.addEventListener("keydown", move);
   field.addEventListener("change", () => {
-    if (field.value === "" || field.value === inStep(held, step)) return;
-    const value = clamped(Number(field.value));
-    field.value = inStep(value, step);
-    moveSlider(value);
-    wanted(value);
+    const value = clamped(typed());
+    say(value);
+    slider.value = place(value);
+    if (value !== held) wanted(value);
+    held = value;
   });
-  field.addEventListener("blur", () => (field.value = inStep(held, step)));
+  field.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") say(held);
+    if (event.key === "ArrowUp" || event.key === "ArrowDown") move(event);
+  });
+  field.addEventListener("blur", () => say(held));
   return {
     row: make("div", { class: "field number" }, label(setting, id), field, slider),
     show: (value) => {
       held = Number(value);
-      if (document.activeElement !== slider) moveSlider(held);
-      if (document.activeElement !== field) field.value = inStep(held, step);
+      if (document.activeElement !== slider) slider.value = place(held);
+      if (document.activeElement !== field) say(held);
     },
   };
 }

@@ -59,13 +59,19 @@ test("a number field takes any value within its bounds and shows the one that ho
     const field = page.getByRole("spinbutton", { name: "Stiffness" });
     const stiffness = () => program.settings.find(({ key }) => key === "stiffness").value;
     const shows = (text) => until(`it shows ${text}`, async () => (await field.inputValue()) === text);
-    for (const [typed, value, shown] of [["2.504", 10, "10"], ["505", 505, "505"], ["99999", 2000, "2000"], ["512.25", 512.25, "512"]]) {
+    for (const [typed, value, shown] of [["2.504", 10, "10"], ["505", 505, "505"], ["50,5", 50.5, "50.5"], ["99999", 2000, "2000"], ["512.25", 512.25, "512"]]) {
       await field.fill(typed);
       await page.keyboard.press("Enter");
       await until(`${typed} is set`, () => stiffness() === value);
       await page.focus("#view");
       await shows(shown);
     }
+    await field.fill("700");
+    await page.keyboard.press("Escape");
+    await shows("512");
+    await field.fill("much");
+    await page.keyboard.press("Enter");
+    await shows("512");
     await field.fill("");
     await page.focus("#view");
     await shows("512");
