@@ -252,9 +252,8 @@ Report camera_report(const LoadedSource& source) {
   Report report(argument.name, fmt::format("{} ({} x {} pixels), {}", argument.path, feed.width,
                                            feed.height, phase_words(state.phase)));
   report.data = {{"name", argument.name}, {"camera", argument.path}};
-  if (const std::string& assumed = source.camera->info().assumed; !assumed.empty()) {
-    report.line("assumed", assumed);
-  }
+  const std::string assumed = source.camera ? source.camera->info().assumed : "";
+  if (!assumed.empty()) report.line("assumed", assumed);
   add_frames(report, feed);
   add_latency(report, feed);
   add_policy(report, source.plan);
