@@ -41,7 +41,7 @@ struct Topic {
   Kind kind = Kind::answer;
   std::size_t index = 0;  ///< of the device or source
 
-  auto operator<=>(const Topic&) const = default;
+  auto operator<=>(const Topic&) const = default;  // NOLINT(modernize-use-nullptr): its 0
 };
 
 struct Message {

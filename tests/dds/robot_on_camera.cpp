@@ -47,17 +47,25 @@ struct Result {
   ContactNote notes = ContactNote::none;  // of the deepest
   double proxy = 0;
   double hand = 0;
+  SceneField::Found found;  // of the step before
+  bool same = false;        // was the second field's the same?
+  bool together = false;    // have both had the present surfaces from the same step on?
 };
 
-// Where the second field still has the surface that the step had.
+// Where the second field has the surfaces that the step had, and from the same step on: a surface
+// that comes late catches up from when it was found.
 void check(const StepTrace& trace, SceneField& field, Result& result) {
   const ServoState& step = trace.state;
   field.update(step.time, step.hip, step.contact.proxy);
   field.begin_step();
   const bool same = field.found().publications == trace.input.found.publications;
+  const bool changed = trace.input.found.publications != result.found.publications;
+  if (!same || changed) result.together = same && result.same;
+  result.found = trace.input.found;
+  result.same = same;
   const bool told = !has(step.field_notes, FieldNote::no_surface | FieldNote::behind) &&
                     !has(step.contact.notes, ContactNote::reanchored | ContactNote::not_converged);
-  if (same && told) {
+  if (result.together && told) {
     ++result.judged;
     const double depth = depth_at(field, step.contact.proxy);
     result.deep += depth > kDeepest ? 1 : 0;
