@@ -1,5 +1,5 @@
 # Builds the page: cmake -D WEB=FOLDER -D PAGE=FOLDER -D NPM=PROGRAM -P build_page.cmake. What npm installs is
-# asked for anew only when the lock is newer; it lies beside the sources, for all builds of them in turn.
+# asked for again only when the lock is newer; it lies beside the sources, for all builds of them in turn.
 function(run)
   execute_process(COMMAND ${NPM} ${ARGN} WORKING_DIRECTORY ${WEB} RESULT_VARIABLE result
     OUTPUT_VARIABLE words ERROR_VARIABLE words)

@@ -24,7 +24,6 @@ import palpate  # noqa: E402
 
 PROGRAM = ROOT / "build" / "release" / "apps" / "palpate" / "palpate"
 XML = ROOT / "build" / "docs" / "xml"
-FENCE = re.compile(r"^( *)```(\w*)\n(.*?)^ *```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"(?<=\]\()([^)\s]+)(?=\))|(?<=<img src=\")([^\"]+)(?=\")")
 # What is generated, and what of the tree it describes.
 REFERENCE = {"tests/apps/golden": "program", "python/palpate/__init__.pyi": "python", "include/palpate": "cpp"}
@@ -220,7 +219,7 @@ def main():
         desk = make_desk(folder)
         for path, page in where.items():
             text = relinked(path.read_text(encoding="utf-8"), path, where, out)
-            text = FENCE.sub(lambda found: shown(found, desk, out / "pictures", page.stem), text)
+            text = blocks.FENCE.sub(lambda found: shown(found, desk, out / "pictures", page.stem), text)
             write(out / page, trees(text) if page.name == "index.md" else text)
     for name, parts in (("program", program_reference()), ("python", python_reference()), ("cpp", cpp_reference(out))):
         write(out / "reference" / f"{name}.md", "\n".join(parts))

@@ -121,8 +121,8 @@ struct OpenHapticsLibrary {
 };
 
 /// Sorts the library's one list of errors by device, so that each device fails for its own errors
-/// alone. An error that names a device that was never open counts for whoever asks; one of a closed
-/// device is dropped. For each device the first error is kept until it is taken. Any thread;
+/// alone. An error that names a device that was never open counts for the one that asks; one of a
+/// closed device is dropped. For each device the first error is kept until it is taken. Any thread;
 /// lock-free, bounded work.
 class OpenHapticsErrors {
  public:

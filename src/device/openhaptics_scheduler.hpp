@@ -76,7 +76,7 @@ class OpenHapticsFrames {
   /// The next frame calibrates the device again, in one of the styles that it knows.
   void calibrate(int styles) noexcept { calibrate_ = styles; }
 
-  // Whoever stops the scheduler.
+  // For the thread that stops the scheduler.
   /// The next tick makes one frame without a force; later ones do nothing, until resume().
   void rest() noexcept {
     at_rest_ = false;
@@ -131,9 +131,9 @@ class OpenHapticsFrames {
 
 /// An open device whose frames run in the scheduler.
 ///
-/// The maker's rule: devices are opened and closed while the scheduler is stopped. Whoever does so
-/// first has all other devices make a frame without a force, since it is not documented whether a
-/// device holds its last force while no frames come. Any thread.
+/// The maker's rule: devices are opened and closed while the scheduler is stopped. A thread that
+/// does so first has all other devices make a frame without a force, since it is not documented
+/// whether a device holds its last force while no frames come. Any thread.
 class OpenHapticsSession {
  public:
   static constexpr double kPatience = 0.5;  ///< s for the other devices to come to rest

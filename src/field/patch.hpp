@@ -138,8 +138,8 @@ class Patch {
   std::vector<ActiveLayer> layers_;  // as they are in the columns
   Facing facing_;
   std::vector<std::int8_t> signs_;    // of the chosen places, layer by layer
-  std::vector<std::uint8_t> labels_;  // likewise
-  std::vector<std::uint32_t> slots_;  // likewise: where each is in the columns
+  std::vector<std::uint8_t> labels_;  // of the same
+  std::vector<std::uint32_t> slots_;  // where each of them is in the columns
   simd::Columns columns_{};
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double extra_ = -1;

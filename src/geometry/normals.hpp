@@ -32,7 +32,7 @@ struct Normals {
 [[nodiscard]] Normals estimate_normals(const CellGrid& grid, float radius);
 
 /// The same within `times` times a radius for each point, in sorted order.
-/// @throws Error likewise, or when there are not as many radii as points.
+/// @throws Error as above, or when there are not as many radii as points.
 [[nodiscard]] Normals estimate_normals(const CellGrid& grid, std::span<const float> radii,
                                        float times = 1);
 
@@ -45,7 +45,7 @@ struct SupportOptions {
   double normal_error = 0.02;      ///< theta, wanted error of normals, rad
   double minimum = 0;              ///< no R below, m
   double most_spacings = 6;        ///< no R above, for noise's sake; more would cost time and shape
-  double finest_shape = std::numeric_limits<double>::infinity();  ///< likewise, m
+  double finest_shape = std::numeric_limits<double>::infinity();  ///< nor above this, m
 };
 
 /// m in R = m s: 2.5; 3 when the noise is above 0.15 s, 4 above 0.4 s (docs/method.md 5.3).

@@ -46,16 +46,17 @@ std::string name_inside(const std::string& name) {
   return extension(name) == ".gz" ? name.substr(0, name.size() - 3) : name;
 }
 
-// What is no cloud is refused by its first bytes, however much it unpacks to.
-void check_start(const Input& input) {
+// What is inside, by the name of `inside`. What is of no known kind is refused by its first bytes,
+// however much it unpacks to.
+Bytes unpack(const Input& input, const std::string& inside) {
   constexpr std::size_t kStart = std::size_t{1} << 16U;
   const Bytes start = gunzip(input, kStart);
-  (void)kind_of({start.span(), name_inside(input.name), input.options});
+  (void)kind_of({start.span(), inside, input.options});
+  return gunzip(input);
 }
 
 CloudFile read_packed(const Input& input) {
-  check_start(input);
-  const Bytes unpacked = gunzip(input);
+  const Bytes unpacked = unpack(input, name_inside(input.name));
   const Input inside{unpacked.span(), name_inside(input.name), input.options};
   CloudFile file = read_kind(inside, kind_of(inside));
   file.format += ", gzip";
@@ -106,7 +107,7 @@ DepthImage read_image_of(const Input& input, FileKind kind) {
 DepthImage read_image(const Input& input) {
   const FileKind kind = kind_of(input);
   if (kind != FileKind::gzip) return read_image_of(input, kind);
-  const Bytes unpacked = gunzip(input);
+  const Bytes unpacked = unpack(input, input.name);
   const Input inside{unpacked.span(), input.name, input.options};
   return read_image_of(inside, kind_of(inside));
 }

@@ -57,8 +57,8 @@ std::vector<float> sums_of(const Input& input, WeightSum sum, std::span<const fl
   return sums;
 }
 
-// Are there enough others within the smaller of both points' diameters? Whoever weighs as much as
-// that many others within their radii has company without a look.
+// Are there enough others within the smaller of both points' diameters? A point that weighs as much
+// as that many others within their radii has company without a look.
 bool has_company(const CellGrid& grid, std::span<const float> radii, float own_sum, std::uint32_t i,
                  std::vector<std::uint32_t>& near) {
   if (own_sum >= kFewestOthers) return true;

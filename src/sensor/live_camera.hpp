@@ -65,7 +65,7 @@ class HostStamps {
  private:
   std::optional<double> difference_;  // host - device, s
   double arrival_ = 0;                // of the frame before
-  double device_ = 0;                 // likewise
+  double device_ = 0;                 // of the same frame
 };
 
 /// A device that is open and delivers. The destructor closes it.
@@ -127,7 +127,7 @@ class LiveCamera final : public DepthCamera {
   std::unique_ptr<Connection> connection_;
   HostStamps stamps_;
   double stamp_ = 0;  // of the last frame of a device that does not pace itself
-  std::optional<double> device_time_ = {};  // likewise
+  std::optional<double> device_time_ = {};  // of that frame
   double heard_ = 0;                        // when the last frame came, s
   std::string reason_;
 };

@@ -10,8 +10,8 @@
 
 namespace palpate::sensor {
 
-/// OpenNI2's C interface, found at run time: whoever opens none of its cameras does without the
-/// library and the threads that it starts.
+/// OpenNI2's C interface, found at run time: a program that opens none of its cameras needs neither
+/// the library nor the threads that it starts.
 class OpenNi2Library {
  public:
   /// Loads and starts it. @throws Error that says what is missing.

@@ -24,6 +24,8 @@ SHORT = {"--duration": "0.3", "--jitter": "0.1", "--headless": None, "--port": "
 # The answers to what this machine does not have: devices, cameras, a ROS 2 system.
 ABSENT = re.compile("cannot be loaded|no answer from|cannot be opened|none was found|nobody publishes|no images and no clouds on|"
                     "this build (has no|cannot)")
+# A block between two fences: its indentation, its language and its text.
+FENCE = re.compile(r"^( *)```([^\n`]*)\n(.*?)^ *```$", re.MULTILINE | re.DOTALL)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -47,7 +49,7 @@ def documents(root=ROOT):
 def blocks(path):
     """A document's blocks of code, without their indentation."""
     text = path.read_text(encoding="utf-8")
-    for found in re.finditer(r"^( *)```([^\n`]*)\n(.*?)^ *```$", text, re.MULTILINE | re.DOTALL):
+    for found in FENCE.finditer(text):
         yield Block(path, text.count("\n", 0, found.start()) + 1, found[2].strip(), textwrap.dedent(found[3]))
 
 

@@ -13,7 +13,7 @@ import sys
 import tempfile
 import unittest
 
-from blocks import ABSENT, PROGRAMS, ROOT, Block, Desk, blocks, can_draw, commands, documents
+from blocks import ABSENT, FENCE, PROGRAMS, ROOT, Block, Desk, blocks, can_draw, commands, documents
 
 PROGRAM = os.environ["PALPATE_PROGRAM"]
 QUOTED = {"cpp": [*ROOT.glob("examples/*.cpp")], "c": [*ROOT.glob("examples/*.c")],
@@ -113,7 +113,7 @@ def page_of_python(desk, page):
 
 def wrong_spans(desk, path):
     """Commands within sentences: commands and options that palpate does not have."""
-    text = re.sub(r"^ *```.*?^ *```$", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    text = FENCE.sub("", path.read_text(encoding="utf-8"))
     for span in re.findall(r"`palpate ([a-z][^`]*)`", text):
         words = ["palpate", *span.split()]
         if not re.search(rf"^  {words[1]} ", desk.run(["palpate", "--help"])[1], re.MULTILINE):

@@ -262,7 +262,7 @@ void Preparer::work(const std::stop_token& stop) {
   }
 }
 
-// What lives is prepared so from its next frame on.
+// Streams are prepared so from their next frame on.
 void Preparer::change_all(const Preparation& wanted) {
   for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
     const SourceOptions& options = run_.loaded.sources[i].plan.options;

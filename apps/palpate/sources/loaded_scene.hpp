@@ -29,7 +29,7 @@ struct FeedReport {
 struct LoadedSource {
   SourcePlan plan;  ///< of a camera with the range of depths that its first frame asks for
   Prepared::Report prepared;  ///< of a cloud
-  Source::State state;        ///< of a depth image; of what lives, after the run
+  Source::State state;        ///< of a depth image; of a stream, after the run
 
   // Of what stands still:
   bool depth_image = false;  ///< or an organised cloud that is felt as one
@@ -42,7 +42,7 @@ struct LoadedSource {
   std::shared_ptr<const PointCloud> cloud;  ///< where it may have to be prepared again
   std::shared_ptr<const DepthFrame> image;  ///< the same of a depth image
 
-  // Of what lives:
+  // Of a stream:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
   CameraModel lens;                     ///< of its first frame; of an organised cloud, too
   FeedReport feed;                      ///< after the run

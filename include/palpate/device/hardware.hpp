@@ -55,7 +55,7 @@ struct ThreadedDeviceOptions {
 /// Hardware may be unplugged, fail, stop answering, or report values that are not finite or
 /// impossible for a hand (too far away, too fast, or a jump). None of this makes the device fail:
 /// its status becomes `silent`, no force is applied, and the hardware is reopened as soon as it is
-/// back. The first position after a silence still has status `silent`, so that whoever computes
+/// back. The first position after a silence still has status `silent`, so that what computes
 /// forces knows where the hand is before there is one; a force is applied only to the connection
 /// whose position it answers. A force that is not finite latches `failed`.
 class ThreadedDevice final : public Device {

@@ -29,7 +29,7 @@ struct RemoteDeviceOptions {
 ///
 /// Silence is not a failure: the status is `silent`, and the force goes to zero on both sides. When
 /// a client sends again, twice at least, the first position still has status `silent`, so that
-/// whoever computes forces knows where the hand is before there is one; then the allowed force
+/// what computes forces knows where the hand is before there is one; then the allowed force
 /// grows from zero. A force that is not finite, or a socket that breaks, latches `failed`.
 class RemoteDevice final : public Device {
  public:

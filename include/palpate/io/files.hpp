@@ -33,7 +33,7 @@ struct CloudFile {
 /// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS (LAZ through the user's liblaszip), 16-bit depth PNG and
 /// PGM; gzip around any of them. The kind is told from the bytes first and from the name second;
 /// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
-/// depth, and those beyond ten times the image's median depth, likewise.
+/// depth, and those beyond ten times the image's median depth, too.
 ///
 /// The cloud's origin stays zero where floats around zero lose at most four bits; otherwise it is
 /// a round point near the median of the cloud.

@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// Where something was at one time. The frame is said by whoever hands it over.
+/// Where something was at one time. The caller says in which frame.
 struct TrajectoryRow {
   double time = 0;                                     ///< s
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m

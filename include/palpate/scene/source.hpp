@@ -144,7 +144,7 @@ class Source {
   /// @throws Error when the pose is not rigid.
   void set_pose(const Eigen::Isometry3d& T_world_sensor);
 
-  /// Prepares what comes from the next push() or set() on in another way; the surface begins anew
+  /// Prepares what comes from the next push() or set() on in another way; the surface begins again
   /// with it. Pose and soft material stay as they are. Any thread but a servo's.
   /// @throws Error when an option is out of its range.
   void change(const SourceOptions& options);
@@ -168,7 +168,7 @@ class Source {
   /// rigid.
   bool push(const DepthFrame& frame, const StartTime& start);
 
-  /// Takes the next cloud of a sensor that delivers clouds, taken at `stamp` (s). Likewise, but
+  /// Takes the next cloud of a sensor that delivers clouds, taken at `stamp` (s). As above, but
   /// preparation allocates.
   /// @throws Error as prepare() does, when a time is not finite, and when the policy needs depth
   /// frames.

@@ -127,7 +127,7 @@ struct ViewerOptions {
     double refusal_time = 10;
   };
 
-  /// An address of this machine, v4 or v6. 0.0.0.0 and :: listen to every network: whoever knows
+  /// An address of this machine, v4 or v6. 0.0.0.0 and :: listen to every network: anyone who knows
   /// the token may then move the hand, and nothing is encrypted.
   std::string address = "127.0.0.1";
   /// 0: any that is free. Unset: the first free one of kFirstPort and the nine after it.

@@ -76,7 +76,7 @@ class Fusion {
 
   struct Voxel {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of points in a cloud, running mean, m
-    double count = 0;                               ///< likewise
+    double count = 0;                               ///< of points in a cloud, running mean
     double occupancy = 0;                           ///< 0-1: share of clouds that fill it
     int clouds = 0;
     Shown start;  ///< of the snapshot that is being made
