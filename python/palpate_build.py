@@ -21,7 +21,8 @@ TAG = f"{PYTHON}-{PYTHON}-{re.sub('[-.]', '_', sysconfig.get_platform())}"
 def installed(staging):
     """Builds module and program, and installs them into a folder."""
     page = (ROOT / "web/node_modules/.package-lock.json").exists()  # else npm would ask the network for it
-    options = dict(CMAKE_BUILD_TYPE="Release", CMAKE_UNITY_BUILD="ON", PALPATE_BUILD_TESTS="OFF", PALPATE_BUILD_EXAMPLES="OFF",
+    # -O2 as Debian builds: sums over points are at -O3 all the same, and the rest compiles in a seventh less time.
+    options = dict(CMAKE_BUILD_TYPE="Release", CMAKE_CXX_FLAGS_RELEASE="-O2 -DNDEBUG", CMAKE_UNITY_BUILD="ON", PALPATE_BUILD_TESTS="OFF", PALPATE_BUILD_EXAMPLES="OFF",
                    PALPATE_BUILD_PYTHON="ON", PALPATE_PYTHON=sys.executable, PALPATE_PYTHON_DIR=".",
                    PALPATE_BUILD_PAGE="ON" if page else "OFF")
     subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", *(f"-D{k}={v}" for k, v in options.items())], check=True)

@@ -165,6 +165,7 @@ constexpr std::uint32_t kStarting = 1024;
 constexpr std::uint32_t kSoftened = 2048;
 constexpr std::uint32_t kClutched = 4096;
 constexpr std::uint32_t kOriented = 8192;  ///< set by encode(): an orientation follows
+constexpr std::uint32_t kBehind = 16384;
 }  // namespace state_flag
 
 /// Message 1. Places relative to the origin, m.

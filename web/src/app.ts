@@ -5,6 +5,7 @@ import { Input } from "./input/input";
 import { Keys } from "./input/keys";
 import { PointerInput } from "./input/pointer";
 import { SpaceMouse } from "./input/space_mouse";
+import { Stroke } from "./input/stroke";
 import { Session } from "./model/session";
 import { Bar } from "./panel/bar";
 import { Devices } from "./panel/devices";
@@ -32,6 +33,7 @@ import { World } from "./view/world";
 const kPlotInterval = 50; // ms
 const kSettled = 10_000; // ms, from when on the speed of drawing counts
 const kSlow = 100; // ms a picture
+const kStiffness = 500; // N/m, where none is told
 const kCalmInterval = 250; // ms, where less motion is asked for
 
 export class App {
@@ -49,11 +51,13 @@ export class App {
   private readonly look: LookPanel;
   private readonly status: Status;
   private readonly hand: Hand;
+  private readonly stroke: Stroke;
   private readonly hold: HoldPanel;
   private readonly bar: Bar;
   private readonly keys: Keys;
   private readonly timeLine: TimeLinePanel;
   private readonly input: Input;
+  private readonly pointer: PointerInput;
   private readonly connection: Connection;
   private readonly plotInterval: number;
   private plotted = 0;
@@ -70,13 +74,18 @@ export class App {
       (name) => send({ type: "preset", name }),
     );
     this.look = new LookPanel(() => this.relook(), () => this.tellPoints());
-    this.hand = new Hand(send, () => this.hold.update());
+    this.hand = new Hand(send, () => this.holdChanged());
+    this.stroke = new Stroke(
+      this.world, this.hand, () => Number(this.session.values.get("stiffness") ?? kStiffness),
+      () => this.session.devices.length === 1 && send({ type: "reset" }), // it is all hands' reset
+    );
     this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
     const take = () => this.hold.take();
     this.bar = new Bar(this.session, this.world, this.sound, this.notices, link.token, send);
     this.timeLine = new TimeLinePanel(send);
     const keys = (this.keys = new Keys({
       toggleTool: () => this.hold.toggle(),
+      toggleFree: () => this.hold.toggleFree(),
       letGo: () => this.hand.letGo(),
       togglePause: () => this.bar.pause(),
       reset: () => this.bar.reset(),
@@ -87,9 +96,10 @@ export class App {
       sayForce: () => (byId("polite").textContent = this.readout.sentence(this.session.tool)),
     }));
     const spaceMouse = new SpaceMouse();
-    this.input = new Input(this.world, this.hand, keys, spaceMouse, take);
-    this.hold.offer(spaceMouse, keys, this.notices);
-    new PointerInput(byId("view-area"), byId<HTMLCanvasElement>("view"), this.world, this.hand, take);
+    this.input = new Input(this.world, this.hand, keys, spaceMouse, this.stroke, take);
+    this.pointer = new PointerInput(byId("view-area"), byId<HTMLCanvasElement>("view"), this.world, this.hand,
+      this.stroke, () => this.hold.takeable(), take);
+    this.hold.offer(spaceMouse, keys, this.notices, this.pointer);
     this.status = new Status(() => this.connection.open());
     this.connection = new Connection(
       new URL("live", location.href.replace(/^http/, "ws").replace(/#.*/, "")).href,
@@ -117,6 +127,11 @@ export class App {
     this.world.start((now) => this.frame(now));
     if (this.link.token === "") this.status.withoutToken();
     else this.connection.open();
+  }
+
+  private holdChanged(): void {
+    if (!this.hand.held) this.stroke.rest();
+    this.hold.update();
   }
 
   /** A page that nobody sees draws nothing. */
@@ -218,8 +233,9 @@ export class App {
       const now = performance.now();
       tool.take(message, now);
       this.world.takeState(message);
+      if (message.device === this.hand.device) this.stroke.update(now);
       if (message.device !== this.session.device) return;
-      this.readout.note(tool, now);
+      this.readout.note(tool, now, this.hand.held);
       this.sound.hear(message);
     }
   }
@@ -231,7 +247,7 @@ export class App {
     this.tags.update(this.session.device);
     if (now - this.plotted < this.plotInterval) return;
     this.plotted = now;
-    this.readout.update(this.session.tool, now);
+    this.readout.update(this.session.tool, now, this.world.tools[this.session.device]?.height);
     this.settings.watch(this.session.tool, now);
     this.bar.update();
     this.hold.update();

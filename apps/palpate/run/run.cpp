@@ -22,6 +22,12 @@ namespace {
 // A day: longer ones are times in another unit, or broken.
 constexpr double kLongestRun = 86'400;  // s
 
+constexpr double kReachingSpeed = 2;  // m/s, about what an arm reaches with
+
+// A simulated hand is no motor, and PacedDevice makes it catch up with what a late servo missed: so
+// late a step is harmless.
+constexpr double kSimulatedSilence = 0.05;  // s
+
 std::string socket_path(const DevicePlan& plan) {
   if (!plan.path.empty()) return plan.path;
   try {
@@ -75,7 +81,8 @@ void guide(Hand& hand, const HandTask& task, SimulatedDeviceOptions device, Traj
   device.duration = task.motion.duration;
   if (!device.duration && !task.page.wanted) device.duration = target.back().time;
   hand.remote = std::make_unique<RemoteTarget>();
-  hand.guide = std::make_unique<TeleoperatedHand>(*hand.remote, std::move(target));
+  hand.guide = std::make_unique<TeleoperatedHand>(*hand.remote, std::move(target),
+                                                  TeleoperatedHandOptions{.speed = kReachingSpeed});
   hand.device = std::make_unique<SimulatedDevice>(device, *hand.guide);
 }
 
@@ -169,6 +176,9 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   options.field = run.field;
   options.proxy = run.proxy;
   options.guard = run.time.guard;
+  if (hand.device->info().keeps_time) {
+    options.guard.silence = std::max(options.guard.silence, kSimulatedSilence);
+  }
   options.workspace = hand.workspace;
   options.clutch_button = hand.chosen.placement.clutch;
   options.steps = steps;

@@ -5,6 +5,7 @@ import { Gamepads } from "./gamepad";
 import type { Hand } from "./hand";
 import type { Keys } from "./keys";
 import type { SpaceMouse } from "./space_mouse";
+import type { Stroke } from "./stroke";
 
 const kKeyPace = 0.07; // of the picture's height a second
 const kPadPace = 0.35;
@@ -22,6 +23,7 @@ export class Input {
     private readonly hand: Hand,
     private readonly keys: Keys,
     private readonly spaceMouse: SpaceMouse,
+    private readonly stroke: Stroke,
     private readonly take: () => boolean,
   ) {}
 
@@ -58,6 +60,8 @@ export class Input {
 
   /** In heights of the picture. */
   private move(right: number, up: number, away: number): void {
+    if (right === 0 && up === 0 && away === 0) return;
+    this.stroke.rest();
     const { stage } = this.world;
     const height = stage.pixelAt(this.hand.place) * stage.height;
     this.hand.nudge(stage.camera, right * height, up * height, away * height);

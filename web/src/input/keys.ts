@@ -8,6 +8,7 @@ export interface TimeKeys {
 
 export interface Actions {
   toggleTool(): void;
+  toggleFree(): void;
   letGo(): void;
   togglePause(): void;
   reset(): void;
@@ -44,6 +45,7 @@ export class Keys {
   constructor(actions: Actions) {
     const once: Record<string, () => void> = {
       t: () => actions.toggleTool(),
+      m: () => actions.toggleFree(),
       p: () => actions.togglePause(),
       r: () => actions.reset(),
       f: () => actions.fit(),

@@ -1,16 +1,19 @@
-// Mouse, pen and finger. A drag that begins on the hand, or any drag while the tool is held, moves the
-// hand in the plane through it that faces the eye; the wheel meanwhile changes its depth. Everything
-// else is left to the navigation.
+// Mouse, pen and finger. On the surface, a press that begins on it touches it (Stroke). Free, a drag that
+// begins on the hand, or any drag while the tool is held, moves the hand in the plane through it that faces
+// the eye; the wheel meanwhile changes its depth. Everything else is left to the navigation.
 
 import { Plane, Raycaster, Vector2, Vector3 } from "three";
 import type { World } from "../view/world";
 import type { Hand } from "./hand";
+import type { Stroke } from "./stroke";
 
 const kGrasp = 24; // pixels around the hand
 const kFinger = 40;
 const kNotch = 0.012; // of the distance, a notch of the wheel
+const kPen = 3; // N, of a pen that is pressed as hard as it can tell
 
 export class PointerInput {
+  free = false; // moves in the plane that faces the eye
   private pointer: number | undefined; // that drags the hand
   private touches = new Set<number>();
   private readonly offset = new Vector3();
@@ -21,6 +24,8 @@ export class PointerInput {
     private readonly canvas: HTMLCanvasElement,
     private readonly world: World,
     private readonly hand: Hand,
+    private readonly stroke: Stroke,
+    private readonly takeable: () => boolean,
     private readonly take: () => boolean,
   ) {
     area.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
@@ -35,26 +40,36 @@ export class PointerInput {
     if (event.target !== this.canvas) return;
     if (event.pointerType === "touch") this.touches.add(event.pointerId);
     const plain = event.button === 0 && !event.altKey && !event.ctrlKey && !event.metaKey;
-    const wanted = plain && this.touches.size <= 1 && (this.hand.held || this.onHand(event));
-    const mine = wanted && this.take();
-    this.world.navigation.turnByDrag(!mine && !(this.hand.held && this.touches.size > 0));
+    const mine = plain && this.touches.size <= 1 && this.grasps(event) && this.take();
+    this.world.navigation.turnByDrag(!mine && !(this.free && this.hand.held && this.touches.size > 0));
     if (this.touches.size > 1) this.drag(undefined);
     if (!mine) return;
     this.drag(event.pointerId);
     this.canvas.setPointerCapture(event.pointerId);
-    this.offset.copy(this.hand.place).sub(this.onPlane(event) ?? this.hand.place);
+    if (this.free) {
+      this.offset.copy(this.hand.place).sub(this.onPlane(event) ?? this.hand.place);
+    } else {
+      this.aim(event);
+      this.stroke.press(true);
+    }
   }
 
   private move(event: PointerEvent): void {
     if (this.pointer === undefined) {
-      if (event.target === this.canvas && event.buttons === 0) {
-        this.canvas.classList.toggle("graspable", this.onHand(event));
-      }
+      if (event.target === this.canvas && event.buttons === 0) this.hover(event);
+    } else if (event.pointerId !== this.pointer) {
       return;
+    } else if (!this.free) {
+      this.aim(event);
+    } else {
+      const place = this.onPlane(event);
+      if (place !== undefined) this.hand.moveTo(place.add(this.offset));
     }
-    if (event.pointerId !== this.pointer) return;
-    const place = this.onPlane(event);
-    if (place !== undefined) this.hand.moveTo(place.add(this.offset));
+  }
+
+  private hover(event: PointerEvent): void {
+    this.canvas.classList.toggle("graspable", this.takeable() && this.grasps(event));
+    if (!this.free && this.hand.held && event.pointerType !== "touch") this.aim(event);
   }
 
   private end(event: PointerEvent): void {
@@ -65,17 +80,30 @@ export class PointerInput {
   private drag(pointer: number | undefined): void {
     this.pointer = pointer;
     this.world.dragging = pointer !== undefined;
+    if (pointer === undefined) this.stroke.press(false);
+  }
+
+  private aim(event: PointerEvent): void {
+    this.stroke.aim(this.seen(event), event.pointerType === "touch");
+    if (event.pointerType === "pen" && event.pressure > 0) this.stroke.force = kPen * event.pressure;
   }
 
   private wheel(event: WheelEvent): void {
     if (this.pointer === undefined) return;
     event.preventDefault();
     event.stopPropagation();
-    const camera = this.world.stage.camera;
     const notches = -event.deltaY / (event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 100 : 3);
+    if (!this.free) return this.stroke.harder(notches);
+    const camera = this.world.stage.camera;
     const away = notches * kNotch * camera.position.distanceTo(this.hand.place);
     this.hand.nudge(camera, 0, 0, away);
     this.offset.copy(this.hand.place).sub(this.onPlane(event) ?? this.hand.place);
+  }
+
+  /** Would a press here move the tool? */
+  private grasps(event: PointerEvent): boolean {
+    if (this.free) return this.hand.held || this.onHand(event);
+    return this.stroke.meets(this.seen(event), event.pointerType === "touch");
   }
 
   private seen(event: MouseEvent): Vector2 {

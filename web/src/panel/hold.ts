@@ -2,11 +2,12 @@
 
 import type { Hand } from "../input/hand";
 import type { Keys } from "../input/keys";
+import type { PointerInput } from "../input/pointer";
 import { hid, type SpaceMouse } from "../input/space_mouse";
 import type { Session } from "../model/session";
 import type { World } from "../view/world";
 import { byId, make, say } from "./dom";
-import { fieldRow } from "./field";
+import { fieldRow, type FieldRow } from "./field";
 import { recall, remember } from "./memory";
 import type { Notices } from "./notices";
 
@@ -15,6 +16,8 @@ const kCoarse = matchMedia("(pointer: coarse)");
 
 export class HoldPanel {
   private held = false;
+  private pointer: PointerInput | undefined;
+  private onSurface: FieldRow | undefined;
 
   constructor(
     private readonly session: Session,
@@ -84,7 +87,25 @@ export class HoldPanel {
     say(byId("polite"), held ? "You hold the tool." : "The tool is released.");
   }
 
-  offer(spaceMouse: SpaceMouse, keys: Keys, notices: Notices): void {
+  /** Between the surface under the pointer and free motion. */
+  toggleFree(): void {
+    if (this.pointer !== undefined) this.setFree(!this.pointer.free);
+  }
+
+  private setFree(free: boolean): void {
+    this.pointer!.free = free;
+    this.onSurface!.show(!free);
+    remember("on-surface", !free);
+    this.update();
+  }
+
+  offer(spaceMouse: SpaceMouse, keys: Keys, notices: Notices, pointer: PointerInput): void {
+    this.pointer = pointer;
+    const surface = (this.onSurface = fieldRow(
+      { key: "on-surface", label: "Pointer touches the surface (M)", kind: "switch", value: true },
+      (value) => this.setFree(value !== true),
+    ));
+    this.setFree(!recall("on-surface", true));
     const text = make("p", { class: "soft" },
       "Mouse, touch and keys move the tool; so do game controllers and 3D mice that the browser supports, " +
       "once you press a button on them.");
@@ -93,7 +114,7 @@ export class HoldPanel {
       { key: "single-keys", label: "Single-letter shortcuts", kind: "switch", value: keys.single },
       (value) => remember("single-keys", (keys.single = value === true)),
     );
-    const parts: HTMLElement[] = [text, single.row];
+    const parts: HTMLElement[] = [text, surface.row, single.row];
     if (hid() !== undefined) {
       const choose = async () => {
         const name = await spaceMouse.choose();
@@ -115,20 +136,24 @@ export class HoldPanel {
     });
   }
 
-  private takeable(): boolean {
+  /** Can this page take the tool? */
+  takeable(): boolean {
     return this.session.open && this.session.welcome?.devices[this.session.device]?.takeable === true;
   }
 
   private hint(): string {
-    if (this.hand.held) {
+    const free = this.pointer?.free === true;
+    if (this.hand.held && free) {
       return kCoarse.matches
         ? "One finger moves the tool, two turn the view"
         : "Drag to move it, wheel while dragging for depth; Alt and drag turns the view";
     }
+    if (this.hand.held && !kCoarse.matches) return "Hold to press, wheel for more force; Alt and drag turns the view";
     if (!this.session.open || this.session.tool?.latest === undefined) return "";
     if (!this.takeable()) {
       return this.session.tool.report.status === "silent" ? "The device of this tool is not responding" : "A device moves this tool";
     }
+    if (!free) return `Press on the surface to touch it; drag ${kCoarse.matches ? "with two fingers" : "beside it"} to look around`;
     const colour = kColours[this.session.device % kColours.length];
     return `Drag the ${colour} hand to touch` + (kCoarse.matches ? "" : "; drag elsewhere to look around");
   }

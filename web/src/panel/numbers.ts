@@ -43,6 +43,7 @@ export function clock(value: number): string {
 
 export function millimetres(value: number): string {
   const mm = value * 1000;
+  if (mm >= 999.5) return `${value.toFixed(value < 9.995 ? 2 : 1)} m`;
   return `${mm.toFixed(mm < 10 ? 2 : 1)} mm`;
 }
 

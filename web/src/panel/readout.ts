@@ -27,6 +27,7 @@ export class Readout {
   private readonly touch = byId("touch");
   private readonly lift = byId("lift");
   private weakUntil = 0; // in contact the force comes back no further than motion pays for it
+  private height: number | undefined;
   private readonly parts = [0, 1, 2].map(() => make("dd"));
   private readonly flags = new Map<Name, { element: HTMLElement; until: number }>();
 
@@ -42,13 +43,15 @@ export class Readout {
     byId("flags").replaceChildren(...[...this.flags.values()].map(({ element }) => element));
   }
 
-  /** For every state, so that short flags are seen too. */
-  note(tool: DeviceHistory, now: number): void {
+  /** For every state, so that short flags are seen too. held: by this page. */
+  note(tool: DeviceHistory, now: number, held: boolean): void {
     for (const [name, flag] of this.flags) if (tool.has(name)) flag.until = now + kLinger;
-    if (tool.has("touching") && (tool.has("starting") || tool.has("softer"))) this.weakUntil = now + kLinger;
+    if (held && tool.has("touching") && (tool.has("starting") || tool.has("softer"))) this.weakUntil = now + kLinger;
   }
 
-  update(tool: DeviceHistory | undefined, now: number): void {
+  /** height: of a free hand above the surface, m. */
+  update(tool: DeviceHistory | undefined, now: number, height: number | undefined): void {
+    this.height = height;
     const state = tool?.latest;
     for (const { element, until } of this.flags.values()) element.hidden = until < now;
     say(this.lift, now < this.weakUntil ? kLift : "");
@@ -73,7 +76,8 @@ export class Readout {
     const state = tool.latest!;
     const { status, reason } = tool.report;
     if (status !== "ok") return reason === undefined ? status : `${status}: ${reason}`;
-    if (!tool.has("touching")) return "free";
+    if (tool.has("behind")) return "behind what the camera sees: nothing is felt";
+    if (!tool.has("touching")) return this.height === undefined ? "free" : `free, ${millimetres(this.height)} from the surface`;
     const deep = Math.hypot(...state.proxy.map((p, i) => p - state.hip[i as 0 | 1 | 2]));
     return `touching, ${millimetres(deep)} deep`;
   }

@@ -21,6 +21,7 @@ export const Flag = {
   softened: 2048,
   clutched: 4096,
   oriented: 8192,
+  behind: 16384, // what a camera sees: nothing is felt from there
 } as const;
 
 export interface StateMessage {

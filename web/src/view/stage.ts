@@ -60,14 +60,17 @@ export class Stage {
   pixelAt(place: Vector3): number {
     this.camera.updateMatrixWorld(); // it may have moved since the last picture
     const depth = place.clone().applyMatrix4(this.camera.matrixWorldInverse).z;
-    const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    return (2 * half * Math.max(-depth, this.camera.near)) / this.height;
+    return Math.max(-depth, this.camera.near) / this.pixelsPerSlope;
   }
 
   /** Drawn pixels per metre at a depth of one. */
   get pixelScale(): number {
-    const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    return (this.height * this.sharpness) / (2 * half);
+    return this.pixelsPerSlope * this.sharpness;
+  }
+
+  /** Style-sheet pixels per metre at a depth of one. */
+  get pixelsPerSlope(): number {
+    return this.height / (2 * Math.tan((this.camera.fov * Math.PI) / 360));
   }
 
   picture(): Promise<Blob | null> {

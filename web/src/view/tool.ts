@@ -1,5 +1,6 @@
 // The tool in the manner of Leeper, Chan and Salisbury's figures: the proxy a dark sphere, the
-// constraint's tangent plane a green disk, the hand (HIP) light red, the force an arrow.
+// constraint's tangent plane a green disk, the hand (HIP) light red, the force an arrow. A free hand has a
+// line to the nearest surface, and a ring on that.
 
 import {
   CircleGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial,
@@ -18,6 +19,7 @@ const kHandPixels = 7.5;
 const kLongest = 240; // pixels of an arrow
 const kLeastForce = 0.01; // N that shows
 const kStylus = 90; // pixels from the tip to its end
+const kRing = 11; // pixels, the ring below a free hand
 
 function ball(material: Material, order: number): Mesh {
   const mesh = new Mesh(new SphereGeometry(1, 32, 20), material);
@@ -33,6 +35,17 @@ function ghostOf(material: MeshLambertMaterial, opacity: number): MeshBasicMater
   return ghost;
 }
 
+/** A rod from one place to another, shown if it is long enough, m. */
+function place(rod: Mesh, from: Vector3, to: Vector3, thickness: number, least: number): void {
+  const way = to.clone().sub(from);
+  const length = way.length();
+  rod.visible = length > least;
+  if (!rod.visible) return;
+  rod.position.copy(from).addScaledVector(way, 0.5);
+  rod.quaternion.setFromUnitVectors(kUp, way.divideScalar(length));
+  rod.scale.set(thickness, length, thickness);
+}
+
 export interface Sizes {
   pixel: number; // the length of one at the tool, m
   perNewton: number; // the arrow's length, m
@@ -46,6 +59,11 @@ export class Tool {
   readonly hipPlace = new Vector3();
   readonly proxyPlace = new Vector3();
   showSupport = true;
+  touching = false;
+  behind = false; // what a camera sees
+  readonly force = new Vector3(); // N, on the hand
+  readonly normal = new Vector3(); // of the tangent constraint
+  below: { place: Vector3; spacing: number } | undefined; // the nearest point of the surface, while the hand is free
   private readonly handMaterial = new MeshLambertMaterial();
   private readonly proxyMaterial = new MeshLambertMaterial();
   private readonly forceMaterial = new MeshLambertMaterial({ emissiveIntensity: 0.35 });
@@ -56,6 +74,9 @@ export class Tool {
     side: DoubleSide, transparent: true, opacity: 0.95, depthWrite: false,
   });
   private readonly springMaterial = new MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.8 });
+  private readonly ringMaterial = new MeshBasicMaterial({
+    side: DoubleSide, depthTest: false, depthWrite: false, transparent: true, opacity: 0.8,
+  });
   private readonly haloMaterial = new HaloMaterial();
   private readonly hand = ball(this.handMaterial, 4);
   private readonly handGhost = ball(ghostOf(this.handMaterial, 0.7), 6);
@@ -66,21 +87,20 @@ export class Tool {
   private readonly rim = new Mesh(new RingGeometry(0.95, 1, 64), this.rimMaterial);
   private readonly spring = new Mesh(new CylinderGeometry(1, 1, 1, 8), this.springMaterial);
   private readonly stylus = new Mesh(new CylinderGeometry(1, 0.4, 1, 12), this.handMaterial);
+  private readonly drop = new Mesh(new CylinderGeometry(1, 1, 1, 8), this.springMaterial);
+  private readonly ring = new Mesh(new RingGeometry(0.72, 1, 48), this.ringMaterial);
   private readonly shaft = new Mesh(new CylinderGeometry(1, 1, 1, 16), this.forceMaterial);
   private readonly head = new Mesh(new ConeGeometry(1, 1, 24), this.forceMaterial);
-  private readonly force = new Vector3();
-  private readonly normal = new Vector3();
   private readonly turn = new Quaternion();
   private readonly stem = new Vector3(); // from the tip along the stylus, 1 long; 0: not known
   private radius = 0;
-  private touching = false;
 
   constructor(private readonly device: number) {
     this.disk.renderOrder = 2;
     this.rim.renderOrder = 2;
     this.spring.renderOrder = 4;
     this.group.add(
-      this.halo, this.disk, this.rim, this.spring, this.stylus, this.shaft, this.head,
+      this.halo, this.disk, this.rim, this.spring, this.drop, this.ring, this.stylus, this.shaft, this.head,
       this.hand, this.handGhost, this.proxy, this.proxyGhost, this.trail.line,
     );
     this.group.visible = false;
@@ -96,6 +116,7 @@ export class Tool {
     this.diskMaterial.color.copy(colourOf("--disk"));
     this.rimMaterial.color.copy(colourOf("--disk"));
     this.springMaterial.color.copy(hand);
+    this.ringMaterial.color.copy(hand);
     this.haloMaterial.tint(colourOf("--proxy"));
     this.trail.retint();
   }
@@ -114,6 +135,7 @@ export class Tool {
     if (state.orientation) this.stem.applyQuaternion(this.turn.set(...state.orientation));
     this.radius = state.radius;
     this.touching = (state.flags & Flag.touching) !== 0;
+    this.behind = (state.flags & Flag.behind) !== 0;
     this.trail.take(this.proxyPlace, state.time);
   }
 
@@ -134,7 +156,8 @@ export class Tool {
     this.halo.position.copy(this.proxyPlace);
     this.halo.scale.setScalar(Math.max(this.radius, 1e-9));
     this.placeDisk(Math.max(0.9 * this.radius, 2.8 * proxySize), towards);
-    this.placeSpring(pixel);
+    place(this.spring, this.hipPlace, this.proxyPlace, pixel, 2 * pixel);
+    this.placeDrop(pixel);
     this.placeStylus(kStylus * pixel, pixel);
     this.placeArrow(proxySize, pixel, perNewton);
   }
@@ -151,14 +174,25 @@ export class Tool {
     }
   }
 
-  private placeSpring(pixel: number): void {
-    const way = this.proxyPlace.clone().sub(this.hipPlace);
-    const length = way.length();
-    this.spring.visible = length > 2 * pixel;
-    if (!this.spring.visible) return;
-    this.spring.position.copy(this.hipPlace).addScaledVector(way, 0.5);
-    this.spring.quaternion.setFromUnitVectors(kUp, way.divideScalar(length));
-    this.spring.scale.set(pixel, length, pixel);
+  /** How far it is to the surface, m; undefined where it is no farther than points are apart. */
+  get height(): number | undefined {
+    const { below } = this;
+    const height = below === undefined || this.touching ? 0 : below.place.distanceTo(this.hipPlace);
+    return below !== undefined && height > 2 * below.spacing ? height : undefined;
+  }
+
+  private placeDrop(pixel: number): void {
+    const shown = this.height !== undefined;
+    this.ring.visible = shown;
+    if (!shown) {
+      this.drop.visible = false;
+      return;
+    }
+    const foot = this.below!.place;
+    place(this.drop, this.hipPlace, foot, 0.6 * pixel, kRing * pixel);
+    this.ring.position.copy(foot);
+    this.ring.quaternion.setFromUnitVectors(kForward, this.hipPlace.clone().sub(foot).normalize());
+    this.ring.scale.setScalar(kRing * pixel);
   }
 
   private placeStylus(length: number, pixel: number): void {

@@ -1,7 +1,7 @@
 // Everything that is drawn, and what of it is shown.
 
 import {
-  Line, Mesh, Points, Vector2, Vector3, type BufferGeometry, type Material, type Object3D,
+  Line, Mesh, Points, Vector2, Vector3, type BufferGeometry, type Material, type Object3D, type Ray,
 } from "three";
 import type { CloudMessage, StateMessage, SurfaceMessage } from "../protocol/decode";
 import type { SourceReport, Welcome } from "../protocol/messages";
@@ -11,6 +11,7 @@ import { rampTexture } from "./colours";
 import { Frustum } from "./frustum";
 import type { Graphics } from "./graphics";
 import { firstDirection, Navigation } from "./navigation";
+import { nearestTo, surfaceAlong, type Seen } from "./pick";
 import { Stage } from "./stage";
 import { Surface } from "./surface";
 import { Tool } from "./tool";
@@ -27,6 +28,7 @@ export interface Look {
 
 const kSettling = 3000; // ms
 const kClose = 12; // support radii
+const kDropInterval = 100; // ms between two searches for what a tool hovers above
 const kArrow = 0.16; // of the radius, an arrow for a newton; from close by:
 const kArrowPixels = 80;
 
@@ -57,6 +59,7 @@ export class World {
   private heard = false; // of the sources: where cameras are
   private begun = 0;
   private before = 0;
+  private dropped = 0;
 
   constructor(canvas: HTMLCanvasElement, graphics: Graphics) {
     this.stage = new Stage(canvas, graphics);
@@ -142,6 +145,11 @@ export class World {
     for (const each of [...this.clouds, ...this.frusta, ...this.tools, ...this.surfaces]) each.retint();
   }
 
+  /** The nearest surface that a ray of the eye meets, or passes by so many pixels. */
+  surfaceAlong(ray: Ray, pixels: number): Seen | undefined {
+    return surfaceAlong(ray, this.shownClouds(), pixels / this.stage.pixelsPerSlope);
+  }
+
   /** Is there anything to see, and a place to see it from? */
   get known(): boolean {
     return this.begun > 0;
@@ -166,6 +174,7 @@ export class World {
       this.navigation.follow(followed.proxyPlace, Math.min(0.5, (now - this.before) / 1000));
     }
     this.before = now;
+    this.dropLines(now);
     this.navigation.update();
     const { look, stage } = this;
     this.clouds.forEach((cloud, i) => {
@@ -197,6 +206,19 @@ export class World {
   private lift(): number {
     const spacing = this.clouds.reduce((most, cloud) => Math.max(most, cloud.spacing), 0);
     return this.look.points ? spacing * this.look.pointSize : 0;
+  }
+
+  private shownClouds(): Cloud[] {
+    return this.clouds.filter((cloud, i) => cloud.count > 0 && this.visible[i] === true);
+  }
+
+  private dropLines(now: number): void {
+    if (now - this.dropped < kDropInterval) return;
+    this.dropped = now;
+    for (const tool of this.tools) {
+      const free = tool.group.visible && !tool.touching;
+      tool.below = free ? nearestTo(tool.hipPlace, this.shownClouds()) : undefined;
+    }
   }
 
   private objects(): Object3D[] {

@@ -1,0 +1,65 @@
+// Drags over what a demo shows, seeded: how many touch it. PALPATE_PROGRAM=... node test/browser/drags.mjs [SCENE...] [SEED]
+import { pathToFileURL } from "node:url";
+import { openBrowser, openPage, until } from "./browser.mjs";
+import { felt, listen } from "./heard.mjs";
+import { startProgram } from "./real_program.mjs";
+
+/** Numbers from 0 to 1 (mulberry32). */
+export function random(seed) {
+  let a = seed >>> 0;
+  return () => {
+    a = (a + 0x6d2b79f5) >>> 0;
+    let t = Math.imul(a ^ (a >>> 15), 1 | a);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
+  };
+}
+
+const graspable = (page) => page.evaluate(() => document.querySelector("#view").classList.contains("graspable"));
+
+/** Of `count` drags that begin on a surface, those in which it was touched: share of looks in contact and largest force, N. */
+export async function drags(page, count, seed) {
+  const next = random(seed);
+  const { x, y, width, height } = await page.locator("#view").boundingBox();
+  const looks = [];
+  for (let tries = 0; looks.length < count && tries < 40 * count; tries += 1) {
+    const [fromX, fromY, angle] = [x + width * (0.1 + 0.8 * next()), y + height * (0.1 + 0.8 * next()), 2 * Math.PI * next()];
+    await page.mouse.move(fromX, fromY);
+    if (!(await graspable(page))) continue;
+    await page.mouse.down();
+    const look = { from: [Math.round(fromX), Math.round(fromY)], looks: 0, touching: 0, most: 0 };
+    for (let i = 0; i <= 40; i += 1) {
+      const way = (0.15 * height * Math.max(0, i - 10)) / 30;
+      await page.mouse.move(fromX + way * Math.cos(angle), fromY + way * Math.sin(angle));
+      await new Promise((done) => setTimeout(done, 40));
+      const { touching, force } = await felt(page);
+      if (i < 10) continue;
+      look.looks += 1;
+      look.touching += touching && force > 0.05 ? 1 : 0;
+      look.most = Math.max(look.most, force);
+    }
+    await page.mouse.up();
+    looks.push(look);
+  }
+  return looks;
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1]).href) {
+  const scenes = process.argv.slice(2).filter((word) => !/^\d+$/.test(word));
+  const seed = Number(process.argv.slice(2).find((word) => /^\d+$/.test(word)) ?? 1);
+  const browser = await openBrowser();
+  for (const scene of scenes.length > 0 ? scenes : ["scan", "desk", "room"]) {
+    const args = scene.includes("/") ? ["touch", ...scene.split(",")] : ["demo", scene];
+    const program = await startProgram([...args, "--view", "--headless", "--port", "0"].filter((word) => args[0] === "demo" ? word !== "--view" : word !== "--headless"));
+    const page = await openPage(browser, program.address, { viewport: { width: 1280, height: 720 } }, listen);
+    await until("the tool can be taken", () => page.locator("#take").isEnabled());
+    await new Promise((done) => setTimeout(done, 4000));
+    const found = await drags(page, 6, seed);
+    console.log(scene, `${found.filter(({ touching }) => touching > 0).length} of ${found.length} touch`);
+    for (const { from, looks, touching, most } of found) console.log("  ", from.join(","), `${touching} of ${looks} looks in contact, at most ${most.toFixed(2)} N`);
+    if (process.env.PICTURES) await page.screenshot({ path: `${process.env.PICTURES}/drag-${scene.replace(/\W/g, "_")}.png` });
+    await page.context().close();
+    await program.stop();
+  }
+  await browser.close();
+}
