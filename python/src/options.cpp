@@ -8,6 +8,8 @@
 #include <utility>
 #include <variant>
 
+#include "palpate/base/error.hpp"
+
 namespace palpate::python {
 
 bool Keywords::offer(const char* name) {
@@ -22,7 +24,7 @@ void Keywords::refuse(const char* name) const {
 
 void Keywords::refuse_choice(const char* name, const std::string& given,
                              const std::vector<std::string>& choices) {
-  throw py::value_error(
+  throw Error(
       fmt::format("{} cannot be '{}'; give one of: {}", name, given, fmt::join(choices, ", ")));
 }
 

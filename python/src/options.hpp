@@ -47,7 +47,7 @@ class Keywords {
     return true;
   }
 
-  /// The same of a choice. @throws py::value_error that lists them.
+  /// The same of a choice. @throws Error that lists them.
   template <class Choice>
   bool take(const char* name, Choice& into, std::initializer_list<Named<Choice>> choices) {
     std::string wanted;

@@ -110,11 +110,17 @@ bool push_image(Camera& camera, const py::object& depth, const std::optional<dou
   const py::array image =
       readable(depth, "depth", {kUint16, kFloat32}, {camera.model.height, camera.model.width});
   const Away away(camera.mutex);
-  take_image(image, camera);
   camera.frame.stamp = stamp.value_or(SteadyClock().now());
+  if (camera.frame.stamp < camera.newest) {
+    throw Error(fmt::format("stamp {} s is older than the image before, {} s: push images in order",
+                            camera.frame.stamp, camera.newest));
+  }
+  take_image(image, camera);
   camera.frame.T_world_sensor.reset();
   if (pose) camera.frame.T_world_sensor = pose_of(*pose);
-  return camera.source->push(camera.frame, start_of(stamp, latency));
+  const bool taken = camera.source->push(camera.frame, start_of(stamp, latency));
+  camera.newest = camera.frame.stamp;
+  return taken;
 }
 
 bool push_points(CloudStream& stream, const py::object& points, const std::optional<double>& stamp,
@@ -191,7 +197,7 @@ ready. pose: (4, 4), sensor to world. False: it was dropped, because stalled fie
 constexpr const char* kPushImage = R"(Takes the next image, without the GIL.
 
 depth: (height, width) uint16 in the camera's unit, or float32 in m; 0: nothing measured. The rest is as
-CloudStream.push() has it; pose is that at the stamp.)";
+CloudStream.push() has it; pose is that at the stamp. Error: the stamp is older than the one before.)";
 
 constexpr const char* kAdd = R"(Prepares a static cloud.
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -36,8 +37,9 @@ struct CloudStream : SharedSource {};
 /// A depth camera.
 struct Camera : SharedSource {
   CameraModel model = {};
-  double unit = 1e-3;     ///< metres a step of its 16-bit images
-  DepthFrame frame = {};  ///< memory of the last image
+  double unit = 1e-3;                                        ///< metres a step of its 16-bit images
+  DepthFrame frame = {};                                     ///< memory of the last image
+  double newest = -std::numeric_limits<double>::infinity();  ///< stamp of an image, s
 };
 
 }  // namespace palpate::python

@@ -137,6 +137,7 @@ FileKind text_kind(const Input& input, std::string_view word) {
 }
 
 void refuse_known(const Input& input) {
+  if (is_utf16(input.text())) fail(input, "this is UTF-16 text", "Save it as UTF-8");
   for (const Refused& entry : kRefused) {
     if (input.text().starts_with(entry.start)) {
       fail(input, fmt::format("this is {}, not a supported point cloud", entry.what), entry.remedy);

@@ -21,6 +21,11 @@ struct Input {
   }
 };
 
+/// How text of two bytes a letter begins, as some programs of Windows write it.
+[[nodiscard]] inline bool is_utf16(std::string_view text) {
+  return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+}
+
 /// Throws Error "NAME: what. Remedy."
 [[noreturn]] void fail(const Input& input, std::string_view what, std::string_view remedy);
 

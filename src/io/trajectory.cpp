@@ -59,6 +59,7 @@ class Reader {
     std::string line;
     while (std::getline(stream, line)) {
       ++line_;
+      if (line_ == 1 && io::is_utf16(line)) fail("this is UTF-16 text. Save it as UTF-8");
       if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
       const std::string_view text = trimmed(line);
       if (text.empty() || text.front() == '#') continue;

@@ -15,13 +15,15 @@ namespace palpate::viewer {
 namespace {
 
 std::string why_not(const Setting& setting, double value) {
-  if (setting.kind != Setting::Kind::number) return "it is not a number";
+  if (setting.kind == Setting::Kind::choice) return "give one of the words, not a number";
+  if (setting.kind == Setting::Kind::on_off) return "it is not true or false";
   if (value >= setting.least && value <= setting.most) return {};
   return fmt::format("{} is not from {} to {}", value, setting.least, setting.most);
 }
 
 std::string why_not(const Setting& setting, const std::string& value) {
-  if (setting.kind != Setting::Kind::choice) return "it is no choice from a list";
+  if (setting.kind == Setting::Kind::number) return "give a number, not text";
+  if (setting.kind == Setting::Kind::on_off) return "it is not true or false";
   if (std::ranges::find(setting.choices, value) != setting.choices.end()) return {};
   return fmt::format("there are only {}", fmt::join(setting.choices, ", "));
 }

@@ -31,6 +31,33 @@ TEST(Arguments, PoseTurnsAndMoves) {
   EXPECT_NEAR(pose.pose.linear().determinant(), 1, 1e-12);
 }
 
+std::string refusal_of_pose(const std::string& numbers) {
+  try {
+    (void)parse_pose("a=" + numbers);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Arguments, APoseMayBeAMatrix) {
+  const PoseArgument pose = parse_pose("left=0,-1,0,1, 1,0,0,2, 0,0,1,3, 0,0,0,1");
+  EXPECT_LT((pose.pose * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(1, 3, 3)).norm(), 1e-12);
+  const PoseArgument rows = parse_pose("left=0,-1,0,1, 1,0,0,2, 0,0,1,3");
+  EXPECT_TRUE(rows.pose.isApprox(pose.pose));
+}
+
+TEST(Arguments, AMatrixThatIsNoPoseSaysWhatIsWrong) {
+  const auto has = [](const std::string& numbers, const char* what) {
+    EXPECT_NE(refusal_of_pose(numbers).find(what), std::string::npos) << refusal_of_pose(numbers);
+  };
+  has("1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1", "row by row");  // column by column
+  has("2,0,0,0, 0,2,0,0, 0,0,2,0", "length 1");
+  has("1,0.1,0,0, 0,1,0,0, 0,0,1,0", "right angles");
+  has("1,0,0,0, 0,1,0,0, 0,0,-1,0, 0,0,0,1", "mirrors");
+  has("1,0,0,0, 0,1,0,0", "8 numbers are no pose");
+}
+
 TEST(Arguments, WrongOnesSayWhatToWrite) {
   EXPECT_THROW((void)parse_pose("1,2,3,0,0,0,1"), UsageError);
   EXPECT_THROW((void)parse_pose("a=1,2,3,0,0,0,1,5"), UsageError);

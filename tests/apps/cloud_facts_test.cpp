@@ -23,6 +23,17 @@ TEST(CloudFacts, UnitsAreGuessedWithAReason) {
   EXPECT_NE(feet.advice.find("0.3048"), std::string::npos);
   EXPECT_EQ(guess_units(box({515380, 4918340, 2300}, {40, 40, 20}), "LAS 1.4").units, "metres");
   EXPECT_EQ(guess_units(box({1, 2, 3}, {0, 0, 0}), "XYZ").units, "unknown");
+  const UnitsGuess far = guess_units(box({1e12, 0, 0}, {0, 0.4, 0}), "XYZ");
+  EXPECT_NE(far.reason.find("beyond 1e+09 m"), std::string::npos) << far.reason;
+}
+
+TEST(CloudFacts, PlacesAndLinesHaveNoSurface) {
+  const Eigen::Vector3f a(0.5f, 0.1f, -3.f);
+  const Eigen::Vector3f way(0.3f, 0.1f, 0.2f);
+  EXPECT_TRUE(on_a_line({}));
+  EXPECT_TRUE(on_a_line(std::vector{a, a, a}));
+  EXPECT_TRUE(on_a_line(std::vector{a, Eigen::Vector3f(a + way), a, Eigen::Vector3f(a + 7 * way)}));
+  EXPECT_FALSE(on_a_line(std::vector{a, Eigen::Vector3f(a + way), Eigen::Vector3f(way)}));
 }
 
 TEST(CloudFacts, SpacingIsTheSquareGridsOwn) {

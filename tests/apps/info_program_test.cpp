@@ -74,6 +74,16 @@ TEST(Info, OnePointIsACloud) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
+TEST(Info, WhatHasNoSurfaceSaysSoAndSoDoesTouch) {
+  Shell shell;
+  shell.write("line.xyz", "0 0 0\n0.01 0 0\n0.02 0 0\n");
+  const std::string none = "at one place or on a line, where no surface is";
+  EXPECT_NE(shell.run("info line.xyz").out.find(none), std::string::npos);
+  const Outcome touched = shell.run("touch line.xyz --duration 0.1");
+  EXPECT_NE(touched.out.find(none), std::string::npos) << touched.out;
+  EXPECT_EQ(touched.out.find("more time"), std::string::npos);
+}
+
 TEST(Info, PictureOfEachCloudIsDrawnOrSaysWhatIsMissing) {
   Shell shell;
   const Outcome outcome =

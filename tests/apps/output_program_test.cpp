@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/report/log.hpp"
 #include "apps/program.hpp"
 
 namespace palpate::app {
@@ -112,21 +113,70 @@ TEST(Output, AnInterruptedRunLeavesItsLogAndReport) {
   }
 }
 
-TEST(Output, ARunThatIsEndedAtOnceLeavesNothing) {
+TEST(Output, ARunThatIsEndedAtOnceLeavesWhatItLoggedBesideWhatWasThere) {
   Shell shell;
-  const int nameless = open(shell.path(".").c_str(), O_TMPFILE | O_WRONLY, 0600);
-  if (nameless < 0) GTEST_SKIP() << "the file system has no files without a name";
-  close(nameless);
+  shell.write("log.csv", "of an earlier run");
+  shell.write("log.csv.part", "of one that was ended");
   const int status = std::system(
       fmt::format("cd '{}'; '{}' touch camera:simulated --simulated-time --duration 600 "
-                  "--log log.csv > /dev/null 2> err "
-                  "& p=$!; until grep -qs touching err; do sleep 0.1; kill -0 $p || break; done; "
+                  "--log log.csv --json run.json > /dev/null 2> err "
+                  "& p=$!; until test -s log.csv.part-2; do sleep 0.1; kill -0 $p || break; done; "
                   "kill -KILL $p; wait $p",
                   shell.path("."), PALPATE_PROGRAM)
           .c_str());
   EXPECT_EQ(WEXITSTATUS(status), 128 + SIGKILL) << shell.read("err");
+  EXPECT_EQ(shell.read("log.csv"), "of an earlier run");
+  EXPECT_EQ(shell.read("log.csv.part"), "of one that was ended");
+  EXPECT_GT(columns(shell.read("log.csv.part-2"))["t"].size(), 100u);
   const auto entries = fs::directory_iterator(fs::path(shell.path("")));
-  EXPECT_EQ(std::distance(begin(entries), end(entries)), 1) << "what it said alone";
+  EXPECT_EQ(std::distance(begin(entries), end(entries)), 4) << "these and what it said";
+}
+
+// A full disk, as far as a file can know: it may have so many bytes.
+constexpr const char* kRoom = "prlimit --fsize=400000 env --ignore-signal=XFSZ";
+
+TEST(Output, TheLogOfARunThatFailsStaysBesideItsPlace) {
+  const Shell shell;
+  {
+    TouchLog log(shell.path("log.csv"));
+    log.add({}, {});
+  }
+  EXPECT_EQ(columns(shell.read("log.csv.part"))["t"].size(), 1u);
+  EXPECT_FALSE(fs::exists(shell.path("log.csv")));
+}
+
+TEST(Output, AFullDiskEndsTheLogAndNotTheRunAndKeepsWholeRows) {
+  Shell shell;
+  shell.write("log.csv", "of an earlier run");
+  const Outcome outcome = shell.run(
+      "touch camera:simulated --no-view --duration 3 --log log.csv "
+      "--json run.json",
+      "", kRoom);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("log.csv.part; the run goes on\n"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("log        log.csv cannot"), std::string::npos) << outcome.out;
+  const Json run = Json::parse(shell.read("run.json"));
+  EXPECT_GE(run["real_s"], 2.9);
+  EXPECT_NE(run["log_problem"], "");
+  EXPECT_EQ(shell.read("log.csv"), "of an earlier run");
+  const std::string kept = shell.read("log.csv.part");
+  EXPECT_GT(kept.size(), 250'000u);
+  EXPECT_EQ(kept.back(), '\n');
+  for (const auto& column : columns(kept)) {
+    EXPECT_EQ(column.second.size(), columns(kept)["t"].size()) << column.first;
+  }
+}
+
+TEST(Output, AFullDiskEndsTheRecordingAndNotTheRunWhichEndsWithAnError) {
+  Shell shell;
+  const Outcome outcome = shell.run(
+      "touch synthetic:sheet --device simulated --simulated-time --duration 7 --record r.mcap", "",
+      kRoom);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.out.find("7 001 in 7 s"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("the run goes on"), std::string::npos) << outcome.err;
+  EXPECT_EQ(shell.run("bag info r.mcap").code, 0);
+  EXPECT_EQ(shell.run("replay r.mcap").code, 0) << "as far as it goes";
 }
 
 TEST(Output, WhatAnotherProgramWritesComesToItsPlace) {

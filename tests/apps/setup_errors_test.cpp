@@ -72,7 +72,7 @@ TEST(SetupErrors, NameFileLineAndKey) {
       {"[[source]]\nfrom = \"a.ply\"\n[[source]]\nname = \"b\"\n", {"line 3", "'from'"}},
       {"[[source]]\nfrom = \"sequence:\"\n", {"line 2", "'from'", "'sequence:'"}},
       {"[[source]]\nfrom = \"a.ply\"\npose = [1, 2]\n",
-       {"line 3", "'pose' of [[source]]", "2 numbers instead of 7", "write [x, y, z, qx"}},
+       {"line 3", "'pose' of [[source]]", "2 numbers are no pose", "write x,y,z,qx"}},
       {"[[source]]\nfrom = \"a.ply\"\npose = [0, 0, 0, 0, 0, 0, 2]\n",
        {"line 3: 'pose' of [[source]]: the quaternion"}},
       {"[[source]]\nfrom = \"a.ply\"\nintrinsics = [1, \"x\"]\n",

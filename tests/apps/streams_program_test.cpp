@@ -232,6 +232,15 @@ TEST(Streams, RecordingsThatBeginBlackAreExplored) {
   EXPECT_NE(outcome.err.find("contains no surface"), std::string::npos) << outcome.err;
 }
 
+TEST(Streams, InfoCountsAFirstFrameThatIsDamaged) {
+  Shell shell;
+  write_wall(shell, 5);
+  shell.write("wall/000.pgm", "P5 64 48 65535\n");
+  const Outcome outcome = shell.run("info sequence:wall");
+  EXPECT_NE(outcome.out.find("of the first 5: 0 repeated, 1 failed"), std::string::npos)
+      << outcome.out << outcome.err;
+}
+
 TEST(Streams, WhatIsNotThereIsNamed) {
   Shell shell;
   for (const auto& [arguments, word] : std::initializer_list<std::pair<const char*, const char*>>{

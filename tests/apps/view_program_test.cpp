@@ -1,5 +1,9 @@
 // Runs that are shown on a page. What the page itself does is tested in a browser (tests/page).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <sstream>
 
 #include "apps/palpate/cli/output.hpp"
 #include "apps/program.hpp"
@@ -13,6 +17,19 @@ TEST(ViewProgram, TheDemoSaysWhereItsPageIsAndEndsWhenItIsTold) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("page: http://127.0.0.1:"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.out.find("camera:simulated:desk"), std::string::npos) << outcome.out;
+}
+
+TEST(ViewProgram, APageOnAllNetworksIsToldByItsAddressesThere) {
+  Shell shell;
+  if (std::system(fmt::format("hostname -I > '{}'", shell.path("all")).c_str()) != 0) GTEST_SKIP();
+  std::istringstream addresses(shell.read("all"));
+  const std::string run = "demo scan --headless --duration 0.5 --port 0 --listen ";
+  const std::string told = shell.run(run + "0.0.0.0").err;
+  for (std::string each; addresses >> each;) {
+    if (each.find(':') != std::string::npos) continue;
+    EXPECT_NE(told.find("the same with " + each + " in place"), std::string::npos) << told;
+  }
+  EXPECT_EQ(shell.run(run + "127.0.0.1").err.find("other machines"), std::string::npos);
 }
 
 TEST(ViewProgram, TheDemosForceIsBounded) {

@@ -32,6 +32,8 @@ TEST(FileKind, SaysWhatToDoAboutKindsThatAreNotRead) {
   EXPECT_THAT(refusal("(\xb5/\xfd"), HasSubstr("zstd -d"));
   EXPECT_THAT(refusal("PK\x03\x04zip"), HasSubstr("ZIP archive"));
   EXPECT_THAT(refusal("\xff\xd8\xff\xe0 JFIF"), HasSubstr("a JPEG picture"));
+  EXPECT_THAT(refusal("\xff\xfe\x30\0"sv), HasSubstr("UTF-16 text"));
+  EXPECT_THAT(refusal("\xfe\xff\0\x30"sv), HasSubstr("as UTF-8"));
   EXPECT_THAT(refusal("ASTM-E57"), HasSubstr("CloudCompare"));
   EXPECT_THAT(refusal("solid cube\n"), HasSubstr("STL"));
   EXPECT_THAT(refusal(std::string(84, '\0'), "a.stl"), HasSubstr("STL"));

@@ -39,6 +39,11 @@ TEST(Trajectory, ReadsWhatSpreadsheetsWrite) {
   EXPECT_EQ(parse("t\thip_x\thip_y\thip_z\n0\t1\t2\t3\n").size(), 1u);
 }
 
+TEST(Trajectory, SaysThatTextIsUtf16) {
+  EXPECT_NE(message(std::string("\xff\xfet\0,\0", 6)).find("line 1: this is UTF-16 text"),
+            std::string::npos);
+}
+
 TEST(Trajectory, NumbersKeepEveryBit) {
   const Trajectory rows = parse("t,hip_x,hip_y,hip_z\n0,0.1,1e-320,637291.12345678912\n");
   EXPECT_EQ(rows[0].position.x(), 0.1);

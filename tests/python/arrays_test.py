@@ -70,7 +70,7 @@ class Refused(unittest.TestCase):
             pp.prepare(np.zeros((5, 3)), voxle=1)
         with self.assertRaisesRegex(TypeError, "stiffness"):
             pp.Proxy(stiffness="hard")
-        with self.assertRaisesRegex(ValueError, "pointset"):
+        with self.assertRaisesRegex(pp.Error, "balanced, pointset, metaball"):
             pp.Field(ball(), kind="flat")
 
 

@@ -78,6 +78,8 @@ class Streams(unittest.TestCase):
             out = pp.rollout(field, proxy, hand, 1 / 990)
         self.assertLess(out.proxy[-1, 2], 0.4)
         self.assertEqual(camera.state().frames, 40)
+        with self.assertRaisesRegex(pp.Error, "older than the image before"):
+            camera.push(image, 1.0)
         camera.keep()
 
     def test_clouds(self):

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/matrix_pose.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_filter.hpp"
 
@@ -88,7 +89,7 @@ std::vector<double> parse_numbers(const std::string& text, std::size_t count,
     if (end == std::string_view::npos) break;
     rest.remove_prefix(end + 1);
   }
-  if (values.size() != count) {
+  if (count > 0 && values.size() != count) {
     throw UsageError(fmt::format("{}: '{}' has {} numbers instead of {}; write {}", option, text,
                                  values.size(), count, form));
   }
@@ -131,6 +132,11 @@ NoiseModel parse_noise(const std::string& text) {
 }
 
 Eigen::Isometry3d pose_of(const std::vector<double>& v, const std::string& what) {
+  if (v.size() == 12 || v.size() == 16) return pose_of_matrix(v, what);
+  if (v.size() != 7) {
+    throw UsageError(
+        fmt::format("{}: {} numbers are no pose; write {}", what, v.size(), kPoseForm));
+  }
   const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
   if (std::abs(rotation.norm() - 1) > 0.01) {
     throw UsageError(fmt::format(
@@ -141,12 +147,12 @@ Eigen::Isometry3d pose_of(const std::vector<double>& v, const std::string& what)
 }
 
 PoseArgument parse_pose(const std::string& text) {
-  const std::string form = "NAME=x,y,z,qx,qy,qz,qw: metres and a unit quaternion";
+  const std::string form = std::string("NAME=") + kPoseForm;
   const std::size_t place = text.find('=');
   if (place == std::string::npos || place == 0) {
     throw UsageError(fmt::format("--pose: '{}' names no source; write {}", text, form));
   }
-  const std::vector<double> v = parse_numbers(text.substr(place + 1), 7, "--pose", form);
+  const std::vector<double> v = parse_numbers(text.substr(place + 1), 0, "--pose", form);
   const std::string name = text.substr(0, place);
   return {name, pose_of(v, "--pose " + name)};
 }

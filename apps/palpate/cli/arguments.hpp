@@ -50,11 +50,14 @@ struct PoseArgument {
 /// s0,s1,s2 or s0,s1,s2,correlation, where correlation >= 1; or the name of a sensor profile.
 [[nodiscard]] NoiseModel parse_noise(const std::string& text);
 
-/// Of x, y, z (m), qx, qy, qz, qw; the quaternion is normalised.
-/// @throws UsageError when its length is not 1; `what` goes into the message.
+inline constexpr const char* kPoseForm =
+    "x,y,z,qx,qy,qz,qw: metres and a unit quaternion; or 12 or 16 numbers: a matrix row by row";
+
+/// Of x, y, z (m), qx, qy, qz, qw; the quaternion is normalised. Or of a 3 x 4 or 4 x 4 matrix.
+/// @throws UsageError when these are no rotation and translation; `what` goes into the message.
 [[nodiscard]] Eigen::Isometry3d pose_of(const std::vector<double>& values, const std::string& what);
 
-/// NAME=x,y,z,qx,qy,qz,qw.
+/// NAME=, and what pose_of() takes.
 [[nodiscard]] PoseArgument parse_pose(const std::string& text);
 
 /// May a source be called so? Letters, digits, '-', '_' and '.'.

@@ -55,8 +55,11 @@ void OutputFile::Closer::operator()(std::FILE* file) const {
   if (file != stdout) std::fclose(file);
 }
 
-OutputFile::OutputFile(const std::string& path)
-    : path_(path == "-" ? "standard output" : path), place_(path), growing_(path) {
+OutputFile::OutputFile(const std::string& path, Unfinished unfinished)
+    : path_(path == "-" ? "standard output" : path),
+      place_(path),
+      growing_(path),
+      stays_(unfinished == Unfinished::stays && path != "-" && !as_it_is(path)) {
   if (path == "-") {
     file_.reset(stdout);
     return;
@@ -64,7 +67,7 @@ OutputFile::OutputFile(const std::string& path)
   if (!as_it_is(path)) {
     place_ = where_links_lead(path);
     if (protects_itself(place_)) fail("cannot be written");
-    growing_ = fmt::format("{}.part-{}", place_, getpid());
+    growing_ = place_ + (stays_ ? ".part" : fmt::format(".part-{}", getpid()));
   }
   open();
   if (growing_ == place_ || nameless_) return;
@@ -73,18 +76,28 @@ OutputFile::OutputFile(const std::string& path)
 }
 
 OutputFile::~OutputFile() {
-  if (file_ && growing_ != place_ && !nameless_) std::remove(growing_.c_str());
+  if (file_ && growing_ != place_ && !nameless_ && !stays_) std::remove(growing_.c_str());
 }
 
 void OutputFile::open() {
   if (file_ || open_nameless()) return;
-  file_.reset(std::fopen(growing_.c_str(), growing_ == place_ ? "wb" : "wbx"));
+  open_named();
   if (!file_) fail("cannot be created");
+  if (stays_) std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+}
+
+void OutputFile::open_named() {
+  const char* mode = growing_ == place_ ? "wb" : "wbx";
+  file_.reset(std::fopen(growing_.c_str(), mode));
+  for (int i = 2; !file_ && stays_ && errno == EEXIST; ++i) {
+    growing_ = fmt::format("{}.part-{}", place_, i);
+    file_.reset(std::fopen(growing_.c_str(), mode));
+  }
 }
 
 // One that is never seen, however the program ends. Not every file system has such files.
 bool OutputFile::open_nameless() {
-  if (growing_ == place_ || access("/proc/self/fd", F_OK) != 0) return false;
+  if (stays_ || growing_ == place_ || access("/proc/self/fd", F_OK) != 0) return false;
   const std::string folder = fs::path(place_).parent_path().string();
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   if (descriptor < 0) return false;
@@ -110,9 +123,19 @@ std::string OutputFile::growing() {
 
 void OutputFile::write(std::string_view text) {
   open();
-  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) {
-    fail("cannot be written");
-  }
+  const std::size_t written = std::fwrite(text.data(), 1, text.size(), file_.get());
+  if (written == text.size()) return;
+  const int reason = errno;
+  if (stays_) keep_lines(text.substr(0, written));
+  errno = reason;
+  fail("cannot be written");
+}
+
+// `last` is what was written last: lines came before it.
+void OutputFile::keep_lines(std::string_view last) {
+  const std::size_t cut = last.size() - (last.rfind('\n') + 1);
+  const int file = fileno(file_.get());
+  if (ftruncate(file, lseek(file, 0, SEEK_CUR) - static_cast<off_t>(cut)) != 0) return;
 }
 
 void OutputFile::close() {
@@ -120,6 +143,7 @@ void OutputFile::close() {
   if (std::fflush(file_.get()) != 0) fail("cannot be written");
   if (file_.get() == stdout) return;
   if (nameless_ && !name()) fail("cannot be written");
+  if (stays_ && fdatasync(fileno(file_.get())) != 0) fail("cannot be written");
   const bool closed = std::fclose(file_.release()) == 0;
   if (growing_ == place_) {
     if (!closed) fail("cannot be written");
@@ -127,13 +151,17 @@ void OutputFile::close() {
   }
   if (closed && std::rename(growing_.c_str(), place_.c_str()) == 0) return;
   const int reason = errno;
-  std::remove(growing_.c_str());
+  if (!stays_) std::remove(growing_.c_str());
   errno = reason;
   fail("cannot be written");
 }
 
 void OutputFile::fail(const char* what) const {
-  throw Error(fmt::format("{} {}: {}; choose another path", path_, what, std::strerror(errno)));
+  const int reason = errno;
+  const bool kept = stays_ && access(growing_.c_str(), F_OK) == 0;
+  throw Error(fmt::format(
+      "{} {}: {}; {}", path_, what, std::strerror(reason),
+      kept ? "what was written before is in " + growing_ : std::string("choose another path")));
 }
 
 std::optional<OutputFile> output_at(const std::string& path) {

@@ -18,11 +18,16 @@ namespace palpate::app {
 /// fails leaves what was there as it was. "-" is standard output; what is no plain file (/dev/null,
 /// a pipe) is written as it is. Whatever goes wrong, a full disk included, is told as an Error that
 /// names the file.
+///
+/// One that `stays` grows as PATH.part (PATH.part-2, ... where there is one already), and if it is
+/// not closed it stays there, in whole lines where the disk is full: for what cannot be had twice.
 class OutputFile {
  public:
+  enum class Unfinished { goes, stays };
+
   /// Tries whether the file can be made, and leaves nothing of that. @throws Error when it cannot.
-  explicit OutputFile(const std::string& path);
-  /// Leaves nothing behind unless it was closed.
+  explicit OutputFile(const std::string& path, Unfinished unfinished = Unfinished::goes);
+  /// Unless it was closed it leaves nothing behind, or what `stays`.
   ~OutputFile();
   OutputFile(OutputFile&&) = default;
   OutputFile& operator=(OutputFile&&) = delete;
@@ -42,12 +47,15 @@ class OutputFile {
   };
   void open();  // unless it is
   bool open_nameless();
+  void open_named();
   bool name();
+  void keep_lines(std::string_view last);
   [[noreturn]] void fail(const char* what) const;
 
   std::string path_;
   std::string place_;    // where links lead
   std::string growing_;  // its name meanwhile; the same where it is written as it is
+  bool stays_;
   bool nameless_ = false;
   std::unique_ptr<std::FILE, Closer> file_;
 };

@@ -94,6 +94,9 @@ void add_bounds(Report& report, const InfoReport& info) {
 }
 
 void add_surface(Report& report, const InfoReport& info) {
+  if (on_a_line(info.loaded.file.cloud.positions)) {
+    report.line("surface", kNoSurface, Mark::warning);
+  }
   const SpacingFacts& s = info.spacing;
   report.line("spacing",
               fmt::format("{} to the three nearest, {} from area ({} to {} in the middle 80 %)",
@@ -201,7 +204,7 @@ LiveFacts study_live(const CloudArgument& argument) {
   LiveFacts facts;
   facts.argument = argument;
   facts.assumed = camera->info().assumed;
-  DepthFrame frame = first_frame(*camera);
+  DepthFrame frame = first_frame(*camera, &facts.failures);
   const double start = frame.stamp;
   double last = start;
   facts.width = frame.camera.width;
@@ -223,9 +226,7 @@ LiveFacts study_live(const CloudArgument& argument) {
       last = frame.stamp;
     }
     status = camera->read(frame, kWait);
-    const bool failed =
-        status == DepthCamera::Status::damaged || status == DepthCamera::Status::failed;
-    facts.failures += failed ? 1 : 0;
+    facts.failures += is_failure(status) ? 1 : 0;
     facts.unposed += status == DepthCamera::Status::unposed ? 1 : 0;
   }
   if (last > start) facts.rate = static_cast<double>(facts.frames - 1) / (last - start);
@@ -241,8 +242,9 @@ Report report_of(const LiveFacts& facts) {
   report.line("intrinsics", fmt::format("{:.6g}, {:.6g}, {:.6g}, {:.6g}{}", p.fx, p.fy, p.cx, p.cy,
                                         facts.distorted ? ", with distortion" : ""));
   if (!facts.assumed.empty()) report.line("assumed", facts.assumed);
-  report.line("frames", fmt::format("{:.1f} Hz; of the first {}: {} repeated, {} failed",
-                                    facts.rate, facts.frames, facts.repeated, facts.failures));
+  report.line("frames",
+              fmt::format("{:.1f} Hz; of the first {}: {} repeated, {} failed", facts.rate,
+                          facts.frames + facts.failures, facts.repeated, facts.failures));
   report.line(
       "poses",
       fmt::format(

@@ -176,9 +176,7 @@ void SetupFile::take(const OptionTable& table, std::string_view section, const t
 Eigen::Isometry3d SetupFile::pose(const toml::node& node) const {
   constexpr const char* kWhat = "'pose' of [[source]]";
   try {
-    const std::vector<double> values = parse_numbers(
-        numbers("pose", node), 7, kWhat, "[x, y, z, qx, qy, qz, qw]: metres and a unit quaternion");
-    return pose_of(values, kWhat);
+    return pose_of(parse_numbers(numbers("pose", node), 0, kWhat, kPoseForm), kWhat);
   } catch (const UsageError& error) {
     fail(node.source(), error.what());
   }

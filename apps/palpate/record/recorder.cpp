@@ -254,6 +254,7 @@ void Recorder::fail(const std::string& why) {
   }
   close();
   drain();  // into nothing
+  fmt::print(stderr, "\n{}; the run goes on\n", why);
   const std::lock_guard lock(broken_mutex_);
   if (broken_) broken_(why);
 }

@@ -35,6 +35,8 @@ struct HandReport {
   const Unguarded* unguarded = nullptr;  ///< of one in simulated time
   bool interrupted = false;              ///< by Ctrl-C
   bool scales = true;                    ///< is there a file, whose units --scale can mend?
+  bool surface = true;                   ///< is there a source with one?
+  std::string unlogged = {};             ///< why its log is not whole; empty: it is
 };
 
 /// Work done on the hand, J: in its own metres, where the cloud is magnified (Workspace).

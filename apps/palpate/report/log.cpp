@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "apps/palpate/cli/output.hpp"
+#include "palpate/base/error.hpp"
 
 namespace palpate::app {
 
@@ -13,8 +14,26 @@ constexpr std::size_t kFlush = 1 << 16;  // bytes
 
 }  // namespace
 
-TouchLog::TouchLog(const std::string& path) : file_(path) {
+TouchLog::TouchLog(const std::string& path) : file_(path, OutputFile::Unfinished::stays) {
   buffer_.reserve(kFlush + 1024);
+}
+
+TouchLog::~TouchLog() {
+  try {
+    if (problem_.empty() && buffer_.size() > 0) flush();
+  } catch (const Error&) {
+    problem_ = "told to nobody";
+  }
+}
+
+void TouchLog::flush() {
+  try {
+    file_.write({buffer_.data(), buffer_.size()});
+  } catch (const Error& error) {
+    problem_ = error.what();
+    throw;
+  }
+  buffer_.clear();
 }
 
 void TouchLog::begin(bool orientation, bool gripper) {
@@ -28,6 +47,7 @@ void TouchLog::begin(bool orientation, bool gripper) {
 }
 
 void TouchLog::add(const ServoState& step, const DeviceInfo& device) {
+  if (!problem_.empty()) return;
   if (!begun_) begin(device.has_orientation, device.has_gripper);
   const Contact& c = step.contact;
   const Eigen::Vector3d& h = step.hip;
@@ -46,15 +66,13 @@ void TouchLog::add(const ServoState& step, const DeviceInfo& device) {
   }
   if (device.has_gripper) fmt::format_to(std::back_inserter(buffer_), ",{}", step.gripper);
   buffer_.push_back('\n');
-  if (buffer_.size() < kFlush) return;
-  file_.write({buffer_.data(), buffer_.size()});
-  buffer_.clear();
+  if (buffer_.size() >= kFlush) flush();
 }
 
 void TouchLog::close() {
+  if (!problem_.empty()) throw Error(problem_);
   if (!begun_) begin(false, false);
-  file_.write({buffer_.data(), buffer_.size()});
-  buffer_.clear();
+  flush();
   file_.close();
 }
 

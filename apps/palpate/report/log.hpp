@@ -12,19 +12,26 @@ namespace palpate::app {
 
 /// The CSV log of a run: a header, then a row a step. Numbers are the shortest that read back to
 /// the same bits; `us` alone differs from run to run. The device, which is the same in every row,
-/// says whether there are columns for orientation and gripper.
+/// says whether there are columns for orientation and gripper. What is not closed stays beside its
+/// place (OutputFile).
 class TouchLog {
  public:
   explicit TouchLog(const std::string& path);
+  /// What is left, if it was not closed.
+  ~TouchLog();
+  /// @throws Error when the file cannot be written, and takes nothing from then on.
   void add(const ServoState& step, const DeviceInfo& device);
+  /// @throws Error when it cannot, or could not be written.
   void close();
 
  private:
   void begin(bool orientation, bool gripper);
+  void flush();
 
   OutputFile file_;
   fmt::memory_buffer buffer_;
   bool begun_ = false;
+  std::string problem_;  // why it ended; empty: it did not
 };
 
 }  // namespace palpate::app

@@ -9,6 +9,10 @@
 
 namespace palpate::app {
 
+/// Of a cloud that is on_a_line().
+inline constexpr const char* kNoSurface =
+    "all points are at one place or on a line, where no surface is";
+
 enum class Mark { plain, warning, error };
 
 /// A part of a report: lines for a person, and the same facts as data.

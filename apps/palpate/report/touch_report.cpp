@@ -130,12 +130,17 @@ HandOutputs::HandOutputs(const OutputPlan& outputs, std::size_t hand) {
 
 void HandOutputs::add(const ServoState& step, const DeviceInfo& device) {
   statistics_.add(step);
-  if (log_) log_->add(step, device);
   if (picture_) picture_->add(step);
+  if (log_) log_->add(step, device);
 }
 
-void HandOutputs::close_log() {
-  if (log_) log_->close();
+std::string HandOutputs::close_log() {
+  try {
+    if (log_) log_->close();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
 }
 
 void HandOutputs::draw(const Scene& scene, const std::string& title, const HandReport& report) {
@@ -196,7 +201,9 @@ Json report_on(const TouchReport& report, std::FILE* stream) {
                {"stiffness_N_per_m", report.proxy.stiffness}};
   const bool alone = report.hands.size() == 1;
   for (const HandReport& each : report.hands) {
-    const Report part = report_of(each, alone ? "touched" : each.hand.name);
+    Report part = report_of(each, alone ? "touched" : each.hand.name);
+    if (!each.unlogged.empty()) part.line("log", each.unlogged, Mark::error);
+    if (!each.unlogged.empty()) part.data["log_problem"] = each.unlogged;
     part.print(stream);
     if (alone) {
       json.update(part.data);

@@ -42,8 +42,10 @@ class HandOutputs {
   /// @throws Error when they cannot be.
   HandOutputs(const OutputPlan& outputs, std::size_t hand);
 
+  /// @throws Error once, when the log cannot be written; the rest goes on.
   void add(const ServoState& step, const DeviceInfo& device);
-  void close_log();
+  /// Why the log is not whole; empty: it is, or there is none.
+  [[nodiscard]] std::string close_log();
 
   /// @throws Error as Picture::draw() does.
   void draw(const Scene& scene, const std::string& title, const HandReport& report);

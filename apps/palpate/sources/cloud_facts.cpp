@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "palpate/contact/proxy.hpp"
+
 namespace palpate::app {
 
 namespace {
@@ -22,8 +24,12 @@ double at_share(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(place)];
 }
 
+double farthest(const Box& bounds) {
+  return std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff());
+}
+
 bool is_survey(const Box& bounds) {
-  return std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff()) > 5e4 &&
+  return farthest(bounds) > 5e4 &&
          bounds.size().maxCoeff() < 0.5 * bounds.upper.cwiseAbs().maxCoeff();
 }
 
@@ -42,6 +48,13 @@ UnitsGuess survey_units(const Box& bounds) {
 UnitsGuess guess_units(const Box& bounds, const std::string& format) {
   const double extent = bounds.size().maxCoeff();
   const std::string size = fmt::format("the longest side is {:.4g}", extent);
+  if (const double far = farthest(bounds); far > Proxy::kLargestCoordinate) {
+    return {"unknown",
+            fmt::format("the points are {:.4g} from the origin; beyond {:.0e} m surfaces cannot be "
+                        "resolved",
+                        far, Proxy::kLargestCoordinate),
+            "give --scale with the metres per unit of the file, or move the points"};
+  }
   if (is_survey(bounds)) return survey_units(bounds);
   if (format.starts_with("LAS") || format.starts_with("LAZ")) {
     return {"metres or feet", size + "; LAS files use either",
@@ -63,6 +76,16 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
             "give --scale with the metres per unit of the file"};
   }
   return {"metres", size + ", plausible for an object or a room in metres", ""};
+}
+
+bool on_a_line(std::span<const Eigen::Vector3f> points) {
+  Eigen::Vector3f along = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3f way = point - points.front();
+    if (way.cross(along).norm() > 1e-4f * way.norm() * along.norm()) return false;
+    if (way.squaredNorm() > along.squaredNorm()) along = way;
+  }
+  return true;
 }
 
 SpacingFacts measure_spacing(const CellGrid& grid) {

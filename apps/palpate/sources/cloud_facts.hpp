@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct UnitsGuess {
 
 /// Guesses from coordinates as read, in what is taken for metres.
 [[nodiscard]] UnitsGuess guess_units(const Box& bounds, const std::string& format);
+
+/// Are they all at one place or on a line, where no surface is? So are none.
+[[nodiscard]] bool on_a_line(std::span<const Eigen::Vector3f> points);
 
 /// How far points are from one another, m; medians over a sample that is spread over the cloud.
 struct SpacingFacts {

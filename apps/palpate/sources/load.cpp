@@ -128,7 +128,11 @@ std::unique_ptr<DepthCamera> open_stream_at_any_pace(const SourcePlan& source) {
   return open(source, nullptr);
 }
 
-DepthFrame first_frame(DepthCamera& camera) {
+bool is_failure(DepthCamera::Status status) {
+  return status == DepthCamera::Status::damaged || status == DepthCamera::Status::failed;
+}
+
+DepthFrame first_frame(DepthCamera& camera, std::size_t* failures) {
   const Waiting waiting(fmt::format("waiting for the first frame of {}", camera.info().name));
   DepthFrame frame;
   std::string problem = "no frame arrived";
@@ -136,6 +140,7 @@ DepthFrame first_frame(DepthCamera& camera) {
   for (int i = 0; i < tries; ++i) {
     const DepthCamera::Status status = camera.read(frame, kAnswerWait);
     if (status == DepthCamera::Status::frame) return frame;
+    if (failures != nullptr && is_failure(status)) ++*failures;
     if (!camera.reason().empty()) problem = camera.reason();
     if (status == DepthCamera::Status::ended) break;
   }

@@ -37,8 +37,12 @@ struct LoadedCloud {
 [[nodiscard]] std::unique_ptr<DepthCamera> open_stream_at_any_pace(const SourcePlan& source);
 
 /// The next frame of use, waiting for some seconds at most.
+/// `failures` counts reads that failed before.
 /// @throws Error that names the camera and what it complained of.
-[[nodiscard]] DepthFrame first_frame(DepthCamera& camera);
+[[nodiscard]] DepthFrame first_frame(DepthCamera& camera, std::size_t* failures = nullptr);
+
+/// Did a read give no frame because something is broken?
+[[nodiscard]] bool is_failure(DepthCamera::Status status);
 
 /// The points of a frame's pixels in the camera's frame, as a driver would hand them to the paper's
 /// program. The lens is taken to be without distortion.

@@ -13,6 +13,7 @@
 #include "apps/palpate/touch/live_status.hpp"
 #include "apps/palpate/touch/touch.hpp"
 #include "apps/palpate/view/view.hpp"
+#include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/ros/bridge.hpp"
 #include "palpate/servo/servo.hpp"
@@ -49,7 +50,8 @@ class LiveHand {
   void begin(double start);
 
   // Hands its new steps to `each`, with times from 0.
-  void take_steps(const EachStep& each);
+  // Says in `status` what `each` throws, and goes on.
+  void take_steps(const EachStep& each, LiveStatus& status);
 
   // Has it come to its end, whatever ended it?
   [[nodiscard]] bool over(double now) const;
@@ -95,12 +97,16 @@ void LiveHand::begin(double start) {
   looked_ = start;
 }
 
-void LiveHand::take_steps(const EachStep& each) {
+void LiveHand::take_steps(const EachStep& each, LiveStatus& status) {
   while (std::optional<ServoState> step = steps_.pop()) {
     if (step->time < start_) continue;
     step->time -= start_;
     force_ = std::max(force_, step->force.norm());
-    each(index_, *step);
+    try {
+      each(index_, *step);
+    } catch (const Error& error) {
+      status.tell(error.what() + std::string("; the run goes on"));
+    }
   }
 }
 
@@ -231,9 +237,10 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
         told_hands(hands), run.loaded.scene, [&] { return feed.states(); }, run.ros.bridge);
   }
   if (run.page.served) view.emplace(run, servos_of(hands), feed);
+  if (view) tell_network(run.page.address);
   while (any_goes_on(hands, clock.now()) && !interruption.asked()) {
     std::this_thread::sleep_for(kLook);
-    for (LiveHand& hand : hands) hand.take_steps(each);
+    for (LiveHand& hand : hands) hand.take_steps(each, status);
     if (view) view->look();
     const double now = clock.now();
     failures.look(hands, now, status);
@@ -245,7 +252,7 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   std::optional<RosBridge::RobotState> robot;  // before its hand stands still
   if (bridge) robot = bridge->robot();
   for (LiveHand& hand : hands) hand.stop();
-  for (LiveHand& hand : hands) hand.take_steps(each);
+  for (LiveHand& hand : hands) hand.take_steps(each, status);
   LiveOutcome outcome = outcome_of(hands, interruption.asked());
   outcome.robot = robot;
   if (bridge && !bridge->problem().empty()) status.tell("ROS 2: " + bridge->problem());

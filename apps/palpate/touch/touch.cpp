@@ -77,6 +77,7 @@ namespace {
 // Every file is made before the work: a place that does not exist is told at once.
 struct TouchOutputs {
   std::deque<HandOutputs> hands;
+  std::vector<std::string> unlogged;  // of each hand: why its log is not whole
   std::optional<OutputFile> json;
   std::optional<Recorder> recorder;
   std::optional<Unguarded> unguarded;  // of a run in simulated time
@@ -115,7 +116,7 @@ LiveOutcome play(Run& run, WaitingClock* clock, TouchOutputs& outputs) {
       outputs.hands[hand].add(step, run.hands[hand].device->info());
     });
   }
-  for (HandOutputs& hand : outputs.hands) hand.close_log();
+  for (HandOutputs& hand : outputs.hands) outputs.unlogged.push_back(hand.close_log());
   return outcome;
 }
 
@@ -134,6 +135,14 @@ void check_texture(double amplitude, const Scene& scene) {
                   amplitude, largest));
 }
 
+bool has_surface(const LoadedScene& loaded) {
+  bool found = false;  // a camera may show one at any time
+  for (std::size_t i = 0; i < loaded.sources.size() && !found; ++i) {
+    found = loaded.sources[i].camera || !on_a_line(loaded.scene.source(i).points()->grid.points());
+  }
+  return found;
+}
+
 std::vector<HandReport> hand_reports(const Run& run, const TouchOutputs& outputs,
                                      const LiveOutcome& outcome) {
   const bool scales = std::ranges::any_of(
@@ -143,7 +152,7 @@ std::vector<HandReport> hand_reports(const Run& run, const TouchOutputs& outputs
     reports.push_back({run.hands[i], outputs.hands[i].statistics(), run.field, run.proxy.stiffness,
                        outcome.hands.empty() ? nullptr : &outcome.hands[i],
                        outputs.unguarded ? &*outputs.unguarded : nullptr, outcome.interrupted,
-                       scales});
+                       scales, has_surface(run.loaded), outputs.unlogged[i]});
   }
   return reports;
 }
@@ -157,6 +166,7 @@ bool felt_nothing(const HandReport& report) {
 void check_hands(const std::vector<HandReport>& hands) {
   for (const HandReport& hand : hands) {
     if (hand.live != nullptr && !hand.live->failure.empty()) throw Error(hand.live->failure);
+    if (!hand.unlogged.empty()) throw Error(hand.unlogged);
   }
   if (std::ranges::none_of(hands, felt_nothing)) return;
   throw Error(
@@ -172,6 +182,9 @@ void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
     outputs.hands[i].draw(report.loaded.scene, title_of(report.loaded), report.hands[i]);
   }
   check_hands(report.hands);
+  for (const RecordReport& each : report.recorded) {
+    if (!each.problem.empty()) throw Error(each.problem);
+  }
 }
 
 }  // namespace

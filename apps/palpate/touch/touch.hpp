@@ -45,8 +45,8 @@ struct LiveOutcome {
 /// on which the cameras were opened. Recordings begin together when the run does, at its time 0,
 /// and the hands at once after them. Shows on standard error how it goes. Ends when every hand has
 /// come to its end, or when it is interrupted; a device that fails ends its own hand alone, which
-/// is said at once. Hands every step to `each`, on the calling thread, with times from 0. Fills in
-/// what `loaded` tells of its cameras.
+/// is said at once. Hands every step to `each`, on the calling thread, with times from 0, and says
+/// what that throws. Fills in what `loaded` tells of its cameras.
 /// @throws Error when a recording cannot begin, or there are no threads to be had.
 LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each);
 
