@@ -111,6 +111,7 @@ DepthCamera::Status RemoteCamera::read(DepthFrame& frame, double timeout) {
     try {
       came = let_in();
     } catch (const Error& error) {
+      if (status != DepthCamera::Status::waiting) return status;
       reason_ = error.what();
       return DepthCamera::Status::failed;
     }
@@ -122,10 +123,8 @@ DepthCamera::Status RemoteCamera::read(DepthFrame& frame, double timeout) {
   }
   reason_ = client_.there()
                 ? fmt::format("the program that is connected to '{}' sends no frame", path_)
-                : fmt::format(
-                      "no program is connected to '{}'; start one "
-                      "(docs/remote_camera.md)",
-                      path_);
+                : fmt::format("no program is connected to '{}'; start one (docs/remote_camera.md)",
+                              path_);
   return DepthCamera::Status::waiting;
 }
 
@@ -169,13 +168,11 @@ bool RemoteCamera::take_whole(DepthFrame& frame) {
 
 // What is remembered of earlier frames is of that camera.
 void RemoteCamera::check_camera() {
-  std::string camera = words(assembler_.header().camera);
-  if (camera_.empty())
-    camera_ = std::move(camera);
-  else if (camera != camera_) {
-    throw Error(fmt::format("the camera is {}, but was {}; start palpate again for another camera",
-                            camera, camera_));
-  }
+  const std::string camera = words(assembler_.header().camera);
+  if (camera_.empty()) camera_ = camera;
+  if (camera == camera_) return;
+  throw Error(fmt::format("the camera is {}, but was {}; start palpate again for another camera",
+                          camera, camera_));
 }
 
 void RemoteCamera::stamp(DepthFrame& frame) {

@@ -1,5 +1,7 @@
 // A remote camera over real sockets, with a clock that the tests hold.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -169,6 +171,29 @@ TEST_F(RemoteCameraTest, ServesOneProgramAtATime) {
   expect_millimetres(702);
   ASSERT_TRUE(third.send(frame_of(703)));
   expect_millimetres(703);
+}
+
+TEST_F(RemoteCameraTest, ServesItsProgramThoughNoOtherCanBeLetIn) {
+  const RemoteSender first(path());
+  ASSERT_TRUE(first.send(frame_of(700)));
+  expect_millimetres(700);
+  const RemoteSender second(path());
+  const int next = ::dup(0);  // what a file that is opened now would be
+  ::close(next);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit full{static_cast<rlim_t>(next), before.rlim_max};
+  ASSERT_TRUE(first.send(frame_of(701)));
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &full), 0);
+  const DepthCamera::Status served = look();
+  const DepthCamera::Status then = look();
+  const std::string why = camera_->reason();
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(served, frame);
+  EXPECT_EQ(then, failed);
+  EXPECT_TRUE(contains(why, "no program can connect")) << why;
+  EXPECT_EQ(look(), waiting);
+  EXPECT_EQ(second.last_words(), "another program is this camera; stop that one\n");
 }
 
 TEST_F(RemoteCameraTest, AProgramThatDiesInTheMiddleOfAFrameLeavesNothingOfIt) {
