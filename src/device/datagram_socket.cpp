@@ -47,8 +47,8 @@ bool DatagramSocket::send(std::span<const std::byte> bytes, const SocketAddress&
   address.address.sun_family = AF_UNIX;
   std::memcpy(address.address.sun_path, to.path.data(), to.size);
   address.size = static_cast<socklen_t>(kHead + to.size);
-  const ssize_t sent = ::sendto(bound_.handle(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL,
-                                address.get(), address.size);
+  const ssize_t sent = ::sendto(bound_.handle(), bytes.data(), bytes.size(),
+                                MSG_DONTWAIT | MSG_NOSIGNAL, address.get(), address.size);
   return sent == static_cast<ssize_t>(bytes.size());
 }
 
