@@ -19,7 +19,7 @@ def seed(target, name, data):
     data = data.encode() if isinstance(data, str) else data
     (folder / name).write_bytes(data)
     if target not in ("any", "cdr", "client_message", "depth", "frame_list", "haply_frame", "mcap", "poses",
-                      "remote_state", "sequence", "trajectory"):
+                      "remote_frame", "remote_state", "sequence", "trajectory"):
         seed("any", f"{target}-{name}", data)
 
 
@@ -195,6 +195,19 @@ def remote():
     seed("remote_state", "not_a_number", state(x=float("nan")))
     seed("remote_state", "too_far", state(x=1e9))
     seed("remote_state", "newer", state(version=2, reserved=1))
+
+    def frame(flags=0, version=1, size=(6, 7), unit=1e-3, fx=300.0, stamp=1.5, w=1.0, depth=None):
+        steps = [0, 65535, 700, 701, 65534, 1] * 7
+        return struct.pack("<4sHHII18d", b"plpD", version, flags, *size, unit, fx, 301, 2.5, 3, 0.1, -0.2, 0.01, 0.02, 0,
+                           stamp, 1, 2, 3, 0, 0, 0, w) + (depth or struct.pack("<42H", *steps))
+    metres = struct.pack("<42f", *([0.7, 0, -1, float("nan"), float("inf"), 1e-40] * 7))
+    seed("remote_frame", "two", frame() + frame(stamp=2))
+    seed("remote_frame", "all", frame(flags=3) + frame(flags=7, unit=1, depth=metres))
+    seed("remote_frame", "cut", frame(flags=4, depth=metres)[:-1])
+    seed("remote_frame", "not_a_number", frame(fx=float("nan")))
+    seed("remote_frame", "too_large", frame(size=(8192, 8192)))
+    seed("remote_frame", "turned_too_far", frame(flags=1, w=0.5))
+    seed("remote_frame", "newer", frame(flags=8, version=2))
 
 
 def client_messages():

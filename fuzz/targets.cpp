@@ -7,7 +7,9 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "bag/mcap_reader.hpp"
 #include "device/haply_message.hpp"
@@ -20,14 +22,16 @@
 #include "palpate/io/files.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "sensor/pose_track.hpp"
+#include "sensor/remote_frame.hpp"
 #include "sensor/sequence.hpp"
 
 namespace palpate::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 18> kNames{
-    "any", "cdr", "depth", "frame_list", "gzip",  "haply_frame",  "las",      "mcap",       "obj",
-    "pcd", "pgm", "ply",   "png",        "poses", "remote_state", "sequence", "trajectory", "xyz"};
+constexpr std::array<std::string_view, 19> kNames{
+    "any",          "cdr",          "depth",    "frame_list", "gzip", "haply_frame", "las",
+    "mcap",         "obj",          "pcd",      "pgm",        "ply",  "png",         "poses",
+    "remote_frame", "remote_state", "sequence", "trajectory", "xyz"};
 
 void expect(bool promise, const char* name) {
   if (!promise) throw std::logic_error(name);
@@ -107,6 +111,48 @@ void check_remote_state(std::span<const std::byte> bytes) {
   expect(!packet.has_velocity || std::ranges::equal(again, bytes), "bytes that were lost");
 }
 
+void check_remote_frame(const DepthFrame& frame) {
+  const CameraModel& camera = frame.camera;
+  const auto pixels =
+      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  expect(camera.width >= 6 && camera.height >= 6, "a frame without pixels");
+  expect(frame.depth.size() == pixels, "depths that are not one a pixel");
+  expect(camera.pinhole.fx > 0 && camera.pinhole.fy > 0, "a focal length");
+  expect(std::isfinite(camera.pinhole.cx) && std::isfinite(camera.distortion.k3), "a lens");
+  for (const float z : frame.depth) expect(std::isfinite(z) && z >= 0, "a depth");
+  expect(!frame.T_world_sensor || frame.T_world_sensor->matrix().allFinite(), "a pose");
+}
+
+// Frames of the bytes that come in pieces of `piece`, and whether an error ended them.
+std::pair<std::vector<DepthFrame>, bool> remote_frames(std::span<const std::byte> bytes,
+                                                       std::size_t piece) {
+  sensor::FrameAssembler assembler;
+  std::vector<DepthFrame> frames;
+  try {
+    while (!bytes.empty()) {
+      const std::span<std::byte> room = assembler.room();
+      expect(!room.empty() && room.size() < std::size_t{1} << 27U, "room");
+      const std::size_t count = std::min({piece, room.size(), bytes.size()});
+      std::ranges::copy(bytes.first(count), room.begin());
+      bytes = bytes.subspan(count);
+      if (assembler.add(count)) assembler.take(frames.emplace_back());
+    }
+  } catch (const Error&) {
+    return {std::move(frames), true};
+  }
+  return {std::move(frames), false};
+}
+
+void check_remote_frames(std::span<const std::byte> bytes) {
+  const auto [whole, failed] = remote_frames(bytes, bytes.size());
+  const auto [cut, cut_failed] = remote_frames(bytes, 37);
+  expect(failed == cut_failed && whole.size() == cut.size(), "frames that depend on the pieces");
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    check_remote_frame(whole[i]);
+    expect(whole[i].depth == cut[i].depth, "depths that depend on the pieces");
+  }
+}
+
 void check_haply_frame(std::string_view text) {
   for (const device::HaplyDevice& each : device::parse_haply_frame(text)) {
     if (!each.reading) continue;
@@ -180,6 +226,8 @@ void run_target(std::string_view name, std::span<const std::byte> bytes) {
   try {
     if (name == "remote_state") {
       check_remote_state(bytes);
+    } else if (name == "remote_frame") {
+      check_remote_frames(bytes);
     } else if (name == "haply_frame") {
       check_haply_frame(input.text());
     } else if (name == "cdr") {

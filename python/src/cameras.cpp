@@ -149,7 +149,8 @@ void define_cameras(py::module_& module) {
   module.def(
       "open_camera", &open_one, arg("name"), py::kw_only(), arg("loop") = false,
       py::call_guard<py::gil_scoped_release>(),
-      "simulated[:SCENE], sequence:FOLDER, bag:FILE, openni2, freenect, FILE.oni, ros:TOPIC");
+      "simulated[:SCENE], sequence:FOLDER, bag:FILE, openni2, freenect, FILE.oni, ros:TOPIC, "
+      "remote[:PATH]");
   module.def(
       "list_cameras", [] { return look_for(&list_cameras); }, "Every driver of cameras");
   module.def(

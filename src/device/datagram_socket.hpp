@@ -2,9 +2,10 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string>
+
+#include "base/bound_socket.hpp"
 
 namespace palpate {
 
@@ -24,17 +25,12 @@ struct Reception {
   SocketAddress from;
 };
 
-/// A UNIX datagram socket bound to a path that only its owner may use (mode 0600). Neither
-/// receiving nor sending waits.
+/// A BoundSocket of datagrams. Neither receiving nor sending waits.
 class DatagramSocket {
  public:
-  /// Replaces a socket file that no program has open any more.
-  /// @throws Error when the path is too long, is in use or is no socket, or binding fails.
-  explicit DatagramSocket(const std::string& path);
-  /// Removes the file, if it still belongs to this socket.
-  ~DatagramSocket();
-  DatagramSocket(const DatagramSocket&) = delete;
-  DatagramSocket& operator=(const DatagramSocket&) = delete;
+  /// @throws Error as BoundSocket does.
+  explicit DatagramSocket(const std::string& path)
+      : bound_("remote device", path, BoundSocket::Kind::datagrams) {}
 
   /// The oldest waiting datagram; cut to the size of `bytes`.
   [[nodiscard]] Reception receive(std::span<std::byte> bytes) noexcept;
@@ -43,10 +39,7 @@ class DatagramSocket {
   bool send(std::span<const std::byte> bytes, const SocketAddress& to) noexcept;
 
  private:
-  std::string path_;
-  int handle_ = -1;
-  std::uint64_t device_ = 0;  // of the file that was bound
-  std::uint64_t inode_ = 0;
+  BoundSocket bound_;
 };
 
 }  // namespace palpate

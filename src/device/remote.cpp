@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <system_error>
 
+#include "base/bound_socket.hpp"
 #include "base/latest.hpp"
 #include "base/requirement.hpp"
 #include "device/datagram_socket.hpp"
@@ -47,13 +47,7 @@ DeviceInfo info_of(const RemoteDeviceOptions& options) {
 }  // namespace
 
 std::string default_remote_path() {
-  const char* folder = std::getenv("XDG_RUNTIME_DIR");
-  if (folder == nullptr || *folder == '\0') {
-    throw Error(
-        "remote device: XDG_RUNTIME_DIR is not set, so there is no default path for its socket; "
-        "give a path");
-  }
-  return std::string(folder) + "/palpate-device";
+  return runtime_path("remote device", "palpate-device");
 }
 
 struct RemoteDevice::Inside {

@@ -1,8 +1,9 @@
 #include "device/remote_protocol.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+
+#include "base/little_endian.hpp"
 
 namespace palpate {
 namespace {
@@ -19,51 +20,6 @@ constexpr unsigned kHasVelocity = 1;
 constexpr unsigned kLeaving = 2;
 constexpr unsigned kLive = 1;
 constexpr unsigned kClosing = 2;
-
-// Numbers one after the other, lowest byte first, whatever the processor's order.
-class Writer {
- public:
-  explicit Writer(std::span<std::byte> bytes) noexcept : bytes_(bytes) {}
-
-  template <class T>
-  void put(T value) noexcept {
-    for (std::size_t i = 0; i < sizeof value; ++i) {
-      bytes_[at_++] = static_cast<std::byte>(value >> (8 * i) & 0xFF);
-    }
-  }
-  void put(double value) noexcept { put(std::bit_cast<std::uint64_t>(value)); }
-  void put(const Vector3d& value) noexcept {
-    for (const double x : value) put(x);
-  }
-
- private:
-  std::span<std::byte> bytes_;
-  std::size_t at_ = 0;
-};
-
-class PacketReader {
- public:
-  explicit PacketReader(std::span<const std::byte> bytes) noexcept : bytes_(bytes) {}
-
-  template <class T>
-  T take() noexcept {
-    T value = 0;
-    for (std::size_t i = 0; i < sizeof value; ++i) {
-      value = static_cast<T>(value | static_cast<T>(static_cast<T>(bytes_[at_++]) << (8 * i)));
-    }
-    return value;
-  }
-  double take_double() noexcept { return std::bit_cast<double>(take<std::uint64_t>()); }
-  Vector3d take_vector() noexcept {
-    Vector3d value;
-    for (double& x : value) x = take_double();
-    return value;
-  }
-
- private:
-  std::span<const std::byte> bytes_;
-  std::size_t at_ = 0;
-};
 
 bool within(const Vector3d& value, double largest) noexcept {
   return value.cwiseAbs().maxCoeff() <= largest;
@@ -83,7 +39,7 @@ PacketFlaw judge(const StatePacket& packet) noexcept {
 
 ParsedState parse_state(std::span<const std::byte> bytes) noexcept {
   if (bytes.size() != kStatePacketSize) return {PacketFlaw::length, {}};
-  PacketReader reader(bytes);
+  LittleEndianReader reader(bytes);
   if (reader.take<std::uint32_t>() != kStateMagic) return {PacketFlaw::magic, {}};
   if (reader.take<std::uint16_t>() != kRemoteVersion) return {PacketFlaw::version, {}};
   const unsigned flags = reader.take<std::uint16_t>();
@@ -104,7 +60,7 @@ ParsedState parse_state(std::span<const std::byte> bytes) noexcept {
 
 std::array<std::byte, kStatePacketSize> encode(const StatePacket& packet) noexcept {
   std::array<std::byte, kStatePacketSize> bytes{};
-  Writer writer(bytes);
+  LittleEndianWriter writer(bytes);
   writer.put(kStateMagic);
   writer.put(kRemoteVersion);
   writer.put(static_cast<std::uint16_t>((packet.has_velocity ? kHasVelocity : 0) |
@@ -119,7 +75,7 @@ std::array<std::byte, kStatePacketSize> encode(const StatePacket& packet) noexce
 
 std::array<std::byte, kForcePacketSize> encode(const ForcePacket& packet) noexcept {
   std::array<std::byte, kForcePacketSize> bytes{};
-  Writer writer(bytes);
+  LittleEndianWriter writer(bytes);
   writer.put(kForceMagic);
   writer.put(kRemoteVersion);
   writer.put(

@@ -12,8 +12,8 @@
 
 namespace palpate::sensor {
 
-// The optional drivers. The build takes DRIVER_camera.cpp where its library is there, and what it
-// makes of absent_camera.cpp.in where it is not.
+// The drivers. Of the optional ones the build takes DRIVER_camera.cpp where its library is there,
+// and what it makes of absent_camera.cpp.in where it is not.
 [[nodiscard]] DriverInfo openni2_driver();
 /// `device`: empty, a URI, or the path of an .oni file.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_openni2(const std::string& device,
@@ -32,6 +32,14 @@ namespace palpate::sensor {
 /// arrival. The environment says in which domain (dds::environment_options()).
 [[nodiscard]] std::unique_ptr<DepthCamera> open_ros(const std::string& name,
                                                     const CameraOptions& options);
+
+[[nodiscard]] DriverInfo remote_driver();
+/// `path`: of the socket that programs send frames to (docs/remote_camera.md); empty:
+/// palpate-camera in $XDG_RUNTIME_DIR. Serves one program at a time, each with the same camera as
+/// the first, and gives the newest of the frames that came.
+/// @throws Error when the socket cannot be had.
+[[nodiscard]] std::unique_ptr<DepthCamera> open_remote(const std::string& path,
+                                                       const CameraOptions& options);
 
 [[nodiscard]] DriverInfo bag_driver();
 /// `name`: "FILE[:TOPIC][,frame=FRAME]", depth images or clouds (as for open_ros()) in an MCAP bag

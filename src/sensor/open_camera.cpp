@@ -41,16 +41,18 @@ std::unique_ptr<DepthCamera> open_camera(const std::string& name, const CameraOp
   if (driver == "freenect") return open_freenect(device, options);
   if (driver == "bag") return open_bag(device, options);
   if (driver == "ros") return open_ros(device, options);
+  if (driver == "remote") return open_remote(device, options);
   if (name.ends_with(".oni")) return open_openni2(name, options);
   throw Error(fmt::format(
       "{}: no such camera. Cameras are simulated[:SCENE], sequence:DIR, bag:FILE, openni2[:URI], "
-      "FILE.oni, freenect[:NUMBER] and ros:TOPIC; 'palpate cameras' lists those connected.",
+      "FILE.oni, freenect[:NUMBER], ros:TOPIC and remote[:PATH]; 'palpate cameras' lists those "
+      "connected.",
       name));
 }
 
 std::vector<DriverInfo> list_cameras() {
-  return {simulated_driver(), sequence_driver(), bag_driver(),
-          openni2_driver(),   freenect_driver(), ros_driver()};
+  return {simulated_driver(), sequence_driver(), bag_driver(),   openni2_driver(),
+          freenect_driver(),  ros_driver(),      remote_driver()};
 }
 
 }  // namespace palpate

@@ -118,7 +118,7 @@ void SimulatedStream::Player::schedule() {
 void SimulatedStream::Player::do_without(DepthCamera::Status status) {
   if (left_out(status))
     log.frame_received(next, objection_to(status, reason), check.size_changes());
-  if (status == DepthCamera::Status::waiting) log.waiting(next);
+  if (status == DepthCamera::Status::waiting) log.waiting(next, reason);
   if (status == DepthCamera::Status::failed) log.failed(next, reason, failures > 1);
   next += frame_time;
 }

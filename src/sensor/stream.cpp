@@ -154,7 +154,7 @@ void Stream::Threads::read() {
   DepthFrame frame;
   while (exchange.wait_for_room()) {
     const DepthCamera::Status status = ask(camera, frame, options.patience, reason);
-    if (status == DepthCamera::Status::waiting) log.waiting(clock.now());
+    if (status == DepthCamera::Status::waiting) log.waiting(clock.now(), reason);
     if (left_out(status)) leave_out(status);
     if (status == DepthCamera::Status::ended) break;
     if (status == DepthCamera::Status::frame && !take(frame)) return;

@@ -172,7 +172,7 @@ DepthCamera::Status ask(DepthCamera& camera, DepthFrame& frame, double timeout,
                         std::string& reason) {
   try {
     const DepthCamera::Status status = camera.read(frame, timeout);
-    if (left_out(status) || status == DepthCamera::Status::failed) reason = camera.reason();
+    if (status != DepthCamera::Status::frame) reason = camera.reason();
     return status;
   } catch (const std::exception& error) {
     reason = error.what();
@@ -202,6 +202,7 @@ void StreamStatistics::frame_received(double now, const std::optional<Objection>
   ++state_.frames;
   state_.last_frame = now;
   objection_ = objection ? objection->words : "";
+  reason_.clear();
   if (size_changes != state_.size_changes) {
     state_.size_changes = size_changes;
     note(now, "its frame size changed");
@@ -255,9 +256,10 @@ void StreamStatistics::ended() {
   state_.phase = StreamState::Phase::ended;
 }
 
-void StreamStatistics::waiting(double now) {
+void StreamStatistics::waiting(double now, const std::string& reason) {
   const std::lock_guard lock(mutex_);
   failing_ = false;
+  reason_ = reason.empty() ? "" : ": " + reason;
   look(now);
 }
 
@@ -273,9 +275,9 @@ void StreamStatistics::look(double now) {
   state_.phase = StreamState::Phase::stalled;
   if (std::exchange(told_, true)) return;
   ++state_.stalls;
-  note(now, objection_.empty() ? fmt::format("no frame for {:.3g} s", now - useful_)
-                               : fmt::format("no usable frame for {:.3g} s; the last: {}",
-                                             now - useful_, objection_));
+  const std::string_view kind = objection_.empty() ? "" : "usable ";
+  const std::string why = !objection_.empty() ? "; the last: " + objection_ : reason_;
+  note(now, fmt::format("no {}frame for {:.3g} s{}", kind, now - useful_, why));
 }
 
 void StreamStatistics::note(double now, const std::string& what) {

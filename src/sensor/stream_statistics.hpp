@@ -67,7 +67,7 @@ inline void require_time(bool good, double seconds, const char* what, const std:
 }
 
 /// DepthCamera::read() of a camera that may also throw: it has failed then. `reason` says why where
-/// no whole frame came, and is left as it is otherwise.
+/// no whole frame came, if the camera knows, and is left as it is otherwise.
 [[nodiscard]] DepthCamera::Status ask(DepthCamera& camera, DepthFrame& frame, double timeout,
                                       std::string& reason);
 
@@ -87,8 +87,8 @@ class StreamStatistics {
   void refused(double now, const std::string& why);
   void touchable(double latency);
   void failed(double now, const std::string& why, bool repeatedly);
-  /// The camera is well and has no frame yet.
-  void waiting(double now);
+  /// The camera is well and has no frame yet; `reason` says why, or is empty.
+  void waiting(double now, const std::string& reason);
   /// To be told, though nothing is dropped for it.
   void warning(double now, const std::string& what);
   void retried();
@@ -111,6 +111,7 @@ class StreamStatistics {
   double latency_sum_ = 0;
   std::uint64_t latencies_ = 0;
   std::string objection_;  // to the last frame; empty: none
+  std::string reason_;     // ": " and why there is no frame since then; empty: not known
 };
 
 }  // namespace palpate::sensor

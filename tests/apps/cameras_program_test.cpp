@@ -22,11 +22,11 @@ TEST(Cameras, ListsDriversDevicesAndWhatIsMissing) {
   const Outcome outcome = shell.run("cameras --json cameras.json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   for (const char* word :
-       {"simulated:table", "sequence", "openni2", "freenect", "Kinect", "ros", "bag"}) {
+       {"simulated:table", "sequence", "openni2", "freenect", "Kinect", "ros", "bag", "remote"}) {
     EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
   }
   const auto drivers = nlohmann::json::parse(shell.read("cameras.json"));
-  ASSERT_EQ(drivers.size(), 6u);
+  ASSERT_EQ(drivers.size(), 7u);
   for (const auto& driver : drivers) {
     const bool available = driver["available"].get<bool>();
     EXPECT_EQ(available, driver["missing"].get<std::string>().empty()) << driver["name"];
@@ -41,7 +41,7 @@ TEST(Cameras, GivesDataAloneOnStandardOutput) {
   bear_with_foreign_faults(shell);
   const Outcome outcome = shell.run("cameras --json -");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(nlohmann::json::parse(outcome.out).size(), 6u);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out).size(), 7u);
 }
 
 }  // namespace

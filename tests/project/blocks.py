@@ -1,6 +1,7 @@
 """The code in the documents: where it is, what it says, and the desk of files that it is tried on."""
 
 import array
+import contextlib
 import copy
 import dataclasses
 import functools
@@ -125,7 +126,7 @@ class Desk:
         """Runs the program; what runs until Ctrl-C gets that after two seconds. Returns exit code and what it printed."""
         environment = {key: value for key, value in os.environ.items() if key not in {"DISPLAY", "WAYLAND_DISPLAY"}}
         command = [self.program, *map(harmless, words[1:])]
-        with subprocess.Popen([*alone(), *command], cwd=self.folder, stdin=subprocess.DEVNULL, text=True, stdout=subprocess.PIPE,
+        with camera(words, self.folder), subprocess.Popen([*alone(), *command], cwd=self.folder, stdin=subprocess.DEVNULL, text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, env={**environment, "XDG_RUNTIME_DIR": str(self.folder)}) as child:
             try:
                 printed, _ = child.communicate(timeout=2 if words[1] == "replay" and "--view" in words else 120)
@@ -161,6 +162,22 @@ class Desk:
                     del words[at:at + (1 if value is None else 2)]
                 words += [option] if value is None else [option, value]
         return words
+
+
+@contextlib.contextmanager
+def camera(words, folder):
+    """The example's camera, where a command waits for one: it tries until the socket is there."""
+    if "camera:remote" not in words:
+        yield
+        return
+    client = f"{shlex.quote(sys.executable)} {shlex.quote(str(ROOT / 'examples' / 'remote_camera_client.py'))}"
+    loop = f"while true; do {client} palpate-camera; sleep 0.2; done"
+    with subprocess.Popen(["sh", "-c", loop], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                          start_new_session=True) as child:
+        try:
+            yield
+        finally:
+            os.killpg(child.pid, signal.SIGKILL)
 
 
 @functools.cache

@@ -55,7 +55,7 @@ TEST(OpenCamera, SaysWhichCamerasThereAre) {
 
 TEST(OpenCamera, ListsEveryDriverAndWhatIsMissing) {
   const std::vector<DriverInfo> drivers = list_cameras();
-  ASSERT_EQ(drivers.size(), 6u);
+  ASSERT_EQ(drivers.size(), 7u);
   for (const DriverInfo& driver : drivers) {
     EXPECT_FALSE(driver.description.empty()) << driver.name;
     EXPECT_EQ(driver.available, driver.missing.empty()) << driver.name;

@@ -4,6 +4,7 @@
 #include <future>
 
 #include "sensor/stream_fixture.hpp"
+#include "sensor/stream_statistics.hpp"
 
 namespace palpate {
 namespace {
@@ -165,6 +166,16 @@ TEST_F(StreamTest, TakesACameraThatWaitsAfterItFailedForAStalledOne) {
   pass(stream, 0.3);
   EXPECT_EQ(stream.state().phase, StreamState::Phase::stalled);
   EXPECT_EQ(stream.state().problem, "table (fake): no frame for 0.5 s");
+}
+
+TEST(StreamStatistics, SayWhatASilentCameraWaitsFor) {
+  sensor::StreamStatistics log("table", "fake", 0.5, 0);
+  log.waiting(0.4, "nobody is there");
+  EXPECT_EQ(log.state(0.4).problem, "");
+  log.waiting(0.6, "nobody is there");
+  EXPECT_EQ(log.state(0.6).problem, "table (fake): no frame for 0.6 s: nobody is there");
+  log.frame_received(0.7, {}, 0);
+  EXPECT_EQ(log.state(1.4).problem, "table (fake): no frame for 0.7 s") << "somebody was";
 }
 
 // A driver that does not come back from read().

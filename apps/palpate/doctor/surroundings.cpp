@@ -71,12 +71,13 @@ Answer runtime_folder(const Machine& machine) {
   static constexpr const char* kRemedy = "export XDG_RUNTIME_DIR=$(mktemp -d)";
   const std::string folder = variable(machine.system, "XDG_RUNTIME_DIR");
   if (folder.empty()) {
-    return note("not set: the remote device has no default socket path", kRemedy);
+    return note("not set: remote devices and cameras have no default socket path", kRemedy);
   }
   const auto path = machine.system.root / std::filesystem::path(folder).relative_path();
   if (machine.system.node(path).may_open) return good(folder);
-  return warning(folder + " is not writable: the remote device cannot create its socket there",
-                 kRemedy);
+  return warning(
+      folder + " is not writable: remote devices and cameras cannot create their sockets there",
+      kRemedy);
 }
 
 Answer pictures(const Machine& machine) {

@@ -173,8 +173,8 @@ void add_placed_sources(OptionTable& table, TouchChoices& o) {
       "sources", o.sources, "SOURCE",
       cloud_help() +
           "; or a live source: camera:simulated[:SCENE], camera:openni2, camera:freenect, "
-          "sequence:FOLDER, bag:FILE[:TOPIC], ros:TOPIC, or an .oni file ('palpate cameras' lists "
-          "those available)");
+          "camera:remote[:PATH], sequence:FOLDER, bag:FILE[:TOPIC], ros:TOPIC, or an .oni file "
+          "('palpate cameras' lists those available)");
   table.under("Reading");
   table.add("--setup", o.setup, "FILE",
             "TOML file with sources, poses, surface, material, hand; the command line overrides it "

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/terminal.hpp"
@@ -76,6 +77,10 @@ constexpr double kAnswerWait = 0.1;  // s, for one answer
 // Answers of a camera that waits for nothing: of a recording whose first minutes are of no use.
 constexpr int kAnswerTries = 5000;
 
+void tell_meanwhile(const CameraInfo& camera, const std::string& problem) {
+  fmt::print(stderr, "{}: {}\n", without_controls(camera.name), without_controls(problem));
+}
+
 std::unique_ptr<DepthCamera> open(const SourcePlan& source, const Clock* clock) {
   const std::string& path = source.argument.path;
   const std::string name = path.starts_with(kCamera) ? path.substr(kCamera.size()) : path;
@@ -133,18 +138,25 @@ bool is_failure(DepthCamera::Status status) {
 }
 
 DepthFrame first_frame(DepthCamera& camera, std::size_t* failures) {
-  const Waiting waiting(fmt::format("waiting for the first frame of {}", camera.info().name));
+  const CameraInfo& info = camera.info();
+  std::optional<Waiting> waiting;
+  if (!info.awaits_sender) {
+    waiting.emplace(fmt::format("waiting for the first frame of {}", info.name));
+  }
   DepthFrame frame;
   std::string problem = "no frame arrived";
-  const int tries = camera.info().paces ? static_cast<int>(kPatience / kAnswerWait) : kAnswerTries;
-  for (int i = 0; i < tries; ++i) {
+  const int tries = info.paces ? static_cast<int>(kPatience / kAnswerWait) : kAnswerTries;
+  for (int i = 0; i < tries || info.awaits_sender; ++i) {
     const DepthCamera::Status status = camera.read(frame, kAnswerWait);
     if (status == DepthCamera::Status::frame) return frame;
     if (failures != nullptr && is_failure(status)) ++*failures;
-    if (!camera.reason().empty()) problem = camera.reason();
+    if (!camera.reason().empty() && problem != camera.reason()) {
+      problem = camera.reason();
+      if (info.awaits_sender) tell_meanwhile(info, problem);
+    }
     if (status == DepthCamera::Status::ended) break;
   }
-  throw Error(fmt::format("{} delivered no frame: {}", camera.info().name, problem));
+  throw Error(fmt::format("{} delivered no frame: {}", info.name, problem));
 }
 
 PointCloud cloud_of(const DepthFrame& frame) {

@@ -36,7 +36,8 @@ struct LoadedCloud {
 /// The same at its own pace where it has one, else as fast as it is asked.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_stream_at_any_pace(const SourcePlan& source);
 
-/// The next frame of use, waiting for some seconds at most.
+/// The next frame of use, waiting for some seconds at most; where who sends them may come at any
+/// time (CameraInfo::awaits_sender), as long as that takes, saying on standard error what is amiss.
 /// `failures` counts reads that failed before.
 /// @throws Error that names the camera and what it complained of.
 [[nodiscard]] DepthFrame first_frame(DepthCamera& camera, std::size_t* failures = nullptr);

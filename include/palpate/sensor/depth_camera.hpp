@@ -17,6 +17,8 @@ struct CameraInfo {
   /// A frame may be the one before bit for bit though all is well: there is no noise in it, or one
   /// image is all there is. From other cameras such a frame says that the picture is frozen.
   bool repeats = false;
+  /// Another program sends its frames and may come at any time: until then it waits.
+  bool awaits_sender = false;
   /// What was assumed of it because nothing said so, for people; empty: nothing was.
   std::string assumed = {};
 };
@@ -48,7 +50,8 @@ class DepthCamera {
   /// Fills `frame` with the next image, reusing its memory, waiting for it at most `timeout` s.
   [[nodiscard]] virtual Status read(DepthFrame& frame, double timeout) = 0;
 
-  /// Why the last read() failed or what damaged its frame, and what to do; empty otherwise.
+  /// Why the last read() failed, what damaged its frame or, if that is known, what it waits for,
+  /// and what to do; empty otherwise.
   [[nodiscard]] virtual std::string reason() const = 0;
 
  protected:
@@ -68,7 +71,7 @@ struct CameraOptions {
 /// "sequence:DIR" (docs/sequences.md), "bag:FILE[:TOPIC][,frame=FRAME]" (docs/bags.md),
 /// "openni2[:URI]" (PrimeSense, Xtion; without URI the first that is there), "openni2:FILE.oni" or
 /// just "FILE.oni", "freenect[:NUMBER]" (Kinect v1; the first is 0), "ros:TOPIC[,frame=FRAME]"
-/// (docs/ros2.md). Set-up: one thread at a time.
+/// (docs/ros2.md), "remote[:PATH]" (docs/remote_camera.md). Set-up: one thread at a time.
 /// @throws Error when the name is none of these, when the build lacks the driver, when there is no
 ///   such camera, it is in use or may not be used; says what to do.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_camera(const std::string& name,
