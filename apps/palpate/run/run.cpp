@@ -24,8 +24,7 @@ constexpr double kLongestRun = 86'400;  // s
 
 constexpr double kReachingSpeed = 2;  // m/s, about what an arm reaches with
 
-// A simulated hand is no motor, and PacedDevice makes it catch up with what a late servo missed: so
-// late a step is harmless.
+// So late a step is harmless where PacedDevice catches up with what the servo missed.
 constexpr double kSimulatedSilence = 0.05;  // s
 
 std::string socket_path(const DevicePlan& plan) {
