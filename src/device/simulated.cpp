@@ -200,16 +200,17 @@ void SimulatedDevice::Inside::fail(const char* what) noexcept {
 // Times are asked for once each, in growing order.
 TargetSource::Target SimulatedDevice::Inside::target_at(double time) noexcept {
   if (source != nullptr) return source->target(time, position);
-  if (trajectory.empty()) return {options.position, 0};
-  return {trajectory.at(time), 0};
+  if (trajectory.empty()) return {options.position};
+  return {trajectory.at(time)};
 }
 
 // The goal that pulls no harder than the hand does.
 Eigen::Vector3d SimulatedDevice::Inside::within_reach(const Eigen::Vector3d& goal) const noexcept {
   const Eigen::Vector3d stretch = goal - position;
   const double pull = options.hand.stiffness * stretch.norm();
-  if (pull <= options.hand.maximum_force) return goal;
-  return position + options.hand.maximum_force / pull * stretch;
+  const double most = std::min(options.hand.maximum_force, target.maximum_force);
+  if (pull <= most) return goal;
+  return position + most / pull * stretch;
 }
 
 Eigen::Vector3d SimulatedDevice::Inside::quantised() const noexcept {

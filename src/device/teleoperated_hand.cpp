@@ -33,7 +33,8 @@ RemoteTarget::RemoteTarget() : inside_(std::make_unique<Inside>()) {}
 RemoteTarget::~RemoteTarget() = default;
 
 bool RemoteTarget::move(const TargetSource::Target& target, double stamp) noexcept {
-  if (!target.position.allFinite() || !std::isfinite(stamp)) return false;
+  if (!target.position.allFinite() || !(target.maximum_force > 0) || !std::isfinite(stamp))
+    return false;
   Command& newest = inside_->newest;
   newest = {target, stamp, true, newest.moves + 1};
   inside_->shared.set(newest);
@@ -143,6 +144,7 @@ void TeleoperatedHand::Inside::choose_mode(double now) noexcept {
     mode = Mode::returning;
   }
   target.buttons = held ? command.target.buttons : 0;
+  target.maximum_force = held ? command.target.maximum_force : TargetSource::Target().maximum_force;
 }
 
 void TeleoperatedHand::Inside::advance(double now, const Vector3d& position) noexcept {

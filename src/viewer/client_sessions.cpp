@@ -142,7 +142,9 @@ void ClientSessions::act(Session& session, const Hand& hand) {
     throw Error(fmt::format("no tool {} that a page can move", hand.device));
   }
   if (session.lost.contains(hand.device)) return;  // said before it knew
-  controls.hand(hand.device, options_.origin + hand.position, hand.buttons);
+  TargetSource::Target target = hand.target;
+  target.position += options_.origin;
+  controls.hand(hand.device, target);
   Session* const before = holders_[hand.device];
   if (before != nullptr && before != &session) lose(hand.device, "another page took the tool");
   holders_[hand.device] = &session;
@@ -189,9 +191,10 @@ void ClientSessions::act(Session&, const Pause& pause) {
   options_.controls.pause(pause.on);
 }
 
-void ClientSessions::act(Session&, const Reset&) {
+void ClientSessions::act(Session&, const Reset& reset) {
   require(options_.controls.reset, "reset");
-  options_.controls.reset();
+  if (reset.device.value_or(0) >= holders_.size()) throw Error("unknown tool");
+  options_.controls.reset(reset.device);
 }
 
 void ClientSessions::act(Session&, const Record& record) {

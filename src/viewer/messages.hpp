@@ -32,8 +32,7 @@ struct Hello {
 };
 struct Hand {
   std::size_t device = 0;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, relative to the origin; finite
-  std::uint32_t buttons = 0;
+  TargetSource::Target target;  ///< position: m, relative to the origin; finite
 };
 struct Release {
   std::size_t device = 0;
@@ -48,7 +47,9 @@ struct Preset {
 struct Pause {
   bool on = false;
 };
-struct Reset {};
+struct Reset {
+  std::optional<std::size_t> device;  ///< unset: all
+};
 struct Record {
   bool on = false;
 };
@@ -106,6 +107,7 @@ struct Welcome {
   std::string scene;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  std::optional<Eigen::Vector3d> eye;
   double radius = 0;
   std::vector<DeviceLabel> devices;
   std::vector<SourceLabel> sources;

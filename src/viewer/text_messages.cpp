@@ -20,6 +20,8 @@ constexpr double kLongestTime = 1e9;  // s
 constexpr double kSlowest = 0.1;
 constexpr double kFastest = 4;
 constexpr double kAllButtons = 4294967295.0;  // 2^32 - 1
+constexpr double kLeastForce = 1e-3;          // N, of a hand's pull
+constexpr double kMostForce = 1e3;
 
 // Thrown in here alone: becomes Unreadable.
 struct Unread {
@@ -73,10 +75,13 @@ Hand hand(const json& object) {
   Hand hand;
   hand.device = device(object);
   for (std::size_t i = 0; i < 3; ++i) {
-    hand.position[static_cast<Eigen::Index>(i)] =
+    hand.target.position[static_cast<Eigen::Index>(i)] =
         number(place[i], "position", -kFarthestHand, kFarthestHand);
   }
-  hand.buttons = static_cast<std::uint32_t>(whole(object, "buttons", kAllButtons));
+  hand.target.buttons = static_cast<std::uint32_t>(whole(object, "buttons", kAllButtons));
+  if (object.contains("force")) {
+    hand.target.maximum_force = number(object["force"], "force", kLeastForce, kMostForce);
+  }
   return hand;
 }
 
@@ -98,7 +103,8 @@ ClientMessage read_object(const json& object) {
   if (type == "set") return set(object);
   if (type == "preset") return Preset{word(member(object, "name"), "name")};
   if (type == "pause") return Pause{on(object)};
-  if (type == "reset") return Reset{};
+  if (type == "reset")
+    return Reset{object.contains("device") ? std::optional(device(object)) : std::nullopt};
   if (type == "record") return Record{on(object)};
   if (type == "seek") return Seek{number(member(object, "time"), "time", 0, kLongestTime)};
   if (type == "play") {
@@ -188,6 +194,7 @@ std::string welcome_text(const Welcome& welcome) {
                {"scene", welcome.scene},    {"origin", json_of(welcome.origin)},
                {"up", json_of(welcome.up)}, {"radius", welcome.radius},
                {"presets", welcome.presets}};
+  if (welcome.eye) message["eye"] = json_of(*welcome.eye);
   if (welcome.time_line) message["timeline"] = {{"length", *welcome.time_line}};
   json& devices = message["devices"] = json::array();
   for (const DeviceLabel& device : welcome.devices) {

@@ -78,8 +78,10 @@ ViewerControls complete(ViewerControls controls, const std::vector<Servo*>& serv
     };
   }
   if (!controls.reset) {
-    controls.reset = [servos] {
-      for (Servo* servo : servos) servo->reset();
+    controls.reset = [servos](std::optional<std::size_t> hand) {
+      for (std::size_t i = 0; i < servos.size(); ++i) {
+        if (i == hand.value_or(i)) servos[i]->reset();
+      }
     };
   }
   return controls;
@@ -169,6 +171,7 @@ Welcome Viewer::Parts::welcome() {
   welcome.scene = options.scene;
   welcome.origin = *options.origin;
   welcome.up = options.up;
+  if (options.eye) welcome.eye = *options.eye - *options.origin;
   welcome.radius = box.empty() ? kEmptyRadius : 0.5 * box.size().norm();
   const std::vector<ViewedStream> seen = streams();
   for (std::size_t i = 0; i < scene.size(); ++i) {

@@ -103,7 +103,9 @@ TEST(ClientSessions, PresetPauseResetPointsAndPingDoWhatTheySay) {
   rig.answers(session, R"({"type":"pause","on":true})");
   EXPECT_TRUE(rig.paused);
   rig.answers(session, R"({"type":"reset"})");
-  EXPECT_EQ(rig.resets, 1);
+  rig.answers(session, R"({"type":"reset","device":0})");
+  EXPECT_EQ(rig.resets, (std::vector<std::optional<std::size_t>>{std::nullopt, 0}));
+  rig.expect_refused(session, R"({"type":"reset","device":9})");
   rig.answers(session, R"({"type":"points","points":77})");
   EXPECT_EQ(session.points, 77u);
   const auto pong = rig.answers(session, R"({"type":"ping","id":12})");

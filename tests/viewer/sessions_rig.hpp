@@ -31,9 +31,10 @@ struct SessionsRig {
     options.controls.presets = {"soft"};
     options.controls.preset = [this](const std::string& name) { preset = name; };
     options.controls.pause = [this](bool on) { paused = on; };
-    options.controls.reset = [this] { ++resets; };
-    options.controls.hand = [this](std::size_t, const Eigen::Vector3d& place, std::uint32_t) {
-      hand = place;
+    options.controls.reset = [this](std::optional<std::size_t> hand) { resets.push_back(hand); };
+    options.controls.hand = [this](std::size_t, const TargetSource::Target& target) {
+      hand = target.position;
+      pull = target.maximum_force;
     };
     options.controls.release = [this](std::size_t device) { released.push_back(device); };
     options.devices = {{"one", true}, {"two", false}};
@@ -74,8 +75,9 @@ struct SessionsRig {
   Setting setting{.key = "k", .label = "Stiffness", .least = 0, .most = 100, .value = 20.0};
   std::string preset;
   bool paused = false;
-  int resets = 0;
+  std::vector<std::optional<std::size_t>> resets;
   Eigen::Vector3d hand = Eigen::Vector3d::Zero();
+  double pull = 0;
   std::vector<std::size_t> released;
   std::deque<Session> clients;
   std::optional<ClientSessions> sessions;

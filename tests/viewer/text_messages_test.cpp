@@ -28,8 +28,8 @@ TEST(ClientMessage, EveryKindOfTheProtocolIsRead) {
   const Hand hand =
       read<Hand>(R"({"type":"hand","device":1,"position":[0.1,-2,3e-3],"buttons":4294967295})");
   EXPECT_EQ(hand.device, 1u);
-  EXPECT_EQ(hand.position, Eigen::Vector3d(0.1, -2, 3e-3));
-  EXPECT_EQ(hand.buttons, 4294967295u);
+  EXPECT_EQ(hand.target.position, Eigen::Vector3d(0.1, -2, 3e-3));
+  EXPECT_EQ(hand.target.buttons, 4294967295u);
   EXPECT_EQ(read<Release>(R"({"type":"release","device":2})").device, 2u);
   EXPECT_EQ(std::get<double>(read<Set>(R"({"type":"set","key":"k","value":-1.5})").value), -1.5);
   EXPECT_EQ(std::get<bool>(read<Set>(R"({"type":"set","key":"k","value":true})").value), true);

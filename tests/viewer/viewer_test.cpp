@@ -240,7 +240,8 @@ TEST(Viewer, AHandIsReleasedWhenItsPageGoesAway) {
   std::atomic<int> released{0};
   std::atomic<double> height{0};
   ViewerControls controls;
-  controls.hand = [&](std::size_t, const Eigen::Vector3d& place, std::uint32_t) {
+  controls.hand = [&](std::size_t, const TargetSource::Target& target) {
+    const Eigen::Vector3d& place = target.position;
     height = place.z();
   };
   controls.release = [&](std::size_t) { ++released; };

@@ -33,7 +33,6 @@ import { World } from "./view/world";
 const kPlotInterval = 50; // ms
 const kSettled = 10_000; // ms, from when on the speed of drawing counts
 const kSlow = 100; // ms a picture
-const kStiffness = 500; // N/m, where none is told
 const kCalmInterval = 250; // ms, where less motion is asked for
 
 export class App {
@@ -75,10 +74,7 @@ export class App {
     );
     this.look = new LookPanel(() => this.relook(), () => this.tellPoints());
     this.hand = new Hand(send, () => this.holdChanged());
-    this.stroke = new Stroke(
-      this.world, this.hand, () => Number(this.session.values.get("stiffness") ?? kStiffness),
-      () => this.session.devices.length === 1 && send({ type: "reset" }), // it is all hands' reset
-    );
+    this.stroke = new Stroke(this.world, this.hand, () => send({ type: "reset", device: this.hand.device }));
     this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
     const take = () => this.hold.take();
     this.bar = new Bar(this.session, this.world, this.sound, this.notices, link.token, send);
@@ -91,6 +87,7 @@ export class App {
       reset: () => this.bar.reset(),
       fit: () => this.world.followTool(undefined),
       follow: () => this.bar.follow(),
+      turnUpright: () => this.bar.turnUpright(),
       help: () => this.bar.help(),
       freeze: () => this.freeze(),
       sayForce: () => (byId("polite").textContent = this.readout.sentence(this.session.tool)),
@@ -251,7 +248,7 @@ export class App {
     this.settings.watch(this.session.tool, now);
     this.bar.update();
     this.hold.update();
-    this.plots.update(now);
+    this.plots.update(now, this.world.stage.slow);
     this.watchSpeed(now);
   }
 
@@ -260,7 +257,7 @@ export class App {
     const { frameTime, software } = this.world.stage;
     if (this.saidSlow || now < kSettled || !(frameTime > kSlow)) return;
     this.saidSlow = true;
-    this.notices.add("info", `rendering is slow (${frameTime.toFixed(0)} ms per frame): show fewer points` +
+    this.notices.add("info", `rendering is slow (${frameTime.toFixed(0)} ms per frame): show fewer points, freeze the plots (H)` +
       (software ? ", or enable hardware acceleration in the browser" : ""));
   }
 

@@ -25,7 +25,7 @@ test("with a controller and a 3D mouse, a button that is held is pressed once", 
   const keys = { take: () => [0, 0, 0] } as unknown as Keys;
   const mouse = { read: () => ({ right: 0, up: 0, away: 0, buttons: 4 }) } as unknown as SpaceMouse;
   let taken = 0;
-  const input = new Input(world, hand, keys, mouse, new Stroke(world, hand, () => 500, () => undefined), () => {
+  const input = new Input(world, hand, keys, mouse, new Stroke(world, hand, () => undefined), () => {
     taken += 1;
     hand.take(0, hand.place);
     return true;

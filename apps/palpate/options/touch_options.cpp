@@ -166,6 +166,17 @@ is the first frame's timestamp. docs/touch.md explains log, report and picture.
 
 Exit codes: 0 done, 1 the input or the run failed, 2 the command line is wrong.)";
 
+Eigen::Vector3d parse_up(const std::string& text) {
+  const bool down = text.starts_with('-') && text.size() == 2;
+  const std::size_t axis = std::string_view("xyz").find(text.substr(down ? 1 : 0));
+  if (axis < 3 && text.size() == (down ? 2U : 1U)) {
+    return (down ? -1 : 1) * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis));
+  }
+  const Eigen::Vector3d up = parse_point(text, "--up");
+  if (!(up.norm() > 0)) throw UsageError("--up: 0,0,0 is no direction; give an axis such as y");
+  return up.normalized();
+}
+
 }  // namespace
 
 void add_placed_sources(OptionTable& table, TouchChoices& o) {
@@ -222,6 +233,14 @@ void add_page_options(OptionTable& table, PagePlan& page) {
   table
       .add("--port", page.port, "N", whole_number(0, 65535),
            "port of the page; 0: any free port (default: the first free one from 8420)")
+      .only_for(kPage);
+  table
+      .add_text(
+          "--up", KeyKind::numbers_or_text, "AXIS",
+          [&page](const std::string& text) { page.up = parse_up(text); },
+          "what the page shows as up: x, y, z, -x, -y, -z or a direction X,Y,Z (default: z; -y "
+          "where "
+          "all is in one camera's own axes, which have y down)")
       .only_for(kPage);
 }
 

@@ -64,6 +64,7 @@ struct PagePlan {
   bool open_browser = false;
   std::string address = {};                ///< empty: this machine alone
   std::optional<std::uint16_t> port = {};  ///< unset: the first free one from 8420 on
+  std::optional<Eigen::Vector3d> up = {};  ///< what is up in the world, 1 long; unset: as it seems
 };
 
 /// Files that a run writes; empty: it does not; "-": standard output.

@@ -175,8 +175,8 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   options.field = run.field;
   options.proxy = run.proxy;
   options.guard = run.time.guard;
-  if (hand.device->info().keeps_time) {
-    options.guard.silence = std::max(options.guard.silence, kSimulatedSilence);
+  if (hand.device->info().keeps_time && options.guard.silence == GuardOptions().silence) {
+    options.guard.silence = kSimulatedSilence;
   }
   options.workspace = hand.workspace;
   options.clutch_button = hand.chosen.placement.clutch;

@@ -190,6 +190,7 @@ void add_stream(Scene& scene, const LoadOptions& options, LoadedSource& result) 
   std::string problem;
   do {
     result.lens = first.camera;
+    result.posed = first.T_world_sensor.has_value();
     plan.options.depth = asked;
     believe_no_farther(first, plan);
     source.change(plan.options);  // forgets the frames before

@@ -45,6 +45,7 @@ struct LoadedSource {
   // Of a stream:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
   CameraModel lens;                     ///< of its first frame; of an organised cloud, too
+  bool posed = false;                   ///< its frames say where it stands
   FeedReport feed;                      ///< after the run
 };
 

@@ -25,11 +25,12 @@ class PageHold {
 
   [[nodiscard]] bool possible() const { return hand_.remote != nullptr; }
 
-  // The rest is for hands that can be taken. `place`: m, world.
-  void move(const Eigen::Vector3d& place, std::uint32_t buttons) {
+  // The rest is for hands that can be taken. `target`: world frame.
+  void move(TargetSource::Target target) {
     const std::lock_guard lock(mutex_);
     held_ = true;
-    hand_.remote->move({hand_.workspace.position_to_device(place), buttons}, clock_.now());
+    target.position = hand_.workspace.position_to_device(target.position);
+    hand_.remote->move(target, clock_.now());
   }
   void release() {
     const std::lock_guard lock(mutex_);
@@ -51,6 +52,18 @@ class PageHold {
 };
 
 namespace {
+
+using Eigen::Vector3d;
+
+// Are all sources in the axes of a camera's picture, x to the right and y down?
+bool in_picture_axes(const LoadedScene& loaded) {
+  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
+    const LoadedSource& source = loaded.sources[i];
+    if ((source.camera == nullptr && !source.depth_image) || source.posed) return false;
+    if (!loaded.scene.source(i).pose().linear().isIdentity(1e-9)) return false;
+  }
+  return true;
+}
 
 ViewSettings initial_settings(const Run& run) {
   ViewSettings settings;
@@ -129,6 +142,9 @@ struct View::Parts {
     if (!page.address.empty()) options.address = page.address;
     options.port = page.port;
     options.scene = title_of(run.loaded);
+    const bool picture = in_picture_axes(run.loaded);
+    if (picture) options.eye = run.loaded.scene.source(0).pose().translation();
+    options.up = page.up.value_or(picture ? Vector3d(-Vector3d::UnitY()) : Vector3d::UnitZ());
     options.streams = [this] { return streams_of(run, feed); };
     return options;
   }
@@ -148,8 +164,8 @@ struct View::Parts {
     controls.record = [this](bool on) { return run.recorder->record(on); };
     controls.recording = run.recorder->recording();
     controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };
-    controls.hand = [this](std::size_t hand, const Eigen::Vector3d& place, std::uint32_t buttons) {
-      holds[hand].move(place, buttons);
+    controls.hand = [this](std::size_t hand, const TargetSource::Target& target) {
+      holds[hand].move(target);
     };
     controls.release = [this](std::size_t hand) { holds[hand].release(); };
     return controls;

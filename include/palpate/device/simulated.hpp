@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,8 @@ class TargetSource {
   struct Target {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, device frame
     std::uint32_t buttons = 0;                           ///< bit k: button k is down
+    /// The hand pulls with no more, N, nor with more than SimulatedDeviceOptions::Hand says; above 0.
+    double maximum_force = std::numeric_limits<double>::infinity();
   };
 
   virtual ~TargetSource() = default;

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "palpate/device/simulated.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/stream.hpp"
 #include "palpate/servo/servo.hpp"
@@ -54,7 +55,8 @@ struct ViewerControls {
   std::function<void(const std::string& name)> preset = {};
 
   std::function<void(bool on)> pause = {};  ///< empty: Servo::pause of every servo
-  std::function<void()> reset = {};         ///< empty: Servo::reset of every servo
+  /// Of one servo by its index or, unset, of all; empty: Servo::reset.
+  std::function<void(std::optional<std::size_t> hand)> reset = {};
 
   /// Begins or ends a recording. Returns the file's name.
   std::function<std::string(bool on)> record = {};
@@ -90,9 +92,8 @@ struct ViewerControls {
 
   /// Can a page move this device's hand? Empty: where `hand` is there, all.
   std::function<bool(std::size_t device)> takeable = {};
-  /// Where a page's hand wants the tool to be (m, world), with buttons as bits.
-  std::function<void(std::size_t device, const Eigen::Vector3d& position, std::uint32_t buttons)>
-      hand = {};
+  /// What a page's hand wants of a tool, in the world frame.
+  std::function<void(std::size_t device, const TargetSource::Target& target)> hand = {};
   /// The page let go of the tool, or went away.
   std::function<void(std::size_t device)> release = {};
 };
@@ -139,6 +140,9 @@ struct ViewerOptions {
   /// sent in single precision relative to it.
   std::optional<Eigen::Vector3d> origin = {};
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  /// From where the scene is seen at first where no stream says where its sensor is, m, world;
+  /// unset: from anywhere.
+  std::optional<Eigen::Vector3d> eye = {};
   /// How the streams fare; called about four times a second by two threads of the viewer, perhaps
   /// at the same time.
   std::function<std::vector<Stream>()> streams = {};

@@ -10,6 +10,7 @@ export class Hand {
   held = false;
   device = 0;
   readonly place = new Vector3();
+  private force: number | undefined; // N, that it pulls with at most; undefined: as hard as it can
   private buttons = 0;
   private sent = -Infinity;
   private timer = 0;
@@ -23,6 +24,7 @@ export class Hand {
     this.device = device;
     this.place.copy(place);
     this.held = true;
+    this.force = undefined;
     this.mark();
     this.changed();
   }
@@ -36,15 +38,17 @@ export class Hand {
     this.changed();
   }
 
-  moveTo(place: Vector3): void {
-    if (!this.held) return;
+  moveTo(place: Vector3, force?: number): void {
+    if (!this.held || !Number.isFinite(place.lengthSq())) return;
     this.place.copy(place);
+    this.force = force;
     this.mark();
   }
 
   /** Right, up and away as the eye sees them, m. */
   nudge(camera: PerspectiveCamera, right: number, up: number, away: number): void {
     if (!this.held || (right === 0 && up === 0 && away === 0)) return;
+    this.force = undefined;
     this.place.add(new Vector3(right, up, -away).applyQuaternion(camera.quaternion));
     this.mark();
   }
@@ -68,6 +72,7 @@ export class Hand {
     this.sent = performance.now();
     this.send({
       type: "hand", device: this.device, position: this.place.toArray(), buttons: this.buttons,
+      ...(this.force === undefined ? {} : { force: this.force }),
     });
   }
 }

@@ -14,6 +14,7 @@ export interface Actions {
   reset(): void;
   fit(): void;
   follow(): void;
+  turnUpright(): void;
   help(): void;
   freeze(): void;
   sayForce(): void;
@@ -50,6 +51,7 @@ export class Keys {
       r: () => actions.reset(),
       f: () => actions.fit(),
       c: () => actions.follow(),
+      u: () => actions.turnUpright(),
       h: () => actions.freeze(),
       s: () => actions.sayForce(),
       "?": () => actions.help(),

@@ -10,10 +10,9 @@ import type { Stroke } from "./stroke";
 const kGrasp = 24; // pixels around the hand
 const kFinger = 40;
 const kNotch = 0.012; // of the distance, a notch of the wheel
-const kPen = 3; // N, of a pen that is pressed as hard as it can tell
 
 export class PointerInput {
-  free = false; // moves in the plane that faces the eye
+  private inPlane = false; // it moves in the plane that faces the eye
   private pointer: number | undefined; // that drags the hand
   private touches = new Set<number>();
   private readonly offset = new Vector3();
@@ -36,6 +35,17 @@ export class PointerInput {
     area.addEventListener("wheel", (event) => this.wheel(event), { capture: true, passive: false });
   }
 
+  /** Does a drag move the hand freely, not on the surface? */
+  get free(): boolean {
+    return this.inPlane;
+  }
+
+  set free(free: boolean) {
+    this.inPlane = free;
+    this.drag(undefined);
+    this.stroke.rest();
+  }
+
   private down(event: PointerEvent): void {
     if (event.target !== this.canvas) return;
     if (event.pointerType === "touch") this.touches.add(event.pointerId);
@@ -49,8 +59,8 @@ export class PointerInput {
     if (this.free) {
       this.offset.copy(this.hand.place).sub(this.onPlane(event) ?? this.hand.place);
     } else {
-      this.aim(event);
       this.stroke.press(true);
+      this.aim(event);
     }
   }
 
@@ -85,7 +95,7 @@ export class PointerInput {
 
   private aim(event: PointerEvent): void {
     this.stroke.aim(this.seen(event), event.pointerType === "touch");
-    if (event.pointerType === "pen" && event.pressure > 0) this.stroke.force = kPen * event.pressure;
+    if (event.pointerType === "pen" && event.pressure > 0) this.stroke.press(true, event.pressure);
   }
 
   private wheel(event: WheelEvent): void {

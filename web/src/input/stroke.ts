@@ -1,45 +1,40 @@
-// The tool on the surface under a pointer: it hovers there while it is held, presses while a button is
-// down, and goes in front of what lies between where the surface ends and another begins.
+// The tool on the surface under a pointer: it hovers there while it is held, and presses while a button is
+// down: the hand wants to be deep below the surface, but pulls with a limited force. To another surface it is
+// lifted: it goes there straight, and nothing holds it.
 
 import { Plane, Raycaster, Vector2, Vector3 } from "three";
 import type { Seen } from "../view/pick";
+import type { Tool } from "../view/tool";
 import type { World } from "../view/world";
 import type { Hand } from "./hand";
 
-const kBetween = [0.25, 0.5, 0.75]; // of the way, where it looks for what is in between
-const kPatience = 500; // ms between two ways out of a surface's back
-const kFirst = 1; // N, at which a press begins
+const kFirst = 1; // N, of a press
 const kLeast = 0.1;
 const kMost = 5;
+const kPen = 3; // of a pen that is pressed as hard as it can tell
 const kNotch = 1.25; // times the force, a notch of the wheel
-const kGain = 4; // of what the force lacks, a second
-const kDeepest = 4; // times as deep as the force wants: what the hand's own spring takes, and a soft start
+const kAbove = 2; // reaches of a pick, where it hovers
+const kBelow = 3; // and where a hand that presses wants to be
 const kGrazing = 0.25; // cosine: a plane seen flatter says nothing of where the pointer is on it
-const kAbove = 2; // reaches of a pick, where it hovers, and how much deeper than the points it searches
-const kSearch = 0.3; // s a reach
+const kPatience = 400; // ms in which a proxy that something else holds may come free
+const kSoftStart = 550; // ms, after which all of a force is felt again (GuardOptions::soft_start)
 const kPointer = 6; // pixels around a mouse in which a surface counts
 const kFinger = 14;
-const kLongest = 0.1; // s between two states that count
 
 export class Stroke {
-  force = kFirst; // N, that a press wants
+  private force = kFirst; // N
+  private pen: number | undefined; // N, as it is pressed
   private at: Vector2 | undefined; // the pointer in the picture, -1 to 1
   private finger = false;
   private pressing = false;
-  private sunk = 0; // m, below the surface
-  private inFront = false; // of it: from there alone it presses, and as deep as it searches
+  private there = false; // on the surface or above it: from there alone it presses
   private last: Seen | undefined;
-  private before = 0; // ms
-  private left = -Infinity; // ms, from behind a surface
+  private good = 0; // ms, when nothing else held the proxy
+  private freed = -Infinity; // ms
   private readonly caster = new Raycaster();
 
-  /** stiffness: of the surface, as it is set, N/m; putToHand: moves the proxy to the hand. */
-  constructor(
-    private readonly world: World,
-    private readonly hand: Hand,
-    private readonly stiffness: () => number,
-    private readonly putToHand: () => void,
-  ) {}
+  /** free: puts the proxy to the hand. */
+  constructor(private readonly world: World, private readonly hand: Hand, private readonly free: () => void) {}
 
   get active(): boolean {
     return this.at !== undefined && this.hand.held;
@@ -55,11 +50,12 @@ export class Stroke {
     this.finger = finger;
   }
 
-  press(on: boolean): void {
+  /** pressure: of a pen that tells it, 0 to 1. */
+  press(on: boolean, pressure?: number): void {
     this.pressing = on;
+    this.pen = pressure === undefined ? undefined : Math.max(kLeast, kPen * pressure);
   }
 
-  /** Of a wheel, and of a pen that feels how hard it is pressed. */
   harder(notches: number): void {
     this.force = Math.min(kMost, Math.max(kLeast, this.force * kNotch ** notches));
   }
@@ -68,42 +64,56 @@ export class Stroke {
   rest(): void {
     this.at = undefined;
     this.pressing = false;
-    this.inFront = false;
+    this.there = false;
+    this.force = kFirst;
   }
 
   /** At every state of the tool, which come more evenly than pictures; `now` in ms. */
   update(now: number): void {
-    const passed = Math.min(kLongest, Math.max(0, (now - this.before) / 1000));
-    this.before = now;
-    if (!this.active) return;
     const tool = this.world.tools[this.hand.device];
-    if (tool === undefined) return;
+    if (!this.active || tool === undefined) return;
     const seen = this.under(this.at!, this.finger);
     this.last = seen ?? this.beside() ?? this.last;
     if (this.last === undefined) return;
-    const { place, normal, reach, inward } = this.last;
-    const tangent = tool.touching ? this.tangent(tool.proxyPlace, tool.normal)?.add(inward) : undefined;
-    const felt = tangent !== undefined && tangent.distanceTo(place) < kAbove * reach;
-    if (felt) {
-      place.copy(tangent);
-      normal.copy(tool.normal);
-    }
-    const height = tool.hipPlace.clone().sub(place).dot(normal);
-    if (tool.touching && height > 0 && tool.normal.dot(this.caster.ray.direction) > kGrazing) this.leaveBack(now);
-    if (felt || height > reach / 2) this.inFront = true;
-    else if (height < -this.deepest(reach)) this.inFront = false;
-    const pressing = this.pressing && this.inFront && seen !== undefined && !tool.behind;
-    if (pressing) this.sunk = felt ? this.pressed(passed, tool.force.length()) : this.searched(passed, reach);
-    else this.sunk = this.force / this.stiffness();
-    const goal = place.clone().addScaledVector(normal, pressing ? -this.sunk : kAbove * reach);
-    this.hand.moveTo(this.way(tool.hipPlace, goal, kAbove * reach));
+    const felt = this.refine(this.last, tool);
+    const { place, normal, reach } = this.last;
+    const above = place.clone().addScaledVector(normal, kAbove * reach);
+    this.judge(tool, above, felt, now);
+    const pressing = this.pressing && this.there && seen !== undefined && !tool.behind;
+    if (pressing) this.hand.moveTo(place.clone().addScaledVector(normal, -kBelow * reach), this.pen ?? this.force);
+    else this.hand.moveTo(above);
   }
 
-  /** The hand is in front of a surface that holds the proxy from behind. */
-  private leaveBack(now: number): void {
-    if (now - this.left < kPatience) return;
-    this.left = now;
-    this.putToHand();
+  /** Is the proxy on that side of that surface? Then its tangent plane says finer than points do where the pointer is. */
+  private refine({ place, normal, reach, inward }: Seen, tool: Tool): boolean {
+    const facing = -tool.normal.dot(this.caster.ray.direction);
+    if (!tool.touching || facing <= 0) return false;
+    const tangent = facing > kGrazing ? this.tangent(tool.proxyPlace, tool.normal)?.add(inward) : undefined;
+    if ((tangent ?? tool.proxyPlace).distanceTo(place) > kAbove * reach) return false;
+    if (tangent !== undefined) place.copy(tangent);
+    normal.copy(tool.normal);
+    return true;
+  }
+
+  /** Is the tool on the surface or above it? It has to go there if it is far off in depth, or has missed it. */
+  private judge(tool: Tool, above: Vector3, felt: boolean, now: number): void {
+    const { place, normal, reach } = this.last!;
+    const way = place.clone().sub(tool.hipPlace);
+    const deep = Math.abs(way.dot(this.caster.ray.direction));
+    const aside = Math.sqrt(Math.max(0, way.lengthSq() - deep * deep));
+    const missed = way.dot(normal) > 0.9 * kBelow * reach;
+    if (felt) this.there = true;
+    else if (missed || deep > aside + 2 * kAbove * reach) this.there = false;
+    else if (now - this.freed > kSoftStart && tool.hipPlace.distanceTo(above) < reach) this.there = true;
+    if (felt || !tool.touching) this.good = now;
+    else if (!this.there || now - this.good > kPatience) this.putToHand(now);
+  }
+
+  private putToHand(now: number): void {
+    this.there = false;
+    if (now - this.freed < kPatience / 4) return;
+    this.freed = now;
+    this.free();
   }
 
   private under(at: Vector2, finger: boolean): Seen | undefined {
@@ -117,56 +127,13 @@ export class Stroke {
   private beside(): Seen | undefined {
     if (this.last === undefined) return undefined;
     const forward = this.world.stage.camera.getWorldDirection(new Vector3());
-    const plane = new Plane().setFromNormalAndCoplanarPoint(forward, this.last.place);
-    const place = this.caster.ray.intersectPlane(plane, new Vector3());
-    return place === null ? undefined : { place, normal: forward.negate(), reach: this.last.reach, inward: new Vector3() };
+    const place = this.tangent(this.last.place, forward);
+    return place && { place, normal: forward.negate(), reach: this.last.reach, inward: new Vector3() };
   }
 
-  /** What the pointer shows of the plane that holds the proxy: finer than points are. */
-  private tangent(proxy: Vector3, normal: Vector3): Vector3 | undefined {
-    const { ray } = this.caster;
-    if (-normal.dot(ray.direction) < kGrazing) return undefined;
-    return ray.intersectPlane(new Plane().setFromNormalAndCoplanarPoint(normal, proxy), new Vector3()) ?? undefined;
-  }
-
-  /** How deep leads to the force that is wanted, after some seconds of another, m. */
-  private pressed(seconds: number, force: number): number {
-    const unit = this.force / this.stiffness();
-    const before = Math.min(this.sunk, kDeepest * unit); // it may have searched deeper
-    return Math.max(0, before + kGain * seconds * (1 - force / this.force) * unit);
-  }
-
-  /** Deeper: what is felt is where points show it to within their reach. */
-  private searched(seconds: number, reach: number): number {
-    return Math.min(this.sunk + (seconds * reach) / kSearch, 1.1 * this.deepest(reach));
-  }
-
-  private deepest(reach: number): number {
-    return this.force / this.stiffness() + kAbove * reach;
-  }
-
-  /** Straight to a goal; where that is much nearer or farther than it is aside, or something is between, in front of it. */
-  private way(from: Vector3, goal: Vector3, slack: number): Vector3 {
-    const { camera } = this.world.stage;
-    const eye = camera.position;
-    const forward = camera.getWorldDirection(new Vector3());
-    const depth = (place: Vector3) => place.clone().sub(eye).dot(forward);
-    const [here, there] = [depth(from), depth(goal)];
-    const aside = from.clone().sub(eye).projectOnPlane(goal.clone().sub(eye).normalize()).length();
-    if (aside < slack) return goal;
-    const between = aside < 2 * slack ? Infinity : Math.min(...kBetween.map((part) => this.depthAt(from, goal, part, depth)));
-    const nearest = Math.min(here, there);
-    if (Math.abs(here - there) < aside + slack && between > nearest - slack / 2) return goal;
-    const front = Math.min(nearest, between) - slack;
-    const through = here - front > slack ? from : goal;
-    return eye.clone().addScaledVector(through.clone().sub(eye), front / depth(through));
-  }
-
-  /** Of what is seen between two places. */
-  private depthAt(from: Vector3, to: Vector3, part: number, depth: (place: Vector3) => number): number {
-    const { camera } = this.world.stage;
-    const at = from.clone().project(camera).lerp(to.clone().project(camera), part);
-    const seen = this.under(new Vector2(at.x, at.y), this.finger);
-    return seen === undefined ? Infinity : depth(seen.place);
+  /** What the pointer shows of a plane. */
+  private tangent(place: Vector3, normal: Vector3): Vector3 | undefined {
+    const plane = new Plane().setFromNormalAndCoplanarPoint(normal, place);
+    return this.caster.ray.intersectPlane(plane, new Vector3()) ?? undefined;
   }
 }

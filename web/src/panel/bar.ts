@@ -1,17 +1,26 @@
 // The bar: pause, reset, record, sound, picture, link, help.
 
+import { Vector3 } from "three";
 import type { Session } from "../model/session";
 import { writeLink } from "../protocol/link";
 import type { ToProgram, Welcome } from "../protocol/messages";
 import type { Sound } from "../sound/sound";
 import type { World } from "../view/world";
 import { byId, icon, say } from "./dom";
+import { recall, remember } from "./memory";
 import type { Notices } from "./notices";
 import { whole } from "./numbers";
+
+const kKept = 0.95; // of its best rate, below which the servo is late
+
+function upOf(welcome: Welcome): string {
+  return `up ${welcome.scene}`;
+}
 
 export class Bar {
   private isRecording = false;
   private delay = NaN;
+  private best = 0; // steps a second, the most so far
 
   constructor(
     private readonly session: Session,
@@ -31,10 +40,14 @@ export class Bar {
     click("help", () => this.help());
     click("fit", () => this.world.followTool(undefined));
     click("follow", () => this.follow());
+    click("upright", () => this.turnUpright());
   }
 
   begin(welcome: Welcome): void {
     say(byId("scene"), welcome.scene);
+    this.best = 0;
+    const up = recall<number[] | undefined>(upOf(welcome), undefined);
+    if (Array.isArray(up) && up.every(Number.isFinite)) this.world.setUp(new Vector3(...up));
     document.title = `${welcome.scene} – palpate`;
     if (this.session.recorded) say(byId("link-words"), "replay");
     this.showRecording(false);
@@ -47,9 +60,23 @@ export class Bar {
     byId("follow").setAttribute("aria-pressed", String(this.world.followed !== undefined));
     const open = byId("link-state").dataset["phase"] === "open";
     const rate = this.session.tool?.latest?.rate;
-    if (open && rate !== undefined && !this.session.recorded) say(byId("link-words"), `${whole(rate)} steps/s`);
+    if (open && rate !== undefined && !this.session.recorded) this.showRate(rate);
     const delay = Number.isNaN(this.delay) ? "" : `; latency ${(1000 * this.delay).toFixed(1)} ms`;
-    byId("link-state").title = `connected${delay}; a frame every ${this.world.stage.frameTime.toFixed(0)} ms`;
+    const late = byId("link-state").classList.contains("late") ? "; the servo does not keep its rate: see palpate doctor" : "";
+    byId("link-state").title = `connected${late}${delay}; a frame every ${this.world.stage.frameTime.toFixed(0)} ms`;
+  }
+
+  private showRate(rate: number): void {
+    this.best = Math.max(this.best, rate);
+    const late = rate < kKept * this.best;
+    say(byId("link-words"), `${whole(rate)} steps/s${late ? ": late" : ""}`);
+    byId("link-state").classList.toggle("late", late);
+  }
+
+  /** Another axis is up, also when this scene is opened again. */
+  turnUpright(): void {
+    this.world.turnUpright();
+    if (this.session.welcome !== undefined) remember(upOf(this.session.welcome), this.world.up.toArray());
   }
 
   pause(): void {

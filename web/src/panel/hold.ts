@@ -77,11 +77,12 @@ export class HoldPanel {
     button.disabled = !this.takeable() || this.session.tool?.latest === undefined;
     const held = this.hand.held;
     say(byId("hint"), this.hint());
+    if (!this.hand.held) say(byId("take-words"), this.session.tool?.has("taken") ? "Take the tool over" : "Take the tool");
     this.nameDevices();
     if (held === this.held) return;
     this.held = held;
     button.setAttribute("aria-pressed", String(held));
-    say(byId("take-words"), held ? "Release" : "Take the tool");
+    if (held) say(byId("take-words"), "Release");
     byId("depth").hidden = !held;
     byId("view-area").classList.toggle("held", held);
     say(byId("polite"), held ? "You hold the tool." : "The tool is released.");
@@ -153,6 +154,7 @@ export class HoldPanel {
     if (!this.takeable()) {
       return this.session.tool.report.status === "silent" ? "The device of this tool is not responding" : "A device moves this tool";
     }
+    if (this.session.tool.has("taken")) return "Another page holds the tool; press on the surface to take it over";
     if (!free) return `Press on the surface to touch it; drag ${kCoarse.matches ? "with two fingers" : "beside it"} to look around`;
     const colour = kColours[this.session.device % kColours.length];
     return `Drag the ${colour} hand to touch` + (kCoarse.matches ? "" : "; drag elsewhere to look around");

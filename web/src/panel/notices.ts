@@ -17,13 +17,19 @@ interface Notice {
   timer: number;
 }
 
+/** The same but for its numbers: times and places differ where one thing happens again. */
+function kindOf(text: string): string {
+  return text.replace(/\d+(\.\d+)?/g, "#");
+}
+
 export class Notices {
   private shown: Notice[] = [];
 
   add(level: NoticeLevel, text: string): void {
-    const same = this.shown.find((notice) => notice.text === text && notice.level === level);
+    const alike = kindOf(text);
+    const same = this.shown.find((notice) => kindOf(notice.text) === alike && notice.level === level);
     if (same !== undefined) {
-      this.repeat(same);
+      this.repeat(same, text);
       return;
     }
     const notice = this.makeNotice(level, text);
@@ -40,7 +46,7 @@ export class Notices {
   private makeNotice(level: NoticeLevel, text: string): Notice {
     const close = make("button", { type: "button", class: "close", "aria-label": "Dismiss" }, "×");
     const card = make("div", { class: `notice ${level}` },
-      make("span", {}, make("b", {}, kWords[level]), text), make("span", { class: "times" }), close);
+      make("b", {}, kWords[level]), make("span", { class: "words" }, text), make("span", { class: "times" }), close);
     const time = new Date();
     const entry = make("li", { class: level },
       make("time", { datetime: time.toISOString() }, time.toLocaleTimeString()), " ", kWords[level] + text);
@@ -49,8 +55,10 @@ export class Notices {
     return notice;
   }
 
-  private repeat(notice: Notice): void {
+  private repeat(notice: Notice, text: string): void {
     notice.times += 1;
+    notice.text = text;
+    say(notice.card.querySelector(".words")!, text);
     say(notice.card.querySelector(".times")!, `×${notice.times}`);
     this.limit(notice);
   }

@@ -47,6 +47,11 @@ export function millimetres(value: number): string {
   return `${mm.toFixed(mm < 10 ? 2 : 1)} mm`;
 }
 
+/** How many of a cloud's points are drawn, where it is not nearly all. */
+export function fewer(shown: number, all: number): string {
+  return shown > 0 && shown < 0.95 * all ? `${short(shown)} of ${short(all)} points are drawn` : "";
+}
+
 /** How much of a cloud is no surface that its points agree on, where it is a hundredth or more. */
 export function distrust(share: number): string {
   if (share < 0.01) return "";

@@ -6,11 +6,17 @@ import { sourceColour } from "../view/colours";
 import { byId } from "./dom";
 import { Plot } from "./plot";
 
+// ms between two pictures of a plot; where drawing is slow, and for those that change slowly:
+const kInterval = 100;
+const kSlowInterval = 250;
+const kCalmInterval = 500;
 const kFloor = 0.01; // mN, least amplitude that the spectrum shows
 const kHighest = 500; // Hz
 
 export class Plots {
   frozen = false;
+  private drawn = -Infinity; // ms
+  private calmly = -Infinity;
   private readonly spectrum = new Spectrum();
   private readonly force = new Plot({
     name: "force", title: "Force on the hand", unit: "N", xUnit: "s", x: [-kForceSpan, 0], least: 0.5,
@@ -52,9 +58,12 @@ export class Plots {
     this.frames.figure.classList.toggle("none", cameras.length === 0 || this.session.recorded);
   }
 
-  update(now: number): void {
-    if (this.frozen) return;
+  update(now: number, slow: boolean): void {
+    if (this.frozen || now - this.drawn < (slow ? kSlowInterval : kInterval)) return;
+    this.drawn = now;
     if (this.force.visible) this.showForce();
+    if (now - this.calmly < kCalmInterval) return;
+    this.calmly = now;
     if (this.tones.visible) this.showSpectrum();
     if (this.steps.visible) this.showSteps();
     if (this.frames.visible) this.showFrames(now / 1000);

@@ -3,7 +3,7 @@
 import type { SourceHistory } from "../model/session";
 import { sourceColour } from "../view/colours";
 import { byId, make, say } from "./dom";
-import { distrust, millimetres, seconds, short } from "./numbers";
+import { distrust, fewer, millimetres, seconds, short } from "./numbers";
 
 interface Row {
   rows: HTMLTableSectionElement;
@@ -50,7 +50,7 @@ function makeRow(source: SourceHistory, index: number, changed: () => void): Row
       say(latency, source.camera ? seconds(report.latency ?? NaN) : "–");
       say(age, source.camera ? seconds(report.age ?? NaN) : "–");
       say(dropped, short(report.dropped ?? 0));
-      say(trust, distrust(source.untrusted));
+      say(trust, [fewer(source.shown, report.points ?? 0), distrust(source.untrusted)].filter(Boolean).join("; "));
     },
   };
 }

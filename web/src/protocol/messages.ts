@@ -53,6 +53,7 @@ export interface Welcome {
   scene: string;
   origin: Vector;
   up: Vector;
+  eye?: Vector; // from where to look at first, where no sensor's pose is known
   radius: number; // m
   devices: DeviceInfo[];
   sources: SourceInfo[];
@@ -85,12 +86,12 @@ export type FromProgram =
 
 export type ToProgram =
   | { type: "hello"; token: string; points: number }
-  | { type: "hand"; device: number; position: Vector; buttons: number }
+  | { type: "hand"; device: number; position: Vector; buttons: number; force?: number }
   | { type: "release"; device: number }
   | { type: "set"; key: string; value: SettingValue }
   | { type: "preset"; name: string }
   | { type: "pause"; on: boolean }
-  | { type: "reset" }
+  | { type: "reset"; device?: number } // unset: all
   | { type: "record"; on: boolean }
   | { type: "seek"; time: number }
   | { type: "play"; on: boolean; speed: number }

@@ -6,6 +6,7 @@ import type { Cloud } from "./cloud";
 const kMost = 100_000; // points of a cloud that are looked at
 const kReach = 1.5; // spacings around a ray in which a surface has some points for certain
 const kFew = 3; // points that are a surface, not strays
+const kMany = 2000; // that are enough of one
 const kLayer = 3; // reaches along a ray that one surface takes
 const kStiff = 0.02; // of the reach, squared: how little few points tilt a surface
 // Of points all around a ray the mean is on it. Where the ray is d reaches beyond an edge, it lies 0.34, 0.63 and
@@ -66,6 +67,7 @@ function meets(ray: Ray, cloud: Cloud, slope: number): Seen | undefined {
     const part = (way.lengthSq() - along * along) / (reach * reach);
     if (along > 0 && part < 1) hits.push({ along, u: way.dot(axes[0]), v: way.dot(axes[1]), weight: 1 - part });
   });
+  if (hits.length > kMany) thin(hits);
   hits.sort((a, b) => a.along - b.along);
   for (let first = 0; first + kFew <= hits.length; first += 1) {
     const { along } = hits[first]!;
@@ -74,6 +76,13 @@ function meets(ray: Ray, cloud: Cloud, slope: number): Seen | undefined {
     if (layer.length >= kFew) return planeOf(ray, axes, layer, reach);
   }
   return undefined;
+}
+
+/** Every so-manieth, that no more than enough are left. */
+function thin(hits: Hit[]): void {
+  const stride = Math.ceil(hits.length / kMany);
+  for (let i = 0; i * stride < hits.length; i += 1) hits[i] = hits[i * stride]!;
+  hits.length = Math.ceil(hits.length / stride);
 }
 
 /** By least squares: along = a + b u + c v. */

@@ -22,7 +22,7 @@ export class Stage {
   private sharpness: number;
   private wanted = true;
   private last = 0;
-  private slow = 0;
+  private slowPictures = 0;
 
   private beforeDraw: (now: number) => void = () => {};
 
@@ -38,6 +38,11 @@ export class Stage {
     this.scene.add(this.camera, new HemisphereLight(0xffffff, 0x8a8f98, 1.4));
     this.retint();
     this.resize();
+  }
+
+  /** Do pictures take so long that what is beside them should wait? */
+  get slow(): boolean {
+    return this.frameTime > kSlow;
   }
 
   /** Draws from now on; the function is called before every picture. */
@@ -105,9 +110,9 @@ export class Stage {
   private measure(interval: number): void {
     if (!(interval > 0) || interval > 1000) return;
     this.frameTime = Number.isNaN(this.frameTime) ? interval : 0.95 * this.frameTime + 0.05 * interval;
-    this.slow = interval > kSlow ? this.slow + 1 : Math.max(0, this.slow - 1);
-    if (this.slow < kPatience || this.sharpness <= 1) return;
-    this.slow = 0;
+    this.slowPictures = interval > kSlow ? this.slowPictures + 1 : Math.max(0, this.slowPictures - 1);
+    if (this.slowPictures < kPatience || this.sharpness <= 1) return;
+    this.slowPictures = 0;
     this.sharpness = Math.max(1, this.sharpness / 1.4);
     this.resize();
   }

@@ -32,6 +32,8 @@ const kDropInterval = 100; // ms between two searches for what a tool hovers abo
 const kArrow = 0.16; // of the radius, an arrow for a newton; from close by:
 const kArrowPixels = 80;
 
+const kAxes = [[0, 0, 1], [0, 1, 0], [0, -1, 0], [1, 0, 0], [-1, 0, 0], [0, 0, -1]].map(([x, y, z]) => new Vector3(x, y, z));
+
 export const kFirstLook: Look = {
   colouring: "own", pointSize: 1.7, points: true, surface: true, support: true, cameras: true, trail: true,
 };
@@ -50,6 +52,7 @@ export class World {
   private frusta: Frustum[] = [];
   private places: Vector3[][] = [];
   private cameras: Vector3[] = [];
+  private eye: Vector3[] = []; // where it begins, if the program says so
   private bounds: Bounds | undefined;
   private readonly ramps = rampTexture();
   readonly heights = new Vector2(0, 1); // along up, low and high, m
@@ -80,6 +83,7 @@ export class World {
     this.up.set(...welcome.up).normalize();
     this.radius = welcome.radius;
     this.bounds = undefined;
+    this.eye = welcome.eye === undefined ? [] : [new Vector3(...welcome.eye)];
     this.navigation.setUp(this.up);
     this.clouds = welcome.sources.map(({ camera }, i) => new Cloud(i, camera, this.ramps));
     this.frusta = welcome.sources.map((_, i) => new Frustum(i));
@@ -128,7 +132,21 @@ export class World {
   fit(): void {
     const nothing = { places: [], centre: new Vector3(), radius: this.radius, heights: this.heights };
     const bounds = this.bounds ?? nothing;
-    this.navigation.frame(bounds, firstDirection(this.up, this.cameras, bounds.centre));
+    this.navigation.frame(bounds, firstDirection(this.up, this.cameras.length > 0 ? this.cameras : this.eye, bounds.centre));
+  }
+
+  setUp(up: Vector3): void {
+    this.up.copy(up);
+    this.navigation.setUp(up);
+    this.bounds = boundsOf(this.places.flat(), up);
+    if (this.bounds !== undefined) this.heights.copy(this.bounds.heights);
+    this.fit();
+  }
+
+  /** The next of the six axes is up. */
+  turnUpright(): void {
+    const at = kAxes.findIndex((axis) => axis.distanceTo(this.up) < 1e-3);
+    this.setUp(kAxes[(at + 1) % kAxes.length]!);
   }
 
   /** Comes so close to a tool that its support radius shows, and goes along with it; or back. */
