@@ -56,6 +56,7 @@ Frame next_frame(OpenCamera& from, double timeout) {
 Frame read_next(OpenCamera& from) {
   constexpr double kLongest = 10;  // s
   Frame found = next_frame(from, kLongest);
+  while (!found && from.camera->info().awaits_sender) found = next_frame(from, kLongest);
   if (!found) throw py::stop_iteration();
   return found;
 }

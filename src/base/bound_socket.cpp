@@ -9,10 +9,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 
 #include "palpate/base/error.hpp"
 
@@ -20,6 +22,8 @@ namespace palpate {
 namespace {
 
 constexpr const char* kFolder = "the folder must exist and belong to you";
+constexpr std::chrono::milliseconds kTurn{20};
+constexpr int kTries = 50;
 constexpr int kBacklog = 8;  // connections that wait to be accepted
 
 // Who wants to listen where.
@@ -72,7 +76,14 @@ class Turn {
     const std::filesystem::path folder = std::filesystem::absolute(place.path).parent_path();
     folder_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder_ < 0) place.refuse(fmt::format("{}; {}", words(errno), kFolder));
-    while (::flock(folder_, LOCK_EX) != 0 && errno == EINTR) continue;
+    for (int tries = 0; ::flock(folder_, LOCK_EX | LOCK_NB) != 0; ++tries) {
+      if (tries == kTries) {
+        ::close(folder_);
+        place.refuse(
+            "another program keeps its folder locked; choose a path in a folder of your own");
+      }
+      std::this_thread::sleep_for(kTurn);
+    }
   }
   ~Turn() { ::close(folder_); }
   Turn(const Turn&) = delete;

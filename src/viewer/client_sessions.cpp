@@ -136,15 +136,14 @@ void ClientSessions::welcome(Session& session) {
 }
 
 void ClientSessions::act(Session& session, const Hand& hand) {
-  const ViewerControls& controls = options_.controls;
-  require(controls.hand, "move the tool");
+  require(options_.controls.hand, "move the tool");
   if (hand.device >= holders_.size() || !options_.devices[hand.device].takeable) {
     throw Error(fmt::format("no tool {} that a page can move", hand.device));
   }
   if (session.lost.contains(hand.device)) return;  // said before it knew
   TargetSource::Target target = hand.target;
   target.position += options_.origin;
-  controls.hand(hand.device, target);
+  options_.controls.hand(hand.device, target);
   Session* const before = holders_[hand.device];
   if (before != nullptr && before != &session) lose(hand.device, "another page took the tool");
   holders_[hand.device] = &session;

@@ -31,7 +31,7 @@ struct SessionsRig {
     options.controls.presets = {"soft"};
     options.controls.preset = [this](const std::string& name) { preset = name; };
     options.controls.pause = [this](bool on) { paused = on; };
-    options.controls.reset = [this](std::optional<std::size_t> hand) { resets.push_back(hand); };
+    options.controls.reset = [this](std::optional<std::size_t> tool) { resets.push_back(tool); };
     options.controls.hand = [this](std::size_t, const TargetSource::Target& target) {
       hand = target.position;
       pull = target.maximum_force;

@@ -158,7 +158,7 @@ void OutputFile::close() {
 
 void OutputFile::fail(const char* what) const {
   const int reason = errno;
-  const bool kept = stays_ && access(growing_.c_str(), F_OK) == 0;
+  const bool kept = stays_ && growing_ != path_ && access(growing_.c_str(), F_OK) == 0;
   throw Error(fmt::format(
       "{} {}: {}; {}", path_, what, std::strerror(reason),
       kept ? "what was written before is in " + growing_ : std::string("choose another path")));

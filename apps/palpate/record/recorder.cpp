@@ -253,8 +253,8 @@ void Recorder::fail(const std::string& why) {
     if (name_ == report_.path) name_.clear();
   }
   close();
-  drain();  // into nothing
-  fmt::print(stderr, "\n{}; the run goes on\n", why);
+  drain();                                                 // into nothing
+  std::fputs(fmt::format("\n{}\n", why).c_str(), stderr);  // does not throw where that is full, too
   const std::lock_guard lock(broken_mutex_);
   if (broken_) broken_(why);
 }

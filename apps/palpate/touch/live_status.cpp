@@ -11,6 +11,11 @@ namespace palpate::app {
 
 namespace {
 
+// Unlike fmt::print() it does not throw where nobody can read it.
+void to_terminal(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+}
+
 constexpr double kTerminalPeriod = 0.1;  // s
 constexpr double kLinePeriod = 1;        // s
 constexpr std::size_t kColumns = 80;     // of a terminal that does not tell
@@ -94,7 +99,7 @@ LiveStatus::LiveStatus()
     : terminal_(isatty(STDERR_FILENO) != 0), next_(terminal_ ? kTerminalPeriod : kLinePeriod) {}
 
 LiveStatus::~LiveStatus() {
-  if (terminal_ && shown_) fmt::print(stderr, "\r\033[K");
+  if (terminal_ && shown_) to_terminal("\r\033[K");
 }
 
 // Moments that were missed are not made up for.
@@ -102,16 +107,16 @@ void LiveStatus::show(const LiveMoment& moment) {
   next_ = std::max(next_, moment.time) + (terminal_ ? kTerminalPeriod : kLinePeriod);
   const std::string words = in_words(moment);
   if (terminal_) {
-    fmt::print(stderr, "\r{}\033[K", fitted(words, columns() - 1));
+    to_terminal(fmt::format("\r{}\033[K", fitted(words, columns() - 1)));
   } else {
-    fmt::print(stderr, "{}\n", words);
+    to_terminal(words + "\n");
   }
   std::fflush(stderr);
   shown_ = true;
 }
 
 void LiveStatus::tell(const std::string& words) {
-  fmt::print(stderr, "{}{}\n", terminal_ && shown_ ? "\r\033[K" : "", words);
+  to_terminal(fmt::format("{}{}\n", terminal_ && shown_ ? "\r\033[K" : "", words));
 }
 
 }  // namespace palpate::app
