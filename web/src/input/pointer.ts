@@ -51,7 +51,8 @@ export class PointerInput {
     if (event.pointerType === "touch") this.touches.add(event.pointerId);
     const plain = event.button === 0 && !event.altKey && !event.ctrlKey && !event.metaKey;
     const mine = plain && this.touches.size <= 1 && this.grasps(event) && this.take();
-    this.world.navigation.turnByDrag(!mine && !(this.free && this.hand.held && this.touches.size > 0));
+    const two = this.touches.size > 1; // fingers turn the view
+    this.world.navigation.turnByDrag(!mine && !(this.free ? this.hand.held && this.touches.size > 0 : two));
     if (this.touches.size > 1) this.drag(undefined);
     if (!mine) return;
     this.drag(event.pointerId);

@@ -1,4 +1,5 @@
 // Drags over what a demo shows, seeded: how many touch it. PALPATE_PROGRAM=... node test/browser/drags.mjs [SCENE...] [SEED]
+import assert from "node:assert/strict";
 import { pathToFileURL } from "node:url";
 import { openBrowser, openPage, until } from "./browser.mjs";
 import { felt, listen } from "./heard.mjs";
@@ -44,20 +45,30 @@ export async function drags(page, count, seed) {
   return looks;
 }
 
+/** As a test: four drags over the scan of `palpate demo scan`. */
+export async function dragsTouch(context, browser) {
+  const program = await startProgram(["demo", "scan", "--headless", "--port", "0"]);
+  context.after(() => program.stop());
+  const page = await openPage(browser, program.address, { viewport: { width: 900, height: 600 } }, listen);
+  await until("the tool can be taken", () => page.locator("#take").isEnabled());
+  const found = await drags(page, 4, 5);
+  assert.equal(found.length, 4);
+  for (const { from, touching, looks } of found) assert.ok(touching > 0, `from ${from}: ${touching} of ${looks} looks in contact`);
+  await page.context().close();
+}
+
 if (import.meta.url === pathToFileURL(process.argv[1]).href) {
   const scenes = process.argv.slice(2).filter((word) => !/^\d+$/.test(word));
   const seed = Number(process.argv.slice(2).find((word) => /^\d+$/.test(word)) ?? 1);
   const browser = await openBrowser();
   for (const scene of scenes.length > 0 ? scenes : ["scan", "desk", "room"]) {
-    const args = scene.includes("/") ? ["touch", ...scene.split(",")] : ["demo", scene];
-    const program = await startProgram([...args, "--view", "--headless", "--port", "0"].filter((word) => args[0] === "demo" ? word !== "--view" : word !== "--headless"));
+    const program = await startProgram(["demo", scene, "--headless", "--port", "0"]);
     const page = await openPage(browser, program.address, { viewport: { width: 1280, height: 720 } }, listen);
     await until("the tool can be taken", () => page.locator("#take").isEnabled());
     await new Promise((done) => setTimeout(done, 4000));
     const found = await drags(page, 6, seed);
     console.log(scene, `${found.filter(({ touching }) => touching > 0).length} of ${found.length} touch`);
     for (const { from, looks, touching, most } of found) console.log("  ", from.join(","), `${touching} of ${looks} looks in contact, at most ${most.toFixed(2)} N`);
-    if (process.env.PICTURES) await page.screenshot({ path: `${process.env.PICTURES}/drag-${scene.replace(/\W/g, "_")}.png` });
     await page.context().close();
     await program.stop();
   }

@@ -204,9 +204,12 @@ test("after the watchdog it is said beside the force that the tool has to be lif
   withPage(kSmall, async (page, program) => {
     program.servo.exploring = () => [0.05, 0.1, -0.004];
     await until("in contact", () => program.servo.contact !== undefined);
-    assert.equal(await text(page, "#lift"), "");
     program.servo.starting = true;
+    await page.waitForTimeout(300);
+    assert.equal(await text(page, "#lift"), "", "nothing to who does not hold it");
+    await page.focus("#view");
+    await page.keyboard.press("t");
     await until("said", async () => (await text(page, "#lift")) === "lift the tool to feel full force again");
-    program.servo.exploring = () => [0.05, 0.1, 0.05];
+    await page.keyboard.press("Escape");
     await until("gone", async () => (await text(page, "#lift")) === "");
   }));

@@ -5,6 +5,7 @@ import { readdir } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { openBrowser, openPage, until } from "./browser.mjs";
+import { dragsTouch } from "./drags.mjs";
 import { distance, felt, heard, listen } from "./heard.mjs";
 import { picture } from "./picture.mjs";
 import { changed } from "./pixels.mjs";
@@ -94,6 +95,8 @@ test("a drag moves the program's hand", () =>
     await page.keyboard.press("Escape");
     await until("let go", async () => !(await felt(page)).taken);
   }));
+
+test("drags over a scan touch it, wherever they begin", (context) => dragsTouch(context, browser));
 
 test("a changed stiffness is felt at the next touch, and a pause takes the force away", () =>
   onTable(async (page) => {

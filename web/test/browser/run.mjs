@@ -56,8 +56,39 @@ test("keys take the tool, push it against the table, and let go", () =>
     await until("released", () => sent(program, "release").length === 1);
   }));
 
-test("a drag moves the hand while the tool is held, and turns the view otherwise", () =>
+test("a press on the surface takes the tool there and pulls with 1 N; the wheel makes it more, and a drag beside it turns the view", () =>
   withPage(kSmall, async (page, program) => {
+    const axis = () => page.locator("line.axis-x").getAttribute("x2");
+    const graspable = () => page.evaluate(() => document.querySelector("#view").classList.contains("graspable"));
+    await page.mouse.move(300, 300);
+    await until("a surface is under the pointer", async () => {
+      await page.mouse.move(301, 300);
+      await page.mouse.move(300, 300);
+      return graspable();
+    });
+    assert.equal(await page.evaluate(() => window.getComputedStyle(document.querySelector("#view")).cursor), "move");
+    const rest = await axis();
+    await page.mouse.down();
+    await until("presses with 1 N", () => hands(program).at(-1)?.force === 1);
+    await page.mouse.wheel(0, -200);
+    await until("harder", () => hands(program).at(-1).force > 1.4);
+    await page.mouse.up();
+    await until("hovers", () => hands(program).at(-1).force === undefined);
+    assert.equal(await axis(), rest, "the view stays");
+    const box = await page.locator("#view").boundingBox();
+    const [x, y] = [box.x + 0.45 * box.width, box.y + 8]; // above all that is drawn
+    await page.mouse.move(x, y);
+    assert.ok(!(await graspable()), "nothing is up there");
+    await page.mouse.down();
+    await page.mouse.move(x + 70, y + 10, { steps: 8 });
+    await page.mouse.up();
+    await until("the view turned", async () => (await axis()) !== rest);
+  }));
+
+test("free, a drag moves the hand while the tool is held, and turns the view otherwise", () =>
+  withPage(kSmall, async (page, program) => {
+    await page.focus("#view");
+    await page.keyboard.press("m");
     const axis = () => page.locator("line.axis-x").getAttribute("x2");
     const drag = async () => {
       await page.mouse.move(300, 250);
@@ -109,6 +140,7 @@ test("on a phone one finger moves the tool and two turn the view", () =>
     const touch = await page.context().newCDPSession(page);
     const fingers = (type, ...places) =>
       touch.send("Input.dispatchTouchEvent", { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });
+    await page.keyboard.press("m"); // free motion
     await page.tap("#take");
     await until("held", () => program.servo.taken);
     const axis = () => page.locator("line.axis-x").getAttribute("x2");
