@@ -17,7 +17,7 @@ const kAbove = 2; // reaches of a pick, where it hovers
 const kBelow = 3; // and where a hand that presses wants to be
 const kGrazing = 0.25; // cosine: a plane seen flatter says nothing of where the pointer is on it
 const kPatience = 400; // ms in which a proxy that something else holds may come free
-const kSoftStart = 550; // ms, after which all of a force is felt again (GuardOptions::soft_start)
+const kSoftStart = 750; // ms, after which all of a force is felt again (GuardOptions::soft_start, and the way there)
 const kPointer = 6; // pixels around a mouse in which a surface counts
 const kFinger = 14;
 
