@@ -76,7 +76,8 @@ class Turn {
     const std::filesystem::path folder = std::filesystem::absolute(place.path).parent_path();
     folder_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder_ < 0) place.refuse(fmt::format("{}; {}", words(errno), kFolder));
-    for (int tries = 0; ::flock(folder_, LOCK_EX | LOCK_NB) != 0; ++tries) {
+    const auto locked = [&] { return errno == EWOULDBLOCK || errno == EINTR; };
+    for (int tries = 0; ::flock(folder_, LOCK_EX | LOCK_NB) != 0 && locked(); ++tries) {
       if (tries == kTries) {
         ::close(folder_);
         place.refuse(

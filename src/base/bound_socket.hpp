@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// A UNIX socket bound to a path that only its owner may use (mode 0600). No call on it waits.
+/// A UNIX socket bound to a path that only its owner may use (mode 0600).
 class BoundSocket {
  public:
   enum class Kind {
@@ -15,7 +15,7 @@ class BoundSocket {
   };
 
   /// Replaces a socket file that no program has open any more. `what` is to listen there, for
-  /// messages.
+  /// messages. Waits for a second at most while another program takes a place in the same folder.
   /// @throws Error when the path is too long, is in use or is no socket, or binding fails.
   BoundSocket(std::string_view what, const std::string& path, Kind kind);
   /// Removes the file, if it still belongs to this socket.

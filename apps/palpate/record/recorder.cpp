@@ -253,8 +253,9 @@ void Recorder::fail(const std::string& why) {
     if (name_ == report_.path) name_.clear();
   }
   close();
-  drain();                                                 // into nothing
-  std::fputs(fmt::format("\n{}\n", why).c_str(), stderr);  // does not throw where that is full, too
+  drain();  // into nothing
+  // Unlike fmt::print() this does not throw where standard error is full, too.
+  std::fputs(fmt::format("\n{}\n", why).c_str(), stderr);
   const std::lock_guard lock(broken_mutex_);
   if (broken_) broken_(why);
 }

@@ -36,10 +36,6 @@ export class Stroke {
   /** free: puts the proxy to the hand. */
   constructor(private readonly world: World, private readonly hand: Hand, private readonly free: () => void) {}
 
-  get active(): boolean {
-    return this.at !== undefined && this.hand.held;
-  }
-
   /** Is there a surface at a place of the picture? */
   meets(at: Vector2, finger: boolean): boolean {
     return this.under(at, finger) !== undefined;
@@ -71,8 +67,8 @@ export class Stroke {
   /** At every state of the tool, which come more evenly than pictures; `now` in ms. */
   update(now: number): void {
     const tool = this.world.tools[this.hand.device];
-    if (!this.active || tool === undefined) return;
-    const seen = this.under(this.at!, this.finger);
+    if (this.at === undefined || !this.hand.held || tool === undefined) return;
+    const seen = this.under(this.at, this.finger);
     this.last = seen ?? this.beside() ?? this.last;
     if (this.last === undefined) return;
     const felt = this.refine(this.last, tool);

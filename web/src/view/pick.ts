@@ -22,16 +22,24 @@ export interface Seen {
   inward: Vector3; // from the ray to the place: beside an edge the place is on the surface all the same, m
 }
 
+function strideOf(cloud: Cloud): number {
+  return Math.max(1, Math.ceil(cloud.count / kMost));
+}
+
+/** Of the points that are looked at, m. */
+function spacingOf(cloud: Cloud): number {
+  return cloud.spacing * Math.sqrt(strideOf(cloud));
+}
+
 /** Each of some points with its place; what is shown is what can be picked. */
-function eachPlace(cloud: Cloud, take: (x: number, y: number, z: number) => void): number {
+function eachPlace(cloud: Cloud, take: (x: number, y: number, z: number) => void): void {
   const { position, scale, geometry } = cloud.points;
   const units = geometry.getAttribute("position").array;
-  const stride = Math.max(1, Math.ceil(cloud.count / kMost));
+  const stride = strideOf(cloud);
   const [sx, sy, sz] = [scale.x / 65535, scale.y / 65535, scale.z / 65535];
   for (let i = 0; i < cloud.count; i += stride) {
     take(position.x + sx * units[3 * i]!, position.y + sy * units[3 * i + 1]!, position.z + sz * units[3 * i + 2]!);
   }
-  return cloud.spacing * Math.sqrt(stride);
 }
 
 /** The nearest of the surfaces that a ray meets; `slope`: m beside it that count, a metre of its length. */
@@ -57,7 +65,7 @@ function meets(ray: Ray, cloud: Cloud, slope: number): Seen | undefined {
   const { origin, direction } = ray;
   const sideways = new Vector3(direction.z, direction.x, direction.y).cross(direction).normalize();
   const axes = [sideways, direction.clone().cross(sideways)] as const;
-  const near = kReach * cloud.spacing * Math.sqrt(Math.max(1, Math.ceil(cloud.count / kMost)));
+  const near = kReach * spacingOf(cloud);
   const hits: Hit[] = [];
   const way = new Vector3();
   eachPlace(cloud, (x, y, z) => {
@@ -113,13 +121,13 @@ export function nearestTo(place: Vector3, clouds: readonly Cloud[]): { place: Ve
   for (const cloud of clouds) {
     const [x0, y0, z0] = [place.x, place.y, place.z];
     const found = new Vector3(Infinity);
-    const spacing = eachPlace(cloud, (x, y, z) => {
+    eachPlace(cloud, (x, y, z) => {
       const square = (x - x0) ** 2 + (y - y0) ** 2 + (z - z0) ** 2;
       if (square >= least) return;
       least = square;
       found.set(x, y, z);
     });
-    if (found.x !== Infinity) nearest = { place: found, spacing };
+    if (found.x !== Infinity) nearest = { place: found, spacing: spacingOf(cloud) };
   }
   return nearest;
 }

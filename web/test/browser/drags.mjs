@@ -3,24 +3,14 @@ import assert from "node:assert/strict";
 import { pathToFileURL } from "node:url";
 import { openBrowser, openPage, until } from "./browser.mjs";
 import { felt, listen } from "./heard.mjs";
+import { randomFrom } from "../fake/scene.mjs";
 import { startProgram } from "./real_program.mjs";
-
-/** Numbers from 0 to 1 (mulberry32). */
-export function random(seed) {
-  let a = seed >>> 0;
-  return () => {
-    a = (a + 0x6d2b79f5) >>> 0;
-    let t = Math.imul(a ^ (a >>> 15), 1 | a);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
-  };
-}
 
 const graspable = (page) => page.evaluate(() => document.querySelector("#view").classList.contains("graspable"));
 
 /** Of `count` drags that begin on a surface, those in which it was touched: share of looks in contact and largest force, N. */
 export async function drags(page, count, seed) {
-  const next = random(seed);
+  const next = randomFrom(seed);
   const { x, y, width, height } = await page.locator("#view").boundingBox();
   const looks = [];
   for (let tries = 0; looks.length < count && tries < 40 * count; tries += 1) {
