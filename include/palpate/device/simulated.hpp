@@ -24,7 +24,7 @@ class TargetSource {
   struct Target {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, device frame
     std::uint32_t buttons = 0;                           ///< bit k: button k is down
-    /// The hand pulls with no more, N, nor with more than SimulatedDeviceOptions::Hand says; above 0.
+    /// The hand pulls with no more, N, nor with more than its SimulatedDeviceOptions say; above 0.
     double maximum_force = std::numeric_limits<double>::infinity();
   };
 
