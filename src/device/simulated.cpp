@@ -77,6 +77,12 @@ Eigen::Matrix4d generator_of(const SimulatedDeviceOptions& options) {
   return generator;
 }
 
+// Where the hand's spring pulls the device to.
+struct Goal {
+  Eigen::Vector3d position;  // m
+  Eigen::Vector3d rate;      // m/s
+};
+
 }  // namespace
 
 struct SimulatedDevice::Inside {
@@ -96,7 +102,7 @@ struct SimulatedDevice::Inside {
   }
 
   [[nodiscard]] TargetSource::Target target_at(double time) noexcept;
-  [[nodiscard]] Eigen::Vector3d within_reach(const Eigen::Vector3d& goal) const noexcept;
+  [[nodiscard]] Goal within_reach(const Goal& goal, double most) const noexcept;
   [[nodiscard]] Eigen::Vector3d quantised() const noexcept;
   void begin() noexcept;
   void advance() noexcept;
@@ -204,13 +210,16 @@ TargetSource::Target SimulatedDevice::Inside::target_at(double time) noexcept {
   return {trajectory.at(time)};
 }
 
-// The goal that pulls no harder than the hand does.
-Eigen::Vector3d SimulatedDevice::Inside::within_reach(const Eigen::Vector3d& goal) const noexcept {
-  const Eigen::Vector3d stretch = goal - position;
+// The goal that pulls no harder than the hand does; it moves around the device alone, since the
+// hand's damper would pull harder at one that moves away.
+Goal SimulatedDevice::Inside::within_reach(const Goal& goal, double most) const noexcept {
+  const Eigen::Vector3d stretch = goal.position - position;
   const double pull = options.hand.stiffness * stretch.norm();
-  const double most = std::min(options.hand.maximum_force, target.maximum_force);
   if (pull <= most) return goal;
-  return position + most / pull * stretch;
+  const double shorten = most / pull;
+  const Eigen::Vector3d direction = stretch.normalized();
+  return {position + shorten * stretch,
+          shorten * (goal.rate - goal.rate.dot(direction) * direction)};
 }
 
 Eigen::Vector3d SimulatedDevice::Inside::quantised() const noexcept {
@@ -226,17 +235,19 @@ void SimulatedDevice::Inside::begin() noexcept {
 
 void SimulatedDevice::Inside::advance() noexcept {
   const double next = static_cast<double>(steps + 1) / options.rate;
-  const Eigen::Vector3d place = target.position;
+  const TargetSource::Target from = target;
   target = target_at(next);
   if (!target.position.allFinite()) return fail("the target of the hand");
-  const Eigen::Vector3d goal_rate = (target.position - place) * options.rate;
-  const Eigen::Vector3d goal = within_reach(place);
+  const double most =
+      std::min({options.hand.maximum_force, from.maximum_force, target.maximum_force});
+  const Goal goal =
+      within_reach({from.position, (target.position - from.position) * options.rate}, most);
   const std::size_t size = forces.size();
   const auto delay = static_cast<std::size_t>(options.delay);
   const Eigen::Vector3d held = forces[(steps + size - delay) % size];
   const Eigen::Vector3d push =
-      held + options.hand.stiffness * goal + options.hand.damping * goal_rate;
-  const Eigen::Vector3d push_rate = options.hand.stiffness * goal_rate;
+      held + options.hand.stiffness * goal.position + options.hand.damping * goal.rate;
+  const Eigen::Vector3d push_rate = options.hand.stiffness * goal.rate;
   const Eigen::Vector3d before = position;
   if (options.coulomb > 0) {
     advance_with_friction(push, push_rate);

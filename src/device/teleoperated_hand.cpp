@@ -69,7 +69,7 @@ struct TeleoperatedHand::Inside {
   }
 
   void begin(double now, const Vector3d& position) noexcept;
-  void receive(double now) noexcept;
+  void receive(double now, const Vector3d& position) noexcept;
   void choose_mode(double now) noexcept;
   void advance(double now, const Vector3d& position) noexcept;
   void play(double dt) noexcept;
@@ -99,7 +99,7 @@ TeleoperatedHand::~TeleoperatedHand() = default;
 TargetSource::Target TeleoperatedHand::target(double time, const Vector3d& position) noexcept {
   Inside& in = *inside_;
   if (!in.started) in.begin(time, position);
-  in.receive(time);
+  in.receive(time, position);
   in.choose_mode(time);
   in.advance(time, position);
   in.time = time;
@@ -118,7 +118,9 @@ void TeleoperatedHand::Inside::begin(double now, const Vector3d& position) noexc
 }
 
 // Commands are dated by when they are received: the device's clock is the only one that counts.
-void TeleoperatedHand::Inside::receive(double now) noexcept {
+// Where a hand with little force wanted to be may be far from where it could pull to; with more
+// force it begins where it is.
+void TeleoperatedHand::Inside::receive(double now, const Vector3d& position) noexcept {
   const std::uint64_t newest = remote.generation();
   if (newest == generation) return;
   const std::optional<RemoteTarget::Command> copy = remote.command();
@@ -128,7 +130,9 @@ void TeleoperatedHand::Inside::receive(double now) noexcept {
   const bool moved = copy->moves != command.moves;
   command = *copy;
   if (!command.held || !moved) return;
-  if (mode != Mode::following) interpolator.rest(target.position, now);
+  const bool stronger = command.target.maximum_force > target.maximum_force;
+  if (stronger) target.position = position;
+  if (stronger || mode != Mode::following) interpolator.rest(target.position, now);
   interpolator.go(command.target.position, command.stamp, now);
 }
 

@@ -216,6 +216,33 @@ TEST(TeleoperatedHand, ASurfaceHoldsBackTheDeviceThatAMousePullsIntoIt) {
   EXPECT_EQ(device.read().buttons, 0u);
 }
 
+TEST(TeleoperatedHand, AHandWithLittleForcePullsNoHarderWhileItsTargetMovesOrItsForceReturns) {
+  RemoteTarget remote;
+  TeleoperatedHand hand(remote, {}, {.speed = 2});
+  SimulatedDeviceOptions options;
+  options.coulomb = 0;
+  options.resolution = 0;
+  options.position = {0, 0, 5e-3};
+  SimulatedDevice device(options, hand);
+  // Runs for a second; the deepest that the device was, m.
+  int step = 0;
+  const auto deepest = [&](const TargetSource::Target& target) {
+    double least = device.true_position().z();
+    for (const int end = step + 1000; step < end; ++step) {
+      if (step % 16 == 0) static_cast<void>(remote.move(target, step * kStep));
+      device.write(wall(device.read()));
+      least = std::min(least, device.true_position().z());
+    }
+    return -least;
+  };
+  static_cast<void>(deepest({{0, 0, 5e-3}}));
+  // 1 N that falls 5 mm onto 500 N/m goes as deep as its work: K x^2 / 2 = F (h + x).
+  EXPECT_LT(deepest({{0, 0, -60e-3}, 0, 1}), (1 + std::sqrt(1 + 2 * 500 * 5e-3)) / 500);
+  EXPECT_NEAR(device.true_position().z(), -1. / 500, 1e-6);
+  EXPECT_LT(deepest({{0, 0, 5e-3}}), 1. / 500 + 1e-5);
+  EXPECT_NEAR(device.true_position().z(), 5e-3, 1e-6);
+}
+
 TEST(TeleoperatedHand, SameWordsAtTheSameTimesSameBits) {
   const auto final_position = [] {
     RemoteTarget remote;

@@ -15,6 +15,8 @@ const kPen = 3; // of a pen that is pressed as hard as it can tell
 const kNotch = 1.25; // times the force, a notch of the wheel
 const kAbove = 2; // reaches of a pick, where it hovers
 const kBelow = 3; // and where a hand that presses wants to be
+const kNear = 0.25; // and from where it pulls with a limited force
+const kGlide = 57; // ms, in which it comes near, so that it hits nothing: as it comes to rest itself (docs/method.md 8.1)
 const kGrazing = 0.25; // cosine: a plane seen flatter says nothing of where the pointer is on it
 const kPatience = 400; // ms in which a proxy that something else holds may come free
 const kSoftStart = 750; // ms, after which all of a force is felt again (GuardOptions::soft_start, and the way there)
@@ -31,6 +33,9 @@ export class Stroke {
   private last: Seen | undefined;
   private good = 0; // ms, when nothing else held the proxy
   private freed = -Infinity; // ms
+  private updated = -Infinity; // ms
+  private interval = 0; // ms, since the update before
+  private left = -Infinity; // ms, when it began to go to another surface
   private readonly caster = new Raycaster();
 
   /** free: puts the proxy to the hand. */
@@ -66,6 +71,8 @@ export class Stroke {
 
   /** At every state of the tool, which come more evenly than pictures; `now` in ms. */
   update(now: number): void {
+    this.interval = now - this.updated;
+    this.updated = now;
     const tool = this.world.tools[this.hand.device];
     if (this.at === undefined || !this.hand.held || tool === undefined) return;
     const seen = this.under(this.at, this.finger);
@@ -75,9 +82,17 @@ export class Stroke {
     const { place, normal, reach } = this.last;
     const above = place.clone().addScaledVector(normal, kAbove * reach);
     this.judge(tool, above, felt, now);
+    const height = tool.hipPlace.clone().sub(place).dot(normal);
     const pressing = this.pressing && this.there && seen !== undefined && !tool.behind;
-    if (pressing) this.hand.moveTo(place.clone().addScaledVector(normal, -kBelow * reach), this.pen ?? this.force);
-    else this.hand.moveTo(above);
+    if (tool.touching && now - this.left < kPatience / 4) return; // at rest, until it is free
+    if (!this.there) this.goTo(above, tool);
+    else if (!pressing) this.hand.moveTo(above);
+    else if (!tool.touching && height > kNear * reach) this.goTo(place, tool);
+    else this.hand.moveTo(place.clone().addScaledVector(normal, -kBelow * reach), this.pen ?? this.force);
+  }
+
+  private goTo(place: Vector3, tool: Tool): void {
+    this.hand.moveTo(tool.hipPlace.clone().lerp(place, 1 - Math.exp(-this.interval / kGlide)));
   }
 
   /** Is the proxy on that side of that surface? Then its tangent plane says finer than points do where the pointer is. */
@@ -98,11 +113,13 @@ export class Stroke {
     const deep = Math.abs(way.dot(this.caster.ray.direction));
     const aside = Math.sqrt(Math.max(0, way.lengthSq() - deep * deep));
     const missed = way.dot(normal) > 0.9 * kBelow * reach;
+    const was = this.there;
     if (felt) this.there = true;
     else if (missed || deep > aside + 2 * kAbove * reach) this.there = false;
     else if (now - this.freed > kSoftStart && tool.hipPlace.distanceTo(above) < reach) this.there = true;
     if (felt || !tool.touching) this.good = now;
     else if (!this.there || now - this.good > kPatience) this.putToHand(now);
+    if (was && !this.there) this.left = now;
   }
 
   private putToHand(now: number): void {

@@ -6,10 +6,9 @@ import { sourceColour } from "../view/colours";
 import { byId } from "./dom";
 import { Plot } from "./plot";
 
-// ms between two pictures of a plot; where drawing is slow, and for those that change slowly:
-const kInterval = 100;
-const kSlowInterval = 250;
-const kCalmInterval = 500;
+const kInterval = 100; // ms between two pictures of a plot
+const kCalmInterval = 500; // of those that change slowly
+const kSlow = 2.5; // times as long where drawing is slow
 const kFloor = 0.01; // mN, least amplitude that the spectrum shows
 const kHighest = 500; // Hz
 
@@ -59,10 +58,11 @@ export class Plots {
   }
 
   update(now: number, slow: boolean): void {
-    if (this.frozen || now - this.drawn < (slow ? kSlowInterval : kInterval)) return;
+    const times = slow ? kSlow : 1;
+    if (this.frozen || now - this.drawn < times * kInterval) return;
     this.drawn = now;
     if (this.force.visible) this.showForce();
-    if (now - this.calmly < kCalmInterval) return;
+    if (now - this.calmly < times * kCalmInterval) return;
     this.calmly = now;
     if (this.tones.visible) this.showSpectrum();
     if (this.steps.visible) this.showSteps();

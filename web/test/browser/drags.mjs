@@ -6,7 +6,8 @@ import { felt, listen } from "./heard.mjs";
 import { randomFrom } from "../fake/scene.mjs";
 import { startProgram } from "./real_program.mjs";
 
-const graspable = (page) => page.evaluate(() => document.querySelector("#view").classList.contains("graspable"));
+const graspable = (page, at) =>
+  page.evaluate((at) => document.elementFromPoint(...at)?.classList.contains("graspable") ?? false, at);
 
 /** Of `count` drags that begin on a surface, those in which it was touched: share of looks in contact and largest force, N. */
 export async function drags(page, count, seed) {
@@ -16,7 +17,7 @@ export async function drags(page, count, seed) {
   for (let tries = 0; looks.length < count && tries < 40 * count; tries += 1) {
     const [fromX, fromY, angle] = [x + width * (0.1 + 0.8 * next()), y + height * (0.1 + 0.8 * next()), 2 * Math.PI * next()];
     await page.mouse.move(fromX, fromY);
-    if (!(await graspable(page))) continue;
+    if (!(await graspable(page, [fromX, fromY]))) continue;
     await page.mouse.down();
     const look = { from: [Math.round(fromX), Math.round(fromY)], looks: 0, touching: 0, most: 0 };
     for (let i = 0; i <= 40; i += 1) {
