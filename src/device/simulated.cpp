@@ -77,12 +77,6 @@ Eigen::Matrix4d generator_of(const SimulatedDeviceOptions& options) {
   return generator;
 }
 
-// Where the hand's spring pulls the device to.
-struct Goal {
-  Eigen::Vector3d position;  // m
-  Eigen::Vector3d rate;      // m/s
-};
-
 }  // namespace
 
 struct SimulatedDevice::Inside {
@@ -102,9 +96,9 @@ struct SimulatedDevice::Inside {
   }
 
   [[nodiscard]] TargetSource::Target target_at(double time) noexcept;
-  [[nodiscard]] Goal within_reach(const Goal& goal, double most) const noexcept;
   [[nodiscard]] Eigen::Vector3d quantised() const noexcept;
   void begin() noexcept;
+  [[nodiscard]] bool ask(double time) noexcept;
   void advance() noexcept;
   void fail(const char* what) noexcept;
   void advance_with_friction(const Eigen::Vector3d& push,
@@ -128,7 +122,7 @@ struct SimulatedDevice::Inside {
   std::uint64_t steps = 0;
   DeviceState state;
   bool started = false;
-  const char* wrong = nullptr;  // what was not finite, once the device has failed
+  const char* wrong = nullptr;  // once the device has failed
 };
 
 SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, Trajectory target)
@@ -183,7 +177,7 @@ void SimulatedDevice::write(const Eigen::Vector3d& force) noexcept {
   Inside& in = *inside_;
   if (in.wrong != nullptr) return;
   if (!force.allFinite()) {
-    in.fail("the force written");
+    in.fail("the force written was not finite");
     return;
   }
   const double length = force.norm();
@@ -194,8 +188,7 @@ void SimulatedDevice::write(const Eigen::Vector3d& force) noexcept {
 std::string SimulatedDevice::reason() const {
   const Inside& in = *inside_;
   if (in.wrong == nullptr) return {};
-  return fmt::format("{} at t = {} s was not finite; find the error in the code that computed it",
-                     in.wrong, in.state.time);
+  return fmt::format("{} at t = {} s; mend the code that computed it", in.wrong, in.state.time);
 }
 
 void SimulatedDevice::Inside::fail(const char* what) noexcept {
@@ -210,44 +203,40 @@ TargetSource::Target SimulatedDevice::Inside::target_at(double time) noexcept {
   return {trajectory.at(time)};
 }
 
-// The goal that pulls no harder than the hand does; it moves around the device alone, since the
-// hand's damper would pull harder at one that moves away.
-Goal SimulatedDevice::Inside::within_reach(const Goal& goal, double most) const noexcept {
-  const Eigen::Vector3d stretch = goal.position - position;
-  const double pull = options.hand.stiffness * stretch.norm();
-  if (pull <= most) return goal;
-  const double shorten = most / pull;
-  const Eigen::Vector3d direction = stretch.normalized();
-  return {position + shorten * stretch,
-          shorten * (goal.rate - goal.rate.dot(direction) * direction)};
-}
-
 Eigen::Vector3d SimulatedDevice::Inside::quantised() const noexcept {
   if (options.resolution == 0) return position;
   return (position / options.resolution).array().round().matrix() * options.resolution;
 }
 
 void SimulatedDevice::Inside::begin() noexcept {
-  target = target_at(0);
-  if (!target.position.allFinite()) return fail("the target of the hand");
-  if (source != nullptr) position = target.position;
+  if (ask(0) && source != nullptr) position = target.position;
+}
+
+// For the target at `time`; false: it is none.
+bool SimulatedDevice::Inside::ask(double time) noexcept {
+  target = target_at(time);
+  if (!target.position.allFinite()) fail("the target of the hand was not finite");
+  if (!(target.maximum_force > 0)) fail("the largest force of the hand was not above 0");
+  return wrong == nullptr;
 }
 
 void SimulatedDevice::Inside::advance() noexcept {
-  const double next = static_cast<double>(steps + 1) / options.rate;
   const TargetSource::Target from = target;
-  target = target_at(next);
-  if (!target.position.allFinite()) return fail("the target of the hand");
+  if (!ask(static_cast<double>(steps + 1) / options.rate)) return;
+  const auto delay = static_cast<std::size_t>(options.delay);
+  const Eigen::Vector3d held = forces[(steps + forces.size() - delay) % forces.size()];
+  const Eigen::Vector3d goal_rate = (target.position - from.position) * options.rate;
+  const Eigen::Vector3d drive = options.hand.damping * goal_rate;
+  Eigen::Vector3d push = held + options.hand.stiffness * from.position + drive;
+  Eigen::Vector3d push_rate = options.hand.stiffness * goal_rate;
+  // The hand's own damper only brakes: all else that it does is its pull.
   const double most =
       std::min({options.hand.maximum_force, from.maximum_force, target.maximum_force});
-  const Goal goal =
-      within_reach({from.position, (target.position - from.position) * options.rate}, most);
-  const std::size_t size = forces.size();
-  const auto delay = static_cast<std::size_t>(options.delay);
-  const Eigen::Vector3d held = forces[(steps + size - delay) % size];
-  const Eigen::Vector3d push =
-      held + options.hand.stiffness * goal.position + options.hand.damping * goal.rate;
-  const Eigen::Vector3d push_rate = options.hand.stiffness * goal.rate;
+  const Eigen::Vector3d pull = options.hand.stiffness * (from.position - position) + drive;
+  if (pull.norm() > most) {
+    push = held + options.hand.stiffness * position + most * pull.normalized();
+    push_rate.setZero();
+  }
   const Eigen::Vector3d before = position;
   if (options.coulomb > 0) {
     advance_with_friction(push, push_rate);
@@ -256,7 +245,7 @@ void SimulatedDevice::Inside::advance() noexcept {
   }
   work += held.dot(position - before);
   // A step without a write() goes on with the force before it.
-  forces[(steps + 1) % size] = forces[steps % size];
+  forces[(steps + 1) % forces.size()] = forces[steps % forces.size()];
   ++steps;
 }
 

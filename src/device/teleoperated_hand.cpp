@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 TeleoperatedHandOptions checked(const TeleoperatedHandOptions& o) {
   const Requirement require{"teleoperated hand"};
   require.positive("speed", o.speed, "give a positive speed in m/s");
+  require.positive("braking", o.braking, "give a positive acceleration in m/s^2");
   require.positive("command_timeout", o.command_timeout, "give a positive time in seconds");
   require.positive("release_time", o.release_time, "give a positive time in seconds");
   require.not_negative("return_after", o.return_after, "give 0 or more seconds");
@@ -74,6 +75,7 @@ struct TeleoperatedHand::Inside {
   void advance(double now, const Vector3d& position) noexcept;
   void play(double dt) noexcept;
   void approach(const Vector3d& goal, double dt) noexcept;
+  void go(const Vector3d& goal, double speed, double dt) noexcept;
 
   const RemoteTarget& remote;
   Playback trajectory;
@@ -118,8 +120,8 @@ void TeleoperatedHand::Inside::begin(double now, const Vector3d& position) noexc
 }
 
 // Commands are dated by when they are received: the device's clock is the only one that counts.
-// Where a hand with little force wanted to be may be far from where it could pull to; with more
-// force it begins where it is.
+// Where a hand of limited force wanted to be may be far from where it could pull to; without the
+// limit it begins where it is.
 void TeleoperatedHand::Inside::receive(double now, const Vector3d& position) noexcept {
   const std::uint64_t newest = remote.generation();
   if (newest == generation) return;
@@ -130,9 +132,10 @@ void TeleoperatedHand::Inside::receive(double now, const Vector3d& position) noe
   const bool moved = copy->moves != command.moves;
   command = *copy;
   if (!command.held || !moved) return;
-  const bool stronger = command.target.maximum_force > target.maximum_force;
-  if (stronger) target.position = position;
-  if (stronger || mode != Mode::following) interpolator.rest(target.position, now);
+  const bool freed =
+      std::isfinite(target.maximum_force) && std::isinf(command.target.maximum_force);
+  if (freed) target.position = position;
+  if (freed || mode != Mode::following) interpolator.rest(target.position, now);
   interpolator.go(command.target.position, command.stamp, now);
 }
 
@@ -148,7 +151,9 @@ void TeleoperatedHand::Inside::choose_mode(double now) noexcept {
     mode = Mode::returning;
   }
   target.buttons = held ? command.target.buttons : 0;
-  target.maximum_force = held ? command.target.maximum_force : TargetSource::Target().maximum_force;
+  if (held) target.maximum_force = command.target.maximum_force;
+  if (mode == Mode::returning || mode == Mode::playing)
+    target.maximum_force = TargetSource::Target().maximum_force;
 }
 
 void TeleoperatedHand::Inside::advance(double now, const Vector3d& position) noexcept {
@@ -158,9 +163,8 @@ void TeleoperatedHand::Inside::advance(double now, const Vector3d& position) noe
       approach(interpolator.at(now), dt);
       return;
     case Mode::released:
-      approach(
-          target.position + std::min(1.0, dt / options.release_time) * (position - target.position),
-          dt);
+      go(target.position + std::min(1.0, dt / options.release_time) * (position - target.position),
+         options.speed, dt);
       return;
     case Mode::returning:
       approach(trajectory.at(trajectory_time), dt);
@@ -181,10 +185,16 @@ void TeleoperatedHand::Inside::play(double dt) noexcept {
   mode = Mode::returning;
 }
 
+// So fast that it can come to rest there.
 void TeleoperatedHand::Inside::approach(const Vector3d& goal, double dt) noexcept {
+  const double length = (goal - target.position).norm();
+  go(goal, std::min(options.speed, std::sqrt(2 * options.braking * length)), dt);
+}
+
+void TeleoperatedHand::Inside::go(const Vector3d& goal, double speed, double dt) noexcept {
   const Vector3d path = goal - target.position;
   const double length = path.norm();
-  const double reach = options.speed * dt;
+  const double reach = speed * dt;
   if (length <= reach) {
     target.position = goal;
   } else {

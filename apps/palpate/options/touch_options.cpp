@@ -172,9 +172,13 @@ Eigen::Vector3d parse_up(const std::string& text) {
   if (axis < 3 && text.size() == (down ? 2U : 1U)) {
     return (down ? -1 : 1) * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis));
   }
-  const Eigen::Vector3d up = parse_point(text, "--up");
-  if (!(up.norm() > 0)) throw UsageError("--up: 0,0,0 is no direction; give an axis such as y");
-  return up.normalized();
+  const bool three = text.find(',') != std::string::npos;
+  const Eigen::Vector3d up = three ? parse_point(text, "--up") : Eigen::Vector3d::Zero();
+  if (up.isZero(0)) {
+    throw UsageError(fmt::format(
+        "--up: '{}' is no direction; give x, y, z, -x, -y, -z or three numbers X,Y,Z", text));
+  }
+  return up.stableNormalized();
 }
 
 }  // namespace

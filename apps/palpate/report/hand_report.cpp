@@ -241,10 +241,10 @@ HandEnergy energy_at_hand(const HandReport& report) {
 
 std::vector<std::string> advice(const HandReport& report) {
   std::vector<std::string> sentences;
-  if (!report.surface) {
-    sentences.emplace_back(kNoSurface);
-  } else if (report.statistics.touching() == 0) {
-    sentences.push_back("the hand never touched the surface: " + way_to_surface(report));
+  if (report.statistics.touching() == 0) {
+    sentences.push_back(report.surface
+                            ? "the hand never touched the surface: " + way_to_surface(report)
+                            : kNoSurface);
   }
   const double scale = report.hand.workspace.scale;
   const double felt = scale * report.stiffness;

@@ -72,7 +72,9 @@ struct SimulatedDeviceOptions {
 ///
 ///   M x'' = F(t_k - delay) - b x' - f_c x'/|x'| + k_h (g - x) + b_h (g' - x')
 ///
-/// between steps k and k + 1; g, the hand's target, is linear between steps. Integration is exact
+/// between steps k and k + 1; g, the hand's target, is linear between steps. Where the hand's pull,
+/// k_h (g - x) + b_h g', would be more than its largest force it is shortened to that; what is left
+/// of the damper, -b_h x', only brakes. Integration is exact
 /// (matrix exponential) but for the direction of dry friction, which is held for 1/16 of a step; on
 /// a straight line that is exact too. Every step takes one read() and one write(); read() brings
 /// the device to the next step's time, the first one to time 0. Same input, same bits.
@@ -173,8 +175,8 @@ class RemoteTarget {
   ~RemoteTarget();
 
   /// Takes the tool, unless it is held already, and moves it. `stamp`: s, on the sender's clock;
-  /// grows from call to call. False: ignored, since it is not finite. Wait-free, as all that
-  /// follows.
+  /// grows from call to call. False: ignored, since it is not finite or pulls with no force.
+  /// Wait-free, as all that follows.
   bool move(const TargetSource::Target& target, double stamp) noexcept;
 
   /// The user of the tool is still connected and keeps it still: a mouse that rests sends
@@ -195,6 +197,7 @@ class RemoteTarget {
 
 struct TeleoperatedHandOptions {
   double speed = 0.5;            ///< limit of the target's speed, but on the trajectory, m/s; > 0
+  double braking = 10;           ///< m/s^2 with which the target comes to rest at a command; > 0
   double command_timeout = 0.1;  ///< s without a command after which the tool is released; > 0
   double release_time = 0.2;     ///< time constant in which the hand ceases to pull, s; > 0
   double return_after = 3;       ///< s from the release until the trajectory goes on; 0 or more
@@ -206,7 +209,11 @@ struct TeleoperatedHandOptions {
 ///
 ///  - To the trajectory's beginning, and back to where it was interrupted, the target moves at
 ///    `speed`; the trajectory waits for it.
-///  - Commands are interpolated between their irregular times, and followed no faster than `speed`.
+///  - Commands are interpolated between their irregular times, and followed no faster than `speed`
+///    and than comes to rest there by `braking`.
+///  - A command that limits the hand's force does so until the trajectory goes on, after its
+///  release,
+///    too. Where the next has no limit the target begins at the device.
 ///  - A command that is overdue counts as a release: the target moves to where the device is, so
 ///    that nothing pulls any more and the surface pushes it out.
 ///

@@ -95,6 +95,8 @@ void Fusion::add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_senso
   options.material_from_intensity = false;  // means have none
   options.viewpoint = T_world_sensor * prepare_.viewpoint.value_or(
                                            cloud.viewpoint.value_or(Eigen::Vector3d::Zero()));
+  if (!eye_) eye_ = options.viewpoint;
+  one_eye_ = one_eye_ && (*options.viewpoint - *eye_).norm() <= leaf_;
   prepared_ = prepare(means(), options);
 }
 
@@ -216,6 +218,7 @@ SurfacePoints Fusion::place(const SurfacePoints& ends) const {
   SurfacePoints points;
   points.origin = ends.origin;
   points.kernel = ends.kernel;
+  points.one_sided = one_eye_;
   points.grid = CellGrid(starts);
   for (const std::uint32_t i : points.grid.order()) {
     const Shown& start = voxels[i]->start;

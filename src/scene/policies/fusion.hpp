@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "palpate/field/surface_points.hpp"
@@ -95,7 +96,9 @@ class Fusion {
   [[nodiscard]] SurfacePoints place(const SurfacePoints& ends) const;
 
   PrepareOptions prepare_;
-  double leaf_ = 0;  // m; 0: no cloud yet
+  double leaf_ = 0;                     // m; 0: no cloud yet
+  std::optional<Eigen::Vector3d> eye_;  // of the first cloud, m, world
+  bool one_eye_ = true;                 // all clouds were seen from there
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   FrameTiming last_;
   Prepared prepared_;            // of the running means

@@ -42,8 +42,8 @@ export class PointerInput {
 
   set free(free: boolean) {
     this.inPlane = free;
-    this.drag(undefined);
     this.stroke.rest();
+    this.drag(undefined);
   }
 
   private down(event: PointerEvent): void {

@@ -14,11 +14,13 @@ const kMost = 5;
 const kPen = 3; // of a pen that is pressed as hard as it can tell
 const kNotch = 1.25; // times the force, a notch of the wheel
 const kAbove = 2; // reaches of a pick, where it hovers
-const kBelow = 3; // and where a hand that presses wants to be
+const kBelow = 3; // and where a hand that presses wants to be at least
+const kGive = 6; // times as deep as the surface gives way to the force, as the hand's spring is not much softer
+const kDeepest = 20; // times the least
 const kNear = 0.25; // and from where it pulls with a limited force
-const kGlide = 57; // ms, in which it comes near, so that it hits nothing: as it comes to rest itself (docs/method.md 8.1)
 const kGrazing = 0.25; // cosine: a plane seen flatter says nothing of where the pointer is on it
 const kPatience = 400; // ms in which a proxy that something else holds may come free
+const kWeak = 400; // ms of a force that contact keeps small: a hand that nobody moves has to be lifted for that
 const kSoftStart = 750; // ms, after which all of a force is felt again (GuardOptions::soft_start, and the way there)
 const kPointer = 6; // pixels around a mouse in which a surface counts
 const kFinger = 14;
@@ -32,9 +34,8 @@ export class Stroke {
   private there = false; // on the surface or above it: from there alone it presses
   private last: Seen | undefined;
   private good = 0; // ms, when nothing else held the proxy
+  private strong = 0; // ms, when nothing kept the force small
   private freed = -Infinity; // ms
-  private updated = -Infinity; // ms
-  private interval = 0; // ms, since the update before
   private left = -Infinity; // ms, when it began to go to another surface
   private readonly caster = new Raycaster();
 
@@ -63,6 +64,8 @@ export class Stroke {
 
   /** Something else moves the tool. */
   rest(): void {
+    const tool = this.world.tools[this.hand.device];
+    if (this.pressing && tool !== undefined) this.hand.moveTo(tool.hipPlace); // not deep below a surface, with all force
     this.at = undefined;
     this.pressing = false;
     this.there = false;
@@ -71,8 +74,6 @@ export class Stroke {
 
   /** At every state of the tool, which come more evenly than pictures; `now` in ms. */
   update(now: number): void {
-    this.interval = now - this.updated;
-    this.updated = now;
     const tool = this.world.tools[this.hand.device];
     if (this.at === undefined || !this.hand.held || tool === undefined) return;
     const seen = this.under(this.at, this.finger);
@@ -84,22 +85,25 @@ export class Stroke {
     this.judge(tool, above, felt, now);
     const height = tool.hipPlace.clone().sub(place).dot(normal);
     const pressing = this.pressing && this.there && seen !== undefined && !tool.behind;
-    if (tool.touching && now - this.left < kPatience / 4) return; // at rest, until it is free
-    if (!this.there) this.goTo(above, tool);
+    if (tool.touching && now - this.left < kPatience / 4) this.hand.moveTo(tool.hipPlace); // until it is free
     else if (!pressing) this.hand.moveTo(above);
-    else if (!tool.touching && height > kNear * reach) this.goTo(place, tool);
-    else this.hand.moveTo(place.clone().addScaledVector(normal, -kBelow * reach), this.pen ?? this.force);
+    else if (!tool.touching && height > kNear * reach) this.hand.moveTo(place.clone().addScaledVector(normal, -kNear * reach));
+    else this.hand.moveTo(place.clone().addScaledVector(normal, -this.depth(tool, reach)), this.pen ?? this.force);
   }
 
-  private goTo(place: Vector3, tool: Tool): void {
-    this.hand.moveTo(tool.hipPlace.clone().lerp(place, 1 - Math.exp(-this.interval / kGlide)));
+  /** m; so deep that the hand's spring pulls with all of the force. */
+  private depth(tool: Tool, reach: number): number {
+    const given = tool.proxyPlace.distanceTo(tool.hipPlace) / tool.force.length(); // m/N
+    const least = kBelow * reach;
+    const wanted = kGive * given * (this.pen ?? this.force);
+    return wanted > least ? Math.min(wanted, kDeepest * least) : least;
   }
 
   /** Is the proxy on that side of that surface? Then its tangent plane says finer than points do where the pointer is. */
   private refine({ place, normal, reach, inward }: Seen, tool: Tool): boolean {
     const facing = -tool.normal.dot(this.caster.ray.direction);
     if (!tool.touching || facing <= 0) return false;
-    const tangent = facing > kGrazing ? this.tangent(tool.proxyPlace, tool.normal)?.add(inward) : undefined;
+    const tangent = facing > kGrazing ? this.tangent(tool.proxyPlace, tool.normal)?.add(inward.clone().projectOnPlane(tool.normal)) : undefined;
     if ((tangent ?? tool.proxyPlace).distanceTo(place) > kAbove * reach) return false;
     if (tangent !== undefined) place.copy(tangent);
     normal.copy(tool.normal);
@@ -117,14 +121,19 @@ export class Stroke {
     if (felt) this.there = true;
     else if (missed || deep > aside + 2 * kAbove * reach) this.there = false;
     else if (now - this.freed > kSoftStart && tool.hipPlace.distanceTo(above) < reach) this.there = true;
+    if (!tool.touching || !tool.weak) this.strong = now;
+    if (now - this.strong > kWeak) {
+      this.there = false;
+      this.freed = this.strong = now;
+    }
     if (felt || !tool.touching) this.good = now;
-    else if (!this.there || now - this.good > kPatience) this.putToHand(now);
+    else if (!this.there || now - this.good > kPatience) this.putToHand(now, tool.faulty);
     if (was && !this.there) this.left = now;
   }
 
-  private putToHand(now: number): void {
+  private putToHand(now: number, faulty: boolean): void {
     this.there = false;
-    if (now - this.freed < kPatience / 4) return;
+    if (faulty || now - this.freed < kPatience / 4) return;
     this.freed = now;
     this.free();
   }

@@ -1,21 +1,15 @@
 // The bar: pause, reset, record, sound, picture, link, help.
 
-import { Vector3 } from "three";
 import type { Session } from "../model/session";
 import { writeLink } from "../protocol/link";
 import type { ToProgram, Welcome } from "../protocol/messages";
 import type { Sound } from "../sound/sound";
 import type { World } from "../view/world";
 import { byId, icon, say } from "./dom";
-import { recall, remember } from "./memory";
 import type { Notices } from "./notices";
 import { whole } from "./numbers";
 
 const kKept = 0.95; // of its best rate, below which the servo is late
-
-function upOf(welcome: Welcome): string {
-  return `up ${welcome.scene}`;
-}
 
 export class Bar {
   private isRecording = false;
@@ -40,14 +34,12 @@ export class Bar {
     click("help", () => this.help());
     click("fit", () => this.world.followTool(undefined));
     click("follow", () => this.follow());
-    click("upright", () => this.turnUpright());
+    click("upright", () => this.world.turnUpright());
   }
 
   begin(welcome: Welcome): void {
     say(byId("scene"), welcome.scene);
     this.best = 0;
-    const up = recall<number[] | undefined>(upOf(welcome), undefined);
-    if (Array.isArray(up) && up.every(Number.isFinite)) this.world.setUp(new Vector3(...up));
     document.title = `${welcome.scene} – palpate`;
     if (this.session.recorded) say(byId("link-words"), "replay");
     this.showRecording(false);
@@ -74,11 +66,6 @@ export class Bar {
   }
 
   /** Another axis is up, also when this scene is opened again. */
-  turnUpright(): void {
-    this.world.turnUpright();
-    if (this.session.welcome !== undefined) remember(upOf(this.session.welcome), this.world.up.toArray());
-  }
-
   pause(): void {
     if (this.session.recorded) return;
     this.send({ type: "pause", on: !(this.session.tool?.has("paused") ?? false) });

@@ -8,7 +8,7 @@ import type { Session } from "../model/session";
 import type { World } from "../view/world";
 import { byId, make, say } from "./dom";
 import { fieldRow, type FieldRow } from "./field";
-import { recall, remember } from "./memory";
+import { recall, remember } from "../model/memory";
 import type { Notices } from "./notices";
 
 const kColours = ["red", "blue", "violet", "purple"]; // --hand-0 and those after it

@@ -6,7 +6,7 @@ import { kFirstLook, type Look } from "../view/world";
 import { byId } from "./dom";
 import { fieldRow, type FieldRow } from "./field";
 import { whole } from "./numbers";
-import { remember, recall } from "./memory";
+import { remember, recall } from "../model/memory";
 
 const kPointCounts = [10_000, 30_000, 60_000, 100_000, 200_000, 300_000];
 

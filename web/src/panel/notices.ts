@@ -17,9 +17,9 @@ interface Notice {
   timer: number;
 }
 
-/** The same but for its numbers: times and places differ where one thing happens again. */
+/** The same but for its quantities: they differ where one thing happens again. Other numbers are names ("hand 2"). */
 function kindOf(text: string): string {
-  return text.replace(/\d+(\.\d+)?/g, "#");
+  return text.replace(/(?<![\w.])(\d+\.\d+|\d+(?= ?(%|[kmµun]?[smN]|Hz|points|steps|frames|failed|times)(?!\w)))/g, "#");
 }
 
 export class Notices {

@@ -8,7 +8,7 @@ import { Plot } from "./plot";
 
 const kInterval = 100; // ms between two pictures of a plot
 const kCalmInterval = 500; // of those that change slowly
-const kSlow = 2.5; // times as long where drawing is slow
+const kSlowTimes = 2.5; // times as long where drawing is slow
 const kFloor = 0.01; // mN, least amplitude that the spectrum shows
 const kHighest = 500; // Hz
 
@@ -58,7 +58,7 @@ export class Plots {
   }
 
   update(now: number, slow: boolean): void {
-    const times = slow ? kSlow : 1;
+    const times = slow ? kSlowTimes : 1;
     if (this.frozen || now - this.drawn < times * kInterval) return;
     this.drawn = now;
     if (this.force.visible) this.showForce();

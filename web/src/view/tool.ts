@@ -61,6 +61,8 @@ export class Tool {
   showSupport = true;
   touching = false;
   behind = false; // what a camera sees
+  weak = false; // the force is less than the surface's, until the tool has been lifted
+  faulty = false; // no force until somebody resets
   readonly force = new Vector3(); // N, on the hand
   readonly normal = new Vector3(); // of the tangent constraint
   below: { place: Vector3; spacing: number } | undefined; // the nearest point of the surface, while the hand is free
@@ -136,6 +138,8 @@ export class Tool {
     this.radius = state.radius;
     this.touching = (state.flags & Flag.touching) !== 0;
     this.behind = (state.flags & Flag.behind) !== 0;
+    this.weak = (state.flags & (Flag.starting | Flag.softer)) !== 0;
+    this.faulty = (state.flags & Flag.fault) !== 0;
     this.trail.take(this.proxyPlace, state.time);
   }
 

@@ -5,6 +5,7 @@ import {
 } from "three";
 import type { CloudMessage, StateMessage, SurfaceMessage } from "../protocol/decode";
 import type { SourceReport, Welcome } from "../protocol/messages";
+import { recall, remember } from "../model/memory";
 import { boundsOf, samplePlaces, type Bounds } from "./bounds";
 import { Cloud, type Colouring } from "./cloud";
 import { rampTexture } from "./colours";
@@ -44,6 +45,7 @@ export class World {
   readonly up = new Vector3(0, 0, 1);
   look: Look = { ...kFirstLook };
   followed: number | undefined; // device
+  private upKey = ""; // of what was chosen in place of what the program says
   dragging = false; // a hand that is dragged against the picture: the eye stands still
   clouds: Cloud[] = [];
   tools: Tool[] = [];
@@ -80,7 +82,9 @@ export class World {
   /** What was there before goes, unless it is the same scene come back. */
   begin(welcome: Welcome, again: boolean): void {
     this.clear();
-    this.up.set(...welcome.up).normalize();
+    this.upKey = `up ${welcome.scene} ${welcome.up.join()}`;
+    const chosen = recall<unknown>(this.upKey, undefined);
+    this.up.copy(kAxes.find((axis) => axis.toArray().join() === String(chosen)) ?? new Vector3(...welcome.up).normalize());
     this.radius = welcome.radius;
     this.bounds = undefined;
     this.eye = welcome.eye === undefined ? [] : [new Vector3(...welcome.eye)];
@@ -135,18 +139,15 @@ export class World {
     this.navigation.frame(bounds, firstDirection(this.up, this.cameras.length > 0 ? this.cameras : this.eye, bounds.centre));
   }
 
-  setUp(up: Vector3): void {
-    this.up.copy(up);
-    this.navigation.setUp(up);
-    this.bounds = boundsOf(this.places.flat(), up);
-    if (this.bounds !== undefined) this.heights.copy(this.bounds.heights);
-    this.fit();
-  }
-
-  /** The next of the six axes is up. */
+  /** The next of the six axes is up, here and when this scene is seen again. */
   turnUpright(): void {
     const at = kAxes.findIndex((axis) => axis.distanceTo(this.up) < 1e-3);
-    this.setUp(kAxes[(at + 1) % kAxes.length]!);
+    this.up.copy(kAxes[(at + 1) % kAxes.length]!);
+    remember(this.upKey, this.up.toArray());
+    this.navigation.setUp(this.up);
+    this.bounds = boundsOf(this.places.flat(), this.up);
+    if (this.bounds !== undefined) this.heights.copy(this.bounds.heights);
+    this.fit();
   }
 
   /** Comes so close to a tool that its support radius shows, and goes along with it; or back. */
