@@ -104,13 +104,13 @@ std::vector<DeviceLabel> labels_of(const std::vector<Servo*>& servos,
 }  // namespace
 
 struct Viewer::Parts {
-  Parts(Scene& seen, const std::vector<Servo*>& moving, const ViewerOptions& given,
-        const ViewerControls& controls)
+  Parts(Scene& seen, std::vector<Servo*> moving, const ViewerOptions& given,
+        ViewerControls controls)
       : scene(seen),
-        servos(moving),
+        servos(std::move(moving)),
         names(tool_names(servos)),
         options(complete(given, seen)),
-        sessions(sessions_options(complete(controls, servos))),
+        sessions(sessions_options(complete(std::move(controls), servos))),
         server(options, sessions),
         radii(servos.size(), 0.0),
         encoder(seen, {servos, *options.origin, options.streams,
@@ -240,7 +240,7 @@ void Viewer::Parts::show(const EncodedScene& encoded) {
 
 Viewer::Viewer(Scene& scene, std::vector<Servo*> servos, const ViewerOptions& options,
                ViewerControls controls)
-    : parts_(std::make_unique<Parts>(scene, servos, options, controls)) {}
+    : parts_(std::make_unique<Parts>(scene, std::move(servos), options, std::move(controls))) {}
 
 Viewer::~Viewer() = default;
 
