@@ -21,8 +21,10 @@ void check(const Hello& hello) {
   expect(hello.points <= kMostPoints, "points");
 }
 void check(const Hand& hand) {
-  expect(hand.position.allFinite(), "a place that is not finite");
-  expect(hand.position.cwiseAbs().maxCoeff() <= kFarthestHand, "a place too far");
+  const Eigen::Vector3d& place = hand.target.position;
+  expect(place.allFinite(), "a place that is not finite");
+  expect(place.cwiseAbs().maxCoeff() <= kFarthestHand, "a place too far");
+  expect(hand.target.maximum_force > 0, "a force that is none");
   expect(hand.device < 256, "device");
 }
 void check(const Points& points) {
