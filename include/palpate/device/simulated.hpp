@@ -74,10 +74,10 @@ struct SimulatedDeviceOptions {
 ///
 /// between steps k and k + 1; g, the hand's target, is linear between steps. Where the hand's pull,
 /// k_h (g - x) + b_h g', would be more than its largest force it is shortened to that; what is left
-/// of the damper, -b_h x', only brakes. Integration is exact
-/// (matrix exponential) but for the direction of dry friction, which is held for 1/16 of a step; on
-/// a straight line that is exact too. Every step takes one read() and one write(); read() brings
-/// the device to the next step's time, the first one to time 0. Same input, same bits.
+/// of the damper, -b_h x', only brakes. Integration is exact (matrix exponential) but for the
+/// direction of dry friction, which is held for 1/16 of a step; on a straight line that is exact
+/// too. Every step takes one read() and one write(); read() brings the device to the next step's
+/// time, the first one to time 0. Same input, same bits.
 class SimulatedDevice final : public Device {
  public:
   /// `target`: the hand's target, device frame, times from 0; empty: the starting position.

@@ -2,7 +2,7 @@
 // down: the hand wants to be deep below the surface, but pulls with a limited force. To another surface it is
 // lifted: it goes there straight, and nothing holds it.
 
-import { Plane, Raycaster, Vector2, Vector3 } from "three";
+import { MathUtils, Plane, Raycaster, Vector2, Vector3 } from "three";
 import type { Seen } from "../view/pick";
 import type { Tool } from "../view/tool";
 import type { World } from "../view/world";
@@ -19,8 +19,9 @@ const kGive = 6; // times as deep as the surface gives way to the force, as the 
 const kDeepest = 20; // times the least
 const kNear = 0.25; // and from where it pulls with a limited force
 const kGrazing = 0.25; // cosine: a plane seen flatter says nothing of where the pointer is on it
-const kPatience = 400; // ms in which a proxy that something else holds may come free
-const kWeak = 400; // ms of a force that contact keeps small: a hand that nobody moves has to be lifted for that
+// ms in which a proxy that something else holds may come free, and a force that contact keeps small grow: a hand that
+// nobody moves has to be lifted for that
+const kPatience = 400;
 const kSoftStart = 750; // ms, after which all of a force is felt again (GuardOptions::soft_start, and the way there)
 const kPointer = 6; // pixels around a mouse in which a surface counts
 const kFinger = 14;
@@ -93,10 +94,9 @@ export class Stroke {
 
   /** m; so deep that the hand's spring pulls with all of the force. */
   private depth(tool: Tool, reach: number): number {
-    const given = tool.proxyPlace.distanceTo(tool.hipPlace) / tool.force.length(); // m/N
+    const given = tool.proxyPlace.distanceTo(tool.hipPlace) / tool.force.length(); // m/N; NaN where nothing is touched
     const least = kBelow * reach;
-    const wanted = kGive * given * (this.pen ?? this.force);
-    return wanted > least ? Math.min(wanted, kDeepest * least) : least;
+    return MathUtils.clamp(kGive * (given || 0) * (this.pen ?? this.force), least, kDeepest * least);
   }
 
   /** Is the proxy on that side of that surface? Then its tangent plane says finer than points do where the pointer is. */
@@ -122,7 +122,7 @@ export class Stroke {
     else if (missed || deep > aside + 2 * kAbove * reach) this.there = false;
     else if (now - this.freed > kSoftStart && tool.hipPlace.distanceTo(above) < reach) this.there = true;
     if (!tool.touching || !tool.weak) this.strong = now;
-    if (now - this.strong > kWeak) {
+    if (now - this.strong > kPatience) {
       this.there = false;
       this.freed = this.strong = now;
     }
