@@ -150,6 +150,8 @@ void ImplicitSurface::change(const FieldOptions& checked) noexcept {
   options = checked;
   offset = options.raw_weights ? 0 : plane_offset(options.kernel, options.threshold);
   largest_tool = std::max(0.0, kHighest - offset);
+  const bool metaball = options.kind == FieldOptions::Kind::metaball;
+  rise = {options.tool_radius, !metaball ? 0 : options.raw_weights ? kHighest : offset};
 }
 
 double united(const double* w, int sources) noexcept {

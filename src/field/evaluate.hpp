@@ -20,6 +20,7 @@ struct ImplicitSurface {
   FieldOptions options;
   double offset = 0;        ///< of the metaball level, in support radii, without a tool
   double largest_tool = 0;  ///< that the metaball's surface is pushed out by, in support radii
+  Rise rise;                ///< of the surface over points of a plane
   const simd::Functions* sums;
 };
 

@@ -43,17 +43,17 @@ void Facing::follow(const Facing& other) noexcept {
   follows_ = true;
   if (other.now_.sheet_count == 0) return;
   now_ = other.now_;
+  was_behind_ = other.was_behind_;
   remembered_ = other.remembered_;  // within what was reserved
   remembered_from_ = other.remembered_from_;
 }
 
-std::uint32_t Facing::part_of(const Key& key, bool known) noexcept {
+std::uint32_t Facing::part_of(Part part) noexcept {
   for (std::uint32_t k = now_.part_count; k-- > 0;) {
-    if (now_.parts[k].key == key) return k;
+    if (now_.parts[k].key == part.key) return k;
   }
-  Part part{.key = key, .known = known};
   for (std::uint32_t k = 0; k < before_.part_count; ++k) {
-    if (before_.parts[k].key == key) part.sign = before_.parts[k].sign;
+    if (before_.parts[k].key == part.key) part.sign = before_.parts[k].sign;
   }
   now_.parts[now_.part_count] = part;
   return now_.part_count++;
@@ -72,10 +72,15 @@ std::uint8_t* Facing::Table::find(const Key& key) noexcept {
 }
 
 /// kMost: there are too many. There are no more parts than sheets.
-std::uint32_t Facing::sheet_of(const Key& key, const Key& part, bool known) noexcept {
+std::uint32_t Facing::sheet_of(const SurfacePoints& points, std::uint32_t number) noexcept {
+  const SurfacePoints::Sheets& own = points.sheets;
+  const Key key = own.empty() ? key_of_all(points) : Key{&points, number};
   std::uint8_t* const slot = now_.find(key);
   if (*slot < kMost || now_.sheet_count == kMost) return *slot;
-  Sheet sheet{.key = key, .part = part_of(part, known)};
+  Part part{.key = key_of_all(points), .known = own.empty() || own.known[own.part[number]] != 0};
+  part.unsure = points.one_sided && !part.known;
+  if (!own.empty() && (part.unsure || !points.one_sided)) part.key = {&points, own.part[number]};
+  Sheet sheet{.key = key, .part = part_of(part)};
   const std::uint8_t before = *before_.find(key);
   if (before < kMost) sheet.label = before_.sheets[before].label;
   now_.sheets[now_.sheet_count] = sheet;
@@ -92,15 +97,10 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
     const double confidence = surface.normals.empty() ? 0 : confidence_now(layer, i);
     const std::uint32_t sheet = own.empty() ? 0 : own.sheet[i];
     if (confidence <= 0 || sheet == SurfacePoints::Sheets::kNone) {
-      sheet_of_place_.push_back(kMost);
+      sheet_of_place_.push_back(surface.one_sided ? kUnsure : kMost);
       continue;
     }
-    if (sheet != last) {
-      const Key key = own.empty() ? key_of_all(surface) : Key{&surface, sheet};
-      const Key part = own.empty() ? key : Key{&surface, own.part[sheet]};
-      slot = sheet_of(key, part, own.empty() || own.known[own.part[sheet]] != 0);
-      last = sheet;
-    }
+    if (sheet != last) slot = sheet_of(surface, last = sheet);
     sheet_of_place_.push_back(slot);
     if (slot == kMost) continue;
     Point point{};
@@ -115,8 +115,9 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
     points_.push_back(point);
     Sheet& s = now_.sheets[slot];
     const float distance = point.place.norm();
+    Part& part = now_.parts[s.part];
     // Where all are one part, only free space lets go of its side.
-    if (own.empty() || distance <= kHolds * point.radius) now_.parts[s.part].near = true;
+    part.near |= own.empty() || part.key == kOneSided || distance <= kHolds * point.radius;
     if (own.empty() || distance <= kMeets * point.radius) s.near = true;
     ++s.count;
   }
@@ -134,20 +135,6 @@ void Facing::list(const Points& points, const Stance& stance) noexcept {
   float radii = 0;
   for (const Point& point : points_) radii += point.radius;
   if (!points_.empty()) radius_ = radii / static_cast<float>(points_.size());
-}
-
-/// Of the sheet and part of points without sheets of their own.
-Facing::Key Facing::key_of_all(const SurfacePoints& points) noexcept {
-  return points.one_sided ? kOneSided : Key{};
-}
-
-/// Is it seen from the side that nobody saw?
-bool Facing::is_absent(const Part& part) noexcept {
-  return part.key == kOneSided && part.sign < 0;
-}
-
-bool Facing::behind() const noexcept {
-  return std::ranges::any_of(std::span(now_.parts).first(now_.part_count), is_absent);
 }
 
 /// What has no weight at the proxy any more may be seen from another side next, and what a free
@@ -173,10 +160,6 @@ void Facing::group() noexcept {
     Sheet& sheet = now_.sheets[points_[i].sheet];
     order_[sheet.begin + sheet.count++] = i;
   }
-}
-
-bool Facing::is_hidden(const Point& point, float height) const noexcept {
-  return std::abs(height) > (height > 0 ? point.above : point.below) + point.residual;
 }
 
 /// The tool looks from where it is or, where it touches, from a little above; between two sheets
@@ -243,14 +226,20 @@ bool Facing::write(const Points& points) const noexcept {
   for (std::size_t k = 0; k < sheet_of_place_.size(); ++k) {
     const std::uint32_t slot = sheet_of_place_[k];
     std::int8_t sign = 1;
+    bool unsure = slot == kUnsure;
     std::uint8_t label = kInFront;
     if (slot < kMost) {
       const Part& part = now_.parts[now_.sheets[slot].part];
       sign = static_cast<std::int8_t>(part.sign);
+      unsure = part.unsure;
       label = now_.sheets[slot].label;
-      if (is_absent(part)) sign = height_over(points_[next]) < 0 ? 0 : 1;
+      if (is_absent(part)) {
+        const Point& point = points_[next];
+        sign = height_over(point) < rise_of(point) ? 0 : 1;
+      }
       ++next;
     }
+    if (unsure && was_behind_) sign = 0;
     changed = changed || points.signs[k] != sign || points.labels[k] != label;
     points.signs[k] = sign;
     points.labels[k] = label;
@@ -266,14 +255,11 @@ bool Facing::is_settled(std::span<const ActiveLayer> layers) const noexcept {
   });
 }
 
-bool Facing::face(const Points& points, const Stance& stance) noexcept {
-  if (is_settled(points.layers)) {
-    sheet_of_place_.assign(points.signs.size(), 0);
-    return write(points);
-  }
+void Facing::look(const Points& points, const Stance& stance) noexcept {
   pairs_ = kPairs;
+  rise_ = points.rise;
   list(points, stance);
-  if (points_.empty()) return write(points);
+  if (points_.empty()) return;
   if (!std::exchange(follows_, false)) let_go(stance);
   group();
   choose_eye(stance);
@@ -284,6 +270,15 @@ bool Facing::face(const Points& points, const Stance& stance) noexcept {
   if (vanished) references_.erase(references_.begin(), references_.begin() + older);
   std::swap(references_, remembered_);
   remembered_from_ = stance.proxy;
+}
+
+bool Facing::face(const Points& points, const Stance& stance) noexcept {
+  if (is_settled(points.layers)) {
+    sheet_of_place_.assign(points.signs.size(), 0);
+  } else {
+    look(points, stance);
+  }
+  was_behind_ = behind();
   return write(points);
 }
 

@@ -29,6 +29,12 @@ struct Stance {
   [[nodiscard]] bool touches() const noexcept { return !normal.isZero(0); }
 };
 
+/// How high above its points a surface is felt: the length, m, and so much of a point's R.
+struct Rise {
+  double length = 0;
+  double share = 0;
+};
+
 /// Decides which side of each sheet near the tool is free, and how the sheets meet as seen from
 /// there. A decision stands as long as any of the sheet's points has weight at the proxy, so that
 /// the field changes by where it is evaluated alone. Real-time but for construction; bounded in
@@ -45,6 +51,7 @@ class Facing {
     const Selection* selection = nullptr;
     std::span<std::int8_t> signs;
     std::span<std::uint8_t> labels;
+    Rise rise;
   };
 
   /// True when a sign or a label is another than before.
@@ -64,10 +71,11 @@ class Facing {
 
  private:
   static constexpr std::size_t kMost = 96;  // sheets near the tool; further ones are silent
+  static constexpr std::uint32_t kUnsure = kMost + 1;  // in a sheet's place: one view's, on none
   static constexpr std::uint8_t kOpen = 0xff;
 
-  /// Whose sheet or part it is. All layers without sheets of their own are of one, but for those
-  /// that were seen from one side alone: these are of another.
+  /// Whose sheet or part it is. All layers without sheets of their own are of one. Another part is
+  /// all that was seen from one side alone, with sheets or without.
   struct Key {
     const void* owner = nullptr;
     std::uint32_t number = 0;
@@ -76,9 +84,10 @@ class Facing {
   static constexpr Key kOneSided{nullptr, 1};
   struct Part {
     Key key;
-    int sign = 0;        // 0: not decided
-    bool known = false;  // do its normals point outward for sure?
-    bool near = false;   // has one of its points weight at the proxy, or nearly?
+    int sign = 0;         // 0: not decided
+    bool known = false;   // do its normals point outward for sure?
+    bool unsure = false;  // was it seen in one view that does not tell its side?
+    bool near = false;    // has one of its points weight at the proxy, or nearly?
     double seen = 0;
   };
   struct Sheet {
@@ -124,8 +133,8 @@ class Facing {
     std::uint8_t label;
   };
 
-  std::uint32_t part_of(const Key& key, bool known) noexcept;
-  std::uint32_t sheet_of(const Key& key, const Key& part, bool known) noexcept;
+  std::uint32_t part_of(Part part) noexcept;
+  std::uint32_t sheet_of(const SurfacePoints& points, std::uint32_t number) noexcept;
   void list(const Points& points, const Stance& stance) noexcept;
   void list_layer(const ActiveLayer& layer, std::span<const std::uint32_t> places,
                   const Stance& stance) noexcept;
@@ -136,6 +145,7 @@ class Facing {
   [[nodiscard]] static bool is_absent(const Part& part) noexcept;
   [[nodiscard]] bool is_one_sided(const Point& point) const noexcept;
   [[nodiscard]] float height_over(const Point& point) const noexcept;
+  [[nodiscard]] float rise_of(const Point& point) const noexcept;
   [[nodiscard]] bool list_references(const Stance& stance) noexcept;
   [[nodiscard]] bool is_settled(std::span<const ActiveLayer> layers) const noexcept;
   void add_references(const Sheet& sheet) noexcept;
@@ -146,6 +156,7 @@ class Facing {
   void decide_labels() noexcept;
   [[nodiscard]] std::uint8_t label_of(const Sheet& sheet) noexcept;
   [[nodiscard]] bool is_hidden(const Point& point, float height) const noexcept;
+  void look(const Points& points, const Stance& stance) noexcept;
   [[nodiscard]] bool write(const Points& points) const noexcept;
 
   Table now_;
@@ -160,6 +171,8 @@ class Facing {
   Eigen::Vector3f beside_ = Eigen::Vector3f::Zero();  // normal of the closest one-sided point
   float radius_ = 0;                                  // R around the tool, m
   float view_ = 0;                                    // how far from the eye what is seen counts, m
+  Rise rise_;
+  bool was_behind_ = false;  // in the last call
   bool follows_ = false;
   int pairs_ = 0;  // that may still be compared
 };

@@ -19,6 +19,7 @@ constexpr float kAcrossReach = 0.9f;  // R within which decided points tell sign
 constexpr double kLeastVote = 1e-3;
 constexpr float kMeetReach = 1.3f;  // R within which sheets meet
 constexpr double kLeastMeeting = 1e-3;
+constexpr float kSamePlace = 1e-3f;  // R; between points closer than that, rounding says the way
 constexpr double kSameNormal = 0.7;
 constexpr double kSamePlane = 0.3;
 constexpr float kHiddenView = 2.6f;        // R
@@ -66,8 +67,31 @@ double Facing::across(std::uint32_t part) noexcept {
   return sum;
 }
 
+/// Of the sheet and part of points without sheets of their own.
+Facing::Key Facing::key_of_all(const SurfacePoints& points) noexcept {
+  return points.one_sided ? kOneSided : Key{};
+}
+
+/// Is it seen from the side that nobody saw?
+bool Facing::is_absent(const Part& part) noexcept {
+  return part.key == kOneSided && part.sign < 0;
+}
+
+bool Facing::behind() const noexcept {
+  return std::ranges::any_of(std::span(now_.parts).first(now_.part_count), is_absent);
+}
+
+bool Facing::is_hidden(const Point& point, float height) const noexcept {
+  return std::abs(height) > (height > 0 ? point.above : point.below) + point.residual;
+}
+
 bool Facing::is_one_sided(const Point& point) const noexcept {
-  return now_.sheets[point.sheet].key == kOneSided;
+  return now_.parts[now_.sheets[point.sheet].part].key == kOneSided;
+}
+
+/// How high above a point its surface is felt, m.
+float Facing::rise_of(const Point& point) const noexcept {
+  return static_cast<float>(rise_.length + rise_.share * static_cast<double>(point.radius));
 }
 
 /// How high the eye is above the surface at a point, m. What was seen from one side alone is never
@@ -80,7 +104,8 @@ float Facing::height_over(const Point& point) const noexcept {
   return bent ? 0.5f * (height + beside_.dot(way)) : height;
 }
 
-/// `continued`: what is decided around a part tells its sign, rather than what is seen of it.
+/// `continued`: what is decided around a part tells its sign, rather than what is seen of it; but
+/// who is behind a view knows it by what is seen alone.
 void Facing::decide_signs(bool continued) noexcept {
   for (const Point& p : points_) {
     Sheet& sheet = now_.sheets[p.sheet];
@@ -97,8 +122,10 @@ void Facing::decide_signs(bool continued) noexcept {
     const double w = static_cast<double>(p.confidence) * weight(squared, view_);
     sheet.weight += w;
     const float length = std::max(std::sqrt(squared), 1e-12f);
-    const double sharp = std::max(0.f, std::abs(height) - kUnsharp * p.residual) / length;
-    now_.parts[sheet.part].seen += w * sharp * (height < 0 ? -1 : 1) * (hidden ? kHiddenVote : 1.0);
+    // Who comes from behind is in front only where the surface is below.
+    const float over = was_behind_ && is_one_sided(p) ? height - rise_of(p) : height;
+    const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
+    now_.parts[sheet.part].seen += w * sharp * (over < 0 ? -1 : 1) * (hidden ? kHiddenVote : 1.0);
   }
   int beside = 0;  // of parts whose normals point outward, as they are seen
   for (const Part& part : std::span(now_.parts).first(now_.part_count)) {
@@ -107,7 +134,8 @@ void Facing::decide_signs(bool continued) noexcept {
   for (std::uint32_t k = 0; k < now_.part_count; ++k) {
     Part& part = now_.parts[k];
     if (part.sign != 0) continue;
-    const double vote = !continued ? 0 : part.known && beside != 0 ? beside : across(k);
+    const bool told = continued && part.key != kOneSided;
+    const double vote = !told ? 0 : part.known && beside != 0 ? beside : across(k);
     part.sign = (std::abs(vote) > kLeastVote ? vote : part.seen) < 0 ? -1 : 1;
   }
 }
@@ -122,7 +150,7 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   each_meeting(
       sheet, kMeetReach, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
         const float length = way.norm();
-        if (!(length > 0)) return;
+        if (!(length > kSamePlace * p.radius)) return;
         parallel[q.label] += w * static_cast<double>(sign * p.normal.dot(q.normal));
         planes[q.label] += w * static_cast<double>(q.normal.dot(way) / length);
         above[q.label] += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);

@@ -101,8 +101,10 @@ void Patch::copy(std::span<const ActiveLayer> layers, int sources, bool whole) n
 }
 
 bool Patch::turn(const Stance& stance) noexcept {
-  if (!options_.normals || layers_.empty()) return false;
-  return facing_.face({layers_, &selection_, signs_, labels_}, stance);
+  const bool sided = options_.normals ||
+                     any(layers_, [](const ActiveLayer& layer) { return layer.points->one_sided; });
+  if (!sided || layers_.empty()) return false;
+  return facing_.face({layers_, &selection_, signs_, labels_, options_.rise}, stance);
 }
 
 void Patch::face(const Stance& stance) noexcept {

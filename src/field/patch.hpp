@@ -18,6 +18,7 @@ struct GatherOptions {
   double radius = 0;         ///< R of all points, m; 0: each has its own
   bool raw_weights = false;  ///< leave out the density weights
   bool normals = true;       ///< copy normals and confidences; metaballs need none
+  Rise rise = {};            ///< where the surface is felt
   int most_visits = 1 << 30;
   const Stance* stance = nullptr;  ///< that points are turned to; nullptr: they stay as they are
 };

@@ -12,6 +12,7 @@ void Patches::show(std::span<const ActiveLayer> layers, int sources, bool same) 
   layers_ = layers;
   sources_ = sources;
   if (!same) far_.clear();
+  others_ = others_ || !same;
   // Nobody has renewed it: its layers may be gone, and others come to their addresses.
   if (near_.outdated()) near_.clear();
   near_.advance(layers_);
@@ -25,7 +26,7 @@ void Patches::stand(const Vector3d& proxy) noexcept {
   stance_ = stance;
   const double moved = (stance.proxy - faced_.proxy).norm();
   const bool same = stance.touches() == faced_.touches() && moved < kMoved * near_.mean_radius();
-  if (same) return;
+  if (!std::exchange(others_, false) && same) return;
   faced_ = stance;
   const Ball here{stance.proxy, 0};
   const bool covered = near_.covers(here);
@@ -115,6 +116,7 @@ bool Patches::gather(Patch& patch, const Vector3d& center, double extra, int& le
                    {.radius = radius_,
                     .raw_weights = surface_->options.raw_weights,
                     .normals = surface_->options.kind != FieldOptions::Kind::metaball,
+                    .rise = surface_->rise,
                     .most_visits = left,
                     .stance = &stance_});
   count(patch, whole, left);

@@ -172,7 +172,8 @@ class Patches {
 
   mutable Stance last_;  // after a proxy's last step
   Stance stance_;
-  Stance faced_;  // that the near patch was looked at from last
+  Stance faced_;         // that the near patch was looked at from last
+  bool others_ = false;  // the layers are others than those that it was looked at among
   bool to_face_ = false;
 
   // Samples away from the path are rare and take a patch of their own; that is a cache.

@@ -40,8 +40,9 @@ PointCloud points_of(const FilteredDepth& depth) {
   PointCloud cloud;
   cloud.viewpoint = Eigen::Vector3d::Zero();
   for (std::size_t b = 0; b < depth.size(); ++b) {
-    if (depth.states[b] != FilteredDepth::State::empty)
-      cloud.positions.push_back(depth.positions[b]);
+    if (depth.states[b] == FilteredDepth::State::empty) continue;
+    cloud.positions.push_back(depth.positions[b]);
+    cloud.pixels.push_back(static_cast<std::uint32_t>(b));
   }
   return cloud;
 }
@@ -138,6 +139,7 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
   report = prepared.report;
   std::shared_ptr<SurfacePoints> points = points_.take();
   *points = std::move(prepared.points);
+  points->one_sided = is_one_view(cloud, options_.prepare);
   const FrameTiming moment = next_timing(stamp, arrival.start);
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
   layers_.add(std::move(points), moment, snapshot->layers);

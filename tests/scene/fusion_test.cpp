@@ -32,6 +32,7 @@ PointCloud noisy_sheet(unsigned seed, double noise, double height = 0) {
       cloud.positions.push_back(p.cast<float>());
     }
   }
+  cloud.pixels.resize(cloud.size());  // one view
   return cloud;
 }
 

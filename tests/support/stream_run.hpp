@@ -20,7 +20,8 @@ struct Arrives {
 /// Simulated time: frames arrive, and a servo looks at the scene every millisecond.
 class StreamRun {
  public:
-  explicit StreamRun(Scene& scene, const ProxyOptions& proxy = {}) : field_(scene), proxy_(proxy) {}
+  explicit StreamRun(Scene& scene, const ProxyOptions& proxy = {}, const FieldOptions& field = {})
+      : field_(scene, field), proxy_(proxy) {}
 
   /// `time` never falls from call to call.
   void at(double time, std::function<void()> act) { arriving_.push_back({time, std::move(act)}); }

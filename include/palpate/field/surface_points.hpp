@@ -75,7 +75,7 @@ struct SurfacePoints {
   Edges edges;
 
   /// Was all of it seen from the side that its normals point to, and from nowhere else? Then it
-  /// holds no tool that comes from behind. Only without sheets.
+  /// holds no tool that comes from behind. Of sheets, those of known parts.
   bool one_sided = false;
 
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for

@@ -41,6 +41,10 @@ class LayerHistory {
   std::vector<Snapshot::Layer> layers_;  // oldest first
 };
 
+/// Was the cloud seen from one place, which is known? Points of an image were; of others, only who
+/// gives a viewpoint knows: a map's origin is none.
+[[nodiscard]] bool is_one_view(const PointCloud& cloud, const PrepareOptions& options);
+
 /// The policy for clouds of a scene that stands still: a running mean in each voxel, over about
 /// eight clouds, whose points go in straight lines from one mean to the next
 /// (docs/method.md 7.2). A voxel that no cloud fills any more fades away.
