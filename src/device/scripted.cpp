@@ -72,8 +72,8 @@ std::string ScriptedDevice::reason() const {
       state_.time);
 }
 
-PacedDevice::PacedDevice(Device& device, const Clock& clock)
-    : device_(device), clock_(clock), info_(device.info()) {
+PacedDevice::PacedDevice(Device& device, const Clock& clock, int most_steps)
+    : device_(device), clock_(clock), most_steps_(most_steps), info_(device.info()) {
   info_.keeps_time = false;
 }
 
@@ -89,7 +89,7 @@ DeviceState PacedDevice::read() noexcept {
   }
   int steps = 0;
   while (!has_ended(state_.status) && state_.time + 0.5 * period <= now - start_) {
-    if (++steps > kMostSteps) {
+    if (++steps > most_steps_) {
       start_ = now - state_.time;
       break;
     }

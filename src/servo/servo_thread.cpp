@@ -6,6 +6,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <future>
 #include <system_error>
 #include <utility>
@@ -26,6 +28,7 @@ namespace {
 constexpr std::size_t kStack = 256 * 1024;  // bytes that a step may use
 constexpr std::size_t kPage = 4096;
 constexpr unsigned long kTimerSlack = 1;  // ns; 50000 for threads without real-time priority
+constexpr std::uint64_t kTurn = 100'000;  // ns; the least that the kernel grants
 
 std::string reason(int error) {
   return std::generic_category().message(error);
@@ -47,6 +50,27 @@ RealtimeReport::Request ask_for_priority(int priority) {
         reason(error), std::max(priority, 95));
   }
   return request;
+}
+
+// As the kernel has it; the C library describes it only from version 2.41 on.
+struct SchedulingAttributes {
+  std::uint32_t size = sizeof(SchedulingAttributes);
+  std::uint32_t policy = 0;
+  std::uint64_t flags = 0;
+  std::int32_t nice = 0;
+  std::uint32_t priority = 0;
+  std::uint64_t runtime = 0;  // ns; of a thread without real-time priority, how long its turns are
+  std::uint64_t deadline = 0;
+  std::uint64_t period = 0;
+};
+
+// Who asks for short turns waits less for others to end theirs, if there is no real-time priority.
+// Takes no rights; before Linux 6.12 it changes nothing.
+void take_short_turns() {
+  SchedulingAttributes now;
+  if (syscall(SYS_sched_getattr, 0, &now, sizeof now, 0) != 0) return;
+  now.runtime = kTurn;
+  syscall(SYS_sched_setattr, 0, &now, 0);
 }
 
 // Locking what is to come, too, would make allocations fail once the limit is reached.
@@ -157,6 +181,7 @@ RealtimeReport::Request leave_processor(int processor) {
 RealtimeReport make_realtime(const RealtimeOptions& options) {
   RealtimeReport report;
   prctl(PR_SET_TIMERSLACK, kTimerSlack);
+  take_short_turns();
   if (options.processor) report.requests.push_back(ask_for_processor(*options.processor));
   if (options.realtime_priority) report.requests.push_back(ask_for_priority(options.priority));
   if (options.lock_memory) report.requests.push_back(ask_for_memory());

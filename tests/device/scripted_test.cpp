@@ -109,6 +109,20 @@ TEST(PacedDevice, FallsBackBehindALongGapAndGoesOnFromThere) {
   EXPECT_NEAR(paced.read().time, time + 0.05, 1e-3);
 }
 
+TEST(PacedDevice, WaitsForAReaderThatIsLaterThanItIsToCatchUp) {
+  SimulatedDevice device({.position = {0, 0, 0.01}, .duration = 100.0});
+  HandClock clock;
+  PacedDevice paced(device, clock, 5);
+  const Vector3d before = paced.read().position;
+  paced.write({0, 0, 1});
+  clock.time += 0.4;
+  EXPECT_NEAR(paced.read().time, 5e-3, 1e-9);
+  EXPECT_LT((paced.read().position - before).norm(), 0.5 * 1 / 0.1 * 5e-3 * 5e-3)
+      << "no more than a newton moves it in five steps";
+  clock.time += 1e-3;
+  EXPECT_NEAR(paced.read().time, 6e-3, 1e-9);
+}
+
 TEST(PacedDevice, TellsWhenTheDeviceHasFinishedOrFailed) {
   ScriptedDevice device({{0, Vector3d::Zero()}, {1e-3, Vector3d::Zero()}});
   HandClock clock;

@@ -39,9 +39,9 @@ Json add_guard(Report& report, const GuardOptions& limits, const Guard::State& g
   const std::string most = std::isfinite(limits.maximum_force)
                                ? fmt::format("at most {:.3g} N", limits.maximum_force)
                                : "no force limit";
-  report.line("guard",
-              fmt::format("{}, {:.3g} N/s, watchdog {}: {}", most, limits.slew,
-                          duration(limits.silence), words.empty() ? "no intervention" : words));
+  report.line("guard", fmt::format("{}, {:.3g} N/s, watchdog {}: {}", most, limits.slew,
+                                   std::isinf(limits.silence) ? "none" : duration(limits.silence),
+                                   words.empty() ? "no intervention" : words));
   const std::string fault(in_words(guard.fault));
   if (guard.fault != Guard::Fault::none) report.line("fault", fault, Mark::warning);
   return {{"maximum_force_N", limit(limits.maximum_force)},

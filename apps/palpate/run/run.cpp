@@ -24,7 +24,7 @@ constexpr double kLongestRun = 86'400;  // s
 
 constexpr double kReachingSpeed = 2;  // m/s, about what an arm reaches with
 
-// So late a step is harmless where PacedDevice catches up with what the servo missed.
+// So late a step is harmless where PacedDevice catches up; for a page's hand, which waits, any is.
 constexpr double kSimulatedSilence = 0.05;  // s
 
 std::string socket_path(const DevicePlan& plan) {
@@ -175,9 +175,9 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   options.field = run.field;
   options.proxy = run.proxy;
   options.guard = run.time.guard;
-  if (hand.device->info().keeps_time && options.guard.silence == GuardOptions().silence) {
-    options.guard.silence = kSimulatedSilence;
-  }
+  const bool usual = options.guard.silence == GuardOptions().silence;
+  if (usual && hand.device->info().keeps_time) options.guard.silence = kSimulatedSilence;
+  if (usual && hand.guide) options.guard.silence = std::numeric_limits<double>::infinity();
   options.workspace = hand.workspace;
   options.clutch_button = hand.chosen.placement.clutch;
   options.steps = steps;

@@ -32,9 +32,13 @@ double rate_of(const Hand& hand) {
   return std::clamp(hand.device->info().rate, ServoThread::kLeastRate, ServoThread::kMostRate);
 }
 
-Device& paced_by(std::optional<PacedDevice>& paced, Device& device, const Clock& clock) {
+// What one read catches up of a hand that a page moves: for longer, it waits for the servo.
+constexpr int kPageSteps = 5;
+
+Device& paced_by(std::optional<PacedDevice>& paced, const Hand& hand, const Clock& clock) {
+  Device& device = *hand.device;
   if (!device.info().keeps_time) return device;
-  return paced.emplace(device, clock);
+  return paced.emplace(device, clock, hand.guide ? kPageSteps : PacedDevice::kMostSteps);
 }
 
 // One hand of a run in real time: its servo, on a thread of its own from construction on. The
@@ -88,8 +92,7 @@ LiveHand::LiveHand(Run& run, std::size_t index, WaitingClock& clock)
       index_(index),
       rate_(rate_of(hand_)),
       steps_(static_cast<std::size_t>(kQueue * rate_)),
-      servo_(paced_by(paced_, *hand_.device, clock), run.loaded.scene,
-             servo_options(run, hand_, &steps_)),
+      servo_(paced_by(paced_, hand_, clock), run.loaded.scene, servo_options(run, hand_, &steps_)),
       thread_(servo_, clock, run.time.realtime, rate_) {}
 
 void LiveHand::begin(double start) {

@@ -132,14 +132,14 @@ class ScriptedDevice final : public Device {
 
 /// Runs a device in simulated time (a simulation, a recording) on a clock: each read() steps it up
 /// to the clock's time. While the reader is late the device goes on under the force that was
-/// written last, as a real one would. Its time 0 is the first read().
+/// written last, as a real one would, for `most_steps`. Its time 0 is the first read().
 class PacedDevice final : public Device {
  public:
-  /// Steps that one read() catches up at most; after a longer gap the device's time lags behind.
   static constexpr int kMostSteps = 200;
 
-  /// Both outlive it; nobody else uses the device.
-  PacedDevice(Device& device, const Clock& clock);
+  /// Device and clock outlive it; nobody else uses the device. `most_steps`: that one read()
+  /// catches up; after a longer gap the device's time lags behind.
+  PacedDevice(Device& device, const Clock& clock, int most_steps = kMostSteps);
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] DeviceState read() noexcept override;
@@ -149,6 +149,7 @@ class PacedDevice final : public Device {
  private:
   Device& device_;
   const Clock& clock_;
+  int most_steps_;
   DeviceInfo info_;
   DeviceState state_;
   double start_ = 0;  // the clock's time at the device's time 0, s

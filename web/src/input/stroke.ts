@@ -22,6 +22,7 @@ const kGrazing = 0.25; // cosine: a plane seen flatter says nothing of where the
 // ms in which a proxy that something else holds may come free, and a force that contact keeps small grow: a hand that
 // nobody moves has to be lifted for that
 const kPatience = 400;
+const kEnough = 0.7; // of the force that is wanted; to be lifted is felt more than what is missing then
 const kSoftStart = 750; // ms, after which all of a force is felt again (GuardOptions::soft_start, and the way there)
 const kPointer = 6; // pixels around a mouse in which a surface counts
 const kFinger = 14;
@@ -32,6 +33,7 @@ export class Stroke {
   private at: Vector2 | undefined; // the pointer in the picture, -1 to 1
   private finger = false;
   private pressing = false;
+  content = false; // presses, and feels about the force that is wanted
   private there = false; // on the surface or above it: from there alone it presses
   private last: Seen | undefined;
   private good = 0; // ms, when nothing else held the proxy
@@ -68,7 +70,7 @@ export class Stroke {
     const tool = this.world.tools[this.hand.device];
     if (this.pressing && tool !== undefined) this.hand.moveTo(tool.hipPlace); // not deep below a surface, with all force
     this.at = undefined;
-    this.pressing = false;
+    this.pressing = this.content = false;
     this.there = false;
     this.force = kFirst;
   }
@@ -83,6 +85,7 @@ export class Stroke {
     const felt = this.refine(this.last, tool);
     const { place, normal, reach } = this.last;
     const above = place.clone().addScaledVector(normal, kAbove * reach);
+    this.content = this.pressing && tool.touching && tool.force.length() > kEnough * (this.pen ?? this.force);
     this.judge(tool, above, felt, now);
     const height = tool.hipPlace.clone().sub(place).dot(normal);
     const pressing = this.pressing && this.there && seen !== undefined && !tool.behind;
@@ -121,7 +124,7 @@ export class Stroke {
     if (felt) this.there = true;
     else if (missed || deep > aside + 2 * kAbove * reach) this.there = false;
     else if (now - this.freed > kSoftStart && tool.hipPlace.distanceTo(above) < reach) this.there = true;
-    if (!tool.touching || !tool.weak) this.strong = now;
+    if (!tool.touching || !tool.weak || this.content) this.strong = now;
     if (now - this.strong > kPatience) {
       this.there = false;
       this.freed = this.strong = now;

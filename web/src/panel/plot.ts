@@ -89,6 +89,22 @@ export function seriesOf(curve: Curve): uPlot.Series {
   };
 }
 
+/** Canvases that are made meanwhile are drawn on the page's own thread: small ones that change often cost a graphics
+ * process more than their picture, above all one that draws in software. */
+function drawnHere<T>(makes: () => T): T {
+  const prototype = HTMLCanvasElement.prototype;
+  // eslint-disable-next-line @typescript-eslint/unbound-method -- it is called with its canvas
+  const usual = prototype.getContext;
+  prototype.getContext = function (this: HTMLCanvasElement, kind: string, options?: object) {
+    return usual.call(this, kind, { ...options, willReadFrequently: true });
+  } as typeof usual;
+  try {
+    return makes();
+  } finally {
+    prototype.getContext = usual;
+  }
+}
+
 export class Plot {
   readonly figure: HTMLElement;
   private readonly legend = make("span", { class: "curves" });
@@ -106,7 +122,7 @@ export class Plot {
         this.legend, this.place),
       this.box);
     const range = options.logarithmic ? logRange(least, options.most ?? 1) : linearRange(least);
-    this.plot = new uPlot({
+    this.plot = drawnHere(() => new uPlot({
       width: 100,
       height: 100,
       padding: [6, 10, 0, 0],
@@ -119,7 +135,7 @@ export class Plot {
       axes: [axis(options, 2), axis(options, 3)],
       series: [{}, ...options.curves.map(seriesOf)],
       hooks: { setCursor: [() => this.showValues()] },
-    }, [[]], this.box);
+    }, [[]], this.box));
     this.name(options.curves);
     new ResizeObserver(() => this.resize()).observe(this.box);
   }
