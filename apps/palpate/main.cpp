@@ -38,8 +38,9 @@ int complain(const std::string& what, int code) {
 
 // `code`, unless what was printed did not all get where it was to go.
 int printed(int code) {
-  if (code != kSuccess || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
-  return complain(fmt::format("standard output: {}", std::strerror(errno)), kFailure);
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  return complain(fmt::format("standard output: {}", std::strerror(errno)),
+                  code != kSuccess ? code : kFailure);
 }
 
 struct Command {

@@ -23,6 +23,20 @@ TEST(Words, LengthsHaveThreeDigitsAndAFittingUnit) {
   EXPECT_EQ(length(0.99999), "1.00 m");
 }
 
+TEST(Words, ForeignTextMovesNoTerminal) {
+  EXPECT_EQ(without_controls("a\tb\nc\033[31m"), "a?b\nc?[31m");
+  EXPECT_EQ(without_controls("\xc2\x9b"
+                             "31m\x7f"),
+            "?31m?")
+      << "one character of two bytes";
+  EXPECT_EQ(without_controls("x\xe2\x80\xae"
+                             "gpj.exe\xe2\x81\xa6"),
+            "x?gpj.exe?");
+  EXPECT_EQ(without_controls("\xc2\xb5m \xe2\x80\xa6 \xe2\x82\xac \xc3\xa9"),
+            "\xc2\xb5m \xe2\x80\xa6 \xe2\x82\xac \xc3\xa9");
+  EXPECT_EQ(without_controls("cut \xe2\x80"), "cut \xe2\x80");
+}
+
 TEST(Words, EnergiesKeepTheirSign) {
   EXPECT_EQ(energy(-0.0123), "-12.3 mJ");
   EXPECT_EQ(energy(2), "2.00 J");

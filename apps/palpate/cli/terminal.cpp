@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -56,12 +57,33 @@ void wait(const std::stop_token& stop, const std::string& what) {
   if (terminal) fmt::print(stderr, "\r\033[K");
 }
 
+/// Bytes of the control that UTF-8 text begins with; 0: with none. Those that turn the direction of
+/// writing, too: they show a name as another.
+std::size_t control_at(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const auto within = [](unsigned c, unsigned first, unsigned last) {
+    return c - first <= last - first;
+  };
+  if (byte(0) < 0x20 || byte(0) == 0x7f) return byte(0) == '\n' ? 0 : 1;
+  if (byte(0) == 0xc2 && within(byte(1), 0x80, 0x9f)) return 2;  // U+0080 to U+009F
+  if (byte(0) != 0xe2) return 0;
+  const bool marks =
+      byte(1) == 0x80 && (within(byte(2), 0x8e, 0x8f) || within(byte(2), 0xaa, 0xae));
+  return marks || (byte(1) == 0x81 && within(byte(2), 0xa6, 0xa9)) ? 3 : 0;
+}
+
 }  // namespace
 
-std::string without_controls(std::string text) {
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c != '\n' && (c < ' ' || c == 0x7f); }, '?');
-  return text;
+std::string without_controls(std::string_view text) {
+  std::string clean;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = control_at(text.substr(i));
+    clean += length > 0 ? '?' : text[i];
+    i += std::max<std::size_t>(length, 1);
+  }
+  return clean;
 }
 
 std::string grouped(std::size_t number) {

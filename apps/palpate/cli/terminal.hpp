@@ -6,14 +6,16 @@
 #include <cstddef>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 namespace palpate::app {
 
-/// `text` without what would move a terminal's cursor or colour it: control characters but line
-/// ends become '?'. File names and what is in files are not ours.
-[[nodiscard]] std::string without_controls(std::string text);
+/// `text`, UTF-8, without what would move a terminal's cursor, colour it or turn the direction of
+/// writing: control characters but line ends become '?'. File names and what is in files are not
+/// ours.
+[[nodiscard]] std::string without_controls(std::string_view text);
 
 // Numbers for people.
 

@@ -115,10 +115,10 @@ namespace {
 std::string subtitle(const HandReport& report) {
   const TouchStatistics& s = report.statistics;
   return fmt::format(
-      "{} field, K = {:.4g} N/m, {} steps in {:.3g} s, {} contacts, energy given to the "
+      "{} field, K = {:.4g} N/m, {} steps in {:.3g} s, {} contact{}, energy given to the "
       "hand {}",
       name_in(kFields, report.field.kind), report.stiffness, grouped(s.steps()), s.duration(),
-      grouped(s.contacts()), energy(energy_at_hand(report).given));
+      grouped(s.contacts()), s.contacts() == 1 ? "" : "s", energy(energy_at_hand(report).given));
 }
 
 }  // namespace
