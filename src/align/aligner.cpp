@@ -104,7 +104,10 @@ Aligner::Aligner(const std::vector<RoughSource>& sources)
 void Aligner::match(const Poses& poses, std::size_t from, std::size_t to, double reach,
                     std::size_t stride, std::vector<Match>& found) const {
   const SurfacePoints& other = *sources_[to].points;
-  const bool same_side = sources_[from].points->one_sided && other.one_sided;
+  const auto faces = [](const SurfacePoints& points) {
+    return points.one_sided && points.sheets.empty();
+  };
+  const bool same_side = faces(*sources_[from].points) && faces(other);
   const Isometry3d into = poses[to].inverse() * poses[from];
   std::vector<CellGrid::Neighbor> near;
   for (std::size_t i = 0; i < samples_[from].size(); i += stride) {

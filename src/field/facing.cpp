@@ -41,9 +41,9 @@ void Facing::forget() noexcept {
 
 void Facing::follow(const Facing& other) noexcept {
   follows_ = true;
+  was_behind_ = other.was_behind_;
   if (other.now_.sheet_count == 0) return;
   now_ = other.now_;
-  was_behind_ = other.was_behind_;
   remembered_ = other.remembered_;  // within what was reserved
   remembered_from_ = other.remembered_from_;
 }
@@ -101,7 +101,7 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
       continue;
     }
     if (sheet != last) slot = sheet_of(surface, last = sheet);
-    sheet_of_place_.push_back(slot);
+    sheet_of_place_.push_back(slot == kMost && surface.one_sided ? kUnsure : slot);
     if (slot == kMost) continue;
     Point point{};
     point.place = position_now(layer, i, stance.proxy).cast<float>();
@@ -170,7 +170,7 @@ void Facing::choose_eye(const Stance& stance) noexcept {
   float nearest = std::numeric_limits<float>::infinity();
   for (const Point& point : points_) {
     const Sheet& sheet = now_.sheets[point.sheet];
-    const int sign = now_.parts[sheet.part].sign;
+    const int sign = sign_of(now_.parts[sheet.part]);
     const float squared = point.place.squaredNorm();
     if (!stance.touches() || sheet.label > kAcross || sign == 0 || squared >= nearest) continue;
     if (static_cast<float>(sign) * point.normal.dot(normal) < 0.5f) continue;
@@ -191,11 +191,13 @@ void Facing::choose_eye(const Stance& stance) noexcept {
 }
 
 void Facing::add_references(const Sheet& sheet) noexcept {
-  const int sign = now_.parts[sheet.part].sign;
+  const Part& part = now_.parts[sheet.part];
+  const int sign = sign_of(part);
   if (sheet.label > kAcross || sign == 0) return;
   for (std::uint32_t k = 0; k < sheet.count; ++k) {
     const Point& p = points_[order_[sheet.begin + k]];
     if (references_.size() == references_.capacity()) return;
+    if (is_absent(part) && !is_above(p)) continue;
     references_.push_back(
         {p.place, static_cast<float>(sign) * p.normal, p.confidence, p.residual, sheet.label});
   }
@@ -226,17 +228,14 @@ bool Facing::write(const Points& points) const noexcept {
   for (std::size_t k = 0; k < sheet_of_place_.size(); ++k) {
     const std::uint32_t slot = sheet_of_place_[k];
     std::int8_t sign = 1;
-    bool unsure = slot == kUnsure;
+    bool unsure = slot == kUnsure;  // of one view, with no side of its own
     std::uint8_t label = kInFront;
     if (slot < kMost) {
       const Part& part = now_.parts[now_.sheets[slot].part];
       sign = static_cast<std::int8_t>(part.sign);
       unsure = part.unsure;
       label = now_.sheets[slot].label;
-      if (is_absent(part)) {
-        const Point& point = points_[next];
-        sign = height_over(point) < rise_of(point) ? 0 : 1;
-      }
+      if (is_absent(part)) sign = is_above(points_[next]) ? 1 : 0;
       ++next;
     }
     if (unsure && was_behind_) sign = 0;
@@ -278,7 +277,8 @@ bool Facing::face(const Points& points, const Stance& stance) noexcept {
   } else {
     look(points, stance);
   }
-  was_behind_ = behind();
+  const bool tells = !points_.empty() || std::ranges::count(sheet_of_place_, kUnsure) == 0;
+  if (tells) was_behind_ = behind();
   return write(points);
 }
 

@@ -71,7 +71,7 @@ class Facing {
 
  private:
   static constexpr std::size_t kMost = 96;  // sheets near the tool; further ones are silent
-  static constexpr std::uint32_t kUnsure = kMost + 1;  // in a sheet's place: one view's, on none
+  static constexpr std::uint32_t kUnsure = kMost + 1;  // no sheet, but a point of a single view
   static constexpr std::uint8_t kOpen = 0xff;
 
   /// Whose sheet or part it is. All layers without sheets of their own are of one. Another part is
@@ -146,6 +146,8 @@ class Facing {
   [[nodiscard]] bool is_one_sided(const Point& point) const noexcept;
   [[nodiscard]] float height_over(const Point& point) const noexcept;
   [[nodiscard]] float rise_of(const Point& point) const noexcept;
+  [[nodiscard]] bool is_above(const Point& point) const noexcept;
+  [[nodiscard]] static int sign_of(const Part& part) noexcept;
   [[nodiscard]] bool list_references(const Stance& stance) noexcept;
   [[nodiscard]] bool is_settled(std::span<const ActiveLayer> layers) const noexcept;
   void add_references(const Sheet& sheet) noexcept;
@@ -162,7 +164,7 @@ class Facing {
   Table now_;
   Table before_;
   std::vector<Point> points_;
-  std::vector<std::uint32_t> sheet_of_place_;  // of all places; kMost: of none
+  std::vector<std::uint32_t> sheet_of_place_;  // of all places; kMost, kUnsure: none
   std::vector<std::uint32_t> order_;           // of points_, sheet by sheet
   std::vector<Reference> references_;
   std::vector<Reference> remembered_;                          // of the last call
@@ -172,7 +174,7 @@ class Facing {
   float radius_ = 0;                                  // R around the tool, m
   float view_ = 0;                                    // how far from the eye what is seen counts, m
   Rise rise_;
-  bool was_behind_ = false;  // in the last call
+  bool was_behind_ = false;  // when there was last something to see; absent points do not show it
   bool follows_ = false;
   int pairs_ = 0;  // that may still be compared
 };

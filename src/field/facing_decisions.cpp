@@ -94,6 +94,16 @@ float Facing::rise_of(const Point& point) const noexcept {
   return static_cast<float>(rise_.length + rise_.share * static_cast<double>(point.radius));
 }
 
+/// Is the eye in front of the point's surface?
+bool Facing::is_above(const Point& point) const noexcept {
+  return height_over(point) >= rise_of(point);
+}
+
+/// What a part's normals are turned by. What was seen from one side alone is never turned.
+int Facing::sign_of(const Part& part) noexcept {
+  return is_absent(part) ? 1 : part.sign;
+}
+
 /// How high the eye is above the surface at a point, m. What was seen from one side alone is never
 /// turned, and close above a bulge the planes of most of its points are higher than the eye: half
 /// of what the closest point says keeps these down.
@@ -145,7 +155,7 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   double parallel[simd::kHeights] = {};
   double above[simd::kHeights] = {};
   double all[simd::kHeights] = {};
-  const auto sign = static_cast<float>(now_.parts[sheet.part].sign);
+  const auto sign = static_cast<float>(sign_of(now_.parts[sheet.part]));
   double planes[simd::kHeights] = {};
   each_meeting(
       sheet, kMeetReach, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {

@@ -103,7 +103,7 @@ void Patch::copy(std::span<const ActiveLayer> layers, int sources, bool whole) n
 bool Patch::turn(const Stance& stance) noexcept {
   const bool sided = options_.normals ||
                      any(layers_, [](const ActiveLayer& layer) { return layer.points->one_sided; });
-  if (!sided || layers_.empty()) return false;
+  if (!sided && !layers_.empty()) return false;
   return facing_.face({layers_, &selection_, signs_, labels_, options_.rise}, stance);
 }
 

@@ -40,11 +40,20 @@ PointCloud points_of(const FilteredDepth& depth) {
   PointCloud cloud;
   cloud.viewpoint = Eigen::Vector3d::Zero();
   for (std::size_t b = 0; b < depth.size(); ++b) {
-    if (depth.states[b] == FilteredDepth::State::empty) continue;
-    cloud.positions.push_back(depth.positions[b]);
-    cloud.pixels.push_back(static_cast<std::uint32_t>(b));
+    if (depth.states[b] != FilteredDepth::State::empty)
+      cloud.positions.push_back(depth.positions[b]);
   }
   return cloud;
+}
+
+/// Did a camera at the cloud's viewpoint see each point in its pixel? That of a cloud which
+/// somebody took to another frame did not.
+bool is_view(const PointCloud& cloud) {
+  if (!cloud.viewpoint) return false;
+  const std::optional<DepthFrame> image = depth_frame_of(cloud).frame;
+  if (!image) return false;
+  const Eigen::Isometry3d stand = image->T_world_sensor.value_or(Eigen::Isometry3d::Identity());
+  return stand.translation() == *cloud.viewpoint;
 }
 
 double time_of(const char* what, double time) {
@@ -83,7 +92,7 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const DepthFrame& frame, const A
                                    : filter_.filter(frame, arrival.T_world_sensor, arrival.reach);
   note_noise(depth);
   if (frames_ == Policy::fusion) {
-    fusion_.add(points_of(depth), arrival.T_world_sensor);
+    fusion_.add(points_of(depth), arrival.T_world_sensor, knows_sides());
     return fused(next_timing(frame.stamp, arrival.start));
   }
   pinhole_ = frame.camera.pinhole;
@@ -131,7 +140,7 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
   const PointCloud& wanted = clips ? clipped : cloud;
   if (clips && wanted.empty()) return nullptr;
   if (clouds_ == Policy::fusion) {
-    fusion_.add(wanted, arrival.T_world_sensor);
+    fusion_.add(wanted, arrival.T_world_sensor, is_one_view(cloud));
     report = fusion_.report();
     return fused(next_timing(stamp, arrival.start));
   }
@@ -139,11 +148,26 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
   report = prepared.report;
   std::shared_ptr<SurfacePoints> points = points_.take();
   *points = std::move(prepared.points);
-  points->one_sided = is_one_view(cloud, options_.prepare);
+  points->one_sided = is_one_view(cloud);
   const FrameTiming moment = next_timing(stamp, arrival.start);
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
   layers_.add(std::move(points), moment, snapshot->layers);
   return snapshot;
+}
+
+/// Are normals told by where the sensor is, rather than by somebody else?
+bool SnapshotBuilder::knows_sides() const {
+  using Orientation = PrepareOptions::Orientation;
+  const Orientation by = options_.prepare.orientation;
+  return by == Orientation::automatic || by == Orientation::viewpoint;
+}
+
+/// Was all of it seen from one place, and from the sides that its normals will point to? Where no
+/// viewpoint is given, the first cloud that has points tells it of all.
+bool SnapshotBuilder::is_one_view(const PointCloud& cloud) {
+  if (options_.prepare.viewpoint) return knows_sides();
+  if (!view_ && !cloud.empty()) view_ = is_view(cloud);
+  return view_.value_or(false) && cloud.normals.empty() && knows_sides();
 }
 
 std::shared_ptr<Snapshot> SnapshotBuilder::fused(const FrameTiming& moment) {

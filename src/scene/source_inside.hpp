@@ -105,6 +105,8 @@ class SnapshotBuilder {
   void forget();
   [[nodiscard]] PointCloud within_reach(const PointCloud& cloud, const Arrival& arrival) const;
   void note_noise(const FilteredDepth& depth);
+  [[nodiscard]] bool knows_sides() const;
+  [[nodiscard]] bool is_one_view(const PointCloud& cloud);
 
   SourceOptions options_;
   Policy frames_;  // the policies for depth frames and for clouds
@@ -116,8 +118,9 @@ class SnapshotBuilder {
   Fusion fusion_;
   Recycler<SurfacePoints> points_;
   Recycler<Snapshot, Empty> snapshots_;
-  Snapshot last_;    // without its layers
-  Pinhole pinhole_;  // of the last frame
+  Snapshot last_;             // without its layers
+  Pinhole pinhole_;           // of the last frame
+  std::optional<bool> view_;  // are clouds seen from their viewpoints? Unset: none yet
   NoiseModel noise_;
   double median_depth_ = 0;
   std::vector<float> depths_;

@@ -68,7 +68,8 @@ struct SchedulingAttributes {
 // Takes no rights; before Linux 6.12 it changes nothing.
 void take_short_turns() {
   SchedulingAttributes now;
-  if (syscall(SYS_sched_getattr, 0, &now, sizeof now, 0) != 0) return;
+  const bool known = syscall(SYS_sched_getattr, 0, &now, sizeof now, 0) == 0;
+  if (!known || now.policy != SCHED_OTHER) return;
   now.runtime = kTurn;
   syscall(SYS_sched_setattr, 0, &now, 0);
 }

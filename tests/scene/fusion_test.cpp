@@ -32,7 +32,6 @@ PointCloud noisy_sheet(unsigned seed, double noise, double height = 0) {
       cloud.positions.push_back(p.cast<float>());
     }
   }
-  cloud.pixels.resize(cloud.size());  // one view
   return cloud;
 }
 
@@ -72,11 +71,15 @@ TEST(Fusion, IsOneSidedAsLongAsItsSensorStandsStill) {
   const auto one_sided_from = [&](double t, double x) {
     Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
     T_world_sensor.translation().x() = x;
-    fusion.add(noisy_sheet(1, 1e-4), T_world_sensor);
+    fusion.add(noisy_sheet(1, 1e-4), T_world_sensor, true);
     return fusion.surface({t, t, kFrame}).one_sided;
   };
   EXPECT_TRUE(one_sided_from(0, 0));
   EXPECT_TRUE(one_sided_from(kFrame, 1e-5));
+  PointCloud nothing;
+  nothing.viewpoint = Vector3d(0, 0, 0.5);
+  fusion.add(nothing, Eigen::Isometry3d::Identity(), true);
+  EXPECT_TRUE(fusion.surface({kFrame, kFrame, kFrame}).one_sided) << "after a frame of nothing";
   EXPECT_FALSE(one_sided_from(2 * kFrame, 0.05)) << "normals may point away from where it was";
   EXPECT_FALSE(one_sided_from(3 * kFrame, 0)) << "what it saw meanwhile is still there";
 }

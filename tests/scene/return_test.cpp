@@ -67,6 +67,8 @@ class Returning : public testing::TestWithParam<Case> {
  protected:
   /// The least and last force upward that the hand feels.
   void run(bool hole, const Vector3d& normal) {
+    pressed_ = least_ = last_ = 0;
+    went_behind_ = false;
     const Case& c = GetParam();
     SourceOptions options;
     options.T_world_sensor = test::looking_down();
@@ -103,6 +105,7 @@ class Returning : public testing::TestWithParam<Case> {
           const double force = contact.force.z();
           if (t < kSilent) pressed_ = std::max(pressed_, force);
           if (t > kSilent) least_ = std::min(least_, force);
+          went_behind_ |= t > kBack && t < kLift && has(run.field().notes(), FieldNote::behind);
           last_ = force;
         });
   }
@@ -110,6 +113,7 @@ class Returning : public testing::TestWithParam<Case> {
   double pressed_ = 0;  // N
   double least_ = 0;
   double last_ = 0;
+  bool went_behind_ = false;
 };
 
 TEST_P(Returning, ASurfaceLetsAHandOutAndHoldsItAgain) {
@@ -118,6 +122,7 @@ TEST_P(Returning, ASurfaceLetsAHandOutAndHoldsItAgain) {
       SCOPED_TRACE(::testing::Message() << (hole ? "a hole, " : "silence, ") << normal.transpose());
       run(hole, normal);
       EXPECT_GT(pressed_, 1.9);
+      EXPECT_TRUE(went_behind_);
       EXPECT_GT(least_, -0.1) << "held from behind";
       EXPECT_GT(last_, 1.9) << "not held any more";
     }

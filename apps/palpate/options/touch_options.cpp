@@ -211,7 +211,11 @@ void add_live_options(OptionTable& table, TimePlan& time) {
            "largest force sent to the device, capped at what it can sustain (default: that limit)")
       .only_for(kGuarded);
   table.add_key("--slew", guard.slew, positive());
-  table.add_key("--watchdog", guard.silence,
+  const std::function<void(const double&)> watch = [&time](double silence) {
+    time.guard.silence = silence;
+    time.own_watchdog = true;
+  };
+  table.add_key("--watchdog", watch,
                 number("a time from 0.001 to 1 s", [](double x) { return x >= 1e-3 && x <= 1; }));
   table.add_key("--damping", guard.damping, not_negative());
   table.add_key("--soft-start", guard.soft_start,

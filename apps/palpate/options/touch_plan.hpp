@@ -54,6 +54,7 @@ struct TimePlan {
   bool real_time = false;              ///< false: in simulated time
   std::optional<double> latency = {};  ///< from stamp to touchable in simulated time, s
   GuardOptions guard = {};
+  bool own_watchdog = false;  ///< its silence was given
   RealtimeOptions realtime = {};
 };
 

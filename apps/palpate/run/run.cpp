@@ -175,7 +175,7 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   options.field = run.field;
   options.proxy = run.proxy;
   options.guard = run.time.guard;
-  const bool usual = options.guard.silence == GuardOptions().silence;
+  const bool usual = !run.time.own_watchdog;
   if (usual && hand.device->info().keeps_time) options.guard.silence = kSimulatedSilence;
   if (usual && hand.guide) options.guard.silence = std::numeric_limits<double>::infinity();
   options.workspace = hand.workspace;

@@ -37,8 +37,8 @@ struct PointCloud {
   }
 };
 
-/// The points of `cloud` named by `indices`, in that order, with all their columns. Origin and
-/// viewpoint are kept.
+/// The points of `cloud` named by `indices`, in that order, with all their columns but pixels: they
+/// are no image any more. Origin and viewpoint are kept.
 [[nodiscard]] PointCloud select(const PointCloud& cloud, std::span<const std::uint32_t> indices);
 
 /// The points inside `box`, its faces included (in the cloud's frame, m), in their order.

@@ -83,11 +83,7 @@ struct Sum {
 
 }  // namespace
 
-bool is_one_view(const PointCloud& cloud, const PrepareOptions& options) {
-  return options.viewpoint || (cloud.viewpoint && !cloud.pixels.empty());
-}
-
-void Fusion::add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor) {
+void Fusion::add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor, bool one_view) {
   const PointCloud clipped = prepare_.clip ? clip(cloud, *prepare_.clip) : cloud;
   if (leaf_ == 0) choose_leaf(cloud, T_world_sensor);
   const std::vector<Eigen::Vector3d> points = usable(clipped, T_world_sensor);
@@ -100,8 +96,7 @@ void Fusion::add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_senso
   options.viewpoint = T_world_sensor * prepare_.viewpoint.value_or(
                                            cloud.viewpoint.value_or(Eigen::Vector3d::Zero()));
   if (!eye_) eye_ = options.viewpoint;
-  one_eye_ =
-      one_eye_ && is_one_view(cloud, prepare_) && (*options.viewpoint - *eye_).norm() <= leaf_;
+  one_eye_ = one_eye_ && one_view && (*options.viewpoint - *eye_).norm() <= leaf_;
   prepared_ = prepare(means(), options);
 }
 

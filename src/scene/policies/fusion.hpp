@@ -41,10 +41,6 @@ class LayerHistory {
   std::vector<Snapshot::Layer> layers_;  // oldest first
 };
 
-/// Was the cloud seen from one place, which is known? Points of an image were; of others, only who
-/// gives a viewpoint knows: a map's origin is none.
-[[nodiscard]] bool is_one_view(const PointCloud& cloud, const PrepareOptions& options);
-
 /// The policy for clouds of a scene that stands still: a running mean in each voxel, over about
 /// eight clouds, whose points go in straight lines from one mean to the next
 /// (docs/method.md 7.2). A voxel that no cloud fills any more fades away.
@@ -54,8 +50,9 @@ class Fusion {
 
   /// Mixes one more cloud in, which is in the sensor's frame. Points that are not finite, or lie
   /// farther off than voxels can be counted, are left out.
+  /// `one_view`: all of it was seen from the viewpoint, its normals are by that alone.
   /// @throws Error as prepare() does; then nothing has changed.
-  void add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor);
+  void add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor, bool one_view = false);
 
   /// The surface from that cloud on.
   [[nodiscard]] SurfacePoints surface(const FrameTiming& moment);
