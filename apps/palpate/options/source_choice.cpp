@@ -142,7 +142,6 @@ void complete(SourcePlan& source, const SurfacePlan& surface) {
   source.as_cloud = source.as_cloud || policy == Policy::fusion;
   source.options.organised = !source.as_cloud;
   if (!policy && surface.paper) policy = Policy::average;
-  source.options.policy.clip_to_reach |= surface.paper;
 }
 
 }  // namespace
