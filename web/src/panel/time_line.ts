@@ -15,6 +15,7 @@ export class TimeLinePanel {
   private moment: Moment = { time: 0, playing: false, speed: 1 };
   private forces: number[] = [];
   private moved = -Infinity; // ms, by the person
+  private chosen: number | undefined; // speed, of which the program has not heard yet
   private readonly slider = byId<HTMLInputElement>("time");
   private readonly speed = byId<HTMLSelectElement>("time-speed");
   private readonly tell = throttle<number>(kSeekInterval, (time) => this.send({ type: "seek", time }));
@@ -23,13 +24,17 @@ export class TimeLinePanel {
     this.speed.replaceChildren(...kSpeeds.map((speed) =>
       make("option", { value: speed, selected: speed === 1 }, `${speed} ×`)));
     this.slider.addEventListener("input", () => this.seek(Number(this.slider.value)));
-    this.speed.addEventListener("change", () => this.play(this.moment.playing));
+    this.speed.addEventListener("change", () => {
+      this.chosen = Number(this.speed.value);
+      this.play(this.moment.playing);
+    });
     byId("play").addEventListener("click", () => this.toggle());
     new ResizeObserver(() => this.draw()).observe(byId("time-forces"));
   }
 
   begin(length: number | undefined): void {
     this.length = length ?? 0;
+    this.chosen = undefined;
     byId("time-line").hidden = length === undefined;
     document.body.classList.toggle("recorded", length !== undefined);
     this.slider.max = String(this.length);
@@ -39,6 +44,7 @@ export class TimeLinePanel {
   take(moment: Moment): void {
     const own = performance.now() - this.moved < kOwn;
     this.moment = own ? { ...moment, time: this.moment.time } : moment;
+    if (moment.speed === this.chosen) this.chosen = undefined;
     this.show();
   }
 
@@ -96,6 +102,6 @@ export class TimeLinePanel {
     icon(byId("play"), playing ? "pause" : "play");
     byId("play").setAttribute("aria-label", playing ? "Pause" : "Play");
     byId("play").title = playing ? "Pause (Space)" : "Play (Space)";
-    if (kSpeeds.includes(speed)) this.speed.value = String(speed);
+    if (this.chosen === undefined && kSpeeds.includes(speed)) this.speed.value = String(speed);
   }
 }
