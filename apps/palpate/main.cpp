@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -137,6 +138,12 @@ std::vector<std::string> arguments(const CLI::App& program, int argc, char** arg
   return words;
 }
 
+// CLI11 names what it did not expect in reverse.
+std::string reason(const CLI::ParseError& error, const CLI::App& program) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return error.what();
+  return fmt::format("not expected: {}", fmt::join(program.remaining(true), " "));
+}
+
 int run(int argc, char** argv) {
   CLI::App program(kAbout, "palpate");
   program.set_version_flag("-V,--version",
@@ -157,7 +164,7 @@ int run(int argc, char** argv) {
     return program.exit(done);
   } catch (const CLI::ParseError& error) {
     return complain(fmt::format("{}{}\nSee 'palpate --help' and 'palpate COMMAND --help'.",
-                                error.what(), hint(program)),
+                                reason(error, program), hint(program)),
                     kUsage);
   }
   for (const Command& each : commands) {

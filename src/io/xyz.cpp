@@ -153,6 +153,7 @@ class XyzReader {
       line_ = scanner_.next_line();
       if (is_blank_or_comment(line_)) continue;
       cells_ = split_cells(line_);
+      refuse_too_many();
       return true;
     }
     return false;
@@ -196,6 +197,7 @@ class XyzReader {
   }
 
   void take_names() {
+    refuse_too_many();
     roles_ = roles_from_names(cells_);
     if (!roles_.has_point()) {
       fail_at_line(input_, line_begin_,
@@ -226,18 +228,24 @@ class XyzReader {
 
   bool read_row(Row& row) {
     if (!next_cells()) return false;
-    if (cells_.count != roles_.size() || cells_.too_many) {
+    if (cells_.count != roles_.size()) {
       refuse_decimal_commas();
       fail_at_line(input_, line_begin_,
-                   fmt::format("{}{} columns, but the first line has {}: \"{}\"",
-                               cells_.too_many ? "more than " : "", cells_.count, roles_.size(),
-                               excerpt(line_)),
+                   fmt::format("{} columns, but the first line has {}: \"{}\"", cells_.count,
+                               roles_.size(), excerpt(line_)),
                    kRemedy);
     }
     for (std::size_t i = 0; i < roles_.size(); ++i) {
       if (const auto role = roles_[i]) row[index_of(*role)] = cell_number(cells_.cells[i]);
     }
     return true;
+  }
+
+  void refuse_too_many() const {
+    if (!cells_.too_many) return;
+    fail_at_line(input_, line_begin_,
+                 fmt::format("more than {} columns: \"{}\"", kMostTextColumns, excerpt(line_)),
+                 "Export fewer: x y z and, if it has them, normals, colours or intensities");
   }
 
   void refuse_decimal_commas() const {

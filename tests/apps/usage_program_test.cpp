@@ -36,7 +36,7 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "touch, align, info, bag, replay, cameras, devices, ros, doctor, paper, demo or zwidth"},
       {"touch synthetic:torus --device simulated --trajectory long.csv", "1e+300"},
-      {"tuch synthetic:torus", "did you mean touch?"},
+      {"tuch synthetic:torus", "not expected: tuch synthetic:torus; did you mean touch?"},
       {"touch", "no source given"},
       {"touch synthetic:torus --colour red", "--colour"},
       {"touch synthetic:torus --field mesh", "'mesh' is not one of balanced, pointset, metaball"},

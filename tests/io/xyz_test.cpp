@@ -73,6 +73,9 @@ TEST(Xyz, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(refusal("1 2 3\n4 5 6\n7 8\n"),
               HasSubstr("line 3: 2 columns, but the first line has 3"));
   EXPECT_THAT(refusal("1 2 3\n4 fünf 6\n"), HasSubstr("line 2: \"f??nf\" is not a number"));
+  std::string wide;
+  for (int i = 0; i < 65; ++i) wide += "1 ";
+  EXPECT_THAT(refusal(wide), HasSubstr("line 1: more than 64 columns"));
   EXPECT_THAT(refusal("1 2\n"), HasSubstr("2 columns, but x y z need 3"));
   EXPECT_THAT(refusal("a,b,c\n1,2,3\n"), HasSubstr("neither a point nor a header"));
   EXPECT_THAT(refusal("# nothing\n"), HasSubstr("no line holds numbers"));
