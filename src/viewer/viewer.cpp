@@ -23,6 +23,7 @@
 #include "viewer/reports.hpp"
 #include "viewer/scene_encoder.hpp"
 #include "viewer/server.hpp"
+#include "viewer/upright.hpp"
 
 namespace palpate {
 namespace {
@@ -67,6 +68,7 @@ ViewerOptions complete(ViewerOptions options, const Scene& scene) {
                     options.token.size(), kLongestWord));
   }
   if (!options.origin) options.origin = middle(scene);
+  if (!options.up) options.up = likely_up(scene);
   return options;
 }
 
@@ -170,7 +172,7 @@ Welcome Viewer::Parts::welcome() {
   Welcome welcome;
   welcome.scene = options.scene;
   welcome.origin = *options.origin;
-  welcome.up = options.up;
+  welcome.up = *options.up;
   if (options.eye) welcome.eye = *options.eye - *options.origin;
   welcome.radius = box.empty() ? kEmptyRadius : 0.5 * box.size().norm();
   const std::vector<ViewedStream> seen = streams();

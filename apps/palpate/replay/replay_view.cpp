@@ -36,7 +36,7 @@ void view_recording(const std::string& path, const PagePlan& page) {
   ViewerOptions options;
   if (!page.address.empty()) options.address = page.address;
   options.port = page.port;
-  options.up = page.up.value_or(options.up);
+  options.up = page.up;
   options.scene = std::filesystem::path(path).filename();
   options.streams = [&] { return player.streams(); };
   ViewerControls controls;

@@ -283,7 +283,7 @@ void add_demo_options(CLI::App& command, DemoOptions& o) {
             number("from 0.1 to 86400 s", [](double x) { return x >= 0.1 && x <= 86'400; }),
             "stop after this time (default: at Ctrl-C)");
   table.add_flag("--headless", o.headless, "do not open a browser");
-  table.under("OPTIONS");
+  table.under("Hand, time and page");
   add_device_option(table, plan.devices);
   add_live_options(table, plan.time);
   add_page_options(table, plan.page);

@@ -144,7 +144,8 @@ struct View::Parts {
     options.scene = title_of(run.loaded);
     const bool picture = in_picture_axes(run.loaded);
     if (picture) options.eye = run.loaded.scene.source(0).pose().translation();
-    options.up = page.up.value_or(picture ? Vector3d(-Vector3d::UnitY()) : Vector3d::UnitZ());
+    options.up = page.up;
+    if (picture && !options.up) options.up = -Vector3d::UnitY();
     options.streams = [this] { return streams_of(run, feed); };
     return options;
   }

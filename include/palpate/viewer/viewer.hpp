@@ -139,7 +139,8 @@ struct ViewerOptions {
   /// m, world; unset: the middle of all points, or of where the sensors stand. What is shown is
   /// sent in single precision relative to it.
   std::optional<Eigen::Vector3d> origin = {};
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  /// Unit; unset: +z, or +y or -y where the points stand on a flat base along it.
+  std::optional<Eigen::Vector3d> up = {};
   /// From where the scene is seen at first where no stream says where its sensor is, m, world;
   /// unset: from anywhere.
   std::optional<Eigen::Vector3d> eye = {};

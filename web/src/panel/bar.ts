@@ -65,7 +65,6 @@ export class Bar {
     byId("link-state").classList.toggle("late", late);
   }
 
-  /** Another axis is up, also when this scene is opened again. */
   pause(): void {
     if (this.session.recorded) return;
     this.send({ type: "pause", on: !(this.session.tool?.has("paused") ?? false) });
@@ -113,7 +112,8 @@ export class Bar {
   }
 
   private async savePicture(): Promise<void> {
-    const picture = await this.world.stage.picture();
+    const felt = this.session.tool?.latest === undefined ? "" : `${byId("force").textContent} N, ${byId("touch").textContent}`;
+    const picture = await this.world.stage.picture(felt, this.world.scaleBar);
     if (picture === null) return;
     const address = URL.createObjectURL(picture);
     const link = document.createElement("a");

@@ -11,7 +11,7 @@ import { remember, recall } from "../model/memory";
 const kPointCounts = [10_000, 30_000, 60_000, 100_000, 200_000, 300_000];
 
 const kColouringNames: Record<Colouring, string> = {
-  source: "source", height: "height", normal: "normal", age: "age", own: "own or height", trust: "trust",
+  source: "source", height: "height", normal: "normal", age: "age", own: "automatic", trust: "trust",
 };
 
 function switchOf(key: keyof Look, label: string, value: boolean): Setting {

@@ -4,7 +4,7 @@ import { Quaternion, Vector3 } from "three";
 import type { Colouring } from "../view/cloud";
 import type { World } from "../view/world";
 import { byId, say } from "./dom";
-import { lengthInWords, scaleBar } from "../view/scale_bar";
+import { lengthInWords } from "../view/scale_bar";
 
 const kArm = 18;
 const kSpace = "http://www.w3.org/2000/svg";
@@ -47,8 +47,7 @@ export class Overlay {
   private showScale(): void {
     byId("scale").hidden = !this.world.known;
     if (!this.world.known) return;
-    const { pixels, label } = scaleBar(
-      this.world.stage.pixelAt(this.world.navigation.controls.target), byId("view").clientWidth);
+    const { pixels, label } = this.world.scaleBar;
     const end = (pixels + 1).toFixed(1);
     byId("scale-bar").setAttribute("width", String(Math.ceil(pixels + 2)));
     byId("scale-path").setAttribute("d", `M1 1v6M1 4H${end}M${end} 1v6`);

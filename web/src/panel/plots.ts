@@ -36,11 +36,11 @@ export class Plots {
     curves: [
       { label: "step", colour: "--x", width: 1.75 },
       { label: "99 %", colour: "--x", dash: [4, 3] },
-      { label: "late 99 %", colour: "--z" },
+      { label: "late", colour: "--z" },
     ],
   });
   private readonly frames = new Plot({
-    name: "frames", title: "Frames", unit: "ms", xUnit: "s", x: [-kFrameSpan, 0], least: 50, curves: [],
+    name: "frames", title: "Frames", unit: "latency, ms", xUnit: "s", x: [-kFrameSpan, 0], least: 50, curves: [],
   });
   private readonly all = [this.force, this.tones, this.steps, this.frames];
 
@@ -51,8 +51,8 @@ export class Plots {
   begin(): void {
     const cameras = this.cameras();
     this.frames.replace(cameras.flatMap(({ source, index }, i) => [
-      { label: `${source.name}${i === 0 ? " latency" : ""}`, colour: sourceColour(index), width: 1.75 },
-      { label: i === 0 ? "age" : "", colour: sourceColour(index), dash: [3, 3] },
+      { label: source.name, colour: sourceColour(index), width: 1.75 },
+      { label: i === cameras.length - 1 ? "age" : "", colour: sourceColour(index), dash: [3, 3] },
     ]));
     this.frames.figure.classList.toggle("none", cameras.length === 0 || this.session.recorded);
   }

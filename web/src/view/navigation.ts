@@ -8,7 +8,8 @@ const kTurn = 1.6; // radians a second by keys
 const kCloser = 1.2; // of the distance's logarithm a second
 const kAside = 0.55; // radians beside a camera's own direction
 const kRaise = 0.5; // of the distance, upward
-const kMargin = 0.82; // of the picture that is used
+const kMargin = 0.82; // of the free picture that is used
+const kFoot = 90; // pixels at its lower edge, where a hint and a button stand
 const kLoose = 0.8; // of the radius, while no place is known
 const kRounds = 4;
 const kLag = 0.25; // s
@@ -65,8 +66,10 @@ export class Navigation {
   private fitting(bounds: Bounds, direction: Vector3): { target: Vector3; distance: number } {
     const right = new Vector3().crossVectors(this.camera.up, direction).normalize();
     const upward = new Vector3().crossVectors(direction, right);
-    const tall = Math.tan((this.camera.fov * Math.PI) / 360) * kMargin;
-    const wide = tall * this.camera.aspect;
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const foot = Math.min(0.25, kFoot / Math.max(this.canvas.clientHeight, 1));
+    const wide = half * kMargin * this.camera.aspect;
+    const tall = half * kMargin * (1 - foot);
     const target = bounds.centre.clone();
     let distance = (kLoose * bounds.radius) / Math.min(tall, wide);
     for (let round = 0; round < kRounds && bounds.places.length > 0; round += 1) {
@@ -83,6 +86,7 @@ export class Navigation {
       target.addScaledVector(upward, ((low + high) / 2) * distance);
       distance = needed;
     }
+    target.addScaledVector(upward, -foot * half * distance);
     return { target, distance };
   }
 

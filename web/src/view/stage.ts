@@ -4,8 +4,10 @@
 import {
   DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from "three";
+import { captioned } from "./caption";
 import { colourOf } from "./colours";
 import type { Graphics } from "./graphics";
+import type { ScaleBar } from "./scale_bar";
 
 const kFieldOfView = 40; // degrees
 const kSlow = 45; // ms a picture
@@ -78,9 +80,12 @@ export class Stage {
     return this.height / (2 * Math.tan((this.camera.fov * Math.PI) / 360));
   }
 
-  picture(): Promise<Blob | null> {
+  /** What is seen, with a caption. */
+  picture(words: string, bar: ScaleBar): Promise<Blob | null> {
+    this.wanted = true; // a canvas keeps its picture only until it is shown
     this.draw(performance.now());
-    return new Promise((resolve) => this.canvas.toBlob(resolve, "image/png"));
+    const picture = captioned(this.canvas, this.canvas.width / this.width, words, bar);
+    return new Promise((resolve) => picture.toBlob(resolve, "image/png"));
   }
 
   private resize(): void {

@@ -13,6 +13,7 @@ import { Frustum } from "./frustum";
 import type { Graphics } from "./graphics";
 import { firstDirection, Navigation } from "./navigation";
 import { nearestTo, surfaceAlong, type Seen } from "./pick";
+import { scaleBar, type ScaleBar } from "./scale_bar";
 import { Stage } from "./stage";
 import { Surface } from "./surface";
 import { Tool } from "./tool";
@@ -169,14 +170,21 @@ export class World {
     return surfaceAlong(ray, this.shownClouds(), pixels / this.stage.pixelsPerSlope);
   }
 
+  /** Of the middle of the view. */
+  get scaleBar(): ScaleBar {
+    return scaleBar(this.stage.pixelAt(this.navigation.controls.target), this.stage.canvas.clientWidth);
+  }
+
   /** Is there anything to see, and a place to see it from? */
   get known(): boolean {
     return this.begun > 0;
   }
 
-  /** What is asked for, or height where no cloud knows it. */
+  /** What is asked for; where no cloud knows it, what tells several sources apart, or height. */
   get colouring(): Colouring {
-    return this.clouds.some((cloud) => cloud.knows(this.look.colouring)) ? this.look.colouring : "height";
+    const { colouring } = this.look;
+    if (this.clouds.some((cloud) => cloud.knows(colouring))) return colouring;
+    return colouring === "own" && this.clouds.length > 1 ? "source" : "height";
   }
 
   /** The first place of the eye: gets better until all is known or somebody takes it. */
@@ -195,10 +203,10 @@ export class World {
     this.before = now;
     this.dropLines(now);
     this.navigation.update();
-    const { look, stage } = this;
+    const { look, stage, colouring } = this;
     this.clouds.forEach((cloud, i) => {
       cloud.points.visible = look.points && cloud.count > 0 && this.visible[i] === true;
-      cloud.shade(look.colouring, cloud.live ? this.time - cloud.stamp : 0, this.heights, this.up);
+      cloud.shade(colouring, cloud.live ? this.time - cloud.stamp : 0, this.heights, this.up);
       cloud.scale(look.pointSize, stage.pixelScale);
     });
     this.frusta.forEach((frustum, i) => {

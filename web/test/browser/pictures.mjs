@@ -19,7 +19,7 @@ const kPictures = [
   ["phone_timing", kPhone, "dark", tab("timing")],
   ["desktop_held", kDesktop, "light", async (page) => {
     await page.keyboard.press("t");
-    await page.selectOption("#look select", { label: "own or height" });
+    await page.selectOption("#look select", { label: "automatic" });
     await page.click("#record");
   }],
   ["phone_landscape", { ...kPhone, viewport: { width: 844, height: 390 } }, "light"],

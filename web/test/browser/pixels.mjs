@@ -1,24 +1,36 @@
-// Pictures compared by the browser, which can read them.
+// Pictures read and compared by the browser, which can.
 
-/** Which part of the pixels of two pictures (PNG) differs clearly, 0 to 1. */
-export function changed(page, one, other) {
-  return page.evaluate(async (pictures) => {
-    const [first, second] = await Promise.all(pictures.map(async (picture) => {
-      const image = new window.Image();
-      image.src = `data:image/png;base64,${picture}`;
-      await image.decode();
-      const canvas = document.createElement("canvas");
-      canvas.width = image.width;
-      canvas.height = image.height;
-      const context = canvas.getContext("2d");
-      context.drawImage(image, 0, 0);
-      return context.getImageData(0, 0, image.width, image.height).data;
-    }));
-    let count = 0;
-    for (let i = 0; i < first.length; i += 4) {
-      const off = [0, 1, 2].map((c) => Math.abs(first[i + c] - second[i + c]));
-      if (Math.max(...off) > 24) count += 1;
-    }
-    return (4 * count) / first.length;
-  }, [one, other].map((picture) => picture.toString("base64")));
+/** Red, green, blue and opacity of each pixel of pictures (PNG), of an area of them: x, y (negative: from below), width, height. */
+const pixels = async ([pictures, area]) => Promise.all(pictures.map(async (picture) => {
+  const image = new window.Image();
+  image.src = `data:image/png;base64,${picture}`;
+  await image.decode();
+  const canvas = document.createElement("canvas");
+  canvas.width = image.width;
+  canvas.height = image.height;
+  const context = canvas.getContext("2d");
+  context.drawImage(image, 0, 0);
+  const [x, y, width, height] = area ?? [0, 0, image.width, image.height];
+  return [...context.getImageData(x, y < 0 ? image.height + y : y, width, height).data];
+}));
+
+const coded = (pictures) => pictures.map((picture) => picture.toString("base64"));
+
+/** Which part of the pixels of two pictures differs clearly, 0 to 1. */
+export async function changed(page, one, other) {
+  const [first, second] = await page.evaluate(pixels, [coded([one, other])]);
+  let count = 0;
+  for (let i = 0; i < first.length; i += 4) {
+    const off = [0, 1, 2].map((c) => Math.abs(first[i + c] - second[i + c]));
+    if (Math.max(...off) > 24) count += 1;
+  }
+  return (4 * count) / first.length;
+}
+
+/** Which part of an area's pixels is dark. */
+export async function dark(page, picture, area) {
+  const [data] = await page.evaluate(pixels, [coded([picture]), area]);
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4) if (Math.max(data[i], data[i + 1], data[i + 2]) < 96) count += 1;
+  return (4 * count) / data.length;
 }

@@ -1,9 +1,11 @@
 // The page in a headless chromium against the made-up program: npm run build first.
 
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import { serve } from "../fake_server.mjs";
 import { openPage, until } from "./browser.mjs";
+import { dark } from "./pixels.mjs";
 import { browser, hands, kPhone, kSmall, ready, sent, text, withPage } from "./with_page.mjs";
 import "./finer.mjs";
 import "./time_line.mjs";
@@ -21,7 +23,11 @@ test("clouds that stand still, without colours and normals, show too", async () 
   const page = await openPage(browser, server.address, kSmall);
   await ready(page);
   await until("sources", async () => /left[\s\S]*still/.test(await text(page, "#sources")));
-  assert.ok(await page.locator("#ramp").isVisible(), "coloured by height");
+  const colouring = page.getByRole("combobox", { name: "Colour by" });
+  await colouring.selectOption("height");
+  await until("by height", () => page.locator("#ramp").isVisible());
+  await colouring.selectOption("automatic");
+  await until("by source", () => page.locator("#ramp").isHidden());
   assert.ok(await page.locator(".chart.frames").isHidden(), "no frames to time");
   await until("trust", async () => /\d % of this cloud has low trust/.test(await text(page, "#sources")));
   assert.deepEqual(page.troubles, []);
@@ -60,10 +66,9 @@ test("a press on the surface takes the tool there and pulls with 1 N; the wheel 
   withPage(kSmall, async (page, program) => {
     const axis = () => page.locator("line.axis-x").getAttribute("x2");
     const graspable = () => page.evaluate(() => document.querySelector("#view").classList.contains("graspable"));
-    await page.mouse.move(300, 300);
     await until("a surface is under the pointer", async () => {
-      await page.mouse.move(301, 300);
-      await page.mouse.move(300, 300);
+      await page.mouse.move(301, 240);
+      await page.mouse.move(300, 240);
       return graspable();
     });
     assert.equal(await page.evaluate(() => window.getComputedStyle(document.querySelector("#view")).cursor), "move");
@@ -210,11 +215,16 @@ test("sound is off until it is asked for, and can be put off again", () =>
     await until("off", async () => (await on()) === "false");
   }));
 
-test("a picture is saved", () =>
+test("a picture is saved that says what is felt", () =>
   withPage(kSmall, async (page) => {
+    await until("force", async () => Number(await text(page, "#force")) > 0);
     const download = page.waitForEvent("download");
     await page.click("#picture");
-    assert.match((await download).suggestedFilename(), /^palpate_table_with_a_ball_.*\.png$/);
+    const file = await download;
+    assert.match(file.suggestedFilename(), /^palpate_table_with_a_ball_.*\.png$/);
+    const saved = await readFile(await file.path());
+    assert.ok(await dark(page, saved, [16, -62, 160, 16]) > 0.05, "words");
+    assert.ok(await dark(page, saved, [16, -20, 60, 8]) > 0.05, "scale");
   }));
 
 test("a link brings its settings, says what it cannot, and a link gives them back", async () => {

@@ -1,0 +1,79 @@
+#include "viewer/upright.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+
+namespace {
+
+constexpr std::size_t kEnough = 100'000;  // points, to know where many are
+constexpr double kStray = 0.005;          // of the points at either end may be strays
+constexpr double kFoot = 0.02;            // of the height that counts as the foot
+// Times what an even spread has at the foot, as a ball has at any (Archimedes: the area between two
+// planes goes with their distance): then it is flat there.
+constexpr double kFlat = 2;
+
+// Relative to some origin.
+std::vector<Eigen::Vector3f> some_points(const Scene& scene) {
+  std::vector<std::shared_ptr<const SurfacePoints>> sources;
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    std::shared_ptr<const SurfacePoints> points = scene.source(i).points();
+    if (!points) continue;
+    all += points->size();
+    sources.push_back(std::move(points));
+  }
+  const std::size_t every = all / kEnough + 1;
+  std::vector<Eigen::Vector3f> some;
+  for (const auto& source : sources) {
+    const Eigen::Vector3f shift = (source->origin - sources.front()->origin).cast<float>();
+    for (std::size_t k = 0; k < source->size(); k += every) {
+      some.push_back(source->grid.points()[k] + shift);
+    }
+  }
+  return some;
+}
+
+struct Spread {
+  double size = 0;  // from end to end
+  double low = 0;   // times what an even spread has at the lower end
+  double high = 0;  // and at the upper one
+};
+
+Spread spread_along(const std::vector<Eigen::Vector3f>& points, int axis) {
+  std::vector<float> places;
+  places.reserve(points.size());
+  for (const Eigen::Vector3f& p : points) places.push_back(p[axis]);
+  std::ranges::sort(places);
+  const auto strays = static_cast<std::size_t>(kStray * static_cast<double>(places.size()));
+  const float lower = places[strays];
+  const float upper = places[places.size() - 1 - strays];
+  const auto foot = static_cast<float>(kFoot) * (upper - lower);
+  const auto even = kFoot * static_cast<double>(places.size());
+  const auto low = std::ranges::upper_bound(places, lower + foot) - places.begin();
+  const auto high = places.end() - std::ranges::lower_bound(places, upper - foot);
+  return {upper - lower, static_cast<double>(low) / even, static_cast<double>(high) / even};
+}
+
+}  // namespace
+
+Eigen::Vector3d likely_up(const Scene& scene) {
+  const std::vector<Eigen::Vector3f> points = some_points(scene);
+  if (points.empty()) return Eigen::Vector3d::UnitZ();
+  const std::array<Spread, 3> along = {spread_along(points, 0), spread_along(points, 1),
+                                       spread_along(points, 2)};
+  const auto& [x, y, z] = along;
+  // A wall is flat, too, but stands on none of its sides: what stands is not thinnest where it is
+  // flat.
+  const bool stands = y.size > std::min(x.size, z.size);
+  const double flat = kFlat * std::max(1.0, z.low);
+  if (!stands || std::max(y.low, y.high) <= flat) return Eigen::Vector3d::UnitZ();
+  return y.low >= y.high ? Eigen::Vector3d::UnitY() : Eigen::Vector3d(-Eigen::Vector3d::UnitY());
+}
+
+}  // namespace palpate
