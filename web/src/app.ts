@@ -6,10 +6,11 @@ import { Keys } from "./input/keys";
 import { PointerInput } from "./input/pointer";
 import { SpaceMouse } from "./input/space_mouse";
 import { Stroke } from "./input/stroke";
+import { Tour } from "./input/tour";
 import { Session } from "./model/session";
 import { Bar } from "./panel/bar";
 import { Devices } from "./panel/devices";
-import { byId } from "./panel/dom";
+import { byId, say } from "./panel/dom";
 import { HoldPanel } from "./panel/hold";
 import { LookPanel } from "./panel/look";
 import { Notices } from "./panel/notices";
@@ -24,8 +25,9 @@ import { TimeLinePanel } from "./panel/time_line";
 import { Backoff } from "./protocol/backoff";
 import { Connection } from "./protocol/connection";
 import { Kind, type BinaryMessage } from "./protocol/decode";
-import { settingFromText, writeLink, type Link } from "./protocol/link";
-import { kVersion, type FromProgram, type ToProgram, type Welcome } from "./protocol/messages";
+import { applyLink, writeLink, type Link } from "./protocol/link";
+import { kVersion, type FromProgram, type SettingValue, type ToProgram, type Welcome } from "./protocol/messages";
+import { Rumble } from "./sound/rumble";
 import { Sound } from "./sound/sound";
 import type { Graphics } from "./view/graphics";
 import { World } from "./view/world";
@@ -40,6 +42,7 @@ export class App {
   private readonly notices = new Notices();
   private readonly devices = new Devices(this.session, this.notices);
   private readonly sound = new Sound();
+  private readonly rumble = new Rumble();
   private readonly readout = new Readout();
   private readonly world: World;
   private readonly overlay: Overlay;
@@ -51,6 +54,7 @@ export class App {
   private readonly status: Status;
   private readonly hand: Hand;
   private readonly stroke: Stroke;
+  private readonly tour: Tour;
   private readonly hold: HoldPanel;
   private readonly bar: Bar;
   private readonly keys: Keys;
@@ -77,6 +81,7 @@ export class App {
     this.stroke = new Stroke(this.world, this.hand, () => send({ type: "reset", device: this.hand.device }));
     this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
     const take = () => this.hold.take();
+    this.tour = new Tour(this.session, this.hand, this.stroke, take, send, (words) => say(byId("tour"), words));
     this.bar = new Bar(this.session, this.world, this.sound, this.notices, link.token, send);
     this.timeLine = new TimeLinePanel(send);
     const keys = (this.keys = new Keys({
@@ -96,7 +101,7 @@ export class App {
     this.input = new Input(this.world, this.hand, keys, spaceMouse, this.stroke, take);
     this.pointer = new PointerInput(byId("view-area"), byId<HTMLCanvasElement>("view"), this.world, this.hand,
       this.stroke, () => this.hold.takeable(), take);
-    this.hold.offer(spaceMouse, keys, this.notices, this.pointer);
+    this.hold.offer(spaceMouse, keys, this.notices, this.pointer, this.rumble);
     this.status = new Status(() => this.connection.open());
     this.connection = new Connection(
       new URL("live", location.href.replace(/^http/, "ws").replace(/#.*/, "")).href,
@@ -200,17 +205,9 @@ export class App {
     this.timeLine.begin(welcome.timeline?.length);
     this.keys.timeLine = this.session.recorded ? this.timeLine : undefined;
     this.relook();
-    if (first) this.applyLink(welcome);
-  }
-
-  /** Settings of the address, once: a new connection finds the program as it is. */
-  private applyLink(welcome: Welcome): void {
-    for (const [key, text] of this.link.values) {
-      const setting = welcome.settings.find((one) => one.key === key);
-      const value = setting === undefined ? undefined : settingFromText(setting, text);
-      if (value === undefined) this.notices.add("warning", `the link's ${key} = ${text} is not a setting of this run`);
-      else if (value !== setting?.value) this.send({ type: "set", key, value });
-    }
+    if (!first) return; // a new connection finds the program as it is
+    const set = (key: string, value: SettingValue) => this.send({ type: "set", key, value });
+    applyLink(this.link, welcome.settings, set, (text) => this.notices.add("warning", text));
     history.replaceState(null, "", writeLink(this.link.token, [])); // not again when it is loaded again
   }
 
@@ -234,12 +231,14 @@ export class App {
       if (message.device !== this.session.device) return;
       this.readout.note(tool, now, this.hand.held && !this.stroke.content);
       this.sound.hear(message);
+      if (this.hand.held) this.rumble.feel(message, now);
     }
   }
 
   /** Before every picture. */
   private frame(now: number): void {
     this.input.update(now);
+    this.tour.update(now);
     this.overlay.update();
     this.tags.update(this.session.device);
     if (now - this.plotted < this.plotInterval) return;
@@ -274,6 +273,9 @@ export class App {
 
   private watchPage(): void {
     byId("freeze").addEventListener("click", () => this.freeze());
+    byId("tour-start").addEventListener("click", () => {
+      if (!this.tour.start(performance.now())) this.notices.add("warning", "no tour: the view shows nothing to touch, or the tool cannot be taken");
+    });
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.world.retint();
       this.plots.redraw();

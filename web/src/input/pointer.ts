@@ -80,7 +80,7 @@ export class PointerInput {
 
   private hover(event: PointerEvent): void {
     this.canvas.classList.toggle("graspable", this.takeable() && this.grasps(event));
-    if (!this.free && this.hand.held && event.pointerType !== "touch") this.aim(event);
+    if (!this.free && !this.stroke.led && this.hand.held && event.pointerType !== "touch") this.aim(event);
   }
 
   private end(event: PointerEvent): void {
@@ -114,7 +114,7 @@ export class PointerInput {
   /** Would a press here move the tool? */
   private grasps(event: PointerEvent): boolean {
     if (this.free) return this.hand.held || this.onHand(event);
-    return this.stroke.meets(this.seen(event), event.pointerType === "touch");
+    return this.stroke.under(this.seen(event), event.pointerType === "touch") !== undefined;
   }
 
   private seen(event: MouseEvent): Vector2 {

@@ -34,6 +34,7 @@ export class Stroke {
   private finger = false;
   private pressing = false;
   content = false; // presses, and feels about the force that is wanted
+  led = false; // by a tour, not by a pointer
   private there = false; // on the surface or above it: from there alone it presses
   private last: Seen | undefined;
   private good = 0; // ms, when nothing else held the proxy
@@ -44,11 +45,6 @@ export class Stroke {
 
   /** free: puts the proxy to the hand. */
   constructor(private readonly world: World, private readonly hand: Hand, private readonly free: () => void) {}
-
-  /** Is there a surface at a place of the picture? */
-  meets(at: Vector2, finger: boolean): boolean {
-    return this.under(at, finger) !== undefined;
-  }
 
   aim(at: Vector2, finger: boolean): void {
     this.at = at;
@@ -141,7 +137,8 @@ export class Stroke {
     this.free();
   }
 
-  private under(at: Vector2, finger: boolean): Seen | undefined {
+  /** The surface at a place of the picture. */
+  under(at: Vector2, finger: boolean): Seen | undefined {
     const { camera } = this.world.stage;
     camera.updateMatrixWorld(); // it may have moved since the last picture
     this.caster.setFromCamera(at, camera);

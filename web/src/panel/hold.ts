@@ -5,6 +5,7 @@ import type { Keys } from "../input/keys";
 import type { PointerInput } from "../input/pointer";
 import { hid, type SpaceMouse } from "../input/space_mouse";
 import type { Session } from "../model/session";
+import type { Rumble } from "../sound/rumble";
 import type { World } from "../view/world";
 import { byId, make, say } from "./dom";
 import { fieldRow, type FieldRow } from "./field";
@@ -100,7 +101,7 @@ export class HoldPanel {
     this.update();
   }
 
-  offer(spaceMouse: SpaceMouse, keys: Keys, notices: Notices, pointer: PointerInput): void {
+  offer(spaceMouse: SpaceMouse, keys: Keys, notices: Notices, pointer: PointerInput, rumble: Rumble): void {
     this.pointer = pointer;
     const surface = (this.onSurface = fieldRow(
       { key: "on-surface", label: "Pointer touches the surface (M)", kind: "switch", value: true },
@@ -115,7 +116,12 @@ export class HoldPanel {
       { key: "single-keys", label: "Single-letter shortcuts", kind: "switch", value: keys.single },
       (value) => remember("single-keys", (keys.single = value === true)),
     );
-    const parts: HTMLElement[] = [text, surface.row, single.row];
+    rumble.on = recall("rumble", true);
+    const shake = fieldRow(
+      { key: "rumble", label: "Controller and phone vibrate with the force", kind: "switch", value: rumble.on },
+      (value) => remember("rumble", (rumble.on = value === true)),
+    );
+    const parts: HTMLElement[] = [text, surface.row, shake.row, single.row];
     if (hid() !== undefined) {
       const choose = async () => {
         const name = await spaceMouse.choose();

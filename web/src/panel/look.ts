@@ -8,7 +8,7 @@ import { fieldRow, type FieldRow } from "./field";
 import { whole } from "./numbers";
 import { remember, recall } from "../model/memory";
 
-const kPointCounts = [10_000, 30_000, 60_000, 100_000, 200_000, 300_000];
+const kPointCounts = [10_000, 30_000, 60_000, 100_000, 200_000, 300_000, 1_000_000, 3_000_000];
 
 const kColouringNames: Record<Colouring, string> = {
   source: "source", height: "height", normal: "normal", age: "age", own: "automatic", trust: "trust",

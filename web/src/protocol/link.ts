@@ -39,6 +39,19 @@ export function settingFromText(setting: Setting, text: string): SettingValue | 
   return value >= least && value <= most ? value : undefined;
 }
 
+/** Sets what a link asks for, and says what it cannot. */
+export function applyLink(
+  link: Link, settings: readonly Setting[],
+  set: (key: string, value: SettingValue) => void, warn: (text: string) => void,
+): void {
+  for (const [key, text] of link.values) {
+    const setting = settings.find((one) => one.key === key);
+    const value = setting === undefined ? undefined : settingFromText(setting, text);
+    if (value === undefined) warn(`the link's ${key} = ${text} is not a setting of this run`);
+    else if (value !== setting?.value) set(key, value);
+  }
+}
+
 function unescapePart(text: string): string {
   try {
     return decodeURIComponent(text);

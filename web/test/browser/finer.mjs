@@ -7,7 +7,7 @@ import { WebSocket } from "ws";
 import { serve } from "../fake_server.mjs";
 import { openPage, until } from "./browser.mjs";
 import { firstPaint, listen } from "./heard.mjs";
-import { browser, kPhone, kSmall, sent, text, withPage } from "./with_page.mjs";
+import { browser, hands, kPhone, kSmall, sent, text, withPage } from "./with_page.mjs";
 
 test("letters act while a switch or a slider has the focus, and not while one writes", () =>
   withPage(kSmall, async (page, program) => {
@@ -231,4 +231,39 @@ test("plots are drawn ten times a second at most, and those that change slowly t
       const drawn = times[name].length;
       assert.ok(drawn > 0 && drawn <= 3 * rate + 1, `${name}: ${drawn} pictures in 3 s`);
     }
+  }));
+
+test("a game controller takes the tool, moves it and shakes with the force", () =>
+  withPage(kSmall, async (page, program) => {
+    await page.evaluate(() => {
+      window.pad = { connected: true, id: "Standard", axes: [0, 0, 0, 0], buttons: [{ pressed: false }, { pressed: false }] };
+      window.shakes = 0;
+      window.pad.vibrationActuator = { playEffect: async () => void (window.shakes += 1) };
+      navigator.getGamepads = () => [window.pad];
+    });
+    await page.evaluate(() => (window.pad.buttons[0].pressed = true));
+    await until("held", () => program.servo.taken);
+    const begin = hands(program).at(-1).position;
+    await page.evaluate(() => (window.pad.axes = [0, 0, 0, -1]));
+    await until("moved", () => Math.hypot(...hands(program).at(-1).position.map((c, i) => c - begin[i])) > 0.01);
+    await until("shakes", () => page.evaluate(() => window.shakes > 0));
+    await page.evaluate(() => (window.pad.buttons[1].pressed = true));
+    await until("released", () => sent(program, "release").length === 1);
+  }));
+
+test("a tour takes the tool and presses; Escape ends it, and the settings are as they were", () =>
+  withPage(kSmall, async (page, program) => {
+    const stiffness = () => program.settings.find(({ key }) => key === "stiffness").value;
+    await page.getByRole("spinbutton", { name: "Stiffness" }).fill("800");
+    await page.keyboard.press("Enter");
+    await until("set", () => stiffness() === 800);
+    await page.click("#help");
+    await page.click("#tour-start");
+    await until("says what it does", async () => /presses/.test(await text(page, "#tour")));
+    await until("presses", () => hands(program).at(-1)?.force === 1);
+    assert.equal(stiffness(), 500);
+    await page.keyboard.press("Escape");
+    await until("released", () => !program.servo.taken);
+    await until("as before", () => stiffness() === 800);
+    assert.equal(await text(page, "#tour"), "");
   }));

@@ -72,9 +72,9 @@ test("a press on the surface takes the tool there and pulls with 1 N; the wheel 
       return graspable();
     });
     assert.equal(await page.evaluate(() => window.getComputedStyle(document.querySelector("#view")).cursor), "move");
-    const rest = await axis();
     await page.mouse.down();
     await until("presses with 1 N", () => hands(program).at(-1)?.force === 1);
+    const rest = await axis();
     await page.mouse.wheel(0, -200);
     await until("harder", () => hands(program).at(-1).force > 1.4);
     await page.mouse.up();
@@ -163,21 +163,6 @@ test("on a phone one finger moves the tool and two turn the view", () =>
     await fingers("touchEnd");
     await until("the view turned", async () => (await axis()) !== rest);
     assert.deepEqual(hands(program).at(-1).position, still, "the tool stays");
-  }));
-
-test("a game controller takes the tool and moves it", () =>
-  withPage(kSmall, async (page, program) => {
-    await page.evaluate(() => {
-      window.pad = { connected: true, id: "Standard", axes: [0, 0, 0, 0], buttons: [{ pressed: false }, { pressed: false }] };
-      navigator.getGamepads = () => [window.pad];
-    });
-    await page.evaluate(() => (window.pad.buttons[0].pressed = true));
-    await until("held", () => program.servo.taken);
-    const begin = hands(program).at(-1).position;
-    await page.evaluate(() => (window.pad.axes = [0, 0, 0, -1]));
-    await until("moved", () => Math.hypot(...hands(program).at(-1).position.map((c, i) => c - begin[i])) > 0.01);
-    await page.evaluate(() => (window.pad.buttons[1].pressed = true));
-    await until("released", () => sent(program, "release").length === 1);
   }));
 
 test("settings, presets and buttons reach the program", () =>
