@@ -12,6 +12,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kEnough = 100'000;  // points, to know where many are
+constexpr std::size_t kFew = 1000;        // that say nothing: the foot has about 20 of them
 constexpr double kStray = 0.005;          // of the points at either end may be strays
 constexpr double kFoot = 0.02;            // of the height that counts as the foot
 // Times what an even spread has at the foot, as a ball has at any (Archimedes: the area between two
@@ -64,15 +65,15 @@ Spread spread_along(const std::vector<Eigen::Vector3f>& points, int axis) {
 
 Eigen::Vector3d likely_up(const Scene& scene) {
   const std::vector<Eigen::Vector3f> points = some_points(scene);
-  if (points.empty()) return Eigen::Vector3d::UnitZ();
+  if (points.size() < kFew) return Eigen::Vector3d::UnitZ();
   const std::array<Spread, 3> along = {spread_along(points, 0), spread_along(points, 1),
                                        spread_along(points, 2)};
   const auto& [x, y, z] = along;
   // A wall is flat, too, but stands on none of its sides: what stands is not thinnest where it is
   // flat.
   const bool stands = y.size > std::min(x.size, z.size);
-  const double flat = kFlat * std::max(1.0, z.low);
-  if (!stands || std::max(y.low, y.high) <= flat) return Eigen::Vector3d::UnitZ();
+  const bool lies = z.low > kFlat || std::max(y.low, y.high) <= kFlat;
+  if (!stands || lies) return Eigen::Vector3d::UnitZ();
   return y.low >= y.high ? Eigen::Vector3d::UnitY() : Eigen::Vector3d(-Eigen::Vector3d::UnitY());
 }
 

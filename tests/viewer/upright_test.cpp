@@ -63,6 +63,14 @@ TEST(LikelyUp, IsZWhereNothingElseIsLikely) {
   }
   EXPECT_EQ(up_of(ball), Vector3d::UnitZ());
   EXPECT_EQ(up_of(wall), Vector3d::UnitZ());
+  PointCloud facade;  // with the ground before it
+  for (int i = 0; i < 5000; ++i) {
+    const auto uniform = [&] { return static_cast<float>(random.uniform()); };
+    const bool ground = i % 5 == 0;
+    facade.positions.emplace_back(20 * uniform(), ground ? 10 * uniform() : 10,
+                                  ground ? 0 : 8 * uniform());
+  }
+  EXPECT_EQ(up_of(facade), Vector3d::UnitZ());
 }
 
 TEST(LikelyUp, IsTrueOfRealScans) {

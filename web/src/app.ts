@@ -282,6 +282,7 @@ export class App {
       this.timeLine.draw();
     });
     document.addEventListener("visibilitychange", () => {
+      if (document.hidden) this.tour.stop();
       if (document.hidden) this.hand.letGo();
       this.tellPoints();
     });

@@ -14,14 +14,17 @@ function setUp(meets: (at: Vector2) => boolean) {
   const stroke = {
     led: false, presses: new Set<boolean>(), places: [] as number[],
     under: (at: Vector2) => (meets(at) ? { place: new Vector3(at.x, at.y, 0), normal: new Vector3(0, 0, 1), reach: 0.02 } : undefined),
-    aim: (at: Vector2) => stroke.places.push(at.x), press: (on: boolean) => stroke.presses.add(on), rest: () => undefined,
+    aim: (at: Vector2) => stroke.places.push(at.x), press: (on: boolean) => stroke.presses.add(on), rest: () => void (stroke.led = false),
   };
-  const values = new Map<string, number>([["stiffness", 800]]);
+  const values = new Map<string, number>([["stiffness", 800], ["friction", 0]]);
   const session = { values, welcome: { presets: ["default", "paper", "soft", "glass"] } };
   const sent: ToProgram[] = [];
   const words: string[] = [];
   const tour = new Tour(session as unknown as Session, hand as unknown as Hand, stroke as unknown as Stroke,
-    () => (hand.held = true), (message) => sent.push(message), (text) => words.push(text));
+    () => (hand.held = true), (message) => {
+      sent.push(message);
+      if (message.type === "preset") values.set("stiffness", 500).set("friction", 0);
+    }, (text) => words.push(text));
   return { tour, hand, stroke, sent, words, page };
 }
 
@@ -30,7 +33,7 @@ test("a tour presses, strokes, shows two materials and leaves everything as it w
   assert.ok(tour.start(0));
   for (let now = 0; now < 40_000; now += 16) tour.update(now);
   assert.deepEqual(sent.map((one) => (one.type === "preset" ? one.name : one.type)),
-    ["default", "default", "soft", "glass", "default", "set"]);
+    ["default", "default", "soft", "glass", "default", "default", "set"], "friction is as it was");
   assert.deepEqual(sent.at(-1), { type: "set", key: "stiffness", value: 800 });
   assert.equal(words.length, 6);
   assert.equal(words.at(-1), "");
@@ -41,8 +44,13 @@ test("a tour presses, strokes, shows two materials and leaves everything as it w
 test("whatever the person does ends it, and so does another page that takes the tool", () => {
   const { tour, hand, sent, words, page } = setUp(() => true);
   tour.start(0);
+  page.dispatchEvent(Object.assign(new Event("keydown"), { key: "t" })); // lets go by itself
+  assert.ok(hand.held);
   page.dispatchEvent(new Event("pointerdown"));
   assert.ok(!hand.held && words.at(-1) === "" && sent.at(-1)?.type === "set");
+  const count = sent.length;
+  page.dispatchEvent(new Event("pointerdown"));
+  assert.equal(sent.length, count, "it listens no longer");
   tour.start(0);
   hand.held = false;
   tour.update(16);

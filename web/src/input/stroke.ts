@@ -66,7 +66,7 @@ export class Stroke {
     const tool = this.world.tools[this.hand.device];
     if (this.pressing && tool !== undefined) this.hand.moveTo(tool.hipPlace); // not deep below a surface, with all force
     this.at = undefined;
-    this.pressing = this.content = false;
+    this.pressing = this.content = this.led = false;
     this.there = false;
     this.force = kFirst;
   }

@@ -27,7 +27,7 @@ const kLast = "Now you: press on the surface, and use the wheel for more force."
 const kLastSeconds = 5;
 const kLift = 0.8; // s at the beginning of a part in which it hovers
 const kTurn = 6; // s of a stroke to and fro
-const kDoings = ["pointerdown", "keydown"] as const;
+const kDoings = ["pointerdown", "keydown", "wheel"] as const;
 const kRings = 6; // around the middle of the picture in which a surface is looked for
 const kPlaces = 12;
 const kNear = 0.02; // of the half picture, to tell how far that is
@@ -41,6 +41,7 @@ export class Tour {
   private readonly middle = new Vector2();
   private wide = 0; // of the picture's half width
   private before = new Map<string, SettingValue>();
+  private usual = new Map<string, SettingValue>(); // those of the preset `default`, once they are known
 
   constructor(
     private readonly session: Session,
@@ -56,28 +57,32 @@ export class Tour {
     this.stop();
     if (!this.findPlace() || !this.take()) return false;
     this.before = new Map(this.session.values);
+    this.usual.clear();
+    this.stroke.rest(); // with the force that it begins with
     this.stroke.led = true;
-    for (const type of kDoings) window.addEventListener(type, this.stop, { capture: true });
+    for (const type of kDoings) window.addEventListener(type, this.disturb, { capture: true });
     this.begin(0, now);
     return true;
   }
 
   /** Leaves the settings as they were. */
-  readonly stop = (): void => {
+  stop(): void {
     if (this.begun === undefined) return;
-    for (const type of kDoings) window.removeEventListener(type, this.stop, { capture: true });
+    for (const type of kDoings) window.removeEventListener(type, this.disturb, { capture: true });
     this.begun = undefined;
     this.say("");
-    this.stroke.led = false;
     this.stroke.rest();
     this.hand.letGo();
-    for (const [key, value] of this.before) this.send({ type: "set", key, value });
-  };
+    this.preset("default");
+    for (const [key, value] of this.before) {
+      if (this.usual.get(key) !== value) this.send({ type: "set", key, value });
+    }
+  }
 
   /** Before every picture; `now` in ms. */
   update(now: number): void {
     if (this.begun === undefined) return;
-    if (!this.hand.held) return this.stop();
+    if (!this.hand.held || !this.stroke.led) return this.stop();
     const part = kParts[this.part];
     const passed = (now - this.begun) / 1000;
     if (passed > (part?.seconds ?? kLastSeconds)) {
@@ -89,15 +94,25 @@ export class Tour {
     const at = this.middle.clone().setX(this.middle.x + aside);
     if (this.stroke.under(at, false) !== undefined) this.stroke.aim(at, false);
     this.stroke.press(part !== undefined && passed > kLift);
+    if (this.part === 0 && passed > kLift) this.usual = new Map(this.session.values);
   }
 
   private begin(part: number, now: number): void {
     this.part = part;
     this.begun = now;
     this.say(kParts[part]?.words ?? kLast);
-    const preset = kParts[part]?.preset ?? "default";
-    if (this.session.welcome?.presets.includes(preset)) this.send({ type: "preset", name: preset });
+    this.preset(kParts[part]?.preset ?? "default");
   }
+
+  private preset(name: string): void {
+    if (this.session.welcome?.presets.includes(name)) this.send({ type: "preset", name });
+  }
+
+  /** The button and the key that let the tool go end it by that. */
+  private readonly disturb = (event: Event): void => {
+    const button = (event.target as Partial<Element> | null)?.closest?.("#take") ?? null;
+    if (button === null && (event as Partial<KeyboardEvent>).key !== "t") this.stop();
+  };
 
   /** Nearest to the middle of the picture, of places that can be stroked if there is one. */
   private findPlace(): boolean {

@@ -15,11 +15,20 @@ export function captioned(view: HTMLCanvasElement, pixels: number, words: string
   pen.drawImage(view, 0, 0);
   pen.scale(pixels, pixels);
   const foot = view.height / pixels - kEdge;
-  pen.fillStyle = pen.strokeStyle = `#${colourOf("--ink").getHexString()}`;
-  pen.lineWidth = 2;
+  pen.fillStyle = `#${colourOf("--ink").getHexString()}`;
   pen.font = "14px system-ui, sans-serif";
-  pen.fillText(words, kEdge, foot - 2 * kEdge);
-  pen.fillText(bar.label, 1.5 * kEdge + bar.pixels, foot + kTick);
+  const write = (text: string, x: number, y: number) => {
+    const room = view.width / pixels - x - kEdge;
+    pen.strokeText(text, x, y, room);
+    pen.fillText(text, x, y, room);
+  };
+  pen.lineJoin = "round";
+  pen.lineWidth = 4;
+  pen.strokeStyle = `#${colourOf("--view").getHexString()}`;
+  write(words, kEdge, foot - 2 * kEdge);
+  write(bar.label, 1.5 * kEdge + bar.pixels, foot + kTick);
+  pen.lineWidth = 2;
+  pen.strokeStyle = pen.fillStyle;
   pen.beginPath();
   for (const end of [kEdge, kEdge + bar.pixels]) {
     pen.moveTo(end, foot - kTick);
