@@ -21,7 +21,7 @@ export default tseslint.config(
     files: ["**/*.mjs"],
     languageOptions: {
       globals: {
-        Buffer: "readonly", console: "readonly", document: "readonly", Event: "readonly", location: "readonly", localStorage: "readonly", performance: "readonly",
+        Buffer: "readonly", console: "readonly", DataTransfer: "readonly", File: "readonly", document: "readonly", Event: "readonly", location: "readonly", localStorage: "readonly", performance: "readonly",
         process: "readonly", setInterval: "readonly", clearInterval: "readonly", setTimeout: "readonly",
         window: "readonly", URL: "readonly", WebSocket: "readonly", navigator: "readonly",
         requestAnimationFrame: "readonly",

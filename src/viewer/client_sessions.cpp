@@ -112,8 +112,7 @@ void ClientSessions::act(Session& session, const Hello& hello) {
     const std::string words =
         fmt::format("{} pages are already connected; close one of them", options_.limits.clients);
     answer(session, refused_text(words));
-    close(session, close_code::kTryAgainLater, words);
-    return;
+    return close(session, close_code::kTryAgainLater, words);
   }
   welcome(session);
   session.greeted = true;
@@ -124,8 +123,10 @@ void ClientSessions::welcome(Session& session) {
   Welcome welcome = options_.welcome();
   welcome.devices = options_.devices;
   welcome.settings = settings();
-  welcome.presets = options_.controls.presets;
-  if (const auto& line = options_.controls.time_line) welcome.time_line = line->length;
+  const ViewerControls& controls = options_.controls;
+  welcome.presets = controls.presets;
+  welcome.opens = controls.open ? options_.limits.file : 0;
+  if (controls.time_line) welcome.time_line = controls.time_line->length;
   answer(session, welcome_text(welcome));
   for (const Notice& notice : welcome.notices) answer(session, notice_text(notice));
   if (!recording_.empty()) {
@@ -283,9 +284,8 @@ void ClientSessions::answer(Session& session, std::string text) {
 void ClientSessions::refuse(Session& session, std::string_view text, double now) {
   ++refused_;
   answer(session, refused_text(text));
-  if (session.refusals.exceeded(now)) {
-    close(session, close_code::kPolicy, "too many invalid messages");
-  }
+  if (!session.refusals.exceeded(now)) return;
+  close(session, close_code::kPolicy, "too many invalid messages");
 }
 
 void ClientSessions::close(Session& session, std::uint16_t code, std::string reason) {

@@ -106,6 +106,7 @@ struct Closing {
 namespace close_code {
 constexpr std::uint16_t kGoingAway = 1001;
 constexpr std::uint16_t kPolicy = 1008;
+constexpr std::uint16_t kRestart = 1012;  // of IANA's registry
 constexpr std::uint16_t kTryAgainLater = 1013;
 }  // namespace close_code
 
@@ -173,6 +174,7 @@ class ClientSessions {
   /// To one client, unless it was shown these very bytes last.
   static void show(Session& session, Topic topic, const SharedBytes& bytes);
 
+  [[nodiscard]] const ClientSessionsOptions& options() const { return options_; }
   /// Is the device's tool held by a page?
   [[nodiscard]] bool taken(std::size_t device) const { return holders_[device] != nullptr; }
   [[nodiscard]] std::vector<Session*> greeted() const;

@@ -6,6 +6,8 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +15,7 @@
 #include <utility>
 
 #include "viewer/server.hpp"
+#include "viewer/upload.hpp"
 
 namespace palpate::viewer {
 
@@ -81,8 +84,7 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
   void end() override {
     if (!joined_) return abort();
     session_.outbox = {};
-    if (!session_.closing)
-      session_.closing = Closing{close_code::kGoingAway, "the program is exiting"};
+    if (!session_.closing) session_.closing = context().end;
     flush();
   }
   void abort() override { beast::get_lowest_layer(stream_).close(); }
@@ -198,11 +200,12 @@ class HttpConnection final : public Connection,
   void run() {
     parser_.emplace();
     parser_->header_limit(context().limits.header);
+    parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // none is read here
     stream_.expires_after(nanoseconds(context().limits.header_time));
-    http::async_read(stream_, buffer_, *parser_,
-                     [self = shared_from_this()](const ErrorCode& error, std::size_t) {
-                       if (!error) self->answer(self->parser_->get());
-                     });
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](const ErrorCode& error, std::size_t) {
+                              if (!error) self->answer(self->parser_->get());
+                            });
   }
   void check(double) override {}  // the stream's own timer does
   void abort() override { stream_.close(); }
@@ -221,6 +224,8 @@ class HttpConnection final : public Connection,
                      "Wrong host name; use the address that the program printed."});
     } else if (path_of(request) == "/live" && websocket::is_upgrade(request)) {
       std::make_shared<Socket>(context(), std::move(stream_))->run(parser_->release());
+    } else if (is_upload(path_of(request)) && request.method() == http::verb::put) {
+      receive_file(context(), std::move(stream_), std::move(buffer_), std::move(*parser_));
     } else {
       send(request, find(request));
     }
@@ -258,7 +263,8 @@ class HttpConnection final : public Connection,
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");
     response.content_length(answer.bytes.size());
-    response.keep_alive(request.keep_alive() && answer.status == http::status::ok);
+    const bool whole = parser_->is_done();  // what follows is no body that nobody reads
+    response.keep_alive(request.keep_alive() && whole && answer.status == http::status::ok);
     if (request.method() != http::verb::head) {
       response.body() = beast::span<const char>(answer.bytes.data(), answer.bytes.size());
     }
@@ -277,7 +283,7 @@ class HttpConnection final : public Connection,
 
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_;
-  std::optional<http::request_parser<http::empty_body>> parser_;
+  std::optional<RequestParser> parser_;
   std::optional<http::response<http::span_body<const char>>> response_;
 };
 

@@ -27,6 +27,8 @@ struct ServerContext {
   ViewerOptions::Limits limits;
   Listening listening;
   ClientSessions& sessions;
+  bool receives_file = false;
+  Closing end = {close_code::kGoingAway, "the program is exiting"};  // of all clients
   std::unordered_set<Connection*> connections = {};
   std::uint64_t accepted = 0;
   std::uint64_t turned_away = 0;

@@ -113,6 +113,7 @@ struct Welcome {
   std::vector<SourceLabel> sources;
   std::vector<Setting> settings;
   std::vector<std::string> presets;
+  std::size_t opens = 0;            ///< bytes of a file that a page may send; 0: it may send none
   std::optional<double> time_line;  ///< its length, s; unset: a run is shown
   std::vector<Notice> notices;      ///< what is wrong already; messages of their own
 };

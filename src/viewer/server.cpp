@@ -188,6 +188,10 @@ void Server::post(std::function<void()> act) {
   net::post(state_->io, std::move(act));
 }
 
+void Server::restarts(std::string why) {
+  state_->context.end = {close_code::kRestart, std::move(why)};
+}
+
 Viewer::Counts Server::counts() const {
   const ServerContext& context = state_->context;
   const ClientSessions& sessions = context.sessions;

@@ -33,6 +33,8 @@ class Server {
   void stop();
   /// Does `act` on the network thread. Any thread.
   void post(std::function<void()> act);
+  /// Clients are told so when they are closed at the end. Network thread.
+  void restarts(std::string why);
   /// Network thread.
   [[nodiscard]] Viewer::Counts counts() const;
 

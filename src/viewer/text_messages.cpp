@@ -195,6 +195,7 @@ std::string welcome_text(const Welcome& welcome) {
                {"up", json_of(welcome.up)}, {"radius", welcome.radius},
                {"presets", welcome.presets}};
   if (welcome.eye) message["eye"] = json_of(*welcome.eye);
+  if (welcome.opens > 0) message["opens"] = welcome.opens;
   if (welcome.time_line) message["timeline"] = {{"length", *welcome.time_line}};
   json& devices = message["devices"] = json::array();
   for (const DeviceLabel& device : welcome.devices) {

@@ -260,6 +260,11 @@ Viewer::Counts Viewer::counts() const {
   return parts_->counts.get();
 }
 
+void Viewer::restarts(std::string why) {
+  Parts& parts = *parts_;
+  parts.server.post([&parts, why = std::move(why)] { parts.server.restarts(why); });
+}
+
 void Viewer::notice(Viewer::NoticeLevel level, std::string text) {
   Parts& parts = *parts_;
   parts.server.post(

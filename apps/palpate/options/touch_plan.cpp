@@ -196,4 +196,23 @@ TouchPlan plan_touch(const CLI::App& command, TouchChoices choices) {
   return plan;
 }
 
+bool can_open_files(const TouchPlan& plan) {
+  const OutputPlan& files = plan.outputs;
+  const bool writes =
+      !files.log.empty() || !files.json.empty() || !files.picture.empty() || !files.record.empty();
+  const bool simulated = std::ranges::all_of(
+      plan.devices, [](const DevicePlan& each) { return each.kind == DeviceKind::simulated; });
+  return plan.page.served && simulated && !writes && !plan.ros.wanted();
+}
+
+TouchPlan plan_of_file(TouchPlan plan, const std::string& path) {
+  TouchChoices choices;
+  choices.sources = {path};
+  plan.sources = {choose_sources(choices, plan.surface).front().plan};
+  plan.motion.trajectory.clear();
+  for (DevicePlan& device : plan.devices) device.placement = {};
+  plan.page.wanted = true;  // its hands explore until it is ended
+  return plan;
+}
+
 }  // namespace palpate::app

@@ -64,6 +64,7 @@ struct PagePlan {
   bool served = false;  ///< it is there
   bool open_browser = false;
   std::string address = {};                ///< empty: this machine alone
+  std::string token = {};                  ///< who knows it may use the page; empty: a new one
   std::optional<std::uint16_t> port = {};  ///< unset: the first free one from 8420 on
   std::optional<Eigen::Vector3d> up = {};  ///< what is up in the world, 1 long; unset: as it seems
 };
@@ -95,5 +96,13 @@ struct TouchPlan {
 /// @throws UsageError when options contradict each other or would change nothing; Error when the
 /// set-up file cannot be taken.
 [[nodiscard]] TouchPlan plan_touch(const CLI::App& command, TouchChoices choices);
+
+/// May a page give such a run another file to touch? Where people's devices, files that are
+/// written or a robot hang on it, it may not.
+[[nodiscard]] bool can_open_files(const TouchPlan& plan);
+
+/// The plan of the run after that of `plan`, by hands that explore what is in the file at `path`.
+/// @throws UsageError when that is no source.
+[[nodiscard]] TouchPlan plan_of_file(TouchPlan plan, const std::string& path);
 
 }  // namespace palpate::app

@@ -10,49 +10,13 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/process.hpp"
+#include "apps/palpate/cli/temporary_folder.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
 
 namespace {
-
-std::filesystem::path temporary_folder() {
-  std::error_code error;
-  std::filesystem::path folder = std::filesystem::temp_directory_path(error);
-  if (!error) return folder;
-  throw Error("no folder for temporary files (TMPDIR, TMP); set TMPDIR to one with room");
-}
-
-// A folder of our own that vanishes with its contents.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (temporary_folder() / "palpate-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw Error(fmt::format(
-          "{} cannot be created for the picture's data; set TMPDIR to a folder with room",
-          pattern));
-    }
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
-void write_file(const std::string& path, std::string_view bytes) {
-  OutputFile file(path);
-  file.write(bytes);
-  file.close();
-}
 
 std::string read_text(const std::string& path) {
   std::ifstream stream(path);
@@ -95,7 +59,7 @@ void check_picture(const std::string& path) {
     throw UsageError(fmt::format("--picture {}: pictures are PNG; name it {}", path,
                                  std::filesystem::path(file).replace_extension(".png").string()));
   }
-  (void)temporary_folder();
+  const TemporaryFolder possible;
   if (run_program(drawing_trial(), "/dev/null") == 0) return;
   throw Error(
       fmt::format("{} cannot be drawn: Python 3 with matplotlib is missing; install it with 'apt "
@@ -110,13 +74,12 @@ std::string float_bytes(const std::vector<float>& values) {
 void draw_by_python(std::string_view script, const std::vector<DrawingData>& data,
                     const std::string& path, OutputFile& picture) {
   const TemporaryFolder folder;
-  for (const DrawingData& each : data) write_file(folder.file(each.name), each.bytes);
-  write_file(folder.file("drawing.py"), drawing_script());
-  write_file(folder.file("draw.py"), script);
+  for (const DrawingData& each : data) folder.write(each.name, each.bytes);
+  folder.write("drawing.py", drawing_script());
+  const std::string program = folder.write("draw.py", script);
   const std::string complaints = folder.file("complaints.txt");
   const int code = run_program(
-      {drawing_python(), "-B", folder.file("draw.py"), folder.file(""), picture.growing()},
-      complaints);
+      {drawing_python(), "-B", program, folder.file(""), picture.growing()}, complaints);
   if (code == 0) return picture.close();
   if (code == 127 || code == 3) {
     throw Error(

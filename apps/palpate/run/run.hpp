@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/palpate/options/touch_plan.hpp"
@@ -44,6 +45,9 @@ struct Run {
   FieldOptions field;
   ProxyOptions proxy;
   Recorder* recorder = nullptr;  ///< who can write all of it down; null: no page, and no --record
+  /// Prepares another run, of a file of this name with these bytes, while this one goes on: on any
+  /// thread, one call at a time. Throws what is wrong with the file. Empty: no other run follows.
+  std::function<void(const std::string& name, std::string bytes)> open = {};
 };
 
 /// What the servo of the next of the hands is made with; `steps`: who takes its steps, if anybody.

@@ -215,13 +215,6 @@ std::vector<RosBridge::Hand> told_hands(LiveHands& hands) {
   return told;
 }
 
-LiveOutcome outcome_of(const LiveHands& hands, bool interrupted) {
-  LiveOutcome outcome;
-  for (const LiveHand& hand : hands) outcome.hands.push_back(hand.report());
-  outcome.interrupted = interrupted;
-  return outcome;
-}
-
 }  // namespace
 
 LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
@@ -235,16 +228,17 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
   LiveFeed feed(run.loaded, clock, start, run.recorder);
   std::optional<View> view;
   std::optional<RosBridge> bridge;
+  LiveOutcome outcome;
   if (run.ros.wanted()) {
     bridge.emplace(
         told_hands(hands), run.loaded.scene, [&] { return feed.states(); }, run.ros.bridge);
   }
   if (run.page.served) view.emplace(run, servos_of(hands), feed);
   if (view) tell_network(run.page.address);
-  while (any_goes_on(hands, clock.now()) && !interruption.asked()) {
+  while (any_goes_on(hands, clock.now()) && !interruption.asked() && !outcome.next_page) {
     std::this_thread::sleep_for(kLook);
     for (LiveHand& hand : hands) hand.take_steps(each, status);
-    if (view) view->look();
+    if (view) outcome.next_page = view->look();
     const double now = clock.now();
     failures.look(hands, now, status);
     if (!status.due(now - start)) continue;
@@ -252,12 +246,11 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
     if (bridge) moment.robot = bridge->robot();
     status.show(moment);
   }
-  std::optional<RosBridge::RobotState> robot;  // before its hand stands still
-  if (bridge) robot = bridge->robot();
+  if (bridge) outcome.robot = bridge->robot();  // before its hand stands still
   for (LiveHand& hand : hands) hand.stop();
   for (LiveHand& hand : hands) hand.take_steps(each, status);
-  LiveOutcome outcome = outcome_of(hands, interruption.asked());
-  outcome.robot = robot;
+  for (const LiveHand& hand : hands) outcome.hands.push_back(hand.report());
+  outcome.interrupted = interruption.asked();
   if (bridge && !bridge->problem().empty()) status.tell("ROS 2: " + bridge->problem());
   bridge.reset();  // these look at what the feed takes down
   view.reset();

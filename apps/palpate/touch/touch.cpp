@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <deque>
+#include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/process.hpp"
+#include "apps/palpate/cli/temporary_folder.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/report/touch_report.hpp"
@@ -189,112 +192,93 @@ void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
 
 }  // namespace
 
-void touch(const TouchPlan& plan) {
-  use_range(plan.ros.range);
-  const Trajectory trajectory = trajectory_of(plan.motion, plan.devices);
-  TouchOutputs outputs(plan);
-  SteadyClock steady;
-  WaitingClock* clock = plan.time.real_time ? &steady : nullptr;
-  std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, clock);
-  const SurfacePlan& surface = plan.surface;
-  const double texture = surface.proxy.texture.amplitude;
-  const bool explored = trajectory.empty() || hands.size() > 1 || texture > 0;
-  const std::optional<RealtimeReport::Request> left = leave_to_servo(plan.time);
-  LoadedScene loaded = load_sources(plan.sources, {explored, outputs.recorder.has_value(), clock});
-  check_texture(texture, loaded.scene);
-  place_hands(hands, {plan.motion, surface, plan.page}, trajectory, loaded.scene);
-  const double stiffness = hands.front().stiffness;
-  begin_run(loaded, surface.soft_material(stiffness));
+namespace {
+
+// A run from its options to its first step: each thing is made in its turn.
+struct Start {
+  // `files`: where the plan's sources are, if they were sent to the program.
+  Start(TouchPlan chosen, WaitingClock* clock, std::unique_ptr<TemporaryFolder> files = nullptr)
+      : folder(std::move(files)),
+        plan(std::move(chosen)),
+        trajectory(trajectory_of(plan.motion, plan.devices)),
+        outputs(plan),
+        hands(open_hands(plan.devices, plan.motion, plan.time, clock)),
+        left(leave_to_servo(plan.time)),
+        loaded(load_sources(plan.sources, {is_explored(), outputs.recorder.has_value(), clock})) {
+    check_texture(plan.surface.proxy.texture.amplitude, loaded.scene);
+    place_hands(hands, {plan.motion, plan.surface, plan.page}, trajectory, loaded.scene);
+    begin_run(loaded, plan.surface.soft_material(hands.front().stiffness));
+  }
+
+  [[nodiscard]] bool is_explored() const {
+    const double texture = plan.surface.proxy.texture.amplitude;
+    return trajectory.empty() || hands.size() > 1 || texture > 0;
+  }
+
+  std::unique_ptr<TemporaryFolder> folder;
+  TouchPlan plan;
+  Trajectory trajectory;
+  TouchOutputs outputs;
+  std::vector<Hand> hands;
+  std::optional<RealtimeReport::Request> left;
+  LoadedScene loaded;
+};
+
+// What comes after a run of `plan`: of a file that a page sent.
+std::unique_ptr<Start> opened(const TouchPlan& plan, const std::string& name, std::string bytes,
+                              WaitingClock* clock) {
+  auto folder = std::make_unique<TemporaryFolder>();
+  const std::string place = folder->file("");
+  const std::string file = folder->write(name, std::exchange(bytes, {}));
+  try {
+    return std::make_unique<Start>(plan_of_file(plan, file), clock, std::move(folder));
+  } catch (const std::exception& error) {  // a person knows the file by its name
+    std::string problem = error.what();
+    if (problem.starts_with(place)) problem.erase(0, place.size());
+    throw Error(problem);
+  }
+}
+
+// Runs and reports. Where a page opened a file meanwhile, what comes next.
+std::unique_ptr<Start> run_and_tell(Start& start, WaitingClock* clock) {
+  const TouchPlan& plan = start.plan;
+  TouchOutputs& outputs = start.outputs;
   Run run{plan.time,
           plan.page,
           plan.ros,
-          loaded,
-          hands,
-          surface.field,
-          surface.proxy_of(stiffness),
+          start.loaded,
+          start.hands,
+          plan.surface.field,
+          plan.surface.proxy_of(start.hands.front().stiffness),
           outputs.recorder ? &*outputs.recorder : nullptr};
+  std::unique_ptr<Start> next;
+  if (can_open_files(plan)) {
+    run.open = [&](const std::string& name, std::string bytes) {
+      next = opened(plan, name, std::move(bytes), clock);
+    };
+  }
   LiveOutcome outcome = play(run, clock, outputs);
   for (LiveReport& each : outcome.hands) {
-    if (left) each.realtime.requests.push_back(*left);
+    if (start.left) each.realtime.requests.push_back(*start.left);
   }
   std::vector<RecordReport> recorded;
   if (outputs.recorder) recorded = outputs.recorder->finish();
-  tell({loaded, surface.paper, surface.field, run.proxy, hand_reports(run, outputs, outcome),
-        outcome.robot, recorded},
+  tell({start.loaded, plan.surface.paper, plan.surface.field, run.proxy,
+        hand_reports(run, outputs, outcome), outcome.robot, recorded},
        plan.outputs.takes_stdout() ? stderr : stdout, outputs);
-}
-
-namespace {
-
-struct DemoScene {
-  const char* name;
-  const char* description;
-  std::array<const char*, 2> sources;  // null: none
-};
-
-constexpr std::array<DemoScene, 5> kScenes = {{
-    {"desk",
-     "a depth camera over a table-top with a wire and other objects, one of them moving",
-     {"desk=camera:simulated:desk", nullptr}},
-    {"arm",
-     "a table-top seen by a structured-light sensor, with an arm moving back and forth over it",
-     {"arm=camera:simulated:arm,noise=structured", nullptr}},
-    {"scan", "a rabbit, like a laser scan", {"rabbit=synthetic:rabbit", nullptr}},
-    {"two",
-     "two depth cameras that see one scene from two sides, misaligned by 2 mm",
-     {"left=camera:simulated:table,view=40,phase=0.011,seed=2,error=0.002",
-      "right=camera:simulated:table,view=-40"}},
-    {"room", "a room of 4 x 3 m, 300 000 points", {"room=synthetic:room", nullptr}},
-}};
-
-std::vector<std::string> names() {
-  std::vector<std::string> result;
-  for (const DemoScene& scene : kScenes) result.emplace_back(scene.name);
-  return result;
-}
-
-std::string list() {
-  std::string text = "scene to touch (desk):";
-  for (const DemoScene& scene : kScenes) {
-    text += std::string("\n") + scene.name + ": " + scene.description;
-  }
-  return text;
-}
-
-std::vector<std::string> sources_of(const std::string& name) {
-  std::vector<std::string> sources;
-  for (const DemoScene& scene : kScenes) {
-    if (scene.name != name) continue;
-    for (const char* source : scene.sources) {
-      if (source != nullptr) sources.emplace_back(source);
-    }
-  }
-  return sources;
+  if (!outcome.next_page) return nullptr;
+  next->plan.page = *outcome.next_page;
+  return next;
 }
 
 }  // namespace
 
-void add_demo_options(CLI::App& command, DemoOptions& o) {
-  TouchPlan& plan = o.touch.plan;
-  command.add_option("scene", o.scene, list())->check(one_of(names()))->type_name("SCENE");
-  OptionTable table(command);
-  table.under("Options");
-  table.add("--duration", plan.motion.duration, "SECONDS",
-            number("from 0.1 to 86400 s", [](double x) { return x >= 0.1 && x <= 86'400; }),
-            "stop after this time (default: at Ctrl-C)");
-  table.add_flag("--headless", o.headless, "do not open a browser");
-  table.under("Hand, time and page");
-  add_device_option(table, plan.devices);
-  add_live_options(table, plan.time);
-  add_page_options(table, plan.page);
-}
-
-void demo(const CLI::App& command, const DemoOptions& options) {
-  TouchChoices choices = options.touch;
-  choices.sources = sources_of(options.scene);
-  choices.plan.page.wanted = true;
-  choices.plan.page.open_browser = !options.headless;
-  touch(plan_touch(command, choices));
+void touch(const TouchPlan& plan) {
+  use_range(plan.ros.range);
+  SteadyClock steady;
+  WaitingClock* clock = plan.time.real_time ? &steady : nullptr;
+  auto start = std::make_unique<Start>(plan, clock);
+  while (start) start = run_and_tell(*start, clock);
 }
 
 }  // namespace palpate::app

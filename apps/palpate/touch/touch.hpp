@@ -13,7 +13,8 @@
 
 namespace palpate::app {
 
-/// `palpate touch`. @throws UsageError, Error.
+/// `palpate touch`: runs as planned and reports; then what a page opened, likewise.
+/// @throws UsageError, Error.
 void touch(const TouchPlan& plan);
 
 struct DemoOptions {
@@ -39,6 +40,8 @@ struct LiveOutcome {
   std::vector<LiveReport> hands;
   std::optional<RosBridge::RobotState> robot;  ///< at the end
   bool interrupted = false;                    ///< by Ctrl-C
+  /// Where the page of the next run is; unset: there is none.
+  std::optional<PagePlan> next_page;
 };
 
 /// Cameras, preparation and the servo of each hand on threads of their own, in the time of `clock`,

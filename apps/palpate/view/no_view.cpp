@@ -11,6 +11,8 @@ View::View(Run& run, std::vector<Servo*> /*servos*/, const LiveFeed& /*feed*/) {
   throw Error("this build has no page; install libboost-dev and rebuild, or remove --view");
 }
 View::~View() = default;
-void View::look() {}
+std::optional<PagePlan> View::look() {
+  return {};
+}
 
 }  // namespace palpate::app

@@ -3,16 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <deque>
+#include <exception>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <thread>
 #include <utility>
 
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "palpate/base/clock.hpp"
+#include "palpate/base/error.hpp"
 #include "palpate/viewer/viewer.hpp"
 
 namespace palpate::app {
@@ -132,6 +137,7 @@ struct View::Parts {
   ~Parts() {
     run.recorder->on_broken({});
     preparer.stop();
+    if (opener.joinable()) opener.join();
   }
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
@@ -141,6 +147,7 @@ struct View::Parts {
     const PagePlan& page = run.page;
     if (!page.address.empty()) options.address = page.address;
     options.port = page.port;
+    options.token = page.token;
     options.scene = title_of(run.loaded);
     const bool picture = in_picture_axes(run.loaded);
     if (picture) options.eye = run.loaded.scene.source(0).pose().translation();
@@ -164,6 +171,13 @@ struct View::Parts {
     };
     controls.record = [this](bool on) { return run.recorder->record(on); };
     controls.recording = run.recorder->recording();
+    if (run.open) {
+      controls.open = [this](const std::string& name, std::string bytes) {
+        if (opening.exchange(true)) throw Error("another file is being read; try again after it");
+        opener = std::jthread(
+            [this, name, bytes = std::move(bytes)]() mutable { open(name, std::move(bytes)); });
+      };
+    }
     controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };
     controls.hand = [this](std::size_t hand, const TargetSource::Target& target) {
       holds[hand].move(target);
@@ -199,6 +213,30 @@ struct View::Parts {
     viewer.notice(Viewer::NoticeLevel::warning, why);
   }
 
+  // The opener's thread.
+  void open(const std::string& name, std::string bytes) {
+    viewer.notice(Viewer::NoticeLevel::info, "reading " + name);
+    try {
+      run.open(name, std::move(bytes));
+      viewer.restarts("the program opens " + name);
+      leaves = true;  // and opens no other
+    } catch (const std::exception& error) {
+      viewer.notice(Viewer::NoticeLevel::warning, error.what());
+      opening = false;
+    }
+  }
+
+  [[nodiscard]] PagePlan next_page() const {
+    const std::string url = viewer.url();
+    PagePlan page = run.page;
+    page.wanted = true;
+    page.open_browser = false;
+    page.up.reset();
+    page.port = viewer.port();
+    page.token = url.substr(url.find('#') + 1);
+    return page;
+  }
+
   void recording_broke(const std::string& why) {
     viewer.record_ended();
     viewer.notice(Viewer::NoticeLevel::warning, "the recording ended: " + why);
@@ -212,6 +250,9 @@ struct View::Parts {
   ViewSettings settings;
   std::deque<PageHold> holds;  // of each hand
   Preparer preparer;
+  std::atomic<bool> opening = false;  // a file that a page sent
+  std::atomic<bool> leaves = false;   // what was opened comes next
+  std::jthread opener;
   std::optional<Browser> browser;
   Viewer viewer;  // last: it uses all of the above
 };
@@ -224,10 +265,12 @@ View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
 
 View::~View() = default;
 
-void View::look() {
+std::optional<PagePlan> View::look() {
   for (PageHold& hold : parts_->holds) {
     if (hold.possible()) hold.keep();
   }
+  if (!parts_->leaves) return {};
+  return parts_->next_page();
 }
 
 }  // namespace palpate::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "apps/palpate/run/run.hpp"
@@ -29,8 +30,9 @@ class View {
   View(const View&) = delete;
   View& operator=(const View&) = delete;
 
-  /// Some tens of times a second: says of pages that have a tool that they still have.
-  void look();
+  /// Some tens of times a second: says of pages that have a tool that they still have. Where a page
+  /// opened a file, and Run::open() has prepared what comes next: the page of that.
+  [[nodiscard]] std::optional<PagePlan> look();
 
  private:
   struct Parts;

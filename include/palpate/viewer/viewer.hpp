@@ -63,6 +63,10 @@ struct ViewerControls {
   /// What is recorded already when the viewer begins; empty: nothing.
   std::string recording = {};
 
+  /// Takes a file that a person gave a page; its name is 1 to 128 letters, digits and any of -._,
+  /// not begun by a dot. Empty: pages do not offer it.
+  std::function<void(const std::string& name, std::string bytes)> open = {};
+
   /// A recording that is shown in place of a run: servos show its states, and nobody steps them.
   struct TimeLine {
     /// What is shown.
@@ -118,6 +122,7 @@ struct ViewerOptions {
     std::size_t clients = 8;
     std::size_t connections = 64;     ///< open at a time, of clients and of others; more are closed
     std::size_t message = 64 * 1024;  ///< bytes of a client's message
+    std::size_t file = 1 << 30;       ///< bytes of a file to open
     int messages = 250;               ///< a second and client
     std::uint32_t header = 8 * 1024;  ///< bytes of a request's header
     double header_time = 10;          ///< for a request to come, and for its answer to go
@@ -188,6 +193,9 @@ class Viewer {
   [[nodiscard]] std::uint16_t port() const noexcept;
   [[nodiscard]] Counts counts() const;
 
+  /// At its end, pages are told that another viewer follows here, and why. Any thread but a
+  /// servo's.
+  void restarts(std::string why);
   /// Tells every page something that a person should know now. Any thread but a servo's.
   void notice(NoticeLevel level, std::string text);
   /// The program itself changed a setting: tells every page. Any thread but a servo's.

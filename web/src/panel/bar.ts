@@ -1,4 +1,4 @@
-// The bar: pause, reset, record, sound, picture, link, help.
+// The bar: pause, reset, record, open, sound, picture, link, help.
 
 import type { Session } from "../model/session";
 import { writeLink } from "../protocol/link";
@@ -8,6 +8,7 @@ import type { World } from "../view/world";
 import { byId, icon, say } from "./dom";
 import type { Notices } from "./notices";
 import { whole } from "./numbers";
+import { Opening } from "./opening";
 
 const kKept = 0.95; // of its best rate, below which the servo is late
 
@@ -15,6 +16,7 @@ export class Bar {
   private isRecording = false;
   private delay = NaN;
   private best = 0; // steps a second, the most so far
+  private readonly opening: Opening;
 
   constructor(
     private readonly session: Session,
@@ -25,6 +27,7 @@ export class Bar {
     private readonly send: (message: ToProgram) => void,
   ) {
     const click = (id: string, act: () => unknown) => byId(id).addEventListener("click", () => void act());
+    this.opening = new Opening(token, notices);
     click("pause", () => this.pause());
     click("reset", () => this.reset());
     click("record", () => this.send({ type: "record", on: !this.isRecording }));
@@ -40,6 +43,7 @@ export class Bar {
   begin(welcome: Welcome): void {
     say(byId("scene"), welcome.scene);
     this.best = 0;
+    this.opening.begin(welcome.opens);
     document.title = `${welcome.scene} – palpate`;
     if (this.session.recorded) say(byId("link-words"), "replay");
     this.showRecording(false);

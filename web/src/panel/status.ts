@@ -38,7 +38,8 @@ export class Status {
         `Reason: ${link.reason}. Each start of the program has a new token: ` +
         "open the address that it printed last, or paste it here.");
     } else {
-      this.wait(link.seconds, link.reason);
+      this.wait(link.seconds, link.restarts ? "Starting again" : this.everOpen ? "Connection lost" : "The program does not answer",
+        link.reason);
     }
   }
 
@@ -50,9 +51,8 @@ export class Status {
       "Nothing is shown without it. Paste the address or the token here.");
   }
 
-  private wait(seconds: number, reason: string): void {
+  private wait(seconds: number, title: string, reason: string): void {
     let left = Math.ceil(seconds);
-    const title = this.everOpen ? "Connection lost" : "The program does not answer";
     say(byId("polite"), `${title}. Reconnecting automatically.`);
     const tell = () => {
       this.words(left > 0 ? `retry in ${left} s` : "connecting");

@@ -7,7 +7,7 @@ import { parseMessage, type FromProgram, type ToProgram } from "./messages";
 export type Link =
   | { phase: "connecting" }
   | { phase: "open" }
-  | { phase: "waiting"; seconds: number; reason: string } // in the program's words, or empty
+  | { phase: "waiting"; seconds: number; reason: string; restarts: boolean } // in the program's words, or empty
   | { phase: "refused"; reason: string }; // trying again would not help
 
 export interface Listener {
@@ -19,6 +19,7 @@ export interface Listener {
 
 const kAbnormal = 1006;
 const kPolicyViolation = 1008;
+const kServiceRestart = 1012;
 const kPing = 2000; // ms
 const kSilence = 8000; // ms without a word, or until it opens, before the socket counts as dead
 
@@ -130,7 +131,7 @@ export class Connection {
       return;
     }
     const seconds = this.backoff.next();
-    this.listener.link({ phase: "waiting", seconds, reason });
+    this.listener.link({ phase: "waiting", seconds, reason, restarts: code === kServiceRestart });
     this.retry = window.setTimeout(() => this.open(), seconds * 1000);
   }
 }

@@ -59,6 +59,7 @@ export interface Welcome {
   sources: SourceInfo[];
   settings: Setting[];
   presets: string[];
+  opens?: number; // bytes of a file that a page may send to be touched; absent: none
   timeline?: { length: number }; // s, of a recording that is shown in place of a run
 }
 

@@ -7,6 +7,7 @@ import { after, before, test } from "node:test";
 import { openBrowser, openPage, until } from "./browser.mjs";
 import { dragsTouch } from "./drags.mjs";
 import { distance, felt, heard, listen } from "./heard.mjs";
+import { opens } from "./opening.mjs";
 import { picture } from "./picture.mjs";
 import { changed } from "./pixels.mjs";
 import { kTable, kTwoHands, run, startProgram } from "./real_program.mjs";
@@ -18,7 +19,6 @@ const kStiffness = 500; // N/m, of kTable
 const kSmall = { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" };
 const kPhone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true, reducedMotion: "reduce" };
 let browser, table;
-
 before(async () => {
   browser = await openBrowser();
   table = await startProgram(kTable);
@@ -97,6 +97,7 @@ test("a drag moves the program's hand", () =>
   }));
 
 test("drags over a scan touch it, wherever they begin", (context) => dragsTouch(context, browser));
+test("a cloud that is dropped on the page is touched next", () => opens(browser));
 
 test("a changed stiffness is felt at the next touch, and a pause takes the force away", () =>
   onTable(async (page) => {

@@ -1,0 +1,39 @@
+// What follows where a page gives a run another file.
+#include <gtest/gtest.h>
+
+#include "apps/palpate/options/touch_plan.hpp"
+#include "apps/program.hpp"
+#include "apps/setup_parsed.hpp"
+
+namespace palpate::app {
+namespace {
+
+TEST(OpenedPlan, ARunThatOthersHangOnOpensNothing) {
+  const Shell shell;
+  const std::string sphere = "synthetic:sphere ";
+  EXPECT_TRUE(can_open_files(planned(sphere + "--view")));
+  EXPECT_TRUE(can_open_files(planned("camera:simulated --view --device simulated")));
+  EXPECT_FALSE(can_open_files(planned(sphere))) << "no page";
+  EXPECT_FALSE(can_open_files(planned(sphere + "--view --device remote")));
+  for (const char* file : {"--log", "--json", "--record"}) {
+    EXPECT_FALSE(can_open_files(planned(sphere + "--view " + file + " " + shell.path("x"))));
+  }
+}
+
+TEST(OpenedPlan, TheSurfaceStaysAndWhatBelongedToTheSourcesGoes) {
+  const Shell shell;
+  shell.write("a=b.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  const TouchPlan plan = plan_of_file(
+      planned("left=camera:simulated right=synthetic:sphere --pose right=1,0,0,0,0,0,1 --view "
+              "--friction-dynamic 0.4"),
+      shell.path("a=b.xyz"));
+  ASSERT_EQ(plan.sources.size(), 1U);
+  EXPECT_EQ(plan.sources[0].argument.path, shell.path("a=b.xyz"));
+  EXPECT_EQ(plan.sources[0].kind, SourceKind::cloud);
+  EXPECT_TRUE(plan.sources[0].options.T_world_sensor.isApprox(Eigen::Isometry3d::Identity(), 0));
+  EXPECT_EQ(plan.surface.proxy.friction.dynamic_coefficient, 0.4);
+  EXPECT_TRUE(plan.page.wanted);
+}
+
+}  // namespace
+}  // namespace palpate::app

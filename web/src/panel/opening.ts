@@ -1,0 +1,78 @@
+// Gives the program a file to touch: dropped on the page, or chosen.
+
+import { byId } from "./dom";
+import type { Notices } from "./notices";
+
+const kLongestName = 128;
+
+/** What the program takes as the name of a file, as like `name` as can be; its ending stays. */
+export function fileName(name: string): string {
+  const plain = name.replace(/[^\w.-]+/g, "_").slice(-kLongestName);
+  return plain.replace(/^\.+/, "_") || "_";
+}
+
+export class Opening {
+  private most = 0; // bytes that the program takes; 0: it takes no file
+  private inside = 0; // elements of the page that a dragged file is in
+
+  constructor(private readonly token: string, private readonly notices: Notices) {
+    const field = byId<HTMLInputElement>("open-file");
+    byId("open").addEventListener("click", () => field.click());
+    field.addEventListener("change", () => {
+      this.take(field.files);
+      field.value = ""; // the same one may be chosen again
+    });
+    this.watchDragging();
+  }
+
+  /** `most`: bytes that a file may have; undefined: this run takes none. */
+  begin(most: number | undefined): void {
+    this.most = most ?? 0;
+    byId("open").hidden = this.most === 0;
+  }
+
+  private watchDragging(): void {
+    const on = (type: "dragenter" | "dragover" | "dragleave" | "drop", act: (event: DragEvent) => void) =>
+      document.addEventListener(type, (event) => {
+        if (!event.dataTransfer?.types.includes("Files")) return;
+        event.preventDefault(); // else the browser leaves this page for the file
+        act(event);
+      });
+    on("dragenter", () => this.show(this.inside + 1));
+    on("dragover", () => undefined);
+    on("dragleave", () => this.show(this.inside - 1));
+    on("drop", (event) => {
+      this.show(0);
+      this.take(event.dataTransfer?.files ?? null);
+    });
+  }
+
+  private show(inside: number): void {
+    this.inside = Math.max(0, inside);
+    byId("drop").hidden = this.inside === 0 || this.most === 0;
+  }
+
+  private take(files: FileList | null): void {
+    const file = files?.[0];
+    if (file === undefined) return;
+    if (this.most === 0) {
+      this.notices.add("warning", "this run opens no other file: it has a device, writes files or shows a recording");
+    } else if (file.size > this.most) {
+      this.notices.add("warning", `${file.name} is too large for the page; give it to the program on its command line`);
+    } else {
+      if (files!.length > 1) this.notices.add("info", `of ${files!.length} files only ${file.name} is opened`);
+      void this.send(file);
+    }
+  }
+
+  private async send(file: File): Promise<void> {
+    this.notices.add("info", `sending ${file.name}`);
+    try {
+      const answer = await fetch(`open/${fileName(file.name)}`,
+        { method: "PUT", body: file, headers: { Authorization: `Bearer ${this.token}` } });
+      if (!answer.ok) this.notices.add("warning", `${file.name}: ${await answer.text()}`);
+    } catch {
+      this.notices.add("warning", `${file.name} could not be sent: the program does not answer, or the file cannot be read`);
+    }
+  }
+}

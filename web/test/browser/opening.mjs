@@ -1,0 +1,54 @@
+// A file that is dropped on the page, or chosen, is touched next.
+
+import assert from "node:assert/strict";
+import { openPage, until } from "./browser.mjs";
+import { startProgram } from "./real_program.mjs";
+
+/** A ball of 50 mm, as XYZ. */
+function ball() {
+  const rows = [];
+  for (let i = 0; i < 4000; i += 1) {
+    const z = 1 - (2 * i + 1) / 4000;
+    const r = Math.sqrt(1 - z * z);
+    rows.push([r * Math.cos(2.4 * i), r * Math.sin(2.4 * i), z].map((x) => (0.05 * x).toFixed(6)).join(" "));
+  }
+  return rows.join("\n");
+}
+
+/** As a person does who drags a file from elsewhere over the page: first it is over it, then it is let go. */
+async function drag(page, name, text, types) {
+  const files = await page.evaluateHandle(([name, text]) => {
+    const files = new DataTransfer();
+    files.items.add(new File([text], name));
+    return files;
+  }, [name, text]);
+  for (const type of types) await page.dispatchEvent("#view", type, { dataTransfer: files });
+}
+
+const said = (page, words) => until(words, async () => (await page.locator("#notices .warning").allTextContents()).join().includes(words));
+
+export async function opens(browser) {
+  const program = await startProgram(["touch", "table.xyz", "--view", "--port", "0"]);
+  const page = await openPage(browser, program.address, { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" });
+  const scene = () => page.locator("#scene").innerText();
+  const connected = () => until("connected", async () => (await page.getAttribute("#link-state", "data-phase")) === "open");
+  try {
+    await connected();
+    await drag(page, "notes.txt", "this is no cloud", ["dragenter", "dragover"]);
+    await page.locator("#drop").waitFor({ state: "visible" });
+    await drag(page, "notes.txt", "this is no cloud", ["drop"]);
+    await page.locator("#drop").waitFor({ state: "hidden" });
+    await said(page, "notes.txt, line 1");
+    assert.equal(await scene(), "table", "what cannot be read has ended the run");
+    await drag(page, "Big ball (1).xyz", ball(), ["dragenter", "dragover", "drop"]);
+    await until("the dropped cloud", async () => (await scene()) === "Big_ball_1_");
+    await connected();
+    await until("steps", async () => /steps\/s/.test(await page.locator("#link-words").innerText()));
+    await page.setInputFiles("#open-file", { name: "again.xyz", mimeType: "text/plain", buffer: Buffer.from(ball()) });
+    await until("the chosen cloud", async () => (await scene()) === "again");
+    await until("it is felt", async () => Number(await page.locator("#force").innerText()) > 0);
+  } finally {
+    await page.context().close();
+    assert.equal(await program.stop(), 0);
+  }
+}
