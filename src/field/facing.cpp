@@ -248,7 +248,9 @@ bool Facing::write(const Points& points) const noexcept {
 
 /// Where all points are of one part whose side is known, there is nothing to look at.
 bool Facing::is_settled(std::span<const ActiveLayer> layers) const noexcept {
-  if (now_.sheet_count != 1 || now_.sheets[0].label != kInFront || behind()) return false;
+  if (now_.sheet_count != 1 || now_.sheets[0].label != kInFront || sees_from_behind()) {
+    return false;
+  }
   return std::ranges::all_of(layers, [this](const ActiveLayer& layer) {
     return layer.points->sheets.empty() && now_.sheets[0].key == key_of_all(*layer.points);
   });
@@ -271,14 +273,22 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
   remembered_from_ = stance.proxy;
 }
 
+/// Does what is near say whether the proxy is behind? Points that do not know their side would not
+/// be there if it was.
+bool Facing::tells() const noexcept {
+  const std::span<const Part> parts = std::span(now_.parts).first(now_.part_count);
+  const bool side = std::ranges::any_of(parts, [](const Part& p) { return p.key == kOneSided; });
+  return side || (std::ranges::none_of(parts, &Part::unsure) &&
+                  std::ranges::count(sheet_of_place_, kUnsure) == 0);
+}
+
 bool Facing::face(const Points& points, const Stance& stance) noexcept {
   if (is_settled(points.layers)) {
     sheet_of_place_.assign(points.signs.size(), 0);
   } else {
     look(points, stance);
   }
-  const bool tells = !points_.empty() || std::ranges::count(sheet_of_place_, kUnsure) == 0;
-  if (tells) was_behind_ = behind();
+  if (tells()) was_behind_ = sees_from_behind();
   return write(points);
 }
 

@@ -59,7 +59,7 @@ class Facing {
 
   /// Is the proxy behind what was seen from the other side alone? Such points are not there for it
   /// until it comes out in front of them.
-  [[nodiscard]] bool behind() const noexcept;
+  [[nodiscard]] bool behind() const noexcept { return was_behind_; }
 
   /// The proxy is where no point has weight: what it sees of sheets next, it sees for the first
   /// time.
@@ -159,6 +159,8 @@ class Facing {
   [[nodiscard]] std::uint8_t label_of(const Sheet& sheet) noexcept;
   [[nodiscard]] bool is_hidden(const Point& point, float height) const noexcept;
   void look(const Points& points, const Stance& stance) noexcept;
+  [[nodiscard]] bool sees_from_behind() const noexcept;
+  [[nodiscard]] bool tells() const noexcept;
   [[nodiscard]] bool write(const Points& points) const noexcept;
 
   Table now_;

@@ -77,7 +77,7 @@ bool Facing::is_absent(const Part& part) noexcept {
   return part.key == kOneSided && part.sign < 0;
 }
 
-bool Facing::behind() const noexcept {
+bool Facing::sees_from_behind() const noexcept {
   return std::ranges::any_of(std::span(now_.parts).first(now_.part_count), is_absent);
 }
 

@@ -94,7 +94,7 @@ void Patch::copy(std::span<const ActiveLayer> layers, int sources, bool whole) n
   labels_.assign(count_, kInFront);
   layers_.assign(layers.begin(), layers.end());  // within what was reserved
   columns_.edges = knows_edges();
-  if (options_.stance) turn(*options_.stance);
+  if (options_.stance && whole) turn(*options_.stance);
   options_.stance = nullptr;
   lay_out();
   fill_all();

@@ -72,6 +72,8 @@ class Patch {
   /// Has advance() been refused since it was gathered?
   [[nodiscard]] bool outdated() const noexcept { return outdated_; }
   [[nodiscard]] const Eigen::Vector3d& center() const noexcept { return center_; }
+  /// How far from its centre positions are covered, m; below 0: none is.
+  [[nodiscard]] double extra() const noexcept { return extra_; }
   [[nodiscard]] std::size_t points() const noexcept { return count_; }
   /// 1: all points that are there were taken; n: every n-th.
   [[nodiscard]] std::uint32_t stride() const noexcept { return selection_.stride(); }

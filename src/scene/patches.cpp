@@ -64,7 +64,9 @@ void Patches::gather_near(const Vector3d& center, double extra) noexcept {
   gather(near_, center, extra, update_visits_);
 }
 
-bool Patches::near_covers(std::span<const Ball> balls) noexcept {
+bool Patches::near_covers(std::span<const Ball> balls, double extra) noexcept {
+  constexpr double kTooWide = 4;  // a patch that lacks points for the sake of far ones
+  if (near_.thinned() && near_.extra() > kTooWide * extra) return false;
   const auto reached = [this](const Ball& ball) { return near_.reaches(ball); };
   if (near_.outdated() && std::ranges::all_of(balls, reached)) {
     to_face_ = false;

@@ -173,8 +173,8 @@ void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) 
   const double stretch = std::min(length, r);
   const Vector3d end = length > 0 ? Vector3d(proxy + way * (stretch / length)) : proxy;
   const std::array balls{Ball{proxy, kReserve * r}, Ball{end, kReserve * r}};
-  if (!patches.near_covers(balls))
-    patches.gather_near(0.5 * (proxy + end), 0.5 * stretch + margin());
+  const double extra = 0.5 * stretch + margin();
+  if (!patches.near_covers(balls, extra)) patches.gather_near(0.5 * (proxy + end), extra);
 }
 
 /// Tells every source where the tool can be.

@@ -163,11 +163,11 @@ bool SnapshotBuilder::knows_sides() const {
 }
 
 /// Was all of it seen from one place, and from the sides that its normals will point to? Where no
-/// viewpoint is given, the first cloud that has points tells it of all.
+/// viewpoint is given, one cloud that proves it tells it of all; one of few pixels proves nothing.
 bool SnapshotBuilder::is_one_view(const PointCloud& cloud) {
   if (options_.prepare.viewpoint) return knows_sides();
-  if (!view_ && !cloud.empty()) view_ = is_view(cloud);
-  return view_.value_or(false) && cloud.normals.empty() && knows_sides();
+  view_ = view_ || is_view(cloud);
+  return view_ && cloud.normals.empty() && knows_sides();
 }
 
 std::shared_ptr<Snapshot> SnapshotBuilder::fused(const FrameTiming& moment) {

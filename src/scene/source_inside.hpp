@@ -120,7 +120,7 @@ class SnapshotBuilder {
   Recycler<Snapshot, Empty> snapshots_;
   Snapshot last_;             // without its layers
   Pinhole pinhole_;           // of the last frame
-  std::optional<bool> view_;  // are clouds seen from their viewpoints? Unset: none yet
+  bool view_ = false;  // has a cloud proved to be seen from its viewpoint?
   NoiseModel noise_;
   double median_depth_ = 0;
   std::vector<float> depths_;

@@ -70,10 +70,10 @@ Eigen::Vector3d likely_up(const Scene& scene) {
                                        spread_along(points, 2)};
   const auto& [x, y, z] = along;
   // A wall is flat, too, but stands on none of its sides: what stands is not thinnest where it is
-  // flat.
-  const bool stands = y.size > std::min(x.size, z.size);
-  const bool lies = z.low > kFlat || std::max(y.low, y.high) <= kFlat;
-  if (!stands || lies) return Eigen::Vector3d::UnitZ();
+  // flat, and flat along one axis only.
+  const bool flat = std::max(y.low, y.high) > kFlat && y.size > std::min(x.size, z.size);
+  const bool elsewhere = z.low > kFlat || std::max(x.low, x.high) > kFlat;
+  if (!flat || elsewhere) return Eigen::Vector3d::UnitZ();
   return y.low >= y.high ? Eigen::Vector3d::UnitY() : Eigen::Vector3d(-Eigen::Vector3d::UnitY());
 }
 

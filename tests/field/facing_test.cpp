@@ -42,11 +42,39 @@ TEST(Facing, ASurfaceThatRisesFromCloudToCloudKeepsItsSide) {
     const Stance stance{{0, 0, k == 0 ? 4e-3 : z}, {0, 0, k == 0 ? 0. : 1.}};
     patch.gather(std::vector<ActiveLayer>{{.points = clouds.back().get()}}, 1, {0, 0, z}, 2e-3,
                  {.stance = &stance});
-    ASSERT_GT(patch.points(), 20u);
+    ASSERT_GT(patch.points(), 10u);
     for (std::uint32_t i = 0; i < patch.columns().end(); ++i) {
       ASSERT_GE(patch.columns().normal[2][i], 0) << k;  // 0: a point that fills a run up
     }
   }
+}
+
+TEST(Facing, WhatDoesNotKnowItsSideStaysAbsentForAHandThatCameFromBehind) {
+  std::unique_ptr<SurfacePoints> seen = sheet_at(0, 1);
+  seen->one_sided = true;
+  seen->sheets.part = {0, 1};
+  seen->sheets.known = {1, 0};
+  for (std::size_t i = 0; i < seen->size(); ++i) {
+    seen->sheets.sheet[i] = seen->grid.points()[i].x() > 0 ? 1 : 0;  // 1: of a side nobody knows
+  }
+  const std::vector<ActiveLayer> layers = {{.points = seen.get()}};
+  Patch patch(2048);
+  const auto stand = [&](double x, double z) {
+    const Stance stance{{x, 0, z}, Vector3d::Zero()};
+    patch.gather(layers, 1, stance.proxy, 1e-3, {.stance = &stance});
+    ASSERT_GT(patch.points(), 10u);
+  };
+  stand(-15e-3, -2e-3);
+  EXPECT_TRUE(patch.behind());
+  stand(0, -2e-3);
+  stand(15e-3, -2e-3);  // no other points in reach
+  EXPECT_TRUE(patch.behind());
+  stand(15e-3, 2e-3);
+  EXPECT_TRUE(patch.behind());
+  stand(0, 4e-3);
+  EXPECT_FALSE(patch.behind());
+  stand(15e-3, 2e-3);
+  EXPECT_FALSE(patch.behind());
 }
 
 }  // namespace

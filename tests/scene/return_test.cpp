@@ -33,6 +33,7 @@ struct Case {
   Policy policy = Policy::morph;
   bool clouds = false;  // frames are given as points
   bool paper = false;
+  bool dark = false;  // of the first frame little is seen
 };
 
 FieldOptions kind(FieldOptions::Kind kind) {
@@ -63,6 +64,13 @@ PointCloud points_of(const DepthFrame& frame) {
   return cloud;
 }
 
+// Leaves 8 pixels far from one another.
+void darken(DepthFrame& frame) {
+  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+    if (i % 211 != 7) frame.depth[i] = 0;
+  }
+}
+
 class Returning : public testing::TestWithParam<Case> {
  protected:
   /// The least and last force upward that the hand feels.
@@ -86,8 +94,8 @@ class Returning : public testing::TestWithParam<Case> {
       const test::DepthOf seen = [=](double x, double y) {
         return gone && std::hypot(x, y) < 0.09 ? 0 : plane(x, y);
       };
-      const DepthFrame frame =
-          test::frame_of(kCamera, stamp, seen, 3e-4, static_cast<unsigned>(k) + 1);
+      DepthFrame frame = test::frame_of(kCamera, stamp, seen, 3e-4, static_cast<unsigned>(k) + 1);
+      if (c.dark && k == 0) darken(frame);
       run.at(stamp, [=, &source, &c] {
         const auto start = [=] { return stamp + 2e-3; };
         c.clouds ? source.push(points_of(frame), stamp, start) : source.push(frame, start);
@@ -129,15 +137,18 @@ TEST_P(Returning, ASurfaceLetsAHandOutAndHoldsItAgain) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfWhatACameraSees, Returning,
-                         testing::Values(Case{"Blocks", {}}, Case{"BlocksWithATool", tool()},
-                                         Case{"BlocksPointset", kind(FieldOptions::Kind::pointset)},
-                                         Case{"BlocksMetaball", kind(FieldOptions::Kind::metaball)},
-                                         Case{"Replace", {}, Policy::replace},
-                                         Case{"FusionWithATool", tool(), Policy::fusion},
-                                         Case{"CloudsWithATool", tool(), Policy::crossfade, true},
-                                         Case{"Paper", paper_field(), Policy::average, true, true}),
-                         [](const auto& made) { return made.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    OfWhatACameraSees, Returning,
+    testing::Values(Case{"Blocks", {}}, Case{"BlocksWithATool", tool()},
+                    Case{"BlocksPointset", kind(FieldOptions::Kind::pointset)},
+                    Case{"BlocksMetaball", kind(FieldOptions::Kind::metaball)},
+                    Case{"Replace", {}, Policy::replace},
+                    Case{"FusionWithATool", tool(), Policy::fusion},
+                    Case{"CloudsWithATool", tool(), Policy::crossfade, true},
+                    Case{"CloudsAfterADarkOne", {}, Policy::crossfade, true, false, true},
+                    Case{"FusedCloudsAfterADarkOne", {}, Policy::fusion, true, false, true},
+                    Case{"Paper", paper_field(), Policy::average, true, true}),
+    [](const auto& made) { return made.param.name; });
 
 }  // namespace
 }  // namespace palpate

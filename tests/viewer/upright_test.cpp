@@ -71,6 +71,17 @@ TEST(LikelyUp, IsZWhereNothingElseIsLikely) {
                                   ground ? 0 : 8 * uniform());
   }
   EXPECT_EQ(up_of(facade), Vector3d::UnitZ());
+  for (const int walls : {2, 3}) {  // at eye level: of a room without floor and ceiling
+    PointCloud room;
+    for (int i = 0; i < 6000; ++i) {
+      const auto along = static_cast<float>(random.uniform());
+      const int which = i % walls;
+      room.positions.emplace_back(which == 0 ? 6 * along : 0, which == 0 ? 0 : 4 * along,
+                                  2.5F * static_cast<float>(random.uniform()));
+      if (which == 2) room.positions.back().x() = 6;
+    }
+    EXPECT_EQ(up_of(room), Vector3d::UnitZ()) << walls;
+  }
 }
 
 TEST(LikelyUp, IsTrueOfRealScans) {

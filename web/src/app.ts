@@ -68,7 +68,7 @@ export class App {
   private scene: string | undefined;
 
   constructor(private readonly link: Link, graphics: Graphics) {
-    const send = (message: ToProgram) => this.send(message);
+    const send = (message: ToProgram) => this.connection.send(message);
     this.world = new World(byId<HTMLCanvasElement>("view"), graphics);
     this.overlay = new Overlay(this.world);
     this.tags = new Tags(this.world);
@@ -142,11 +142,7 @@ export class App {
   }
 
   private tellPoints(): void {
-    this.send({ type: "points", points: this.drawn() });
-  }
-
-  private send(message: ToProgram): void {
-    this.connection.send(message);
+    this.connection.send({ type: "points", points: this.drawn() });
   }
 
   private take(message: FromProgram): void {
@@ -183,7 +179,7 @@ export class App {
   /** The program waits for a `release`, held or not: what this page said of its hand may still be on the way. */
   private lose(device: number, why: string): void {
     if (this.hand.held && device === this.hand.device) this.hand.letGo();
-    else this.send({ type: "release", device });
+    else this.connection.send({ type: "release", device });
     this.notices.add("info", why);
   }
 
@@ -205,8 +201,10 @@ export class App {
     this.timeLine.begin(welcome.timeline?.length);
     this.keys.timeLine = this.session.recorded ? this.timeLine : undefined;
     this.relook();
+    if (again) this.tour.putBack();
+    else this.tour.forget();
     if (!first) return; // a new connection finds the program as it is
-    const set = (key: string, value: SettingValue) => this.send({ type: "set", key, value });
+    const set = (key: string, value: SettingValue) => this.connection.send({ type: "set", key, value });
     applyLink(this.link, welcome.settings, set, (text) => this.notices.add("warning", text));
     history.replaceState(null, "", writeLink(this.link.token, [])); // not again when it is loaded again
   }

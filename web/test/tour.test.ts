@@ -16,25 +16,28 @@ function setUp(meets: (at: Vector2) => boolean) {
     under: (at: Vector2) => (meets(at) ? { place: new Vector3(at.x, at.y, 0), normal: new Vector3(0, 0, 1), reach: 0.02 } : undefined),
     aim: (at: Vector2) => stroke.places.push(at.x), press: (on: boolean) => stroke.presses.add(on), rest: () => void (stroke.led = false),
   };
-  const values = new Map<string, number>([["stiffness", 800], ["friction", 0]]);
-  const session = { values, welcome: { presets: ["default", "paper", "soft", "glass"] } };
+  const values = new Map<string, number>([["stiffness", 800], ["friction", 0.2]]);
+  const session = { values, welcome: { settings: [{ key: "stiffness", least: 100, most: 1500 }, { key: "friction", least: 0, most: 1 }] } };
   const sent: ToProgram[] = [];
+  const line = { open: true };
   const words: string[] = [];
   const tour = new Tour(session as unknown as Session, hand as unknown as Hand, stroke as unknown as Stroke,
     () => (hand.held = true), (message) => {
+      if (!line.open) return false;
       sent.push(message);
-      if (message.type === "preset") values.set("stiffness", 500).set("friction", 0);
+      if (message.type === "set") values.set(message.key, message.value as number);
+      return true;
     }, (text) => words.push(text));
-  return { tour, hand, stroke, sent, words, page };
+  return { tour, hand, stroke, values, sent, line, words, page };
 }
 
 test("a tour presses, strokes, shows two materials and leaves everything as it was", () => {
-  const { tour, hand, stroke, sent, words } = setUp(() => true);
+  const { tour, hand, stroke, values, sent, words } = setUp(() => true);
   assert.ok(tour.start(0));
   for (let now = 0; now < 40_000; now += 16) tour.update(now);
-  assert.deepEqual(sent.map((one) => (one.type === "preset" ? one.name : one.type)),
-    ["default", "default", "soft", "glass", "default", "default", "set"], "friction is as it was");
-  assert.deepEqual(sent.at(-1), { type: "set", key: "stiffness", value: 800 });
+  assert.deepEqual(sent.map((one) => (one.type === "set" ? [one.key, one.value] : one.type)),
+    [["stiffness", 240], ["stiffness", 1500], ["friction", 0], ["stiffness", 800], ["friction", 0.2]]);
+  assert.deepEqual([...values], [["stiffness", 800], ["friction", 0.2]]);
   assert.equal(words.length, 6);
   assert.equal(words.at(-1), "");
   assert.ok(stroke.presses.has(true) && Math.max(...stroke.places) > 0.1);
@@ -44,17 +47,31 @@ test("a tour presses, strokes, shows two materials and leaves everything as it w
 test("whatever the person does ends it, and so does another page that takes the tool", () => {
   const { tour, hand, sent, words, page } = setUp(() => true);
   tour.start(0);
-  page.dispatchEvent(Object.assign(new Event("keydown"), { key: "t" })); // lets go by itself
-  assert.ok(hand.held);
+  page.dispatchEvent(Object.assign(new Event("keydown"), { key: "T" }));
+  assert.ok(!hand.held && words.at(-1) === "");
+  const count = words.length;
   page.dispatchEvent(new Event("pointerdown"));
-  assert.ok(!hand.held && words.at(-1) === "" && sent.at(-1)?.type === "set");
-  const count = sent.length;
-  page.dispatchEvent(new Event("pointerdown"));
-  assert.equal(sent.length, count, "it listens no longer");
+  assert.equal(words.length, count, "it listens no longer");
+  assert.deepEqual(sent, [], "nothing was changed yet");
   tour.start(0);
   hand.held = false;
   tour.update(16);
   assert.equal(words.at(-1), "");
+});
+
+test("what a lost connection kept it from putting back is put back when there is another", () => {
+  const { tour, hand, values, line } = setUp(() => true);
+  tour.start(0);
+  for (let now = 0; now < 14_000; now += 16) tour.update(now);
+  assert.equal(values.get("stiffness"), 240);
+  line.open = false;
+  hand.held = false;
+  tour.update(14_016);
+  tour.putBack();
+  assert.equal(values.get("stiffness"), 240);
+  line.open = true;
+  tour.putBack();
+  assert.equal(values.get("stiffness"), 800);
 });
 
 test("it begins where there is a surface, and not where there is none", () => {

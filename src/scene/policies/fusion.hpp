@@ -50,7 +50,8 @@ class Fusion {
 
   /// Mixes one more cloud in, which is in the sensor's frame. Points that are not finite, or lie
   /// farther off than voxels can be counted, are left out.
-  /// `one_view`: all of it was seen from the viewpoint, its normals are by that alone.
+  /// `one_view`: all of them so far were seen from their viewpoints, their normals are by these
+  /// alone.
   /// @throws Error as prepare() does; then nothing has changed.
   void add(const PointCloud& cloud, const Eigen::Isometry3d& T_world_sensor, bool one_view = false);
 
@@ -98,8 +99,10 @@ class Fusion {
 
   PrepareOptions prepare_;
   double leaf_ = 0;                     // m; 0: no cloud yet
+  std::size_t told_by_ = 0;             // points of the cloud that told it
   std::optional<Eigen::Vector3d> eye_;  // of the first cloud, m, world
   bool one_eye_ = true;                 // all clouds were seen from there
+  bool one_view_ = false;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   FrameTiming last_;
   Prepared prepared_;            // of the running means

@@ -12,7 +12,8 @@ interface Part {
   words: string;
   seconds: number;
   wide: number; // how far it strokes to either side, of what the tour may
-  preset?: string;
+  stiffer?: number; // times what it was
+  friction?: number;
 }
 
 const kWidest = 0.15; // of the picture's half width, of a stroke to either side
@@ -20,16 +21,17 @@ const kReaches = 6; // of what is looked at around a pointer, so that a hand fol
 const kParts: readonly Part[] = [
   { words: "The red hand presses. The black proxy stays on the surface: the spring between them is the force.", seconds: 5, wide: 0 },
   { words: "It strokes: the proxy follows the surface, and the force turns with it.", seconds: 6, wide: 1 },
-  { words: "Soft: the same force goes deeper.", seconds: 5, wide: 0.5, preset: "soft" },
-  { words: "Glass: stiff and smooth.", seconds: 5, wide: 0.5, preset: "glass" },
+  { words: "Soft: the same force goes deeper.", seconds: 5, wide: 0.5, stiffer: 0.3 },
+  { words: "Glass: stiff and smooth.", seconds: 5, wide: 0.5, stiffer: 2.4, friction: 0 },
 ];
 const kLast = "Now you: press on the surface, and use the wheel for more force.";
 const kLastSeconds = 5;
 const kLift = 0.8; // s at the beginning of a part in which it hovers
 const kTurn = 6; // s of a stroke to and fro
-const kDoings = ["pointerdown", "keydown", "wheel"] as const;
+// The first two before others hear of them; keys after them, since one lets the tool go by itself.
+const kDoings = [["pointerdown", true], ["wheel", true], ["keydown", false]] as const;
 const kRings = 6; // around the middle of the picture in which a surface is looked for
-const kPlaces = 12;
+const kPlaces = 8;
 const kNear = 0.02; // of the half picture, to tell how far that is
 const kFarthest = 0.8; // of the half picture
 const kTurned = 0.7; // cosine between normals of one stroke
@@ -40,15 +42,14 @@ export class Tour {
   private part = 0;
   private readonly middle = new Vector2();
   private wide = 0; // of the picture's half width
-  private before = new Map<string, SettingValue>();
-  private usual = new Map<string, SettingValue>(); // those of the preset `default`, once they are known
+  private readonly before = new Map<string, SettingValue>(); // of what it has set and not put back
 
   constructor(
     private readonly session: Session,
     private readonly hand: Hand,
     private readonly stroke: Stroke,
     private readonly take: () => boolean,
-    private readonly send: (message: ToProgram) => void,
+    private readonly send: (message: ToProgram) => boolean,
     private readonly say: (words: string) => void,
   ) {}
 
@@ -56,11 +57,9 @@ export class Tour {
   start(now: number): boolean {
     this.stop();
     if (!this.findPlace() || !this.take()) return false;
-    this.before = new Map(this.session.values);
-    this.usual.clear();
     this.stroke.rest(); // with the force that it begins with
     this.stroke.led = true;
-    for (const type of kDoings) window.addEventListener(type, this.disturb, { capture: true });
+    for (const [type, capture] of kDoings) window.addEventListener(type, this.disturb, { capture });
     this.begin(0, now);
     return true;
   }
@@ -68,15 +67,26 @@ export class Tour {
   /** Leaves the settings as they were. */
   stop(): void {
     if (this.begun === undefined) return;
-    for (const type of kDoings) window.removeEventListener(type, this.disturb, { capture: true });
+    for (const [type, capture] of kDoings) window.removeEventListener(type, this.disturb, { capture });
     this.begun = undefined;
     this.say("");
     this.stroke.rest();
     this.hand.letGo();
-    this.preset("default");
+    this.putBack();
+  }
+
+  /** What a lost connection kept it from. */
+  putBack(): void {
+    if (this.begun !== undefined) return;
     for (const [key, value] of this.before) {
-      if (this.usual.get(key) !== value) this.send({ type: "set", key, value });
+      if (this.send({ type: "set", key, value })) this.before.delete(key);
     }
+  }
+
+  /** Another run: nothing is left to put back. */
+  forget(): void {
+    this.before.clear();
+    this.stop();
   }
 
   /** Before every picture; `now` in ms. */
@@ -94,24 +104,33 @@ export class Tour {
     const at = this.middle.clone().setX(this.middle.x + aside);
     if (this.stroke.under(at, false) !== undefined) this.stroke.aim(at, false);
     this.stroke.press(part !== undefined && passed > kLift);
-    if (this.part === 0 && passed > kLift) this.usual = new Map(this.session.values);
   }
 
   private begin(part: number, now: number): void {
     this.part = part;
     this.begun = now;
     this.say(kParts[part]?.words ?? kLast);
-    this.preset(kParts[part]?.preset ?? "default");
+    const { stiffer = 1, friction } = kParts[part] ?? {};
+    this.set("stiffness", (before) => stiffer * before);
+    this.set("friction", (before) => friction ?? before);
   }
 
-  private preset(name: string): void {
-    if (this.session.welcome?.presets.includes(name)) this.send({ type: "preset", name });
+  /** Sets a number to what is made of the one before the tour, within its bounds. */
+  private set(key: string, make: (before: number) => number): void {
+    const { least = 0, most = Infinity } = this.session.welcome?.settings.find((one) => one.key === key) ?? {};
+    const now = this.session.values.get(key);
+    const before = this.before.get(key) ?? now;
+    if (typeof before !== "number") return;
+    const value = Math.min(most, Math.max(least, make(before)));
+    if (value === now || !this.send({ type: "set", key, value })) return;
+    if (value === before) this.before.delete(key);
+    else this.before.set(key, before);
   }
 
-  /** The button and the key that let the tool go end it by that. */
+  /** The button that lets the tool go ends it by that. */
   private readonly disturb = (event: Event): void => {
     const button = (event.target as Partial<Element> | null)?.closest?.("#take") ?? null;
-    if (button === null && (event as Partial<KeyboardEvent>).key !== "t") this.stop();
+    if (button === null) this.stop();
   };
 
   /** Nearest to the middle of the picture, of places that can be stroked if there is one. */
@@ -123,29 +142,35 @@ export class Tour {
         places.push(new Vector2(Math.cos(angle), Math.sin(angle)).multiplyScalar((kFarthest * ring) / kRings));
       }
     }
-    const found = places.find((at) => this.goesOn(at)) ?? places.find((at) => this.stroke.under(at, false) !== undefined);
-    if (found === undefined) return false;
-    this.middle.copy(found);
-    this.wide = this.wideAt(found);
-    return true;
+    let found = false;
+    for (const at of places) {
+      const seen = this.beside(at, 0);
+      if (seen === undefined) continue;
+      const wide = this.wideAt(at, seen);
+      const good = this.goesOn(at, seen, wide);
+      if (found && !good) continue;
+      found = true;
+      this.middle.copy(at);
+      this.wide = wide;
+      if (good) break;
+    }
+    return found;
   }
 
   private beside(at: Vector2, way: number): Seen | undefined {
     return this.stroke.under(new Vector2(at.x + way, at.y), false);
   }
 
-  private wideAt(at: Vector2): number {
-    const [middle, beside] = [this.beside(at, 0), this.beside(at, kNear)];
-    if (middle === undefined || beside === undefined) return kNear;
+  private wideAt(at: Vector2, middle: Seen): number {
+    const beside = this.beside(at, kNear);
+    if (beside === undefined) return kNear;
     return Math.min(kWidest, (kReaches * middle.reach * kNear) / beside.place.distanceTo(middle.place));
   }
 
   /** Is this one surface, seen from above, as far as strokes go? */
-  private goesOn(at: Vector2): boolean {
-    const wide = this.wideAt(at);
-    const seen = [0, -0.5, 0.5, -1, 1].map((part) => this.beside(at, part * wide));
-    const middle = seen[0];
-    return middle !== undefined && seen.every((other) => {
+  private goesOn(at: Vector2, middle: Seen, wide: number): boolean {
+    return [-0.5, 0.5, -1, 1].every((part) => {
+      const other = this.beside(at, part * wide);
       if (other === undefined || other.normal.dot(middle.normal) < kTurned) return false;
       const way = other.place.clone().sub(middle.place);
       return Math.abs(way.dot(middle.normal)) < kSteep * way.length() + middle.reach;
