@@ -29,6 +29,7 @@ TEST(Words, ForeignTextMovesNoTerminal) {
                              "31m\x7f"),
             "?31m?")
       << "one character of two bytes";
+  EXPECT_EQ(without_controls("\xd8\x9c \xd8\x9b"), "? \xd8\x9b");
   EXPECT_EQ(without_controls("x\xe2\x80\xae"
                              "gpj.exe\xe2\x81\xa6"),
             "x?gpj.exe?");

@@ -67,6 +67,7 @@ std::size_t control_at(std::string_view text) {
     return c - first <= last - first;
   };
   if (byte(0) < 0x20 || byte(0) == 0x7f) return byte(0) == '\n' ? 0 : 1;
+  if (byte(0) == 0xd8 && byte(1) == 0x9c) return 2;              // U+061C
   if (byte(0) == 0xc2 && within(byte(1), 0x80, 0x9f)) return 2;  // U+0080 to U+009F
   if (byte(0) != 0xe2) return 0;
   const bool marks =

@@ -247,8 +247,7 @@ void add_page_options(OptionTable& table, PagePlan& page) {
           "--up", KeyKind::numbers_or_text, "AXIS",
           [&page](const std::string& text) { page.up = parse_up(text); },
           "what the page shows as up: x, y, z, -x, -y, -z or a direction X,Y,Z (default: z; y or "
-          "-y "
-          "where the cloud stands on a flat base along it; -y where all is in one camera's own "
+          "-y where the cloud stands on a flat base along it; -y where all is in one camera's own "
           "axes, which have y down)")
       .only_for(kPage);
 }

@@ -85,6 +85,7 @@ RecordedSetup setup_of(const LoadedScene& loaded, const std::vector<const Servo*
   setup.json = {{"kind", kSetupKind},
                 {"palpate", std::string(version())},
                 {"epoch_ns", epoch},
+                {"picture_axes", in_picture_axes(loaded)},
                 {"sources", std::move(sources)},
                 {"hands", std::move(hands)}};
   return setup;

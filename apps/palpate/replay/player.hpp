@@ -46,6 +46,8 @@ class Player {
   [[nodiscard]] Scene& scene() { return scene_; }
   [[nodiscard]] std::vector<Servo*> servos();
   [[nodiscard]] double length() const { return stretch_.end - stretch_.begin; }
+  /// Was the run in the axes of a camera's picture, y down?
+  [[nodiscard]] bool in_picture_axes() const { return setup_.value("picture_axes", false); }
 
   /// Starts the threads. From now on any thread may call the rest; stop() ends what is told.
   void start(Listener listener);

@@ -37,6 +37,10 @@ void view_recording(const std::string& path, const PagePlan& page) {
   if (!page.address.empty()) options.address = page.address;
   options.port = page.port;
   options.up = page.up;
+  if (player.in_picture_axes()) {
+    options.eye = player.scene().source(0).pose().translation();
+    if (!page.up) options.up = -Eigen::Vector3d::UnitY();
+  }
   options.scene = std::filesystem::path(path).filename();
   options.streams = [&] { return player.streams(); };
   ViewerControls controls;

@@ -216,6 +216,15 @@ std::string title_of(const LoadedScene& loaded) {
   return title;
 }
 
+bool in_picture_axes(const LoadedScene& loaded) {
+  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
+    const LoadedSource& source = loaded.sources[i];
+    if ((source.camera == nullptr && !source.depth_image) || source.posed) return false;
+    if (!loaded.scene.source(i).pose().linear().isIdentity(1e-9)) return false;
+  }
+  return true;
+}
+
 LoadedScene load_sources(const std::vector<SourcePlan>& sources, const LoadOptions& options) {
   LoadedScene loaded;
   for (const SourcePlan& plan : sources) {

@@ -59,6 +59,9 @@ struct LoadedScene {
 /// The names of all sources, for pictures and pages.
 [[nodiscard]] std::string title_of(const LoadedScene& loaded);
 
+/// Are all sources in the axes of a camera's picture, x to the right and y down?
+[[nodiscard]] bool in_picture_axes(const LoadedScene& loaded);
+
 struct LoadOptions {
   bool explored = false;         ///< the surface has to be there before the run
   bool keep_clouds = false;      ///< they may have to be prepared again, or are recorded

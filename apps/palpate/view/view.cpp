@@ -60,16 +60,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Are all sources in the axes of a camera's picture, x to the right and y down?
-bool in_picture_axes(const LoadedScene& loaded) {
-  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
-    const LoadedSource& source = loaded.sources[i];
-    if ((source.camera == nullptr && !source.depth_image) || source.posed) return false;
-    if (!loaded.scene.source(i).pose().linear().isIdentity(1e-9)) return false;
-  }
-  return true;
-}
-
 ViewSettings initial_settings(const Run& run) {
   ViewSettings settings;
   settings.field = run.field;

@@ -8,6 +8,7 @@ import { clock } from "./numbers";
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
 const kSeekInterval = 50; // ms
 const kOwn = 400; // ms that the slider is where the person put it
+const kHeard = 2000; // ms within which the program has heard of a speed
 const kLeast = 0.5; // N, the smallest top of the forces
 
 export class TimeLinePanel {
@@ -16,6 +17,7 @@ export class TimeLinePanel {
   private forces: number[] = [];
   private moved = -Infinity; // ms, by the person
   private chosen: number | undefined; // speed, of which the program has not heard yet
+  private choosing = 0; // ms, when
   private readonly slider = byId<HTMLInputElement>("time");
   private readonly speed = byId<HTMLSelectElement>("time-speed");
   private readonly tell = throttle<number>(kSeekInterval, (time) => this.send({ type: "seek", time }));
@@ -26,6 +28,7 @@ export class TimeLinePanel {
     this.slider.addEventListener("input", () => this.seek(Number(this.slider.value)));
     this.speed.addEventListener("change", () => {
       this.chosen = Number(this.speed.value);
+      this.choosing = performance.now();
       this.play(this.moment.playing);
     });
     byId("play").addEventListener("click", () => this.toggle());
@@ -44,7 +47,8 @@ export class TimeLinePanel {
   take(moment: Moment): void {
     const own = performance.now() - this.moved < kOwn;
     this.moment = own ? { ...moment, time: this.moment.time } : moment;
-    if (moment.speed === this.chosen) this.chosen = undefined;
+    const late = performance.now() - this.choosing > kHeard; // another page has chosen, too
+    if (late || moment.speed === this.chosen) this.chosen = undefined;
     this.show();
   }
 
