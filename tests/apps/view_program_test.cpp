@@ -27,7 +27,7 @@ TEST(ViewProgram, APageOnAllNetworksIsToldByItsAddressesThere) {
   const std::string told = shell.run(run + "0.0.0.0").err;
   for (std::string each; addresses >> each;) {
     if (each.find(':') != std::string::npos) continue;
-    EXPECT_NE(told.find("the same with " + each + " in place"), std::string::npos) << told;
+    EXPECT_NE(told.find("from other machines: http://" + each + ":"), std::string::npos) << told;
   }
   EXPECT_EQ(shell.run(run + "127.0.0.1").err.find("other machines"), std::string::npos);
 }

@@ -2,9 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <ifaddrs.h>
-#include <net/if.h>
-#include <netdb.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,22 +9,11 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <memory>
 #include <string_view>
 
 namespace palpate::app {
 
 namespace {
-
-// As text; empty: it has none by which others reach it.
-std::string address_of(const ifaddrs& interface) {
-  const bool up = (interface.ifa_flags & IFF_UP) != 0 && (interface.ifa_flags & IFF_LOOPBACK) == 0;
-  if (!up || interface.ifa_addr == nullptr || interface.ifa_addr->sa_family != AF_INET) return {};
-  std::array<char, NI_MAXHOST> text{};
-  const bool told = getnameinfo(interface.ifa_addr, sizeof(sockaddr_in), text.data(), text.size(),
-                                nullptr, 0, NI_NUMERICHOST) == 0;
-  return told ? text.data() : std::string();
-}
 
 // A signal is the process's, so is what its handler can reach.
 volatile std::sig_atomic_t asked_to_end = 0;
@@ -109,19 +95,6 @@ int run_program(const std::vector<std::string>& words, const std::string& output
   while (waitpid(child, &status, 0) < 0) {
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 126;
-}
-
-void tell_network(const std::string& listened) {
-  if (listened != "0.0.0.0" && listened != "::") return;
-  ifaddrs* all = nullptr;
-  if (getifaddrs(&all) != 0) return;
-  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> freed(all, &freeifaddrs);
-  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
-    const std::string address = address_of(*each);
-    if (address.empty()) continue;
-    fmt::print(stderr, "from other machines: the same with {} in place of 127.0.0.1 ({})\n",
-               address, each->ifa_name);
-  }
 }
 
 Interruption::Interruption() {

@@ -11,10 +11,6 @@ namespace palpate::app {
 /// 127: it is not there, 126: a signal ended it.
 [[nodiscard]] int run_program(const std::vector<std::string>& words, const std::string& output);
 
-/// Says on standard error by which addresses, one a network interface that is up, other machines
-/// open a page that is served on all of them; nothing where `listened` is one address alone.
-void tell_network(const std::string& listened);
-
 /// While it lives, Ctrl-C (SIGINT), SIGTERM and a terminal that is closed (SIGHUP, unless the
 /// program was started to outlive it: nohup) ask the program to come to an end instead of ending
 /// it. Once: the second one of a kind ends it. One at a time.

@@ -52,8 +52,7 @@ void view_recording(const std::string& path, const PagePlan& page) {
                   fmt::print(stderr, "{}: {}\n", path, why);
                 }});
   const Interruption interruption;
-  fmt::print(stderr, "page: {}\n", viewer.url());
-  tell_network(page.address);
+  tell_page(viewer.url(), page.address);
   std::optional<Browser> browser;
   if (page.open_browser) browser.emplace(viewer.url());
   while (!interruption.asked()) std::this_thread::sleep_for(kLook);

@@ -234,7 +234,6 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
         told_hands(hands), run.loaded.scene, [&] { return feed.states(); }, run.ros.bridge);
   }
   if (run.page.served) view.emplace(run, servos_of(hands), feed);
-  if (view) tell_network(run.page.address);
   while (any_goes_on(hands, clock.now()) && !interruption.asked() && !outcome.next_page) {
     std::this_thread::sleep_for(kLook);
     for (LiveHand& hand : hands) hand.take_steps(each, status);

@@ -1,7 +1,5 @@
 #include "apps/palpate/view/view.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/run/view_settings.hpp"
+#include "apps/palpate/view/address.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/viewer/viewer.hpp"
@@ -249,7 +248,7 @@ struct View::Parts {
 
 View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
     : parts_(std::make_unique<Parts>(run, std::move(servos), feed)) {
-  fmt::print(stderr, "page: {}\n", parts_->viewer.url());
+  tell_page(parts_->viewer.url(), run.page.address);
   if (run.page.open_browser) parts_->browser.emplace(parts_->viewer.url());
 }
 
