@@ -127,9 +127,9 @@ class Patches {
   /// Looks again at what was gathered before, where the proxy has moved on.
   void face_near() noexcept;
 
-  /// Does it cover all of these balls, and is it not thinned for reaching much farther than `extra`,
-  /// m? Where snapshots have changed, their points are looked for again, if that is all that it
-  /// takes.
+  /// Does it cover all of these balls, and is it not thinned for reaching much farther than
+  /// `extra`, m? Where snapshots have changed, their points are looked for again, if that is all
+  /// that it takes.
   [[nodiscard]] bool near_covers(std::span<const Ball> balls, double extra) noexcept;
 
   /// A patch that covers the ball; `margin`, m: how far one that is gathered for it reaches at
