@@ -43,7 +43,8 @@ export class Cloud {
   readonly points: Points<BufferGeometry, ShaderMaterial>;
   stamp = NaN;
   count = 0;
-  spacing = 0.002; // m, about
+  whole = 0; // points that are felt; 0: not known
+  private even = 0.002; // m, between points that lie evenly
   hasNormals = false;
   private hasColours = false;
   private hasTrust = false;
@@ -78,7 +79,12 @@ export class Cloud {
     this.points.position.set(...message.lower);
     this.points.scale.set(Math.max(x, 1e-9), Math.max(y, 1e-9), Math.max(z, 1e-9));
     this.points.geometry.setDrawRange(0, message.count);
-    this.spacing = Math.sqrt((x * y + y * z + z * x) / Math.max(message.count, 1));
+    this.even = Math.sqrt((x * y + y * z + z * x) / Math.max(message.count, 1));
+  }
+
+  /** m, about. A choice of points is as uneven as chance: of what spots cover that are d spacings wide, exp(-d²) stays bare. */
+  get spacing(): number {
+    return this.count < 0.95 * this.whole ? Math.SQRT2 * this.even : this.even;
   }
 
   knows(colouring: Colouring): boolean {

@@ -127,7 +127,11 @@ export class World {
   }
 
   takeSources(reports: readonly SourceReport[]): void {
-    reports.forEach((report, i) => this.frusta[i]?.take(report, 0.12 * this.radius));
+    reports.forEach((report, i) => {
+      this.frusta[i]?.take(report, 0.12 * this.radius);
+      const cloud = this.clouds[i];
+      if (cloud !== undefined) cloud.whole = report.points ?? 0;
+    });
     this.cameras = reports.flatMap(({ pose }) => (pose ? [new Vector3(...pose.position)] : []));
     this.heard = true;
     this.settle();
