@@ -195,7 +195,7 @@ bool run_sequence_target(std::string_view name, const io::Input& input) {
     check_frame_list(input.text());
   } else if (name == "sequence") {
     const auto sequence = sensor::parse_description(input.text(), "input");
-    expect(sequence.camera.pinhole.fx > 0 && sequence.depth_unit > 0, "a camera that is none");
+    expect(sequence.camera.pinhole.fx >= 0 && sequence.depth_unit > 0, "a camera that is none");
   } else {
     return false;
   }

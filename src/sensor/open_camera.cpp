@@ -24,7 +24,7 @@ DriverInfo simulated_driver() {
 
 DriverInfo sequence_driver() {
   return {.name = "sequence",
-          .description = "folders of depth images: sequence:DIR (docs/sequences.md)"};
+          .description = "folders of depth images or clouds: sequence:DIR (docs/sequences.md)"};
 }
 
 }  // namespace

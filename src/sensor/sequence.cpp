@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string_view>
 
 #include "io/file_bytes.hpp"
@@ -17,6 +18,8 @@ namespace {
 using namespace sensor;
 namespace fs = std::filesystem;
 
+constexpr double kRate = 30;  // Hz, where nothing is said
+
 std::string text_of(const fs::path& path) {
   const io::Bytes bytes = io::read_bytes(path);
   return {reinterpret_cast<const char*>(bytes.span().data()), bytes.size()};
@@ -25,6 +28,30 @@ std::string text_of(const fs::path& path) {
 bool is_file(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored);
+}
+
+bool is_frame(const fs::path& path) {
+  const std::string ending = io::extension(path.string());
+  return ending == ".png" || ending == ".pgm" || is_cloud(path);
+}
+
+std::vector<fs::path> frames_in(const fs::path& folder, const std::string& wanted) {
+  std::error_code failure;
+  const bool usual = wanted.empty() && fs::is_directory(folder / "depth", failure);
+  const fs::path place = usual ? folder / "depth" : folder / wanted;
+  std::vector<fs::path> frames;
+  fs::directory_iterator entry(place, failure);
+  for (; !failure && entry != fs::directory_iterator(); entry.increment(failure)) {
+    if (is_frame(entry->path())) frames.push_back(entry->path());
+  }
+  if (failure) {
+    throw Error(
+        fmt::format("{}: cannot be listed ({}). Give the folder of the depth images "
+                    "(\"images\" in sequence.json).",
+                    place.string(), failure.message()));
+  }
+  std::ranges::sort(frames);
+  return frames;
 }
 
 // What TUM's benchmark says of its sequences: depth v / 5000 m, and one set of intrinsics that it
@@ -48,13 +75,15 @@ SequenceDescription describe(const fs::path& folder) {
     throw Error(fmt::format("{}: no such folder. Give a sequence folder.", folder.string()));
   }
   SequenceDescription sequence = tum_layout(folder);
-  if (sequence.frames.empty()) {
-    throw Error(
-        fmt::format("{}: contains no sequence. Add a sequence.json (docs/sequences.md), or the "
-                    "depth.txt or associations.txt of a TUM RGB-D sequence.",
-                    folder.string()));
+  if (!sequence.frames.empty()) return sequence;
+  if (std::ranges::any_of(frames_in(folder, ""), is_cloud)) {
+    sequence.camera = {};
+    return sequence;
   }
-  return sequence;
+  throw Error(fmt::format(
+      "{}: contains no sequence. Add a sequence.json (docs/sequences.md), the depth.txt "
+      "or associations.txt of a TUM RGB-D sequence, or clouds (PCD, PLY).",
+      folder.string()));
 }
 
 // Of a file that the description names in `field`.
@@ -64,30 +93,6 @@ std::string text_named(const fs::path& folder, const std::string& file, std::str
   throw Error(
       fmt::format("{}: no such file, but \"{}\" in {} names it. Add it, or correct the name.",
                   path.string(), field, (folder / "sequence.json").string()));
-}
-
-bool is_image(const fs::path& path) {
-  const std::string ending = io::extension(path.string());
-  return ending == ".png" || ending == ".pgm";
-}
-
-std::vector<fs::path> images_in(const fs::path& folder, const std::string& wanted) {
-  std::error_code failure;
-  const bool usual = wanted.empty() && fs::is_directory(folder / "depth", failure);
-  const fs::path place = usual ? folder / "depth" : folder / wanted;
-  std::vector<fs::path> images;
-  fs::directory_iterator entry(place, failure);
-  for (; !failure && entry != fs::directory_iterator(); entry.increment(failure)) {
-    if (is_image(entry->path())) images.push_back(entry->path());
-  }
-  if (failure) {
-    throw Error(
-        fmt::format("{}: cannot be listed ({}). Give the folder of the depth images "
-                    "(\"images\" in sequence.json).",
-                    place.string(), failure.message()));
-  }
-  std::ranges::sort(images);
-  return images;
 }
 
 std::vector<SequenceFrame> listed_frames(const fs::path& folder, const std::string& list) {
@@ -110,13 +115,42 @@ void check_stamps(const fs::path& folder, const std::vector<double>& stamps, std
                   (folder / "sequence.json").string(), stamps.size(), images));
 }
 
+// s, of a cloud that is named after its time, as PCL's and ROS's tools name what they write: in s
+// with a point, or since 1970 in us or ns, which of a time in this century have 16 and 19 digits.
+std::optional<double> time_in_name(const fs::path& frame) {
+  const std::string name = frame.stem().string();
+  double time = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), time);
+  const bool whole = error == std::errc() && end == name.data() + name.size();
+  if (!is_cloud(frame) || !whole || !std::isfinite(time)) return std::nullopt;
+  if (name.find('.') != std::string::npos) return time;
+  if (name.size() == 16) return 1e-6 * time;
+  return name.size() == 19 ? std::optional(1e-9 * time) : std::nullopt;
+}
+
+// False: not all names are times, and nothing has changed.
+bool stamp_by_name(std::vector<SequenceFrame>& frames) {
+  std::vector<SequenceFrame> stamped = frames;
+  for (SequenceFrame& frame : stamped) {
+    const std::optional<double> time = time_in_name(frame.image);
+    if (!time) return false;
+    frame.stamp = *time;
+  }
+  std::ranges::sort(stamped, {}, &SequenceFrame::stamp);
+  const auto same = std::ranges::adjacent_find(stamped, {}, &SequenceFrame::stamp);
+  if (same != stamped.end()) return false;
+  frames = std::move(stamped);
+  return true;
+}
+
 std::vector<SequenceFrame> frames_of(const fs::path& folder, const SequenceDescription& sequence) {
   if (!sequence.frames.empty()) return listed_frames(folder, sequence.frames);
   std::vector<SequenceFrame> frames;
-  for (fs::path& image : images_in(folder, sequence.images)) {
-    const double stamp = static_cast<double>(frames.size()) / sequence.rate;
+  for (fs::path& image : frames_in(folder, sequence.images)) {
+    const double stamp = static_cast<double>(frames.size()) / sequence.rate.value_or(kRate);
     frames.push_back({.image = std::move(image), .stamp = stamp});
   }
+  if (!sequence.rate && sequence.stamps.empty() && stamp_by_name(frames)) return frames;
   check_stamps(folder, sequence.stamps, frames.size());
   for (std::size_t i = 0; i < sequence.stamps.size(); ++i) frames[i].stamp = sequence.stamps[i];
   return frames;
@@ -162,10 +196,10 @@ void add_poses(const fs::path& folder, const SequenceDescription& description,
   }
 }
 
-// Of lists: by the middle interval.
+// Where each frame has a time of its own: by the middle interval.
 double rate_of(const SequenceDescription& description, const std::vector<SequenceFrame>& frames) {
-  const bool told = description.frames.empty() && description.stamps.empty();
-  if (told || frames.size() < 2) return description.rate;
+  const bool told = description.rate && description.frames.empty() && description.stamps.empty();
+  if (told || frames.size() < 2) return description.rate.value_or(kRate);
   std::vector<double> intervals;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     intervals.push_back(frames[i].stamp - frames[i - 1].stamp);
@@ -176,6 +210,11 @@ double rate_of(const SequenceDescription& description, const std::vector<Sequenc
 }
 
 }  // namespace
+
+bool is_cloud(const fs::path& frame) {
+  const std::string ending = io::extension(frame.string());
+  return ending == ".pcd" || ending == ".ply";
+}
 
 Sequence read_sequence(const fs::path& folder) {
   const SequenceDescription description = describe(folder);
@@ -188,7 +227,13 @@ Sequence read_sequence(const fs::path& folder) {
   sequence.posed = !description.poses.empty();
   if (sequence.posed) add_poses(folder, description, sequence.frames);
   sequence.rate = rate_of(description, sequence.frames);
-  if (!is_file(folder / "sequence.json")) {
+  const auto needs_lens = [](const SequenceFrame& frame) { return !is_cloud(frame.image); };
+  const bool images = std::ranges::any_of(sequence.frames, needs_lens);
+  if (images && sequence.camera.pinhole.fx == 0) {
+    throw Error(fmt::format("{}: \"fx\" is missing. Give the focal length in pixels.",
+                            (folder / "sequence.json").string()));
+  }
+  if (images && !is_file(folder / "sequence.json")) {
     sequence.assumed =
         "no sequence.json, so TUM's values: 5000 units of depth a metre, focal length 525 px; if "
         "depths are in mm, say so in a sequence.json";

@@ -17,11 +17,11 @@ namespace palpate::sensor {
 
 /// What a sequence.json says; docs/sequences.md tells of every field.
 struct SequenceDescription {
-  CameraModel camera;
+  CameraModel camera;        // fx 0: nothing is said of its lens, as clouds need none
   double depth_unit = 1e-3;  // m
   std::vector<std::uint16_t> invalid;
   bool swapped = false;
-  double rate = 30;            // Hz
+  std::optional<double> rate;  // Hz; unset: not said
   std::string images;          // folder; empty: not said
   std::string frames;          // file that lists times and images; empty: all images by name
   std::vector<double> stamps;  // s, one an image; empty: by rate
@@ -39,12 +39,12 @@ struct SequenceDescription {
 namespace palpate {
 
 struct SequenceFrame {
-  std::filesystem::path image;
+  std::filesystem::path image;                        ///< or cloud
   double stamp = 0;                                   ///< when it was taken, s since any start
   std::optional<Eigen::Isometry3d> T_world_sensor{};  ///< at the stamp, where poses are known
 };
 
-/// Depth images one after another, as docs/sequences.md describes them.
+/// Depth images or clouds one after another, as docs/sequences.md describes them.
 struct Sequence {
   std::string name;                    ///< for messages: the folder
   CameraModel camera;                  ///< width and height 0: whatever the images have
@@ -57,8 +57,11 @@ struct Sequence {
   std::vector<SequenceFrame> frames;   ///< stamps grow strictly
 };
 
+/// Is a frame of a sequence a cloud rather than a depth image, by its name?
+[[nodiscard]] bool is_cloud(const std::filesystem::path& frame);
+
 /// Reads the description of a sequence, no image: `folder` holds a sequence.json, or a depth.txt or
-/// associations.txt as TUM's RGB-D benchmark has them.
+/// associations.txt as TUM's RGB-D benchmark has them, or clouds.
 /// @throws Error that names the file, the place in it and a remedy.
 [[nodiscard]] Sequence read_sequence(const std::filesystem::path& folder);
 

@@ -27,10 +27,23 @@ class SequenceRecording final : public Recording {
                                          std::string& why) override;
 
  private:
+  void read(const std::filesystem::path& path, DepthFrame& frame);
+
   Sequence sequence_;
   ReadDepthOptions images_;
   std::size_t next_ = 0;
 };
+
+void SequenceRecording::read(const std::filesystem::path& path, DepthFrame& frame) {
+  if (is_cloud(path)) {
+    frame.cloud = std::make_shared<const PointCloud>(read_cloud(path));
+    return;
+  }
+  read_depth_frame(path, images_, frame);
+  // The first image says what size all have, where the description does not.
+  images_.camera.width = frame.camera.width;
+  images_.camera.height = frame.camera.height;
+}
 
 DepthCamera::Status SequenceRecording::next(DepthFrame& frame, double& time, std::string& why) {
   if (next_ == sequence_.frames.size()) return DepthCamera::Status::ended;
@@ -42,14 +55,11 @@ DepthCamera::Status SequenceRecording::next(DepthFrame& frame, double& time, std
     return DepthCamera::Status::unposed;
   }
   try {
-    read_depth_frame(recorded.image, images_, frame);
+    read(recorded.image, frame);
   } catch (const Error& error) {
     why = error.what();
     return DepthCamera::Status::damaged;
   }
-  // The first image says what size all have, where the description does not.
-  images_.camera.width = frame.camera.width;
-  images_.camera.height = frame.camera.height;
   frame.T_world_sensor = recorded.T_world_sensor;
   return DepthCamera::Status::frame;
 }
@@ -61,8 +71,10 @@ namespace palpate {
 
 std::unique_ptr<DepthCamera> open_sequence(Sequence sequence, const SequenceOptions& options) {
   if (sequence.frames.empty()) {
-    throw Error(fmt::format("{}: the sequence has no frames. Add 16-bit depth images (PNG, PGM).",
-                            sequence.name));
+    throw Error(
+        fmt::format("{}: the sequence has no frames. Add 16-bit depth images (PNG, PGM) or clouds "
+                    "(PCD, PLY).",
+                    sequence.name));
   }
   CameraInfo info{.name = "sequence:" + sequence.name,
                   .rate = sequence.rate,

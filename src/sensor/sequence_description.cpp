@@ -38,6 +38,8 @@ constexpr std::array<std::string_view, 18> kFields{"width",
                                                    "byte_order",
                                                    "static_camera"};
 
+constexpr std::array<const char*, 5> kLens{"fx", "fy", "cx", "cy", "distortion"};
+
 // The fields of one JSON object, by name.
 class Fields {
  public:
@@ -126,6 +128,8 @@ CameraModel camera_of(const Fields& fields) {
   CameraModel camera;
   camera.width = static_cast<int>(fields.number("width", 1, kWidest, "pixels", 0));
   camera.height = static_cast<int>(fields.number("height", 1, kWidest, "pixels", 0));
+  const auto said = [&](const char* field) { return fields.find(field) != nullptr; };
+  if (std::ranges::none_of(kLens, said)) return camera;
   constexpr std::string_view kFocal = "the focal length in pixels";
   constexpr std::string_view kCentre = "the principal point in pixels";
   camera.pinhole.fx = fields.number("fx", 1e-3, kFar, kFocal);
@@ -191,7 +195,9 @@ SequenceDescription parse_description(std::string_view text, const std::string& 
                                       "the metres per depth unit, e.g. 0.001", 1e-3);
   sequence.invalid = invalid_of(fields);
   sequence.swapped = second_of(fields, "byte_order", "big", "little");
-  sequence.rate = fields.number("fps", 1e-3, kFastest, "frames per second", 30);
+  if (fields.find("fps") != nullptr) {
+    sequence.rate = fields.number("fps", 1e-3, kFastest, "frames per second");
+  }
   sequence.images = fields.text("images", "the name of a folder in the same folder");
   sequence.frames = file_of(fields, "frames");
   sequence.stamps = fields.numbers("stamps", "a list of times in seconds, one per image");

@@ -31,7 +31,7 @@ TEST(SequenceDescription, HasDefaults) {
   EXPECT_EQ(sequence.camera.pinhole.fy, 510);
   EXPECT_TRUE(sequence.camera.distortion.none());
   EXPECT_EQ(sequence.depth_unit, 1e-3);
-  EXPECT_EQ(sequence.rate, 30);
+  EXPECT_FALSE(sequence.rate);
   EXPECT_FALSE(sequence.swapped);
   EXPECT_TRUE(sequence.poses.empty());
   EXPECT_TRUE(sequence.T_told_sensor.isApprox(Eigen::Isometry3d::Identity()));
@@ -66,7 +66,7 @@ TEST(SequenceDescription, TellsEveryField) {
 TEST(SequenceDescription, RefusesWhatItCannotUnderstand) {
   EXPECT_THAT(refusal("{"), AllOf(HasSubstr("a.json"), HasSubstr("not valid JSON")));
   EXPECT_THAT(refusal("[1]"), HasSubstr("not an object"));
-  EXPECT_THAT(refusal("{}"), HasSubstr("\"fx\" is missing"));
+  EXPECT_THAT(refusal(R"({"fy": 4})"), HasSubstr("\"fx\" is missing"));
   EXPECT_THAT(refusal(with(R"(, "fbs": 3)")), HasSubstr("unknown field \"fbs\""));
   EXPECT_THAT(refusal(with(R"(, "fps": "fast")")), HasSubstr("\"fps\" is \"fast\""));
   EXPECT_THAT(refusal(with(R"(, "fps": 0)")), HasSubstr("\"fps\" is 0"));

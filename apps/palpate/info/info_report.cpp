@@ -132,28 +132,55 @@ void look_at_depths(const DepthFrame& frame, LiveFacts& facts) {
   facts.farthest = quantile(depths, 0.99);
 }
 
+void filter_one(const DepthFrame& frame, DepthFilter& filter, LiveFacts& facts) {
+  const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());
+  const FilteredDepth& depth = filter.filter(frame, pose, {});
+  facts.noise = depth.noise;
+  facts.repeated += depth.duplicate ? 1 : 0;
+}
+
 Json json_of(const LiveFacts& facts) {
+  Json json = {{"name", facts.argument.name}, {"camera", facts.argument.path},
+               {"posed", facts.posed},        {"frames_unposed", facts.unposed},
+               {"rate_Hz", facts.rate},       {"frames", facts.frames},
+               {"failures", facts.failures}};
+  if (facts.points > 0) {
+    json.update({{"points", facts.points}, {"spacing_m", facts.spacing}});
+    return json;
+  }
   const Pinhole& p = facts.pinhole;
-  return {
-      {"name", facts.argument.name},
-      {"camera", facts.argument.path},
-      {"width", facts.width},
-      {"height", facts.height},
-      {"intrinsics", {p.fx, p.fy, p.cx, p.cy}},
-      {"distorted", facts.distorted},
-      {"posed", facts.posed},
-      {"frames_unposed", facts.unposed},
-      {"rate_Hz", facts.rate},
-      {"frames", facts.frames},
-      {"frames_repeated", facts.repeated},
-      {"failures", facts.failures},
-      {"valid_share", facts.valid},
-      {"depth_m",
-       {{"hundredth", facts.nearest}, {"median", facts.depth}, {"last_hundredth", facts.farthest}}},
-      {"noise",
-       {{"coefficients", facts.noise.coefficients},
-        {"correlation", facts.noise.correlation},
-        {"at_median_m", facts.noise.sigma(facts.depth)}}}};
+  json.update({{"width", facts.width},
+               {"height", facts.height},
+               {"intrinsics", {p.fx, p.fy, p.cx, p.cy}},
+               {"distorted", facts.distorted},
+               {"frames_repeated", facts.repeated},
+               {"valid_share", facts.valid},
+               {"depth_m",
+                {{"hundredth", facts.nearest},
+                 {"median", facts.depth},
+                 {"last_hundredth", facts.farthest}}},
+               {"noise",
+                {{"coefficients", facts.noise.coefficients},
+                 {"correlation", facts.noise.correlation},
+                 {"at_median_m", facts.noise.sigma(facts.depth)}}}});
+  return json;
+}
+
+void add_lens(Report& report, const LiveFacts& facts) {
+  const Pinhole& p = facts.pinhole;
+  report.line("intrinsics", fmt::format("{:.6g}, {:.6g}, {:.6g}, {:.6g}{}", p.fx, p.fy, p.cx, p.cy,
+                                        facts.distorted ? ", with distortion" : ""));
+}
+
+void add_depths(Report& report, const LiveFacts& facts) {
+  const auto& c = facts.noise.coefficients;
+  report.line("depth", fmt::format("{:.0f} % of the pixels are valid, {} to {}, median {}",
+                                   100 * facts.valid, length(facts.nearest), length(facts.farthest),
+                                   length(facts.depth)));
+  report.line("noise",
+              fmt::format("{} per pixel at the median; --noise {:.4g},{:.4g},{:.4g},{:.3g}",
+                          length(facts.noise.sigma(facts.depth)), c[0], c[1], c[2],
+                          facts.noise.correlation));
 }
 
 }  // namespace
@@ -212,16 +239,18 @@ LiveFacts study_live(const CloudArgument& argument) {
   facts.pinhole = frame.camera.pinhole;
   facts.distorted = !frame.camera.distortion.none();
   facts.posed = frame.T_world_sensor.has_value();
-  look_at_depths(frame, facts);
+  if (frame.cloud) {
+    facts.points = frame.cloud->size();
+    facts.spacing = measure_spacing(CellGrid(frame.cloud->positions)).from_area;
+  } else {
+    look_at_depths(frame, facts);
+  }
   DepthFilter filter;
   DepthCamera::Status status = DepthCamera::Status::frame;
   for (int i = 0; i < kTries && facts.frames < kFrames && status != DepthCamera::Status::ended;
        ++i) {
     if (status == DepthCamera::Status::frame) {
-      const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());
-      const FilteredDepth& depth = filter.filter(frame, pose, {});
-      facts.noise = depth.noise;
-      facts.repeated += depth.duplicate ? 1 : 0;
+      if (!frame.cloud) filter_one(frame, filter, facts);
       ++facts.frames;
       last = frame.stamp;
     }
@@ -234,13 +263,12 @@ LiveFacts study_live(const CloudArgument& argument) {
 }
 
 Report report_of(const LiveFacts& facts) {
-  const Pinhole& p = facts.pinhole;
-  const auto& c = facts.noise.coefficients;
-  const double noise = facts.noise.sigma(facts.depth);
-  Report report(facts.argument.name,
-                fmt::format("{} ({} x {} pixels)", facts.argument.path, facts.width, facts.height));
-  report.line("intrinsics", fmt::format("{:.6g}, {:.6g}, {:.6g}, {:.6g}{}", p.fx, p.fy, p.cx, p.cy,
-                                        facts.distorted ? ", with distortion" : ""));
+  const bool clouds = facts.points > 0;
+  Report report(
+      facts.argument.name,
+      clouds ? facts.argument.path + " (clouds)"
+             : fmt::format("{} ({} x {} pixels)", facts.argument.path, facts.width, facts.height));
+  if (!clouds) add_lens(report, facts);
   if (!facts.assumed.empty()) report.line("assumed", facts.assumed);
   report.line("frames",
               fmt::format("{:.1f} Hz; of the first {}: {} repeated, {} failed", facts.rate,
@@ -250,12 +278,12 @@ Report report_of(const LiveFacts& facts) {
       fmt::format(
           "{}{}", facts.posed ? "each frame has one" : "none; set one with --pose",
           facts.unposed > 0 ? fmt::format("; {} frames without one skipped", facts.unposed) : ""));
-  report.line("depth", fmt::format("{:.0f} % of the pixels are valid, {} to {}, median {}",
-                                   100 * facts.valid, length(facts.nearest), length(facts.farthest),
-                                   length(facts.depth)));
-  report.line("noise",
-              fmt::format("{} per pixel at the median; --noise {:.4g},{:.4g},{:.4g},{:.3g}",
-                          length(noise), c[0], c[1], c[2], facts.noise.correlation));
+  if (clouds) {
+    report.line("points", fmt::format("{} in the first, {} apart", grouped(facts.points),
+                                      length(facts.spacing)));
+  } else {
+    add_depths(report, facts);
+  }
   report.data = json_of(facts);
   return report;
 }

@@ -249,8 +249,10 @@ Report camera_report(const LoadedSource& source) {
   const CloudArgument& argument = source.plan.argument;
   const FeedReport& feed = source.feed;
   const StreamState& state = feed.state;
-  Report report(argument.name, fmt::format("{} ({} x {} pixels), {}", argument.path, feed.width,
-                                           feed.height, phase_words(state.phase)));
+  const std::string size =
+      feed.width > 0 ? fmt::format("{} x {} pixels", feed.width, feed.height) : "clouds";
+  Report report(argument.name,
+                fmt::format("{} ({}), {}", argument.path, size, phase_words(state.phase)));
   report.data = {{"name", argument.name}, {"camera", argument.path}};
   const std::string assumed = source.camera ? source.camera->info().assumed : "";
   if (!assumed.empty()) report.line("assumed", assumed);

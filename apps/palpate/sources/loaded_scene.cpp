@@ -179,17 +179,25 @@ bool take_next(DepthCamera& camera, double latest, DepthFrame& frame) {
   return frame.stamp <= latest;
 }
 
+// Of a cloud: that of a camera which saw it in these axes; of no size: there is none.
+CameraModel lens_of(const DepthFrame& frame) {
+  if (!frame.cloud) return frame.camera;
+  const std::optional<DepthFrame> image = depth_frame_of(*frame.cloud).frame;
+  return image && !image->T_world_sensor ? image->camera : CameraModel{};
+}
+
 void add_stream(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   constexpr double kFirstLook = 1;  // s of frames, the first of which may be black
   SourcePlan& plan = result.plan;
   result.camera = open_stream(plan, options.clock);
   DepthFrame first = first_frame(*result.camera);
   const double latest = first.stamp + kFirstLook;
+  plan.as_cloud |= first.cloud != nullptr;
   const DepthFilterOptions asked = plan.options.depth;
   Source& source = scene.add(plan.argument.name, plan.options);
   std::string problem;
   do {
-    result.lens = first.camera;
+    result.lens = lens_of(first);
     result.posed = first.T_world_sensor.has_value();
     plan.options.depth = asked;
     believe_no_farther(first, plan);
@@ -219,7 +227,8 @@ std::string title_of(const LoadedScene& loaded) {
 bool in_picture_axes(const LoadedScene& loaded) {
   for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
     const LoadedSource& source = loaded.sources[i];
-    if ((source.camera == nullptr && !source.depth_image) || source.posed) return false;
+    const bool picture = source.depth_image || (source.camera && source.lens.width > 0);
+    if (!picture || source.posed) return false;
     if (!loaded.scene.source(i).pose().linear().isIdentity(1e-9)) return false;
   }
   return true;

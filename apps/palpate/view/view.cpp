@@ -98,7 +98,7 @@ std::vector<ViewerOptions::Stream> streams_of(const Run& run, const LiveFeed& fe
       if (run.loaded.scene.source(i).name() != state.source) continue;
       const LoadedSource& source = run.loaded.sources[i];
       const double depth = run.loaded.scene.source(i).state().depth;
-      if (source.camera) stream.frustum = frustum_of(source.lens, depth);
+      if (source.camera && source.lens.width > 0) stream.frustum = frustum_of(source.lens, depth);
     }
     stream.state = std::move(state);
   }
