@@ -118,8 +118,8 @@ class SnapshotBuilder {
   Fusion fusion_;
   Recycler<SurfacePoints> points_;
   Recycler<Snapshot, Empty> snapshots_;
-  Snapshot last_;             // without its layers
-  Pinhole pinhole_;           // of the last frame
+  Snapshot last_;      // without its layers
+  Pinhole pinhole_;    // of the last frame
   bool view_ = false;  // has a cloud proved to be seen from its viewpoint?
   NoiseModel noise_;
   double median_depth_ = 0;

@@ -104,6 +104,7 @@ struct SourceLabel {
 
 /// What a page is told once.
 struct Welcome {
+  std::string run;  ///< another at each start of a viewer
   std::string scene;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();

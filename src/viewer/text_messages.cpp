@@ -190,9 +190,13 @@ ClientMessage read_message(std::string_view text) {
 }
 
 std::string welcome_text(const Welcome& welcome) {
-  json message{{"type", "welcome"},         {"version", kVersion},
-               {"scene", welcome.scene},    {"origin", json_of(welcome.origin)},
-               {"up", json_of(welcome.up)}, {"radius", welcome.radius},
+  json message{{"type", "welcome"},
+               {"version", kVersion},
+               {"run", welcome.run},
+               {"scene", welcome.scene},
+               {"origin", json_of(welcome.origin)},
+               {"up", json_of(welcome.up)},
+               {"radius", welcome.radius},
                {"presets", welcome.presets}};
   if (welcome.eye) message["eye"] = json_of(*welcome.eye);
   if (welcome.opens > 0) message["opens"] = welcome.opens;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/beast/http.hpp>
+#include <charconv>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,12 +21,11 @@ namespace http = boost::beast::http;
 
 constexpr std::string_view kPath = "/open/";
 constexpr std::string_view kBearer = "Bearer ";
-constexpr std::size_t kLongestName = 128;
+constexpr std::size_t kLongestName = 250;
 constexpr double kPatience = 5;  // s for an answer to go and the other side to close
 
-bool is_name_letter(char c) {
-  const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-  return letter || (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '_';
+bool is_in_no_name(char c) {
+  return (c >= 0 && c < 0x20) || c == 0x7f || c == '/';
 }
 
 class Upload final : public Connection, public std::enable_shared_from_this<Upload> {
@@ -42,7 +42,8 @@ class Upload final : public Connection, public std::enable_shared_from_this<Uplo
 
   void run() {
     const beast::string_view target = request_.get().target();
-    name_ = std::string(target.substr(std::min(target.size(), kPath.size())));
+    const std::string_view path(target.data(), target.size());
+    name_ = file_name(path.substr(std::min(path.size(), kPath.size())));
     const beast::string_view said = request_.get()[http::field::authorization];
     const std::string_view words(said.data(), said.size());
     const bool known =
@@ -53,10 +54,10 @@ class Upload final : public Connection, public std::enable_shared_from_this<Uplo
     }
     if (!options().controls.open)
       return answer(http::status::not_found, "This run opens no files.");
-    if (!is_file_name(name_)) {
+    if (name_.empty()) {
       return answer(http::status::bad_request,
-                    "A file's name has 1 to 128 letters, digits and any of -._, and does not begin "
-                    "with a dot.");
+                    "A file's name has 1 to 250 bytes, no / and no control character, and does not "
+                    "begin with a dot.");
     }
     if (context().receives_file) {
       return answer(http::status::conflict, "Another file is being sent; try again after it.");
@@ -149,9 +150,24 @@ bool is_upload(std::string_view path) noexcept {
   return path.starts_with(kPath);
 }
 
-bool is_file_name(std::string_view name) noexcept {
-  return !name.empty() && name.size() <= kLongestName && name.front() != '.' &&
-         std::ranges::all_of(name, is_name_letter);
+std::string file_name(std::string_view written) {
+  std::string name;
+  while (!written.empty()) {
+    std::size_t size = 1;
+    char letter = written.front();
+    if (letter == '%') {
+      unsigned code = 0;
+      const char* const end = written.data() + std::min<std::size_t>(3, written.size());
+      const auto read = std::from_chars(written.data() + 1, end, code, 16);
+      if (read.ptr != written.data() + 3) return {};
+      letter = static_cast<char>(code);
+      size = 3;
+    }
+    if (is_in_no_name(letter)) return {};
+    name += letter;
+    written.remove_prefix(size);
+  }
+  return name.size() <= kLongestName && !name.starts_with('.') ? name : "";
 }
 
 void receive_file(ServerContext& context, beast::tcp_stream stream, beast::flat_buffer buffer,

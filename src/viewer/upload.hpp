@@ -4,6 +4,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
+#include <string>
 #include <string_view>
 
 #include "viewer/connections.hpp"
@@ -15,9 +16,9 @@ using RequestParser = boost::beast::http::request_parser<boost::beast::http::emp
 /// Does a request's path ask to open a file: "/open/NAME"?
 [[nodiscard]] bool is_upload(std::string_view path) noexcept;
 
-/// Is it a file's name that no system minds: 1 to 128 letters, digits and any of -._, not begun by
-/// a dot?
-[[nodiscard]] bool is_file_name(std::string_view name) noexcept;
+/// A file's name as a request's path writes it, with %XX for what is no letter there; empty: it is
+/// none, of 1 to 250 bytes without '/' and control characters, not begun by a dot.
+[[nodiscard]] std::string file_name(std::string_view written);
 
 /// Takes over a connection whose `request`, "PUT /open/NAME", has come but for its body: reads that
 /// for ViewerControls::open, if the request has the token, answers and closes. One file at a time.

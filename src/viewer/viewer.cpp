@@ -157,6 +157,7 @@ struct Viewer::Parts {
   std::vector<Servo*> servos;
   std::vector<std::string> names;  // of their tools
   ViewerOptions options;
+  std::string run = make_token();
   ClientSessions sessions;
   Server server;
   std::vector<StateReporter> states;
@@ -170,6 +171,7 @@ struct Viewer::Parts {
 Welcome Viewer::Parts::welcome() {
   const Box box = scene_box(scene);
   Welcome welcome;
+  welcome.run = run;
   welcome.scene = options.scene;
   welcome.origin = *options.origin;
   welcome.up = *options.up;

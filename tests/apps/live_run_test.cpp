@@ -56,8 +56,9 @@ TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
       plan.time, plan.page, plan.ros, loaded, hands, {}, plan.surface.proxy_of(kStiffness)};
   std::vector<std::size_t> steps(2);
   SteadyClock clock;
-  const LiveOutcome outcome =
-      run_live(run, clock, [&](std::size_t hand, const ServoState&) { ++steps[hand]; });
+  const Interruption interruption;
+  const LiveOutcome outcome = run_live(run, clock, interruption,
+                                       [&](std::size_t hand, const ServoState&) { ++steps[hand]; });
   const std::vector<LiveReport>& reports = outcome.hands;
   ASSERT_EQ(reports.size(), 2u);
   EXPECT_FALSE(outcome.interrupted);

@@ -1,6 +1,7 @@
 // What follows where a page gives a run another file.
 #include <gtest/gtest.h>
 
+#include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/touch_plan.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
@@ -33,6 +34,18 @@ TEST(OpenedPlan, TheSurfaceStaysAndWhatBelongedToTheSourcesGoes) {
   EXPECT_TRUE(plan.sources[0].options.T_world_sensor.isApprox(Eigen::Isometry3d::Identity(), 0));
   EXPECT_EQ(plan.surface.proxy.friction.dynamic_coefficient, 0.4);
   EXPECT_TRUE(plan.page.wanted);
+}
+
+TEST(OpenedPlan, AFileIsReadAndPreparedAsTheOnlySourceWas) {
+  const Shell shell;
+  shell.write("b.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  const TouchPlan plan =
+      plan_of_file(planned("synthetic:sphere --view --scale 0.001 --voxel 0.02 --viewpoint 0,0,1"),
+                   shell.path("b.xyz"));
+  EXPECT_EQ(plan.sources[0].reading.scale, 0.001);
+  EXPECT_EQ(plan.sources[0].options.prepare.voxel, 0.02);
+  EXPECT_FALSE(plan.sources[0].options.prepare.viewpoint);
+  EXPECT_THROW((void)plan_of_file(plan, shell.path("a.oni")), UsageError);
 }
 
 }  // namespace

@@ -93,12 +93,20 @@ TEST(Upload, WhoDoesNotKnowTheTokenIsRefusedBeforeAByteIsTaken) {
 TEST(Upload, NamesThatLeadElsewhereAreRefused) {
   Sent sent;
   ViewerRig rig({}, sent.controls());
-  for (const char* name : {"", "..", ".bashrc", "a/b.ply", "..%2fb.ply", "a%00.ply", "a?b.ply"}) {
+  for (const char* name : {"", "..", ".bashrc", "a/b.ply", "..%2fb.ply", "a%2Fb.ply", "a%00.ply",
+                           "a%1b.ply", "%2e.ply", "a%.ply", "a%4", "a%-4.ply", "a%4x.ply"}) {
     EXPECT_EQ(answer(rig, put(rig, name, of_length("x"))).substr(0, 3), "400") << name;
   }
-  EXPECT_TRUE(viewer::is_file_name(std::string(128, 'a')));
-  EXPECT_FALSE(viewer::is_file_name(std::string(129, 'a')));
+  EXPECT_EQ(viewer::file_name(std::string(250, 'a')), std::string(250, 'a'));
+  EXPECT_EQ(viewer::file_name(std::string(251, 'a')), "");
   EXPECT_TRUE(sent.files.empty());
+}
+
+TEST(Upload, NamesOfAllLanguagesComeAsTheyAre) {
+  EXPECT_EQ(viewer::file_name("Gr%C3%B6%c3%9fe%20(2)%25.ply"),
+            "Gr\xc3\xb6\xc3\x9f"
+            "e (2)%.ply");
+  EXPECT_EQ(viewer::file_name("a?b=c.ply"), "a?b=c.ply");
 }
 
 TEST(Upload, WhatIsTooLargeIsRefusedAnnouncedOrNot) {

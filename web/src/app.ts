@@ -65,7 +65,7 @@ export class App {
   private readonly plotInterval: number;
   private plotted = 0;
   private saidSlow = false;
-  private scene: string | undefined;
+  private run: string | undefined;
 
   constructor(private readonly link: Link, graphics: Graphics) {
     const send = (message: ToProgram) => this.connection.send(message);
@@ -184,9 +184,9 @@ export class App {
   }
 
   private welcome(welcome: Welcome): void {
-    const first = this.scene === undefined;
-    const again = this.scene === welcome.scene;
-    this.scene = welcome.scene;
+    const first = this.run === undefined;
+    const again = this.run === welcome.run;
+    this.run = welcome.run;
     if (welcome.version !== kVersion) {
       this.notices.add("warning", `the program uses protocol version ${welcome.version}, this page ${kVersion}: reload the page`);
     }

@@ -208,7 +208,15 @@ bool can_open_files(const TouchPlan& plan) {
 TouchPlan plan_of_file(TouchPlan plan, const std::string& path) {
   TouchChoices choices;
   choices.sources = {path};
+  if (plan.sources.size() == 1) {
+    const SourcePlan& before = plan.sources.front();
+    choices.every_source.reading = before.reading;
+    choices.every_source.options.prepare = before.options.prepare;
+    choices.every_source.options.prepare.viewpoint.reset();
+  }
   plan.sources = {choose_sources(choices, plan.surface).front().plan};
+  require(plan.sources.front().kind != SourceKind::stream,
+          "a page opens clouds and depth images, no recordings");
   plan.motion.trajectory.clear();
   for (DevicePlan& device : plan.devices) device.placement = {};
   plan.page.wanted = true;  // its hands explore until it is ended

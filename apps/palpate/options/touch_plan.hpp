@@ -66,6 +66,7 @@ struct PagePlan {
   std::string address = {};                ///< empty: this machine alone
   std::string token = {};                  ///< who knows it may use the page; empty: a new one
   std::optional<std::uint16_t> port = {};  ///< unset: the first free one from 8420 on
+  bool paused = false;                     ///< as the run before on it was
   std::optional<Eigen::Vector3d> up = {};  ///< what is up in the world, 1 long; unset: as it seems
 };
 
@@ -101,7 +102,8 @@ struct TouchPlan {
 /// written or a robot hang on it, it may not.
 [[nodiscard]] bool can_open_files(const TouchPlan& plan);
 
-/// The plan of the run after that of `plan`, by hands that explore what is in the file at `path`.
+/// The plan of the run after that of `plan`, by hands that explore what is in the file at `path`,
+/// read and prepared as the source was, if it was one.
 /// @throws UsageError when that is no source.
 [[nodiscard]] TouchPlan plan_of_file(TouchPlan plan, const std::string& path);
 

@@ -217,8 +217,8 @@ std::vector<RosBridge::Hand> told_hands(LiveHands& hands) {
 
 }  // namespace
 
-LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each) {
-  const Interruption interruption;
+LiveOutcome run_live(Run& run, WaitingClock& clock, const Interruption& interruption,
+                     const EachStep& each) {
   LiveStatus status;
   FailureWatch failures;
   LiveHands hands;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,55 +27,6 @@
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::app {
-namespace {
-
-std::vector<SimulatedStream> make_streams(Run& run) {
-  SimulatedStreamOptions options;
-  options.latency = run.time.latency.value_or(options.latency);
-  std::vector<SimulatedStream> streams;
-  for (std::size_t i = 0; i < run.loaded.sources.size(); ++i) {
-    LoadedSource& from = run.loaded.sources[i];
-    if (!from.camera) continue;
-    from.feed.simulated = true;
-    Feeding feed = feeding(run.loaded, i, run.recorder);
-    streams.emplace_back(*from.camera, run.loaded.scene.source(i).name(), std::move(feed.sink),
-                         options, std::move(feed.ended));
-  }
-  return streams;
-}
-
-}  // namespace
-
-bool run_simulated(Run& run, const EachStep& each) {
-  const Hand& hand = run.hands.front();
-  Device& device = *hand.device;
-  ServoOptions options = servo_options(run, hand);
-  options.guard.on = false;
-  Servo servo(device, run.loaded.scene, options);
-  if (run.recorder != nullptr) run.recorder->begin(run.loaded, {&servo}, 0, true);
-  std::vector<SimulatedStream> streams = make_streams(run);
-  const Interruption interruption;
-  DeviceState state = device.read();
-  for (; state.status != DeviceState::Status::finished; state = device.read()) {
-    if (state.status == DeviceState::Status::failed) {
-      throw Error(fmt::format("device '{}' failed: {}", device.info().name, device.reason()));
-    }
-    for (SimulatedStream& stream : streams) stream.advance(state.time);
-    if (interruption.asked()) break;
-    const double start = thread_cpu_seconds();
-    const ServoState& step = servo.step(state, state.time);
-    const double computing = thread_cpu_seconds() - start;
-    device.write(servo.device_force());
-    servo.show({.computing = computing});
-    if (run.recorder != nullptr) run.recorder->keep_up();
-    each(0, step);
-  }
-  std::vector<StreamState> states;
-  for (const SimulatedStream& stream : streams) states.push_back(stream.state());
-  keep_states(run.loaded, states);
-  return !interruption.asked();
-}
-
 namespace {
 
 // Every file is made before the work: a place that does not exist is told at once.
@@ -110,12 +62,13 @@ bool play_simulated(Run& run, TouchOutputs& outputs) {
 
 // Runs, in the time of `clock` if there is one, and hands each step to what keeps or sums it. In
 // simulated time there are no reports of real time.
-LiveOutcome play(Run& run, WaitingClock* clock, TouchOutputs& outputs) {
+LiveOutcome play(Run& run, WaitingClock* clock, const Interruption* interruption,
+                 TouchOutputs& outputs) {
   LiveOutcome outcome;
   if (clock == nullptr) {
     outcome.interrupted = !play_simulated(run, outputs);
   } else {
-    outcome = run_live(run, *clock, [&](std::size_t hand, const ServoState& step) {
+    outcome = run_live(run, *clock, *interruption, [&](std::size_t hand, const ServoState& step) {
       outputs.hands[hand].add(step, run.hands[hand].device->info());
     });
   }
@@ -196,10 +149,8 @@ namespace {
 
 // A run from its options to its first step: each thing is made in its turn.
 struct Start {
-  // `files`: where the plan's sources are, if they were sent to the program.
-  Start(TouchPlan chosen, WaitingClock* clock, std::unique_ptr<TemporaryFolder> files = nullptr)
-      : folder(std::move(files)),
-        plan(std::move(chosen)),
+  Start(TouchPlan chosen, WaitingClock* clock)
+      : plan(std::move(chosen)),
         trajectory(trajectory_of(plan.motion, plan.devices)),
         outputs(plan),
         hands(open_hands(plan.devices, plan.motion, plan.time, clock)),
@@ -215,7 +166,6 @@ struct Start {
     return trajectory.empty() || hands.size() > 1 || texture > 0;
   }
 
-  std::unique_ptr<TemporaryFolder> folder;
   TouchPlan plan;
   Trajectory trajectory;
   TouchOutputs outputs;
@@ -224,23 +174,29 @@ struct Start {
   LoadedScene loaded;
 };
 
-// What comes after a run of `plan`: of a file that a page sent.
+// What comes after a run of `plan`: of a file that a page sent, which a person knows by its name.
 std::unique_ptr<Start> opened(const TouchPlan& plan, const std::string& name, std::string bytes,
                               WaitingClock* clock) {
-  auto folder = std::make_unique<TemporaryFolder>();
-  const std::string place = folder->file("");
-  const std::string file = folder->write(name, std::exchange(bytes, {}));
+  const TemporaryFolder folder;
+  const std::string place = folder.file("");
   try {
-    return std::make_unique<Start>(plan_of_file(plan, file), clock, std::move(folder));
-  } catch (const std::exception& error) {  // a person knows the file by its name
+    const std::string file = folder.write(name, std::exchange(bytes, {}));
+    auto start = std::make_unique<Start>(plan_of_file(plan, file), clock);
+    start->loaded.sources.front().plan.argument.path = name;
+    return start;
+  } catch (const std::exception& error) {
     std::string problem = error.what();
-    if (problem.starts_with(place)) problem.erase(0, place.size());
+    for (std::size_t at = 0; (at = problem.find(place)) != std::string::npos;) {
+      problem.erase(at, place.size());
+    }
     throw Error(problem);
   }
 }
 
-// Runs and reports. Where a page opened a file meanwhile, what comes next.
-std::unique_ptr<Start> run_and_tell(Start& start, WaitingClock* clock) {
+// Runs, and reports on all that came of it. Where a page opened a file meanwhile: what comes next.
+// @throws Error when something failed, after `next` was set.
+void run_and_tell(Start& start, WaitingClock* clock, const Interruption* interruption,
+                  std::unique_ptr<Start>& next) {
   const TouchPlan& plan = start.plan;
   TouchOutputs& outputs = start.outputs;
   Run run{plan.time,
@@ -251,13 +207,17 @@ std::unique_ptr<Start> run_and_tell(Start& start, WaitingClock* clock) {
           plan.surface.field,
           plan.surface.proxy_of(start.hands.front().stiffness),
           outputs.recorder ? &*outputs.recorder : nullptr};
-  std::unique_ptr<Start> next;
+  std::unique_ptr<Start> prepared;
   if (can_open_files(plan)) {
     run.open = [&](const std::string& name, std::string bytes) {
-      next = opened(plan, name, std::move(bytes), clock);
+      prepared = opened(plan, name, std::move(bytes), clock);
     };
   }
-  LiveOutcome outcome = play(run, clock, outputs);
+  LiveOutcome outcome = play(run, clock, interruption, outputs);
+  if (outcome.next_page) {
+    next = std::move(prepared);
+    next->plan.page = *outcome.next_page;
+  }
   for (LiveReport& each : outcome.hands) {
     if (start.left) each.realtime.requests.push_back(*start.left);
   }
@@ -266,9 +226,6 @@ std::unique_ptr<Start> run_and_tell(Start& start, WaitingClock* clock) {
   tell({start.loaded, plan.surface.paper, plan.surface.field, run.proxy,
         hand_reports(run, outputs, outcome), outcome.robot, recorded},
        plan.outputs.takes_stdout() ? stderr : stdout, outputs);
-  if (!outcome.next_page) return nullptr;
-  next->plan.page = *outcome.next_page;
-  return next;
 }
 
 }  // namespace
@@ -278,7 +235,20 @@ void touch(const TouchPlan& plan) {
   SteadyClock steady;
   WaitingClock* clock = plan.time.real_time ? &steady : nullptr;
   auto start = std::make_unique<Start>(plan, clock);
-  while (start) start = run_and_tell(*start, clock);
+  std::optional<Interruption> interruption;  // of all runs
+  if (clock != nullptr) interruption.emplace();
+  std::exception_ptr failure;  // the last one
+  while (start && !(interruption && interruption->asked())) {
+    std::unique_ptr<Start> next;
+    try {
+      run_and_tell(*start, clock, interruption ? &*interruption : nullptr, next);
+    } catch (const Error& error) {
+      if (next) fmt::print(stderr, "{}\n", without_controls(error.what()));
+      failure = std::current_exception();
+    }
+    start = std::move(next);
+  }
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace palpate::app

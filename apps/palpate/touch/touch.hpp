@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/options/touch_options.hpp"
 #include "apps/palpate/options/touch_plan.hpp"
 #include "apps/palpate/report/hand_report.hpp"
@@ -51,6 +52,7 @@ struct LiveOutcome {
 /// is said at once. Hands every step to `each`, on the calling thread, with times from 0, and says
 /// what that throws. Fills in what `loaded` tells of its cameras.
 /// @throws Error when a recording cannot begin, or there are no threads to be had.
-LiveOutcome run_live(Run& run, WaitingClock& clock, const EachStep& each);
+LiveOutcome run_live(Run& run, WaitingClock& clock, const Interruption& interruption,
+                     const EachStep& each);
 
 }  // namespace palpate::app

@@ -1,20 +1,20 @@
 #include "apps/palpate/view/view.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <deque>
-#include <exception>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/view/address.hpp"
+#include "apps/palpate/view/opening.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/viewer/viewer.hpp"
@@ -117,6 +117,7 @@ struct View::Parts {
         holds(r.hands.begin(), r.hands.end()),
         preparer(r, initial.preparation,
                  [this](const std::string& why, const auto& held) { go_back(why, held); }),
+        opening(r.open),
         viewer(r.loaded.scene, servos, viewer_options(), controls()) {
     run.recorder->on_broken([this](const std::string& why) { recording_broke(why); });
     if (run.recorder->recording().empty()) viewer.record_ended();
@@ -126,7 +127,6 @@ struct View::Parts {
   ~Parts() {
     run.recorder->on_broken({});
     preparer.stop();
-    if (opener.joinable()) opener.join();
   }
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
@@ -162,9 +162,7 @@ struct View::Parts {
     controls.recording = run.recorder->recording();
     if (run.open) {
       controls.open = [this](const std::string& name, std::string bytes) {
-        if (opening.exchange(true)) throw Error("another file is being read; try again after it");
-        opener = std::jthread(
-            [this, name, bytes = std::move(bytes)]() mutable { open(name, std::move(bytes)); });
+        opening.begin(name, std::move(bytes));
       };
     }
     controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };
@@ -202,17 +200,20 @@ struct View::Parts {
     viewer.notice(Viewer::NoticeLevel::warning, why);
   }
 
-  // The opener's thread.
-  void open(const std::string& name, std::string bytes) {
-    viewer.notice(Viewer::NoticeLevel::info, "reading " + name);
-    try {
-      run.open(name, std::move(bytes));
-      viewer.restarts("the program opens " + name);
-      leaves = true;  // and opens no other
-    } catch (const std::exception& error) {
-      viewer.notice(Viewer::NoticeLevel::warning, error.what());
-      opening = false;
+  // Has what a page sent been prepared? Tells pages how that goes.
+  bool has_opened() {
+    const std::optional<Opening::News> news = opening.look(SteadyClock().now());
+    if (!news) return false;
+    if (news->kind == Opening::News::Kind::refused) {
+      viewer.notice(Viewer::NoticeLevel::warning, news->problem);
+    } else if (news->kind == Opening::News::Kind::prepares) {
+      viewer.notice(Viewer::NoticeLevel::info,
+                    fmt::format("reading {}: {:.0f} s so far", news->name, news->seconds));
+    } else {
+      viewer.record_ended();
+      viewer.restarts("the program opens " + news->name);
     }
+    return news->kind == Opening::News::Kind::prepared;
   }
 
   [[nodiscard]] PagePlan next_page() const {
@@ -223,6 +224,7 @@ struct View::Parts {
     page.up.reset();
     page.port = viewer.port();
     page.token = url.substr(url.find('#') + 1);
+    page.paused = servos.front()->state().paused;
     return page;
   }
 
@@ -239,16 +241,17 @@ struct View::Parts {
   ViewSettings settings;
   std::deque<PageHold> holds;  // of each hand
   Preparer preparer;
-  std::atomic<bool> opening = false;  // a file that a page sent
-  std::atomic<bool> leaves = false;   // what was opened comes next
-  std::jthread opener;
+  Opening opening;
   std::optional<Browser> browser;
   Viewer viewer;  // last: it uses all of the above
 };
 
 View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
     : parts_(std::make_unique<Parts>(run, std::move(servos), feed)) {
-  tell_page(parts_->viewer.url(), run.page.address);
+  for (Servo* servo : parts_->servos) {
+    if (run.page.paused) servo->pause(true);
+  }
+  if (run.page.token.empty()) tell_page(parts_->viewer.url(), run.page.address);
   if (run.page.open_browser) parts_->browser.emplace(parts_->viewer.url());
 }
 
@@ -258,7 +261,7 @@ std::optional<PagePlan> View::look() {
   for (PageHold& hold : parts_->holds) {
     if (hold.possible()) hold.keep();
   }
-  if (!parts_->leaves) return {};
+  if (!parts_->has_opened()) return {};
   return parts_->next_page();
 }
 

@@ -63,8 +63,8 @@ struct ViewerControls {
   /// What is recorded already when the viewer begins; empty: nothing.
   std::string recording = {};
 
-  /// Takes a file that a person gave a page; its name is 1 to 128 letters, digits and any of -._,
-  /// not begun by a dot. Empty: pages do not offer it.
+  /// Takes a file that a person gave a page; its name has 1 to 250 bytes, no '/' and no control
+  /// character, and does not begin with a dot. Empty: pages do not offer it.
   std::function<void(const std::string& name, std::string bytes)> open = {};
 
   /// A recording that is shown in place of a run: servos show its states, and nobody steps them.

@@ -3,11 +3,13 @@
 import { byId } from "./dom";
 import type { Notices } from "./notices";
 
-const kLongestName = 128;
+const kLongest = 60; // characters of a name
+const kAgain = 1500; // ms: between two runs nobody listens
 
 /** What the program takes as the name of a file, as like `name` as can be; its ending stays. */
 export function fileName(name: string): string {
-  const plain = name.replace(/[^\w.-]+/g, "_").slice(-kLongestName);
+  // eslint-disable-next-line no-control-regex
+  const plain = [...name.replace(/[/\u0000-\u001f\u007f]+/g, "_")].slice(-kLongest).join("");
   return plain.replace(/^\.+/, "_") || "_";
 }
 
@@ -67,9 +69,11 @@ export class Opening {
 
   private async send(file: File): Promise<void> {
     this.notices.add("info", `sending ${file.name}`);
+    const put = () => fetch(`open/${encodeURIComponent(fileName(file.name))}`,
+      { method: "PUT", body: file, headers: { Authorization: `Bearer ${this.token}` } });
+    const later = () => new Promise((resolve) => setTimeout(resolve, kAgain));
     try {
-      const answer = await fetch(`open/${fileName(file.name)}`,
-        { method: "PUT", body: file, headers: { Authorization: `Bearer ${this.token}` } });
+      const answer = await put().catch(() => later().then(put));
       if (!answer.ok) this.notices.add("warning", `${file.name}: ${await answer.text()}`);
     } catch {
       this.notices.add("warning", `${file.name} could not be sent: the program does not answer, or the file cannot be read`);

@@ -50,6 +50,7 @@ export interface SourceReport {
 export interface Welcome {
   type: "welcome";
   version: number;
+  run: string;
   scene: string;
   origin: Vector;
   up: Vector;

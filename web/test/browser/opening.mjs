@@ -4,13 +4,13 @@ import assert from "node:assert/strict";
 import { openPage, until } from "./browser.mjs";
 import { startProgram } from "./real_program.mjs";
 
-/** A ball of 50 mm, as XYZ. */
-function ball() {
+/** A ball, as XYZ; its radius in m. */
+function ball(radius) {
   const rows = [];
   for (let i = 0; i < 4000; i += 1) {
     const z = 1 - (2 * i + 1) / 4000;
     const r = Math.sqrt(1 - z * z);
-    rows.push([r * Math.cos(2.4 * i), r * Math.sin(2.4 * i), z].map((x) => (0.05 * x).toFixed(6)).join(" "));
+    rows.push([r * Math.cos(2.4 * i), r * Math.sin(2.4 * i), z].map((x) => (radius * x).toFixed(6)).join(" "));
   }
   return rows.join("\n");
 }
@@ -40,12 +40,15 @@ export async function opens(browser) {
     await page.locator("#drop").waitFor({ state: "hidden" });
     await said(page, "notes.txt, line 1");
     assert.equal(await scene(), "table", "what cannot be read has ended the run");
-    await drag(page, "Big ball (1).xyz", ball(), ["dragenter", "dragover", "drop"]);
-    await until("the dropped cloud", async () => (await scene()) === "Big_ball_1_");
+    await drag(page, "Größe 点 (1).xyz", ball(0.05), ["dragenter", "dragover", "drop"]);
+    await until("the dropped cloud", async () => (await scene()) === "Größe 点 (1)");
     await connected();
     await until("steps", async () => /steps\/s/.test(await page.locator("#link-words").innerText()));
-    await page.setInputFiles("#open-file", { name: "again.xyz", mimeType: "text/plain", buffer: Buffer.from(ball()) });
-    await until("the chosen cloud", async () => (await scene()) === "again");
+    await until("its scale", async () => / mm$/.test(await page.locator("#scale-label").innerText()));
+    await page.setInputFiles("#open-file", { name: "Größe 点 (1).xyz", mimeType: "text/plain", buffer: Buffer.from(ball(50)) });
+    await until("the whole of a larger one", async () => / m$/.test(await page.locator("#scale-label").innerText()));
+    assert.equal(await scene(), "Größe 点 (1)", "of the same name");
+    await connected();
     await until("it is felt", async () => Number(await page.locator("#force").innerText()) > 0);
   } finally {
     await page.context().close();

@@ -139,7 +139,7 @@ export class FakeProgram {
 
   welcome() {
     return {
-      type: "welcome", version: 1, scene: "table with a ball", origin: [0, 0, 0], up: [0, 0, 1], radius: 0.35,
+      type: "welcome", version: 1, run: "first", scene: "table with a ball", origin: [0, 0, 0], up: [0, 0, 1], radius: 0.35,
       devices: [{ name: "simulated", takeable: this.length === undefined }, ...(this.hands > 1 ? [{ name: "remote", takeable: false }] : [])], sources: kCameras.map(({ name }) => ({ name, camera: !this.still })),
       ...(this.length === undefined ? { settings: this.settings, presets: Object.keys(kPresets) }
         : { settings: [], presets: [], timeline: { length: this.length } }),
