@@ -51,6 +51,8 @@ std::vector<fs::path> frames_in(const fs::path& folder, const std::string& wante
                     place.string(), failure.message()));
   }
   std::ranges::sort(frames);
+  const bool clouds = std::ranges::all_of(frames, is_cloud);
+  if (!clouds) std::erase_if(frames, is_cloud);  // what somebody made of the images
   return frames;
 }
 
@@ -227,8 +229,8 @@ Sequence read_sequence(const fs::path& folder) {
   sequence.posed = !description.poses.empty();
   if (sequence.posed) add_poses(folder, description, sequence.frames);
   sequence.rate = rate_of(description, sequence.frames);
-  const auto needs_lens = [](const SequenceFrame& frame) { return !is_cloud(frame.image); };
-  const bool images = std::ranges::any_of(sequence.frames, needs_lens);
+  const bool images = std::ranges::any_of(
+      sequence.frames, [](const SequenceFrame& frame) { return !is_cloud(frame.image); });
   if (images && sequence.camera.pinhole.fx == 0) {
     throw Error(fmt::format("{}: \"fx\" is missing. Give the focal length in pixels.",
                             (folder / "sequence.json").string()));

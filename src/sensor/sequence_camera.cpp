@@ -39,6 +39,7 @@ void SequenceRecording::read(const std::filesystem::path& path, DepthFrame& fram
     frame.cloud = std::make_shared<const PointCloud>(read_cloud(path));
     return;
   }
+  frame.cloud.reset();
   read_depth_frame(path, images_, frame);
   // The first image says what size all have, where the description does not.
   images_.camera.width = frame.camera.width;

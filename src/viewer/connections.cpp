@@ -163,7 +163,9 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
     progress_ = ServerContext::now();
     const std::string& words = session_.closing->reason;
     websocket::close_reason reason(session_.closing->code);
-    reason.reason.assign(words.data(), std::min(words.size(), kLongestReason));
+    std::size_t size = std::min(words.size(), kLongestReason);
+    while (size < words.size() && (words[size] & 0xc0) == 0x80) --size;  // whole letters of UTF-8
+    reason.reason.assign(words.data(), size);
     stream_.async_close(reason, [self = shared_from_this()](const ErrorCode&) { self->leave(); });
   }
 

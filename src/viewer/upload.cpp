@@ -4,12 +4,12 @@
 #include <array>
 #include <boost/beast/http.hpp>
 #include <charconv>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "palpate/base/error.hpp"
 #include "viewer/access.hpp"
 #include "viewer/client_sessions.hpp"
 
@@ -94,7 +94,7 @@ class Upload final : public Connection, public std::enable_shared_from_this<Uplo
   void hand_over() {
     try {
       options().controls.open(name_, std::move(request_.get().body()));
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
       return answer(http::status::conflict, error.what());
     }
     answer(http::status::accepted, "");

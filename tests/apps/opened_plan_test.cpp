@@ -45,6 +45,7 @@ TEST(OpenedPlan, AFileIsReadAndPreparedAsTheOnlySourceWas) {
   EXPECT_EQ(plan.sources[0].reading.scale, 0.001);
   EXPECT_EQ(plan.sources[0].options.prepare.voxel, 0.02);
   EXPECT_FALSE(plan.sources[0].options.prepare.viewpoint);
+  EXPECT_EQ(plan.sources[0].options.prepare.orientation, PrepareOptions().orientation);
   EXPECT_THROW((void)plan_of_file(plan, shell.path("a.oni")), UsageError);
 }
 

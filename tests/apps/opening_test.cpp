@@ -1,4 +1,4 @@
-#include "apps/palpate/view/opening.hpp"
+#include "apps/palpate/run/opening.hpp"
 
 #include <gtest/gtest.h>
 

@@ -161,5 +161,16 @@ TEST(Upload, ARestartIsToldFromAnEnd) {
   EXPECT_EQ(closing.payload.substr(2), "the program opens a.ply");
 }
 
+TEST(Upload, LongWordsAtTheEndAreCutBetweenLetters) {
+  ViewerRig rig;
+  auto client = rig.enter();
+  std::string letters;
+  for (int i = 0; i < 80; ++i) letters += "\xd0\xbf";
+  rig.viewer->restarts("a" + letters);
+  rig.viewer.reset();
+  const test::Frame closing = client->receive_until([](const auto& f) { return f.opcode == 8; });
+  EXPECT_EQ(closing.payload.substr(2), "a" + letters.substr(0, 122));
+}
+
 }  // namespace
 }  // namespace palpate

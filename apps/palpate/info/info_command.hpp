@@ -90,8 +90,9 @@ struct LiveFacts {
   double nearest = 0;        ///< a hundredth of the depths is nearer, m
   double farthest = 0;       ///< a hundredth is farther, m
   NoiseModel noise;          ///< as measured
-  std::size_t points = 0;    ///< of the first, where frames are clouds
-  double spacing = 0;        ///< of these, m
+  bool clouds = false;       ///< frames are clouds
+  std::size_t points = 0;    ///< of the first of these
+  double spacing = 0;        ///< between them, m
 };
 
 /// Looks at the first 30 frames, or as many as there are. @throws Error when there is none.

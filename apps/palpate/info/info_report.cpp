@@ -144,7 +144,7 @@ Json json_of(const LiveFacts& facts) {
                {"posed", facts.posed},        {"frames_unposed", facts.unposed},
                {"rate_Hz", facts.rate},       {"frames", facts.frames},
                {"failures", facts.failures}};
-  if (facts.points > 0) {
+  if (facts.clouds) {
     json.update({{"points", facts.points}, {"spacing_m", facts.spacing}});
     return json;
   }
@@ -239,7 +239,8 @@ LiveFacts study_live(const CloudArgument& argument) {
   facts.pinhole = frame.camera.pinhole;
   facts.distorted = !frame.camera.distortion.none();
   facts.posed = frame.T_world_sensor.has_value();
-  if (frame.cloud) {
+  facts.clouds = frame.cloud != nullptr;
+  if (facts.clouds) {
     facts.points = frame.cloud->size();
     facts.spacing = measure_spacing(CellGrid(frame.cloud->positions)).from_area;
   } else {
@@ -263,12 +264,11 @@ LiveFacts study_live(const CloudArgument& argument) {
 }
 
 Report report_of(const LiveFacts& facts) {
-  const bool clouds = facts.points > 0;
-  Report report(
-      facts.argument.name,
-      clouds ? facts.argument.path + " (clouds)"
-             : fmt::format("{} ({} x {} pixels)", facts.argument.path, facts.width, facts.height));
-  if (!clouds) add_lens(report, facts);
+  Report report(facts.argument.name, facts.clouds
+                                         ? facts.argument.path + " (clouds)"
+                                         : fmt::format("{} ({} x {} pixels)", facts.argument.path,
+                                                       facts.width, facts.height));
+  if (!facts.clouds) add_lens(report, facts);
   if (!facts.assumed.empty()) report.line("assumed", facts.assumed);
   report.line("frames",
               fmt::format("{:.1f} Hz; of the first {}: {} repeated, {} failed", facts.rate,
@@ -278,7 +278,7 @@ Report report_of(const LiveFacts& facts) {
       fmt::format(
           "{}{}", facts.posed ? "each frame has one" : "none; set one with --pose",
           facts.unposed > 0 ? fmt::format("; {} frames without one skipped", facts.unposed) : ""));
-  if (clouds) {
+  if (facts.clouds) {
     report.line("points", fmt::format("{} in the first, {} apart", grouped(facts.points),
                                       length(facts.spacing)));
   } else {

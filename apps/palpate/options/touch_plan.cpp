@@ -209,16 +209,17 @@ TouchPlan plan_of_file(TouchPlan plan, const std::string& path) {
   TouchChoices choices;
   choices.sources = {path};
   if (plan.sources.size() == 1) {
-    const SourcePlan& before = plan.sources.front();
-    choices.every_source.reading = before.reading;
-    choices.every_source.options.prepare = before.options.prepare;
-    choices.every_source.options.prepare.viewpoint.reset();
+    SourcePlan& like = choices.every_source = plan.sources.front();
+    like.argument = {};
+    like.options.T_world_sensor.setIdentity();
+    if (like.options.prepare.viewpoint) like.options.prepare.orientation = {};
+    like.options.prepare.viewpoint.reset();
   }
   plan.sources = {choose_sources(choices, plan.surface).front().plan};
   require(plan.sources.front().kind != SourceKind::stream,
           "a page opens clouds and depth images, no recordings");
   plan.motion.trajectory.clear();
-  for (DevicePlan& device : plan.devices) device.placement = {};
+  for (DevicePlan& device : plan.devices) device.placement.frame.clear();
   plan.page.wanted = true;  // its hands explore until it is ended
   return plan;
 }

@@ -10,6 +10,7 @@
 
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/replay/player.hpp"
+#include "apps/palpate/view/address.hpp"
 #include "palpate/viewer/viewer.hpp"
 
 namespace palpate::app {

@@ -18,6 +18,7 @@
 
 namespace palpate::app {
 
+class Opening;
 class Recorder;
 
 /// Who touches: a device, where it stands, and the surface's stiffness that goes with it.
@@ -45,9 +46,7 @@ struct Run {
   FieldOptions field;
   ProxyOptions proxy;
   Recorder* recorder = nullptr;  ///< who can write all of it down; null: no page, and no --record
-  /// Prepares another run, of a file of this name with these bytes, while this one goes on: on any
-  /// thread, one call at a time. Throws what is wrong with the file. Empty: no other run follows.
-  std::function<void(const std::string& name, std::string bytes)> open = {};
+  Opening* opening = nullptr;    ///< takes a file for the run after this one; null: none follows
 };
 
 /// What the servo of the next of the hands is made with; `steps`: who takes its steps, if anybody.

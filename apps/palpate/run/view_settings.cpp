@@ -57,7 +57,8 @@ Setting number(const char* key, const char* label, const char* unit, double leas
 }
 
 // A length from 0 to `most`, m.
-Setting length(const char* key, const char* label, const Unit& unit, double most, double value) {
+Setting length_setting(const char* key, const char* label, const Unit& unit, double most,
+                       double value) {
   most = std::max(most, value) / unit.metres;
   return number(key, label, unit.name, 0, most, round_step(most / kSliderSteps),
                 value / unit.metres);
@@ -129,8 +130,8 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
   list.push_back(
       number("friction", "Friction", "", 0, 1.5, 0.05, settings.feel.friction.dynamic_coefficient));
   if (scope.deepest_texture > 0) {
-    list.push_back(
-        length("texture", "Texture", unit, scope.deepest_texture, settings.feel.texture.amplitude));
+    list.push_back(length_setting("texture", "Texture", unit, scope.deepest_texture,
+                                  settings.feel.texture.amplitude));
   }
   if (scope.lives || scope.clouds) {
     list.push_back(
@@ -143,8 +144,8 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
     list.push_back(number("history", "History", "clouds", 1, 7, 1, settings.preparation.history));
   }
   if (scope.clouds) {
-    list.push_back(length("voxel", "Voxel (0: automatic)", unit, widest_voxel(scope),
-                          settings.preparation.voxel.value_or(0)));
+    list.push_back(length_setting("voxel", "Voxel (0: automatic)", unit, widest_voxel(scope),
+                                  settings.preparation.voxel.value_or(0)));
   }
   return list;
 }

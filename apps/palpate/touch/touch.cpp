@@ -6,6 +6,7 @@
 #include <deque>
 #include <exception>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/report/touch_report.hpp"
+#include "apps/palpate/run/opening.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "palpate/base/clock.hpp"
@@ -184,6 +186,8 @@ std::unique_ptr<Start> opened(const TouchPlan& plan, const std::string& name, st
     auto start = std::make_unique<Start>(plan_of_file(plan, file), clock);
     start->loaded.sources.front().plan.argument.path = name;
     return start;
+  } catch (const std::bad_alloc&) {
+    throw Error(name + " is too large for the memory that is left");
   } catch (const std::exception& error) {
     std::string problem = error.what();
     for (std::size_t at = 0; (at = problem.find(place)) != std::string::npos;) {
@@ -195,7 +199,7 @@ std::unique_ptr<Start> opened(const TouchPlan& plan, const std::string& name, st
 
 // Runs, and reports on all that came of it. Where a page opened a file meanwhile: what comes next.
 // @throws Error when something failed, after `next` was set.
-void run_and_tell(Start& start, WaitingClock* clock, const Interruption* interruption,
+void run_and_tell(Start& start, WaitingClock* clock, std::optional<Interruption>& interruption,
                   std::unique_ptr<Start>& next) {
   const TouchPlan& plan = start.plan;
   TouchOutputs& outputs = start.outputs;
@@ -208,12 +212,11 @@ void run_and_tell(Start& start, WaitingClock* clock, const Interruption* interru
           plan.surface.proxy_of(start.hands.front().stiffness),
           outputs.recorder ? &*outputs.recorder : nullptr};
   std::unique_ptr<Start> prepared;
-  if (can_open_files(plan)) {
-    run.open = [&](const std::string& name, std::string bytes) {
-      prepared = opened(plan, name, std::move(bytes), clock);
-    };
-  }
-  LiveOutcome outcome = play(run, clock, interruption, outputs);
+  Opening opening([&](const std::string& name, std::string bytes) {
+    prepared = opened(plan, name, std::move(bytes), clock);
+  });
+  if (can_open_files(plan)) run.opening = &opening;
+  LiveOutcome outcome = play(run, clock, interruption ? &*interruption : nullptr, outputs);
   if (outcome.next_page) {
     next = std::move(prepared);
     next->plan.page = *outcome.next_page;
@@ -226,6 +229,7 @@ void run_and_tell(Start& start, WaitingClock* clock, const Interruption* interru
   tell({start.loaded, plan.surface.paper, plan.surface.field, run.proxy,
         hand_reports(run, outputs, outcome), outcome.robot, recorded},
        plan.outputs.takes_stdout() ? stderr : stdout, outputs);
+  if (!next) interruption.reset();  // all is said: nothing needs to wait for what is being opened
 }
 
 }  // namespace
@@ -237,18 +241,19 @@ void touch(const TouchPlan& plan) {
   auto start = std::make_unique<Start>(plan, clock);
   std::optional<Interruption> interruption;  // of all runs
   if (clock != nullptr) interruption.emplace();
-  std::exception_ptr failure;  // the last one
+  bool failed = false;
   while (start && !(interruption && interruption->asked())) {
     std::unique_ptr<Start> next;
     try {
-      run_and_tell(*start, clock, interruption ? &*interruption : nullptr, next);
+      run_and_tell(*start, clock, interruption, next);
     } catch (const Error& error) {
-      if (next) fmt::print(stderr, "{}\n", without_controls(error.what()));
-      failure = std::current_exception();
+      if (!next) throw;
+      fmt::print(stderr, "{}\n", without_controls(error.what()));
+      failed = true;
     }
     start = std::move(next);
   }
-  if (failure) std::rethrow_exception(failure);
+  if (failed) throw Error("an earlier run failed; what it said is above");
 }
 
 }  // namespace palpate::app

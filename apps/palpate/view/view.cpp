@@ -12,9 +12,9 @@
 
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/record/recorder.hpp"
+#include "apps/palpate/run/opening.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/view/address.hpp"
-#include "apps/palpate/view/opening.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/viewer/viewer.hpp"
@@ -117,7 +117,6 @@ struct View::Parts {
         holds(r.hands.begin(), r.hands.end()),
         preparer(r, initial.preparation,
                  [this](const std::string& why, const auto& held) { go_back(why, held); }),
-        opening(r.open),
         viewer(r.loaded.scene, servos, viewer_options(), controls()) {
     run.recorder->on_broken([this](const std::string& why) { recording_broke(why); });
     if (run.recorder->recording().empty()) viewer.record_ended();
@@ -160,9 +159,9 @@ struct View::Parts {
     };
     controls.record = [this](bool on) { return run.recorder->record(on); };
     controls.recording = run.recorder->recording();
-    if (run.open) {
+    if (run.opening != nullptr) {
       controls.open = [this](const std::string& name, std::string bytes) {
-        opening.begin(name, std::move(bytes));
+        run.opening->begin(name, std::move(bytes));
       };
     }
     controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };
@@ -202,7 +201,8 @@ struct View::Parts {
 
   // Has what a page sent been prepared? Tells pages how that goes.
   bool has_opened() {
-    const std::optional<Opening::News> news = opening.look(SteadyClock().now());
+    if (run.opening == nullptr) return false;
+    const std::optional<Opening::News> news = run.opening->look(SteadyClock().now());
     if (!news) return false;
     if (news->kind == Opening::News::Kind::refused) {
       viewer.notice(Viewer::NoticeLevel::warning, news->problem);
@@ -221,7 +221,6 @@ struct View::Parts {
     PagePlan page = run.page;
     page.wanted = true;
     page.open_browser = false;
-    page.up.reset();
     page.port = viewer.port();
     page.token = url.substr(url.find('#') + 1);
     page.paused = servos.front()->state().paused;
@@ -241,7 +240,6 @@ struct View::Parts {
   ViewSettings settings;
   std::deque<PageHold> holds;  // of each hand
   Preparer preparer;
-  Opening opening;
   std::optional<Browser> browser;
   Viewer viewer;  // last: it uses all of the above
 };

@@ -31,7 +31,7 @@ class View {
   View& operator=(const View&) = delete;
 
   /// Some tens of times a second: says of pages that have a tool that they still have. Where a page
-  /// opened a file, and Run::open() has prepared what comes next: the page of that.
+  /// opened a file, and what comes next has been prepared: the page of that.
   [[nodiscard]] std::optional<PagePlan> look();
 
  private:

@@ -1,4 +1,4 @@
-#include "apps/palpate/view/opening.hpp"
+#include "apps/palpate/run/opening.hpp"
 
 #include <fmt/format.h>
 
@@ -22,18 +22,18 @@ bool is_over(const std::future<void>& work) {
 
 Opening::~Opening() {
   if (!work_.valid() || is_over(work_)) return;
-  fmt::print(stderr, "waiting until {} is read; Ctrl-C again ends at once\n",
+  fmt::print(stderr, "waiting until {} is read, which comes too late; Ctrl-C ends at once\n",
              without_controls(name_));
 }
 
 void Opening::begin(const std::string& name, std::string bytes) {
   const std::lock_guard lock(mutex_);
   if (!name_.empty()) throw Error(name_ + " is being read; try again after it");
-  name_ = name;
-  began_.reset();
   work_ = std::async(std::launch::async, [this, name, bytes = std::move(bytes)]() mutable {
     prepare_(name, std::move(bytes));
   });
+  name_ = name;
+  began_.reset();
 }
 
 std::optional<Opening::News> Opening::look(double now) {
