@@ -1,10 +1,10 @@
 #include "any_cloud/draft.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <unordered_map>
+
+#include "any_cloud/spaced_points.hpp"
 
 namespace palpate::any_cloud {
 namespace {
@@ -12,36 +12,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kTries = 8;           // in each cell at the surface
-constexpr double kLeastAway = 0.8;  // of another point
-
-// Points that keep a distance, found by the unit cells that they lie in.
-class SpacedPoints {
- public:
-  bool add(const Vector3d& point) {
-    const Eigen::Vector3i cell = point.array().floor().cast<int>();
-    for (int i = 0; i < 27; ++i) {
-      const auto found = cells_.find(key(cell + offset(i)));
-      if (found == cells_.end()) continue;
-      for (const Vector3d& other : found->second) {
-        if ((other - point).squaredNorm() < kLeastAway * kLeastAway) return false;
-      }
-    }
-    cells_[key(cell)].push_back(point);
-    return true;
-  }
-
- private:
-  // The cell itself first: most points are refused by what lies nearest.
-  static Eigen::Vector3i offset(int i) {
-    const int k = (i + 13) % 27;
-    return {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
-  }
-  static std::int64_t key(const Eigen::Vector3i& cell) {
-    constexpr std::int64_t kSide = 1 << 20;
-    return (cell.x() * kSide + cell.y()) * kSide + cell.z();
-  }
-  std::unordered_map<std::int64_t, std::vector<Vector3d>> cells_;
-};
+constexpr int kSteps = 30;          // to the surface, where a distance is but a bound
+constexpr double kOnSurface = 1e-3;
 
 }  // namespace
 
@@ -92,9 +64,14 @@ void Draft::surface(const Shape& shape, const Vector3d& low, const Vector3d& hig
         if (std::abs(shape(cell + half).value) > reach) continue;
         for (int i = 0; i < kTries; ++i) {
           const Vector3d near = cell + within(Vector3d::Zero(), 2 * half);
-          const Distance d = shape(near);
-          const Vector3d point = near - d.value * d.gradient;
-          if (taken.add(point)) add(point, d.gradient);
+          Distance d = shape(near);
+          Vector3d point = near - d.value * d.gradient;
+          for (int k = 0; k < kSteps && std::abs((d = shape(point)).value) > kOnSurface; ++k) {
+            point -= d.value * d.gradient.normalized();
+          }
+          if (std::abs(d.value) <= kOnSurface && taken.add(point)) {
+            add(point, d.gradient.normalized());
+          }
         }
       }
     }

@@ -23,7 +23,12 @@ HandPath& HandPath::to(const Eigen::Vector3d& goal, double speed, Wanted wanted)
 }
 
 HandPath& HandPath::tick(const Eigen::Vector3d& place, Wanted wanted) {
-  ticks.push_back({place, wanted, false});
+  ticks.push_back({place, wanted});
+  return *this;
+}
+
+HandPath& HandPath::poke() {
+  ticks.back().poke = true;
   return *this;
 }
 

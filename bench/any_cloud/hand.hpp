@@ -17,6 +17,7 @@ struct HandTick {
   Eigen::Vector3d hand = Eigen::Vector3d::Zero();
   Wanted wanted = Wanted::judged;
   bool starts = false;  ///< a stroke begins: the proxy is put where the hand is
+  bool poke = false;    ///< the next of the pokes of one stroke begins
 };
 
 /// Draws strokes of a hand, tick by tick, in spacings.
@@ -25,6 +26,8 @@ class HandPath {
   HandPath& start(const Eigen::Vector3d& place);
   /// In a straight line, at `speed` spacings a second.
   HandPath& to(const Eigen::Vector3d& goal, double speed, Wanted wanted = Wanted::judged);
+  /// The ticks from here on are another poke.
+  HandPath& poke();
   /// One tick.
   HandPath& tick(const Eigen::Vector3d& place, Wanted wanted = Wanted::judged);
 

@@ -11,6 +11,8 @@ std::vector<Row> all_rows() {
   add_closed_rows(rows);
   add_seen_rows(rows);
   add_scattered_rows(rows);
+  add_worked_rows(rows);
+  add_sampled_rows(rows);
   return rows;
 }
 

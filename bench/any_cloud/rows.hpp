@@ -14,6 +14,8 @@ void add_round_rows(std::vector<Row>& rows);      ///< flip, small, rod, wire, p
 void add_closed_rows(std::vector<Row>& rows);     ///< closed, loop
 void add_seen_rows(std::vector<Row>& rows);       ///< partial
 void add_scattered_rows(std::vector<Row>& rows);  ///< volume, stray
+void add_worked_rows(std::vector<Row>& rows);     ///< worked: reliefs, threads, springs, ...
+void add_sampled_rows(std::vector<Row>& rows);    ///< sampled: doubles, slices, outliers, ...
 
 /// All of them, family by family.
 [[nodiscard]] std::vector<Row> all_rows();

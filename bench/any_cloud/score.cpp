@@ -55,6 +55,71 @@ double most_energy(const HostileScene& scene, const Trace& trace) {
   return most;
 }
 
+// What became of pokes: strokes, and the parts of one that never lets go of its hand.
+class Pokes {
+ public:
+  /// `noise`: of the points, s.
+  Pokes(const HostileScene& scene, const Trace& trace, const Trace& ideal, double noise)
+      : scene_(scene), trace_(trace), ideal_(ideal), noise_(noise) {}
+
+  void add(std::size_t i) {
+    const HandTick& tick = scene_.ticks[i];
+    if (tick.starts || tick.poke) end();
+    if (tick.wanted == Wanted::ignored || tick.wanted == Wanted::either) return;
+    const double felt = trace_.force[i].norm();
+    const double wanted = ideal_.force[i].norm();
+    ++ticks_;
+    if (felt > kMostOver * wanted + kNewtonsPerSpacing * (kRough + 3 * noise_)) ++over_;
+    if (wanted >= kNewtonsPerSpacing * scene_.deep) {
+      required_ = true;
+      const bool inside = true_distance(scene_, trace_.proxy[i]) < -kInside;
+      lost_run_ = felt >= kLostShare * wanted || !inside ? 0 : lost_run_ + 1;
+      passed_ = passed_ || lost_run_ == kThroughTicks;
+    }
+    if (wanted > 0 || felt <= kFelt || true_distance(scene_, tick.hand) < kOutside) return;
+    held_ = true;
+    most_ = std::max(most_, felt);
+  }
+
+  void tell(Score& score) {
+    end();
+    score.pokes = asked_;
+    score.passed = through_;
+    score.held = outside_;
+    score.most_outside = most_;
+    score.over = 100 * mean(over_, ticks_);
+  }
+
+ private:
+  static constexpr double kInside = 1;     // s: what edges round off is no way through
+  static constexpr double kOutside = 8;    // s
+  static constexpr double kMostOver = 1.3;
+  static constexpr double kRough = 0.5;    // s: what a surface of points may be off its solid
+
+  void end() {
+    if (required_) ++asked_;
+    if (passed_) ++through_;
+    if (held_) ++outside_;
+    required_ = passed_ = held_ = false;
+    lost_run_ = 0;
+  }
+
+  const HostileScene& scene_;
+  const Trace& trace_;
+  const Trace& ideal_;
+  double noise_;
+  double asked_ = 0;
+  double through_ = 0;
+  double outside_ = 0;
+  double most_ = 0;
+  double over_ = 0;
+  double ticks_ = 0;
+  bool required_ = false;
+  bool passed_ = false;
+  bool held_ = false;
+  int lost_run_ = 0;
+};
+
 // What is compared tick by tick with the ideal.
 class Comparison {
  public:
@@ -146,6 +211,13 @@ class Comparison {
   int lost_run_ = 0;
 };
 
+void count_pokes(const HostileScene& scene, const Rendered& rendered, const Trace& ideal,
+                 Score& score) {
+  Pokes pokes(scene, rendered.trace, ideal, rendered.report.noise / scene.spacing);
+  for (std::size_t i = 0; i < scene.ticks.size(); ++i) pokes.add(i);
+  pokes.tell(score);
+}
+
 }  // namespace
 
 Score score(const HostileScene& scene, const Rendered& rendered, const Trace& ideal) {
@@ -154,6 +226,7 @@ Score score(const HostileScene& scene, const Rendered& rendered, const Trace& id
   for (std::size_t i = 0; i < scene.ticks.size(); ++i) comparison.add(i);
   Score score;
   comparison.tell(score);
+  if (scene.truth) count_pokes(scene, rendered, ideal, score);
   score.step = largest_step(scene, trace);
   score.ideal_step = scene.truth ? largest_step(scene, ideal) : kNone;
   score.energy = most_energy(scene, trace);

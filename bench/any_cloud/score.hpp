@@ -19,6 +19,11 @@ struct Score {
   double wrong_side = 0;   ///< ticks with a force turned over 120 degrees, both above 0.1 N
   double height = 0;       ///< |distance of the proxy from the true surface| in contact, mean, s
   double highest = 0;      ///< the largest, s
+  double pokes = 0;        ///< strokes and pokes in which contact is required
+  double passed = 0;       ///< of them those that went through
+  double held = 0;         ///< of all those that were held 8 spacings outside, the ideal free
+  double most_outside = 0;  ///< the largest force there, N
+  double over = 0;  ///< share of ticks above 1.3 of the ideal force and the noise in it, %
   double energy = 0;       ///< given to the hand by a stroke, the most, mJ at 1 mm a spacing
   double faults = 0;       ///< ticks that were not finite
   double usual_us = 0;     ///< computing time of a step, median, us

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "any_cloud/bodies.hpp"
+#include "any_cloud/rows.hpp"
+#include "any_cloud/spaced_points.hpp"
+#include "any_cloud/tour.hpp"
+#include "base/numbers.hpp"
+
+namespace palpate::any_cloud {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kPokes = 25;
+
+Shape moved(const Shape& shape, const Eigen::Isometry3d& T) {
+  return [shape, T, back = T.inverse()](const Vector3d& x) {
+    Distance d = shape(back * x);
+    d.gradient = T.linear() * d.gradient;
+    return d;
+  };
+}
+
+// Takes a scan for `draft.points` while the hand knows the whole surface of `draft.truth`.
+using Sample = std::function<void(Draft& draft, const Body& body)>;
+
+void touch_sampled(Draft& draft, const Sample& sample) {
+  const Body body = draw_body(draft);
+  draft.truth = body.shape;
+  draft.surface(body.shape, -body.reach, body.reach);
+  sample(draft, body);
+}
+
+// A second scan of the same, `apart` off in some direction and turned by up to 2 degrees.
+void scan_twice(Draft& draft, const Body& body, double apart) {
+  const Vector3d axis = draft.direction();
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translate(apart * draft.direction());
+  T.rotate(Eigen::AngleAxisd(draft.between(0, 2) * kDegree, axis));
+  const Shape second = moved(body.shape, T);
+  draft.truth = unite(body.shape, second);
+  draft.surface(second, -body.reach - Vector3d::Constant(apart + 1),
+                body.reach + Vector3d::Constant(apart + 1));
+  poke_around(draft, kPokes);
+}
+
+// The place near p on the surface and in the plane; false where there is none.
+bool into_plane(const Shape& shape, const Vector3d& normal, double height, Vector3d& p) {
+  for (int i = 0; i < 30; ++i) {
+    p += (height - normal.dot(p)) * normal;
+    const Distance d = shape(p);
+    if (std::abs(d.value) < 1e-3) return true;
+    const Vector3d along = d.gradient - normal.dot(d.gradient) * normal;
+    if (along.squaredNorm() < 0.05) return false;
+    p -= d.value / along.squaredNorm() * along;
+  }
+  return false;
+}
+
+// Points one spacing apart in slices that are `pitch` apart, in any direction.
+void slice(Draft& draft, const Body& body, double pitch) {
+  draft.surface(body.shape, -body.reach, body.reach);  // twice: slices want more points
+  poke_around(draft, kPokes);
+  const Vector3d normal = draft.direction();
+  const double first = draft.between(0, pitch);
+  const std::vector<Vector3d> all = std::move(draft.points);
+  draft.points.clear();
+  draft.normals.clear();
+  SpacedPoints taken;
+  for (Vector3d p : all) {
+    const double height = first + pitch * std::round((normal.dot(p) - first) / pitch);
+    if (std::abs(normal.dot(p) - height) > 1.5) continue;
+    if (!into_plane(body.shape, normal, height, p) || !taken.add(p)) continue;
+    draft.add(p, body.shape(p).gradient.normalized());
+  }
+}
+
+void stray(Draft& draft, const Body& body, double share) {
+  poke_around(draft, kPokes);
+  const auto count = static_cast<std::size_t>(share * static_cast<double>(draft.points.size()));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector3d p = draft.within(-1.5 * body.reach, 1.5 * body.reach);
+    draft.add(p, draft.direction());
+  }
+}
+
+void round_to(Draft& draft, double step) {
+  poke_around(draft, kPokes);
+  for (Vector3d& p : draft.points) p = step * (p / step).array().round().matrix();
+}
+
+// Up to `most` times as many points in some places as in others.
+void thin_out(Draft& draft, double most) {
+  poke_around(draft, kPokes);
+  const Vector3d wave = draft.direction() * (2 * std::numbers::pi / draft.between(20, 40));
+  const std::vector<Vector3d> all = std::move(draft.points);
+  const std::vector<Vector3d> normals = std::move(draft.normals);
+  draft.points.clear();
+  draft.normals.clear();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double share = 0.5 + 0.5 * std::sin(wave.dot(all[i]));
+    if (draft.random.uniform() < std::pow(most, -share)) draft.add(all[i], normals[i]);
+  }
+}
+
+}  // namespace
+
+void add_sampled_rows(std::vector<Row>& rows) {
+  const auto add = [&](const std::string& name, const Sample& sample) {
+    rows.push_back({"sampled", name, [=](Draft& draft) { touch_sampled(draft, sample); }});
+  };
+  for (const double apart : {0.5, 1.0, 2.0, 3.0, 5.0}) {
+    add(fmt::format("double {}", apart),
+        [=](Draft& draft, const Body& body) { scan_twice(draft, body, apart); });
+  }
+  for (const int pitch : {2, 4, 6, 10}) {
+    add(fmt::format("slices {}:1", pitch),
+        [=](Draft& draft, const Body& body) { slice(draft, body, pitch); });
+  }
+  for (const int percent : {1, 5, 15, 30}) {
+    add(fmt::format("outliers {} %", percent),
+        [=](Draft& draft, const Body& body) { stray(draft, body, 0.01 * percent); });
+  }
+  add("rounded 0.5", [](Draft& draft, const Body&) { round_to(draft, 0.5); });
+  add("density 1:20 patches", [](Draft& draft, const Body&) { thin_out(draft, 20); });
+}
+
+}  // namespace palpate::any_cloud

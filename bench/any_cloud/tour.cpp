@@ -1,0 +1,86 @@
+#include "any_cloud/tour.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "any_cloud/ways.hpp"
+
+namespace palpate::any_cloud {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kAway = 14;       // of the ball that a hand travels on
+constexpr double kNear = 8;        // from here on a poke is slow
+constexpr double kLean = 0.6;      // at most, of a poke to the normal
+constexpr int kTries = 400;        // for a poke that is free as far as the surface
+constexpr double kClearance = 1;   // of a way from anything, but for its last
+constexpr double kLastStretch = 2;
+
+struct Poke {
+  Vector3d outside;  // on the ball
+  Vector3d near;
+  Vector3d deepest;
+};
+
+// Is the way from `from` in `direction` clear of the truth?
+bool is_clear(const Draft& draft, const Vector3d& from, const Vector3d& direction, double length) {
+  for (double t = kLastStretch; t < length; t += 0.5) {
+    const double value = draft.truth(from + t * direction).value;
+    if (value < std::min(kClearance, 0.4 * t)) return false;
+  }
+  return true;
+}
+
+std::optional<Poke> draw_poke(Draft& draft, double ball) {
+  for (int i = 0; i < kTries; ++i) {
+    const std::size_t at = draft.random.bits() % draft.points.size();
+    const Vector3d& p = draft.points[at];
+    const Vector3d out = (draft.normals[at] + kLean * draft.random.uniform() * draft.direction())
+                             .normalized();
+    const double along = p.dot(out);
+    const double reach = -along + std::sqrt(along * along + ball * ball - p.squaredNorm());
+    if (!is_clear(draft, p, out, reach)) continue;
+    const double wanted = draft.between(2, 3);
+    double depth = 0.5;  // never out of the other side
+    while (depth < wanted && draft.truth(p - (depth + 0.5) * out).value < 0) depth += 0.25;
+    return Poke{p + reach * out, p + std::min(kNear, reach) * out, p - depth * out};
+  }
+  return std::nullopt;
+}
+
+void travel(Draft& draft, const Vector3d& to, double ball) {
+  const Vector3d from = draft.hand.ticks.back().hand / ball;
+  const Vector3d end = to / ball;
+  const double angle = std::acos(std::clamp(from.dot(end), -1.0, 1.0));
+  const int n = std::max(1, static_cast<int>(angle * ball / (kReach * 1e-3)));
+  Vector3d side = end - from.dot(end) * from;
+  if (side.norm() < 1e-6) side = from.cross(draft.direction());
+  side.normalize();
+  for (int i = 1; i < n; ++i) {
+    const double a = angle * i / n;
+    draft.hand.tick(ball * (std::cos(a) * from + std::sin(a) * side));
+  }
+  draft.hand.tick(to);
+}
+
+}  // namespace
+
+void poke_around(Draft& draft, int pokes) {
+  double ball = 0;
+  for (const Vector3d& p : draft.points) ball = std::max(ball, p.norm());
+  ball += kAway;
+  for (int i = 0; i < pokes; ++i) {
+    const std::optional<Poke> poke = draw_poke(draft, ball);
+    if (!poke) continue;
+    if (draft.hand.ticks.empty()) draft.hand.start(poke->outside);
+    travel(draft, poke->outside, ball);
+    draft.hand.poke();
+    draft.hand.to(poke->near, kReach).to(poke->deepest, kPush);
+    draft.hand.to(poke->near, kPush).to(poke->outside, kReach);
+  }
+}
+
+}  // namespace palpate::any_cloud

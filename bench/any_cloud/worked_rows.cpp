@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include "any_cloud/bodies.hpp"
+#include "any_cloud/rows.hpp"
+#include "any_cloud/tour.hpp"
+#include "any_cloud/worked_shapes.hpp"
+
+namespace palpate::any_cloud {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kPokes = 25;
+
+void touch_body(Draft& draft, const Body& body) {
+  draft.truth = body.shape;
+  draft.surface(body.shape, -body.reach, body.reach);
+  poke_around(draft, kPokes);
+}
+
+Body draw_relief(double wavelength) {
+  const double height = 0.2 * wavelength;
+  return {relief({16, 16, 7}, wavelength, height), Vector3d(17, 17, 8 + height)};
+}
+
+Body draw_thread(Draft& draft) {
+  return {thread(draft.between(8, 12), 36, 4, 1), Vector3d(15, 15, 19)};
+}
+
+Body draw_comb(Draft& draft) {
+  return {comb(3, 6, draft.between(6, 10), 20), Vector3d(18, 11, 11)};
+}
+
+Body draw_lattice(Draft& draft) {
+  return {lattice(14, draft.between(2, 3), 3), Vector3d::Constant(25)};
+}
+
+Body draw_cup(Draft& draft) {
+  return {cup(15, draft.between(10, 13)), Vector3d::Constant(16)};
+}
+
+Body draw_spring(Draft& draft) {
+  return {spring(12, draft.between(2, 3), 10, 3), Vector3d(16, 16, 16)};
+}
+
+Body draw_saddle(Draft& draft) {
+  return {saddle({18, 18, 9}, draft.between(3, 7)), Vector3d(19, 19, 17)};
+}
+
+}  // namespace
+
+Body draw_body(Draft& draft) {
+  const Vector3d end(10, 0, 0);
+  switch (draft.random.bits() % 6) {
+    case 0:
+      return {rod(-end, end, 7), Vector3d(18, 8, 8)};
+    case 1:
+      return {box(Vector3d::Zero(), {30, 24, 18}), Vector3d(16, 13, 10)};
+    case 2:
+      return {torus(15, 6), Vector3d(22, 22, 7)};
+    case 3:
+      return {unite(rod(end, 1.1 * end, 8), unite(rod(-end, -1.1 * end, 8), rod(-end, end, 4))),
+              Vector3d(20, 9, 9)};
+    case 4:
+      return {relief({15, 15, 7}, 12, 1.5), Vector3d(16, 16, 10)};
+    default:
+      return {cup(15, 9), Vector3d::Constant(16)};
+  }
+}
+
+void add_worked_rows(std::vector<Row>& rows) {
+  for (const int wavelength : {3, 4, 6, 10, 20}) {
+    rows.push_back({"worked", fmt::format("relief {}", wavelength), [=](Draft& draft) {
+                      touch_body(draft, draw_relief(wavelength));
+                    }});
+  }
+  const auto add = [&](const char* name, Body (*draw)(Draft&)) {
+    rows.push_back({"worked", name, [=](Draft& draft) { touch_body(draft, draw(draft)); }});
+  };
+  add("thread", draw_thread);
+  add("comb", draw_comb);
+  add("lattice", draw_lattice);
+  add("cup", draw_cup);
+  add("spring", draw_spring);
+  add("saddle", draw_saddle);
+}
+
+}  // namespace palpate::any_cloud
