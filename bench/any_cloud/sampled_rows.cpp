@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -61,22 +62,44 @@ bool into_plane(const Shape& shape, const Vector3d& normal, double height, Vecto
   return false;
 }
 
-// Points one spacing apart in slices that are `pitch` apart, in any direction.
-void slice(Draft& draft, const Body& body, double pitch) {
-  draft.surface(body.shape, -body.reach, body.reach);  // twice: slices want more points
-  poke_around(draft, kPokes);
+constexpr double kPitch = 2;  // of slices
+
+// Is the way to the nearest of `points` no longer than three quarters of the pitch?
+bool is_sampled(const Vector3d& place, const std::vector<Vector3d>& points) {
+  constexpr double kNear = 0.75 * kPitch;
+  return std::any_of(points.begin(), points.end(), [&](const Vector3d& point) {
+    return (point - place).squaredNorm() <= kNear * kNear;
+  });
+}
+
+// Slices in any direction, whose points are `ratio` times as near each other as the slices are.
+// Hands poke where slices are: a face that lies along them is between two.
+void slice(Draft& draft, const Body& body, double ratio) {
   const Vector3d normal = draft.direction();
-  const double first = draft.between(0, pitch);
-  const std::vector<Vector3d> all = std::move(draft.points);
+  const double first = draft.between(0, kPitch);
+  std::vector<Vector3d> sliced;
+  SpacedPoints taken;
+  for (const Vector3d& seed : draft.points) {
+    const double height = first + kPitch * std::round((normal.dot(seed) - first) / kPitch);
+    for (int i = 0; i < 4 * ratio; ++i) {
+      Vector3d p = seed + draft.random.uniform() * draft.direction();
+      if (!into_plane(body.shape, normal, height, p)) continue;
+      if (taken.add(ratio / kPitch * p)) sliced.push_back(p);
+    }
+  }
+  std::vector<Vector3d> targets;
+  std::vector<Vector3d> outward;
+  for (std::size_t i = 0; i < draft.points.size(); ++i) {
+    if (!is_sampled(draft.points[i], sliced)) continue;
+    targets.push_back(draft.points[i]);
+    outward.push_back(draft.normals[i]);
+  }
+  draft.points = std::move(targets);
+  draft.normals = std::move(outward);
+  poke_around(draft, kPokes);
   draft.points.clear();
   draft.normals.clear();
-  SpacedPoints taken;
-  for (Vector3d p : all) {
-    const double height = first + pitch * std::round((normal.dot(p) - first) / pitch);
-    if (std::abs(normal.dot(p) - height) > 1.5) continue;
-    if (!into_plane(body.shape, normal, height, p) || !taken.add(p)) continue;
-    draft.add(p, body.shape(p).gradient.normalized());
-  }
+  for (const Vector3d& p : sliced) draft.add(p, body.shape(p).gradient.normalized());
 }
 
 void stray(Draft& draft, const Body& body, double share) {
@@ -117,9 +140,9 @@ void add_sampled_rows(std::vector<Row>& rows) {
     add(fmt::format("double {}", apart),
         [=](Draft& draft, const Body& body) { scan_twice(draft, body, apart); });
   }
-  for (const int pitch : {2, 4, 6, 10}) {
-    add(fmt::format("slices {}:1", pitch),
-        [=](Draft& draft, const Body& body) { slice(draft, body, pitch); });
+  for (const int ratio : {2, 4, 6, 10}) {
+    add(fmt::format("slices {}:1", ratio),
+        [=](Draft& draft, const Body& body) { slice(draft, body, ratio); });
   }
   for (const int percent : {1, 5, 15, 30}) {
     add(fmt::format("outliers {} %", percent),

@@ -114,6 +114,7 @@ class Preparation {
 
   void measure_spacing() {
     spacings_ = local_spacings(points_.grid);
+    if (!options_.paper && !options_.radius) widen_to_lines(points_.grid, spacings_);
     report_.spacing = median(spacings_);
     watch_.lap(report_.seconds_spacing);
   }

@@ -1,5 +1,6 @@
 #include "prepare/radii.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -51,53 +52,73 @@ constexpr float kOpposite = -0.5f;     // cosine between two that lie on opposit
 constexpr float kFirstReach = 1.5f;    // radii
 constexpr int kWidenings = 2;          // of the reach, each twofold: gaps up to three radii
 constexpr std::size_t kEnough = 2048;  // points in reach: no sparse place any more
+constexpr std::size_t kOnLine = 5;     // nearest, the point itself among them, that show a line
+constexpr float kAside = 0.7f;         // cosine: 45 degrees to a line and more are beside it
+constexpr std::size_t kAlongLine = 16; // nearest, over which the way to the next line is averaged
+constexpr std::size_t kTried = 64;     // nearest points beside a line
+constexpr float kThin = 0.2f;          // deviation of a line across, against along
+constexpr float kLines = 0.5f;         // of the sampled points, on lines: a cloud of lines
+constexpr float kWidest = 32;          // spacings along a line that the next may be away
 
-/// The nearest in each of the six cones round the axes.
-class Cones {
- public:
-  void add(const Eigen::Vector3f& offset) {
-    const float distance = offset.norm();
-    if (!(distance > 0)) return;
-    Eigen::Index axis = 0;
-    offset.cwiseAbs().maxCoeff(&axis);
-    Nearest& cone = cones_[static_cast<std::size_t>(2 * axis + (offset[axis] > 0 ? 1 : 0))];
-    if (distance < cone.distance) cone = {distance, offset / distance};
-  }
-
-  /// The further of the nearest two that lie on opposite sides; infinity: there are none, m.
-  [[nodiscard]] float gap() const {
-    float gap = kNone;
-    for (std::size_t a = 0; a < cones_.size(); ++a) {
-      for (std::size_t b = 0; b < a; ++b) {
-        const float both = std::max(cones_[a].distance, cones_[b].distance);
-        if (both < gap && cones_[a].direction.dot(cones_[b].direction) < kOpposite) gap = both;
-      }
-    }
-    return gap;
-  }
-
- private:
-  static constexpr float kNone = std::numeric_limits<float>::infinity();
-  struct Nearest {
-    float distance = kNone;
-    Eigen::Vector3f direction = Eigen::Vector3f::Zero();
-  };
-  std::array<Nearest, 6> cones_;
+/// The line that a point and its nearest are on: where its points lie and how far off it they are.
+struct Line {
+  Eigen::Vector3f along = Eigen::Vector3f::UnitX();
+  float spacing = 0;  ///< m, to the farthest of the nearest
+  float off = 1;      ///< deviation across the line, against that along it
 };
+
+Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighbor>& nearest) {
+  grid.nearest(grid.points()[i], kOnLine, nearest);
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  Line line;
+  for (const CellGrid::Neighbor& found : nearest) {
+    const Eigen::Vector3f way = grid.points()[found.index] - grid.points()[i];
+    squares += way * way.transpose();
+    line.spacing = std::sqrt(found.squared_distance);
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(squares);
+  line.along = solver.eigenvectors().col(2);
+  const Eigen::Vector3f spread = solver.eigenvalues().cwiseMax(0);
+  line.off = spread[2] > 0 ? std::sqrt(spread[1] / spread[2]) : 1;
+  return line;
+}
+
+/// The further of the nearest two, aside of the line that a point is on, that lie on opposite
+/// sides of it in one plane with it; 0: there are none within reach, m.
+float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line,
+                 std::span<const std::uint32_t> near) {
+  std::vector<std::pair<float, Eigen::Vector3f>> aside;  // by distance; directions
+  for (const std::uint32_t j : near) {
+    const Eigen::Vector3f way = grid.points()[j] - grid.points()[i];
+    const float length = way.norm();
+    if (length > 0 && std::abs(way.dot(line.along)) <= kAside * length) {
+      aside.emplace_back(length, way / length);
+    }
+  }
+  const std::size_t count = std::min(aside.size(), kTried);
+  const auto closer = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::partial_sort(aside.begin(), aside.begin() + static_cast<std::ptrdiff_t>(count), aside.end(),
+                    closer);
+  for (std::size_t a = 1; a < count; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (aside[a].second.dot(aside[b].second) < kOpposite) return aside[a].first;
+    }
+  }
+  return 0;
+}
 
 /// The gap that a point lies in; 0 where none is found.
 float gap_at(const CellGrid& grid, std::uint32_t i, float radius,
              std::vector<std::uint32_t>& near) {
-  const Eigen::Vector3f& p = grid.points()[i];
+  std::vector<CellGrid::Neighbor> nearest;
+  const Line line = line_at(grid, i, nearest);
   float reach = kFirstReach * radius;
   for (int k = 0; k < kWidenings; ++k, reach *= 2) {
     near.clear();
-    grid.within(p, reach, near);
+    grid.within(grid.points()[i], reach, near);
     if (near.size() > kEnough) break;
-    Cones cones;
-    for (const std::uint32_t j : near) cones.add(grid.points()[j] - p);
-    // Those in sight only are the nearest of all.
-    if (const float gap = cones.gap(); gap <= reach) return gap;
+    if (const float gap = gap_across(grid, i, line, near); gap > 0) return gap;
   }
   return 0;
 }
@@ -132,6 +153,44 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
     }
   });
   return static_cast<std::size_t>(std::ranges::count(raised, 1));
+}
+
+void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
+  if (grid.size() < kFewestPoints) return;
+  const std::size_t step = std::max<std::size_t>(1, grid.size() / kSpacingSamples);
+  std::vector<CellGrid::Neighbor> nearest;
+  std::size_t lines = 0;
+  std::size_t looked = 0;
+  for (std::size_t i = step / 2; i < grid.size(); i += step, ++looked) {
+    if (line_at(grid, static_cast<std::uint32_t>(i), nearest).off < kThin) ++lines;
+  }
+  if (static_cast<float>(lines) < kLines * static_cast<float>(looked)) return;
+  std::vector<float> gaps(spacings.size());
+  detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<CellGrid::Neighbor> found;
+    std::vector<std::uint32_t> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto at = static_cast<std::uint32_t>(i);
+      const Line line = line_at(grid, at, found);
+      for (float reach = 2 * line.spacing; reach <= kWidest / 2 * line.spacing; reach *= 2) {
+        near.clear();
+        grid.within(grid.points()[i], reach, near);
+        if ((gaps[i] = gap_across(grid, at, line, near)) > 0) break;
+      }
+    }
+  });
+  detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<CellGrid::Neighbor> found;
+    std::vector<float> around;
+    for (std::size_t i = begin; i < end; ++i) {
+      grid.nearest(grid.points()[i], kAlongLine, found);
+      around.clear();
+      for (const CellGrid::Neighbor& other : found) {
+        if (gaps[other.index] > 0) around.push_back(gaps[other.index]);
+      }
+      spacings[i] = std::max(spacings[i], static_cast<float>(median(around)));
+    }
+  });
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+
 #include <limits>
 #include <utility>
 
@@ -26,6 +27,7 @@ constexpr float kFarSnapReach = 4;  // R
 constexpr std::size_t kFewSure = 12;
 constexpr float kSnapSlope = 0.12f;
 constexpr float kSnapResiduals = 3;
+constexpr float kShared = 0.3f;  // of the points within R
 constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
 
 // A point lies on a second plane where that is another one and it is off it by so many spacings.
@@ -62,7 +64,8 @@ class Snapping {
         take_host(i, near);
       } else if (own_.others[i] != 0) {
         list_sure(i, near);
-        second_hosts_[i] = second_host(i, i, near);
+        const std::uint32_t second = second_host(i, i, near);
+        if (second != kNoHost && is_shared(i, second, near)) second_hosts_[i] = second;
       }
     });
     std::vector<std::uint8_t> alone(sure_.size());
@@ -129,8 +132,10 @@ class Snapping {
     list_sure(i, near);
     const std::uint32_t host = best_host(i, near);
     if (host == kNoHost) return;
+    const std::uint32_t second = second_host(i, host, near);
+    if (!is_shared(i, host, near)) return;
     hosts_[i] = host;
-    second_hosts_[i] = second_host(i, host, near);
+    if (second != kNoHost && is_shared(i, second, near)) second_hosts_[i] = second;
     const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
     const float turn = kTurnMargin * bow(input_, own_, host) * way;
     if (std::abs(own_.normals[i].dot(own_.normals[host])) < 1 - 0.5f * turn * turn) {
@@ -138,6 +143,20 @@ class Snapping {
       own_.residuals[i] = own_.residuals[host];
     }
     own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
+  }
+
+  /// Do enough of the points around lie on the host's plane, too? At a corner of three faces a
+  /// third does.
+  [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t host,
+                               std::vector<std::uint32_t>& around) const {
+    around.clear();
+    const Vector3f& p = input_.grid.points()[i];
+    input_.grid.within(p, input_.radii[i], around);
+    const float on = std::max(kSnapResiduals * own_.residuals[host], kSnapSlope * input_.radii[i]);
+    const auto shared = std::ranges::count_if(around, [&](std::uint32_t j) {
+      return std::abs(own_.normals[host].dot(input_.grid.points()[j] - p)) <= on;
+    });
+    return static_cast<float>(shared) >= kShared * static_cast<float>(around.size());
   }
 
   /// Where a thing is so small that hardly a point of it is sure, a plane has to do.
