@@ -1,5 +1,6 @@
 #include "prepare/noise.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -125,31 +126,46 @@ Noise measure_noise(const CellGrid& grid, double spacing) {
 
 namespace {
 
-// A point this many typical spacings from its neighbours has to be on a sheet with them.
-constexpr double kStraySpacings = 4;
-constexpr double kStrayWindow = 3;          // of its own spacings
-constexpr std::size_t kManyInWindow = 120;  // points; 28 on a sheet
-constexpr double kOffDenser = 0.3;          // typical spacings
+// A point this many typical spacings from its neighbours has to be on a sheet or a line with them:
+// beside a surface local_spacings() gives a stray twice that surface's, less what it averages.
+constexpr float kStraySpacings = 1.8f;
+constexpr std::size_t kNeighbors = 9;  // the point itself and the eight around it on a sheet
+constexpr float kSlender = 1.f / 3;       // a sheet's thickness to its width, a line's width to its length
+constexpr float kNotApart = 0.2f;          // nearest to farthest: no pair or cluster far from the rest
+constexpr float kOneSide = 0.7f;       // of their distance that neighbours' middle may be away
 
-bool is_stray(const SheetInput& input, std::size_t i, double typical, SheetFitter& fitter) {
-  const auto own = static_cast<double>(input.spacings[i]);
-  if (own <= kStraySpacings * typical) return false;
-  const double radius = kStrayWindow * own;
-  const SheetFit fit = fitter.fit(input.grid, input.grid.points()[i], radius, own);
-  if (!fit.is_sheet(radius, input.noise)) return true;
-  if (fitter.places(own) < SheetFitter::kEnough) return true;
-  // Where others lie far denser it has to be on what they tell, as they do.
-  const double most = kOffDenser * typical + 3 * input.noise;
-  return fit.points > kManyInWindow && fit.off > most;
+/// Is the point in a sheet with its nearest, or on a line among them?
+bool is_among_others(const CellGrid& grid, std::uint32_t i,
+                     std::vector<CellGrid::Neighbor>& nearest) {
+  grid.nearest(grid.points()[i], kNeighbors, nearest);
+  const float apart = kNotApart * kNotApart * nearest.back().squared_distance;
+  if (nearest.size() < kNeighbors || !(nearest[1].squared_distance > apart)) return false;
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  for (const CellGrid::Neighbor& found : nearest) {
+    const Eigen::Vector3f way = grid.points()[found.index] - grid.points()[i];
+    sum += way / static_cast<float>(kNeighbors);
+    squares += way * way.transpose() / static_cast<float>(kNeighbors);
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(squares - sum * sum.transpose());
+  const Eigen::Vector3f spread = solver.eigenvalues().cwiseMax(0);
+  if (spread[0] < kSlender * kSlender * spread[1]) return true;
+  const bool at_an_end = sum.squaredNorm() > kOneSide * kOneSide * squares.trace();
+  return !at_an_end && spread[1] < kSlender * kSlender * spread[2];
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> find_strays(const SheetInput& input, double typical) {
-  std::vector<std::uint8_t> strays(input.grid.size());
-  detail::parallel_each_with<SheetFitter>(strays.size(), 4096, [&](std::size_t i, auto& fitter) {
-    strays[i] = is_stray(input, i, typical, fitter) ? 1 : 0;
-  });
+std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const float> spacings,
+                                      double typical) {
+  std::vector<std::uint8_t> strays(grid.size());
+  const float most = kStraySpacings * static_cast<float>(typical);
+  detail::parallel_each_with<std::vector<CellGrid::Neighbor>>(
+      strays.size(), 4096, [&](std::size_t i, auto& nearest) {
+        if (spacings[i] <= most) return;
+        strays[i] = is_among_others(grid, static_cast<std::uint32_t>(i), nearest) ? 0 : 1;
+      });
   return strays;
 }
 

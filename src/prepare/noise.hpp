@@ -26,9 +26,11 @@ struct Noise {
 /// (docs/method.md 5.2).
 [[nodiscard]] Noise measure_noise(const CellGrid& grid, double spacing);
 
-/// 1 for each point that is much farther from others than most and on no sheet with them.
-/// `typical`: the median spacing, m. In sorted order.
-[[nodiscard]] std::vector<std::uint8_t> find_strays(const SheetInput& input, double typical);
+/// 1 for each point that is farther from others than most and whose nearest do not lie around it in
+/// a sheet or along a line. `spacings`: of the points, `typical`: their median, m. In sorted order.
+[[nodiscard]] std::vector<std::uint8_t> find_strays(const CellGrid& grid,
+                                                    std::span<const float> spacings,
+                                                    double typical);
 
 /// How noisy a cloud is where: sensors err more on what is far away or faces them.
 class NoiseMap {

@@ -192,8 +192,7 @@ class Preparation {
       take_given_normals(points_.grid, given_, own_sheets_.normals);
     }
     if (options_.remove_speckle && !options_.radius && !options_.paper) {
-      strays_ =
-          find_strays({points_.grid, spacings_, points_.radii, report_.noise}, report_.spacing);
+      strays_ = find_strays(points_.grid, spacings_, report_.spacing);
       for (std::size_t i = 0; i < strays_.size(); ++i) {
         if (strays_[i] == 0) continue;
         own_sheets_.confidences[i] = 0;

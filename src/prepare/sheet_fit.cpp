@@ -230,16 +230,6 @@ SheetFit SheetFitter::fit_offsets(double reach) {
   return fit;
 }
 
-std::size_t SheetFitter::places(double spacing) {
-  cells_.clear();
-  for (const Vector3d& offset : offsets_) {
-    const Eigen::Vector3i cell = (2 / spacing * offset).array().round().cast<int>();
-    cells_.push_back({cell.x(), cell.y(), cell.z()});
-  }
-  std::sort(cells_.begin(), cells_.end());
-  return static_cast<std::size_t>(std::unique(cells_.begin(), cells_.end()) - cells_.begin());
-}
-
 void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
   const Vector3d& normal = fit.normal;
   const Vector3d u = normal.unitOrthogonal();

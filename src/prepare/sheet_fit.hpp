@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -49,9 +48,6 @@ class SheetFitter {
   /// one, m^2: the residuals' own where they are independent, more where neighbours err together.
   [[nodiscard]] double tile_variance(double reach, double tile) const;
 
-  /// In how many cells of half a spacing the points of the last fit lie: clusters count once.
-  [[nodiscard]] std::size_t places(double spacing);
-
   static constexpr std::size_t kEnough = 10;  ///< points of a quadric, which has six terms
   /// The window of a stray far away may hold a whole scan: of more points, every n-th is looked at.
   static constexpr std::size_t kMostPoints = 1 << 14;
@@ -66,7 +62,6 @@ class SheetFitter {
   std::vector<Eigen::Vector3d> offsets_;  // from the centre, m; of the own group
   std::vector<Eigen::Vector3d> some_;
   std::vector<double> heights_;
-  std::vector<std::array<int, 3>> cells_;
   std::vector<Eigen::Vector3d> placed_;       // along and above the plane, m
   Eigen::Matrix<double, 6, 1> quadric_ = {};  // of its height, over the reach, m
 };
