@@ -42,7 +42,8 @@ std::vector<std::string> names(std::uint32_t notes) {
                                                             {reanchored, "reanchored"},
                                                             {fault, "fault"},
                                                             {softer, "softer"},
-                                                            {fell, "fell"}};
+                                                            {fell, "fell"},
+                                                            {freed, "freed"}};
   std::vector<std::string> found;
   for (const auto& [note, name] : kNotes) {
     if (has(static_cast<ContactNote>(notes), note)) found.emplace_back(name);

@@ -15,6 +15,9 @@ constexpr double kMuchSofter = 0.95;   // of the stiffness that is wanted
 constexpr double kFaded = 0.01;        // of the stiffness: a spring that is gone
 constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
 constexpr double kFastest = 1;       // m/s: what moves faster has jumped
+constexpr double kFar = 10;        // of R: farther than a hand presses into anything on purpose
+constexpr double kAwayTime = 1;    // s, after which such a hand is let go (judgement)
+constexpr double kFreeing = 0.5;   // s, in which its spring fades (judgement)
 constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall
 constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
 
@@ -50,6 +53,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   const EnergyTank tank = tank_;
   if (!touching_) follow(probe, hip, contact);
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
+  free_hand(probe, hip, dt, contact);
   step_length_ = probe.step_length();
   const bool first = !revision_;  // since a reset, which may be into a solid
   const bool changed = !first && probe.traits().revision != *revision_;
@@ -137,6 +141,7 @@ void Proxy::Inside::release(const Eigen::Vector3d& place) noexcept {
   position_ = place;
   normal_.setZero();
   lost_time_ = 0;
+  away_time_ = 0;
   touching_ = false;
   sliding_ = false;
   cut_short_ = false;
@@ -232,7 +237,8 @@ double Proxy::Inside::wanted_stiffness() const noexcept {
   if (lost_time_ > kKeepLost) return 0;
   const double wanted =
       options_.stiffness * factor(surface_.stiffness_factor) * factor(surface_.presence);
-  return std::max(0.0, wanted - fading_.stiffness());
+  const double left = std::clamp(1 - (away_time_ - kAwayTime) / kFreeing, 0.0, 1.0);
+  return std::max(0.0, left * wanted - fading_.stiffness());
 }
 
 // A contact whose surface was not found in this step. The spring goes on from as far as the proxy
@@ -246,6 +252,17 @@ void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
   }
   pull(hip, 0, dt, contact);
   if (contact.stiffness <= kFaded * options_.stiffness) let_go(probe, hip);
+}
+
+// Whatever went wrong, no hand is held in free air for long: no surface is pressed so deep.
+void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt,
+                              Contact& contact) noexcept {
+  const bool away = touching_ && (hip - position_).norm() > kFar * step_length_ &&
+                    probe.is_free({hip, 0});
+  away_time_ = away ? away_time_ + dt : 0;
+  if (away_time_ < kAwayTime) return;
+  contact.notes |= ContactNote::freed;
+  if (away_time_ >= kAwayTime + kFreeing) release(hip);
 }
 
 // Never through what cannot be found: from a free place to the first contact; from inside, only

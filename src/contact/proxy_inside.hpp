@@ -95,6 +95,7 @@ class Proxy::Inside {
   void keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   void cut_short(Contact& contact) noexcept;
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
+  void free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   [[nodiscard]] double wanted_stiffness() const noexcept;
   [[nodiscard]] double begun_stiffness(const Eigen::Vector3d& place,
                                        const Eigen::Vector3d& hip) const noexcept;
@@ -112,6 +113,7 @@ class Proxy::Inside {
   Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();    // that the proxy last caught up with
   double step_length_ = 0;                            // R where it was last known, m
   double lost_time_ = 0;                              // s since the surface was lost
+  double away_time_ = 0;  // s that the hand has been in free air, far from the proxy
   std::optional<std::uint64_t> revision_;             // of the field in the last step
   bool started_ = false;
   bool touching_ = false;

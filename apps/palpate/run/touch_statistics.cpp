@@ -21,7 +21,7 @@ struct Note {
   }
 };
 
-constexpr std::array<Note, 14> kNotes = {{
+constexpr std::array<Note, 15> kNotes = {{
     {"sweep_truncated",
      "the hand moved too far in one step, so the proxy caught up over the next steps; move slower "
      "or use shorter steps",
@@ -47,6 +47,10 @@ constexpr std::array<Note, 14> kNotes = {{
      "contact was lost: the hand slid off an edge or went through a gap (a larger --radius closes "
      "gaps), or the touched surface disappeared",
      ContactNote::fell, FieldNote::none},
+    {"freed",
+     "the hand was held in free air, far from where it touched, so it was let go; the surface has a "
+     "hole there, or the hand went through something thin",
+     ContactNote::freed, FieldNote::none},
     {"thinned",
      "there were more points near the tool than the patch holds, so some were ignored; give a "
      "smaller --radius or a larger --voxel",
