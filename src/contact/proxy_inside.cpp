@@ -48,11 +48,13 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   if (!started_) reset(hip);
   Contact contact;
   Probe probe{field, options_.texture, step_length_};
-  const bool held = touching_;
+  const bool held = touching_ && !waiting_;
   const Eigen::Vector3d before = position_;
+  const Eigen::Vector3d side = normal_;
   const EnergyTank tank = tank_;
   if (!touching_) follow(probe, hip, contact);
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
+  await(probe, before, side, hip);
   free_hand(probe, hip, dt, contact);
   step_length_ = probe.step_length();
   const bool first = !revision_;  // since a reset, which may be into a solid
@@ -60,7 +62,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   revision_ = probe.traits().revision;
   field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
   contact.proxy = position_;
-  contact.touching = touching_;
+  contact.touching = touching_ && !waiting_;
   contact.evaluations = probe.evaluations();
   const double jump = unexplained(before, hip, dt);
   if (held && jump > kFall * (before - hand_).norm()) contact.notes |= ContactNote::fell;
@@ -86,7 +88,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
 double Proxy::Inside::unexplained(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
                                   double dt) const noexcept {
   const double explained = 2 * (hip - hand_).norm() + surface_.velocity.norm() * dt;
-  const double jump = (position_ - before).norm() - explained;
+  const double jump = ((waiting_ ? hip : position_) - before).norm() - explained;
   return jump > kLeastFall * step_length_ ? jump : 0;
 }
 
@@ -95,7 +97,7 @@ double Proxy::Inside::unexplained(const Eigen::Vector3d& before, const Eigen::Ve
 void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
                               Contact& contact) noexcept {
   tank_ = before;
-  tank_.take_over(touching_ ? begun_stiffness(position_, hip) : 0);
+  tank_.take_over(touching_ && !waiting_ ? begun_stiffness(position_, hip) : 0);
   contact.stiffness = tank_.stiffness();
   if (contact.stiffness < kMuchSofter * wanted_stiffness()) contact.notes |= ContactNote::softer;
   contact.force = contact.stiffness * (position_ - hip);
@@ -145,6 +147,7 @@ void Proxy::Inside::release(const Eigen::Vector3d& place) noexcept {
   touching_ = false;
   sliding_ = false;
   cut_short_ = false;
+  waiting_ = false;
 }
 
 // The next step has the whole budget for where this one stopped: it does not re-anchor first.
@@ -156,6 +159,7 @@ void Proxy::Inside::cut_short(Contact& contact) noexcept {
 void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
                          Contact& contact) noexcept {
   const std::optional<SurfacePoint> at = find_surface(probe, hip, contact);
+  if (at) waiting_ = false;
   if (!at) {
     if (touching_) keep(probe, hip, dt, contact);
     return;
@@ -200,6 +204,22 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
     position_ = way.position;
   }
   return std::nullopt;
+}
+
+// A sensor that is silent, or does not see what the hand presses, takes the surface away and brings
+// it back. Until then the proxy keeps its side: it stays on the plane that it touched, over the
+// hand, and lets go of it; the tank takes what the spring held and pays for it to come back.
+// `place`, `normal`: of the contact before this step.
+void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place,
+                          const Eigen::Vector3d& normal, const Eigen::Vector3d& hip) noexcept {
+  const double depth = normal.dot(place - hip);
+  if (touching_ || !(depth > 0)) return;
+  if (surface_.presence > kFaded && probe.sample(place).support > 0) return;
+  release(hip + depth * normal);
+  touching_ = waiting_ = true;
+  normal_ = normal;
+  tank_.fill(0.5 * tank_.stiffness() * (place - hip).squaredNorm());
+  tank_.take_over(0);
 }
 
 // Takes over where the motion ended. True while the proxy still touches.

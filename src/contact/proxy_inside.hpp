@@ -94,6 +94,8 @@ class Proxy::Inside {
   void pull(const Eigen::Vector3d& hip, double dissipated, double dt, Contact& contact) noexcept;
   void keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   void cut_short(Contact& contact) noexcept;
+  void await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
+             const Eigen::Vector3d& hip) noexcept;
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
   void free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   [[nodiscard]] double wanted_stiffness() const noexcept;
@@ -119,6 +121,7 @@ class Proxy::Inside {
   bool touching_ = false;
   bool sliding_ = false;
   bool cut_short_ = false;  // the last step's search, by its budget
+  bool waiting_ = false;    // for a surface that has vanished
   bool fault_ = false;
 };
 
