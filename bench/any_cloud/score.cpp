@@ -91,10 +91,10 @@ class Pokes {
   }
 
  private:
-  static constexpr double kInside = 1;     // s: what edges round off is no way through
-  static constexpr double kOutside = 8;    // s
+  static constexpr double kInside = 1;   // s: what edges round off is no way through
+  static constexpr double kOutside = 8;  // s
   static constexpr double kMostOver = 1.3;
-  static constexpr double kRough = 0.5;    // s: what a surface of points may be off its solid
+  static constexpr double kRough = 0.5;  // s: what a surface of points may be off its solid
 
   void end() {
     if (required_) ++asked_;

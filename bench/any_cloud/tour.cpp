@@ -12,11 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kAway = 14;       // of the ball that a hand travels on
-constexpr double kNear = 8;        // from here on a poke is slow
-constexpr double kLean = 0.6;      // at most, of a poke to the normal
-constexpr int kTries = 400;        // for a poke that is free as far as the surface
-constexpr double kClearance = 1;   // of a way from anything, but for its last
+constexpr double kAway = 14;      // of the ball that a hand travels on
+constexpr double kNear = 8;       // from here on a poke is slow
+constexpr double kLean = 0.6;     // at most, of a poke to the normal
+constexpr int kTries = 400;       // for a poke that is free as far as the surface
+constexpr double kClearance = 1;  // of a way from anything, but for its last
 constexpr double kLastStretch = 2;
 
 struct Poke {
@@ -38,8 +38,8 @@ std::optional<Poke> draw_poke(Draft& draft, double ball) {
   for (int i = 0; i < kTries; ++i) {
     const std::size_t at = draft.random.bits() % draft.points.size();
     const Vector3d& p = draft.points[at];
-    const Vector3d out = (draft.normals[at] + kLean * draft.random.uniform() * draft.direction())
-                             .normalized();
+    const Vector3d out =
+        (draft.normals[at] + kLean * draft.random.uniform() * draft.direction()).normalized();
     const double along = p.dot(out);
     const double reach = -along + std::sqrt(along * along + ball * ball - p.squaredNorm());
     if (!is_clear(draft, p, out, reach)) continue;

@@ -70,9 +70,8 @@ Body draw_body(Draft& draft) {
 
 void add_worked_rows(std::vector<Row>& rows) {
   for (const int wavelength : {3, 4, 6, 10, 20}) {
-    rows.push_back({"worked", fmt::format("relief {}", wavelength), [=](Draft& draft) {
-                      touch_body(draft, draw_relief(wavelength));
-                    }});
+    rows.push_back({"worked", fmt::format("relief {}", wavelength),
+                    [=](Draft& draft) { touch_body(draft, draw_relief(wavelength)); }});
   }
   const auto add = [&](const char* name, Body (*draw)(Draft&)) {
     rows.push_back({"worked", name, [=](Draft& draft) { touch_body(draft, draw(draft)); }});

@@ -40,9 +40,8 @@ Shape relief(const Vector3d& half, double wavelength, double height) {
   const auto wave = [=](const Vector3d& x) {
     const double a = std::sin(k * x.x());
     const double b = std::sin(k * x.y());
-    return Distance{half.z() + height * a * b, height * k *
-                                                   Vector3d(std::cos(k * x.x()) * b,
-                                                            a * std::cos(k * x.y()), 0)};
+    return Distance{half.z() + height * a * b,
+                    height * k * Vector3d(std::cos(k * x.x()) * b, a * std::cos(k * x.y()), 0)};
   };
   const Vector3d tall(half.x(), half.y(), half.z() + height);
   return both(box(Vector3d(0, 0, height), 2 * tall), top_of(wave, height * k));
@@ -115,8 +114,7 @@ Shape spring(double radius, double wire, double pitch, double turns) {
     const double away = std::hypot(x.x(), x.y());
     const double angle = std::atan2(x.y(), x.x());
     const double most = 0.5 * turns;
-    const double turn =
-        std::clamp(std::round(x.z() / pitch - angle / kTurn), -most - 1, most + 1);
+    const double turn = std::clamp(std::round(x.z() / pitch - angle / kTurn), -most - 1, most + 1);
     const Vector3d out = away > 0 ? Vector3d(x.x() / away, x.y() / away, 0) : Vector3d::UnitX();
     const Vector3d around = Vector3d::UnitZ().cross(out) / std::max(away, 0.5 * radius);
     const double aside = away - radius;

@@ -15,9 +15,9 @@ constexpr double kMuchSofter = 0.95;   // of the stiffness that is wanted
 constexpr double kFaded = 0.01;        // of the stiffness: a spring that is gone
 constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
 constexpr double kFastest = 1;       // m/s: what moves faster has jumped
-constexpr double kFar = 10;        // of R: farther than a hand presses into anything on purpose
-constexpr double kAwayTime = 1;    // s, after which such a hand is let go (judgement)
-constexpr double kFreeing = 0.5;   // s, in which its spring fades (judgement)
+constexpr double kFar = 10;          // of R: farther than a hand presses into anything on purpose
+constexpr double kAwayTime = 1;      // s, after which such a hand is let go (judgement)
+constexpr double kFreeing = 0.5;     // s, in which its spring fades (judgement)
 constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall
 constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
 
@@ -210,8 +210,8 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
 // it back. Until then the proxy keeps its side: it stays on the plane that it touched, over the
 // hand, and lets go of it; the tank takes what the spring held and pays for it to come back.
 // `place`, `normal`: of the contact before this step.
-void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place,
-                          const Eigen::Vector3d& normal, const Eigen::Vector3d& hip) noexcept {
+void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
+                          const Eigen::Vector3d& hip) noexcept {
   const double depth = normal.dot(place - hip);
   if (touching_ || !(depth > 0)) return;
   if (surface_.presence > kFaded && probe.sample(place).support > 0) return;
@@ -277,8 +277,8 @@ void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
 // Whatever went wrong, no hand is held in free air for long: no surface is pressed so deep.
 void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt,
                               Contact& contact) noexcept {
-  const bool away = touching_ && (hip - position_).norm() > kFar * step_length_ &&
-                    probe.is_free({hip, 0});
+  const bool away =
+      touching_ && (hip - position_).norm() > kFar * step_length_ && probe.is_free({hip, 0});
   away_time_ = away ? away_time_ + dt : 0;
   if (away_time_ < kAwayTime) return;
   contact.notes |= ContactNote::freed;

@@ -116,7 +116,7 @@ class Proxy::Inside {
   double step_length_ = 0;                            // R where it was last known, m
   double lost_time_ = 0;                              // s since the surface was lost
   double away_time_ = 0;  // s that the hand has been in free air, far from the proxy
-  std::optional<std::uint64_t> revision_;             // of the field in the last step
+  std::optional<std::uint64_t> revision_;  // of the field in the last step
   bool started_ = false;
   bool touching_ = false;
   bool sliding_ = false;

@@ -130,16 +130,20 @@ namespace {
 // beside a surface local_spacings() gives a stray twice that surface's, less what it averages.
 constexpr float kStraySpacings = 1.8f;
 constexpr std::size_t kNeighbors = 9;  // the point itself and the eight around it on a sheet
-constexpr float kSlender = 1.f / 3;       // a sheet's thickness to its width, a line's width to its length
-constexpr float kNotApart = 0.2f;          // nearest to farthest: no pair or cluster far from the rest
-constexpr float kOneSide = 0.7f;       // of their distance that neighbours' middle may be away
+// Judgements: how thin a sheet is against its width and a line against its length, how near the
+// nearest is against the farthest (clusters are nearer), how far their middle is at a line's end.
+constexpr float kSlender = 1.f / 3;
+constexpr float kNotApart = 0.2f;
+constexpr float kOneSide = 0.7f;
 
-/// Is the point in a sheet with its nearest, or on a line among them?
+/// Is the point in a sheet with its nearest, or on a line among them, or has it one as near as
+/// most points have?
 bool is_among_others(const CellGrid& grid, std::uint32_t i,
-                     std::vector<CellGrid::Neighbor>& nearest) {
+                     std::vector<CellGrid::Neighbor>& nearest, float typical) {
   grid.nearest(grid.points()[i], kNeighbors, nearest);
   const float apart = kNotApart * kNotApart * nearest.back().squared_distance;
   if (nearest.size() < kNeighbors || !(nearest[1].squared_distance > apart)) return false;
+  if (nearest[1].squared_distance <= typical * typical) return true;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
   for (const CellGrid::Neighbor& found : nearest) {
@@ -160,11 +164,11 @@ bool is_among_others(const CellGrid& grid, std::uint32_t i,
 std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const float> spacings,
                                       double typical) {
   std::vector<std::uint8_t> strays(grid.size());
-  const float most = kStraySpacings * static_cast<float>(typical);
+  const auto near = static_cast<float>(typical);
   detail::parallel_each_with<std::vector<CellGrid::Neighbor>>(
       strays.size(), 4096, [&](std::size_t i, auto& nearest) {
-        if (spacings[i] <= most) return;
-        strays[i] = is_among_others(grid, static_cast<std::uint32_t>(i), nearest) ? 0 : 1;
+        if (spacings[i] <= kStraySpacings * near) return;
+        strays[i] = is_among_others(grid, static_cast<std::uint32_t>(i), nearest, near) ? 0 : 1;
       });
   return strays;
 }

@@ -46,19 +46,19 @@ bool is_irregular(const CellGrid& grid, std::span<const float> spacings) {
 
 namespace {
 
-constexpr float kMultiple = 2.5f;      // R over the gap
-constexpr float kFaint = 2.5f;         // sums of weights: 5.8 on a square grid
-constexpr float kOpposite = -0.5f;     // cosine between two that lie on opposite sides
-constexpr float kFirstReach = 1.5f;    // radii
-constexpr int kWidenings = 2;          // of the reach, each twofold: gaps up to three radii
-constexpr std::size_t kEnough = 2048;  // points in reach: no sparse place any more
-constexpr std::size_t kOnLine = 5;     // nearest, the point itself among them, that show a line
-constexpr float kAside = 0.7f;         // cosine: 45 degrees to a line and more are beside it
-constexpr std::size_t kAlongLine = 16; // nearest, over which the way to the next line is averaged
-constexpr std::size_t kTried = 64;     // nearest points beside a line
-constexpr float kThin = 0.2f;          // deviation of a line across, against along
-constexpr float kLines = 0.5f;         // of the sampled points, on lines: a cloud of lines
-constexpr float kWidest = 32;          // spacings along a line that the next may be away
+constexpr float kMultiple = 2.5f;       // R over the gap
+constexpr float kFaint = 2.5f;          // sums of weights: 5.8 on a square grid
+constexpr float kOpposite = -0.5f;      // cosine between two that lie on opposite sides
+constexpr float kFirstReach = 1.5f;     // radii
+constexpr int kWidenings = 2;           // of the reach, each twofold: gaps up to three radii
+constexpr int kLineWidenings = 4;       // likewise: the next line up to 30 points away
+constexpr std::size_t kEnough = 2048;   // points in reach: no sparse place any more
+constexpr std::size_t kOnLine = 5;      // nearest, the point itself among them, that show a line
+constexpr float kAside = 0.7f;          // cosine: 45 degrees to a line and more are beside it
+constexpr std::size_t kAlongLine = 16;  // nearest, over which the way to the next line is averaged
+constexpr std::size_t kTried = 64;      // nearest points beside a line
+constexpr float kThin = 0.2f;           // deviation of a line across, against along
+constexpr float kLines = 0.5f;          // of the sampled points, on lines: a cloud of lines
 
 /// The line that a point and its nearest are on: where its points lie and how far off it they are.
 struct Line {
@@ -85,7 +85,7 @@ Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighb
 }
 
 /// The further of the nearest two, aside of the line that a point is on, that lie on opposite
-/// sides of it in one plane with it; 0: there are none within reach, m.
+/// sides of it; 0: there are none among those that are near, m.
 float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line,
                  std::span<const std::uint32_t> near) {
   std::vector<std::pair<float, Eigen::Vector3f>> aside;  // by distance; directions
@@ -108,13 +108,11 @@ float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line,
   return 0;
 }
 
-/// The gap that a point lies in; 0 where none is found.
-float gap_at(const CellGrid& grid, std::uint32_t i, float radius,
+/// The gap that a point lies in; 0 where none is found. Looks within `reach` (m) at first, and
+/// within twice as much each time that it finds none, `times` in all.
+float gap_at(const CellGrid& grid, std::uint32_t i, const Line& line, float reach, int times,
              std::vector<std::uint32_t>& near) {
-  std::vector<CellGrid::Neighbor> nearest;
-  const Line line = line_at(grid, i, nearest);
-  float reach = kFirstReach * radius;
-  for (int k = 0; k < kWidenings; ++k, reach *= 2) {
+  for (int k = 0; k < times; ++k, reach *= 2) {
     near.clear();
     grid.within(grid.points()[i], reach, near);
     if (near.size() > kEnough) break;
@@ -135,10 +133,13 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
   const std::vector<float> before = radii;
   detail::parallel_ranges(faint.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
+    std::vector<CellGrid::Neighbor> nearest;
     SheetFitter fitter;
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t i = faint[k];
-      const float wanted = kMultiple * gap_at(grid, i, before[i], near);
+      const Line line = line_at(grid, i, nearest);
+      const float gap = gap_at(grid, i, line, kFirstReach * before[i], kWidenings, near);
+      const float wanted = kMultiple * gap;
       if (!(wanted > before[i])) continue;
       const SheetFit fit = fitter.fit(grid, grid.points()[i], static_cast<double>(wanted),
                                       static_cast<double>(spacings[i]));
@@ -172,11 +173,7 @@ void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto at = static_cast<std::uint32_t>(i);
       const Line line = line_at(grid, at, found);
-      for (float reach = 2 * line.spacing; reach <= kWidest / 2 * line.spacing; reach *= 2) {
-        near.clear();
-        grid.within(grid.points()[i], reach, near);
-        if ((gaps[i] = gap_across(grid, at, line, near)) > 0) break;
-      }
+      gaps[i] = gap_at(grid, at, line, 2 * line.spacing, kLineWidenings, near);
     }
   });
   detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-
 #include <limits>
 #include <utility>
 
@@ -27,7 +26,7 @@ constexpr float kFarSnapReach = 4;  // R
 constexpr std::size_t kFewSure = 12;
 constexpr float kSnapSlope = 0.12f;
 constexpr float kSnapResiduals = 3;
-constexpr float kShared = 0.3f;  // of the points within R
+constexpr float kShared = 0.3f;    // of the points within R
 constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
 
 // A point lies on a second plane where that is another one and it is off it by so many spacings.

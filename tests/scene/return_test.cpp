@@ -20,7 +20,7 @@ using test::kFrame;
 constexpr double kFade = 0.2;
 constexpr double kSilent = 0.6;  // s, from then on
 constexpr double kBack = 1.6;
-constexpr double kHeld = 0.3;   // s after which the hand is held again
+constexpr double kHeld = 0.3;  // s after which the hand is held again
 constexpr double kLift = 2.2;
 constexpr double kAgain = 2.8;  // presses again
 constexpr double kEnd = 3.2;

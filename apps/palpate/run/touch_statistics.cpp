@@ -48,7 +48,8 @@ constexpr std::array<Note, 15> kNotes = {{
      "gaps), or the touched surface disappeared",
      ContactNote::fell, FieldNote::none},
     {"freed",
-     "the hand was held in free air, far from where it touched, so it was let go; the surface has a "
+     "the hand was held in free air, far from where it touched, so it was let go; the surface has "
+     "a "
      "hole there, or the hand went through something thin",
      ContactNote::freed, FieldNote::none},
     {"thinned",

@@ -1,0 +1,59 @@
+// Clouds of lines: slices of a volume, the lines of a scanner.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <random>
+
+#include "palpate/geometry/spacing.hpp"
+#include "prepare/radii.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kGap = 0.01f;
+
+/// `lines` lines a gap apart, their points `ratio` times as near each other, turned somewhere.
+CellGrid lines_of(int lines, float ratio) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> off(-0.2f, 0.2f);
+  const Eigen::AngleAxisf turn(0.7f, Vector3f(1, 2, 3).normalized());
+  std::vector<Vector3f> points;
+  for (int i = 0; i < lines; ++i) {
+    for (int j = 0; j < 25 * static_cast<int>(ratio); ++j) {
+      const float along = (static_cast<float>(j) + off(random)) / ratio;
+      points.emplace_back(turn * Vector3f(kGap * along, kGap * static_cast<float>(i), 0));
+    }
+  }
+  return CellGrid(points);
+}
+
+std::vector<float> widened(const CellGrid& grid) {
+  std::vector<float> spacings = local_spacings(grid);
+  widen_to_lines(grid, spacings);
+  return spacings;
+}
+
+TEST(Lines, HaveTheSpacingOfTheWayToTheNext) {
+  for (const float ratio : {5.f, 6.f, 10.f}) {
+    const std::vector<float> spacings = widened(lines_of(25, ratio));
+    EXPECT_NEAR(median(spacings), kGap, 0.1 * kGap) << ratio;
+    EXPECT_GT(*std::ranges::min_element(spacings), 0.9f * kGap) << ratio;
+    EXPECT_LT(*std::ranges::max_element(spacings), 1.5f * kGap) << ratio;
+  }
+}
+
+TEST(Lines, AreNoGrids) {
+  const CellGrid grid = lines_of(25, 1);
+  EXPECT_EQ(widened(grid), local_spacings(grid));
+}
+
+TEST(Lines, ThatLieAloneStayAsTheyAre) {
+  const CellGrid grid = lines_of(1, 10);
+  EXPECT_EQ(widened(grid), local_spacings(grid));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,85 @@
+// What is a stray: a point far from others whose nearest make neither a sheet nor a line.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "palpate/geometry/spacing.hpp"
+#include "prepare/noise.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kSpacing = 0.01f;
+
+/// A grid of 60 x 60 points, and others of which the test asks.
+class Strays : public testing::Test {
+ protected:
+  Strays() {
+    for (int i = 0; i < 60; ++i) {
+      for (int j = 0; j < 60; ++j) add(static_cast<float>(i), static_cast<float>(j), 0);
+    }
+    first_ = points_.size();
+  }
+
+  /// In spacings.
+  void add(float x, float y, float z) { points_.emplace_back(kSpacing * Vector3f(x, y, z)); }
+  [[nodiscard]] float between(float low, float high) {
+    return std::uniform_real_distribution<float>(low, high)(random_);
+  }
+
+  /// How many of the grid's points and how many of the others are strays.
+  std::pair<int, int> count() {
+    const CellGrid grid(points_);
+    const std::vector<float> spacings = local_spacings(grid);
+    const std::vector<std::uint8_t> strays = find_strays(grid, spacings, median(spacings));
+    std::pair<int, int> counts{0, 0};
+    for (std::size_t i = 0; i < strays.size(); ++i) {
+      (grid.order()[i] < first_ ? counts.first : counts.second) += strays[i];
+    }
+    return counts;
+  }
+
+  std::vector<Vector3f> points_;
+  std::size_t first_ = 0;
+  std::mt19937 random_{4};
+};
+
+TEST_F(Strays, AreWhatLiesEverywhereAroundASheet) {
+  int far = 0;
+  for (int i = 0; i < 500; ++i) {
+    const float z = between(-30, 30);
+    far += std::abs(z) > 5 ? 1 : 0;
+    add(between(0, 60), between(0, 60), z);
+  }
+  const auto [own, others] = count();
+  EXPECT_EQ(own, 0);
+  EXPECT_GT(others, 0.85 * far);
+}
+
+TEST_F(Strays, AreNoPartsOfASheetThatAreSparse) {
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 16; ++j) {
+      add(64 + 4 * (static_cast<float>(i) + between(-0.3f, 0.3f)), 4 * static_cast<float>(j), 0);
+    }
+  }
+  EXPECT_EQ(count(), std::pair(0, 0));
+}
+
+TEST_F(Strays, AreNoPointsWithinASparseWire) {
+  for (int i = 0; i < 30; ++i) add(0, 4 * static_cast<float>(i), 40);
+  const auto [own, others] = count();
+  EXPECT_EQ(own, 0);
+  EXPECT_LE(others, 8);  // its ends, where the nearest lie on one side
+}
+
+TEST_F(Strays, AreClustersFarFromTheRest) {
+  for (int i = 0; i < 4; ++i) add(200 + between(0, 1), 200 + between(0, 1), between(0, 1));
+  add(-300, 0, 20);
+  EXPECT_EQ(count(), std::pair(0, 5));
+}
+
+}  // namespace
+}  // namespace palpate
