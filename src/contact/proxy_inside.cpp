@@ -15,7 +15,9 @@ constexpr double kMuchSofter = 0.95;   // of the stiffness that is wanted
 constexpr double kFaded = 0.01;        // of the stiffness: a spring that is gone
 constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
 constexpr double kFastest = 1;       // m/s: what moves faster has jumped
-constexpr double kFar = 10;          // of R: farther than a hand presses into anything on purpose
+constexpr double kWaits = 2;         // of R that a hand moves before it is no longer the same press
+constexpr double kHardest = 10;      // N in free air: desktop devices sustain less (judgement)
+constexpr double kFar = 10;          // of R, from the proxy (judgement)
 constexpr double kAwayTime = 1;      // s, after which such a hand is let go (judgement)
 constexpr double kFreeing = 0.5;     // s, in which its spring fades (judgement)
 constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall
@@ -54,7 +56,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   const EnergyTank tank = tank_;
   if (!touching_) follow(probe, hip, contact);
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
-  await(probe, before, side, hip);
+  await(probe, before, side, held ? hand_ : pressed_, hip);
   free_hand(probe, hip, dt, contact);
   step_length_ = probe.step_length();
   const bool first = !revision_;  // since a reset, which may be into a solid
@@ -83,8 +85,8 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   return faulted();
 }
 
-// How far the proxy went beyond what motion of the hand and the surface explains, m. On a plane it
-// goes no farther than the hand, on a bulge twice as far, up to half of its radius deep.
+// How far the proxy went beyond what motion of hand and surface explains, m: on a plane no farther
+// than the hand, on a bulge twice as far, up to half of its radius deep.
 double Proxy::Inside::unexplained(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
                                   double dt) const noexcept {
   const double explained = 2 * (hip - hand_).norm() + surface_.velocity.norm() * dt;
@@ -92,14 +94,14 @@ double Proxy::Inside::unexplained(const Eigen::Vector3d& before, const Eigen::Ve
   return jump > kLeastFall * step_length_ ? jump : 0;
 }
 
-// Nothing that a surface does gives a hand energy, or takes its force at once: what the spring that
-// it ended gives up while it fades pays for the one that takes over.
+// What the spring that a surface ended gives up while it fades pays for the one that takes over.
 void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
                               Contact& contact) noexcept {
   tank_ = before;
   tank_.take_over(touching_ && !waiting_ ? begun_stiffness(position_, hip) : 0);
   contact.stiffness = tank_.stiffness();
-  if (contact.stiffness < kMuchSofter * wanted_stiffness()) contact.notes |= ContactNote::softer;
+  const double least = waiting_ ? 0 : kMuchSofter * wanted_stiffness();
+  if (contact.stiffness < least) contact.notes |= ContactNote::softer;
   contact.force = contact.stiffness * (position_ - hip);
 }
 
@@ -121,8 +123,7 @@ void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& co
   release(way.position);
 }
 
-// A spring that begins stretched by more than the hand has moved begins as much softer: what held
-// the hand before, or where it was, is not its doing.
+// A spring that is stretched by more than the hand has moved begins as much softer.
 double Proxy::Inside::begun_stiffness(const Eigen::Vector3d& place,
                                       const Eigen::Vector3d& hip) const noexcept {
   const double stretch = (place - hip).norm();
@@ -161,7 +162,7 @@ void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
   const std::optional<SurfacePoint> at = find_surface(probe, hip, contact);
   if (at) waiting_ = false;
   if (!at) {
-    if (touching_) keep(probe, hip, dt, contact);
+    if (touching_ && !waiting_) keep(probe, hip, dt, contact);
     return;
   }
   lost_time_ = 0;
@@ -206,18 +207,18 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   return std::nullopt;
 }
 
-// A sensor that is silent, or does not see what the hand presses, takes the surface away and brings
-// it back. Until then the proxy keeps its side: it stays on the plane that it touched, over the
-// hand, and lets go of it; the tank takes what the spring held and pays for it to come back.
-// `place`, `normal`: of the contact before this step.
+// A sensor that does not see what the hand presses takes the surface away and brings it back. Until
+// then the proxy keeps its side, on the plane that it touched (`place`, `normal`), without force;
+// the tank pays for what comes back with what the spring held. A hand that moves on is free.
 void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
-                          const Eigen::Vector3d& hip) noexcept {
+                          const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept {
   const double depth = normal.dot(place - hip);
-  if (touching_ || !(depth > 0)) return;
+  if (touching_ || !(depth > 0) || (hip - pressed).norm() > kWaits * step_length_) return;
   if (surface_.presence > kFaded && probe.sample(place).support > 0) return;
   release(hip + depth * normal);
   touching_ = waiting_ = true;
   normal_ = normal;
+  pressed_ = pressed;
   tank_.fill(0.5 * tank_.stiffness() * (place - hip).squaredNorm());
   tank_.take_over(0);
 }
@@ -257,7 +258,7 @@ double Proxy::Inside::wanted_stiffness() const noexcept {
   if (lost_time_ > kKeepLost) return 0;
   const double wanted =
       options_.stiffness * factor(surface_.stiffness_factor) * factor(surface_.presence);
-  const double left = std::clamp(1 - (away_time_ - kAwayTime) / kFreeing, 0.0, 1.0);
+  const double left = factor(1 - (away_time_ - kAwayTime) / kFreeing);
   return std::max(0.0, left * wanted - fading_.stiffness());
 }
 
@@ -274,15 +275,16 @@ void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
   if (contact.stiffness <= kFaded * options_.stiffness) let_go(probe, hip);
 }
 
-// Whatever went wrong, no hand is held in free air for long: no surface is pressed so deep.
+// No hand is held hard in free air for long. The inside of a scanned body is free air, too.
 void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt,
                               Contact& contact) noexcept {
-  const bool away =
-      touching_ && (hip - position_).norm() > kFar * step_length_ && probe.is_free({hip, 0});
-  away_time_ = away ? away_time_ + dt : 0;
+  const double stretch = (hip - position_).norm();
+  const bool hard =
+      touching_ && stretch > kFar * step_length_ && options_.stiffness * stretch > kHardest;
+  away_time_ = hard && probe.is_free({hip, 0}) ? away_time_ + dt : 0;
   if (away_time_ < kAwayTime) return;
   contact.notes |= ContactNote::freed;
-  if (away_time_ >= kAwayTime + kFreeing) release(hip);
+  if (tank_.stiffness() <= kFaded * options_.stiffness) release(hip);
 }
 
 // Never through what cannot be found: from a free place to the first contact; from inside, only

@@ -95,7 +95,7 @@ class Proxy::Inside {
   void keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   void cut_short(Contact& contact) noexcept;
   void await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
-             const Eigen::Vector3d& hip) noexcept;
+             const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept;
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
   void free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   [[nodiscard]] double wanted_stiffness() const noexcept;
@@ -111,10 +111,11 @@ class Proxy::Inside {
   FadingSpring fading_;  // of contacts that a change of the surface ended
   Surface surface_;      // where the proxy touches
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of the last contact; zero: none
-  Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();    // that the proxy last caught up with
-  double step_length_ = 0;                            // R where it was last known, m
-  double lost_time_ = 0;                              // s since the surface was lost
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();   // of the last contact; zero: none
+  Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();     // that the proxy last caught up with
+  Eigen::Vector3d pressed_ = Eigen::Vector3d::Zero();  // the hand, when its surface vanished
+  double step_length_ = 0;                             // R where it was last known, m
+  double lost_time_ = 0;                               // s since the surface was lost
   double away_time_ = 0;  // s that the hand has been in free air, far from the proxy
   std::optional<std::uint64_t> revision_;  // of the field in the last step
   bool started_ = false;

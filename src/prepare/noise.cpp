@@ -1,6 +1,5 @@
 #include "prepare/noise.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -122,55 +121,6 @@ Noise measure_noise(const CellGrid& grid, double spacing) {
   noise.excess = std::min(excess, kMostExcess);
   noise.sigma = std::max(noise.sigma, median_of(all, [](const Widths& w) { return w.sigma; }));
   return noise;
-}
-
-namespace {
-
-// A point this many typical spacings from its neighbours has to be on a sheet or a line with them:
-// beside a surface local_spacings() gives a stray twice that surface's, less what it averages.
-constexpr float kStraySpacings = 1.8f;
-constexpr std::size_t kNeighbors = 9;  // the point itself and the eight around it on a sheet
-// Judgements: how thin a sheet is against its width and a line against its length, how near the
-// nearest is against the farthest (clusters are nearer), how far their middle is at a line's end.
-constexpr float kSlender = 1.f / 3;
-constexpr float kNotApart = 0.2f;
-constexpr float kOneSide = 0.7f;
-
-/// Is the point in a sheet with its nearest, or on a line among them, or has it one as near as
-/// most points have?
-bool is_among_others(const CellGrid& grid, std::uint32_t i,
-                     std::vector<CellGrid::Neighbor>& nearest, float typical) {
-  grid.nearest(grid.points()[i], kNeighbors, nearest);
-  const float apart = kNotApart * kNotApart * nearest.back().squared_distance;
-  if (nearest.size() < kNeighbors || !(nearest[1].squared_distance > apart)) return false;
-  if (nearest[1].squared_distance <= typical * typical) return true;
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-  for (const CellGrid::Neighbor& found : nearest) {
-    const Eigen::Vector3f way = grid.points()[found.index] - grid.points()[i];
-    sum += way / static_cast<float>(kNeighbors);
-    squares += way * way.transpose() / static_cast<float>(kNeighbors);
-  }
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(squares - sum * sum.transpose());
-  const Eigen::Vector3f spread = solver.eigenvalues().cwiseMax(0);
-  if (spread[0] < kSlender * kSlender * spread[1]) return true;
-  const bool at_an_end = sum.squaredNorm() > kOneSide * kOneSide * squares.trace();
-  return !at_an_end && spread[1] < kSlender * kSlender * spread[2];
-}
-
-}  // namespace
-
-std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const float> spacings,
-                                      double typical) {
-  std::vector<std::uint8_t> strays(grid.size());
-  const auto near = static_cast<float>(typical);
-  detail::parallel_each_with<std::vector<CellGrid::Neighbor>>(
-      strays.size(), 4096, [&](std::size_t i, auto& nearest) {
-        if (spacings[i] <= kStraySpacings * near) return;
-        strays[i] = is_among_others(grid, static_cast<std::uint32_t>(i), nearest, near) ? 0 : 1;
-      });
-  return strays;
 }
 
 namespace {

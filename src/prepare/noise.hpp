@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
-#include "prepare/sheets.hpp"
 
 namespace palpate {
 
@@ -25,12 +24,6 @@ struct Noise {
 /// noise and no shape: on the flattest of them the residuals no longer grow with the window
 /// (docs/method.md 5.2).
 [[nodiscard]] Noise measure_noise(const CellGrid& grid, double spacing);
-
-/// 1 for each point that is farther from others than most and whose nearest do not lie around it in
-/// a sheet or along a line. `spacings`: of the points, `typical`: their median, m. In sorted order.
-[[nodiscard]] std::vector<std::uint8_t> find_strays(const CellGrid& grid,
-                                                    std::span<const float> spacings,
-                                                    double typical);
 
 /// How noisy a cloud is where: sensors err more on what is far away or faces them.
 class NoiseMap {

@@ -15,9 +15,11 @@
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/columns.hpp"
+#include "prepare/lines.hpp"
 #include "prepare/noise.hpp"
 #include "prepare/radii.hpp"
 #include "prepare/sheets.hpp"
+#include "prepare/strays.hpp"
 #include "prepare/weights.hpp"
 
 namespace palpate {

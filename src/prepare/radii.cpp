@@ -1,17 +1,16 @@
 #include "prepare/radii.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 
 #include "geometry/neighborhoods.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
+#include "prepare/lines.hpp"
 #include "prepare/sheet_fit.hpp"
 
 namespace palpate {
@@ -46,80 +45,10 @@ bool is_irregular(const CellGrid& grid, std::span<const float> spacings) {
 
 namespace {
 
-constexpr float kMultiple = 2.5f;       // R over the gap
-constexpr float kFaint = 2.5f;          // sums of weights: 5.8 on a square grid
-constexpr float kOpposite = -0.5f;      // cosine between two that lie on opposite sides
-constexpr float kFirstReach = 1.5f;     // radii
-constexpr int kWidenings = 2;           // of the reach, each twofold: gaps up to three radii
-constexpr int kLineWidenings = 4;       // likewise: the next line up to 30 points away
-constexpr std::size_t kEnough = 2048;   // points in reach: no sparse place any more
-constexpr std::size_t kOnLine = 5;      // nearest, the point itself among them, that show a line
-constexpr float kAside = 0.7f;          // cosine: 45 degrees to a line and more are beside it
-constexpr std::size_t kAlongLine = 16;  // nearest, over which the way to the next line is averaged
-constexpr std::size_t kTried = 64;      // nearest points beside a line
-constexpr float kThin = 0.2f;           // deviation of a line across, against along
-constexpr float kLines = 0.5f;          // of the sampled points, on lines: a cloud of lines
-
-/// The line that a point and its nearest are on: where its points lie and how far off it they are.
-struct Line {
-  Eigen::Vector3f along = Eigen::Vector3f::UnitX();
-  float spacing = 0;  ///< m, to the farthest of the nearest
-  float off = 1;      ///< deviation across the line, against that along it
-};
-
-Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighbor>& nearest) {
-  grid.nearest(grid.points()[i], kOnLine, nearest);
-  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-  Line line;
-  for (const CellGrid::Neighbor& found : nearest) {
-    const Eigen::Vector3f way = grid.points()[found.index] - grid.points()[i];
-    squares += way * way.transpose();
-    line.spacing = std::sqrt(found.squared_distance);
-  }
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(squares);
-  line.along = solver.eigenvectors().col(2);
-  const Eigen::Vector3f spread = solver.eigenvalues().cwiseMax(0);
-  line.off = spread[2] > 0 ? std::sqrt(spread[1] / spread[2]) : 1;
-  return line;
-}
-
-/// The further of the nearest two, aside of the line that a point is on, that lie on opposite
-/// sides of it; 0: there are none among those that are near, m.
-float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line,
-                 std::span<const std::uint32_t> near) {
-  std::vector<std::pair<float, Eigen::Vector3f>> aside;  // by distance; directions
-  for (const std::uint32_t j : near) {
-    const Eigen::Vector3f way = grid.points()[j] - grid.points()[i];
-    const float length = way.norm();
-    if (length > 0 && std::abs(way.dot(line.along)) <= kAside * length) {
-      aside.emplace_back(length, way / length);
-    }
-  }
-  const std::size_t count = std::min(aside.size(), kTried);
-  const auto closer = [](const auto& a, const auto& b) { return a.first < b.first; };
-  std::partial_sort(aside.begin(), aside.begin() + static_cast<std::ptrdiff_t>(count), aside.end(),
-                    closer);
-  for (std::size_t a = 1; a < count; ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      if (aside[a].second.dot(aside[b].second) < kOpposite) return aside[a].first;
-    }
-  }
-  return 0;
-}
-
-/// The gap that a point lies in; 0 where none is found. Looks within `reach` (m) at first, and
-/// within twice as much each time that it finds none, `times` in all.
-float gap_at(const CellGrid& grid, std::uint32_t i, const Line& line, float reach, int times,
-             std::vector<std::uint32_t>& near) {
-  for (int k = 0; k < times; ++k, reach *= 2) {
-    near.clear();
-    grid.within(grid.points()[i], reach, near);
-    if (near.size() > kEnough) break;
-    if (const float gap = gap_across(grid, i, line, near); gap > 0) return gap;
-  }
-  return 0;
-}
+constexpr float kMultiple = 2.5f;    // R over the gap
+constexpr float kFaint = 2.5f;       // sums of weights: 5.8 on a square grid
+constexpr float kFirstReach = 1.5f;  // radii
+constexpr int kWidenings = 2;        // of the reach, each twofold: gaps up to three radii
 
 }  // namespace
 
@@ -138,7 +67,7 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t i = faint[k];
       const Line line = line_at(grid, i, nearest);
-      const float gap = gap_at(grid, i, line, kFirstReach * before[i], kWidenings, near);
+      const float gap = gap_across(grid, i, line, kFirstReach * before[i], kWidenings, near);
       const float wanted = kMultiple * gap;
       if (!(wanted > before[i])) continue;
       const SheetFit fit = fitter.fit(grid, grid.points()[i], static_cast<double>(wanted),
@@ -154,40 +83,6 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
     }
   });
   return static_cast<std::size_t>(std::ranges::count(raised, 1));
-}
-
-void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
-  if (grid.size() < kFewestPoints) return;
-  const std::size_t step = std::max<std::size_t>(1, grid.size() / kSpacingSamples);
-  std::vector<CellGrid::Neighbor> nearest;
-  std::size_t lines = 0;
-  std::size_t looked = 0;
-  for (std::size_t i = step / 2; i < grid.size(); i += step, ++looked) {
-    if (line_at(grid, static_cast<std::uint32_t>(i), nearest).off < kThin) ++lines;
-  }
-  if (static_cast<float>(lines) < kLines * static_cast<float>(looked)) return;
-  std::vector<float> gaps(spacings.size());
-  detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellGrid::Neighbor> found;
-    std::vector<std::uint32_t> near;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto at = static_cast<std::uint32_t>(i);
-      const Line line = line_at(grid, at, found);
-      gaps[i] = gap_at(grid, at, line, 2 * line.spacing, kLineWidenings, near);
-    }
-  });
-  detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellGrid::Neighbor> found;
-    std::vector<float> around;
-    for (std::size_t i = begin; i < end; ++i) {
-      grid.nearest(grid.points()[i], kAlongLine, found);
-      around.clear();
-      for (const CellGrid::Neighbor& other : found) {
-        if (gaps[other.index] > 0) around.push_back(gaps[other.index]);
-      }
-      spacings[i] = std::max(spacings[i], static_cast<float>(median(around)));
-    }
-  });
 }
 
 namespace {

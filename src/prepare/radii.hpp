@@ -18,11 +18,6 @@ namespace palpate {
 /// Do the points lie so irregularly that the gaps between them need a larger support?
 [[nodiscard]] bool is_irregular(const CellGrid& grid, std::span<const float> spacings);
 
-/// Where points lie on lines (slices of a volume, the lines of a scanner), whose own points are
-/// nearer than those of the next line, raises their spacings (m) to the way to the next lines on
-/// both sides, so that supports bridge it. Lines up to 12 times as far apart as their points.
-void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings);
-
 /// Raises the support radii (m) of points that hardly any other's support reaches, though others
 /// lie on opposite sides of them, to 2.5 times the way to those, where one sheet goes on over the
 /// gap; that sheet becomes the point's own, and the way its spacing. Beside far denser points (a

@@ -26,7 +26,7 @@ constexpr float kFarSnapReach = 4;  // R
 constexpr std::size_t kFewSure = 12;
 constexpr float kSnapSlope = 0.12f;
 constexpr float kSnapResiduals = 3;
-constexpr float kShared = 0.3f;    // of the points within R
+constexpr float kShared = 0.3f;    // of the area within R: a third at a corner, less for jitter
 constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
 
 // A point lies on a second plane where that is another one and it is off it by so many spacings.
@@ -144,7 +144,7 @@ class Snapping {
     own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
   }
 
-  /// Do enough of the points around lie on the host's plane, too? At a corner of three faces a
+  /// Does enough of the area around lie on the host's plane, too? At a corner of three faces a
   /// third does.
   [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t host,
                                std::vector<std::uint32_t>& around) const {
@@ -152,10 +152,14 @@ class Snapping {
     const Vector3f& p = input_.grid.points()[i];
     input_.grid.within(p, input_.radii[i], around);
     const float on = std::max(kSnapResiduals * own_.residuals[host], kSnapSlope * input_.radii[i]);
-    const auto shared = std::ranges::count_if(around, [&](std::uint32_t j) {
-      return std::abs(own_.normals[host].dot(input_.grid.points()[j] - p)) <= on;
-    });
-    return static_cast<float>(shared) >= kShared * static_cast<float>(around.size());
+    float shared = 0;
+    float all = 0;
+    for (const std::uint32_t j : around) {
+      const float area = input_.spacings[j] * input_.spacings[j];
+      all += area;
+      if (std::abs(own_.normals[host].dot(input_.grid.points()[j] - p)) <= on) shared += area;
+    }
+    return shared >= kShared * all;
   }
 
   /// Where a thing is so small that hardly a point of it is sure, a plane has to do.

@@ -25,6 +25,7 @@ Proxy held_at(double depth) {
 struct Wait {
   int first_noted = -1;  // tick
   double largest_rise = 0;
+  double largest_fall = 0;
   Contact last;
 };
 
@@ -36,6 +37,8 @@ Wait wait(Proxy& proxy, const Vector3d& hand, int ticks) {
     const bool noted = has(wait.last.notes, ContactNote::freed);
     if (noted && wait.first_noted < 0) wait.first_noted = i;
     wait.largest_rise = std::max(wait.largest_rise, wait.last.force.norm() - before);
+    if (before < 1e9)
+      wait.largest_fall = std::max(wait.largest_fall, before - wait.last.force.norm());
     before = wait.last.force.norm();
   }
   return wait;
@@ -51,7 +54,8 @@ TEST(Freed, AHandFarBehindAPlateIsLetGoAfterASecondInHalfASecond) {
   EXPECT_GT(then.first_noted, 0);
   EXPECT_LT(then.last.force.norm(), 0.7 * 500 * 0.152);
   EXPECT_LE(then.largest_rise, 1e-9);
-  const Wait end = wait(proxy, hand, 400);
+  const Wait end = wait(proxy, hand, 500);
+  EXPECT_LT(std::max(then.largest_fall, end.largest_fall), 0.8);
   EXPECT_FALSE(end.last.touching);
   EXPECT_EQ(end.last.force.norm(), 0);
   EXPECT_LE(end.largest_rise, 1e-9);
@@ -70,6 +74,17 @@ TEST(Freed, AHandThatPressesLessDeepOrIntoSomethingSolidIsHeldForGood) {
     noted = noted || has(deep.step(block, {0, 0, 0.2}, kTick).notes, ContactNote::freed);
   }
   EXPECT_FALSE(noted);
+}
+
+// The inside of a body whose surface alone is known is free air, too.
+TEST(Freed, AHandThatPressesAThinSurfaceWithLessThanTenNewtonsIsHeldForGood) {
+  const BoxField skin({0.4, 0.4, 2e-4});
+  Proxy proxy({.stiffness = 60});
+  proxy.reset({0, 0, 0.05});
+  drive(proxy, skin, {0, 0, 0.05}, {0, 0, -0.15}, 0.5);
+  for (int i = 0; i < 3000; ++i) {
+    EXPECT_FALSE(has(proxy.step(skin, {0, 0, -0.15}, kTick).notes, ContactNote::freed));
+  }
 }
 
 }  // namespace

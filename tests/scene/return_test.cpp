@@ -85,6 +85,7 @@ class Returning : public testing::TestWithParam<Case> {
   void run(bool hole, const Vector3d& normal) {
     pressed_ = least_ = last_ = 0;
     held_ = 1e9;
+    went_behind_ = false;
     const Case& c = GetParam();
     SourceOptions options;
     options.T_world_sensor = test::looking_down();
@@ -122,6 +123,7 @@ class Returning : public testing::TestWithParam<Case> {
           if (t < kSilent) pressed_ = std::max(pressed_, force);
           if (t > kSilent) least_ = std::min(least_, force);
           if (t > kBack + kHeld && t < kLift) held_ = std::min(held_, force);
+          went_behind_ |= t > kBack && t < kLift && has(run.field().notes(), FieldNote::behind);
           last_ = force;
         });
   }
@@ -130,6 +132,7 @@ class Returning : public testing::TestWithParam<Case> {
   double least_ = 0;
   double last_ = 0;
   double held_ = 0;  // once the surface is back, the least
+  bool went_behind_ = false;
 };
 
 TEST_P(Returning, ASurfaceLetsAHandOutAndHoldsItAgain) {
@@ -142,6 +145,7 @@ TEST_P(Returning, ASurfaceLetsAHandOutAndHoldsItAgain) {
         const double paid = paid_for(pressed_);
         EXPECT_GT(held_, (paid < pressed_ ? 0.8 : 0.9) * paid);
       }
+      EXPECT_TRUE(went_behind_ || held_ > 0);
       EXPECT_GT(least_, -0.1) << "held from behind";
       EXPECT_GT(last_, 1.9) << "not held any more";
     }

@@ -21,8 +21,8 @@ enum class ContactNote : std::uint32_t {
   fell =
       1u << 6,  ///< what held the proxy gave way: it went, in contact or out of it, farther than
                 ///< twice the hand's displacement and the surface's by half of |proxy - HIP| before
-  freed = 1u << 7,  ///< the hand was in free air, more than 10 R from the proxy, for 1 s: the
-                    ///< spring fades in 0.5 s, and the proxy comes to the hand
+  freed = 1u << 7,  ///< the hand was held in free air with more than 10 N, more than 10 R from the
+                    ///< proxy, for 1 s: the spring fades in 0.5 s, the proxy comes to the hand
 };
 
 [[nodiscard]] constexpr ContactNote operator|(ContactNote a, ContactNote b) noexcept {

@@ -1,0 +1,143 @@
+#include "prepare/lines.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "geometry/parallel.hpp"
+#include "palpate/geometry/spacing.hpp"
+
+// Points that lie on lines, nearer to each other than the lines are.
+
+namespace palpate {
+
+void nearest_places(const CellGrid& grid, std::uint32_t i, std::size_t count,
+                    std::vector<CellGrid::Neighbor>& places) {
+  constexpr std::size_t kCopies = 4;  // of each place, on the average
+  constexpr float kOnePlace = 0.2f;   // of the way to the farthest: 0.7 and more on a grid
+  grid.nearest(grid.points()[i], kCopies * count, places);
+  if (places.size() < count) return;
+  const float apart = kOnePlace * kOnePlace * places[count - 1].squared_distance;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < places.size() && kept < count; ++k) {
+    const Eigen::Vector3f& here = grid.points()[places[k].index];
+    const auto is_near = [&](const CellGrid::Neighbor& other) {
+      return (grid.points()[other.index] - here).squaredNorm() < apart;
+    };
+    const auto end = places.begin() + static_cast<std::ptrdiff_t>(kept);
+    if (std::none_of(places.begin(), end, is_near)) places[kept++] = places[k];
+  }
+  places.resize(kept);
+}
+
+namespace {
+
+constexpr float kOpposite = -0.5f;      // cosine between two that lie on opposite sides
+constexpr int kLineWidenings = 4;       // likewise: the next line up to 30 points away
+constexpr std::size_t kEnough = 2048;   // points in reach: no sparse place any more
+constexpr std::size_t kOnLine = 5;      // nearest, the point itself among them, that show a line
+constexpr float kAside = 0.7f;          // cosine: 45 degrees to a line and more are beside it
+constexpr std::size_t kAlongLine = 16;  // nearest, over which the way to the next line is averaged
+constexpr std::size_t kTried = 64;      // nearest points beside a line
+constexpr float kThin = 0.2f;           // deviation of a line across, against along
+constexpr float kLines = 0.5f;          // of the sampled points, on lines: a cloud of lines
+
+/// The further of the nearest two, aside of the line that a point is on, that lie on opposite
+/// sides of it; 0: there are none among those that are near, m.
+float gap_among(const CellGrid& grid, std::uint32_t i, const Line& line,
+                std::span<const std::uint32_t> near) {
+  std::vector<std::pair<float, Eigen::Vector3f>> aside;  // by distance; directions
+  for (const std::uint32_t j : near) {
+    const Eigen::Vector3f way = grid.points()[j] - grid.points()[i];
+    const float length = way.norm();
+    if (length > 0 && std::abs(way.dot(line.along)) <= kAside * length) {
+      aside.emplace_back(length, way / length);
+    }
+  }
+  const std::size_t count = std::min(aside.size(), kTried);
+  const auto closer = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::partial_sort(aside.begin(), aside.begin() + static_cast<std::ptrdiff_t>(count), aside.end(),
+                    closer);
+  for (std::size_t a = 1; a < count; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (aside[a].second.dot(aside[b].second) < kOpposite) return aside[a].first;
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighbor>& nearest) {
+  nearest_places(grid, i, kOnLine, nearest);
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  Line line;
+  for (const CellGrid::Neighbor& found : nearest) {
+    const Eigen::Vector3f way = grid.points()[found.index] - grid.points()[i];
+    squares += way * way.transpose();
+    line.spacing = std::sqrt(found.squared_distance);
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(squares);
+  line.along = solver.eigenvectors().col(2);
+  const Eigen::Vector3f spread = solver.eigenvalues().cwiseMax(0);
+  line.off = spread[2] > 0 ? std::sqrt(spread[1] / spread[2]) : 1;
+  return line;
+}
+
+float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float reach, int times,
+                 std::vector<std::uint32_t>& near) {
+  for (int k = 0; k < times; ++k, reach *= 2) {
+    near.clear();
+    grid.within(grid.points()[i], reach, near);
+    if (near.size() > kEnough) break;
+    if (const float gap = gap_among(grid, i, line, near); gap > 0) return gap;
+  }
+  return 0;
+}
+
+namespace {
+
+constexpr std::size_t kFewestOnLines = 100;  // points that tell
+constexpr std::size_t kLineSamples = 1000;
+
+}  // namespace
+
+void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
+  if (grid.size() < kFewestOnLines) return;
+  const std::size_t step = std::max<std::size_t>(1, grid.size() / kLineSamples);
+  std::vector<CellGrid::Neighbor> nearest;
+  std::size_t lines = 0;
+  std::size_t looked = 0;
+  for (std::size_t i = step / 2; i < grid.size(); i += step, ++looked) {
+    if (line_at(grid, static_cast<std::uint32_t>(i), nearest).off < kThin) ++lines;
+  }
+  if (static_cast<float>(lines) < kLines * static_cast<float>(looked)) return;
+  std::vector<float> gaps(spacings.size());
+  detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<CellGrid::Neighbor> found;
+    std::vector<std::uint32_t> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto at = static_cast<std::uint32_t>(i);
+      const Line line = line_at(grid, at, found);
+      if (line.off >= kThin) continue;
+      gaps[i] = gap_across(grid, at, line, 2 * line.spacing, kLineWidenings, near);
+    }
+  });
+  detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<CellGrid::Neighbor> found;
+    std::vector<float> around;
+    for (std::size_t i = begin; i < end; ++i) {
+      grid.nearest(grid.points()[i], kAlongLine, found);
+      around.clear();
+      for (const CellGrid::Neighbor& other : found) {
+        if (gaps[other.index] > 0) around.push_back(gaps[other.index]);
+      }
+      spacings[i] = std::max(spacings[i], static_cast<float>(median(around)));
+    }
+  });
+}
+
+}  // namespace palpate

@@ -1,0 +1,82 @@
+#include "prepare/strays.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "geometry/parallel.hpp"
+#include "prepare/lines.hpp"
+
+// Points that are evidence of no surface: what lies around them is neither a sheet nor a line.
+
+namespace palpate {
+namespace {
+
+// A point this many typical spacings from its neighbours has to be on a sheet or a line with them:
+// beside a surface local_spacings() gives a stray twice that surface's, less what it averages.
+constexpr float kStraySpacings = 1.8f;
+constexpr std::size_t kNeighbors = 9;  // the point itself and the eight around it on a sheet
+constexpr float kSlender = 1.f / 3;    // judgement: of a sheet's width, and of a line's length
+// The square of how far the neighbours' middle is, against theirs: 0.6 at a sheet's corner, 0.7 at
+// a line's end, 1 where all are far away; less than half where they lie around.
+constexpr float kBeside = 0.8f;
+constexpr float kAround = 0.5f;
+constexpr std::ptrdiff_t kFewInSheets =
+    3;  // of the nearest that are in a sheet: the rows beside a fold are not
+
+/// How the places nearest to a point lie.
+struct Neighborhood {
+  bool like_a_surface = false;  ///< in a sheet or along a line
+  float aside = 1;              ///< 0: all around the point; 1: all far away on one side
+};
+
+Neighborhood neighborhood(const CellGrid& grid, std::uint32_t i,
+                          std::span<const CellGrid::Neighbor> places) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  for (const CellGrid::Neighbor& place : places) {
+    const Eigen::Vector3f way = grid.points()[place.index] - grid.points()[i];
+    sum += way / static_cast<float>(kNeighbors);
+    squares += way * way.transpose() / static_cast<float>(kNeighbors);
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(squares - sum * sum.transpose());
+  const Eigen::Vector3f spread = solver.eigenvalues().cwiseMax(0);
+  const float slender = kSlender * kSlender;
+  return {spread[0] < slender * spread[1] || spread[1] < slender * spread[2],
+          sum.squaredNorm() / squares.trace()};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const float> spacings,
+                                      double typical) {
+  const auto near = static_cast<float>(typical);
+  std::vector<std::uint8_t> doubted(grid.size());
+  const auto look = [&](std::size_t i, std::vector<CellGrid::Neighbor>& places) {
+    nearest_places(grid, static_cast<std::uint32_t>(i), kNeighbors, places);
+    if (places.size() < kNeighbors) return Neighborhood{};
+    return neighborhood(grid, static_cast<std::uint32_t>(i), places);
+  };
+  const auto each = [&](const auto& decide) {
+    detail::parallel_each_with<std::vector<CellGrid::Neighbor>>(grid.size(), 4096, decide);
+  };
+  each([&](std::size_t i, auto& places) {
+    if (spacings[i] <= kStraySpacings * near) return;
+    const Neighborhood around = look(i, places);
+    const bool company = places.size() > 1 && places[1].squared_distance <= near * near;
+    doubted[i] = !company && (!around.like_a_surface || around.aside > kBeside) ? 1 : 0;
+  });
+  // Where sheets meet, the nearest are in no sheet, but most of them are.
+  std::vector<std::uint8_t> strays(grid.size());
+  each([&](std::size_t i, auto& places) {
+    if (doubted[i] == 0) return;
+    const Neighborhood around = look(i, places);
+    const auto sure = std::ranges::count_if(
+        places, [&](const CellGrid::Neighbor& place) { return doubted[place.index] == 0; });
+    const bool edge = around.aside < kAround && sure >= kMostOfNearest;
+    strays[i] = edge ? 0 : 1;
+  });
+  return strays;
+}
+
+}  // namespace palpate
