@@ -20,8 +20,7 @@ constexpr float kSlender = 1.f / 3;    // judgement: of a sheet's width, and of 
 // a line's end, 1 where all are far away; less than half where they lie around.
 constexpr float kBeside = 0.8f;
 constexpr float kAround = 0.5f;
-constexpr std::ptrdiff_t kFewInSheets =
-    3;  // of the nearest that are in a sheet: the rows beside a fold are not
+constexpr std::ptrdiff_t kMostOfNearest = 5;  // the point itself among them
 
 /// How the places nearest to a point lie.
 struct Neighborhood {
