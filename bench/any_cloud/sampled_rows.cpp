@@ -82,7 +82,8 @@ void slice(Draft& draft, const Body& body, double ratio) {
   for (const Vector3d& seed : draft.points) {
     const double height = first + kPitch * std::round((normal.dot(seed) - first) / kPitch);
     for (int i = 0; i < 4 * ratio; ++i) {
-      Vector3d p = seed + draft.random.uniform() * draft.direction();
+      const double off = draft.random.uniform();
+      Vector3d p = seed + off * draft.direction();
       if (!into_plane(body.shape, normal, height, p)) continue;
       if (taken.add(ratio / kPitch * p)) sliced.push_back(p);
     }
@@ -119,7 +120,8 @@ void round_to(Draft& draft, double step) {
 // Up to `most` times as many points in some places as in others.
 void thin_out(Draft& draft, double most) {
   poke_around(draft, kPokes);
-  const Vector3d wave = draft.direction() * (2 * std::numbers::pi / draft.between(20, 40));
+  const double length = draft.between(20, 40);
+  const Vector3d wave = draft.direction() * (2 * std::numbers::pi / length);
   const std::vector<Vector3d> all = std::move(draft.points);
   const std::vector<Vector3d> normals = std::move(draft.normals);
   draft.points.clear();

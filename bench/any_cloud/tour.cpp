@@ -38,8 +38,8 @@ std::optional<Poke> draw_poke(Draft& draft, double ball) {
   for (int i = 0; i < kTries; ++i) {
     const std::size_t at = draft.random.bits() % draft.points.size();
     const Vector3d& p = draft.points[at];
-    const Vector3d out =
-        (draft.normals[at] + kLean * draft.random.uniform() * draft.direction()).normalized();
+    const double lean = kLean * draft.random.uniform();
+    const Vector3d out = (draft.normals[at] + lean * draft.direction()).normalized();
     const double along = p.dot(out);
     const double reach = -along + std::sqrt(along * along + ball * ball - p.squaredNorm());
     if (!is_clear(draft, p, out, reach)) continue;
@@ -69,6 +69,7 @@ void travel(Draft& draft, const Vector3d& to, double ball) {
 }  // namespace
 
 void poke_around(Draft& draft, int pokes) {
+  if (draft.points.empty()) return;
   double ball = 0;
   for (const Vector3d& p : draft.points) ball = std::max(ball, p.norm());
   ball += kAway;

@@ -73,6 +73,16 @@ TEST(AnyCloud, IsFeltWhereItWasRightAlready) {
   }
 }
 
+TEST(AnyCloud, LetsNoPokeThroughBumpsAndRims) {
+  for (const char* row : {"relief 3", "relief 4", "relief 6", "relief 10", "thread", "cup"}) {
+    const Result result = run_row(row_named(row), 1);
+    ASSERT_TRUE(result.score) << result.refusal;
+    EXPECT_GT(result.score->pokes, 15) << row;
+    EXPECT_EQ(result.score->passed, 0) << row;
+    EXPECT_EQ(result.score->held, 0) << row;
+  }
+}
+
 // A plane that is pressed two deep for ten ticks, after ten in free air.
 struct Press {
   HostileScene scene;
@@ -109,6 +119,25 @@ TEST(AnyCloudScore, CountsLostContactOnceItIsThrough) {
   EXPECT_NEAR(found.lost, 60, 1e-9);
   EXPECT_EQ(found.through, 1);
   EXPECT_NEAR(found.step, 1, 1e-12);
+}
+
+TEST(AnyCloudScore, CountsPokesThatPassAndHandsThatAreHeldOutside) {
+  Press press;
+  EXPECT_EQ(press.scored().pokes, 1);
+  EXPECT_EQ(press.scored().passed, 0);
+  EXPECT_EQ(press.scored().over, 0);
+  for (std::size_t i = 12; i < 16; ++i) {  // where the hand is, 2 deep
+    press.rendered.trace.force[i].setZero();
+    press.rendered.trace.proxy[i] = press.scene.ticks[i].hand;
+  }
+  EXPECT_EQ(press.scored().passed, 1);
+  EXPECT_EQ(press.scored().held, 0);
+  press.scene.ticks[3].hand = Vector3d(0, 0, 9);
+  press.rendered.trace.force[3] = Vector3d(0, 0, 2);
+  const Score found = press.scored();
+  EXPECT_EQ(found.held, 1);
+  EXPECT_EQ(found.most_outside, 2);
+  EXPECT_GT(found.over, 0);
 }
 
 TEST(AnyCloudScore, CountsForceInFreeAirAndAgainstTheIdeals) {
