@@ -122,12 +122,12 @@ TEST(TouchStatistics, CountsEveryNoteUnderItsOwnName) {
 TEST(TouchStatistics, CountsEveryBitOfContactsAndFields) {
   TouchStatistics statistics;
   ServoState each;
-  for (int bit = 0; bit < 7; ++bit) {
+  for (int bit = 0; bit < 8; ++bit) {
     each.contact.notes |= static_cast<ContactNote>(1u << bit);
     each.field_notes = each.field_notes | static_cast<FieldNote>(1u << bit);
   }
   statistics.add(each);
-  EXPECT_EQ(statistics.notes().size(), 14u);
+  EXPECT_EQ(statistics.notes().size(), 15u);
 }
 
 }  // namespace
