@@ -26,7 +26,9 @@ constexpr float kFarSnapReach = 4;  // R
 constexpr std::size_t kFewSure = 12;
 constexpr float kSnapSlope = 0.12f;
 constexpr float kSnapResiduals = 3;
-constexpr float kShared = 0.3f;    // of the area within R: a third at a corner, less for jitter
+constexpr float kShared = 0.3f;  // of the area within R: a third at a corner, less for jitter
+constexpr float kCrossed =
+    0.2f;  // likewise: a plane that only crosses the surface holds a strip of 0.15
 constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
 
 // A point lies on a second plane where that is another one and it is off it by so many spacings.
@@ -64,7 +66,7 @@ class Snapping {
       } else if (own_.others[i] != 0) {
         list_sure(i, near);
         const std::uint32_t second = second_host(i, i, near);
-        if (second != kNoHost && is_shared(i, second, near)) second_hosts_[i] = second;
+        if (second != kNoHost && is_shared(i, second, kCrossed, near)) second_hosts_[i] = second;
       }
     });
     std::vector<std::uint8_t> alone(sure_.size());
@@ -132,9 +134,9 @@ class Snapping {
     const std::uint32_t host = best_host(i, near);
     if (host == kNoHost) return;
     const std::uint32_t second = second_host(i, host, near);
-    if (!is_shared(i, host, near)) return;
+    if (!is_shared(i, host, kShared, near)) return;
     hosts_[i] = host;
-    if (second != kNoHost && is_shared(i, second, near)) second_hosts_[i] = second;
+    if (second != kNoHost && is_shared(i, second, kCrossed, near)) second_hosts_[i] = second;
     const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
     const float turn = kTurnMargin * bow(input_, own_, host) * way;
     if (std::abs(own_.normals[i].dot(own_.normals[host])) < 1 - 0.5f * turn * turn) {
@@ -146,7 +148,7 @@ class Snapping {
 
   /// Does enough of the area around lie on the host's plane, too? At a corner of three faces a
   /// third does.
-  [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t host,
+  [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t host, float share,
                                std::vector<std::uint32_t>& around) const {
     around.clear();
     const Vector3f& p = input_.grid.points()[i];
@@ -159,7 +161,7 @@ class Snapping {
       all += area;
       if (std::abs(own_.normals[host].dot(input_.grid.points()[j] - p)) <= on) shared += area;
     }
-    return shared >= kShared * all;
+    return shared >= share * all;
   }
 
   /// Where a thing is so small that hardly a point of it is sure, a plane has to do.
