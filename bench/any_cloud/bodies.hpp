@@ -10,6 +10,9 @@ struct Body {
   Eigen::Vector3d reach;
 };
 
+/// Makes it the truth, and puts points all over it.
+void scan(Draft& draft, const Body& body);
+
 /// A capsule, box, torus, dumbbell, relief or cup: chance decides.
 [[nodiscard]] Body draw_body(Draft& draft);
 

@@ -16,8 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kPokes = 25;
-
 Shape moved(const Shape& shape, const Eigen::Isometry3d& T) {
   return [shape, T, back = T.inverse()](const Vector3d& x) {
     Distance d = shape(back * x);
@@ -31,8 +29,7 @@ using Sample = std::function<void(Draft& draft, const Body& body)>;
 
 void touch_sampled(Draft& draft, const Sample& sample) {
   const Body body = draw_body(draft);
-  draft.truth = body.shape;
-  draft.surface(body.shape, -body.reach, body.reach);
+  scan(draft, body);
   sample(draft, body);
 }
 
@@ -46,7 +43,7 @@ void scan_twice(Draft& draft, const Body& body, double apart) {
   draft.truth = unite(body.shape, second);
   draft.surface(second, -body.reach - Vector3d::Constant(apart + 1),
                 body.reach + Vector3d::Constant(apart + 1));
-  poke_around(draft, kPokes);
+  poke_around(draft);
 }
 
 // The place near p on the surface and in the plane; false where there is none.
@@ -97,14 +94,14 @@ void slice(Draft& draft, const Body& body, double ratio) {
   }
   draft.points = std::move(targets);
   draft.normals = std::move(outward);
-  poke_around(draft, kPokes);
+  poke_around(draft);
   draft.points.clear();
   draft.normals.clear();
   for (const Vector3d& p : sliced) draft.add(p, body.shape(p).gradient.normalized());
 }
 
 void stray(Draft& draft, const Body& body, double share) {
-  poke_around(draft, kPokes);
+  poke_around(draft);
   const auto count = static_cast<std::size_t>(share * static_cast<double>(draft.points.size()));
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3d p = draft.within(-1.5 * body.reach, 1.5 * body.reach);
@@ -113,13 +110,13 @@ void stray(Draft& draft, const Body& body, double share) {
 }
 
 void round_to(Draft& draft, double step) {
-  poke_around(draft, kPokes);
+  poke_around(draft);
   for (Vector3d& p : draft.points) p = step * (p / step).array().round().matrix();
 }
 
 // Up to `most` times as many points in some places as in others.
 void thin_out(Draft& draft, double most) {
-  poke_around(draft, kPokes);
+  poke_around(draft);
   const double length = draft.between(20, 40);
   const Vector3d wave = draft.direction() * (2 * std::numbers::pi / length);
   const std::vector<Vector3d> all = std::move(draft.points);

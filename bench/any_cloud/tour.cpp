@@ -12,6 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr int kPokes = 25;
 constexpr double kAway = 14;      // of the ball that a hand travels on
 constexpr double kNear = 8;       // from here on a poke is slow
 constexpr double kLean = 0.6;     // at most, of a poke to the normal
@@ -68,12 +69,12 @@ void travel(Draft& draft, const Vector3d& to, double ball) {
 
 }  // namespace
 
-void poke_around(Draft& draft, int pokes) {
+void poke_around(Draft& draft) {
   if (draft.points.empty()) return;
   double ball = 0;
   for (const Vector3d& p : draft.points) ball = std::max(ball, p.norm());
   ball += kAway;
-  for (int i = 0; i < pokes; ++i) {
+  for (int i = 0; i < kPokes; ++i) {
     const std::optional<Poke> poke = draw_poke(draft, ball);
     if (!poke) continue;
     if (draft.hand.ticks.empty()) draft.hand.start(poke->outside);

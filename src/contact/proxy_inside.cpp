@@ -50,7 +50,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   if (!started_) reset(hip);
   Contact contact;
   Probe probe{field, options_.texture, step_length_};
-  const bool held = touching_ && !waiting_;
+  const bool held = is_held();
   const Eigen::Vector3d before = position_;
   const Eigen::Vector3d side = normal_;
   const EnergyTank tank = tank_;
@@ -64,7 +64,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   revision_ = probe.traits().revision;
   field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
   contact.proxy = position_;
-  contact.touching = touching_ && !waiting_;
+  contact.touching = is_held();
   contact.evaluations = probe.evaluations();
   const double jump = unexplained(before, hip, dt);
   if (held && jump > kFall * (before - hand_).norm()) contact.notes |= ContactNote::fell;
@@ -98,7 +98,7 @@ double Proxy::Inside::unexplained(const Eigen::Vector3d& before, const Eigen::Ve
 void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
                               Contact& contact) noexcept {
   tank_ = before;
-  tank_.take_over(touching_ && !waiting_ ? begun_stiffness(position_, hip) : 0);
+  tank_.take_over(is_held() ? begun_stiffness(position_, hip) : 0);
   contact.stiffness = tank_.stiffness();
   const double least = waiting_ ? 0 : kMuchSofter * wanted_stiffness();
   if (contact.stiffness < least) contact.notes |= ContactNote::softer;
@@ -160,11 +160,11 @@ void Proxy::Inside::cut_short(Contact& contact) noexcept {
 void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
                          Contact& contact) noexcept {
   const std::optional<SurfacePoint> at = find_surface(probe, hip, contact);
-  if (at) waiting_ = false;
   if (!at) {
-    if (touching_ && !waiting_) keep(probe, hip, dt, contact);
+    if (is_held()) keep(probe, hip, dt, contact);
     return;
   }
+  waiting_ = false;
   lost_time_ = 0;
   const FrictionLaw law =
       friction_law(options_.friction, factor(surface_.friction_factor), tank_.stiffness(), dt);

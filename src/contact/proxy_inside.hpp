@@ -84,6 +84,7 @@ class Proxy::Inside {
   void change(const ProxyOptions& checked) noexcept { options_ = checked; }
 
  private:
+  [[nodiscard]] bool is_held() const noexcept { return touching_ && !waiting_; }
   void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
   void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
   void release(const Eigen::Vector3d& place) noexcept;

@@ -1,3 +1,5 @@
+// Finds points that lie on lines, nearer to each other than the lines are, and the gaps between.
+
 #include "prepare/lines.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -8,29 +10,9 @@
 
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
-
-// Points that lie on lines, nearer to each other than the lines are.
+#include "prepare/places.hpp"
 
 namespace palpate {
-
-void nearest_places(const CellGrid& grid, std::uint32_t i, std::size_t count,
-                    std::vector<CellGrid::Neighbor>& places) {
-  constexpr std::size_t kCopies = 4;  // of each place, on the average
-  constexpr float kOnePlace = 0.2f;   // of the way to the farthest: 0.7 and more on a grid
-  grid.nearest(grid.points()[i], kCopies * count, places);
-  if (places.size() < count) return;
-  const float apart = kOnePlace * kOnePlace * places[count - 1].squared_distance;
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < places.size() && kept < count; ++k) {
-    const Eigen::Vector3f& here = grid.points()[places[k].index];
-    const auto is_near = [&](const CellGrid::Neighbor& other) {
-      return (grid.points()[other.index] - here).squaredNorm() < apart;
-    };
-    const auto end = places.begin() + static_cast<std::ptrdiff_t>(kept);
-    if (std::none_of(places.begin(), end, is_near)) places[kept++] = places[k];
-  }
-  places.resize(kept);
-}
 
 namespace {
 
@@ -98,23 +80,15 @@ float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float 
   return 0;
 }
 
-namespace {
-
-constexpr std::size_t kFewestOnLines = 100;  // points that tell
-constexpr std::size_t kLineSamples = 1000;
-
-}  // namespace
-
 void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
-  if (grid.size() < kFewestOnLines) return;
-  const std::size_t step = std::max<std::size_t>(1, grid.size() / kLineSamples);
   std::vector<CellGrid::Neighbor> nearest;
   std::size_t lines = 0;
   std::size_t looked = 0;
-  for (std::size_t i = step / 2; i < grid.size(); i += step, ++looked) {
-    if (line_at(grid, static_cast<std::uint32_t>(i), nearest).off < kThin) ++lines;
-  }
-  if (static_cast<float>(lines) < kLines * static_cast<float>(looked)) return;
+  each_sample(grid, [&](std::uint32_t i) {
+    ++looked;
+    if (line_at(grid, i, nearest).off < kThin) ++lines;
+  });
+  if (looked == 0 || static_cast<float>(lines) < kLines * static_cast<float>(looked)) return;
   std::vector<float> gaps(spacings.size());
   detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<CellGrid::Neighbor> found;

@@ -8,12 +8,6 @@
 
 namespace palpate {
 
-/// The point itself and its nearest, `count` in all, no two of them much nearer to each other than
-/// the farthest is: what was seen twice, and a cluster far from the rest, count once. Fewer where
-/// most points around do.
-void nearest_places(const CellGrid& grid, std::uint32_t i, std::size_t count,
-                    std::vector<CellGrid::Neighbor>& places);
-
 /// The line that a point and its nearest places are on.
 struct Line {
   Eigen::Vector3f along = Eigen::Vector3f::UnitX();

@@ -26,9 +26,12 @@ constexpr float kFarSnapReach = 4;  // R
 constexpr std::size_t kFewSure = 12;
 constexpr float kSnapSlope = 0.12f;
 constexpr float kSnapResiduals = 3;
-constexpr float kShared = 0.3f;  // of the area within R: a third at a corner, less for jitter
-constexpr float kCrossed =
-    0.2f;  // likewise: a plane that only crosses the surface holds a strip of 0.15
+
+// Of the area within R, what lies on a plane that holds there: at a corner of three faces a third,
+// less for jitter. A second one needs more than the strip of 0.15 where a plane only crosses.
+constexpr float kShared = 0.3f;
+constexpr float kSecondShared = 0.2f;
+
 constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
 
 // A point lies on a second plane where that is another one and it is off it by so many spacings.
@@ -65,8 +68,7 @@ class Snapping {
         take_host(i, near);
       } else if (own_.others[i] != 0) {
         list_sure(i, near);
-        const std::uint32_t second = second_host(i, i, near);
-        if (second != kNoHost && is_shared(i, second, kCrossed, near)) second_hosts_[i] = second;
+        second_hosts_[i] = second_host(i, i, near);
       }
     });
     std::vector<std::uint8_t> alone(sure_.size());
@@ -136,7 +138,7 @@ class Snapping {
     const std::uint32_t second = second_host(i, host, near);
     if (!is_shared(i, host, kShared, near)) return;
     hosts_[i] = host;
-    if (second != kNoHost && is_shared(i, second, kCrossed, near)) second_hosts_[i] = second;
+    second_hosts_[i] = second;
     const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
     const float turn = kTurnMargin * bow(input_, own_, host) * way;
     if (std::abs(own_.normals[i].dot(own_.normals[host])) < 1 - 0.5f * turn * turn) {
@@ -194,9 +196,10 @@ class Snapping {
     return host;
   }
 
-  /// The nearest sure point of another plane that the point lies on as well.
+  /// The nearest sure point of another plane that the point lies on as well, if that holds there.
+  /// `near`: sure points around; then memory.
   [[nodiscard]] std::uint32_t second_host(std::uint32_t i, std::uint32_t first,
-                                          const std::vector<std::uint32_t>& near) const {
+                                          std::vector<std::uint32_t>& near) const {
     float best = std::numeric_limits<float>::infinity();
     std::uint32_t host = kNoHost;
     for (const std::uint32_t j : near) {
@@ -209,7 +212,7 @@ class Snapping {
       best = squared;
       host = j;
     }
-    return host;
+    return host != kNoHost && is_shared(i, host, kSecondShared, near) ? host : kNoHost;
   }
 
   const SheetInput& input_;

@@ -1,12 +1,12 @@
+// Finds points that are evidence of no surface: around them is neither a sheet nor a line.
+
 #include "prepare/strays.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "geometry/parallel.hpp"
-#include "prepare/lines.hpp"
-
-// Points that are evidence of no surface: what lies around them is neither a sheet nor a line.
+#include "prepare/places.hpp"
 
 namespace palpate {
 namespace {

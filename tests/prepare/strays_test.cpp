@@ -60,7 +60,7 @@ TEST_F(Strays, AreWhatLiesEverywhereAroundASheet) {
   EXPECT_GT(others, 400);
 }
 
-// As an object that is far from the scanner, beside one that is near. Along its edges the nearest
+// Such is an object far from the scanner, beside one that is near. Along its edges the nearest
 // make no sheet, and most of them are in none: some are lost there.
 TEST_F(Strays, AreNoFacesOfABoxThatIsSparse) {
   for (int i = 0; i < 12; ++i) {

@@ -48,9 +48,9 @@ constexpr std::array<Note, 15> kNotes = {{
      "gaps), or the touched surface disappeared",
      ContactNote::fell, FieldNote::none},
     {"freed",
-     "the hand was held in free air, far from where it touched, so it was let go; the surface has "
+     "the hand was held in free air, far from where it touched, so it was let go; it went through "
      "a "
-     "hole there, or the hand went through something thin",
+     "hole or something thin",
      ContactNote::freed, FieldNote::none},
     {"thinned",
      "there were more points near the tool than the patch holds, so some were ignored; give a "
@@ -104,6 +104,7 @@ void TouchStatistics::add(const ServoState& step) {
     if (first || !last_.contact.touching) ++contacts_;
   }
   largest_force_ = std::max(largest_force_, step.force.norm());
+  static_assert(std::tuple_size_v<decltype(notes_)> == kNotes.size());
   for (std::size_t i = 0; i < kNotes.size(); ++i) notes_[i] += kNotes[i].is_in(step) ? 1 : 0;
   if (has(contact.notes, ContactNote::fault)) ++faults_;
   times_.add(step.timing.computing);

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "palpate/geometry/cell_grid.hpp"
+
+namespace palpate {
+
+/// The point itself and its nearest, `count` in all, no two of them much nearer to each other than
+/// the farthest is: what was seen twice, and a cluster far from the rest, count once. Fewer where
+/// most points around do.
+void nearest_places(const CellGrid& grid, std::uint32_t i, std::size_t count,
+                    std::vector<CellGrid::Neighbor>& places);
+
+/// Calls visit(i) for about a thousand points, spread over the cloud. Clouds of fewer than 100
+/// points tell nothing: none.
+template <class Visit>
+void each_sample(const CellGrid& grid, const Visit& visit) {
+  constexpr std::size_t kSamples = 1000;
+  constexpr std::size_t kFewest = 100;
+  if (grid.size() < kFewest) return;
+  const std::size_t step = std::max<std::size_t>(1, grid.size() / kSamples);
+  for (std::size_t i = step / 2; i < grid.size(); i += step) visit(static_cast<std::uint32_t>(i));
+}
+
+}  // namespace palpate
