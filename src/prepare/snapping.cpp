@@ -28,9 +28,8 @@ constexpr float kSnapSlope = 0.12f;
 constexpr float kSnapResiduals = 3;
 
 // Of the area within R, what lies on a plane that holds there: at a corner of three faces a third,
-// less for jitter. A second one needs more than the strip of 0.15 where a plane only crosses.
+// less for jitter.
 constexpr float kShared = 0.3f;
-constexpr float kSecondShared = 0.2f;
 
 constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
 
@@ -136,7 +135,7 @@ class Snapping {
     const std::uint32_t host = best_host(i, near);
     if (host == kNoHost) return;
     const std::uint32_t second = second_host(i, host, near);
-    if (!is_shared(i, host, kShared, near)) return;
+    if (!is_shared(i, host, near)) return;
     hosts_[i] = host;
     second_hosts_[i] = second;
     const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
@@ -150,7 +149,7 @@ class Snapping {
 
   /// Does enough of the area around lie on the host's plane, too? At a corner of three faces a
   /// third does.
-  [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t host, float share,
+  [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t host,
                                std::vector<std::uint32_t>& around) const {
     around.clear();
     const Vector3f& p = input_.grid.points()[i];
@@ -163,7 +162,7 @@ class Snapping {
       all += area;
       if (std::abs(own_.normals[host].dot(input_.grid.points()[j] - p)) <= on) shared += area;
     }
-    return shared >= share * all;
+    return shared >= kShared * all;
   }
 
   /// Where a thing is so small that hardly a point of it is sure, a plane has to do.
@@ -196,10 +195,9 @@ class Snapping {
     return host;
   }
 
-  /// The nearest sure point of another plane that the point lies on as well, if that holds there.
-  /// `near`: sure points around; then memory.
+  /// The nearest sure point of another plane that the point lies on as well.
   [[nodiscard]] std::uint32_t second_host(std::uint32_t i, std::uint32_t first,
-                                          std::vector<std::uint32_t>& near) const {
+                                          const std::vector<std::uint32_t>& near) const {
     float best = std::numeric_limits<float>::infinity();
     std::uint32_t host = kNoHost;
     for (const std::uint32_t j : near) {
@@ -212,7 +210,7 @@ class Snapping {
       best = squared;
       host = j;
     }
-    return host != kNoHost && is_shared(i, host, kSecondShared, near) ? host : kNoHost;
+    return host;
   }
 
   const SheetInput& input_;

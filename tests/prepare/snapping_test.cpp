@@ -46,25 +46,6 @@ TEST(Snapping, GivesEdgesOfABoxThePlanesOfItsFaces) {
   }
 }
 
-// The plane of a wall three and a half spacings away passes through every point of the strip
-// between two walls; but none of the points around lies on it.
-TEST(Snapping, PutsNoPointOnThePlaneOfAFaceThatEndsBeforeIt) {
-  std::vector<Vector3f> points;
-  for (float x = 0; x <= 7; ++x) {
-    for (float y = 0; y <= 30; ++y) points.emplace_back(x, y, 0.f);
-  }
-  for (float z = 1; z <= 20; ++z) {
-    for (float y = 0; y <= 30; ++y) {
-      for (const float x : {0.f, 7.f}) points.emplace_back(x + (x > 0 ? 0.1f : -0.1f) * z, y, -z);
-    }
-  }
-  const Made made = snap(points);
-  for (const Twin& twin : made.snapped.twins) {
-    const Vector3f& p = made.grid.points()[twin.point];
-    EXPECT_TRUE(p.z() < 0 || p.x() < 2 || p.x() > 5) << p.transpose();
-  }
-}
-
 TEST(Snapping, LeavesBumpsFinerThanRWithoutAPlane) {
   std::vector<Vector3f> points;
   const float k = 2 * std::numbers::pi_v<float> / 4;
