@@ -27,12 +27,21 @@ def rows(capture, shown, fields):
     return {row for line in output.splitlines() for row in zip(*(field.split(",") for field in line.split("|")))}
 
 
+def wait_for_captures(paths):
+    """Until each file has its header, which tshark writes once it listens."""
+    given_up = time.monotonic() + 60
+    while not all(os.path.exists(path) and os.path.getsize(path) for path in paths):
+        if time.monotonic() > given_up:
+            sys.exit("tshark did not begin to capture within 60 s")
+        time.sleep(0.05)
+
+
 def capture_run(folder, lines, peer):
     """Captures of loopback and of what leaves through the link."""
     paths = {name: str(pathlib.Path(folder) / (name + ".pcap")) for name in ("lo", "link0")}
     sharks = [subprocess.Popen(["tshark", "-q", "-i", name, "-w", path], stderr=subprocess.DEVNULL)
               for name, path in paths.items()]
-    time.sleep(2)
+    wait_for_captures(paths.values())
     reader = start(peer, "read", "reliable", {}, lines)
     writer = start(peer, "write", "reliable", {}, lines)
     reader.stdout.read()

@@ -1,0 +1,76 @@
+import assert from "node:assert/strict";
+import { afterEach, beforeEach, mock, test } from "node:test";
+import { PerspectiveCamera, Vector3 } from "three";
+import { Hand } from "../src/input/hand";
+import type { ToProgram } from "../src/protocol/messages";
+
+// A clock of our own: timers ring when the test lets time pass.
+let now = 0;
+let timers: { at: number; ring: () => void; id: number }[] = [];
+let sent: { at: number; message: ToProgram }[] = [];
+
+function pass(ms: number): void {
+  const until = now + ms;
+  for (;;) {
+    const next = timers.filter(({ at }) => at <= until).sort((a, b) => a.at - b.at)[0];
+    if (next === undefined) break;
+    now = next.at;
+    timers = timers.filter(({ id }) => id !== next.id);
+    next.ring();
+  }
+  now = until;
+}
+
+beforeEach(() => {
+  now = 1000;
+  timers = [];
+  sent = [];
+  let last = 0;
+  mock.method(performance, "now", () => now);
+  mock.method(globalThis, "clearTimeout", (id: number) => (timers = timers.filter((timer) => timer.id !== id)));
+  const setTimeout = (ring: () => void, wait: number) => (timers.push({ at: now + wait, ring, id: (last += 1) }), last);
+  Object.defineProperty(globalThis, "window", { value: { setTimeout }, configurable: true });
+});
+afterEach(() => mock.restoreAll());
+
+function newHand(): Hand {
+  return new Hand((message) => sent.push({ at: now, message }), () => undefined);
+}
+
+test("the hand speaks 125 times a second at most, and the last place is told", () => {
+  const hand = newHand();
+  hand.take(0, new Vector3());
+  for (let i = 1; i <= 1000; i += 1) {
+    pass(1);
+    hand.moveTo(new Vector3(i, 0, 0));
+  }
+  pass(20);
+  const gaps = sent.slice(1).map(({ at }, i) => at - sent[i]!.at);
+  assert.ok(Math.min(...gaps) >= 8, `${Math.min(...gaps)} ms between two`);
+  assert.ok(sent.length > 100, `${sent.length} messages in a second`);
+  const { message } = sent.at(-1)!;
+  assert.ok(message.type === "hand" && message.position[0] === 1000);
+});
+
+test("a hand that is let go says so at once, and nothing after", () => {
+  const hand = newHand();
+  hand.take(0, new Vector3());
+  hand.moveTo(new Vector3(1, 0, 0));
+  hand.letGo();
+  pass(100);
+  hand.moveTo(new Vector3(2, 0, 0));
+  assert.deepEqual(sent.map(({ message }) => message.type), ["hand", "release"]);
+});
+
+test("places that are no numbers are not told, and a nudge goes as the eye sees it", () => {
+  const hand = newHand();
+  hand.take(0, new Vector3(0, 0, 1));
+  pass(10);
+  hand.moveTo(new Vector3(NaN, 0, 0));
+  pass(10);
+  assert.equal(sent.length, 1);
+  hand.nudge(new PerspectiveCamera(), 0.5, 0.25, 2);
+  const { message } = sent.at(-1)!;
+  assert.ok(message.type === "hand");
+  assert.deepEqual(message.position, [0.5, 0.25, -1]);
+});
