@@ -9,16 +9,10 @@ namespace palpate {
 namespace {
 
 constexpr double kLeastTime = 1e-9;    // s
-constexpr double kKeepLost = 0.02;     // s, for which the spring of a lost contact stays
 constexpr double kTextureStep = 0.25;  // of the wavelength, the longest sub-step
 constexpr double kMuchSofter = 0.95;   // of the stiffness that is wanted
-constexpr double kFaded = 0.01;        // of the stiffness: a spring that is gone
 constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
 constexpr double kFastest = 1;       // m/s: what moves faster has jumped
-constexpr double kWaits = 2;         // of R that a hand moves before it is no longer the same press
-constexpr double kHardest = 10;      // N in free air: desktop devices sustain less (judgement)
-constexpr double kFar = 10;          // of R, from the proxy (judgement)
-constexpr double kAwayTime = 1;      // s, after which such a hand is let go (judgement)
 constexpr double kFreeing = 0.5;     // s, in which its spring fades (judgement)
 constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall
 constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
@@ -207,22 +201,6 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   return std::nullopt;
 }
 
-// A sensor that does not see what the hand presses takes the surface away and brings it back. Until
-// then the proxy keeps its side, on the plane that it touched (`place`, `normal`), without force;
-// the tank pays for what comes back with what the spring held. A hand that moves on is free.
-void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
-                          const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept {
-  const double depth = normal.dot(place - hip);
-  if (touching_ || !(depth > 0) || (hip - pressed).norm() > kWaits * step_length_) return;
-  if (surface_.presence > kFaded && probe.sample(place).support > 0) return;
-  release(hip + depth * normal);
-  touching_ = waiting_ = true;
-  normal_ = normal;
-  pressed_ = pressed;
-  tank_.fill(0.5 * tank_.stiffness() * (place - hip).squaredNorm());
-  tank_.take_over(0);
-}
-
 // Takes over where the motion ended. True while the proxy still touches.
 bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
   if (motion.end == Slide::End::interrupted || motion.end == Slide::End::postponed) {
@@ -260,40 +238,6 @@ double Proxy::Inside::wanted_stiffness() const noexcept {
       options_.stiffness * factor(surface_.stiffness_factor) * factor(surface_.presence);
   const double left = factor(1 - (away_time_ - kAwayTime) / kFreeing);
   return std::max(0.0, left * wanted - fading_.stiffness());
-}
-
-// A contact whose surface was not found in this step. The spring goes on from as far as the proxy
-// came; where the search was not only cut short, it fades after a moment.
-void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
-                         Contact& contact) noexcept {
-  contact.normal = normal_;
-  if (!cut_short_) {
-    contact.notes |= ContactNote::lost;
-    lost_time_ += dt;
-  }
-  pull(hip, 0, dt, contact);
-  if (contact.stiffness <= kFaded * options_.stiffness) let_go(probe, hip);
-}
-
-// No hand is held hard in free air for long. The inside of a scanned body is free air, too.
-void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt,
-                              Contact& contact) noexcept {
-  const double stretch = (hip - position_).norm();
-  const bool hard =
-      touching_ && stretch > kFar * step_length_ && options_.stiffness * stretch > kHardest;
-  away_time_ = hard && probe.is_free({hip, 0}) ? away_time_ + dt : 0;
-  if (away_time_ < kAwayTime) return;
-  contact.notes |= ContactNote::freed;
-  if (tank_.stiffness() <= kFaded * options_.stiffness) release(hip);
-}
-
-// Never through what cannot be found: from a free place to the first contact; from inside, only
-// when the hand has come out again in front of where it went in. Until then the proxy waits there,
-// without force.
-void Proxy::Inside::let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept {
-  if (lost_time_ <= kKeepLost) return;
-  if (!probe.inside(position_)) return release(first_contact(probe, position_, hip).position);
-  if ((hip - position_).dot(normal_) >= 0 && !probe.inside(hip)) release(hip);
 }
 
 }  // namespace palpate

@@ -84,6 +84,9 @@ class Proxy::Inside {
   void change(const ProxyOptions& checked) noexcept { options_ = checked; }
 
  private:
+  static constexpr double kKeepLost = 0.02;  // s, for which the spring of a lost contact stays
+  static constexpr double kAwayTime = 1;  // s in free air, after which a hand is let go (judgement)
+
   [[nodiscard]] bool is_held() const noexcept { return touching_ && !waiting_; }
   void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
   void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
