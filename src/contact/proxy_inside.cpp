@@ -32,6 +32,7 @@ void Proxy::Inside::reset(const Eigen::Vector3d& position) noexcept {
   fault_ = !in_range(position);
   started_ = !fault_;
   step_length_ = 0;
+  side_.forget();
   fading_ = {};
   revision_.reset();
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
@@ -43,7 +44,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   if (fault_) return faulted();
   if (!started_) reset(hip);
   Contact contact;
-  Probe probe{field, options_.texture, step_length_};
+  Probe probe{field, options_.texture, step_length_, side_};
   const bool held = is_held();
   const Eigen::Vector3d before = position_;
   const Eigen::Vector3d side = normal_;
@@ -52,6 +53,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
   await(probe, before, side, held ? hand_ : pressed_, hip);
   free_hand(probe, hip, dt, contact);
+  if (touching_) side_.touch(position_, normal_);
   step_length_ = probe.step_length();
   const bool first = !revision_;  // since a reset, which may be into a solid
   const bool changed = !first && probe.traits().revision != *revision_;
@@ -112,9 +114,15 @@ void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& co
   if (way_is_free(probe, position_, hip)) return release(hip);
   if (probe.inside(position_)) return touch(probe, position_, hip);
   const Sweep way = sweep(probe, position_, hip);
-  if (way.end == Sweep::End::hit) return touch(probe, way.position, hip);
+  if (is_stopped(probe, way)) return touch(probe, way.position, hip);
   if (way.end == Sweep::End::truncated) contact.notes |= ContactNote::sweep_truncated;
   release(way.position);
+}
+
+// What stops a way is solid or, where a field says that all is free, points on it.
+bool Proxy::Inside::is_stopped(Probe& probe, const Sweep& way) noexcept {
+  if (way.end == Sweep::End::beyond) side_.doubt(probe.field());
+  return way.end == Sweep::End::hit || way.end == Sweep::End::beyond;
 }
 
 // A spring that is stretched by more than the hand has moved begins as much softer.
@@ -190,8 +198,9 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   if (!at) at = recover(probe, position_, normal_);
   cut_short_ = false;
   if (at || !(here.value > 0)) return at;
+  side_.touch(position_, normal_);
   const Sweep way = first_contact(probe, position_, hip);
-  if (way.end == Sweep::End::hit) return project(probe, way.position);
+  if (is_stopped(probe, way)) return project(probe, way.position);
   if (way.end == Sweep::End::clear) {
     release(hip);
   } else {

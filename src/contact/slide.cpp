@@ -69,6 +69,7 @@ class Slider {
     const Eigen::Vector3d from = result_.at.position + kLift * radius * result_.at.normal;
     const int swept = probe_.swept;
     const Sweep way = first_contact(probe_, from, hip_);
+    if (way.end == Sweep::End::beyond) return Turn::stop;
     if (way.end != Sweep::End::hit) return leave(way, swept);
     if ((way.position - from).norm() < kStay * radius) return Turn::stop;
     const std::optional<SurfacePoint> next = project(probe_, way.position);
@@ -140,6 +141,7 @@ class Slider {
     if (first_contact(probe_, from, over).end != Sweep::End::clear) return Turn::stop;
     const int swept = probe_.swept;
     const Sweep way = first_contact(probe_, over, hip_);
+    if (way.end == Sweep::End::beyond) return Turn::stop;
     if (way.end != Sweep::End::hit) return leave(way, swept);
     const std::optional<SurfacePoint> next = project(probe_, way.position);
     if (!next || (hip_ - next->position).squaredNorm() >

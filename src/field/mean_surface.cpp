@@ -9,6 +9,13 @@
 #include "field/selection.hpp"
 
 namespace palpate {
+namespace {
+
+// R within which points are the nearest: 0.9 spacings at R = 2.5 s, so that a square of four has
+// all of them within reach of its middle.
+constexpr double kNearest = 0.35;
+
+}  // namespace
 
 PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
                           const Eigen::Vector3d& x, std::span<const double> presences) noexcept {
@@ -46,6 +53,30 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
     result.presence = std::min(1.0, presence / largest);
   }
   result.velocity = velocity / total;
+  return result;
+}
+
+Nearby nearby_points(const ImplicitSurface& surface, const Patch& patch,
+                     const Eigen::Vector3d& x) noexcept {
+  using Eigen::Vector3d;
+  const simd::Columns& c = patch.columns();
+  const Vector3d local = x - patch.center();
+  Nearby result;
+  double all = 0;
+  for (std::uint32_t i = 0; i < c.end(); ++i) {
+    const Vector3d q = Vector3d(c.position[0][i], c.position[1][i], c.position[2][i]) - local;
+    const double inverse_r2 = c.inverse_r2[i];
+    const double squared = q.squaredNorm() * inverse_r2;
+    const KernelValue kernel = evaluate(surface.options.kernel, squared);
+    result.weight += c.weight[i] * kernel.w;
+    result.slope -= c.weight[i] * kernel.g * inverse_r2 * q;
+    const double closeness = 1 - squared / (kNearest * kNearest);
+    if (closeness <= 0) continue;
+    const double w = c.weight[i] * closeness * closeness;
+    all += w;
+    result.way += w * std::sqrt(inverse_r2) / kNearest * q;
+  }
+  if (all > 0) result.way /= all;
   return result;
 }
 

@@ -88,7 +88,8 @@ void compare(PointField& scene, const Vector3d& from, const Vector3d& to, double
   const double step = 0.002 * radius;
   const Truth truth = brute_force(field, from, to, step);
   const Texture none;
-  Probe probe(field, none, radius);
+  Side side;
+  Probe probe(field, none, radius, side);
   const Sweep found = first_contact(probe, from, to);
   const double reached = (found.position - from).norm();
   tally.contacts += truth.first >= 0 ? 1 : 0;

@@ -24,6 +24,14 @@ struct Surface {
   int source = -1;  ///< index of the source that contributes most; -1: none
 };
 
+/// Where points are near a place, whatever is known of their normals and sides.
+struct Nearby {
+  double weight = 0;                                ///< sum of weights, as Sample::support
+  Eigen::Vector3d slope = Eigen::Vector3d::Zero();  ///< d weight / dx, 1/m
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();    ///< mean way to points within 0.35 R, in
+                                                    ///< 0.35 R; zero: there are none
+};
+
 /// All that a proxy knows of a scene: an implicit surface with its exact gradient.
 ///
 /// Every member is noexcept, allocation-free, bounded in time, and gives finite results for finite
@@ -51,6 +59,9 @@ class Field {
   [[nodiscard]] virtual Surface surface(const Eigen::Vector3d& x) const noexcept = 0;
 
   [[nodiscard]] virtual Traits traits() const noexcept = 0;
+
+  /// The points near x. A field that is made of none says so.
+  [[nodiscard]] virtual Nearby nearby(const Eigen::Vector3d& /*x*/) const noexcept { return {}; }
 
   /// A proxy's step begins and ends. What is asked in between is bounded together: a field that has
   /// spent its work answers on the safe side, which is that all it does not know is solid.

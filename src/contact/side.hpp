@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "palpate/field/field.hpp"
+
+namespace palpate {
+
+/// Which side of the points around a proxy is on, told by where points are and which way the proxy
+/// came, never by normals or by what is decided of sheets (docs/method.md 3.5). A place that the
+/// proxy reaches only by passing between points is beyond them, however free a field says it is.
+class Side {
+ public:
+  void forget() noexcept { *this = {}; }
+
+  /// The proxy comes to a free place. False where that is beyond points that it did not touch; it
+  /// is remembered otherwise. Where few points are, there is no side to remember.
+  [[nodiscard]] bool pass(const Field& field, const Eigen::Vector3d& place,
+                          const Sample& sample) noexcept;
+
+  /// The proxy touches, with this unit normal.
+  void touch(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) noexcept;
+
+  /// What a field says is wrong here: until the proxy is away from points, they are felt as they
+  /// lie, as a metaball.
+  void doubt(const Field& field) noexcept;
+  [[nodiscard]] bool doubts() const noexcept { return radius_ > 0; }
+
+  /// The sample as it is felt in doubt: solid is what field or metaball says.
+  [[nodiscard]] Sample felt(const Field& field, const Eigen::Vector3d& place,
+                            const Sample& sample) const noexcept;
+
+  [[nodiscard]] bool known() const noexcept { return !up_.isZero(0); }
+  /// The last place that was surely on this side, m.
+  [[nodiscard]] const Eigen::Vector3d& place() const noexcept { return place_; }
+
+ private:
+  [[nodiscard]] bool is_beyond(const Eigen::Vector3d& place, const Nearby& nearby) const noexcept;
+
+  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d up_ = Eigen::Vector3d::Zero();  // away from the points, unit; zero: not known
+  double radius_ = 0;                             // R in doubt, m; 0: none
+};
+
+}  // namespace palpate
