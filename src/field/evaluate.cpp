@@ -132,13 +132,6 @@ Value capped(const ImplicitSurface& surface, const FieldPlace& place, const Supp
           trust.f * cap.grad + (1 - trust.f) * blob.grad + (cap.f - blob.f) * trust.grad};
 }
 
-// The weight of points that have a normal.
-double with_normals(const simd::Sums& sums, int labels) noexcept {
-  double v = 0;
-  for (int k = 0; k < std::min(labels, simd::kHeights); ++k) v += sums.label[k].v;
-  return v;
-}
-
 }  // namespace
 
 ImplicitSurface::ImplicitSurface(const FieldOptions& given) : sums(&simd::best_sums()) {
@@ -176,7 +169,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   Sample sample;
   sample.support = support.w.f;
   sample.radius = support.radius.f;
-  const double heights = metaball ? 0 : with_normals(sums, columns.labels);
+  const double heights = metaball ? 0 : trusted(sums, columns.labels).f;
   const FieldPlace place{.functions = surface.sums,
                          .columns = &columns,
                          .kernel = options.kernel,

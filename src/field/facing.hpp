@@ -17,9 +17,8 @@ enum Label : std::uint8_t {
   kInFront = 0,  ///< the free side of its plane is free, beside it
   kBehind = 1,   ///< it meets what is in front at a convex edge: solid is what is below both
   kAcross = 2,   ///< it meets what is in front in a crease: free is what is above both
-  kSilent = 3,   ///< another sheet hides it: it has weight and no height
 };
-static_assert(kSilent == simd::kLabels - 1);
+static_assert(kAcross == simd::kLabels - 1);
 
 /// Where a proxy is, which is a free place or one on the surface.
 struct Stance {
@@ -70,7 +69,7 @@ class Facing {
   void follow(const Facing& other) noexcept;
 
  private:
-  static constexpr std::size_t kMost = 96;  // sheets near the tool; further ones are silent
+  static constexpr std::size_t kMost = 96;  // sheets near the tool; further ones are in front
   static constexpr std::uint32_t kUnsure = kMost + 1;  // no sheet, but a point of a single view
   static constexpr std::uint8_t kOpen = 0xff;
 
@@ -99,8 +98,7 @@ class Facing {
     std::uint32_t count = 0;
     double weight = 0;
     double all = 0;     // sums of weights: of its points,
-    double hidden = 0;  // of those that another sheet hides,
-    double away = 0;    // and of those of them that face away
+    double hidden = 0;  // and of those that another sheet hides
   };
   struct Table {
     std::array<Part, kMost> parts;

@@ -126,7 +126,6 @@ void Facing::decide_signs(bool continued) noexcept {
     if (const double w = weight(squared, kHiddenView * radius_); w > 0) {
       sheet.all += w;
       if (hidden) sheet.hidden += w;
-      if (hidden) sheet.away += height < 0 ? -w : w;  // by its sign later
     }
     if (squared >= view_ * view_) continue;
     const double w = static_cast<double>(p.confidence) * weight(squared, view_);
@@ -152,11 +151,11 @@ void Facing::decide_signs(bool continued) noexcept {
 
 /// By how the sheet lies to those whose label is known.
 std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
-  double parallel[simd::kHeights] = {};
-  double above[simd::kHeights] = {};
-  double all[simd::kHeights] = {};
+  double parallel[simd::kLabels] = {};
+  double above[simd::kLabels] = {};
+  double all[simd::kLabels] = {};
   const auto sign = static_cast<float>(sign_of(now_.parts[sheet.part]));
-  double planes[simd::kHeights] = {};
+  double planes[simd::kLabels] = {};
   each_meeting(
       sheet, kMeetReach, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
         const float length = way.norm();
@@ -167,16 +166,14 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
         all[q.label] += w;
       });
   int same = -1;
-  for (int k = 0; k < simd::kHeights; ++k) {
+  for (int k = 0; k < simd::kLabels; ++k) {
     const bool one = all[k] > kLeastMeeting && parallel[k] > kSameNormal * all[k] &&
                      std::abs(planes[k]) < kSamePlane * all[k];
     if (one && (same < 0 || all[k] > all[same])) same = k;
   }
   if (same >= 0) return static_cast<std::uint8_t>(same);
   if (all[0] + all[1] + all[2] <= kLeastMeeting) {
-    if (sheet.hidden <= 0.5 * sheet.all) return kInFront;
-    const double away = 0.5 * (sheet.hidden - static_cast<double>(sign) * sheet.away);
-    return away > 0.5 * sheet.hidden ? kBehind : kSilent;
+    return sheet.hidden <= 0.5 * sheet.all ? kInFront : kBehind;
   }
   const int other = all[kInFront] > kLeastMeeting ? kInFront
                     : all[kBehind] > all[kAcross] ? kBehind

@@ -127,7 +127,7 @@ Value difference(const Value& a, const Value& b) noexcept {
 
 /// How much what is behind faces away from what is in front, 0 to 1: by d = -Nb . Nb' of the two.
 Value back_to_back(FieldPlace place) noexcept {
-  const int labels = std::min(place.columns->labels, simd::kHeights);
+  const int labels = place.columns->labels;
   double v[2] = {};  // of what is in front, and behind
   Vector3d n[2] = {Vector3d::Zero(), Vector3d::Zero()};
   for (int k = 0; k < labels; ++k) {
@@ -176,10 +176,10 @@ Value smooth_max(const Value& a, const Value& b, const Value& radius, double wid
 std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place,
                                    double least) noexcept {
   constexpr double kInCreases = 0.1;  // of R
-  Value height[simd::kHeights];
-  Value weight[simd::kHeights];
-  bool there[simd::kHeights] = {};
-  for (int k = 0; k < std::min(place.columns->labels, simd::kHeights); ++k) {
+  Value height[simd::kLabels];
+  Value weight[simd::kLabels];
+  bool there[simd::kLabels] = {};
+  for (int k = 0; k < place.columns->labels; ++k) {
     const simd::LabelSums& sums = place.all->label[k];
     there[k] = has_normals(options, sums, least);
     if (!there[k]) continue;

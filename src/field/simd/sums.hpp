@@ -10,10 +10,7 @@ namespace palpate::simd {
 constexpr int kLanes = 4;  // points that are summed side by side, on every level
 constexpr int kMaxSources = 8;
 
-// How a point's sheet is seen from the tool (field/facing.hpp); the last one has weight and no
-// height.
-constexpr int kHeights = 3;
-constexpr int kLabels = kHeights + 1;
+constexpr int kLabels = 3;  // how a point's sheet is seen from the tool (field/facing.hpp)
 constexpr int kMaxRuns = kLabels * kMaxSources;
 
 // A patch in columns, relative to its centre: label by label, and within a label source by source.
