@@ -60,7 +60,7 @@ Probe::Probe(const Field& field, const Texture& texture, double step_length, Sid
 
 Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   ++evaluations_;
-  Sample sample = side_.felt(field_, x, field_.sample(x));
+  Sample sample = side_.felt(field_.sample(x));
   if (sample.radius > 0) step_length_ = sample.radius;
   if (sample.support <= 0 && sample.value <= 0) sample.value = step_length_;  // nothing known
   if (texture_.amplitude > 0) {

@@ -113,16 +113,26 @@ Contact Proxy::Inside::faulted() noexcept {
 void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept {
   if (way_is_free(probe, position_, hip)) return release(hip);
   if (probe.inside(position_)) return touch(probe, position_, hip);
-  const Sweep way = sweep(probe, position_, hip);
-  if (is_stopped(probe, way)) return touch(probe, way.position, hip);
+  const Sweep way = doubt(probe, sweep(probe, position_, hip), hip);
+  if (way.end == Sweep::End::hit) return touch(probe, way.position, hip);
   if (way.end == Sweep::End::truncated) contact.notes |= ContactNote::sweep_truncated;
   release(way.position);
 }
 
-// What stops a way is solid or, where a field says that all is free, points on it.
-bool Proxy::Inside::is_stopped(Probe& probe, const Sweep& way) noexcept {
-  if (way.end == Sweep::End::beyond) side_.doubt(probe.field());
-  return way.end == Sweep::End::hit || way.end == Sweep::End::beyond;
+// A way that ended before points which a field calls free ends at the metaball through these, if
+// that stands on this side, and the hand has stretched the spring from there on. Where it does not,
+// as in the foot of an acute crease, the field is right, and the way goes on.
+Sweep Proxy::Inside::doubt(Probe& probe, const Sweep& way, const Eigen::Vector3d& hip) noexcept {
+  if (way.end != Sweep::End::beyond) return way;
+  const Eigen::Vector3d up = side_.up();
+  side_.doubt(probe.step_length());
+  const std::optional<SurfacePoint> at = project(probe, way.position);
+  if (at && (at->position - way.position).dot(up) > 0) {
+    hand_ = way.position;
+    return {Sweep::End::hit, way.position};
+  }
+  side_.forget();
+  return first_contact(probe, way.position, hip);
 }
 
 // A spring that is stretched by more than the hand has moved begins as much softer.
@@ -199,8 +209,8 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   cut_short_ = false;
   if (at || !(here.value > 0)) return at;
   side_.touch(position_, normal_);
-  const Sweep way = first_contact(probe, position_, hip);
-  if (is_stopped(probe, way)) return project(probe, way.position);
+  const Sweep way = doubt(probe, first_contact(probe, position_, hip), hip);
+  if (way.end == Sweep::End::hit) return project(probe, way.position);
   if (way.end == Sweep::End::clear) {
     release(hip);
   } else {

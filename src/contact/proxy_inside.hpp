@@ -92,7 +92,7 @@ class Proxy::Inside {
   void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
   void release(const Eigen::Vector3d& place) noexcept;
   void hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
-  [[nodiscard]] bool is_stopped(Probe& probe, const Sweep& way) noexcept;
+  [[nodiscard]] Sweep doubt(Probe& probe, const Sweep& way, const Eigen::Vector3d& hip) noexcept;
   [[nodiscard]] std::optional<SurfacePoint> find_surface(Probe& probe, const Eigen::Vector3d& hip,
                                                          Contact& contact) noexcept;
   [[nodiscard]] bool settle(const Slide& motion, Contact& contact) noexcept;

@@ -1,5 +1,7 @@
 #include "contact/side.hpp"
 
+#include <cmath>
+
 namespace palpate {
 namespace {
 
@@ -9,15 +11,11 @@ using Eigen::Vector3d;
 constexpr double kLevel = 0.4;
 constexpr double kScale = 0.35 / 0.3;  // of R: a metaball's height for its weight (2.3)
 
-// R d support / support from which on the slope tells where the points are. On a plane that is 0.07
-// R above it: the tilt that irregular points give the slope is less there (judgement).
-constexpr double kTells = 0.5;
-constexpr double kAgainst = 0.5;  // cosine: the slope has turned round by 120 degrees
-
-// The mean way to the nearest points, of their reach of 0.35 R: so far up, and steeper than 45
-// degrees. That is 0.1 R beyond them: three times what a surface is off points without noise.
-constexpr double kOver = 0.3;
-constexpr double kSteep = 0.7;
+constexpr double kOften = 0.03;  // of R: half a step of a sweep, after which it is looked again
+constexpr double kTurn = 0.5;    // cosine: within that a plane turns by less than 60 degrees
+constexpr double kHigh = 0.1;  // of R above the plane of its points a place is surely on this side:
+                               // as far as noise of a quarter of the spacing goes
+constexpr double kOver = 0.7;  // a place is beyond points that lie 0.07 R over it (judgement)
 
 }  // namespace
 
@@ -26,40 +24,42 @@ bool Side::pass(const Field& field, const Vector3d& place, const Sample& sample)
     forget();
     return true;
   }
-  const Nearby nearby = field.nearby(place);
-  const double steepness = nearby.slope.norm();
-  if (!(steepness * sample.radius > kTells * sample.support)) return true;
-  if (is_beyond(place, nearby)) return false;
-  if (known() && nearby.slope.dot(up_) >= 0) return true;  // in a crease, or in the midst of points
+  if ((place - looked_).norm() < kOften * sample.radius) return true;
+  const bool first = !looked_.allFinite();
+  looked_ = place;
+  const Nearby nearby = field.nearby(place, up_);
+  // It is clear of points, or touched others than those that it is near.
+  if (!(nearby.beside > 0) || (first && nearby.over > 0.5 * kOver)) up_.setZero();
+  if (nearby.axis.isZero(0)) return true;
+  const double cosine = known() ? nearby.axis.dot(up_) : -nearby.axis.dot(nearby.way);
+  if (known() && std::abs(cosine) < kTurn) return true;
+  const Vector3d up = cosine < 0 ? (-nearby.axis).eval() : nearby.axis;
+  const double height = -nearby.way.dot(up);
+  if (height < 0 && is_beyond(place, nearby)) return false;
+  if (known()) up_ = up;
+  if (height < kHigh * sample.radius) return true;
+  up_ = up;
   place_ = place;
-  up_ = -nearby.slope / steepness;
   return true;
 }
 
 void Side::touch(const Vector3d& place, const Vector3d& normal) noexcept {
   place_ = place;
   up_ = normal;
+  looked_ = kNowhere;
 }
 
 bool Side::is_beyond(const Vector3d& place, const Nearby& nearby) const noexcept {
-  if (!known() || doubts() || (place - place_).dot(up_) >= 0) return false;
-  const double up = nearby.way.dot(up_);
-  return nearby.slope.dot(up_) > kAgainst * nearby.slope.norm() && up > kOver &&
-         up > kSteep * nearby.way.norm();
+  return known() && !doubts() && (place - place_).dot(up_) < 0 && nearby.over > kOver;
 }
 
-void Side::doubt(const Field& field) noexcept {
-  radius_ = field.sample(place_).radius;
-}
-
-Sample Side::felt(const Field& field, const Vector3d& place, const Sample& sample) const noexcept {
+Sample Side::felt(const Sample& sample) const noexcept {
   if (!doubts() || !(sample.support > 0)) return sample;
-  const Nearby nearby = field.nearby(place);
-  const double height = kScale * radius_ * (kLevel - nearby.weight);
+  const double height = kScale * radius_ * (kLevel - sample.support);
   if (height >= sample.value) return sample;
   Sample felt = sample;
   felt.value = height;
-  felt.gradient = -kScale * radius_ * nearby.slope;
+  felt.gradient = -kScale * radius_ * sample.slope;
   return felt;
 }
 

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "palpate/field/field.hpp"
 
 namespace palpate {
 
-/// Which side of the points around a proxy is on, told by where points are and which way the proxy
-/// came, never by normals or by what is decided of sheets (docs/method.md 3.5). A place that the
-/// proxy reaches only by passing between points is beyond them, however free a field says it is.
+/// Which side of the points around a proxy is on, told by where points are and by the way that it
+/// came, never by normals or by what is decided of sheets (docs/method.md 3.1). A place that it
+/// would reach by passing between points is beyond them, however free a field says it is.
+/// Real-time.
 class Side {
  public:
   void forget() noexcept { *this = {}; }
@@ -22,24 +24,29 @@ class Side {
   void touch(const Eigen::Vector3d& place, const Eigen::Vector3d& normal) noexcept;
 
   /// What a field says is wrong here: until the proxy is away from points, they are felt as they
-  /// lie, as a metaball.
-  void doubt(const Field& field) noexcept;
+  /// lie, as a metaball. `radius`: R here, m.
+  void doubt(double radius) noexcept { radius_ = radius; }
   [[nodiscard]] bool doubts() const noexcept { return radius_ > 0; }
 
   /// The sample as it is felt in doubt: solid is what field or metaball says.
-  [[nodiscard]] Sample felt(const Field& field, const Eigen::Vector3d& place,
-                            const Sample& sample) const noexcept;
+  [[nodiscard]] Sample felt(const Sample& sample) const noexcept;
 
   [[nodiscard]] bool known() const noexcept { return !up_.isZero(0); }
+  /// Away from the points, unit; zero while no side is known.
+  [[nodiscard]] const Eigen::Vector3d& up() const noexcept { return up_; }
   /// The last place that was surely on this side, m.
   [[nodiscard]] const Eigen::Vector3d& place() const noexcept { return place_; }
 
  private:
+  inline static const Eigen::Vector3d kNowhere =
+      Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+
   [[nodiscard]] bool is_beyond(const Eigen::Vector3d& place, const Nearby& nearby) const noexcept;
 
-  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d up_ = Eigen::Vector3d::Zero();  // away from the points, unit; zero: not known
-  double radius_ = 0;                             // R in doubt, m; 0: none
+  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();  // the last one surely on this side, m
+  Eigen::Vector3d up_ = Eigen::Vector3d::Zero();     // away from the points, unit; zero: not known
+  Eigen::Vector3d looked_ = kNowhere;                // where it looked last since it touched, m
+  double radius_ = 0;                                // R in doubt, m; 0: none
 };
 
 }  // namespace palpate

@@ -191,6 +191,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   }
   sample.value = value.f;
   sample.gradient = value.grad;
+  sample.slope = support.w.grad;
   return sample;
 }
 

@@ -56,7 +56,7 @@ struct PatchSurface {
 
 /// The points of the patch near x, layers and sources alike.
 [[nodiscard]] Nearby nearby_points(const ImplicitSurface& surface, const Patch& patch,
-                                   const Eigen::Vector3d& x) noexcept;
+                                   const Eigen::Vector3d& x, const Eigen::Vector3d& up) noexcept;
 
 /// Does a ball that no patch covers certainly hold nothing? Walks through the index itself and
 /// gives up, with `false`, as soon as the weights could make a surface or when `visits`, of which

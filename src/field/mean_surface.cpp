@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,9 +12,13 @@
 namespace palpate {
 namespace {
 
-// R within which points are the nearest: 0.9 spacings at R = 2.5 s, so that a square of four has
-// all of them within reach of its middle.
-constexpr double kNearest = 0.35;
+// Points count as over or under a place that are in a cylinder around it along the way up: so wide
+// that a square of four is within reach of its middle at R = 2.5 s, with some left for jitter; so
+// long as a metaball is thick. Nearer than the last one in height they are beside it. All in R.
+constexpr double kBeside = 0.45;
+constexpr double kAlong = 0.25;
+constexpr double kLevel = 0.1;
+constexpr double kFlat = 0.4;  // least against middle variance of points on a plane, as in 5.5
 
 }  // namespace
 
@@ -56,27 +61,37 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
   return result;
 }
 
-Nearby nearby_points(const ImplicitSurface& surface, const Patch& patch,
-                     const Eigen::Vector3d& x) noexcept {
+Nearby nearby_points(const ImplicitSurface& surface, const Patch& patch, const Eigen::Vector3d& x,
+                     const Eigen::Vector3d& up) noexcept {
+  using Eigen::Matrix3d;
   using Eigen::Vector3d;
   const simd::Columns& c = patch.columns();
   const Vector3d local = x - patch.center();
   Nearby result;
+  Matrix3d squares = Matrix3d::Zero();
   double all = 0;
   for (std::uint32_t i = 0; i < c.end(); ++i) {
     const Vector3d q = Vector3d(c.position[0][i], c.position[1][i], c.position[2][i]) - local;
-    const double inverse_r2 = c.inverse_r2[i];
-    const double squared = q.squaredNorm() * inverse_r2;
-    const KernelValue kernel = evaluate(surface.options.kernel, squared);
-    result.weight += c.weight[i] * kernel.w;
-    result.slope -= c.weight[i] * kernel.g * inverse_r2 * q;
-    const double closeness = 1 - squared / (kNearest * kNearest);
-    if (closeness <= 0) continue;
-    const double w = c.weight[i] * closeness * closeness;
+    const double squared = q.squaredNorm() * c.inverse_r2[i];
+    if (squared >= 1) continue;
+    const double w = c.weight[i] * evaluate(surface.options.kernel, squared).w;
     all += w;
-    result.way += w * std::sqrt(inverse_r2) / kNearest * q;
+    result.way += w * q;
+    squares += w * q * q.transpose();
+    const double height = q.dot(up) * std::sqrt(c.inverse_r2[i]);
+    const double aside = 1 - (squared - height * height) / (kBeside * kBeside);
+    if (aside <= 0 || std::abs(height) > kAlong) continue;
+    result.beside += c.weight[i] * aside;
+    result.over += c.weight[i] * aside * std::clamp(height / kLevel, -1.0, 1.0);
   }
-  if (all > 0) result.way /= all;
+  if (!(all > 0)) return result;
+  if (result.beside > 0) result.over /= result.beside;
+  result.way /= all;
+  const Matrix3d spread = squares / all - result.way * result.way.transpose();
+  Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
+  solver.computeDirect(spread);
+  const bool flat = solver.eigenvalues()[0] < kFlat * solver.eigenvalues()[1];
+  if (flat) result.axis = solver.eigenvectors().col(0);
   return result;
 }
 

@@ -258,10 +258,10 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   return felt_surface(mean, state.soft[static_cast<std::size_t>(mean.source)]);
 }
 
-Nearby SceneField::nearby(const Vector3d& x) const noexcept {
+Nearby SceneField::nearby(const Vector3d& x, const Vector3d& up) const noexcept {
   if (state_->layer_count == 0 || !x.allFinite()) return {};
   const Patch* const patch = state_->patches.at({x, 0}, state_->margin());
-  return patch ? nearby_points(state_->surface, *patch, x) : Nearby{};
+  return patch ? nearby_points(state_->surface, *patch, x, up) : Nearby{};
 }
 
 Field::Traits SceneField::traits() const noexcept {
