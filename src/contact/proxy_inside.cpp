@@ -53,7 +53,6 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
   await(probe, before, side, held ? hand_ : pressed_, hip);
   free_hand(probe, hip, dt, contact);
-  if (touching_) side_.touch(position_, normal_);
   step_length_ = probe.step_length();
   const bool first = !revision_;  // since a reset, which may be into a solid
   const bool changed = !first && probe.traits().revision != *revision_;
@@ -234,6 +233,7 @@ bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
   }
   position_ = motion.at.position;
   normal_ = motion.at.normal;
+  side_.touch(position_, normal_);
   sliding_ = motion.sliding;
   contact.normal = normal_;
   contact.sliding = sliding_;
