@@ -70,9 +70,10 @@ class Probe {
     return kEvaluationWork * evaluations_ + field_.points_summed();
   }
 
-  /// False where a free place is beyond points that the proxy did not touch.
+  /// False where a free place is beyond points that the proxy did not touch. The floor of a relief
+  /// is not: it is up to two amplitudes below the points.
   [[nodiscard]] bool passes(const Eigen::Vector3d& x, const Sample& sample) noexcept {
-    return side_.pass(field_, x, sample);
+    return side_.pass(field_, x + 2 * texture_.amplitude * side_.up(), sample);
   }
   [[nodiscard]] Side& side() noexcept { return side_; }
 

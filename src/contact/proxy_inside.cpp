@@ -14,6 +14,8 @@ constexpr double kMuchSofter = 0.95;   // of the stiffness that is wanted
 constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
 constexpr double kFastest = 1;       // m/s: what moves faster has jumped
 constexpr double kFreeing = 0.5;     // s, in which its spring fades (judgement)
+constexpr double kAbove = 0.2;       // of R: where weights tell the way up
+constexpr double kBeside = 0.6;      // of R from there: a metaball stands 0.49 R above a plane
 constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall
 constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
 
@@ -118,17 +120,17 @@ void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& co
   release(way.position);
 }
 
-// A way that ended before points which a field calls free ends at the metaball through these, if
-// that stands on this side, and the hand has stretched the spring from there on. Where it does not,
-// as in the foot of an acute crease, the field is right, and the way goes on.
+// A way that ended before points which a field calls free ends at a metaball through these, a
+// little above. Where none stands there, as in the foot of an acute crease, the way goes on.
 Sweep Proxy::Inside::doubt(Probe& probe, const Sweep& way, const Eigen::Vector3d& hip) noexcept {
   if (way.end != Sweep::End::beyond) return way;
   const Eigen::Vector3d up = side_.up();
+  const Eigen::Vector3d above = way.position + kAbove * probe.step_length() * up;
   side_.doubt(probe.step_length());
-  const std::optional<SurfacePoint> at = project(probe, way.position);
-  if (at && (at->position - way.position).dot(up) > 0) {
-    hand_ = way.position;
-    return {Sweep::End::hit, way.position};
+  const std::optional<SurfacePoint> at = project(probe, above);
+  if (at && at->normal.dot(up) > 0 &&
+      (at->position - above).norm() < kBeside * probe.step_length()) {
+    return {Sweep::End::hit, at->position};
   }
   side_.forget();
   return first_contact(probe, way.position, hip);

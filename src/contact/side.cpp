@@ -20,16 +20,20 @@ constexpr double kOver = 0.7;  // a place is beyond points that lie 0.07 R over 
 }  // namespace
 
 bool Side::pass(const Field& field, const Vector3d& place, const Sample& sample) noexcept {
-  if (sample.support < kLevel) {
+  if (sample.support < (doubts() ? 0.5 : 1) * kLevel) {  // clear of a metaball, too
     forget();
     return true;
   }
-  if ((place - looked_).norm() < kOften * sample.radius) return true;
+  if (lost_ || (place - looked_).norm() < kOften * sample.radius) return true;
   const bool first = !looked_.allFinite();
   looked_ = place;
   const Nearby nearby = field.nearby(place, up_);
-  // It is clear of points, or touched others than those that it is near.
-  if (!(nearby.beside > 0) || (first && nearby.over > 0.5 * kOver)) up_.setZero();
+  if (known()) {
+    const bool elsewhere = first && field.nearby(place_, up_).over > 0.5 * kOver;
+    const bool clear = !first && !(nearby.beside > 0) && nearby.way.dot(up_) > 0;
+    lost_ = elsewhere || clear || (place - place_).norm() > sample.radius;
+    if (lost_) return true;
+  }
   if (nearby.axis.isZero(0)) return true;
   const double cosine = known() ? nearby.axis.dot(up_) : -nearby.axis.dot(nearby.way);
   if (known() && std::abs(cosine) < kTurn) return true;
@@ -47,6 +51,7 @@ void Side::touch(const Vector3d& place, const Vector3d& normal) noexcept {
   place_ = place;
   up_ = normal;
   looked_ = kNowhere;
+  lost_ = false;
 }
 
 bool Side::is_beyond(const Vector3d& place, const Nearby& nearby) const noexcept {

@@ -46,7 +46,10 @@ class Side {
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero();  // the last one surely on this side, m
   Eigen::Vector3d up_ = Eigen::Vector3d::Zero();     // away from the points, unit; zero: not known
   Eigen::Vector3d looked_ = kNowhere;                // where it looked last since it touched, m
-  double radius_ = 0;                                // R in doubt, m; 0: none
+  // Away from these points, or by a contact with others, the side means nothing until few points
+  // are around: seen from within, it would be the wrong one.
+  bool lost_ = false;
+  double radius_ = 0;  // R in doubt, m; 0: none
 };
 
 }  // namespace palpate

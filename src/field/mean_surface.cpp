@@ -18,7 +18,10 @@ namespace {
 constexpr double kBeside = 0.45;
 constexpr double kAlong = 0.25;
 constexpr double kLevel = 0.1;
-constexpr double kFlat = 0.4;  // least against middle variance of points on a plane, as in 5.5
+// Variances of points on a plane, the least against the middle one and that against the largest:
+// no volume and no line, as in 5.5.
+constexpr double kFlat = 0.4;
+constexpr double kWide = 0.05;
 
 }  // namespace
 
@@ -78,11 +81,13 @@ Nearby nearby_points(const ImplicitSurface& surface, const Patch& patch, const E
     all += w;
     result.way += w * q;
     squares += w * q * q.transpose();
-    const double height = q.dot(up) * std::sqrt(c.inverse_r2[i]);
-    const double aside = 1 - (squared - height * height) / (kBeside * kBeside);
-    if (aside <= 0 || std::abs(height) > kAlong) continue;
+    const double height = q.dot(up);
+    const double along = height * height * c.inverse_r2[i];
+    const double aside = 1 - (squared - along) / (kBeside * kBeside);
+    if (aside <= 0 || along > kAlong * kAlong) continue;
+    const double level = height * std::sqrt(c.inverse_r2[i]) / kLevel;
     result.beside += c.weight[i] * aside;
-    result.over += c.weight[i] * aside * std::clamp(height / kLevel, -1.0, 1.0);
+    result.over += c.weight[i] * aside * std::clamp(level, -1.0, 1.0);
   }
   if (!(all > 0)) return result;
   if (result.beside > 0) result.over /= result.beside;
@@ -90,7 +95,8 @@ Nearby nearby_points(const ImplicitSurface& surface, const Patch& patch, const E
   const Matrix3d spread = squares / all - result.way * result.way.transpose();
   Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
   solver.computeDirect(spread);
-  const bool flat = solver.eigenvalues()[0] < kFlat * solver.eigenvalues()[1];
+  const Vector3d& variances = solver.eigenvalues();
+  const bool flat = variances[0] < kFlat * variances[1] && variances[1] > kWide * variances[2];
   if (flat) result.axis = solver.eigenvectors().col(0);
   return result;
 }

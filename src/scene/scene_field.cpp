@@ -259,7 +259,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
 }
 
 Nearby SceneField::nearby(const Vector3d& x, const Vector3d& up) const noexcept {
-  if (state_->layer_count == 0 || !x.allFinite()) return {};
+  if (state_->layer_count == 0 || !x.allFinite() || options_.raw_weights) return {};
   const Patch* const patch = state_->patches.at({x, 0}, state_->margin());
   return patch ? nearby_points(state_->surface, *patch, x, up) : Nearby{};
 }
