@@ -51,9 +51,7 @@ void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& hip, double d
   away_time_ = hard && probe.is_free({hip, 0}) ? away_time_ + dt : 0;
   if (away_time_ < kAwayTime) return;
   contact.notes |= ContactNote::freed;
-  if (tank_.stiffness() > kFaded * options_.stiffness) return;
-  side_.forget();
-  release(hip);
+  if (tank_.stiffness() <= kFaded * options_.stiffness) release(hip);
 }
 
 // Never through what cannot be found: from a free place to the first contact; from inside, only

@@ -49,18 +49,17 @@ Relief relief_at(const Texture& texture, const Eigen::Vector3d& x) noexcept {
   return relief;
 }
 
-Probe::Probe(const Field& field, const Texture& texture, double step_length, Side& side) noexcept
+Probe::Probe(const Field& field, const Texture& texture, double step_length) noexcept
     : field_(field),
       texture_(texture),
       traits_(field.traits()),
-      side_(side),
       step_length_(step_length > 0 ? step_length : 16 * traits_.resolution) {
   field_.begin_step();
 }
 
 Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   ++evaluations_;
-  Sample sample = side_.felt(field_.sample(x));
+  Sample sample = field_.sample(x);
   if (sample.radius > 0) step_length_ = sample.radius;
   if (sample.support <= 0 && sample.value <= 0) sample.value = step_length_;  // nothing known
   if (texture_.amplitude > 0) {
@@ -192,7 +191,6 @@ class Sweeper {
         continue;
       }
       const double solid = certain ? -1 : solid_end(interval);
-      if (beyond_) return {Sweep::End::beyond, probe_.side().place()};
       if (solid >= 0) return {Sweep::End::hit, at(last_free(free_until, solid))};
       free_until = interval.end;
     }
@@ -203,14 +201,10 @@ class Sweeper {
     return probe_.is_free({at(interval.middle()), half_length(interval)});
   }
 
-  // Where in the leaf it is solid; -1 where it is free as far as it was looked at.
+  // Where in the leaf it is solid; -1 where it is free.
   [[nodiscard]] double solid_end(const Interval& leaf) noexcept {
-    for (const double t : {leaf.middle(), leaf.end}) {
-      const Sample sample = probe_.sample(at(t));
-      if (!(sample.value > 0)) return t;
-      beyond_ = !probe_.passes(at(t), sample);
-      if (beyond_) break;
-    }
+    if (probe_.inside(at(leaf.middle()))) return leaf.middle();
+    if (probe_.inside(at(leaf.end))) return leaf.end;
     return -1;
   }
 
@@ -229,7 +223,6 @@ class Sweeper {
   double length_;
   double leaf_;
   int spent_before_;
-  bool beyond_ = false;
 };
 
 }  // namespace
@@ -237,7 +230,6 @@ class Sweeper {
 bool way_is_free(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
   const int before = probe.work();
   const bool free = probe.is_free({0.5 * (from + to), 0.5 * (to - from).norm()});
-  if (free) probe.side().forget();
   probe.swept += probe.work() - before;
   return free;
 }

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "contact/side.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/field/field.hpp"
 
@@ -46,10 +45,10 @@ struct Relief {
 /// Points that an evaluation costs as much as to sum over, besides those that it does sum over.
 inline constexpr int kEvaluationWork = 32;
 
-/// A field as the proxy sees it during one step: from its side, with its relief, and counted.
+/// A field as the proxy sees it during one step: with its relief, and counted.
 class Probe {
  public:
-  Probe(const Field& field, const Texture& texture, double step_length, Side& side) noexcept;
+  Probe(const Field& field, const Texture& texture, double step_length) noexcept;
   ~Probe() = default;
   Probe(const Probe&) = delete;
   Probe& operator=(const Probe&) = delete;
@@ -70,20 +69,12 @@ class Probe {
     return kEvaluationWork * evaluations_ + field_.points_summed();
   }
 
-  /// False where a free place is beyond points that the proxy did not touch. The floor of a relief
-  /// is not: it is up to two amplitudes below the points.
-  [[nodiscard]] bool passes(const Eigen::Vector3d& x, const Sample& sample) noexcept {
-    return side_.pass(field_, x + 2 * texture_.amplitude * side_.up(), sample);
-  }
-  [[nodiscard]] Side& side() noexcept { return side_; }
-
   int swept = 0;  ///< work that sweeps have spent
 
  private:
   const Field& field_;
   const Texture& texture_;
   Field::Traits traits_;
-  Side& side_;
   double step_length_;
   int evaluations_ = 0;
 };
@@ -116,7 +107,6 @@ struct Sweep {
   enum class End {
     clear,      ///< free all the way
     hit,        ///< something solid: `position` is the last free place before it
-    beyond,     ///< nothing solid, but points: `position` is the last place surely before them
     truncated,  ///< the step's budget ran out: free as far as `position`
   };
   End end = End::clear;

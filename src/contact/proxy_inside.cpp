@@ -14,8 +14,6 @@ constexpr double kMuchSofter = 0.95;   // of the stiffness that is wanted
 constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
 constexpr double kFastest = 1;       // m/s: what moves faster has jumped
 constexpr double kFreeing = 0.5;     // s, in which its spring fades (judgement)
-constexpr double kAbove = 0.2;       // of R: where weights tell the way up
-constexpr double kBeside = 0.6;      // of R from there: a metaball stands 0.49 R above a plane
 constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall
 constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
 
@@ -34,7 +32,6 @@ void Proxy::Inside::reset(const Eigen::Vector3d& position) noexcept {
   fault_ = !in_range(position);
   started_ = !fault_;
   step_length_ = 0;
-  side_.forget();
   fading_ = {};
   revision_.reset();
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
@@ -46,7 +43,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   if (fault_) return faulted();
   if (!started_) reset(hip);
   Contact contact;
-  Probe probe{field, options_.texture, step_length_, side_};
+  Probe probe{field, options_.texture, step_length_};
   const bool held = is_held();
   const Eigen::Vector3d before = position_;
   const Eigen::Vector3d side = normal_;
@@ -114,26 +111,10 @@ Contact Proxy::Inside::faulted() noexcept {
 void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept {
   if (way_is_free(probe, position_, hip)) return release(hip);
   if (probe.inside(position_)) return touch(probe, position_, hip);
-  const Sweep way = doubt(probe, sweep(probe, position_, hip), hip);
+  const Sweep way = sweep(probe, position_, hip);
   if (way.end == Sweep::End::hit) return touch(probe, way.position, hip);
   if (way.end == Sweep::End::truncated) contact.notes |= ContactNote::sweep_truncated;
   release(way.position);
-}
-
-// A way that ended before points which a field calls free ends at a metaball through these, a
-// little above. Where none stands there, as in the foot of an acute crease, the way goes on.
-Sweep Proxy::Inside::doubt(Probe& probe, const Sweep& way, const Eigen::Vector3d& hip) noexcept {
-  if (way.end != Sweep::End::beyond) return way;
-  const Eigen::Vector3d up = side_.up();
-  const Eigen::Vector3d above = way.position + kAbove * probe.step_length() * up;
-  side_.doubt(probe.step_length());
-  const std::optional<SurfacePoint> at = project(probe, above);
-  if (at && at->normal.dot(up) > 0 &&
-      (at->position - above).norm() < kBeside * probe.step_length()) {
-    return {Sweep::End::hit, at->position};
-  }
-  side_.forget();
-  return first_contact(probe, way.position, hip);
 }
 
 // A spring that is stretched by more than the hand has moved begins as much softer.
@@ -209,8 +190,7 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   if (!at) at = recover(probe, position_, normal_);
   cut_short_ = false;
   if (at || !(here.value > 0)) return at;
-  side_.touch(position_, normal_);
-  const Sweep way = doubt(probe, first_contact(probe, position_, hip), hip);
+  const Sweep way = first_contact(probe, position_, hip);
   if (way.end == Sweep::End::hit) return project(probe, way.position);
   if (way.end == Sweep::End::clear) {
     release(hip);
@@ -235,7 +215,6 @@ bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
   }
   position_ = motion.at.position;
   normal_ = motion.at.normal;
-  side_.touch(position_, normal_);
   sliding_ = motion.sliding;
   contact.normal = normal_;
   contact.sliding = sliding_;

@@ -92,7 +92,6 @@ class Proxy::Inside {
   void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
   void release(const Eigen::Vector3d& place) noexcept;
   void hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
-  [[nodiscard]] Sweep doubt(Probe& probe, const Sweep& way, const Eigen::Vector3d& hip) noexcept;
   [[nodiscard]] std::optional<SurfacePoint> find_surface(Probe& probe, const Eigen::Vector3d& hip,
                                                          Contact& contact) noexcept;
   [[nodiscard]] bool settle(const Slide& motion, Contact& contact) noexcept;
@@ -122,7 +121,6 @@ class Proxy::Inside {
   double step_length_ = 0;                             // R where it was last known, m
   double lost_time_ = 0;                               // s since the surface was lost
   double away_time_ = 0;  // s that the hand has been in free air, far from the proxy
-  Side side_;             // of the points around that the proxy is on
   std::optional<std::uint64_t> revision_;  // of the field in the last step
   bool started_ = false;
   bool touching_ = false;

@@ -68,22 +68,13 @@ class Slider {
     const double radius = result_.at.radius;
     const Eigen::Vector3d from = result_.at.position + kLift * radius * result_.at.normal;
     const int swept = probe_.swept;
-    const Sweep way = look(from, hip_);
-    if (way.end == Sweep::End::beyond) return Turn::stop;
+    const Sweep way = first_contact(probe_, from, hip_);
     if (way.end != Sweep::End::hit) return leave(way, swept);
     if ((way.position - from).norm() < kStay * radius) return Turn::stop;
     const std::optional<SurfacePoint> next = project(probe_, way.position);
     if (!next) return Turn::stop;
     result_.at = *next;
     return Turn::go_on;
-  }
-
-  // Sweeps as seen from the surface. What it sees counts only if the proxy goes that way.
-  [[nodiscard]] Sweep look(const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
-    const Side before = probe_.side();
-    const Sweep way = first_contact(probe_, from, to);
-    if (way.end == Sweep::End::hit || way.end == Sweep::End::beyond) probe_.side() = before;
-    return way;
   }
 
   // A sweep that only had what others left of the budget proves nothing when it is truncated: the
@@ -146,10 +137,9 @@ class Slider {
     const Eigen::Vector3d from = at.position + kLift * at.radius * at.normal;
     const Eigen::Vector3d over = from + step;
     if (probe_.inside(over)) return Turn::stop;
-    if (look(from, over).end != Sweep::End::clear) return Turn::stop;
+    if (first_contact(probe_, from, over).end != Sweep::End::clear) return Turn::stop;
     const int swept = probe_.swept;
-    const Sweep way = look(over, hip_);
-    if (way.end == Sweep::End::beyond) return Turn::stop;
+    const Sweep way = first_contact(probe_, over, hip_);
     if (way.end != Sweep::End::hit) return leave(way, swept);
     const std::optional<SurfacePoint> next = project(probe_, way.position);
     if (!next || (hip_ - next->position).squaredNorm() >
@@ -238,9 +228,7 @@ std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& positi
   const double reach = std::max(probe.traits().reanchor_reach, kLeastReach * probe.step_length());
   const Eigen::Vector3d top = position + reach * normal;
   if (probe.inside(top)) return std::nullopt;
-  const Side before = probe.side();
   const Sweep way = first_contact(probe, top, position);
-  probe.side() = before;
   if (way.end != Sweep::End::hit) return std::nullopt;
   const std::optional<SurfacePoint> found = project(probe, way.position);
   return found && found->normal.dot(normal) > kSameWay ? found : std::nullopt;

@@ -191,7 +191,6 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   }
   sample.value = value.f;
   sample.gradient = value.grad;
-  sample.slope = support.w.grad;
   return sample;
 }
 

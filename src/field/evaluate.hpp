@@ -54,10 +54,6 @@ struct PatchSurface {
                                         const Eigen::Vector3d& x,
                                         std::span<const double> presences = {}) noexcept;
 
-/// The points of the patch near x, layers and sources alike.
-[[nodiscard]] Nearby nearby_points(const ImplicitSurface& surface, const Patch& patch,
-                                   const Eigen::Vector3d& x, const Eigen::Vector3d& up) noexcept;
-
 /// Does a ball that no patch covers certainly hold nothing? Walks through the index itself and
 /// gives up, with `false`, as soon as the weights could make a surface or when `visits`, of which
 /// every cell and point takes one, have run out. The same bound as is_free() for a patch

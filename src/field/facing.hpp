@@ -15,7 +15,8 @@ namespace palpate {
 /// How a sheet is seen from the tool. Its points' normals are turned to the tool's side of it.
 enum Label : std::uint8_t {
   kInFront = 0,  ///< the free side of its plane is free, beside it
-  kBehind = 1,   ///< it meets what is in front at a convex edge: solid is what is below both
+  kBehind = 1,   ///< it meets what is in front at a convex edge, or that hides it: solid is
+                 ///< what is below both
   kAcross = 2,   ///< it meets what is in front in a crease: free is what is above both
 };
 static_assert(kAcross == simd::kLabels - 1);

@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,20 +9,6 @@
 #include "field/selection.hpp"
 
 namespace palpate {
-namespace {
-
-// Points count as over or under a place that are in a cylinder around it along the way up: so wide
-// that a square of four is within reach of its middle at R = 2.5 s, with some left for jitter; so
-// long as a metaball is thick. Nearer than the last one in height they are beside it. All in R.
-constexpr double kBeside = 0.45;
-constexpr double kAlong = 0.25;
-constexpr double kLevel = 0.1;
-// Variances of points on a plane, the least against the middle one and that against the largest:
-// no volume and no line, as in 5.5.
-constexpr double kFlat = 0.4;
-constexpr double kWide = 0.05;
-
-}  // namespace
 
 PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
                           const Eigen::Vector3d& x, std::span<const double> presences) noexcept {
@@ -61,43 +46,6 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
     result.presence = std::min(1.0, presence / largest);
   }
   result.velocity = velocity / total;
-  return result;
-}
-
-Nearby nearby_points(const ImplicitSurface& surface, const Patch& patch, const Eigen::Vector3d& x,
-                     const Eigen::Vector3d& up) noexcept {
-  using Eigen::Matrix3d;
-  using Eigen::Vector3d;
-  const simd::Columns& c = patch.columns();
-  const Vector3d local = x - patch.center();
-  Nearby result;
-  Matrix3d squares = Matrix3d::Zero();
-  double all = 0;
-  for (std::uint32_t i = 0; i < c.end(); ++i) {
-    const Vector3d q = Vector3d(c.position[0][i], c.position[1][i], c.position[2][i]) - local;
-    const double squared = q.squaredNorm() * c.inverse_r2[i];
-    if (squared >= 1) continue;
-    const double w = c.weight[i] * evaluate(surface.options.kernel, squared).w;
-    all += w;
-    result.way += w * q;
-    squares += w * q * q.transpose();
-    const double height = q.dot(up);
-    const double along = height * height * c.inverse_r2[i];
-    const double aside = 1 - (squared - along) / (kBeside * kBeside);
-    if (aside <= 0 || along > kAlong * kAlong) continue;
-    const double level = height * std::sqrt(c.inverse_r2[i]) / kLevel;
-    result.beside += c.weight[i] * aside;
-    result.over += c.weight[i] * aside * std::clamp(level, -1.0, 1.0);
-  }
-  if (!(all > 0)) return result;
-  if (result.beside > 0) result.over /= result.beside;
-  result.way /= all;
-  const Matrix3d spread = squares / all - result.way * result.way.transpose();
-  Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
-  solver.computeDirect(spread);
-  const Vector3d& variances = solver.eigenvalues();
-  const bool flat = variances[0] < kFlat * variances[1] && variances[1] > kWide * variances[2];
-  if (flat) result.axis = solver.eigenvectors().col(0);
   return result;
 }
 

@@ -26,10 +26,12 @@ constexpr double kMovingMargin = 0.62;
 constexpr double kReserve = 0.1;
 constexpr double kToolShare = 0.3;  // of R: the largest tool that pushes a surface out in full
 
-constexpr double kFinest = 0.25;  // of the mean radius, the smallest that sweeps still follow
+// The smallest share of the mean radius that sweeps still follow.
+constexpr double kFinest = 0.25;
 
-// How fast a surface may rise and still take a resting proxy along, from cloud to cloud, m/s.
-constexpr double kFastestCloud = 0.5;
+// A surface may rise this fast and still take a resting proxy along, m/s.
+constexpr double kFastestCloud = 0.5;  // from cloud to cloud
+
 constexpr double kFelt = 2;  // R that a tool feels: normals beside rims need neighbours, too
 
 }  // namespace
@@ -70,13 +72,8 @@ struct SceneField::State {
   void list_layer(std::size_t source, std::size_t k) noexcept;
   void publish_reach(const Vector3d& hip, const Vector3d& proxy) noexcept;
   void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
-  [[nodiscard]] double radius() const noexcept {
-    return patches.near().points() > 0 ? patches.near().mean_radius() : typical_radius;
-  }
-  /// How far a patch reaches beyond what it is gathered for, m.
-  [[nodiscard]] double margin() const noexcept {
-    return (moving ? kMovingMargin : kMargin) * radius();
-  }
+  [[nodiscard]] double radius() const noexcept;
+  [[nodiscard]] double margin() const noexcept;
   [[nodiscard]] FieldNote standing_notes() const noexcept;
 
   ImplicitSurface surface;
@@ -147,8 +144,8 @@ void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
 
 /// Notes that hold whatever is sampled.
 FieldNote SceneField::State::standing_notes() const noexcept {
-  const Patch& near = patches.near();
   FieldNote found = layer_count > 0 ? FieldNote::none : FieldNote::no_surface;
+  const Patch& near = patches.near();
   if (near.thinned()) found = found | FieldNote::thinned;
   if (near.points() > 0 && near.behind()) found = found | FieldNote::behind;
   if (other_kernel && !surface.options.raw_weights) found = found | FieldNote::other_kernel;
@@ -157,6 +154,15 @@ FieldNote SceneField::State::standing_notes() const noexcept {
     found = found | FieldNote::tool_too_large;
   }
   return found;
+}
+
+double SceneField::State::radius() const noexcept {
+  return patches.near().points() > 0 ? patches.near().mean_radius() : typical_radius;
+}
+
+/// How far a patch reaches beyond what it is gathered for, m.
+double SceneField::State::margin() const noexcept {
+  return (moving ? kMovingMargin : kMargin) * radius();
 }
 
 /// Points around the proxy and the first stretch of its way to the hand.
@@ -180,6 +186,7 @@ void SceneField::State::publish_reach(const Vector3d& hip, const Vector3d& proxy
 SceneField::SceneField(Scene& scene, const FieldOptions& options, const std::string& name,
                        double scale)
     : options_(options), state_(std::make_unique<State>(scene, options, name, scale)) {}
+
 SceneField::~SceneField() = default;
 
 void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) noexcept {
@@ -256,12 +263,6 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   const PatchSurface mean = mean_surface(state.surface, *patch, x, presences);
   if (mean.source < 0) return {};
   return felt_surface(mean, state.soft[static_cast<std::size_t>(mean.source)]);
-}
-
-Nearby SceneField::nearby(const Vector3d& x, const Vector3d& up) const noexcept {
-  if (state_->layer_count == 0 || !x.allFinite() || options_.raw_weights) return {};
-  const Patch* const patch = state_->patches.at({x, 0}, state_->margin());
-  return patch ? nearby_points(state_->surface, *patch, x, up) : Nearby{};
 }
 
 Field::Traits SceneField::traits() const noexcept {

@@ -88,8 +88,7 @@ void compare(PointField& scene, const Vector3d& from, const Vector3d& to, double
   const double step = 0.002 * radius;
   const Truth truth = brute_force(field, from, to, step);
   const Texture none;
-  Side side;
-  Probe probe(field, none, radius, side);
+  Probe probe(field, none, radius);
   const Sweep found = first_contact(probe, from, to);
   const double reached = (found.position - from).norm();
   tally.contacts += truth.first >= 0 ? 1 : 0;

@@ -17,8 +17,7 @@ const Vector3d kAbove(0, 0, 0.1);
 TEST(Slide, ReleaseThatFewEvaluationsAreLeftForIsPostponed) {
   DoubtfulField field;
   field.floor = 0;
-  Side side;
-  Probe probe(field, kNoTexture, 0.01, side);
+  Probe probe(field, kNoTexture, 0.01);
   probe.swept = kSweepWork - 100 * kEvaluationWork;
   const Slide motion = slide(probe, kStart, kAbove, false, {});
   EXPECT_EQ(motion.end, Slide::End::postponed);
@@ -29,8 +28,7 @@ TEST(Slide, ReleaseThatFewEvaluationsAreLeftForIsPostponed) {
 TEST(Slide, ReleaseThatEvenAWholeBudgetIsTooShortForGoesOnInFreeSpace) {
   DoubtfulField field;
   field.floor = 0;
-  Side side;
-  Probe probe(field, kNoTexture, 0.01, side);
+  Probe probe(field, kNoTexture, 0.01);
   const Slide motion = slide(probe, kStart, kAbove, false, {});
   EXPECT_EQ(motion.end, Slide::End::interrupted);
   EXPECT_GT(motion.at.position.z(), 1e-4);
@@ -78,8 +76,7 @@ TEST(Slide, StopsWhereAStepHasSummedEnoughAndGoesOnInTheNext) {
 // Four radii deep in a hollow, a whole tangent overshoots four times.
 TEST(Slide, HollowTakesFewSubSteps) {
   const BowlField bowl(0.01);
-  Side side;
-  Probe probe(bowl, kNoTexture, 0.01, side);
+  Probe probe(bowl, kNoTexture, 0.01);
   const SurfacePoint bottom{.position = {0, 0, -0.01}, .normal = Vector3d::UnitZ(), .radius = 0.01};
   const Vector3d direction = Vector3d(0.4, 0.1, -1).normalized();
   const Slide motion = slide(probe, bottom, 0.04 * direction, false, {});

@@ -24,8 +24,7 @@ TEST(Sweep, StopsAtTheExactFirstContactOfABall) {
     const double nearest2 = (from + middle * way).squaredNorm();
     const double half_chord = std::sqrt(std::max(0.0, 9e-4 - nearest2)) / way.norm();
     const double first = middle - half_chord;
-    Side side;
-    Probe probe(ball, kNoTexture, 0, side);
+    Probe probe(ball, kNoTexture, 0);
     const Sweep found = first_contact(probe, from, to);
     const bool hit = nearest2 < 9e-4 && first > 0 && first < 1;
     if (2 * half_chord * way.norm() < 2e-5) continue;  // shorter than the field's resolution
@@ -40,24 +39,21 @@ TEST(Sweep, StopsAtTheExactFirstContactOfABall) {
 
 TEST(Sweep, FreeWayCostsOneBall) {
   const SphereField ball(0.03);
-  Side side;
-  Probe probe(ball, kNoTexture, 0, side);
+  Probe probe(ball, kNoTexture, 0);
   EXPECT_EQ(first_contact(probe, {0.1, 0, 0}, {0.1, 0.05, 0}).end, Sweep::End::clear);
   EXPECT_EQ(probe.evaluations(), 1);
 }
 
 TEST(Sweep, NoWayAtAllIsClear) {
   const SphereField ball(0.03);
-  Side side;
-  Probe probe(ball, kNoTexture, 0, side);
+  Probe probe(ball, kNoTexture, 0);
   const Vector3d place(0.0300001, 0, 0);
   EXPECT_EQ(first_contact(probe, place, place).end, Sweep::End::clear);
 }
 
 TEST(Sweep, IsTruncatedWhereItIsStillFreeAndGoesOnNextStep) {
   const DoubtfulField field;
-  Side side;
-  Probe probe(field, kNoTexture, 0, side);
+  Probe probe(field, kNoTexture, 0);
   const Sweep found = first_contact(probe, {0, 0, 0}, {0.1, 0, 0});
   EXPECT_EQ(found.end, Sweep::End::truncated);
   EXPECT_GT(found.position.x(), 0);
@@ -80,8 +76,7 @@ TEST(Sweep, IsTruncatedWhereItIsStillFreeAndGoesOnNextStep) {
 
 TEST(Newton, OneStepIsExactOnADistance) {
   const SphereField ball(0.03);
-  Side side;
-  Probe probe(ball, kNoTexture, 0, side);
+  Probe probe(ball, kNoTexture, 0);
   const auto found = project(probe, {0.0312, 0, 0});
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->position.x(), 0.03, 1e-17);
@@ -90,19 +85,16 @@ TEST(Newton, OneStepIsExactOnADistance) {
 
 TEST(Newton, GivesUpWhereThereIsNoGradientOrNoSurface) {
   const FogField fog;
-  Side in_fog_side;
-  Probe in_fog(fog, kNoTexture, 0, in_fog_side);
+  Probe in_fog(fog, kNoTexture, 0);
   EXPECT_FALSE(project(in_fog, {0, 0, 0}));
   const EmptyField empty;
-  Side in_nothing_side;
-  Probe in_nothing(empty, kNoTexture, 0, in_nothing_side);
+  Probe in_nothing(empty, kNoTexture, 0);
   EXPECT_FALSE(project(in_nothing, {0, 0, 0}));
 }
 
 TEST(Newton, FartherThanItsStepsReachIsAFailure) {
   const SphereField ball(0.5);
-  Side side;
-  Probe probe(ball, kNoTexture, 0, side);
+  Probe probe(ball, kNoTexture, 0);
   EXPECT_FALSE(project(probe, {0.54, 0, 0}));
   EXPECT_LE(probe.evaluations(), 11);
   EXPECT_TRUE(project(probe, {0.52, 0, 0}));

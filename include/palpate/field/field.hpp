@@ -13,7 +13,6 @@ struct Sample {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< d value / d x; points outward
   double support = 0;  ///< sum of weights (1 on a well sampled surface); 0: nothing known here
   double radius = 0;   ///< support radius R here: the length that steps are measured in, m
-  Eigen::Vector3d slope = Eigen::Vector3d::Zero();  ///< d support / d x, 1/m; zero: not told
 };
 
 /// What the surface is made of near a place on it.
@@ -23,15 +22,6 @@ struct Surface {
   double presence = 1;          ///< 0-1: is the sensor still sure of this surface?
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the surface, m/s
   int source = -1;  ///< index of the source that contributes most; -1: none
-};
-
-/// How points lie near a place, whatever is known of their normals and sides.
-struct Nearby {
-  Eigen::Vector3d way = Eigen::Vector3d::Zero();   ///< weighted mean way to them, m
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< across the plane that they lie on, unit,
-                                                   ///< sign arbitrary; zero: they lie on none
-  double beside = 0;  ///< weight of those on a short way up and down from the place
-  double over = 0;    ///< are these over the place (1) or under it (-1)?
 };
 
 /// All that a proxy knows of a scene: an implicit surface with its exact gradient.
@@ -61,13 +51,6 @@ class Field {
   [[nodiscard]] virtual Surface surface(const Eigen::Vector3d& x) const noexcept = 0;
 
   [[nodiscard]] virtual Traits traits() const noexcept = 0;
-
-  /// The points near x, as seen from one side: `up` is unit, or zero while no side is known. A
-  /// field that is made of none says nothing.
-  [[nodiscard]] virtual Nearby nearby(const Eigen::Vector3d& /*x*/,
-                                      const Eigen::Vector3d& /*up*/) const noexcept {
-    return {};
-  }
 
   /// A proxy's step begins and ends. What is asked in between is bounded together: a field that has
   /// spent its work answers on the safe side, which is that all it does not know is solid.

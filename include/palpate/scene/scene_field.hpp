@@ -67,8 +67,6 @@ class SceneField final : public Field {
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
-  [[nodiscard]] Nearby nearby(const Eigen::Vector3d& x,
-                              const Eigen::Vector3d& up) const noexcept override;
   [[nodiscard]] Traits traits() const noexcept override;
 
   /// Is another surface of the same points from the next update() on. Real-time. `checked`: check()
