@@ -1,7 +1,7 @@
+// Ends contacts whose surface is gone, and lets go of a hand that is held in free air.
+
 #include "contact/probe.hpp"
 #include "contact/proxy_inside.hpp"
-
-// What becomes of a contact whose surface is gone, and of a hand that is held in free air.
 
 namespace palpate {
 namespace {

@@ -116,16 +116,16 @@ Sample nothing_here(const Patch& patch) noexcept {
   return sample;
 }
 
-/// Cap, tool and blend around the normals' surface (docs/method.md 2.5).
-Value capped(const ImplicitSurface& surface, const FieldPlace& place, const Support& support,
-             const Value& height) noexcept {
+/// Cap, tool and blend around the normals' surface (docs/method.md 2.5). `v`: what is trusted.
+Value capped(const ImplicitSurface& surface, const Support& support, const Value& height,
+             const Value& v) noexcept {
   constexpr double kAtRims = 0.1;  // of R
   const FieldOptions& options = surface.options;
   const Value outer{height.f - options.tool_radius, height.grad};
   if (!options.capped) return outer;
   const Value floor{options.minimum_support, Vector3d::Zero()};
   const Value cap = smooth_max(outer, as_length(options, support, floor), support.radius, kAtRims);
-  const Value trust = trust_of(trusted(*place.all, place.columns->labels), support);
+  const Value trust = trust_of(v, support);
   if (trust.f >= 1) return cap;
   const Value blob = as_length(options, support, level_of(surface, support));
   return {trust.f * cap.f + (1 - trust.f) * blob.f,
@@ -169,7 +169,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   Sample sample;
   sample.support = support.w.f;
   sample.radius = support.radius.f;
-  const double heights = metaball ? 0 : trusted(sums, columns.labels).f;
+  const Value v = metaball ? Value{} : trusted(sums, columns.labels);
   const FieldPlace place{.functions = surface.sums,
                          .columns = &columns,
                          .kernel = options.kernel,
@@ -177,12 +177,12 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
                          .all = &sums,
                          .radius = support.radius};
   std::optional<Value> height;
-  if (heights > kFaintNormals * support.plain) {
-    height = joined_height(options, place, kFaintLabel * heights);
+  if (v.f > kFaintNormals * support.plain) {
+    height = joined_height(options, place, kFaintLabel * v.f);
   }
   Value value;
   if (height) {
-    value = capped(surface, place, support, *height);
+    value = capped(surface, support, *height, v);
   } else {
     value = as_length(options, support, level_of(surface, support));
     if (options.gradient == FieldOptions::Gradient::printed) {

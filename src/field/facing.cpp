@@ -172,7 +172,7 @@ void Facing::choose_eye(const Stance& stance) noexcept {
     const Sheet& sheet = now_.sheets[point.sheet];
     const int sign = sign_of(now_.parts[sheet.part]);
     const float squared = point.place.squaredNorm();
-    if (!stance.touches() || sheet.label > kAcross || sign == 0 || squared >= nearest) continue;
+    if (!stance.touches() || sheet.label == kOpen || sign == 0 || squared >= nearest) continue;
     if (static_cast<float>(sign) * point.normal.dot(normal) < 0.5f) continue;
     nearest = squared;
     lift = std::min(kLift * radius_, 0.5f * (sign > 0 ? point.above : point.below));
@@ -193,7 +193,7 @@ void Facing::choose_eye(const Stance& stance) noexcept {
 void Facing::add_references(const Sheet& sheet) noexcept {
   const Part& part = now_.parts[sheet.part];
   const int sign = sign_of(part);
-  if (sheet.label > kAcross || sign == 0) return;
+  if (sheet.label == kOpen || sign == 0) return;
   for (std::uint32_t k = 0; k < sheet.count; ++k) {
     const Point& p = points_[order_[sheet.begin + k]];
     if (references_.size() == references_.capacity()) return;
