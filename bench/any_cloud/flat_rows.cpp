@@ -26,6 +26,16 @@ void draw_noise(Draft& draft, double sigma, bool seen) {
   zig_zag(draft, 3, 30);
 }
 
+// Noise that fills a layer many spacings thick, as a ToF camera's near by.
+void draw_thick(Draft& draft, double sigma, bool seen) {
+  draft.noise = sigma;
+  draft.clear += sigma;
+  draft.deep = sigma / 2;
+  make_plane(draft, 60 + 5 * sigma);
+  if (seen) draft.viewpoint = Vector3d(0, 0, 1000);
+  zig_zag(draft, sigma, 30);
+}
+
 // From spacing 1 to a coarser one and back.
 void draw_density(Draft& draft, double step) {
   const Vector3d Y = 80 * Vector3d::UnitY();
@@ -76,6 +86,12 @@ void add_flat_rows(std::vector<Row>& rows) {
     for (const bool seen : {false, true}) {
       rows.push_back({"noise", fmt::format("noise {:g}{}", sigma, seen ? " view" : ""),
                       [=](Draft& draft) { draw_noise(draft, sigma, seen); }});
+    }
+  }
+  for (const double sigma : {3.0, 4.0, 6.0, 8.0}) {
+    for (const bool seen : {false, true}) {
+      rows.push_back({"thick", fmt::format("thick noise {:g}{}", sigma, seen ? " view" : ""),
+                      [=](Draft& draft) { draw_thick(draft, sigma, seen); }});
     }
   }
   for (const int step : {2, 4, 10}) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "sim/simulated_camera.hpp"
@@ -19,6 +20,9 @@ struct Event {
   std::size_t begin = 0;             ///< tick at which things begin to happen, and scores
   double depth = 0;        ///< that the hand should be held at, m; 0: nothing should hold it
   bool when_deep = false;  ///< only while it is that deep in what stands still
+  /// Spoils a frame on its way; false: it never arrives. Unset: all arrive as they are.
+  std::function<bool(DepthFrame&)> fault = {};
+  bool as_points = false;  ///< frames are pushed as clouds
 };
 
 /// What a hand felt.

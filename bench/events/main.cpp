@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
     std::vector<Row> rows = all_rows();
     for (Row& row : sensor_rows()) rows.push_back(std::move(row));
     for (Row& row : hostile_rows()) rows.push_back(std::move(row));
+    for (Row& row : fault_rows()) rows.push_back(std::move(row));
     for (const Row& row : rows) {
       const auto named = [&](const std::string& part) {
         return row.name.find(part) != std::string::npos;

@@ -20,5 +20,7 @@ struct Row {
 [[nodiscard]] std::vector<Row> sensor_rows();
 /// What touches, hides and passes close by, and other sensors, rates and views.
 [[nodiscard]] std::vector<Row> hostile_rows();
+/// A sensor is at fault where a hand presses.
+[[nodiscard]] std::vector<Row> fault_rows();
 
 }  // namespace palpate::events

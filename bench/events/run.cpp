@@ -5,14 +5,45 @@
 #include "palpate/sensor/stream.hpp"
 
 namespace palpate::events {
+namespace {
+
+// The points of a frame, in its sensor's frame.
+PointCloud points_of(const DepthFrame& frame) {
+  const Pinhole& p = frame.camera.pinhole;
+  const auto width = static_cast<std::size_t>(frame.camera.width);
+  PointCloud cloud;
+  cloud.viewpoint = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+    const double z = static_cast<double>(frame.depth[i]);
+    if (z <= 0) continue;
+    const double u = static_cast<double>(i % width);
+    const double v = static_cast<double>(i / width);
+    const Eigen::Vector3d x((u - p.cx) * z / p.fx, (v - p.cy) * z / p.fy, z);
+    cloud.positions.push_back(x.cast<float>());
+  }
+  return cloud;
+}
+
+void push(const Event& event, DepthFrame frame, const Source::StartTime& start, Source& source) {
+  if (event.fault && !event.fault(frame)) return;
+  if (event.as_points) {
+    source.push(points_of(frame), frame.stamp, start);
+  } else {
+    source.push(frame, start);
+  }
+}
+
+}  // namespace
 
 Felt play(const Event& event) {
   SimulatedCamera camera(event.scene, event.camera);
   Scene scene;
-  Source& source = scene.add("camera");
+  Source& source = scene.add("camera", {.T_world_sensor = event.camera.T_world_camera});
   SimulatedStream stream(
       camera, "camera",
-      [&](const DepthFrame& frame, const Source::StartTime& start) { source.push(frame, start); },
+      [&](const DepthFrame& frame, const Source::StartTime& start) {
+        push(event, frame, start, source);
+      },
       {.latency = 0.01, .lead = 0.002}, [&] { source.keep(); });
   SceneField field(scene);
   Proxy proxy({.stiffness = kK});
