@@ -242,7 +242,7 @@ class Growth {
 
 float sheet_tolerance(const SheetInput& input, const OwnSheets& own, std::uint32_t i,
                       std::uint32_t j) {
-  const float least = std::max(static_cast<float>(input.noise),
+  const float least = std::max(std::max(input.noise[i], input.noise[j]),
                                kLeastTolerance * std::min(input.spacings[i], input.spacings[j]));
   return 3 * std::min(std::max(own.residuals[i], own.residuals[j]), least);
 }

@@ -20,10 +20,18 @@ struct Window {
   double reach;
   std::size_t fewest;        // points
   double quarter_to_median;  // of the residuals that noise alone gives
+  bool widens = false;       // where noise fills it
 };
 constexpr Window kNarrow{3, 12, 1.1};
 constexpr Window kNarrowest{2.2, 10, 1.2};
+constexpr Window kWidening{3, 12, 1.1, true};
 constexpr double kShape = 0.65;
+
+// A ball full of points has a residual of 0.3 to 0.45 of its reach, and a layer whose sigma is a
+// quarter of the reach 0.23 (computed: uniform and normal heights, less the quadric). Where a
+// residual is larger the window tells and not the noise, so that a window twice as wide is asked.
+constexpr double kFilled = 1 / kSigmasInReach;
+constexpr double kWidestReach = 24;  // spacings; more is left to the sensor's own filter
 
 // Windows, in spacings, that noise and shape are told apart with: shape that a quadratic misses
 // grows with the third power of the window or faster.
@@ -43,6 +51,17 @@ std::size_t step_for(const CellGrid& grid, std::size_t samples) {
   return std::max<std::size_t>(1, grid.size() / samples);
 }
 
+/// The fit at a place within `reach`, or so much farther that noise does not fill the window.
+SheetFit fit_beyond_noise(SheetFitter& fitter, const CellGrid& grid, const Eigen::Vector3f& at,
+                          double reach, double spacing) {
+  SheetFit fit = fitter.fit(grid, at, reach, spacing);
+  while (fit.bend > kFilled * reach && 2 * reach <= kWidestReach * spacing) {
+    reach *= 2;
+    fit = fitter.fit(grid, at, reach, spacing);
+  }
+  return fit;
+}
+
 /// The residual over samples of the grid, as the flatter quarter has it: where shape is finer than
 /// the window it passes for noise. 0 where no sample has enough neighbours.
 double noise_in_windows(const CellGrid& grid, double spacing, const Window& window) {
@@ -50,7 +69,9 @@ double noise_in_windows(const CellGrid& grid, double spacing, const Window& wind
   std::vector<float> residuals((grid.size() - step / 2 + step - 1) / step, -1);
   detail::parallel_each_with<SheetFitter>(residuals.size(), 64, [&](std::size_t k, auto& fitter) {
     const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
-    const SheetFit fit = fitter.fit(grid, at, window.reach * spacing, spacing);
+    const double reach = window.reach * spacing;
+    const SheetFit fit = window.widens ? fit_beyond_noise(fitter, grid, at, reach, spacing)
+                                       : fitter.fit(grid, at, reach, spacing);
     if (fit.points >= window.fewest) residuals[k] = static_cast<float>(fit.bend);
   });
   std::erase(residuals, -1.f);
@@ -63,7 +84,9 @@ double noise_in_windows(const CellGrid& grid, double spacing, const Window& wind
 double narrow_noise(const CellGrid& grid, double spacing) {
   const double narrow = noise_in_windows(grid, spacing, kNarrow);
   const double narrowest = noise_in_windows(grid, spacing, kNarrowest);
-  return narrowest > 0 && narrowest < kShape * narrow ? narrowest : narrow;
+  if (narrowest > 0 && narrowest < kShape * narrow) return narrowest;
+  const bool filled = narrow > kFilled * kNarrow.reach * spacing;
+  return filled ? noise_in_windows(grid, spacing, kWidening) : narrow;
 }
 
 /// What windows of several widths round one place say.
@@ -107,7 +130,7 @@ double median_of(const std::vector<Widths>& all, const Value& value) {
 }  // namespace
 
 Noise measure_noise(const CellGrid& grid, double spacing) {
-  Noise noise{narrow_noise(grid, spacing), 1};
+  Noise noise{.sigma = narrow_noise(grid, spacing)};
   if (noise.sigma < kFlatNoise * spacing) return noise;
   std::vector<Widths> all = compare_widths(grid, spacing);
   std::stable_sort(all.begin(), all.end(),
@@ -119,7 +142,9 @@ Noise measure_noise(const CellGrid& grid, double spacing) {
   const double rise = median_of(all, [](const Widths& w) { return w.rise; });
   if (rise > kMostRise) return noise;  // shape that is as wavy in all wide windows
   noise.excess = std::min(excess, kMostExcess);
-  noise.sigma = std::max(noise.sigma, median_of(all, [](const Widths& w) { return w.sigma; }));
+  const double sigma = median_of(all, [](const Widths& w) { return w.sigma; });
+  noise.shared = std::max(1., sigma / noise.sigma);
+  noise.sigma *= noise.shared;
   return noise;
 }
 
@@ -137,45 +162,59 @@ constexpr std::size_t kFewest = 8;   // samples that a quantile is taken of
 NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
   const std::size_t step = std::max(kRawPerSample, raw.size() / kMostSamples);
   const std::size_t count = raw.size() / step;
-  std::vector<float> found(count);
+  std::vector<Value> found(count);
   detail::parallel_each_with<SheetFitter>(count, 64, [&](std::size_t k, auto& fitter) {
     const std::size_t i = k * step + step / 2;
     const SheetFit fit =
-        fitter.fit(raw, raw.points()[i], static_cast<double>(kWindow * spacings[i]),
-                   static_cast<double>(spacings[i]));
-    found[k] = static_cast<float>(fit.bend * fit.footprint);
+        fit_beyond_noise(fitter, raw, raw.points()[i], static_cast<double>(kWindow * spacings[i]),
+                         static_cast<double>(spacings[i]));
+    found[k] = {static_cast<float>(fit.bend), static_cast<float>(fit.bend * fit.footprint)};
   });
   std::vector<Eigen::Vector3f> places;
-  std::vector<float> values;
+  std::vector<Value> values;
   for (std::size_t k = 0; k < count; ++k) {
-    if (!(found[k] > 0)) continue;
+    if (!(found[k].product > 0)) continue;
     places.push_back(raw.points()[k * step + step / 2]);
     values.push_back(found[k]);
   }
   reach_ = kSurroundings * static_cast<float>(median(spacings));
   places_ = CellGrid(places);
   for (const std::uint32_t k : places_.order()) values_.push_back(values[k]);
-  typical_ = static_cast<float>(median(values_));
+  std::vector<float> all;
+  for (const Value& value : values_) all.push_back(value.sigma);
+  typical_.sigma = static_cast<float>(median(all));
+  all.clear();
+  for (const Value& value : values_) all.push_back(value.product);
+  typical_.product = static_cast<float>(median(all));
 }
 
-std::vector<float> NoiseMap::at(std::span<const Eigen::Vector3f> points) const {
-  std::vector<float> all(points.size(), typical_);
+NoiseMap::Value NoiseMap::at(const Eigen::Vector3f& point, std::vector<std::uint32_t>& near,
+                             std::vector<float>& around) const {
+  near.clear();
+  places_.within(point, reach_, near);
+  if (near.size() < kFewest) return typical_;
+  const auto flatter = [&](float Value::*of) {
+    around.clear();
+    for (const std::uint32_t k : near) around.push_back(values_[k].*of);
+    const auto rank = static_cast<std::ptrdiff_t>(kFlatter * static_cast<double>(near.size() - 1));
+    std::nth_element(around.begin(), around.begin() + rank, around.end());
+    return around[static_cast<std::size_t>(rank)];
+  };
+  return {flatter(&Value::sigma), flatter(&Value::product)};
+}
+
+LocalNoise NoiseMap::at(std::span<const Eigen::Vector3f> points, const Noise& whole) const {
+  LocalNoise local{std::vector<float>(points.size()), std::vector<float>(points.size())};
   detail::parallel_ranges(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
     std::vector<float> around;
     for (std::size_t i = begin; i < end; ++i) {
-      near.clear();
-      around.clear();
-      places_.within(points[i], reach_, near);
-      if (near.size() < kFewest) continue;
-      for (const std::uint32_t k : near) around.push_back(values_[k]);
-      const auto place = around.begin() + static_cast<std::ptrdiff_t>(
-                                              kFlatter * static_cast<double>(around.size() - 1));
-      std::nth_element(around.begin(), place, around.end());
-      all[i] = *place;
+      const Value value = at(points[i], near, around);
+      local.sigmas[i] = static_cast<float>(whole.shared) * value.sigma;
+      local.products[i] = static_cast<float>(whole.excess) * value.product;
     }
   });
-  return all;
+  return local;
 }
 
 namespace {
@@ -196,13 +235,15 @@ constexpr float kSmoothing = 0.5f;  // R within which radii are averaged
 
 }  // namespace
 
-std::vector<float> noisy_radii(const CellGrid& grid, const NoiseMap& noise, double excess,
-                               double normal_error, const std::vector<float>& floors) {
-  const double scale = kNoiseToTilt * excess / normal_error;
-  std::vector<float> radii = noise.at(grid.points());
+std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise, double normal_error,
+                               std::vector<float> floors) {
+  const double scale = kNoiseToTilt / normal_error;
+  std::vector<float> radii = noise.products;
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const double radius = std::sqrt(scale * static_cast<double>(radii[i]));
     radii[i] = std::clamp(static_cast<float>(radius), floors[i], kMostFloors * floors[i]);
+    floors[i] = std::max(floors[i], static_cast<float>(kSigmasInReach) * noise.sigmas[i]);
+    radii[i] = std::max(radii[i], floors[i]);
   }
   shrink_at_edges(grid, floors, radii);
   return radii;

@@ -15,7 +15,12 @@ struct Noise {
   double excess =
       1;  ///< by how much sigma_n delta of narrow windows (NoiseMap) falls short of what
           ///< averaging has to cope with, because neighbours err together; 1: they do not
+  double shared = 1;  ///< by how much sigma of narrow windows falls short of it, likewise
 };
+
+/// A window shows a layer of noise as a layer, and not as a ball full of points, where its reach is
+/// at least this many sigma.
+inline constexpr double kSigmasInReach = 4;
 
 /// Measures it on a sample of the points. `spacing`: of the points, m.
 ///
@@ -25,30 +30,42 @@ struct Noise {
 /// (docs/method.md 5.2).
 [[nodiscard]] Noise measure_noise(const CellGrid& grid, double spacing);
 
+/// The noise at each point, in sorted order.
+struct LocalNoise {
+  std::vector<float> sigmas;    ///< rms distance from a smooth surface, m
+  std::vector<float> products;  ///< sigma_n delta, m^2: that times the root of the area per point
+};
+
 /// How noisy a cloud is where: sensors err more on what is far away or faces them.
 class NoiseMap {
  public:
   /// `raw`: the points as measured, `spacings` theirs, in sorted order, m.
   NoiseMap(const CellGrid& raw, std::span<const float> spacings);
 
-  /// sigma_n delta for each of `points`, m^2: rms distance from a smooth surface times the root of
-  /// the area per point, as the flatter part of the surroundings has it, so that edges are no
-  /// noise.
-  [[nodiscard]] std::vector<float> at(std::span<const Eigen::Vector3f> points) const;
+  /// At each of `points`, as the flatter part of the surroundings has it, so that edges are no
+  /// noise; made larger by what neighbours share in the `whole` cloud.
+  [[nodiscard]] LocalNoise at(std::span<const Eigen::Vector3f> points, const Noise& whole) const;
 
  private:
+  struct Value {
+    float sigma = 0;    // m
+    float product = 0;  // sigma_n delta, m^2
+  };
+
+  [[nodiscard]] Value at(const Eigen::Vector3f& point, std::vector<std::uint32_t>& near,
+                         std::vector<float>& around) const;
+
   CellGrid places_;
-  std::vector<float> values_;  // sigma_n delta, in the order of places_
+  std::vector<Value> values_;  // in the order of places_
   float reach_ = 0;            // how far a value is of interest, m
-  float typical_ = 0;
+  Value typical_;
 };
 
 /// Support radii for a noisy cloud: from place to place so large that noise tilts normals by
-/// `normal_error` (rad), nowhere below a point's `floor` nor above 2.4 times that. `excess`:
-/// Noise::excess. All in sorted order, m.
-[[nodiscard]] std::vector<float> noisy_radii(const CellGrid& grid, const NoiseMap& noise,
-                                             double excess, double normal_error,
-                                             const std::vector<float>& floors);
+/// `normal_error` (rad), nowhere below a point's `floor` nor above 2.4 times that, and at least
+/// four sigma. All in sorted order, m.
+[[nodiscard]] std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise,
+                                             double normal_error, std::vector<float> floors);
 
 /// Makes support radii smaller again, by a quarter at most, where the points within them bend away
 /// from a plane by more than noise explains: at edges, which a large R rounds off by about 0.35 R

@@ -86,6 +86,9 @@ class Preparation {
       index();
     }
     choose_voxel();
+    if (noise_.sigmas.empty()) {
+      noise_.sigmas.assign(points_.size(), static_cast<float>(report_.noise));
+    }
     choose_radii();
     weigh();
     points_.confidences.resize(points_.size(), 0.0f);
@@ -125,13 +128,14 @@ class Preparation {
   void choose_voxel() {
     measure_spacing();
     footprint_ = report_.spacing;
-    noise_ = options_.paper ? Noise{} : measure_noise(points_.grid, footprint_);
-    report_.noise = noise_.sigma;
+    const Noise noise = options_.paper ? Noise{} : measure_noise(points_.grid, footprint_);
+    report_.noise = noise.sigma;
     const bool noisy = report_.noise > kNoisy * footprint_;
     report_.voxel = options_.voxel.value_or(noisy && !options_.paper ? 2 * footprint_ : 0);
     watch_.lap(report_.seconds_spacing);
     if (report_.voxel <= 0) return;
-    if (noisy && !options_.radius) noise_map_.emplace(points_.grid, spacings_);
+    std::optional<NoiseMap> map;
+    if (noisy && !options_.radius) map.emplace(points_.grid, spacings_);
     watch_.lap(report_.seconds_spacing);
     own_ = voxel_downsample(*cloud_, report_.voxel, &counts_);
     cloud_ = &own_;
@@ -142,6 +146,8 @@ class Preparation {
     const auto leaf = static_cast<float>(report_.voxel);
     for (float& s : spacings_) s = std::max(s, leaf);
     report_.spacing = std::max(report_.spacing, report_.voxel);
+    if (map) noise_ = map->at(points_.grid.points(), noise);
+    watch_.lap(report_.seconds_spacing);
   }
 
   void choose_radii() {
@@ -178,17 +184,17 @@ class Preparation {
       support.multiple =
           std::max(kIrregularMultiple, support_multiple(report_.noise, report_.spacing));
     }
-    if (!noise_map_) {
+    if (noise_.products.empty()) {
       points_.radii = support_radii(spacings_, support);
       return;
     }
     support.noise = 0;
-    points_.radii = noisy_radii(points_.grid, *noise_map_, noise_.excess, options_.normal_error,
-                                support_radii(spacings_, support));
+    points_.radii =
+        noisy_radii(points_.grid, noise_, options_.normal_error, support_radii(spacings_, support));
   }
 
   void fit_sheets() {
-    own_sheets_ = fit_own_sheets(points_.grid, spacings_, points_.radii, report_.noise);
+    own_sheets_ = fit_own_sheets(points_.grid, spacings_, points_.radii, noise_.sigmas);
     if (!cloud_->normals.empty()) {
       given_ = in_grid_order(points_.grid, cloud_->normals);
       take_given_normals(points_.grid, given_, own_sheets_.normals);
@@ -217,7 +223,7 @@ class Preparation {
       if (points_.density_weights[i] <= 0) own_sheets_.confidences[i] = 0;
     }
     std::vector<Twin> twins;
-    points_.sheets = make_sheets({points_.grid, spacings_, points_.radii, report_.noise}, known,
+    points_.sheets = make_sheets({points_.grid, spacings_, points_.radii, noise_.sigmas}, known,
                                  own_sheets_, twins);
     points_.normals = std::move(own_sheets_.normals);
     points_.confidences = std::move(own_sheets_.confidences);
@@ -272,9 +278,8 @@ class Preparation {
   std::vector<std::uint8_t> strays_;  // 1: one; empty: not looked for
   std::optional<WeightSums> sums_;
   double footprint_ = 0;
-  Noise noise_;
+  LocalNoise noise_;
   std::size_t twins_ = 0;
-  std::optional<NoiseMap> noise_map_;
   Stopwatch watch_;
 };
 

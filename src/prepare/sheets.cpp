@@ -17,7 +17,7 @@ constexpr double kNoisyFit = 1.2;    // of the noise
 }  // namespace
 
 OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
-                         std::span<const float> radii, double noise) {
+                         std::span<const float> radii, std::span<const float> noise) {
   Normals planes = estimate_normals(grid, radii, kNormalsReach);
   OwnSheets sheets{std::move(planes.normals),
                    std::move(planes.confidences),
@@ -27,12 +27,13 @@ OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
   sheets.bends = sheets.residuals;
   std::vector<float> reaches(grid.size());  // of second fits, m; 0: the plane does
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    const double flat = flat_residual(static_cast<double>(radii[i]), noise);
+    const double flat = flat_residual(static_cast<double>(radii[i]), static_cast<double>(noise[i]));
     if (static_cast<double>(sheets.residuals[i]) > flat) reaches[i] = kNormalsReach * radii[i];
   }
   const auto refit = [&](SheetFitter& fitter, std::uint32_t i,
                          std::span<const std::uint32_t> near) {
-    const double smooth = std::max(kSmoothFit * static_cast<double>(radii[i]), kNoisyFit * noise);
+    const double smooth = std::max(kSmoothFit * static_cast<double>(radii[i]),
+                                   kNoisyFit * static_cast<double>(noise[i]));
     const SheetFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
                                     static_cast<double>(spacings[i]), smooth);
     sheets.normals[i] = fit.normal.cast<float>();

@@ -68,16 +68,16 @@ struct OwnSheets {
 // Normals come from a little further away than the surface: the balanced field adds their noise.
 inline constexpr float kNormalsReach = 1.15f;  // of R
 
-/// Fitted within kNormalsReach of each point's `radii`; `noise`: of the points, m. On every core.
+/// Fitted within kNormalsReach of each point's `radii`; `noise`: sigma at each, m. On every core.
 [[nodiscard]] OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
-                                       std::span<const float> radii, double noise);
+                                       std::span<const float> radii, std::span<const float> noise);
 
 /// Sorted points and what is known of them before sheets.
 struct SheetInput {
   const CellGrid& grid;
   std::span<const float> spacings;  // m
   std::span<const float> radii;     // m
-  double noise = 0;                 // m
+  std::span<const float> noise;     // sigma at each point, m
 };
 
 /// What is known of signs from outside.

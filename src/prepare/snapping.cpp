@@ -16,8 +16,6 @@ constexpr float kPlanarFit = 0.5f;  // confidence from which on a fit is a plane
 constexpr float kSmoothBend =
     0.03f;                          // of R that a quadric may leave: curvature passes, a crease not
 constexpr float kNoisyBend = 1.6f;  // of the noise, as above
-constexpr float kNoiseReach = 2.5f;  // R within which noise is looked for
-constexpr float kNoisier = 2.5f;     // than typical that noise may be in places
 
 // An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
 // this many of its residuals.
@@ -42,17 +40,15 @@ class Snapping {
  public:
   Snapping(const SheetInput& input, OwnSheets& own)
       : input_(input), own_(own), sure_(input.grid.size()) {
-    const auto noise = static_cast<float>(input.noise);
-    detail::parallel_each_with<std::vector<std::uint32_t>>(
-        sure_.size(), 512, [&](std::size_t i, auto& near) {
-          const auto radius = static_cast<double>(input.radii[i]);
-          const float bend = own.bends[i];
-          const bool smooth =
-              static_cast<double>(own.residuals[i]) <= flat_residual(radius, input.noise) ||
-              bend <= std::max(kSmoothBend * input.radii[i], kNoisyBend * noise) ||
-              (bend <= kNoisyBend * kNoisier * noise && is_as_around(i, near));
-          sure_[i] = own.confidences[i] >= kPlanarFit && smooth ? 1 : 0;
-        });
+    for (std::size_t i = 0; i < sure_.size(); ++i) {
+      const float noise = input.noise[i];
+      const double flat =
+          flat_residual(static_cast<double>(input.radii[i]), static_cast<double>(noise));
+      const bool smooth =
+          static_cast<double>(own.residuals[i]) <= flat ||
+          own.bends[i] <= std::max(kSmoothBend * input.radii[i], kNoisyBend * noise);
+      sure_[i] = own.confidences[i] >= kPlanarFit && smooth ? 1 : 0;
+    }
   }
 
   void run() {
@@ -92,17 +88,6 @@ class Snapping {
   }
 
  private:
-  /// Noise is not the same everywhere: does the fit leave no more than noise does, if the flattest
-  /// quarter of the fits around leaves noise alone?
-  bool is_as_around(std::size_t i, std::vector<std::uint32_t>& near) const {
-    near.clear();
-    input_.grid.within(input_.grid.points()[i], kNoiseReach * input_.radii[i], near);
-    const float noise = own_.bends[i] / kNoisyBend;
-    const auto flatter =
-        std::ranges::count_if(near, [&](std::uint32_t j) { return own_.bends[j] < noise; });
-    return 4 * static_cast<std::size_t>(flatter) <= near.size();
-  }
-
   void index_sure() {
     std::vector<Vector3f> places;
     for (std::uint32_t i = 0; i < sure_.size(); ++i) {

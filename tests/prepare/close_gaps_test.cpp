@@ -40,7 +40,8 @@ Case make_case(const Vector3f& odd, float radius) {
 /// How many radii were raised.
 std::size_t close(Case& made, OwnSheets& own) {
   std::vector<float> spacings(made.grid.size(), kGapSpacing);
-  own = fit_own_sheets(made.grid, spacings, made.radii, 0);
+  const std::vector<float> noise(made.grid.size(), 0.f);
+  own = fit_own_sheets(made.grid, spacings, made.radii, noise);
   const WeightSums sums(made.grid, made.radii);
   return close_gaps(made.grid, sums.own, spacings, made.radii, own);
 }

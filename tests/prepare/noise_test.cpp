@@ -125,6 +125,14 @@ TEST(Noise, IsNotSeenInAShape) {
   EXPECT_LT(noise.sigma, 5e-5);
 }
 
+TEST(Noise, IsMeasuredWhereItFillsALayerManySpacingsThick) {
+  for (const double spacings : {1.5, 3., 6.}) {
+    const CellGrid grid(sheet(150, spacings * kSpacing));
+    const double spacing = median(local_spacings(grid));
+    EXPECT_NEAR(measure_noise(grid, spacing).sigma, spacings * kSpacing, 0.1 * spacings * kSpacing);
+  }
+}
+
 TEST(NoiseMap, TellsNoisyPlacesFromQuietOnes) {
   std::vector<Vector3f> points = sheet(150, 0.001);
   for (Vector3f& p : points) {
@@ -133,10 +141,35 @@ TEST(NoiseMap, TellsNoisyPlacesFromQuietOnes) {
   const CellGrid grid(points);
   const NoiseMap map(grid, local_spacings(grid));
   const std::vector<Vector3f> places = {{-0.08f, 0, 0}, {0.08f, 0, 0}, {5, 5, 5}};
-  const std::vector<float> found = map.at(places);
-  EXPECT_NEAR(found[0], 0.25e-3 * 2e-3, 0.08e-6);
-  EXPECT_NEAR(found[1], 1e-3 * 2e-3, 0.3e-6);
-  EXPECT_GT(found[2], 0);  // where nothing is known, what is typical
+  const LocalNoise found = map.at(places, {});
+  EXPECT_NEAR(found.products[0], 0.25e-3 * 2e-3, 0.08e-6);
+  EXPECT_NEAR(found.products[1], 1e-3 * 2e-3, 0.3e-6);
+  EXPECT_GT(found.products[2], 0);  // where nothing is known, what is typical
+  EXPECT_NEAR(found.sigmas[0], 0.25e-3, 0.04e-3);
+  EXPECT_NEAR(found.sigmas[1], 1e-3, 0.1e-3);
+  const LocalNoise shared = map.at(places, {.excess = 3, .shared = 2});
+  EXPECT_FLOAT_EQ(shared.products[1], 3 * found.products[1]);
+  EXPECT_FLOAT_EQ(shared.sigmas[1], 2 * found.sigmas[1]);
+}
+
+TEST(NoiseMap, TellsALayerThatIsThickerThanItsWindowsBesideAThinOne) {
+  std::vector<Vector3f> points = sheet(150, 5 * kSpacing);
+  for (Vector3f& p : points) {
+    if (p.x() < 0) p.z() *= 0.1f;
+  }
+  const CellGrid grid(points);
+  const LocalNoise found = NoiseMap(grid, local_spacings(grid))
+                               .at(std::vector<Vector3f>{{-0.1f, 0, 0}, {0.1f, 0, 0}}, {});
+  EXPECT_NEAR(found.sigmas[0], 0.5f * kSpacing, 0.1f * kSpacing);
+  EXPECT_NEAR(found.sigmas[1], 5 * kSpacing, 0.7f * kSpacing);
+}
+
+TEST(NoisyRadii, AreAtLeastFourSigma) {
+  const CellGrid grid(sheet(60, 3 * kSpacing));
+  const LocalNoise noise{std::vector<float>(grid.size(), 3 * kSpacing),
+                         std::vector<float>(grid.size(), 3 * kSpacing * kSpacing)};
+  const std::vector<float> floors(grid.size(), 2.5f * kSpacing);
+  for (const float r : noisy_radii(grid, noise, 0.3, floors)) EXPECT_GE(r, 11.99f * kSpacing);
 }
 
 TEST(NoisyRadii, ShrinkAtAnEdgeAndKeepTheirFloor) {

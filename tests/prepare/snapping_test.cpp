@@ -25,8 +25,9 @@ Made snap(const std::vector<Vector3f>& points) {
   Made made{CellGrid(points), {}, {}, {}, {}};
   made.spacings.assign(points.size(), 1.f);
   made.radii.assign(points.size(), kRadius);
-  made.own = fit_own_sheets(made.grid, made.spacings, made.radii, 0);
-  made.snapped = snap_to_planes({made.grid, made.spacings, made.radii, 0}, made.own);
+  const std::vector<float> noise(points.size(), 0.f);
+  made.own = fit_own_sheets(made.grid, made.spacings, made.radii, noise);
+  made.snapped = snap_to_planes({made.grid, made.spacings, made.radii, noise}, made.own);
   return made;
 }
 
