@@ -113,27 +113,30 @@ Event unsure_pose(std::uint64_t seed, double sigma) {
   return draft.event;
 }
 
-// A fingertip that the camera sees goes along 4 mm beside the tool.
+// A fingertip that the camera sees comes up to a pressing hand and goes along 4 mm beside it.
 Event finger(std::uint64_t seed, bool seen) {
-  constexpr double kTip = 0.008;  // m, radius
-  constexpr double kGap = 0.004;  // m, between tip and tool
+  constexpr double kTip = 0.008;   // m, radius
+  constexpr double kGap = 0.004;   // m, between tip and tool
+  constexpr double kFrom = 0.15;   // m, where it comes from
+  constexpr double kAlong = 0.08;  // m
   Draft draft = bare(seed);
   draft.press(draft.place, kUp);
   const Vector3d way = draft.level_direction();
-  const Vector3d side = draft.level_direction();
+  const double turn = draft.one_of({-1., 1.}) * draft.between(60, 120) * std::numbers::pi / 180;
+  const Vector3d side = Eigen::AngleAxisd(turn, kUp) * way;
   const double speed = draft.between(0.03, 0.1);
-  const Vector3d tip = draft.place + (kTip + kGap) * side + kTip * kUp;
-  draft.hold(0.2);
+  draft.hold(kFrom / speed);
   if (seen) {
+    const Vector3d tip = draft.place + (kTip + kGap) * side + kTip * kUp - kFrom * way;
     draft.event.scene.solids.push_back(
         {{SolidKind::ball, Eigen::Isometry3d(Eigen::Translation3d(tip)), Vector3d::Constant(kTip)},
          {}});
     SimulatedMotion& motion = draft.event.scene.solids.back().motion;
     motion.velocity = speed * way;
-    motion.begin = draft.now();
-    motion.end = draft.now() + 0.08 / speed;
+    motion.end = draft.now() + kAlong / speed;
+    motion.begin = draft.now() - kFrom / speed;
   }
-  draft.go(draft.event.hip.back() + 0.08 * way, speed);
+  draft.go(draft.event.hip.back() + kAlong * way, speed);
   draft.hold(0.3);
   return draft.event;
 }
