@@ -73,6 +73,9 @@ constexpr float kMaxChange = 1.5f;
 constexpr float kMaxRatio = 2;            // to the spacing around it
 constexpr float kLargestSpacing = 1e18f;  // m; its sums stay in float's range
 constexpr float kStray = 8;               // times the spacing of its block: a stray point
+// Of the way to the nearest other, where fewer than eight tell no area: R, 2.5 of them, is half a
+// gap.
+constexpr float kOfAFew = 0.2f;
 
 using Nearest = void (*)(const simd::Join&, simd::Row*);
 
@@ -137,7 +140,9 @@ float spacing_from(const simd::Row* rows, std::uint32_t query) {
     sum += rows[k][query];
     ++count;
   }
-  return count > 0 ? std::sqrt(6 * sum / (count * (count + 1))) : 0;
+  if (count == 0) return 0;
+  if (count < kNearest) return kOfAFew * std::sqrt(rows[0][query]);
+  return std::sqrt(6 * sum / (count * (count + 1)));
 }
 
 std::vector<float> raw_spacings(const CellGrid& grid) {

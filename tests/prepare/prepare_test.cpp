@@ -215,5 +215,14 @@ TEST(Prepare, FewPointsAreFelt) {
   }
 }
 
+TEST(Prepare, PointsThatAreTooFewToTellAnAreaAreFeltWithinHalfOfTheirGaps) {
+  PointCloud cloud;
+  cloud.positions = {{0, 0, 0}, {0.5f, 0, 0}, {0, 0.4f, 0.3f}};
+  EXPECT_LE(prepare(cloud).report.radius_largest, 0.2501);
+  for (int i = 0; i < 1000; ++i)
+    cloud.positions.emplace_back(0.1f, 0.1f, 0.1f);  // all at one place
+  EXPECT_LE(prepare(cloud).report.radius_largest, 0.2501);
+}
+
 }  // namespace
 }  // namespace palpate
