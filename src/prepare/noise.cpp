@@ -32,6 +32,7 @@ constexpr double kShape = 0.65;
 // residual is larger the window tells and not the noise, so that a window twice as wide is asked.
 constexpr double kFilled = 1 / kSigmasInReach;
 constexpr double kWidestReach = 24;  // spacings; more is left to the sensor's own filter
+constexpr double kVolume = 0.35;     // of the widest reach: more than a layer of 0.6 of it leaves
 
 // Windows, in spacings, that noise and shape are told apart with: shape that a quadratic misses
 // grows with the third power of the window or faster.
@@ -51,15 +52,17 @@ std::size_t step_for(const CellGrid& grid, std::size_t samples) {
   return std::max<std::size_t>(1, grid.size() / samples);
 }
 
-/// The fit at a place within `reach`, or so much farther that noise does not fill the window.
+/// The fit at a place within `reach`, or so much farther that noise does not fill the window. In a
+/// volume there is no layer to be found: the first fit is all that can be told.
 SheetFit fit_beyond_noise(SheetFitter& fitter, const CellGrid& grid, const Eigen::Vector3f& at,
                           double reach, double spacing) {
-  SheetFit fit = fitter.fit(grid, at, reach, spacing);
+  const SheetFit first = fitter.fit(grid, at, reach, spacing);
+  SheetFit fit = first;
   while (fit.bend > kFilled * reach && 2 * reach <= kWidestReach * spacing) {
     reach *= 2;
     fit = fitter.fit(grid, at, reach, spacing);
   }
-  return fit;
+  return fit.bend > kVolume * reach ? first : fit;
 }
 
 /// The residual over samples of the grid, as the flatter quarter has it: where shape is finer than
@@ -143,8 +146,10 @@ Noise measure_noise(const CellGrid& grid, double spacing) {
   if (rise > kMostRise) return noise;  // shape that is as wavy in all wide windows
   noise.excess = std::min(excess, kMostExcess);
   const double sigma = median_of(all, [](const Widths& w) { return w.sigma; });
-  noise.shared = std::max(1., sigma / noise.sigma);
-  noise.sigma *= noise.shared;
+  // Where noise fills narrow windows, the map's wider ones see all of it.
+  const bool filled = noise.sigma > kFilled * kNarrow.reach * spacing;
+  noise.shared = filled ? 1 : std::max(1., sigma / noise.sigma);
+  noise.sigma = std::max(noise.sigma, sigma);
   return noise;
 }
 
@@ -152,7 +157,9 @@ namespace {
 
 constexpr std::size_t kRawPerSample = 32;
 constexpr std::size_t kMostSamples = 20000;
-constexpr float kWindow = 5;         // spacings
+constexpr double kWindow = 5;  // spacings
+// Wider windows hold up to 16 times as many points in a layer, 64 in a volume: fewer are looked at.
+constexpr std::size_t kPerWideWindow = 4;
 constexpr float kSurroundings = 20;  // spacings
 constexpr double kFlatter = 0.3;     // the quantile that is taken
 constexpr std::size_t kFewest = 8;   // samples that a quantile is taken of
@@ -165,9 +172,13 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
   std::vector<Value> found(count);
   detail::parallel_each_with<SheetFitter>(count, 64, [&](std::size_t k, auto& fitter) {
     const std::size_t i = k * step + step / 2;
-    const SheetFit fit =
-        fit_beyond_noise(fitter, raw, raw.points()[i], static_cast<double>(kWindow * spacings[i]),
-                         static_cast<double>(spacings[i]));
+    const auto spacing = static_cast<double>(spacings[i]);
+    const double reach = kWindow * spacing;
+    SheetFit fit = fitter.fit(raw, raw.points()[i], reach, spacing);
+    if (fit.bend > kFilled * reach) {
+      if (k % kPerWideWindow != 0) return;
+      fit = fit_beyond_noise(fitter, raw, raw.points()[i], reach, spacing);
+    }
     found[k] = {static_cast<float>(fit.bend), static_cast<float>(fit.bend * fit.footprint)};
   });
   std::vector<Eigen::Vector3f> places;
@@ -242,7 +253,8 @@ std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise, do
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const double radius = std::sqrt(scale * static_cast<double>(radii[i]));
     radii[i] = std::clamp(static_cast<float>(radius), floors[i], kMostFloors * floors[i]);
-    floors[i] = std::max(floors[i], static_cast<float>(kSigmasInReach) * noise.sigmas[i]);
+    const float layer = static_cast<float>(kSigmasInReach) * noise.sigmas[i];
+    floors[i] = std::clamp(layer, floors[i], kMostFloors * floors[i]);
     radii[i] = std::max(radii[i], floors[i]);
   }
   shrink_at_edges(grid, floors, radii);

@@ -62,8 +62,8 @@ class NoiseMap {
 };
 
 /// Support radii for a noisy cloud: from place to place so large that noise tilts normals by
-/// `normal_error` (rad), nowhere below a point's `floor` nor above 2.4 times that, and at least
-/// four sigma. All in sorted order, m.
+/// `normal_error` (rad), and at least four sigma, nowhere below a point's `floor` nor above
+/// 2.4 times that. All in sorted order, m.
 [[nodiscard]] std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise,
                                              double normal_error, std::vector<float> floors);
 

@@ -168,7 +168,7 @@ TEST(NoisyRadii, AreAtLeastFourSigma) {
   const CellGrid grid(sheet(60, 3 * kSpacing));
   const LocalNoise noise{std::vector<float>(grid.size(), 3 * kSpacing),
                          std::vector<float>(grid.size(), 3 * kSpacing * kSpacing)};
-  const std::vector<float> floors(grid.size(), 2.5f * kSpacing);
+  const std::vector<float> floors(grid.size(), 5 * kSpacing);  // as voxels of two spacings have
   for (const float r : noisy_radii(grid, noise, 0.3, floors)) EXPECT_GE(r, 11.99f * kSpacing);
 }
 
