@@ -18,21 +18,22 @@ void make_plane(Draft& draft, double half) {
   draft.truth = half_space(Vector3d::Zero(), Vector3d::UnitZ());
 }
 
-void draw_noise(Draft& draft, double sigma, bool seen) {
+void make_noisy_plane(Draft& draft, double half, double sigma, bool seen) {
   draft.noise = sigma;
   draft.clear += sigma;
-  make_plane(draft, 60);
+  make_plane(draft, half);
   if (seen) draft.viewpoint = Vector3d(0, 0, 1000);
+}
+
+void draw_noise(Draft& draft, double sigma, bool seen) {
+  make_noisy_plane(draft, 60, sigma, seen);
   zig_zag(draft, 3, 30);
 }
 
 // Noise that fills a layer many spacings thick, as a ToF camera's near by.
 void draw_thick(Draft& draft, double sigma, bool seen) {
-  draft.noise = sigma;
-  draft.clear += sigma;
+  make_noisy_plane(draft, 60 + 5 * sigma, sigma, seen);
   draft.deep = sigma / 2;
-  make_plane(draft, 60 + 5 * sigma);
-  if (seen) draft.viewpoint = Vector3d(0, 0, 1000);
   zig_zag(draft, sigma, 30);
 }
 

@@ -24,8 +24,16 @@ Draft bare(std::uint64_t seed) {
   return draft;
 }
 
-bool near(double time, double from, double length) {
+bool is_within(double time, double from, double length) {
   return time >= from && time < from + length;
+}
+
+// The fault is over after so long; what is felt counts from when the force has to be back.
+Event ends_after(Draft& draft, double seconds) {
+  draft.hold(seconds + kBack);
+  draft.happens();
+  draft.hold(0.5);
+  return draft.event;
 }
 
 // No frame comes for so long under a pressing hand.
@@ -33,11 +41,8 @@ Event silent(std::uint64_t seed, double seconds) {
   Draft draft = bare(seed);
   draft.press(draft.place, kUp);
   const double from = draft.now();
-  draft.event.fault = [=](DepthFrame& frame) { return !near(frame.stamp, from, seconds); };
-  draft.hold(seconds + kBack);
-  draft.happens();
-  draft.hold(0.5);
-  return draft.event;
+  draft.event.fault = [=](DepthFrame& frame) { return !is_within(frame.stamp, from, seconds); };
+  return ends_after(draft, seconds);
 }
 
 // Nothing is measured in a disc around a pressing hand.
@@ -48,7 +53,7 @@ Event hole(std::uint64_t seed, double seconds) {
   const double radius = draft.between(0.01, 0.05);
   const Vector3d seen = draft.event.camera.T_world_camera.inverse() * draft.place;
   draft.event.fault = [=](DepthFrame& frame) {
-    if (!near(frame.stamp, from, seconds)) return true;
+    if (!is_within(frame.stamp, from, seconds)) return true;
     const Pinhole& p = frame.camera.pinhole;
     const double u = p.cx + p.fx * seen.x() / seen.z();
     const double v = p.cy + p.fy * seen.y() / seen.z();
@@ -61,10 +66,7 @@ Event hole(std::uint64_t seed, double seconds) {
     }
     return true;
   };
-  draft.hold(seconds + kBack);
-  draft.happens();
-  draft.hold(0.5);
-  return draft.event;
+  return ends_after(draft, seconds);
 }
 
 // Keeps every second pixel of every second row.
@@ -92,10 +94,7 @@ Event other_resolution(std::uint64_t seed) {
     if (frame.stamp >= from) halve(frame);
     return true;
   };
-  draft.hold(kBack);
-  draft.happens();
-  draft.hold(0.5);
-  return draft.event;
+  return ends_after(draft, 0);
 }
 
 // Each frame says that it was taken some millimetres from where it was.

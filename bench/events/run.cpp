@@ -1,3 +1,4 @@
+#include "accuracy/truth_frame.hpp"
 #include "events/event.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene.hpp"
@@ -7,27 +8,10 @@
 namespace palpate::events {
 namespace {
 
-// The points of a frame, in its sensor's frame.
-PointCloud points_of(const DepthFrame& frame) {
-  const Pinhole& p = frame.camera.pinhole;
-  const auto width = static_cast<std::size_t>(frame.camera.width);
-  PointCloud cloud;
-  cloud.viewpoint = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
-    const double z = static_cast<double>(frame.depth[i]);
-    if (z <= 0) continue;
-    const double u = static_cast<double>(i % width);
-    const double v = static_cast<double>(i / width);
-    const Eigen::Vector3d x((u - p.cx) * z / p.fx, (v - p.cy) * z / p.fy, z);
-    cloud.positions.push_back(x.cast<float>());
-  }
-  return cloud;
-}
-
 void push(const Event& event, DepthFrame frame, const Source::StartTime& start, Source& source) {
   if (event.fault && !event.fault(frame)) return;
   if (event.as_points) {
-    source.push(points_of(frame), frame.stamp, start);
+    source.push(accuracy::back_project(frame), frame.stamp, start);
   } else {
     source.push(frame, start);
   }

@@ -73,9 +73,9 @@ constexpr float kMaxChange = 1.5f;
 constexpr float kMaxRatio = 2;            // to the spacing around it
 constexpr float kLargestSpacing = 1e18f;  // m; its sums stay in float's range
 constexpr float kStray = 8;               // times the spacing of its block: a stray point
-// Of the way to the nearest other, where fewer than eight tell no area: R, 2.5 of them, is half a
-// gap.
-constexpr float kOfAFew = 0.2f;
+// Fewer than eight others tell no area. A fifth of the way to the nearest makes R, which is 2.5
+// spacings, half of that gap.
+constexpr float kGapShare = 0.2f;
 
 using Nearest = void (*)(const simd::Join&, simd::Row*);
 
@@ -141,7 +141,7 @@ float spacing_from(const simd::Row* rows, std::uint32_t query) {
     ++count;
   }
   if (count == 0) return 0;
-  if (count < kNearest) return kOfAFew * std::sqrt(rows[0][query]);
+  if (count < kNearest) return kGapShare * std::sqrt(rows[0][query]);
   return std::sqrt(6 * sum / (count * (count + 1)));
 }
 

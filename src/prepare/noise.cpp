@@ -52,13 +52,17 @@ std::size_t step_for(const CellGrid& grid, std::size_t samples) {
   return std::max<std::size_t>(1, grid.size() / samples);
 }
 
-/// The fit at a place within `reach`, or so much farther that noise does not fill the window. In a
-/// volume there is no layer to be found: the first fit is all that can be told.
+/// Does a residual fill a window, both in m?
+bool fills(double residual, double reach) {
+  return residual > kFilled * reach;
+}
+
+/// `first`, the fit at a place within `reach`, or one so much farther that noise does not fill its
+/// window. In a volume there is no layer to be found: the first fit is all that can be told.
 SheetFit fit_beyond_noise(SheetFitter& fitter, const CellGrid& grid, const Eigen::Vector3f& at,
-                          double reach, double spacing) {
-  const SheetFit first = fitter.fit(grid, at, reach, spacing);
+                          double reach, double spacing, const SheetFit& first) {
   SheetFit fit = first;
-  while (fit.bend > kFilled * reach && 2 * reach <= kWidestReach * spacing) {
+  while (fills(fit.bend, reach) && 2 * reach <= kWidestReach * spacing) {
     reach *= 2;
     fit = fitter.fit(grid, at, reach, spacing);
   }
@@ -73,8 +77,8 @@ double noise_in_windows(const CellGrid& grid, double spacing, const Window& wind
   detail::parallel_each_with<SheetFitter>(residuals.size(), 64, [&](std::size_t k, auto& fitter) {
     const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
     const double reach = window.reach * spacing;
-    const SheetFit fit = window.widens ? fit_beyond_noise(fitter, grid, at, reach, spacing)
-                                       : fitter.fit(grid, at, reach, spacing);
+    SheetFit fit = fitter.fit(grid, at, reach, spacing);
+    if (window.widens) fit = fit_beyond_noise(fitter, grid, at, reach, spacing, fit);
     if (fit.points >= window.fewest) residuals[k] = static_cast<float>(fit.bend);
   });
   std::erase(residuals, -1.f);
@@ -88,8 +92,8 @@ double narrow_noise(const CellGrid& grid, double spacing) {
   const double narrow = noise_in_windows(grid, spacing, kNarrow);
   const double narrowest = noise_in_windows(grid, spacing, kNarrowest);
   if (narrowest > 0 && narrowest < kShape * narrow) return narrowest;
-  const bool filled = narrow > kFilled * kNarrow.reach * spacing;
-  return filled ? noise_in_windows(grid, spacing, kWidening) : narrow;
+  return fills(narrow, kNarrow.reach * spacing) ? noise_in_windows(grid, spacing, kWidening)
+                                                : narrow;
 }
 
 /// What windows of several widths round one place say.
@@ -123,10 +127,10 @@ std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
   return all;
 }
 
-template <class Value>
-double median_of(const std::vector<Widths>& all, const Value& value) {
+template <class Item>
+double median_of(const std::vector<Item>& all, float Item::*value) {
   std::vector<float> values;
-  for (const Widths& w : all) values.push_back(value(w));
+  for (const Item& item : all) values.push_back(item.*value);
   return median(values);
 }
 
@@ -140,14 +144,14 @@ Noise measure_noise(const CellGrid& grid, double spacing) {
                    [](const Widths& a, const Widths& b) { return a.growth < b.growth; });
   all.resize(static_cast<std::size_t>(kFlattest * static_cast<double>(all.size())));
   if (all.empty() || all.back().growth > kShapeGrowth) return noise;
-  const double excess = median_of(all, [](const Widths& w) { return w.excess; });
+  const double excess = median_of(all, &Widths::excess);
   if (excess < kNoteworthy) return noise;
-  const double rise = median_of(all, [](const Widths& w) { return w.rise; });
+  const double rise = median_of(all, &Widths::rise);
   if (rise > kMostRise) return noise;  // shape that is as wavy in all wide windows
   noise.excess = std::min(excess, kMostExcess);
-  const double sigma = median_of(all, [](const Widths& w) { return w.sigma; });
+  const double sigma = median_of(all, &Widths::sigma);
   // Where noise fills narrow windows, the map's wider ones see all of it.
-  const bool filled = noise.sigma > kFilled * kNarrow.reach * spacing;
+  const bool filled = fills(noise.sigma, kNarrow.reach * spacing);
   noise.shared = filled ? 1 : std::max(1., sigma / noise.sigma);
   noise.sigma = std::max(noise.sigma, sigma);
   return noise;
@@ -175,9 +179,9 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
     const auto spacing = static_cast<double>(spacings[i]);
     const double reach = kWindow * spacing;
     SheetFit fit = fitter.fit(raw, raw.points()[i], reach, spacing);
-    if (fit.bend > kFilled * reach) {
+    if (fills(fit.bend, reach)) {
       if (k % kPerWideWindow != 0) return;
-      fit = fit_beyond_noise(fitter, raw, raw.points()[i], reach, spacing);
+      fit = fit_beyond_noise(fitter, raw, raw.points()[i], reach, spacing, fit);
     }
     found[k] = {static_cast<float>(fit.bend), static_cast<float>(fit.bend * fit.footprint)};
   });
@@ -191,12 +195,8 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
   reach_ = kSurroundings * static_cast<float>(median(spacings));
   places_ = CellGrid(places);
   for (const std::uint32_t k : places_.order()) values_.push_back(values[k]);
-  std::vector<float> all;
-  for (const Value& value : values_) all.push_back(value.sigma);
-  typical_.sigma = static_cast<float>(median(all));
-  all.clear();
-  for (const Value& value : values_) all.push_back(value.product);
-  typical_.product = static_cast<float>(median(all));
+  typical_ = {static_cast<float>(median_of(values_, &Value::sigma)),
+              static_cast<float>(median_of(values_, &Value::product))};
 }
 
 NoiseMap::Value NoiseMap::at(const Eigen::Vector3f& point, std::vector<std::uint32_t>& near,

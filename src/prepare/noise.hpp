@@ -15,7 +15,7 @@ struct Noise {
   double excess =
       1;  ///< by how much sigma_n delta of narrow windows (NoiseMap) falls short of what
           ///< averaging has to cope with, because neighbours err together; 1: they do not
-  double shared = 1;  ///< by how much sigma of narrow windows falls short of it, likewise
+  double shared = 1;  ///< by how much sigma of narrow windows falls short of it for the same reason
 };
 
 /// A window shows a layer of noise as a layer, and not as a ball full of points, where its reach is

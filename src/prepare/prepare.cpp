@@ -86,9 +86,6 @@ class Preparation {
       index();
     }
     choose_voxel();
-    if (noise_.sigmas.empty()) {
-      noise_.sigmas.assign(points_.size(), static_cast<float>(report_.noise));
-    }
     choose_radii();
     weigh();
     points_.confidences.resize(points_.size(), 0.0f);
@@ -194,6 +191,9 @@ class Preparation {
   }
 
   void fit_sheets() {
+    if (noise_.sigmas.empty()) {
+      noise_.sigmas.assign(points_.size(), static_cast<float>(report_.noise));
+    }
     own_sheets_ = fit_own_sheets(points_.grid, spacings_, points_.radii, noise_.sigmas);
     if (!cloud_->normals.empty()) {
       given_ = in_grid_order(points_.grid, cloud_->normals);
@@ -278,7 +278,7 @@ class Preparation {
   std::vector<std::uint8_t> strays_;  // 1: one; empty: not looked for
   std::optional<WeightSums> sums_;
   double footprint_ = 0;
-  LocalNoise noise_;
+  LocalNoise noise_;  // without products: the same everywhere
   std::size_t twins_ = 0;
   Stopwatch watch_;
 };

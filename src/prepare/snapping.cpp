@@ -40,15 +40,9 @@ class Snapping {
  public:
   Snapping(const SheetInput& input, OwnSheets& own)
       : input_(input), own_(own), sure_(input.grid.size()) {
-    for (std::size_t i = 0; i < sure_.size(); ++i) {
-      const float noise = input.noise[i];
-      const double flat =
-          flat_residual(static_cast<double>(input.radii[i]), static_cast<double>(noise));
-      const bool smooth =
-          static_cast<double>(own.residuals[i]) <= flat ||
-          own.bends[i] <= std::max(kSmoothBend * input.radii[i], kNoisyBend * noise);
-      sure_[i] = own.confidences[i] >= kPlanarFit && smooth ? 1 : 0;
-    }
+    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) sure_[i] = is_sure(i) ? 1 : 0;
+    });
   }
 
   void run() {
@@ -88,6 +82,16 @@ class Snapping {
   }
 
  private:
+  /// Is its own fit a plane that leaves no more than curvature and noise do?
+  [[nodiscard]] bool is_sure(std::size_t i) const {
+    if (own_.confidences[i] < kPlanarFit) return false;
+    const float radius = input_.radii[i];
+    const float noise = input_.noise[i];
+    const double flat = flat_residual(static_cast<double>(radius), static_cast<double>(noise));
+    return static_cast<double>(own_.residuals[i]) <= flat ||
+           own_.bends[i] <= std::max(kSmoothBend * radius, kNoisyBend * noise);
+  }
+
   void index_sure() {
     std::vector<Vector3f> places;
     for (std::uint32_t i = 0; i < sure_.size(); ++i) {
