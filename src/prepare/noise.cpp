@@ -161,9 +161,7 @@ namespace {
 
 constexpr std::size_t kRawPerSample = 32;
 constexpr std::size_t kMostSamples = 20000;
-constexpr double kWindow = 5;  // spacings
-// Wider windows hold up to 16 times as many points in a layer, 64 in a volume: fewer are looked at.
-constexpr std::size_t kPerWideWindow = 4;
+constexpr double kWindow = 5;        // spacings
 constexpr float kSurroundings = 20;  // spacings
 constexpr double kFlatter = 0.3;     // the quantile that is taken
 constexpr std::size_t kFewest = 8;   // samples that a quantile is taken of
@@ -179,10 +177,7 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
     const auto spacing = static_cast<double>(spacings[i]);
     const double reach = kWindow * spacing;
     SheetFit fit = fitter.fit(raw, raw.points()[i], reach, spacing);
-    if (fills(fit.bend, reach)) {
-      if (k % kPerWideWindow != 0) return;
-      fit = fit_beyond_noise(fitter, raw, raw.points()[i], reach, spacing, fit);
-    }
+    fit = fit_beyond_noise(fitter, raw, raw.points()[i], reach, spacing, fit);
     found[k] = {static_cast<float>(fit.bend), static_cast<float>(fit.bend * fit.footprint)};
   });
   std::vector<Eigen::Vector3f> places;

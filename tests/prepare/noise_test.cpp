@@ -164,6 +164,15 @@ TEST(NoiseMap, TellsALayerThatIsThickerThanItsWindowsBesideAThinOne) {
   EXPECT_NEAR(found.sigmas[1], 5 * kSpacing, 0.7f * kSpacing);
 }
 
+TEST(NoiseMap, IsNotBiasedWhereNoiseFillsSomeWindowsAndOthersNot) {
+  for (const float sigma : {2.5f, 3.5f, 4.5f}) {
+    const CellGrid grid(sheet(150, static_cast<double>(sigma * kSpacing)));
+    const LocalNoise found =
+        NoiseMap(grid, local_spacings(grid)).at(std::vector<Vector3f>(1, Vector3f::Zero()), {});
+    EXPECT_NEAR(found.sigmas[0] / kSpacing, sigma, 0.16f * sigma);
+  }
+}
+
 TEST(NoisyRadii, AreAtLeastFourSigma) {
   const CellGrid grid(sheet(60, 3 * kSpacing));
   const LocalNoise noise{std::vector<float>(grid.size(), 3 * kSpacing),
