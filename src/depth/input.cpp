@@ -127,6 +127,15 @@ bool same_surface(const simd::DepthGate& gate, float z, float other) {
 
 }  // namespace
 
+bool is_in_lens(const CameraModel::Distortion& d, double x, double y) {
+  if (d.none()) return true;
+  constexpr int kSteps = 8;  // a polynomial of degree 6 in the radius turns more slowly
+  for (int i = 1; i <= kSteps; ++i) {
+    if (!grows(d, x * i / kSteps, y * i / kSteps)) return false;
+  }
+  return true;
+}
+
 ImagePoint distort(const CameraModel::Distortion& d, double x, double y) {
   const double r2 = x * x + y * y;
   const double radial = 1 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));

@@ -60,6 +60,10 @@ class Undistorter {
   std::vector<float> image_;
 };
 
+/// Does the distorted radius grow from the middle of the image to the normalised image coordinates
+/// x, y? From where it does not, the model means nothing.
+[[nodiscard]] bool is_in_lens(const CameraModel::Distortion& distortion, double x, double y);
+
 /// Where a camera with `distortion` sees the normalised image coordinates x, y.
 struct ImagePoint {
   double x = 0;

@@ -159,10 +159,12 @@ void Source::set(const DepthFrame& frame) {
   const Source::StartTime at_once = [] { return 0.0; };
   const Eigen::Isometry3d stand = frame.T_world_sensor.value_or(pose());
   auto snapshot = std::make_shared<Snapshot>();
+  NoiseModel noise;
   named(inside_->name, [&] {
     check_pose(stand);
     SnapshotBuilder builder(whole);
     snapshot->layers = builder.take(frame, {stand, {}, at_once})->layers;
+    noise = builder.noise();
     const std::lock_guard lock(inside_->mutex);
     inside_->state = {};
     inside_->note(*snapshot);
@@ -170,15 +172,19 @@ void Source::set(const DepthFrame& frame) {
   });
   snapshot->publication = ++inside_->publications;
   publish(std::move(snapshot));
+  inside_->sight.see(frame, stand, noise);
 }
 
 bool Source::push(const DepthFrame& frame, const Source::StartTime& start) {
   inside_->take_change();
+  const Eigen::Isometry3d pose_now = frame.T_world_sensor.value_or(pose());
+  named(inside_->name, [&] {
+    if (frame.T_world_sensor) check_pose(pose_now);
+    if (inside_->watched) inside_->show(frame, pose_now);
+  });
   if (!inside_->room_for(false)) return false;
   inside_->reaches.read(inside_->found);
   named(inside_->name, [&] {
-    const Eigen::Isometry3d pose_now = frame.T_world_sensor ? *frame.T_world_sensor : pose();
-    if (frame.T_world_sensor) check_pose(pose_now);
     inside_->hand_over(*this, inside_->builder->take(frame, {pose_now, inside_->found, start}));
   });
   const std::lock_guard lock(inside_->mutex);
@@ -188,6 +194,7 @@ bool Source::push(const DepthFrame& frame, const Source::StartTime& start) {
 
 bool Source::push(const PointCloud& cloud, double stamp, const Source::StartTime& start) {
   inside_->take_change();
+  inside_->sight.forget();
   if (!inside_->room_for(true)) return false;
   inside_->reaches.read(inside_->found);
   Prepared::Report report;
@@ -268,6 +275,7 @@ void Source::publish(std::shared_ptr<const Snapshot> snapshot) {
     inside_->points =
         snapshot && !snapshot->layers.empty() ? snapshot->layers.front().points : nullptr;
   }
+  inside_->sight.forget();
   inside_->handoff.publish(std::move(snapshot));
   inside_->compare(*this);
 }
@@ -280,20 +288,6 @@ std::shared_ptr<const SurfacePoints> Source::points() const {
 Source::State Source::state() const {
   const std::lock_guard lock(inside_->mutex);
   return inside_->state;
-}
-
-double progress(const Snapshot& snapshot, double time) noexcept {
-  const double duration = snapshot.end - snapshot.start;
-  if (!(duration > 0)) return time < snapshot.start ? 0 : 1;
-  return std::clamp((time - snapshot.start) / duration, 0.0, 1.0);
-}
-
-double presence(const Snapshot& snapshot, double time) noexcept {
-  const double own = snapshot.presence_start +
-                     progress(snapshot, time) * (snapshot.presence_end - snapshot.presence_start);
-  const double silence = time - snapshot.silent_from;
-  if (!(silence > 0)) return own;
-  return snapshot.fade > 0 ? own * std::clamp(1 - silence / snapshot.fade, 0.0, 1.0) : 0;
 }
 
 }  // namespace palpate

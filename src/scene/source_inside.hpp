@@ -18,6 +18,7 @@
 #include "scene/policies/fusion.hpp"
 #include "scene/policies/morph.hpp"
 #include "scene/recycler.hpp"
+#include "scene/sight.hpp"
 #include "scene/tool_reach.hpp"
 
 namespace palpate {
@@ -134,6 +135,8 @@ struct Source::Inside {
   void note(const Snapshot& snapshot);
   void note(const SnapshotBuilder& made);
   void compare(const Source& source);
+  void show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor);
+  [[nodiscard]] double lasts() const;
 
   std::string name;
   mutable std::mutex mutex;  // of what follows: those who draw, and the preparing thread
@@ -150,8 +153,10 @@ struct Source::Inside {
   std::uint64_t changes = 0;                 // taken; the same thread's
   SourceOptions taken;                       // with the last of them; the same thread's
   ReachTable reaches;
-  std::shared_ptr<Seams> seams;  // of the scene
-  std::size_t place = 0;         // in it
+  Sight sight;
+  std::atomic<bool> watched{false};  // does anybody ask what is seen?
+  std::shared_ptr<Seams> seams;      // of the scene
+  std::size_t place = 0;             // in it
   Handoff<Snapshot> handoff;
 };
 

@@ -94,6 +94,24 @@ struct Snapshot {
 /// How sure its sensor is of it at `time` (s), 0-1.
 [[nodiscard]] double presence(const Snapshot& snapshot, double time) noexcept;
 
+/// What a depth camera's newest frames say of a ball.
+struct Seen {
+  /// In order: of several cameras, the last counts.
+  enum class Says {
+    outside,  ///< the ball, or part of it, is not in the picture
+    nothing,  ///< nothing is measured there
+    solid,    ///< it, or part of it, is behind what is seen
+    free,     ///< it is in front of that
+    old,      ///< the camera looks there, but has been silent for too long
+  };
+
+  Says says = Says::outside;
+  double behind = 0;  ///< m; a solid ball that goes so far towards the camera is free
+  bool came = false;  ///< a solid one was free some frames before
+  double age = 0;     ///< of the frame, s
+  Eigen::Vector3d towards = Eigen::Vector3d::Zero();  ///< unit, from the ball to the camera
+};
+
 /// One sensor or file: its pose, and the newest snapshot of what it sees.
 class Source {
  public:
@@ -183,6 +201,14 @@ class Source {
   /// @throws Error when it has more than Snapshot::kMaxLayers layers, a layer that is not whole, a
   /// weight or presence outside 0-1, or times that are not finite and in order.
   void publish(std::shared_ptr<const Snapshot> snapshot);
+
+  /// What the newest depth frames say of a ball (m, world) at time `now` (s, on the clock of their
+  /// stamps). What they show counts where it will be by then, if it goes on as in the last 0.1 s,
+  /// and hides the ball where noise, at three deviations, cannot feign that. A frame is too old
+  /// once two and a half should have followed it, or PolicyOptions::silence after it came; one of
+  /// set() and keep() never is. From raw depths, not from the surface. Nothing for clouds, and
+  /// until a frame is pushed after the first call. Any thread but a servo's.
+  [[nodiscard]] std::optional<Seen> seen(const Ball& ball, double now) const;
 
   /// The newest surface's first layer, for those who draw or explore; may be null. Any thread but a
   /// servo's.

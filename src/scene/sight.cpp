@@ -1,0 +1,299 @@
+// A plane through 5 x 5 raw pixels on each ray says how far what is seen lies beyond a ball.
+#include "scene/sight.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "depth/input.hpp"
+#include "scene/source_inside.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int kHalf = 2;        // pixels: a window of 5 x 5 averages most noise and bends little
+constexpr double kSure = 3;     // deviations: noise feigns more once in 700 frames, and by little
+constexpr double kNoPlane = 2;  // sigma of residual: two surfaces are in the window (judgement)
+constexpr double kMostLeverage = 1;  // pixels extrapolated so far tell less than one of them
+// Frames that may be missing until a camera is silent. As many periods of its device stop a servo
+// (guard_for()).
+constexpr double kMissedFrames = 2.5;
+constexpr int kStride = 2;  // pixels between windows that look at a ball: what is as wide is seen
+constexpr int kRings = 16;  // windows from a ball's middle to its rim at most: 800 in all
+constexpr double kSpan = 0.1;  // s between frames that tell a speed: noise over less says little
+
+/// A pixel's inverse depth, which is affine in the pixel on planes.
+struct Pixel {
+  double u = 0;  // from the place that is asked for, pixels
+  double v = 0;
+  double inverse = 0;  // 1/m
+};
+
+struct Pixels {
+  std::array<Pixel, (2 * kHalf + 1) * (2 * kHalf + 1)> all;
+  std::size_t count = 0;
+
+  [[nodiscard]] std::span<Pixel> span() { return {all.data(), count}; }
+};
+
+Pixels window_of(const DepthFrame& frame, double u, double v) {
+  Pixels found;
+  const int across = static_cast<int>(std::lround(u));
+  const int down = static_cast<int>(std::lround(v));
+  for (int y = std::max(down - kHalf, 0); y <= std::min(down + kHalf, frame.camera.height - 1);
+       ++y) {
+    for (int x = std::max(across - kHalf, 0); x <= std::min(across + kHalf, frame.camera.width - 1);
+         ++x) {
+      const float z = frame.depth[static_cast<std::size_t>(y) * frame.camera.width + x];
+      if (!(z > 0 && std::isfinite(z))) continue;
+      found.all[found.count++] = {x - u, y - v, 1 / static_cast<double>(z)};
+    }
+  }
+  return found;
+}
+
+/// A plane through pixels: its inverse depth at the place that is asked for.
+struct Plane {
+  double inverse = 0;
+  double leverage = std::numeric_limits<double>::infinity();  // its variance over a pixel's
+  double residual = 0;                                        // rms, 1/m
+
+  [[nodiscard]] bool told() const { return leverage <= kMostLeverage && inverse > 0; }
+};
+
+Plane plane_of(std::span<const Pixel> pixels) {
+  double u = 0, v = 0, uu = 0, uv = 0, vv = 0;
+  Vector3d right = Vector3d::Zero();
+  double squares = 0;
+  for (const Pixel& pixel : pixels) {
+    u += pixel.u;
+    v += pixel.v;
+    uu += pixel.u * pixel.u;
+    uv += pixel.u * pixel.v;
+    vv += pixel.v * pixel.v;
+    right += pixel.inverse * Vector3d(1, pixel.u, pixel.v);
+    squares += pixel.inverse * pixel.inverse;
+  }
+  const auto count = static_cast<double>(pixels.size());
+  const Matrix3d normal{{count, u, v}, {u, uu, uv}, {v, uv, vv}};
+  Matrix3d inverse;
+  bool solved = false;
+  normal.computeInverseWithCheck(inverse, solved);
+  if (!solved) return {};
+  const Vector3d plane = inverse * right;
+  const double rest = std::max(squares - plane.dot(right), 0.0);  // of the squares
+  return {plane.x(), inverse(0, 0), std::sqrt(rest / std::max(count - 3, 1.0))};
+}
+
+/// The pixels on one side of the widest gap between depths: the side of the pixel that is nearest
+/// to the place.
+std::span<Pixel> own_surface(std::span<Pixel> pixels) {
+  const auto distance = [](const Pixel& p) { return p.u * p.u + p.v * p.v; };
+  const double own = std::ranges::min(pixels, {}, distance).inverse;
+  std::ranges::sort(pixels, {}, &Pixel::inverse);
+  std::size_t cut = 1;
+  for (std::size_t i = 2; i < pixels.size(); ++i) {
+    if (pixels[i].inverse - pixels[i - 1].inverse > pixels[cut].inverse - pixels[cut - 1].inverse)
+      cut = i;
+  }
+  return own < pixels[cut].inverse ? pixels.first(cut) : pixels.subspan(cut);
+}
+
+/// Where the ball's far side is along a unit ray from the camera, m.
+double reach_along(const Vector3d& ray, const Vector3d& center, double radius) {
+  const double along = ray.dot(center);
+  const double aside = center.squaredNorm() - along * along;
+  return along + std::sqrt(std::max(radius * radius - aside, 0.0));
+}
+
+/// Where the camera sees x, in its frame; nothing: outside of its image.
+std::optional<Eigen::Vector2d> seen_at(const CameraModel& camera, const Vector3d& x) {
+  if (!(x.z() > 0)) return std::nullopt;
+  const Eigen::Vector2d ray = x.head<2>() / x.z();
+  if (!depth::is_in_lens(camera.distortion, ray.x(), ray.y())) return std::nullopt;
+  const auto [a, b] = depth::distort(camera.distortion, ray.x(), ray.y());
+  const Pinhole& p = camera.pinhole;
+  const Eigen::Vector2d at(p.cx + p.fx * a, p.cy + p.fy * b);
+  const bool inside =
+      at.minCoeff() > -0.5 && at.x() < camera.width - 0.5 && at.y() < camera.height - 0.5;
+  return inside ? std::optional(at) : std::nullopt;
+}
+
+/// How far a surface lies beyond something, along a ray.
+struct Gap {
+  double metres = 0;
+  double deviation = 0;  // m
+  bool whole = true;     // one surface fills the window: it can be compared with another frame's
+
+  [[nodiscard]] bool free() const { return metres >= -kSure * deviation; }
+};
+
+/// How far the surface at a place of the image lies beyond `reach` m. `stretch`: of the ray there,
+/// its length for one metre of depth.
+std::optional<Gap> gap_at(const PosedFrame& view, const Eigen::Vector2d& at, double stretch,
+                          double reach) {
+  Pixels window = window_of(view.frame, at.x(), at.y());
+  const auto sigma_of = [&](const Plane& plane) {  // 1/m
+    return view.noise.sigma(1 / plane.inverse) * plane.inverse * plane.inverse;
+  };
+  Plane plane = plane_of(window.span());
+  if (!plane.told()) return std::nullopt;
+  const bool whole = plane.residual <= kNoPlane * sigma_of(plane);
+  if (!whole) plane = plane_of(own_surface(window.span()));
+  if (!plane.told()) return std::nullopt;
+  // A window within one patch of pixels that err together errs as one of them.
+  const double share = std::min(view.noise.correlation * std::sqrt(plane.leverage), 1.0);
+  const double error = whole ? sigma_of(plane) : std::max(sigma_of(plane), plane.residual);
+  const double deviation = share * error / (plane.inverse * plane.inverse);
+  return Gap{stretch / plane.inverse - reach, stretch * deviation, whole};
+}
+
+/// What a frame shows on one ray through a ball.
+struct Look {
+  bool outside = false;  // the ray misses the image
+  std::optional<Gap> gap;
+};
+
+/// `x`: a place on the ray, world.
+Look look(const PosedFrame& view, const Ball& ball, const Vector3d& x) {
+  const Vector3d& eye = view.T_world_sensor.translation();
+  const Matrix3d to_sensor = view.T_world_sensor.linear().transpose();
+  const Vector3d seen = to_sensor * (x - eye);
+  const auto at = seen_at(view.frame.camera, seen);
+  if (!at) return {.outside = true, .gap = {}};
+  const double reach = reach_along(seen.normalized(), to_sensor * (ball.center - eye), ball.radius);
+  const double stretch = seen.norm() / seen.z();
+  return {.outside = false, .gap = gap_at(view, *at, stretch, reach)};
+}
+
+/// Places on a disc through a ball's middle that faces `eye`, some `pitch` apart; the middle first.
+std::vector<Vector3d> places_on(const Ball& ball, const Vector3d& eye, double pitch) {
+  std::vector<Vector3d> places{ball.center};
+  const Vector3d ray = (ball.center - eye).normalized();
+  const Vector3d side = ray.unitOrthogonal();
+  const Vector3d other = ray.cross(side);
+  const int rings = std::min(static_cast<int>(std::ceil(ball.radius / pitch)), kRings);
+  for (int i = -rings; i <= rings; ++i) {
+    for (int j = -rings; j <= rings; ++j) {
+      const double across = ball.radius * i / rings;
+      const double down = ball.radius * j / rings;
+      if ((i != 0 || j != 0) && std::hypot(across, down) <= ball.radius)
+        places.emplace_back(ball.center + across * side + down * other);
+    }
+  }
+  return places;
+}
+
+/// Adds what a ray shows to what is known of the ball. The surface goes on as it came from an
+/// earlier frame, and noise may feign three deviations of what follows from that.
+void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& seen) {
+  double behind = gap.free() ? 0 : -gap.metres - kSure * gap.deviation;
+  const bool compares = before && before->whole && gap.whole;
+  if (compares) {
+    const double ahead = std::max(seen.age, 0.0) / span;
+    const double error = std::hypot((1 + ahead) * gap.deviation, ahead * before->deviation);
+    const double foreseen = ahead * (before->metres - gap.metres) - gap.metres;
+    behind = std::max(behind, foreseen - kSure * error);
+  }
+  if (behind <= seen.behind) return;
+  seen.says = Seen::Says::solid;
+  seen.behind = behind;
+  seen.came = compares && before->free();
+}
+
+/// `before`: an earlier frame that tells how fast things come; null: there is none.
+Seen judge(const PosedFrame& newest, const PosedFrame* before, const Ball& ball, double now) {
+  const Vector3d eye = newest.T_world_sensor.translation();
+  Seen seen;
+  seen.age = now - newest.frame.stamp;
+  seen.towards = (eye - ball.center).normalized();
+  if (look(newest, ball, ball.center).outside) return seen;
+  const Pinhole& p = newest.frame.camera.pinhole;
+  const double pitch = kStride * (eye - ball.center).norm() / std::max(p.fx, p.fy);
+  const double span = before != nullptr ? newest.frame.stamp - before->frame.stamp : 0;
+  seen.says = Seen::Says::free;
+  for (const Vector3d& place : places_on(ball, eye, pitch)) {
+    const Look told = look(newest, ball, place);
+    if (told.gap) {
+      add(*told.gap, span > 0 ? look(*before, ball, place).gap : std::nullopt, span, seen);
+    } else if (seen.says == Seen::Says::free) {
+      seen.says = told.outside ? Seen::Says::outside : Seen::Says::nothing;
+    }
+  }
+  return seen;
+}
+
+}  // namespace
+
+void Sight::see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor,
+                const NoiseModel& noise) {
+  spare_.frame.camera = frame.camera;
+  spare_.frame.stamp = frame.stamp;
+  spare_.frame.depth = frame.depth;
+  spare_.T_world_sensor = T_world_sensor;
+  spare_.noise = noise;
+  const std::lock_guard lock(mutex_);
+  if (frames_ < 3 || newest_.frame.stamp - base_.frame.stamp >= kSpan) std::swap(base_, before_);
+  std::swap(before_, newest_);
+  std::swap(newest_, spare_);
+  frames_ = std::min(frames_ + 1, 3);
+}
+
+void Sight::forget() {
+  const std::lock_guard lock(mutex_);
+  frames_ = 0;
+}
+
+/// What the newest frame does not tell, the one before tells while it lasts.
+std::optional<Seen> Sight::at(const Ball& ball, double now, double lasts) const {
+  const std::lock_guard lock(mutex_);
+  if (frames_ == 0) return std::nullopt;
+  const auto is_base = [&](const PosedFrame& base, const PosedFrame& frame) {
+    return !std::isinf(lasts) && frame.frame.stamp - base.frame.stamp >= kSpan / 2;
+  };
+  const PosedFrame* base = nullptr;
+  if (frames_ > 1 && is_base(before_, newest_)) base = &before_;
+  if (frames_ > 2 && base == nullptr && is_base(base_, newest_)) base = &base_;
+  Seen seen = judge(newest_, base, ball, now);
+  if (seen.says == Seen::Says::outside) return seen;
+  if (seen.age > lasts) {
+    seen.says = Seen::Says::old;
+  } else if (seen.says == Seen::Says::nothing && frames_ > 1 &&
+             now - before_.frame.stamp <= lasts) {
+    seen = judge(before_, frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr, ball, now);
+  }
+  return seen;
+}
+
+/// Lets the frame say which places are free.
+void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
+  depth::check(frame);
+  if (!std::isfinite(frame.stamp)) return;
+  const NoiseModel& noise = builder->noise();
+  sight.see(frame, T_world_sensor, noise.sigma(1) > 0 ? noise : unknown_sensor_noise());
+}
+
+/// So long a frame tells what is free, s.
+double Source::Inside::lasts() const {
+  const std::lock_guard lock(mutex);
+  if (std::isinf(state.silent_from)) return state.silent_from;
+  const double silence = options.policy.silence;
+  const double missed = kMissedFrames * state.interval;
+  return std::min(state.latency, silence) + (missed > 0 ? std::min(missed, silence) : silence);
+}
+
+std::optional<Seen> Source::seen(const Ball& ball, double now) const {
+  inside_->watched = true;
+  std::optional<Seen> seen = inside_->sight.at(ball, now, inside_->lasts());
+  if (!seen && state().depth > 0) seen.emplace();  // a camera whose frames were not kept before
+  return seen;
+}
+
+}  // namespace palpate

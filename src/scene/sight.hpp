@@ -1,0 +1,44 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "palpate/depth/depth_filter.hpp"
+#include "palpate/scene/source.hpp"
+
+namespace palpate {
+
+/// A frame, where it was taken, and how its pixels err.
+struct PosedFrame {
+  DepthFrame frame;
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  NoiseModel noise;
+};
+
+/// What a depth camera's newest frames say of places, from the raw depths: nothing that the
+/// surface is made of takes part in it. One thread shows it frames, any thread asks.
+class Sight {
+ public:
+  /// Keeps a copy of the frame, which has passed depth::check(). `noise`: of its pixels. Once
+  /// frames of one size have come, it takes no memory.
+  void see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor,
+           const NoiseModel& noise);
+
+  /// No frame has come any more.
+  void forget();
+
+  /// What they say of a ball at time `now` (s, on the clock of the stamps). A frame counts until it
+  /// is `lasts` old. Nothing: no frame has come.
+  [[nodiscard]] std::optional<Seen> at(const Ball& ball, double now, double lasts) const;
+
+ private:
+  mutable std::mutex mutex_;  // of what follows
+  PosedFrame newest_;
+  PosedFrame before_;  // the one before
+  PosedFrame base_;    // an earlier one, that tells speeds where frames come quickly
+  PosedFrame spare_;   // the thread's that shows frames
+  int frames_ = 0;     // of the first three that have come
+};
+
+}  // namespace palpate

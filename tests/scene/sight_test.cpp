@@ -1,0 +1,197 @@
+#include "scene/sight.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "palpate/scene/scene.hpp"
+#include "support/depth_frames.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace test;
+using Eigen::Vector3d;
+using Says = Seen::Says;
+
+constexpr double kPixelSigma = 1e-3;   // m
+constexpr double kFramePeriod = 0.03;  // s
+constexpr double kFrameLasts = 0.1;    // s
+const NoiseModel kPixelNoise{{kPixelSigma, 0, 0}, 1};
+
+// Frames of what a camera at the origin sees along +z, kFramePeriod apart.
+class ASight : public ::testing::Test {
+ protected:
+  void sees(const DepthOf& depth, double noise = 0, unsigned seed = 1) {
+    stamp_ += kFramePeriod;
+    sight_.see(frame_of(small_camera(), stamp_, depth, noise, seed), Eigen::Isometry3d::Identity(),
+               kPixelNoise);
+  }
+  [[nodiscard]] Seen at(const Vector3d& place, double radius = 0, double later = 0) const {
+    return *sight_.at({place, radius}, stamp_ + later, kFrameLasts);
+  }
+
+  Sight sight_;
+  double stamp_ = 0;
+};
+
+TEST_F(ASight, SaysNothingBeforeAFrameHasCome) {
+  EXPECT_FALSE(sight_.at({}, 0, kFrameLasts));
+}
+
+TEST_F(ASight, TellsFreePlacesFromSolidOnes) {
+  sees(wall(0.5));
+  EXPECT_EQ(at({0, 0, 0.4}).says, Says::free);
+  EXPECT_EQ(at({0, 0, 0.4999}).says, Says::free);
+  const Seen behind = at({0.01, 0, 0.52});
+  EXPECT_EQ(behind.says, Says::solid);
+  EXPECT_NEAR(behind.behind, 0.02, 4 * kPixelSigma);
+  EXPECT_TRUE(behind.towards.isApprox(-Vector3d(0.01, 0, 0.52).normalized(), 1e-6));
+}
+
+TEST_F(ASight, TakesSteepSurfacesForWhatTheyAre) {
+  const double turn = 70 * std::numbers::pi / 180;
+  const Vector3d normal(std::sin(turn), 0, -std::cos(turn));
+  sees(plane_depth({0, 0, 0.5}, normal), kPixelSigma / 4);
+  EXPECT_EQ(at(Vector3d(0, 0, 0.5) + 1e-3 * normal).says, Says::free);
+  EXPECT_EQ(at(Vector3d(0, 0, 0.5) - 4e-3 * normal).says, Says::solid);
+}
+
+TEST_F(ASight, IsNotMisledByAStepBesideThePlace) {
+  // A block 30 mm high whose edge is 2 mm, one and a half pixels, beside the place.
+  sees([](double x, double) { return x > 2e-3 / 0.5 ? 0.47 : 0.5; });
+  EXPECT_EQ(at({0, 0, 0.4995}).says, Says::free);
+  EXPECT_EQ(at({0.006, 0, 0.48}).says, Says::solid);
+}
+
+TEST_F(ASight, DoesNotTellWhatIsOutOfThePicture) {
+  sees(wall(0.5));
+  EXPECT_EQ(at({0.3, 0, 0.4}).says, Says::outside);
+  EXPECT_EQ(at({0, 0, -0.4}).says, Says::outside);
+}
+
+TEST_F(ASight, DoesNotTellWhereNothingIsMeasured) {
+  const auto hole = [](double x, double y) { return std::hypot(x, y) < 0.02 ? 0 : 0.5; };
+  sees(hole);
+  EXPECT_EQ(at({0, 0, 0.4}).says, Says::nothing);
+  EXPECT_EQ(at({0.03, 0, 0.4}).says, Says::free);
+}
+
+TEST_F(ASight, BridgesOneFrameThatMeasuresNothing) {
+  sees(wall(0.5));
+  sees([](double, double) { return 0; });
+  EXPECT_EQ(at({0, 0, 0.4}).says, Says::free);
+  EXPECT_EQ(at({0, 0, 0.55}).says, Says::solid);
+  sees([](double, double) { return 0; });
+  EXPECT_EQ(at({0, 0, 0.4}).says, Says::nothing);
+}
+
+TEST_F(ASight, IsTooOldAfterAWhile) {
+  sees(wall(0.5));
+  EXPECT_EQ(at({0, 0, 0.4}, 0, 0.9 * kFrameLasts).says, Says::free);
+  EXPECT_EQ(at({0, 0, 0.4}, 0, 1.1 * kFrameLasts).says, Says::old);
+}
+
+TEST_F(ASight, ForeseesWhatComesOn) {
+  constexpr double kClosing = 0.5;  // m/s
+  sees(wall(0.5 + kClosing * kFramePeriod));
+  sees(wall(0.5));
+  sees(wall(0.5 - kClosing * kFramePeriod));
+  const Vector3d place(0, 0, 0.47);
+  EXPECT_EQ(at(place).says, Says::free);
+  const Seen later = at(place, 0, 2 * kFramePeriod);  // the wall is at 0.455 m by then
+  EXPECT_EQ(later.says, Says::solid);
+  EXPECT_TRUE(later.came);
+  EXPECT_NEAR(later.behind, 0.015, 8 * kPixelSigma);
+  for (int i = 2; i < 6; ++i) sees(wall(0.5 - i * kClosing * kFramePeriod));
+  for (int i = 0; i < 8; ++i) sees(wall(0.4));
+  EXPECT_FALSE(at(place).came) << "it has been there for a while";
+}
+
+// Where bent lenses see a wall and what is just before and behind it, in the middle and at the rim.
+TEST_F(ASight, KnowsThatLensesBend) {
+  for (const double k1 : {-0.2, 0.2}) {
+    CameraModel camera = small_camera();
+    camera.pinhole.fx = camera.pinhole.fy = 120;
+    camera.distortion.k1 = k1;
+    DepthFrame frame = frame_of(camera, stamp_ += kFramePeriod, wall(0.5));
+    sight_.forget();
+    sight_.see(frame, Eigen::Isometry3d::Identity(), kPixelNoise);
+    for (const Vector3d& place : {Vector3d(0, 0, 0.5), Vector3d(0.24, 0.1, 0.5)}) {
+      EXPECT_EQ(at(place - Vector3d(0, 0, 1e-3)).says, Says::free) << k1;
+      EXPECT_EQ(at(place + Vector3d(0, 0, 5e-3)).says, Says::solid) << k1;
+    }
+  }
+}
+
+TEST_F(ASight, DoesNotBelieveALensBeyondWhereItsModelTurnsBack) {
+  CameraModel camera = small_camera();
+  camera.pinhole.fx = camera.pinhole.fy = 120;
+  camera.distortion.k1 = -0.3;
+  sight_.see(frame_of(camera, 0, wall(0.5)), Eigen::Isometry3d::Identity(), kPixelNoise);
+  EXPECT_EQ(at({1.6 * 0.3, 0, 0.3}).says, Says::outside);
+}
+
+TEST_F(ASight, DoesNotForeseeWhatStays) {
+  sees(wall(0.5));
+  sees(wall(0.48));
+  const double ever = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(sight_.at({{0, 0, 0.4}, 0}, stamp_ + 1000, ever)->says, Says::free);
+}
+
+TEST_F(ASight, LooksAtAllOfABall) {
+  // A rod 4 mm thick passes beside the middle of a ball.
+  sees([](double x, double) { return std::abs(x - 0.02) < 0.004 ? 0.4 : 0.5; });
+  EXPECT_EQ(at({0, 0, 0.42}).says, Says::free);
+  EXPECT_EQ(at({0, 0, 0.42}, 0.005).says, Says::free);
+  EXPECT_EQ(at({0, 0, 0.42}, 0.012).says, Says::solid);
+  EXPECT_EQ(at({0, 0, 0.37}, 0.012).says, Says::free);
+  EXPECT_EQ(at({0, 0, 0.47}, 0.004).says, Says::free);
+  EXPECT_EQ(at({-0.03, 0, 0.47}, 0.04).says, Says::solid);
+}
+
+TEST_F(ASight, IsNotAlarmedByNoise) {
+  for (unsigned seed = 1; seed <= 400; ++seed) {
+    sees(wall(0.5), kPixelSigma, seed);
+    EXPECT_EQ(at({0.01, -0.01, 0.5}, 0, kFramePeriod).says, Says::free) << seed;
+    EXPECT_EQ(at({0.01, -0.01, 0.508}, 0, kFramePeriod).says, Says::solid) << seed;
+  }
+}
+
+TEST(Seen, IsThereFromTheFirstQuestionOn) {
+  Scene scene;
+  Source& source = scene.add("camera");
+  const auto push = [&](double stamp) {
+    return source.push(frame_of(small_camera(), stamp, wall(0.5)), [=] { return stamp + 0.02; });
+  };
+  const Ball ball{{0, 0, 0.4}, 0};
+  EXPECT_FALSE(source.seen(ball, 0));
+  ASSERT_TRUE(push(0));
+  EXPECT_EQ(source.seen(ball, 0.01)->says, Says::free);
+  ASSERT_TRUE(push(0.03));
+  EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
+  EXPECT_EQ(source.seen(ball, 0.2)->says, Says::old);  // after its way here and 2.5 frames
+}
+
+TEST(Seen, OfAFrameThatStaysIsNeverTooOld) {
+  Scene scene;
+  Source& source = scene.add("image");
+  source.set(frame_of(small_camera(), 0, wall(0.5)));
+  EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->says, Says::free);
+  EXPECT_EQ(source.seen({{0, 0, 0.52}, 0}, 1e6)->says, Says::solid);
+}
+
+TEST(Seen, IsNothingOfClouds) {
+  Scene scene;
+  PointCloud cloud;
+  for (int i = 0; i < 400; ++i) {
+    cloud.positions.emplace_back(0.01f * static_cast<float>(i % 20),
+                                 0.01f * static_cast<float>(i / 20), 0);
+  }
+  EXPECT_FALSE(scene.add("cloud", cloud).seen({}, 0));
+}
+
+}  // namespace
+}  // namespace palpate
