@@ -90,6 +90,7 @@ const RosBridgeOptions& checked(const RosBridgeOptions& options,
   require.positive("the robot's scale", robot.scale, "give a number above 0");
   const int button = robot.dead_man.value_or(0);
   require(button >= 0 && button < 32, "the dead man's button", button, "give 0 to 31");
+  require(robot.retreat >= 0 && robot.retreat <= 1, "retreat (m/s)", robot.retreat, "give 0 to 1");
   return options;
 }
 
@@ -132,7 +133,7 @@ struct RosBridge::Inside {
           {std::make_unique<Writer<PointCloud2>>(participant, topic(options.ns + name), kStays),
            nullptr});
     }
-    if (options.robot) robot.emplace(participant, *options.robot);
+    if (options.robot) robot.emplace(participant, *options.robot, scene, *hands.front().servo);
     if (!unused.empty()) {
       throw Error(fmt::format("ROS bridge: no topic of palpate's is called {}, so it cannot be {}",
                               unused.begin()->first, unused.begin()->second));
@@ -188,7 +189,7 @@ struct RosBridge::Inside {
 
 void RosBridge::Inside::run(const std::stop_token& stop) {
   SteadyClock clock;
-  const double rate = options.robot ? std::max(options.rate, options.robot->rate) : options.rate;
+  const double rate = ros::look_rate(options);
   for (double next = clock.now(); !stop.stop_requested();
        next = std::max(next + 1 / rate, clock.now())) {
     clock.wait_until(next);
@@ -203,7 +204,7 @@ void RosBridge::Inside::run(const std::stop_token& stop) {
 
 void RosBridge::Inside::look(double now) {
   const Header header{to_time(system_now()), options.frame};
-  if (robot) robot->look(hands.front().servo->state(), now, header.stamp);
+  if (robot) robot->look(now, header.stamp);
   if (hand_due.due(now)) {
     for (std::size_t i = 0; i < hands.size(); ++i) {
       if (const ServoState state = hands[i].servo->state(); is_known(state))
@@ -275,6 +276,7 @@ void RosBridge::Inside::tell_diagnostics(const Header& header) {
   for (const StreamState& stream : streams ? streams() : std::vector<StreamState>()) {
     message.status.push_back(ros::stream_status(stream));
   }
+  if (robot) message.status.push_back(ros::robot_status(robot->state()));
   diagnostics.write(message);
 }
 

@@ -43,7 +43,7 @@ std::byte level_of(bool bad, bool doubtful) {
   return std::byte{static_cast<unsigned char>(bad ? 2 : doubtful ? 1 : 0)};
 }
 
-KeyValue fact(const char* key, double value, const char* unit) {
+KeyValue fact(const std::string& key, double value, const char* unit) {
   return {key, fmt::format("{:.4g} {}", value, unit)};
 }
 
@@ -149,6 +149,23 @@ DiagnosticStatus stream_status(const StreamState& state) {
                    {"frames", std::to_string(state.frames)},
                    {"dropped", std::to_string(state.drops.total())},
                    {"problem", state.problem}};
+  return status;
+}
+
+DiagnosticStatus robot_status(const RosBridge::RobotState& state) {
+  DiagnosticStatus status;
+  status.level = level_of(false, !state.why.empty() || state.readers == 0);
+  status.name = "palpate: robot";
+  status.message = state.reason.empty() ? "it follows"
+                   : state.retreats     ? "it goes back: " + state.reason
+                                        : "it waits: " + state.reason;
+  status.hardware_id = state.topic;
+  status.values = {{"subscribers", std::to_string(state.readers)},
+                   {"targets", std::to_string(state.told)},
+                   {"held back", std::to_string(state.held)}};
+  for (const auto& [reason, seconds] : state.waits) {
+    status.values.push_back(fact("waited: " + reason, seconds, "s"));
+  }
   return status;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "message/display_types.hpp"
+#include "palpate/ros/bridge.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/stream.hpp"
 #include "palpate/servo/servo.hpp"
@@ -45,5 +46,7 @@ void add_markers(const message::Header& header, const ServoState& state, int ind
                                                     const Durations& lateness);
 /// A stream's phase, ages and drops.
 [[nodiscard]] message::DiagnosticStatus stream_status(const StreamState& state);
+/// What a robot does, and how long it waited for what.
+[[nodiscard]] message::DiagnosticStatus robot_status(const RosBridge::RobotState& state);
 
 }  // namespace palpate::ros

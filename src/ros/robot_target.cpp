@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <utility>
 
 #include "message/transforms.hpp"
 #include "palpate/base/error.hpp"
@@ -11,6 +12,7 @@ namespace palpate::ros {
 namespace {
 
 constexpr double kStill = 0.05;  // s without a step: nobody computes where the proxy is
+constexpr std::string_view kSlow = "the network is too slow";
 
 struct RobotPreset {
   std::string_view name;
@@ -39,31 +41,64 @@ std::string robot_topic(const RosBridgeOptions::Robot& robot) {
 
 }  // namespace
 
+double look_rate(const RosBridgeOptions& options) {
+  constexpr double kGuide = 250;  // Hz
+  return options.robot ? std::max({options.rate, options.robot->rate, kGuide}) : options.rate;
+}
+
 RobotTarget::RobotTarget(const dds::Participant& participant,
-                         const RosBridgeOptions::Robot& options)
+                         const RosBridgeOptions::Robot& options, const Scene& scene,
+                         const Servo& servo)
     : options_(options),
+      servo_(servo),
+      guide_(scene, options, servo.options().field.tool_radius),
       target_(participant, robot_topic(options), {.reliable = true}),
       due_(options.rate),
       told_{.topic = target_.topic()} {}
 
-void RobotTarget::look(const ServoState& state, double now, const message::Time& stamp) {
+void RobotTarget::look(double now, const message::Time& stamp) {
+  const ServoState state = servo_.state();
   if (state.step != step_) stepped_ = now;
   step_ = state.step;
+  RobotGuide::Answer answer = decide(state, now);
   if (!due_.due(now)) return;
-  std::string_view why = obstacle(state, now);
-  if (why.empty() && !tell(state, stamp)) why = "the network is too slow";
-  const std::lock_guard lock(mutex_);
-  told_.readers = target_.readers();
-  told_.why = why;
-  ++(why.empty() ? told_.told : told_.held);
+  const bool told = answer.target && tell(state, *answer.target, stamp);
+  if (told) at_ = answer.target;
+  if (answer.target && !told) {
+    guide_.is_at(at_);
+    answer = {.reason = kSlow, .why = std::string(kSlow)};
+  }
+  count(answer, now);
 }
 
-bool RobotTarget::tell(const ServoState& state, const message::Time& stamp) {
-  const Eigen::Vector3d position = options_.hand ? state.hip : state.contact.proxy;
+RobotGuide::Answer RobotTarget::decide(const ServoState& state, double now) {
+  const bool down = options_.dead_man && ((state.buttons >> *options_.dead_man) & 1U) != 0;
+  const bool was_up = std::exchange(up_, !down);
+  const std::string_view why = objection(state, now);
+  if (why.empty()) return guide_.look(state, now, down && was_up);
+  guide_.pause();
+  return {.reason = why, .why = std::string(why)};
+}
+
+bool RobotTarget::tell(const ServoState& state, const Eigen::Vector3d& place,
+                       const message::Time& stamp) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = options_.T_robot_world.linear() * state.orientation.toRotationMatrix();
-  pose.translation() = options_.T_robot_world * Eigen::Vector3d(options_.scale * position);
+  pose.translation() = options_.T_robot_world * Eigen::Vector3d(options_.scale * place);
   return target_.write({{stamp, options_.frame}, message::pose_of(pose)});
+}
+
+void RobotTarget::count(const RobotGuide::Answer& answer, double now) {
+  const std::size_t readers = target_.readers();
+  const std::lock_guard lock(mutex_);
+  const double span = counted_ > 0 ? now - counted_ : 0;
+  counted_ = now;
+  told_.readers = readers;
+  told_.why = answer.why;
+  told_.reason = answer.reason;
+  told_.retreats = answer.retreats;
+  ++(answer.target ? told_.told : told_.held);
+  if (!answer.reason.empty()) told_.waits[std::string(answer.reason)] += span;
 }
 
 RosBridge::RobotState RobotTarget::state() const {
@@ -71,22 +106,14 @@ RosBridge::RobotState RobotTarget::state() const {
   return told_;
 }
 
-// Why no target may be told; empty: it may be.
-std::string_view RobotTarget::obstacle(const ServoState& state, double now) const {
+// Why the hand lets no target be told; empty: it does.
+std::string_view RobotTarget::objection(const ServoState& state, double now) {
   if (state.step == 0 || now - stepped_ > kStill) return "the servo stands still";
   if (state.device == DeviceState::Status::silent) return "the hand is not heard";
   if (state.device != DeviceState::Status::ok) return "the hand has ended";
   if (state.guard.fault != Guard::Fault::none) return "the hand has a fault";
   if (state.paused) return "the hand is paused";
-  if (options_.dead_man && ((state.buttons >> *options_.dead_man) & 1U) == 0)
-    return "the hand's dead-man button is up";
-  if (options_.hand) return {};
-  // Without a surface, or behind one, a proxy is where the hand is: perhaps inside of things.
-  if (has(state.field_notes, FieldNote::no_surface)) return "no source has a surface";
-  if (has(state.field_notes, FieldNote::behind)) return "the tool is behind what a camera sees";
-  // In the step in which a surface moved over it, it may still be a little inside.
-  if (has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged))
-    return "a surface moved over the tool";
+  if (options_.dead_man && up_) return "the hand's dead-man button is up";
   return {};
 }
 

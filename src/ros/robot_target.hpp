@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 #include <string_view>
 
 #include "dds/endpoint.hpp"
 #include "palpate/ros/bridge.hpp"
+#include "ros/robot_guide.hpp"
 
 namespace palpate::ros {
 
@@ -25,31 +27,43 @@ class Every {
   double next_ = 0;
 };
 
+/// How often a bridge has to look at what there is to tell, Hz: often enough for the robot's guide.
+[[nodiscard]] double look_rate(const RosBridgeOptions& options);
+
 /// Tells a robot where to go. While the hand is not known, its servo stands still, its button is
-/// up, or no surface keeps the proxy out of things, it is told nothing, and stops by its own
+/// up, or its guide has it wait, it is told nothing: it holds the last target, or stops by its own
 /// controller's watchdog.
 class RobotTarget {
  public:
-  /// @throws Error when the preset is none.
-  RobotTarget(const dds::Participant& participant, const RosBridgeOptions::Robot& options);
+  /// Scene and servo outlive it. @throws Error when the preset is none, or a source of the options.
+  RobotTarget(const dds::Participant& participant, const RosBridgeOptions::Robot& options,
+              const Scene& scene, const Servo& servo);
 
-  /// `now`: s. Tells the target where one is due.
-  void look(const ServoState& state, double now, const message::Time& stamp);
+  /// `now`: s, on the clock of the sources' stamps; some hundred times a second. Tells the target
+  /// where one is due.
+  void look(double now, const message::Time& stamp);
 
   /// Any thread.
   [[nodiscard]] RosBridge::RobotState state() const;
 
  private:
+  [[nodiscard]] std::string_view objection(const ServoState& state, double now);
+  [[nodiscard]] RobotGuide::Answer decide(const ServoState& state, double now);
   // False: it could not be sent in time.
-  bool tell(const ServoState& state, const message::Time& stamp);
-  [[nodiscard]] std::string_view obstacle(const ServoState& state, double now) const;
+  bool tell(const ServoState& state, const Eigen::Vector3d& place, const message::Time& stamp);
+  void count(const RobotGuide::Answer& answer, double now);
 
   RosBridgeOptions::Robot options_;
+  const Servo& servo_;
+  RobotGuide guide_;
   dds::Writer<message::PoseStamped> target_;
   Every due_;
-  std::uint64_t step_ = 0;    // the last that was seen
-  double stepped_ = 0;        // when it was new, s
-  mutable std::mutex mutex_;  // of what follows
+  std::uint64_t step_ = 0;                  // the last that was seen
+  double stepped_ = 0;                      // when it was new, s
+  bool up_ = true;                          // is the dead man's button?
+  std::optional<Eigen::Vector3d> at_ = {};  // the last target that was told, m, world
+  double counted_ = 0;                      // up to when waits are, s; 0: from now on
+  mutable std::mutex mutex_;                // of what follows
   RosBridge::RobotState told_;
 };
 

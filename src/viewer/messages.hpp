@@ -143,7 +143,8 @@ struct SourceReport {
 [[nodiscard]] std::string welcome_text(const Welcome& welcome);
 [[nodiscard]] std::string settings_text(std::span<const Setting> settings);
 [[nodiscard]] std::string devices_text(std::span<const DeviceReport> devices);
-[[nodiscard]] std::string sources_text(std::span<const SourceReport> sources);
+[[nodiscard]] std::string sources_text(std::span<const SourceReport> sources,
+                                       const std::string& robot = {});
 [[nodiscard]] std::string notice_text(const Notice& notice);
 [[nodiscard]] std::string record_text(bool on, std::string_view file);
 [[nodiscard]] std::string moment_text(const TimeLine::Moment& moment);

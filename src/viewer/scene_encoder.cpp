@@ -179,8 +179,9 @@ void SceneEncoder::report(EncodedScene& encoded) {
   reported_ = host_time();
   const std::vector<ViewedStream> streams =
       options_.streams ? options_.streams() : std::vector<ViewedStream>{};
-  encoded.sources = std::make_shared<const std::string>(
-      sources_text(source_reports(scene_, streams, options_.origin, now())));  // painting took time
+  const std::string robot = options_.robot ? options_.robot() : "";
+  encoded.sources = std::make_shared<const std::string>(sources_text(
+      source_reports(scene_, streams, options_.origin, now()), robot));  // painting took time
 }
 
 std::string SceneEncoder::news(std::string complaint) {

@@ -116,6 +116,7 @@ struct SceneEncoderOptions {
   std::vector<Servo*> servos;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::function<std::vector<ViewedStream>()> streams = {};
+  std::function<std::string()> robot = {};
   std::function<void(EncodedScene)> show;  ///< called on the encoder's thread
 };
 

@@ -229,10 +229,12 @@ std::string devices_text(std::span<const DeviceReport> devices) {
   return text_of({{"type", "devices"}, {"devices", std::move(list)}});
 }
 
-std::string sources_text(std::span<const SourceReport> sources) {
+std::string sources_text(std::span<const SourceReport> sources, const std::string& robot) {
   json list = json::array();
   for (const SourceReport& source : sources) list.push_back(json_of(source));
-  return text_of({{"type", "sources"}, {"sources", std::move(list)}});
+  json message = {{"type", "sources"}, {"sources", std::move(list)}};
+  if (!robot.empty()) message["robot"] = robot;
+  return text_of(message);
 }
 
 std::string notice_text(const Notice& notice) {

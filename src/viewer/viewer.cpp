@@ -115,7 +115,7 @@ struct Viewer::Parts {
         sessions(sessions_options(complete(std::move(controls), servos))),
         server(options, sessions),
         radii(servos.size(), 0.0),
-        encoder(seen, {servos, *options.origin, options.streams,
+        encoder(seen, {servos, *options.origin, options.streams, options.robot,
                        [this](EncodedScene encoded) { post(std::move(encoded)); }}) {
     for (std::size_t i = 0; i < servos.size(); ++i) {
       states.emplace_back(*servos[i], i, *options.origin);

@@ -96,6 +96,10 @@ TEST(LiveStatus, TellsWhatARobotIsToldAndWhyNot) {
   EXPECT_TRUE(in_words(moment).ends_with(" | robot: 250 targets"));
   robot.why = "no source has a surface";
   EXPECT_TRUE(in_words(moment).ends_with(" | robot WAITS: no source has a surface"));
+  robot.retreats = true;
+  robot.why = "the surface passed over the tool 0.4 s ago";
+  EXPECT_TRUE(
+      in_words(moment).ends_with(" | robot GOES BACK: the surface passed over the tool 0.4 s ago"));
 }
 
 TEST(LiveStatus, KnowsOfNothingBeforeTheFirstStep) {

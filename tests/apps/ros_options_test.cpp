@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/palpate/cli/errors.hpp"
+#include "apps/setup_parsed.hpp"
 
 namespace palpate::app {
 namespace {
@@ -24,6 +25,22 @@ TEST(Robot, IsReadFromItsPresetAndOptions) {
 TEST(Robot, FollowsTheProxyUnlessToldOtherwise) {
   EXPECT_FALSE(parse_robot("crisp").hand);
   EXPECT_FALSE(parse_robot("crisp,follow=proxy").hand);
+}
+
+TEST(Robot, IsToldWhichSourcesCountAndHowFastToGoBack) {
+  const std::string robot = "synthetic:sphere camera:simulated --robot crisp ";
+  const auto options = [](const std::string& text) { return *planned(text).ros.options().robot; };
+  EXPECT_EQ(options(robot).retreat, 0.05);
+  EXPECT_TRUE(options(robot).sources.empty());
+  const RosBridgeOptions::Robot told =
+      options(robot + "--robot-retreat 0 --robot-sources one --robot-sources two");
+  EXPECT_EQ(told.retreat, 0);
+  EXPECT_THAT(told.sources, testing::ElementsAre("one", "two"));
+  for (const char* text : {"--robot-retreat 0.1", "--robot-sources one"}) {
+    EXPECT_THAT(
+        [&] { planned("camera:simulated " + std::string(text)); },
+        testing::ThrowsMessage<UsageError>(testing::HasSubstr("only to runs with --robot")));
+  }
 }
 
 TEST(Robot, RefusesWhatItCannotBe) {

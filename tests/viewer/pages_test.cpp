@@ -37,6 +37,14 @@ TEST(Pages, AreToldWhyADeviceIsSilent) {
   EXPECT_EQ(device, nlohmann::json({{"status", "silent"}, {"reason", "told to"}}));
 }
 
+TEST(Pages, ShowWhatARobotDoes) {
+  ViewerOptions options;
+  options.robot = [] { return "robot WAITS: nothing is measured where the tool is"; };
+  ViewerRig rig(options);
+  EXPECT_EQ(rig.enter()->receive_json("sources")["robot"],
+            "robot WAITS: nothing is measured where the tool is");
+}
+
 TEST(Pages, NobodyHearsOfAProblemThatIsOver) {
   StreamState stream;
   stream.source = "sheet";

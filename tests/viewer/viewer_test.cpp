@@ -95,6 +95,7 @@ TEST(Viewer, WelcomesWhoKnowsTheToken) {
   EXPECT_EQ(welcome["devices"][0]["takeable"], false);
   EXPECT_NEAR(welcome["radius"].get<double>(), 0.06 * std::sqrt(2.0), 1e-6);
   const auto sources = client->receive_json("sources");
+  EXPECT_FALSE(sources.contains("robot"));
   EXPECT_EQ(sources["sources"][0]["phase"], "still");
   EXPECT_EQ(sources["sources"][0]["points"], 31 * 31);
 }

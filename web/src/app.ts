@@ -157,7 +157,7 @@ export class App {
       case "sources":
         message.sources.forEach((report, i) => this.session.sources[i]?.take(report, performance.now()));
         this.world.takeSources(message.sources);
-        return this.sources.update();
+        return this.sources.update(message.robot);
       case "notice":
         return this.notices.add(message.level, message.text);
       case "record":

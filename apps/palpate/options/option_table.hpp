@@ -38,6 +38,7 @@ struct RunFacts {
   bool simulated_time = false;  ///< was asked for ...
   bool any_time = false;        ///< ... or not
   bool guarded = false;         ///< in real time, with a guard and a servo's thread
+  bool robot = false;           ///< a robot follows its proxy
   bool page = false;            ///< has a page
   bool page_unasked = false;    ///< --view does not ask for one
   bool follows = false;         ///< a hand follows a trajectory or an exploration ...

@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::array<Named<const char*>, 2> kRanges = {
     {{"localhost", "localhost"}, {"subnet", "subnet"}}};
+constexpr Scope kRobot{&RunFacts::robot,
+                       "applies only to runs with --robot; add that or remove it"};
 constexpr std::array<std::string_view, 5> kRobots = {"crisp", "cartesian", "servo", "crtk",
                                                      "generic"};
 
@@ -116,12 +118,24 @@ void add_bridge_options(OptionTable& table, RosPlan& plan) {
       .add_text(
           "--robot", KeyKind::text, "PRESET[,KEY=VALUE]",
           [&plan](const std::string& text) { plan.bridge.robot = parse_robot(text); },
-          "let a robot follow the first hand's proxy, which never enters the surface: crisp, "
+          "let a robot follow the first hand's proxy, where cameras see that it is free: crisp, "
           "cartesian, servo, crtk, generic. Options: ,ns=NAMESPACE; ,topic=TOPIC; ,frame=FRAME; "
           ",scale=S and ,origin=X/Y/Z: from the world to the robot; ,rate=HZ; ,button=N: only "
           "while "
           "it is held; ,follow=hand: the hand in place of the proxy. Publishes as --publish does")
       .only_for(kGuarded);
+  table
+      .add("--robot-retreat", plan.robot_retreat, "M/S",
+           number("a speed from 0 to 1 m/s", [](double x) { return x >= 0 && x <= 1; }),
+           "how fast the robot goes back towards the camera from where a surface came over it; 0: "
+           "it stands still (default 0.05 m/s)")
+      .only_for(kRobot);
+  table
+      .add_texts(
+          "--robot-sources", KeyKind::texts, "NAME",
+          [&plan](const std::string& name) { plan.robot_sources.push_back(name); },
+          "a source whose camera says where the robot may go; repeat for each (default: all)")
+      .only_for(kRobot);
   table.add_choice("--ros-range", plan.range, kRanges,
                    "localhost: programs on this machine; subnet: the whole network (default: "
                    "ROS_AUTOMATIC_DISCOVERY_RANGE, else localhost)");
@@ -131,6 +145,14 @@ void add_bridge_options(OptionTable& table, RosPlan& plan) {
       "another name for a topic that is published; repeat for each");
   table.add_key("--publish-rate", plan.bridge.rate,
                 number("a rate from 1 to 1000 Hz", [](double x) { return x >= 1 && x <= 1000; }));
+}
+
+RosBridgeOptions RosPlan::options() const {
+  RosBridgeOptions options = bridge;
+  if (!options.robot) return options;
+  options.robot->retreat = robot_retreat;
+  options.robot->sources = robot_sources;
+  return options;
 }
 
 void use_range(const std::string& range) {

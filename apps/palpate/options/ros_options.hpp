@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "palpate/ros/bridge.hpp"
 
@@ -14,7 +15,11 @@ struct RosPlan {
       false;  ///< what hands do and feel is told; a robot is told, too, where there is one
   std::string range = {};  ///< "localhost" or "subnet"; empty: as the environment says
   RosBridgeOptions bridge = {};
+  double robot_retreat = RosBridgeOptions::Robot().retreat;  ///< m/s
+  std::vector<std::string> robot_sources = {};
 
+  /// What the bridge is made with.
+  [[nodiscard]] RosBridgeOptions options() const;
   [[nodiscard]] bool wanted() const { return published || bridge.robot; }
 };
 

@@ -128,6 +128,7 @@ RunFacts facts_of(const TouchPlan& plan, const TouchChoices& choices) {
   facts.simulated_time = choices.simulated_time;
   facts.any_time = !choices.simulated_time;
   facts.guarded = plan.time.real_time && !choices.simulated_time;
+  facts.robot = plan.ros.bridge.robot.has_value();
   facts.page = plan.page.served;
   facts.page_unasked = !plan.page.wanted;
   facts.follows = std::ranges::any_of(plan.devices, &DevicePlan::follows_trajectory);

@@ -122,4 +122,20 @@ PointCloud cloud_of(const message::Cloud& message) {
   return cloud;
 }
 
+std::vector<double> rows_of(const Eigen::Isometry3d& pose) {
+  std::vector<double> values;
+  for (int i = 0; i < 12; ++i) values.push_back(pose.matrix()(i / 4, i % 4));
+  return values;
+}
+
+DepthFrame without_colors(const DepthFrame& frame) {
+  DepthFrame kept;
+  kept.camera = frame.camera;
+  kept.stamp = frame.stamp;
+  kept.T_world_sensor = frame.T_world_sensor;
+  kept.depth = frame.depth;
+  kept.cloud = frame.cloud;
+  return kept;
+}
+
 }  // namespace palpate::app

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "message/palpate_types.hpp"
+#include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/servo/servo.hpp"
 #include "servo/step_trace.hpp"
@@ -14,6 +16,12 @@ namespace palpate::app {
 
 /// What was shown of that step. `options`: of its servo. Counts of the guard are not recorded.
 [[nodiscard]] ServoState state_of(const message::Tick& tick, const ServoOptions& options);
+
+/// A pose's first three rows, as messages hold it.
+[[nodiscard]] std::vector<double> rows_of(const Eigen::Isometry3d& pose);
+
+/// The frame without what no surface depends on.
+[[nodiscard]] DepthFrame without_colors(const DepthFrame& frame);
 
 /// A cloud as a recording holds it, and back.
 [[nodiscard]] message::Cloud recorded(const PointCloud& cloud);

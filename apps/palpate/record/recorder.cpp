@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "apps/palpate/record/options_json.hpp"
+#include "apps/palpate/record/recorded_messages.hpp"
 #include "apps/palpate/record/recording_file.hpp"
+#include "ros/hand_messages.hpp"
 #include "scene/source_trace.hpp"
 
 namespace palpate::app {
@@ -27,12 +29,6 @@ std::int64_t wall_clock() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
 
-std::vector<double> rows(const Eigen::Isometry3d& pose) {
-  std::vector<double> values;
-  for (int i = 0; i < 12; ++i) values.push_back(pose.matrix()(i / 4, i % 4));
-  return values;
-}
-
 // After the time of day, and of no file that is there.
 std::string free_name() {
   const std::string stem =
@@ -40,17 +36,6 @@ std::string free_name() {
   std::string name = stem + ".mcap";
   for (int i = 2; std::filesystem::exists(name); ++i) name = fmt::format("{}-{}.mcap", stem, i);
   return name;
-}
-
-// Without what no surface depends on.
-DepthFrame without_colors(const DepthFrame& frame) {
-  DepthFrame kept;
-  kept.camera = frame.camera;
-  kept.stamp = frame.stamp;
-  kept.T_world_sensor = frame.T_world_sensor;
-  kept.depth = frame.depth;
-  kept.cloud = frame.cloud;
-  return kept;
 }
 
 }  // namespace
@@ -119,7 +104,7 @@ Stream::Sink Recorder::watching(std::size_t source, Stream::Sink sink) {
     message::FrameUse use;
     use.kind = frame.cloud ? "cloud" : "image";
     use.stamp = frame.stamp;
-    if (frame.T_world_sensor) use.pose = rows(*frame.T_world_sensor);
+    if (frame.T_world_sensor) use.pose = rows_of(*frame.T_world_sensor);
     const std::uint64_t before = SourceTrace(loaded_->scene.source(source)).publications();
     const std::uint64_t dropped = loaded_->scene.source(source).state().dropped;
     const Source::StartTime asked = [&] { return use.start = start(); };
@@ -170,6 +155,18 @@ void Recorder::put(std::size_t source, message::FrameUse use, DepthFrame frame) 
     use.options = exact_json(trace.options()).dump();
   }
   frames_.push_back({source, std::move(frame), std::move(use)});
+}
+
+void Recorder::note(double now, const std::optional<RosBridge::RobotState>& robot) {
+  if (!robot) return;
+  if (!takes_frames_) {
+    robot_.clear();  // a file that begins later begins with what holds then
+    return;
+  }
+  message::DiagnosticStatus status = ros::robot_status(*robot);
+  if (std::exchange(robot_, status.message) == status.message) return;
+  const std::lock_guard lock(mutex_);
+  robots_.push_back({now, std::move(status)});
 }
 
 void Recorder::keep_up() {
@@ -224,15 +221,20 @@ void Recorder::accept(bool on) {
 
 void Recorder::drain() {
   std::deque<RecordedFrame> frames;
+  std::deque<RecordedRobot> robots;
   {
     const std::lock_guard lock(mutex_);
     frames.swap(frames_);
+    robots.swap(robots_);
   }
   room_.notify_all();
   try {
     for (const RecordedFrame& frame : frames) {
       if (file_) file_->write(frame);
       if (frame.use.kind != "end") ++report_.frames;
+    }
+    for (const RecordedRobot& robot : robots) {
+      if (file_) file_->write(robot);
     }
     for (std::size_t i = 0; i < hands_.size(); ++i) {
       while (const StepTrace* const step = hands_[i].front()) {

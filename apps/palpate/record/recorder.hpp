@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "apps/palpate/record/recording_file.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
 #include "message/palpate_types.hpp"
+#include "palpate/ros/bridge.hpp"
 #include "palpate/scene/source.hpp"
 #include "palpate/sensor/stream.hpp"
 #include "palpate/servo/servo.hpp"
@@ -71,6 +73,10 @@ class Recorder {
   /// `ended`, whose call is recorded.
   [[nodiscard]] std::function<void()> watching(std::size_t source, std::function<void()> ended);
 
+  /// What a robot was told by `now`, s on the run's clock, if there is one: recorded where it says
+  /// something else than the time before. The thread of the run.
+  void note(double now, const std::optional<RosBridge::RobotState>& robot);
+
   /// Waits until there is room for steps: for simulated time.
   void keep_up();
 
@@ -103,6 +109,7 @@ class Recorder {
   std::deque<StepTraces> hands_;
   LoadedScene* loaded_ = nullptr;
   std::vector<const Servo*> servos_;
+  std::string robot_;       // what was noted of it last; the run's thread's
   std::int64_t epoch_ = 0;  // ns
   bool waits_ = false;
   std::atomic<bool> takes_frames_{false};
@@ -112,6 +119,7 @@ class Recorder {
   std::string name_;  // of the file that was asked for last; empty: it was ended
   std::deque<Order> orders_;
   std::deque<RecordedFrame> frames_;
+  std::deque<RecordedRobot> robots_;    // states of the robot
   std::uint64_t lost_frames_ = 0;       // of the present file
   std::vector<std::uint64_t> changes_;  // of each source's options, that were told
   std::vector<char> gaps_;              // of each source: its last frame was not recorded

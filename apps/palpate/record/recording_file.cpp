@@ -210,4 +210,10 @@ void RecordingFile::write(const RecordedFrame& recorded_frame) {
   put(topics.use, time, use);
 }
 
+void RecordingFile::write(const RecordedRobot& recorded) {
+  if (!robot_) robot_ = writer_.add_topic<message::DiagnosticArray>("/palpate/robot");
+  put(*robot_, recorded.time,
+      message::DiagnosticArray{header(recorded.time, kWorld), {recorded.status}});
+}
+
 }  // namespace palpate::app

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
 #include "bag/mcap_writer.hpp"
+#include "message/display_types.hpp"
 #include "message/geometry_types.hpp"
 #include "message/palpate_types.hpp"
 #include "palpate/servo/servo.hpp"
@@ -29,6 +31,12 @@ struct RecordedFrame {
   std::size_t source = 0;
   DepthFrame frame;  ///< of kinds "image" and "cloud"
   message::FrameUse use;
+};
+
+/// What a robot that follows the tool does from some time on.
+struct RecordedRobot {
+  double time = 0;  ///< s, on the run's clock
+  message::DiagnosticStatus status;
 };
 
 /// What a run is made of at a moment, to be written without the run.
@@ -55,6 +63,7 @@ class RecordingFile {
 
   void write(std::size_t hand, const StepTrace& step);
   void write(const RecordedFrame& recorded);
+  void write(const RecordedRobot& recorded);
 
   /// Everything is there.
   void close() { writer_.close(); }
@@ -85,6 +94,7 @@ class RecordingFile {
   std::vector<HandTopics> hands_;
   std::vector<SourceTopics> live_;  // by source
   std::uint16_t transforms_ = 0;
+  std::optional<std::uint16_t> robot_ = {};
 };
 
 /// A topic's last part: "hand" of "/palpate/hand".

@@ -153,13 +153,14 @@ Report report_of(const RosBridge::RobotState& robot) {
   Report part("robot", robot.topic);
   part.line("targets",
             fmt::format("{} told, {} held back", grouped(robot.told), grouped(robot.held)));
+  for (const auto& [reason, seconds] : robot.waits) {
+    part.line("waited", fmt::format("{:.1f} s: {}", seconds, reason));
+  }
   if (!robot.why.empty()) part.line("at last", robot.why, Mark::warning);
   if (robot.readers == 0) part.line("readers", "none now", Mark::warning);
-  part.data = {{"topic", robot.topic},
-               {"told", robot.told},
-               {"held_back", robot.held},
-               {"held_back_at_last", robot.why},
-               {"readers", robot.readers}};
+  part.data = {{"topic", robot.topic},    {"told", robot.told},
+               {"held_back", robot.held}, {"held_back_at_last", robot.why},
+               {"waited_s", robot.waits}, {"readers", robot.readers}};
   return part;
 }
 
@@ -185,6 +186,13 @@ Report report_of(const RecordReport& recorded) {
 }
 
 }  // namespace
+
+std::string in_words(const RosBridge::RobotState& robot) {
+  if (robot.readers == 0) return "robot: no subscriber to " + robot.topic;
+  if (robot.retreats) return "robot GOES BACK: " + robot.why;
+  if (!robot.why.empty()) return "robot WAITS: " + robot.why;
+  return fmt::format("robot: {} targets", robot.told);
+}
 
 // What is of a hand stands beside what is of the run where there is one hand, else under "hands".
 Json report_on(const TouchReport& report, std::FILE* stream) {

@@ -69,6 +69,9 @@ struct TouchReport {
   std::vector<RecordReport> recorded = {};  ///< files, in order
 };
 
+/// "robot WAITS: the surface passed over the tool 0.4 s ago".
+[[nodiscard]] std::string in_words(const RosBridge::RobotState& robot);
+
 /// For a person, to `stream`; the same as data: SI units, named in the keys. What is of a hand is
 /// in `hands`, where there are several.
 Json report_on(const TouchReport& report, std::FILE* stream);

@@ -179,9 +179,11 @@ bool any_goes_on(const LiveHands& hands, double now) {
   return std::ranges::any_of(hands, [now](const LiveHand& hand) { return !hand.over(now); });
 }
 
-LiveMoment moment_of(LiveHands& hands, const LiveFeed& feed, double now, double start) {
+LiveMoment moment_of(LiveHands& hands, const LiveFeed& feed,
+                     std::optional<RosBridge::RobotState> robot, double time, double now) {
   LiveMoment moment;
-  moment.time = now - start;
+  moment.time = time;
+  moment.robot = std::move(robot);
   for (LiveHand& hand : hands) moment.hands.push_back(hand.moment(now));
   moment.streams = feed.states();
   return moment;
@@ -226,33 +228,33 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const Interruption& interrup
   const double start = start_hands(run, clock, hands);
   if (run.recorder != nullptr) run.recorder->begin(run.loaded, watched(hands), start, false);
   LiveFeed feed(run.loaded, clock, start, run.recorder);
-  std::optional<View> view;
   std::optional<RosBridge> bridge;
+  std::optional<View> view;
   LiveOutcome outcome;
   if (run.ros.wanted()) {
     bridge.emplace(
-        told_hands(hands), run.loaded.scene, [&] { return feed.states(); }, run.ros.bridge);
+        told_hands(hands), run.loaded.scene, [&] { return feed.states(); }, run.ros.options());
   }
-  if (run.page.served) view.emplace(run, servos_of(hands), feed);
+  const auto robot = [&] { return bridge ? bridge->robot() : std::nullopt; };
+  if (run.page.served) view.emplace(run, servos_of(hands), feed, bridge ? &*bridge : nullptr);
   while (any_goes_on(hands, clock.now()) && !interruption.asked() && !outcome.next_page) {
     std::this_thread::sleep_for(kLook);
     for (LiveHand& hand : hands) hand.take_steps(each, status);
     if (view) outcome.next_page = view->look();
     const double now = clock.now();
     failures.look(hands, now, status);
+    if (run.recorder != nullptr) run.recorder->note(now, robot());
     if (!status.due(now - start)) continue;
-    LiveMoment moment = moment_of(hands, feed, now, start);
-    if (bridge) moment.robot = bridge->robot();
-    status.show(moment);
+    status.show(moment_of(hands, feed, robot(), now - start, now));
   }
-  if (bridge) outcome.robot = bridge->robot();  // before its hand stands still
+  outcome.robot = robot();  // before its hand stands still
   for (LiveHand& hand : hands) hand.stop();
   for (LiveHand& hand : hands) hand.take_steps(each, status);
   for (const LiveHand& hand : hands) outcome.hands.push_back(hand.report());
   outcome.interrupted = interruption.asked();
   if (bridge && !bridge->problem().empty()) status.tell("ROS 2: " + bridge->problem());
-  bridge.reset();  // these look at what the feed takes down
-  view.reset();
+  view.reset();  // it looks at the bridge, and both at what the feed takes down
+  bridge.reset();
   feed.finish();
   return outcome;
 }

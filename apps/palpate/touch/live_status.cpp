@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "apps/palpate/report/touch_report.hpp"
+
 namespace palpate::app {
 
 namespace {
@@ -65,12 +67,6 @@ std::string stream_words(const StreamState& stream) {
   return words;
 }
 
-std::string robot_words(const RosBridge::RobotState& robot) {
-  if (robot.readers == 0) return "robot: no subscriber to " + robot.topic;
-  if (!robot.why.empty()) return "robot WAITS: " + robot.why;
-  return fmt::format("robot: {} targets", robot.told);
-}
-
 }  // namespace
 
 std::string in_words(const LiveMoment& moment) {
@@ -82,7 +78,7 @@ std::string in_words(const LiveMoment& moment) {
     }
   }
   for (const StreamState& stream : moment.streams) words += " | " + stream_words(stream);
-  if (moment.robot) words += " | " + robot_words(*moment.robot);
+  if (moment.robot) words += " | " + in_words(*moment.robot);
   return words;
 }
 

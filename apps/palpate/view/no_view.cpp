@@ -6,7 +6,8 @@ namespace palpate::app {
 
 struct View::Parts {};
 
-View::View(Run& run, std::vector<Servo*> /*servos*/, const LiveFeed& /*feed*/) {
+View::View(Run& run, std::vector<Servo*> /*servos*/, const LiveFeed& /*feed*/,
+           const RosBridge* /*bridge*/) {
   if (!run.page.wanted) return;
   throw Error("this build has no page; install libboost-dev and rebuild, or remove --view");
 }

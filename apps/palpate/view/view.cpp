@@ -12,6 +12,7 @@
 
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/record/recorder.hpp"
+#include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/opening.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/view/address.hpp"
@@ -108,10 +109,11 @@ std::vector<ViewerOptions::Stream> streams_of(const Run& run, const LiveFeed& fe
 }  // namespace
 
 struct View::Parts {
-  Parts(Run& r, std::vector<Servo*> s, const LiveFeed& f)
+  Parts(Run& r, std::vector<Servo*> s, const LiveFeed& f, const RosBridge* b)
       : run(r),
         servos(std::move(s)),
         feed(f),
+        bridge(b),
         initial(initial_settings(r)),
         settings(initial),
         holds(r.hands.begin(), r.hands.end()),
@@ -142,6 +144,8 @@ struct View::Parts {
     options.up = page.up;
     if (picture && !options.up) options.up = -Vector3d::UnitY();
     options.streams = [this] { return streams_of(run, feed); };
+    if (bridge != nullptr && bridge->robot())
+      options.robot = [this] { return in_words(*bridge->robot()); };
     return options;
   }
 
@@ -235,6 +239,7 @@ struct View::Parts {
   Run& run;
   std::vector<Servo*> servos;
   const LiveFeed& feed;
+  const RosBridge* bridge;  // null: nobody is told
   ViewSettings initial;
   std::mutex settings_mutex;
   ViewSettings settings;
@@ -244,8 +249,8 @@ struct View::Parts {
   Viewer viewer;  // last: it uses all of the above
 };
 
-View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed)
-    : parts_(std::make_unique<Parts>(run, std::move(servos), feed)) {
+View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed, const RosBridge* bridge)
+    : parts_(std::make_unique<Parts>(run, std::move(servos), feed, bridge)) {
   for (Servo* servo : parts_->servos) {
     if (run.page.paused) servo->pause(true);
   }

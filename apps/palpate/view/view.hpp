@@ -6,6 +6,7 @@
 
 #include "apps/palpate/run/run.hpp"
 #include "palpate/depth/depth_frame.hpp"
+#include "palpate/ros/bridge.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/viewer/viewer.hpp"
 
@@ -23,9 +24,9 @@ namespace palpate::app {
 class View {
  public:
   /// Serves from now on, and says on standard error where. All that it is given outlives it;
-  /// `servos` are those of the run's hands, in their order.
+  /// `servos` are those of the run's hands, in their order; `bridge` may be null.
   /// @throws Error when the address or the port cannot be had.
-  View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed);
+  View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed, const RosBridge* bridge);
   ~View();
   View(const View&) = delete;
   View& operator=(const View&) = delete;

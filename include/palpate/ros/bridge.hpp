@@ -30,6 +30,10 @@ struct RosBridgeOptions {
     double scale = 1;
     std::optional<int> dead_man =
         {};  ///< targets are told only while this button of the hand is down, 0 to 31
+    /// Names of the sources whose cameras say which places are free; empty: all.
+    std::vector<std::string> sources = {};
+    /// How fast it goes back from where a surface came over it, m/s, 0 to 1; 0: it stands still.
+    double retreat = 0.05;
   };
 
   std::string ns = "/palpate";  ///< of all topics below
@@ -67,7 +71,10 @@ class RosBridge {
     std::uint64_t told = 0;   ///< targets
     std::uint64_t held = 0;   ///< targets that were due and not told
     std::string why = {};     ///< why the last that was due was held back; empty: it was told
-    std::size_t readers = 0;  ///< controllers that hear it
+    std::string reason = {};  ///< the same without numbers
+    bool retreats = false;    ///< it is told to go back from where a surface came over it
+    std::map<std::string, double> waits = {};  ///< s of it by reason
+    std::size_t readers = 0;                   ///< controllers that hear it
   };
 
   /// What went wrong while it ran, if anything did: the last, in words. Any thread but a servo's.

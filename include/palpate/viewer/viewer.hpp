@@ -152,6 +152,8 @@ struct ViewerOptions {
   /// How the streams fare; called about four times a second by two threads of the viewer, perhaps
   /// at the same time.
   std::function<std::vector<Stream>()> streams = {};
+  /// What a robot that follows a tool does, in words, as often; empty: there is none.
+  std::function<std::string()> robot = {};
   Limits limits = {};
 
   static constexpr std::uint16_t kFirstPort = 8420;

@@ -70,7 +70,11 @@ export class SourcesPanel {
     );
   }
 
-  update(): void {
+  /** `robot`: what one that follows a tool does; undefined: there is none. */
+  update(robot?: string): void {
     for (const row of this.rows) row.update();
+    const line = byId("robot");
+    line.hidden = robot === undefined;
+    say(line, robot ?? "");
   }
 }

@@ -77,7 +77,7 @@ export type FromProgram =
   | Welcome
   | { type: "settings"; values: Record<string, SettingValue> }
   | { type: "devices"; devices: DeviceReport[] }
-  | { type: "sources"; sources: SourceReport[] }
+  | { type: "sources"; sources: SourceReport[]; robot?: string }
   | { type: "notice"; level: NoticeLevel; text: string }
   | { type: "record"; on: boolean; file?: string }
   | ({ type: "time" } & Moment)

@@ -1,0 +1,221 @@
+// Where a robot is told to go follows from what the sources say of the proxy, the hand and its
+// place.
+#include "ros/robot_guide.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate::ros {
+namespace {
+
+using Eigen::Vector3d;
+using Reason = std::string_view;
+
+// In the order of Seen::Says.
+constexpr std::array<Reason, 5> kReasons = {
+    "no camera sees where the tool is", "nothing is measured where the tool is",
+    "the tool is behind what a camera sees", "",
+    "a camera that looks where the tool is shows nothing new"};
+constexpr Reason kBehind = kReasons[2];
+constexpr Reason kPassed = "the surface passed over the tool";
+constexpr Reason kCame = "something came between camera and tool";
+constexpr Reason kNotYet = "hand and tool have to be free for half a second";
+constexpr Reason kMoved = "a surface moved over the tool";
+constexpr Reason kWay = "the way to the tool is not seen free";
+constexpr Reason kLarge = "the tool is too large for the surface: give a larger --radius";
+constexpr Reason kApart = "the tool has to come back to where the robot is";
+
+constexpr double kBlink = 0.3;    // s without a sight of it that stop no robot for good (judgement)
+constexpr double kFreeFor = 0.5;  // s, so that a hand that passes does not start it (judgement)
+constexpr double kWayStep = 0.005;    // m between places that are looked at; a finger is thicker
+constexpr double kJoin = 0.02;        // m; a hand finds a place to that (judgement)
+constexpr double kJump = 0.01;        // m in one frame; hands and tools are thicker (judgement)
+constexpr double kLongestStep = 0.1;  // s; after a longer pause a retreat begins slowly again
+constexpr double kStays = 1;  // s; frames of living cameras are younger, others show what was once
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// What ended the way that the proxy proved by going it.
+Reason broken_way(const ServoState& state) {
+  if (has(state.field_notes, FieldNote::no_surface)) return "no source has a surface";
+  if (has(state.field_notes, FieldNote::behind)) return kBehind;
+  if (has(state.contact.notes, ContactNote::lost | ContactNote::fell | ContactNote::freed))
+    return "the surface let the tool go";
+  return {};
+}
+
+}  // namespace
+
+std::vector<RobotGuide::Witness> RobotGuide::witnesses_of(const Scene& scene,
+                                                          const std::vector<std::string>& names) {
+  std::vector<Witness> found;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const Source& source = scene.source(i);
+    if (names.empty() || std::ranges::count(names, source.name()) > 0) found.push_back({&source});
+  }
+  for (const std::string& name : names) {
+    const auto is_it = [&](const Witness& witness) { return witness.source->name() == name; };
+    if (std::ranges::none_of(found, is_it))
+      throw Error(fmt::format("robot: no source is called '{}'; name one of the run's", name));
+  }
+  return found;
+}
+
+RobotGuide::RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& options,
+                       double tool_radius)
+    : options_(options),
+      tool_radius_(tool_radius),
+      witnesses_(witnesses_of(scene, options.sources)) {
+  for (const Witness& witness : witnesses_) (void)witness.source->seen({}, 0);  // asks for frames
+}
+
+// A ball is free where a camera sees it free and no camera that looks there is silent. One that
+// sees something does not believe another's frame that is older than when that came.
+RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now) {
+  const auto rank = [](const Seen& seen) { return std::tuple(seen.says, -seen.behind, -seen.age); };
+  Place place;
+  Place solid;
+  double came = -kNever;
+  for (Witness& witness : witnesses_) {
+    std::optional<Seen> seen = witness.source->seen({x, tool_radius_}, now);
+    if (!seen && !witness.source->points()) seen = {.says = Seen::Says::old};  // nothing came yet
+    if (!seen) continue;
+    if (place.source == nullptr || rank(*seen) > rank(place.seen)) place = {witness.source, *seen};
+    if (seen->says != Seen::Says::solid) continue;
+    if (seen->came) witness = {witness.source, now - seen->age, x};
+    const double here = (x - witness.where).norm() <= kJoin ? witness.came : -kNever;
+    if (solid.source == nullptr || here > came) solid = {witness.source, *seen};
+    came = std::max(came, here);
+  }
+  const bool outdated = now - place.seen.age < came || place.seen.age > kStays;
+  return place.free() && solid.source != nullptr && outdated ? solid : place;
+}
+
+// How far the surface that is felt may be behind the one that is seen: it goes on while a frame is
+// made into it, takes one frame's time to get there, and waits where the next frame is late. In one
+// frame that grows by one frame's way; more is something else.
+double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, double dt) {
+  const double interval = proxy.source->state().interval;
+  const double speed = state.contact.touching ? state.contact.drift.dot(proxy.seen.towards) : 0;
+  const double before = interval > 0 ? speed_ * std::max(1 - dt / (2 * interval), 0.0) : 0;
+  speed_ = std::max({speed, before, 0.0});
+  const double lag = speed_ * (proxy.seen.age + 2 * interval);
+  return kJump + std::min(lag, ahead_ + speed_ * interval);
+}
+
+// Is the straight way from where the robot is seen free?
+bool RobotGuide::may_go_to(const Vector3d& target, double now) {
+  if (!place_ || (target - *place_).norm() <= kWayStep) return true;
+  const auto steps = static_cast<int>(std::ceil((target - *place_).norm() / kWayStep));
+  for (int i = 0; i < steps; ++i) {
+    if (!judge(*place_ + (target - *place_) * i / steps, now).free()) return false;
+  }
+  return true;
+}
+
+RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool anew) {
+  const double dt = std::clamp(now - std::exchange(looked_, now), 0.0, kLongestStep);
+  if (options_.hand) return follow(state.hip);
+  if (has(state.field_notes, FieldNote::tool_too_large)) {
+    pause();
+    return {.reason = kLarge, .why = std::string(kLarge)};
+  }
+  const Place proxy = judge(state.contact.proxy, now);
+  if (proxy.source == nullptr) return without_view(state, now, anew);
+  const double ahead = proxy.solid() ? proxy.seen.behind : 0;
+  const bool free = proxy.free() || (proxy.solid() && ahead <= allowed_ahead(state, proxy, dt));
+  if (proxy.solid() && !free) followed_ = -kNever;
+  note(free, free && judge(state.hip, now).free(), now, anew);
+  if (!follows_) return wait(proxy, now, dt);
+  const Vector3d target = state.contact.proxy + ahead * proxy.seen.towards;
+  return anew || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
+}
+
+// What is free decides whether it follows. Where the place was only not seen for a moment, it goes
+// on at once.
+void RobotGuide::note(bool proxy_free, bool both_free, double now, bool anew) {
+  free_since_ = both_free ? std::min(free_since_, now) : kNever;
+  const bool may = follows_ || anew || now - free_since_ >= kFreeFor || now - followed_ <= kBlink;
+  follows_ = proxy_free && may;
+}
+
+RobotGuide::Answer RobotGuide::follow(const Vector3d& target, double ahead) {
+  place_ = target;
+  ahead_ = ahead;
+  followed_ = looked_;
+  held_ = 0;
+  over_ = {};
+  return {.target = target};
+}
+
+void RobotGuide::pause() {
+  held_ = -kNever;  // who knows
+  free_since_ = kNever;
+  followed_ = -kNever;
+  ahead_ = 0;
+}
+
+RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
+  ahead_ = 0;
+  const Place held = place_ ? judge(*place_, now) : Place{};
+  note_held(held, now);
+  Answer answer;
+  if (!over_.what.empty()) {
+    answer.reason = over_.what;
+    answer.why = fmt::format("{} {:.1f} s ago", over_.what, now - over_.since);
+  } else if (!proxy.free()) {
+    answer.reason = kReasons[static_cast<std::size_t>(proxy.seen.says)];
+    answer.why = fmt::format("{} ({})", answer.reason, proxy.source->name());
+  } else {
+    answer.reason = follows_ ? kWay : kNotYet;
+    answer.why = answer.reason;
+  }
+  if (over_.what != kPassed || !(options_.retreat > 0)) return answer;
+  const double step = std::min(options_.retreat * dt, held.seen.behind);
+  place_ = *place_ + step * held.seen.towards;
+  answer.target = place_;
+  answer.retreats = true;
+  return answer;
+}
+
+// Only what is seen to come steadily over the place is a surface to go back from. What came in a
+// jump, or while nobody looked, is between it and the camera: the way back would lead into it.
+void RobotGuide::note_held(const Place& held, double now) {
+  const double known = held.free() ? 0 : -kNever;
+  const double before = std::exchange(held_, held.solid() ? held.seen.behind : known);
+  if (!held.solid()) {
+    over_ = {};
+    return;
+  }
+  followed_ = -kNever;
+  if (over_.what.empty()) over_.since = now;
+  if (over_.what == kCame) return;
+  over_.what = held_ - before <= kJump ? kPassed : kCame;
+}
+
+// Clouds do not tell what is free, only the tool's own way through them does: a robot follows it
+// until a surface comes over it or lets it go, and again once nothing has held the hand for a while
+// and the tool is where the robot is.
+RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double now, bool anew) {
+  const auto waits = [](Reason reason) {
+    return Answer{.reason = reason, .why = std::string(reason)};
+  };
+  const Reason reason = broken_way(state);
+  if (!reason.empty() && !place_) return waits(reason);
+  if (!reason.empty()) followed_ = -kNever;
+  note(reason.empty(), reason.empty() && !state.contact.touching, now, anew);
+  if (!follows_) return waits(reason.empty() ? kNotYet : reason);
+  if (!anew && place_ && (state.contact.proxy - *place_).norm() > kJoin) return waits(kApart);
+  // In the step in which a surface moved over it, it may still be a little inside.
+  if (has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged))
+    return waits(kMoved);
+  return follow(state.contact.proxy);
+}
+
+}  // namespace palpate::ros

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "palpate/ros/bridge.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/servo/servo.hpp"
+
+namespace palpate::ros {
+
+/// Decides where a robot may be told to go: to the proxy, where a camera sees that it is free, or
+/// on a surface from its front. Else it waits where it was told last, and goes back towards the
+/// camera when what is seen comes steadily over that place. It follows again once hand and proxy
+/// have been free for half a second, or the dead man's button is pressed anew. One thread asks.
+class RobotGuide {
+ public:
+  /// The scene outlives it. `tool_radius`: of the ball that has to be free, m.
+  /// @throws Error when the scene has no source of a name in `options.sources`.
+  RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& options, double tool_radius);
+
+  struct Answer {
+    std::optional<Eigen::Vector3d> target = {};  ///< m, world; none: it is told nothing
+    bool retreats = false;                       ///< the target is on its way back
+    std::string_view reason = {};                ///< why it does not follow; empty: it does
+    std::string why = {};                        ///< the same with what is known of it
+  };
+
+  /// Asked some hundred times a second. `now`: s, on the clock of the sources' stamps. `anew`: the
+  /// dead man's button was up before, and what is on the way is the user's to see.
+  [[nodiscard]] Answer look(const ServoState& state, double now, bool anew);
+
+  /// The robot is told nothing now for other reasons.
+  void pause();
+
+  /// The robot is there, whatever target was answered last.
+  void is_at(const std::optional<Eigen::Vector3d>& place) { place_ = place; }
+
+ private:
+  // A source that counts.
+  struct Witness {
+    const Source* source = nullptr;
+    double came = -std::numeric_limits<double>::infinity();  // when it saw something come, s
+    Eigen::Vector3d where = Eigen::Vector3d::Zero();         // over this place, m
+  };
+
+  // What the sources say of a ball.
+  struct Place {
+    const Source* source = nullptr;  // who says so; null: there is no camera
+    Seen seen = {};
+
+    [[nodiscard]] bool free() const { return seen.says == Seen::Says::free; }
+    [[nodiscard]] bool solid() const { return seen.says == Seen::Says::solid; }
+  };
+
+  [[nodiscard]] static std::vector<Witness> witnesses_of(const Scene& scene,
+                                                         const std::vector<std::string>& names);
+  [[nodiscard]] Place judge(const Eigen::Vector3d& x, double now);
+  [[nodiscard]] double allowed_ahead(const ServoState& state, const Place& proxy, double dt);
+  [[nodiscard]] bool may_go_to(const Eigen::Vector3d& target, double now);
+  void note(bool proxy_free, bool both_free, double now, bool anew);
+  [[nodiscard]] Answer follow(const Eigen::Vector3d& target, double ahead = 0);
+  [[nodiscard]] Answer wait(const Place& proxy, double now, double dt);
+  void note_held(const Place& held, double now);
+  [[nodiscard]] Answer without_view(const ServoState& state, double now, bool anew);
+
+  // What came over the place where the robot waits.
+  struct Over {
+    std::string_view what = {};  // empty: nothing
+    double since = 0;            // s
+  };
+
+  const RosBridgeOptions::Robot options_;
+  const double tool_radius_;
+  std::vector<Witness> witnesses_;
+  std::optional<Eigen::Vector3d> place_ = {};  // where the robot is, m, world
+  bool follows_ = true;
+  double speed_ = 0;  // of the touched surface towards the camera, at most of late, m/s
+  double ahead_ = 0;  // of the proxy the last target is, towards the camera, m
+  double free_since_ = std::numeric_limits<double>::infinity();  // when hand and proxy came free, s
+  double followed_ = 0;  // when last, and nothing was solid since, s
+  double looked_ = 0;    // when it was asked last, s
+  double held_ = 0;      // how far the robot's place was behind what was seen then, m; -infinite:
+                         // it was not seen
+  Over over_;
+};
+
+}  // namespace palpate::ros

@@ -1,0 +1,144 @@
+#include "ros/robot_guide.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "ros/robot_rig.hpp"
+
+namespace palpate::ros {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST_F(ARobot, FollowsInFreeSpaceAndOnTheSurface) {
+  camera("camera", at_rest);
+  starts();
+  tool_at({0, 0, 0.1});
+  EXPECT_EQ(runs(0.5).target, Vector3d(0, 0, 0.1));
+  presses_at(0);
+  const RobotGuide::Answer pressed = runs(1);
+  EXPECT_EQ(pressed.target, Vector3d::Zero());
+  EXPECT_TRUE(pressed.reason.empty());
+}
+
+TEST_F(ARobot, WaitsBehindWhatTheCameraSeesUntilHandAndToolHaveBeenFreeForAWhile) {
+  camera("camera", at_rest);
+  starts();
+  tool_at({0, 0, -0.03});
+  const RobotGuide::Answer behind = runs(1);
+  EXPECT_FALSE(behind.target);
+  EXPECT_THAT(behind.why, HasSubstr("behind what a camera sees (camera)"));
+  presses_at(0.002);
+  EXPECT_FALSE(runs(2).target) << "the hand is still behind";
+  tool_at({0, 0, 0.05});
+  EXPECT_FALSE(runs(0.45).target);
+  EXPECT_EQ(runs(0.1).target, Vector3d(0, 0, 0.05));
+}
+
+// Comes on from 1 s on, for 60 mm.
+double coming(double t) {
+  constexpr double kSpeed = 0.1;  // m/s
+  return std::clamp((t - 1) * kSpeed, 0., 0.06);
+}
+
+TEST_F(ARobot, GoesBackSlowlyFromWhereASurfaceCameOverIt) {
+  camera("camera", coming);
+  starts();
+  presses_at(0);
+  ASSERT_TRUE(runs(0.9).reason.empty());
+  std::optional<Vector3d> before;
+  double fastest = 0;
+  double last = 0;
+  each_ = [&](const RobotGuide::Answer& answer) {
+    if (!answer.retreats) return;
+    if (before) fastest = std::max(fastest, (*answer.target - *before).norm() / kLook);
+    before = answer.target;
+    last = answer.target->z();
+  };
+  const RobotGuide::Answer passed = runs(0.6);
+  EXPECT_TRUE(passed.retreats);
+  EXPECT_THAT(passed.why, HasSubstr("the surface passed over the tool 0."));
+  const RobotGuide::Answer back = runs(2);
+  EXPECT_FALSE(back.target) << "it waits in front of the surface";
+  EXPECT_NEAR(last, 0.06, 0.008);
+  EXPECT_LE(fastest, kRetreat * (1 + 1e-6));
+  tool_at({0, 0, 0.1});
+  EXPECT_FALSE(runs(0.45).target);
+  EXPECT_TRUE(runs(0.1).target);
+}
+
+TEST_F(ARobot, StandsStillWhereItIsNotToGoBack) {
+  camera("camera", coming);
+  guide_.emplace(scene_, RosBridgeOptions::Robot{.preset = "crisp", .retreat = 0}, 0);
+  presses_at(0);
+  const RobotGuide::Answer answer = runs(2);
+  EXPECT_FALSE(answer.target);
+  EXPECT_THAT(answer.why, HasSubstr("passed over"));
+  tool_at({0, 0, 0.1});
+  EXPECT_FALSE(runs(1).target) << "the way out is not seen free";
+  EXPECT_TRUE(runs(kLook, true).target) << "but the user sees it";
+}
+
+TEST_F(ARobot, DoesNotGoBackFromWhatCameWhileNobodyLooked) {
+  camera("camera", [](double t) { return t < 1 ? 0 : 0.03; });
+  starts();
+  tool_at({0, 0, 0.01});
+  ASSERT_TRUE(runs(0.9).target);
+  guide_->pause();
+  now_ = 1.05;
+  each_ = [](const RobotGuide::Answer& answer) { EXPECT_FALSE(answer.retreats); };
+  EXPECT_THAT(runs(0.5).why, HasSubstr("something came between camera and tool"));
+}
+
+TEST_F(ARobot, DoesNotFollowToTheFrontOfWhatSlidesOverATouchedSurface) {
+  camera("camera", [](double t) { return t < 1 ? 0 : 0.04; });
+  starts();
+  presses_at(0);
+  state_.contact.drift = {0, 0, 0.1};
+  ASSERT_TRUE(runs(0.9).target);
+  each_ = [](const RobotGuide::Answer& answer) {
+    EXPECT_LT(answer.target.value_or(Vector3d::Zero()).z(), 0.01);
+  };
+  EXPECT_FALSE(runs(1).target);
+}
+
+TEST_F(ARobot, StaysWhereItIsWhenSomethingComesBetween) {
+  camera("camera", [](double t) { return t > 1 && t < 2 ? 0.3 : 0; });
+  starts();
+  tool_at({0, 0, 0.05});
+  ASSERT_TRUE(runs(0.9).target);
+  each_ = [](const RobotGuide::Answer& answer) { EXPECT_FALSE(answer.retreats); };
+  const RobotGuide::Answer hidden = runs(0.9);
+  EXPECT_THAT(hidden.why, HasSubstr("something came between camera and tool 0."));
+  tool_at({0, 0, 0.4});
+  now_ = 1.3;
+  EXPECT_FALSE(runs(0.6).target) << "the way from behind it is not free";
+  EXPECT_TRUE(runs(0.8).target) << "it went away";
+}
+
+TEST_F(ARobot, FollowsASurfaceThatComesSlowlyInFrontOfIt) {
+  constexpr double kSpeed = 0.2;         // m/s
+  constexpr double kLag = 1.9 * kFrame;  // s, of what is felt: 13 mm
+  const auto height = [](double t) {
+    return 0.5 * kSpeed * std::max(t - 1, 0.) * std::min(t - 1, 1.);
+  };
+  camera("camera", height);
+  starts();
+  presses_at(0);
+  ASSERT_TRUE(runs(1).target);
+  double deepest = 0;
+  for (; now_ < 3.5;) {
+    presses_at(height(now_ - kLag));
+    state_.contact.drift = {0, 0, (height(now_ - kLag) - height(now_ - kLag - 1e-3)) / 1e-3};
+    const RobotGuide::Answer answer = runs(kLook);
+    ASSERT_TRUE(answer.reason.empty()) << now_ << " " << answer.why;
+    deepest = std::max(deepest, height(now_) - answer.target->z());
+  }
+  EXPECT_LT(deepest, 0.7 * kSpeed * kLag) << "less than the proxy";
+}
+
+}  // namespace
+}  // namespace palpate::ros

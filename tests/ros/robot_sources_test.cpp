@@ -1,0 +1,151 @@
+// What a robot is told where cameras see nothing, are silent, or there is none.
+#include <gmock/gmock.h>
+
+#include "palpate/base/error.hpp"
+#include "ros/robot_rig.hpp"
+
+namespace palpate::ros {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST_F(ARobot, WaitsWhereNothingIsMeasured) {
+  camera("camera", [](double t) { return t < 1 ? 0 : 1; });
+  starts();
+  presses_at(0);
+  ASSERT_TRUE(runs(1).target);
+  const RobotGuide::Answer answer = runs(0.5);
+  EXPECT_FALSE(answer.target);
+  EXPECT_THAT(answer.why, HasSubstr("nothing is measured where the tool is"));
+}
+
+TEST_F(ARobot, WaitsOutOfThePicture) {
+  camera("camera", at_rest);
+  starts();
+  tool_at({0.5, 0, 0.2});
+  EXPECT_THAT(runs(0.5).why, HasSubstr("no camera sees where the tool is"));
+}
+
+TEST_F(ARobot, WaitsWhereACameraThatLooksThereIsSilent) {
+  camera("one", at_rest);
+  camera("two", at_rest);
+  starts();
+  tool_at({0, 0, 0.1});
+  ASSERT_TRUE(runs(1).target);
+  cameras_.back().on = false;
+  const RobotGuide::Answer answer = runs(0.5);
+  EXPECT_FALSE(answer.target);
+  EXPECT_THAT(answer.why, HasSubstr("shows nothing new (two)"));
+}
+
+TEST_F(ARobot, AsksOnlyTheCamerasThatItIsToldToAsk) {
+  camera("one", at_rest);
+  camera("two", at_rest);
+  starts({"one"});
+  tool_at({0, 0, 0.1});
+  ASSERT_TRUE(runs(1).target);
+  cameras_.back().on = false;
+  EXPECT_TRUE(runs(0.5).target);
+  EXPECT_THROW(starts({"three"}), Error);
+}
+
+TEST_F(ARobot, FollowsAtOnceWhenTheButtonIsPressedAnew) {
+  camera("camera", at_rest);
+  starts();
+  tool_at({0, 0, -0.03});
+  ASSERT_FALSE(runs(1).target);
+  tool_at({0, 0, 0.05});
+  EXPECT_TRUE(runs(kLook, true).target);
+  tool_at({0, 0, -0.03});
+  EXPECT_FALSE(runs(kLook, true).target) << "not where it is behind something";
+}
+
+TEST_F(ARobot, GoesNoWayThatIsNotSeenFree) {
+  Source& source = scene_.add("camera", {.T_world_sensor = looking_down()});
+  starts();
+  // A wall 20 mm thick and 0.1 m high stands between two places.
+  const auto sees = [](double x, double) { return std::abs(x) < 0.025 ? 0.4 : 0.5; };
+  const auto look_at = [&](const Vector3d& place) {
+    (void)source.push(frame_of(small_camera(), now_, sees), [this] { return now_ + 0.01; });
+    tool_at(place);
+    now_ += kFrame;
+    return guide_->look(state_, now_, false);
+  };
+  ASSERT_TRUE(look_at({-0.05, 0, 0.05}).target);
+  guide_->pause();
+  const RobotGuide::Answer answer = look_at({0.05, 0, 0.05});
+  EXPECT_FALSE(answer.target);
+  EXPECT_EQ(answer.why, "the way to the tool is not seen free");
+  EXPECT_TRUE(look_at({-0.05, 0, 0.2}).target);
+  EXPECT_TRUE(look_at({0.05, 0, 0.05}).target) << "a way that was gone is not asked for";
+}
+
+TEST_F(ARobot, FollowsOnCloudsUntilASurfaceLetsTheToolGo) {
+  PointCloud cloud;
+  for (int i = 0; i < 400; ++i) {
+    cloud.positions.emplace_back(1e-2f * static_cast<float>(i % 20),
+                                 1e-2f * static_cast<float>(i / 20), 0.f);
+  }
+  scene_.add("cloud", cloud);
+  starts();
+  tool_at({0, 0, 0.1});
+  EXPECT_TRUE(runs(0.1).target);
+  state_.contact.notes = ContactNote::reanchored;
+  EXPECT_FALSE(runs(kLook).target);
+  state_.contact.notes = ContactNote::none;
+  EXPECT_TRUE(runs(kLook).target) << "a surface that moved a little is no reason to stop";
+  state_.contact.notes = ContactNote::freed;
+  EXPECT_FALSE(runs(kLook).target);
+  state_.contact.notes = ContactNote::none;
+  EXPECT_FALSE(runs(0.45).target);
+  EXPECT_TRUE(runs(0.1).target);
+  state_.field_notes = FieldNote::behind;
+  EXPECT_FALSE(runs(1).target);
+  state_.field_notes = FieldNote::none;
+  tool_at({0, 0, 0.2});
+  EXPECT_THAT(runs(1).why, HasSubstr("come back to where the robot is"));
+  tool_at({0, 0, 0.11});
+  EXPECT_TRUE(runs(kLook).target);
+}
+
+TEST_F(ARobot, WaitsForACameraThatHasShownNothingYet) {
+  camera("one", at_rest);
+  camera("two", at_rest);
+  cameras_.back().on = false;
+  starts();
+  tool_at({0, 0, 0.1});
+  EXPECT_THAT(runs(0.5).why, HasSubstr("(two)"));
+  cameras_.back().on = true;
+  EXPECT_TRUE(runs(1).target);
+}
+
+TEST_F(ARobot, BelievesTheCameraThatSawSomethingComeRatherThanAnOlderFrame) {
+  camera("slow", at_rest);
+  camera("quick", [](double t) { return t < 1 ? 0 : 0.04; });
+  starts();
+  presses_at(0);
+  ASSERT_TRUE(runs(1).target);
+  cameras_.front().on = false;  // its last frame is valid for two more frames
+  EXPECT_FALSE(runs(0.05).target);
+}
+
+TEST_F(ARobot, NeedsAllOfABallFree) {
+  camera("camera", at_rest);
+  guide_.emplace(scene_, RosBridgeOptions::Robot{.preset = "crisp"}, 0.02);
+  tool_at({0, 0, 0.022});
+  EXPECT_TRUE(runs(0.5).target);
+  tool_at({0, 0, 0.012});
+  EXPECT_GT(runs(0.1).target.value().z(), 0.015) << "in front of it, as far as noise lets tell";
+  tool_at({0, 0, 0});
+  EXPECT_FALSE(runs(0.1).target);
+}
+
+TEST_F(ARobot, FollowsTheHandItselfWhereItIsTold) {
+  camera("camera", at_rest);
+  guide_.emplace(scene_, RosBridgeOptions::Robot{.preset = "crisp", .hand = true}, 0);
+  presses_at(0, 0.03);
+  EXPECT_EQ(runs(0.5).target, Vector3d(0, 0, -0.03));
+}
+
+}  // namespace
+}  // namespace palpate::ros
