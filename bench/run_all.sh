@@ -12,7 +12,7 @@ find_data
 
 say "build"
 configure release -DPALPATE_BUILD_BENCH=ON
-build release geometry_bench field_bench depth_bench accuracy_bench streams_bench events_bench any_cloud_bench four_cameras_bench viewer_bench device_bench palpate_app
+build release geometry_bench field_bench depth_bench accuracy_bench streams_bench events_bench robot_bench any_cloud_bench four_cameras_bench viewer_bench device_bench palpate_app
 programs=build/release
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -60,6 +60,7 @@ say "streams"
 "$programs/bench/streams/streams_bench" >"$scratch/streams.md"
 say "events"
 "$programs/bench/events/events_bench" >"$scratch/events.md"
+"$programs/bench/robot/robot_bench" >"$scratch/robot.md"
 say "any cloud"
 "$programs/bench/any_cloud/any_cloud_bench" >"$scratch/any_cloud.txt"
 say "four cameras"
@@ -120,6 +121,10 @@ $(cat "$scratch/streams.md")
 Medians over seeds, and the worst in brackets; layouts, poses and paths are drawn from the seed.
 
 $(cat "$scratch/events.md")
+
+### What a robot is told
+
+$(cat "$scratch/robot.md")
 
 ## Any cloud
 

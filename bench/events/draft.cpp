@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "drawn_cameras.hpp"
+
 namespace palpate::events {
 namespace {
 
@@ -11,17 +13,6 @@ using Eigen::Vector3d;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kAway = 50;      // m
 constexpr double kAtOnce = 1e-6;  // s
-
-Eigen::Isometry3d looking(const Vector3d& from, const Vector3d& at) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  const Vector3d z = (at - from).normalized();
-  const Vector3d x = z.cross(Vector3d::UnitZ()).normalized();
-  pose.linear().col(0) = x;
-  pose.linear().col(1) = z.cross(x);
-  pose.linear().col(2) = z;
-  pose.translation() = from;
-  return pose;
-}
 
 Eigen::Isometry3d with_z(const Vector3d& center, const Vector3d& z) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -49,7 +40,7 @@ Draft::Draft(std::uint64_t seed) : random_(seed) {
 }
 
 void Draft::look_from(const Vector3d& eye) {
-  event.camera.T_world_camera = looking(eye, Vector3d::Zero());
+  event.camera.T_world_camera = bench::looking(eye, Vector3d::Zero(), Vector3d::UnitZ());
 }
 
 Vector3d Draft::level_direction() {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 
+#include "drawn_cameras.hpp"
 #include "events/draft.hpp"
 #include "events/rows.hpp"
 
@@ -54,16 +55,7 @@ Event hole(std::uint64_t seed, double seconds) {
   const Vector3d seen = draft.event.camera.T_world_camera.inverse() * draft.place;
   draft.event.fault = [=](DepthFrame& frame) {
     if (!is_within(frame.stamp, from, seconds)) return true;
-    const Pinhole& p = frame.camera.pinhole;
-    const double u = p.cx + p.fx * seen.x() / seen.z();
-    const double v = p.cy + p.fy * seen.y() / seen.z();
-    const double pixels = radius * p.fx / seen.z();
-    for (int row = 0; row < frame.camera.height; ++row) {
-      for (int column = 0; column < frame.camera.width; ++column) {
-        if (std::hypot(column - u, row - v) > pixels) continue;
-        frame.depth[static_cast<std::size_t>(row) * frame.camera.width + column] = 0;
-      }
-    }
+    bench::punch_hole(seen, radius, frame);
     return true;
   };
   return ends_after(draft, seconds);

@@ -1,0 +1,199 @@
+// Plays a trial in simulated time and compares what the robot is told with the truth.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <memory>
+
+#include "palpate/contact/proxy.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/scene/scene_field.hpp"
+#include "palpate/sensor/stream.hpp"
+#include "robot/trial.hpp"
+#include "ros/robot_guide.hpp"
+
+namespace palpate::robot {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kTicksALook = 4;      // 250 Hz
+constexpr double kLate = 0.1;       // s
+constexpr double kNearby = 0.02;    // m; what is as near as that to the tool does not hide it
+constexpr double kStiffness = 500;  // N/m
+
+// When the newest frame that had arrived at some time was taken.
+class Arrivals {
+ public:
+  void arrived(double now, double stamp) { frames_.push_back({now, stamp}); }
+  [[nodiscard]] double newest(double by) const {
+    double stamp = 0;
+    for (const auto& [at, taken] : frames_) {
+      if (at <= by) stamp = std::max(stamp, taken);
+    }
+    return stamp;
+  }
+
+ private:
+  std::vector<std::pair<double, double>> frames_;
+};
+
+struct Feed {
+  std::unique_ptr<SimulatedCamera> camera;
+  std::unique_ptr<SimulatedStream> stream;
+};
+
+ros::RobotGuide::Answer old_answer(const ServoState& state) {
+  const bool told = !has(state.field_notes, FieldNote::no_surface | FieldNote::behind) &&
+                    !has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged);
+  if (!told) return {.reason = "its notes"};
+  return {.target = state.contact.proxy};
+}
+
+class Judge {
+ public:
+  explicit Judge(const Trial& trial) : trial_(trial) {}
+
+  Arrivals arrivals;
+
+  void take(const ros::RobotGuide::Answer& answer, const ServoState& state, double now) {
+    ++looks_;
+    if (answer.reason.empty()) {
+      excused_ = false;
+    } else if (excused_ =
+                   excused_ || arrivals.newest(now) == 0 || !is_seen(state.contact.proxy, now);
+               !excused_) {
+      needless_ += kTicksALook * kTick;
+    }
+    if (!answer.reason.empty()) waits_[std::string(answer.reason)] += kTicksALook * kTick;
+    if (answer.retreats) went_back(*answer.target, now);
+    if (!answer.target || answer.retreats) {
+      last_.reset();
+      if (!answer.retreats) back_.reset();
+      return;
+    }
+    back_.reset();
+    ++score_.told;
+    const double depth = depth_at(*answer.target, now);
+    const double shown = std::min(depth, depth_at(*answer.target, arrivals.newest(now)));
+    score_.deepest = std::max(score_.deepest, depth);
+    if (shown > score_.unexcused) {
+      score_.unexcused = shown;
+      score_.sigma = 1e3 * sigma_at(*answer.target);
+    }
+    score_.late = std::max(score_.late,
+                           std::min(shown, depth_at(*answer.target, arrivals.newest(now - kLate))));
+    if (last_)
+      score_.hand_moves = std::max(
+          score_.hand_moves, 1e3 * ((*answer.target - *last_).norm() - (state.hip - hip_).norm()));
+    last_ = answer.target;
+    hip_ = state.hip;
+  }
+
+  [[nodiscard]] Score score() const {
+    Score score = score_;
+    double waited = 0;
+    for (const auto& [reason, seconds] : waits_) {
+      waited += seconds;
+      score.reasons +=
+          fmt::format("{}{:.1f} s {}", score.reasons.empty() ? "" : ", ", seconds, reason);
+    }
+    score.needless = needless_ / (static_cast<double>(looks_) * kTicksALook * kTick);
+    score.waits = waited / (static_cast<double>(looks_) * kTicksALook * kTick);
+    return score;
+  }
+
+ private:
+  // mm; the ball of the tool counts.
+  [[nodiscard]] double depth_at(const Vector3d& x, double t) const {
+    return 1e3 * std::max(trial_.tool_radius - distance_and_normal(trial_.scene, x, t).value, 0.0);
+  }
+  [[nodiscard]] double sigma_at(const Vector3d& x) const {
+    double most = 0;
+    for (const Watcher& watcher : trial_.cameras) {
+      const double z = (watcher.options.T_world_camera.inverse() * x).z();
+      most = std::max(most, watcher.options.noise.model.sigma(z));
+    }
+    return most;
+  }
+  // Is a place in the middle of some camera's picture, and nothing stands before it?
+  [[nodiscard]] bool is_seen(const Vector3d& x, double now) const {
+    return std::ranges::any_of(trial_.cameras, [&](const Watcher& watcher) {
+      const Eigen::Isometry3d pose =
+          moved(watcher.options.T_world_camera, watcher.options.motion, now);
+      const Vector3d seen = pose.inverse() * x;
+      const CameraModel& camera = watcher.options.camera;
+      const Pinhole& p = camera.pinhole;
+      constexpr double kRim = 5;  // pixels
+      const double u = p.cx + p.fx * seen.x() / seen.z();
+      const double v = p.cy + p.fy * seen.y() / seen.z();
+      if (u < kRim || v < kRim || u > camera.width - kRim || v > camera.height - kRim) return false;
+      const Vector3d way = pose.translation() - x;
+      for (double s = kNearby; s < way.norm(); s += kNearby / 2) {
+        if (distance_and_normal(trial_.scene, x + s * way.normalized(), now).value < kNearby / 4)
+          return false;
+      }
+      return true;
+    });
+  }
+  void went_back(const Vector3d& x, double now) {
+    score_.back_depth = std::max(score_.back_depth, depth_at(x, now));
+    if (back_)
+      score_.back_speed = std::max(score_.back_speed, (x - *back_).norm() / (kTicksALook * kTick));
+    back_ = x;
+  }
+
+  const Trial& trial_;
+  Score score_;
+  long looks_ = 0;
+  bool excused_ = false;  // the wait that goes on began out of sight
+  double needless_ = 0;   // s
+  std::map<std::string, double> waits_;
+  std::optional<Vector3d> last_;
+  std::optional<Vector3d> back_;
+  Vector3d hip_ = Vector3d::Zero();
+};
+
+}  // namespace
+
+Score play(const Trial& trial, Rule rule) {
+  Scene scene;
+  Judge judge(trial);
+  std::deque<Feed> feeds;
+  double now = 0;
+  for (const Watcher& watcher : trial.cameras) {
+    Source& source = scene.add("camera " + std::to_string(feeds.size() + 1),
+                               {.T_world_sensor = watcher.options.T_world_camera,
+                                .prepare = {.minimum_radius = trial.tool_radius / 0.3}});
+    Feed& feed = feeds.emplace_back();
+    feed.camera = std::make_unique<SimulatedCamera>(trial.scene, watcher.options);
+    feed.stream = std::make_unique<SimulatedStream>(
+        *feed.camera, source.name(),
+        [&](DepthFrame frame, const Source::StartTime& start) {
+          if (watcher.fault && !watcher.fault(frame)) return;
+          judge.arrivals.arrived(now, frame.stamp);
+          source.push(frame, start);
+        },
+        SimulatedStreamOptions{.latency = watcher.delay + 0.01, .lead = 0.01});
+  }
+  ros::RobotGuide guide(scene, {.preset = "crisp"}, trial.tool_radius);
+  SceneField field(scene, {.tool_radius = trial.tool_radius});
+  Proxy proxy({.stiffness = kStiffness});
+  ServoState state;
+  for (std::size_t i = 0; i < trial.hip.size(); ++i) {
+    now = static_cast<double>(i) * kTick;
+    for (Feed& feed : feeds) feed.stream->advance(now);
+    field.update(now, trial.hip[i], proxy.position());
+    state.contact = proxy.step(field, trial.hip[i], kTick);
+    state.field_notes = field.notes();
+    state.step = i + 1;
+    state.time = now;
+    state.hip = trial.hip[i];
+    if (i % kTicksALook != 0) continue;
+    judge.take(rule == Rule::proxy ? old_answer(state) : guide.look(state, now, false), state, now);
+  }
+  return judge.score();
+}
+
+}  // namespace palpate::robot
