@@ -67,6 +67,94 @@ def types(path):
                       path.read_text(encoding="utf-8"), re.M)
 
 
+HEART = ("prepare", "field", "scene", "depth", "contact", "geometry")  # between a cloud and a force
+MOST_METHODS, MOST_MEMBERS = 20, 12  # of a class, where its reader still knows the first at the last
+# What a sentence does not begin with: each leaves out who does what.
+RIDDLE = re.compile(r"\s*//[/!]?<? *(Of|By|As|To be|Those)\b")
+AHEAD = re.compile(r"$|#|namespace\b|using\b|\}|(class|struct) \w+;|extern|template <|export")
+
+
+def sources(root, folders=("include", "src", "apps")):
+    return [path for path in code_of(root, folders) if path.suffix == ".cpp"]
+
+
+def lines_of(path):
+    return path.read_text(encoding="utf-8").splitlines()
+
+
+def has_purpose(path):
+    """Its first line that is no include or the like is a comment."""
+    first = next((line for line in lines_of(path) if not AHEAD.match(line)), "//")
+    return first.startswith("//")
+
+
+def riddles(path):
+    """Numbers of the lines on which a comment begins with what no sentence begins with."""
+    lines = lines_of(path)
+    return [i + 1 for i, line in enumerate(lines)
+            if RIDDLE.match(line) and not lines[i - 1].lstrip().startswith("//")]
+
+
+def constants(path):
+    """(name, line, has it a reason: a comment beside it or above it) of named constants."""
+    lines = lines_of(path)
+    for i, line in enumerate(lines):
+        found = re.search(r"\bconst(?:expr|init)?\b[^=({]*\b(k[A-Z]\w*)(?:\[\w*\])? *(?:=|\{)", line)
+        if not found:
+            continue
+        end = next((j for j in range(i, len(lines)) if ";" in lines[j].split("//")[0]), i)
+        told = "//" in line or "//" in lines[end] or lines[i - 1].lstrip().startswith("//")
+        yield found[1], i + 1, told
+
+
+def classes(path):
+    """(name, line, methods, members) of the classes that a file defines at namespace level."""
+    lines = lines_of(path)
+    for i, line in enumerate(lines):
+        found = re.match(r"class (\w+)[^;]*\{$", line)
+        if not found:
+            continue
+        end = next(j for j in range(i, len(lines)) if lines[j].startswith("};"))
+        body = [line.split("//")[0].rstrip() for line in lines[i + 1:end]]
+        heads = [line for line in body if re.match(r"  [\w\[~]", line)]
+        members = sum(re.match(r"  (?!using|friend|static|return)[^(]*\b\w+_( =.*|\{.*)?;$", line) is not None
+                      for line in heads)
+        methods = sum(re.search(r"\w\(", line) is not None and "= default" not in line and "= delete" not in line
+                      and not re.match(r"  (using|friend|static_assert)\b", line) for line in heads)
+        yield found[1], i + 1, methods, members
+
+
+def has_header(root, path):
+    """A header of its name: beside it, or a public one."""
+    public = root / "include/palpate" / path.relative_to(root / "src").with_suffix(".hpp")
+    return path.with_suffix(".hpp").exists() or public.exists()
+
+
+def words_to_a_force(root):
+    """Rows of the glossary."""
+    text = (root / "docs/glossary.md").read_text(encoding="utf-8")
+    return len(re.findall(r"^\| (?!word |-)", text, re.M))
+
+
+def house(root):
+    """How many ideas one has to carry."""
+    heart = [path for path in code_of(root, ("include", "src")) if set(HEART) & set(path.parts)]
+    named = [told for path in heart for _, _, told in constants(path)]
+    largest = [of for path in code_of(root) for of in classes(path)]
+    yield "words of the glossary", words_to_a_force(root)
+    yield f"named constants in {', '.join(HEART)}", len(named)
+    yield "of these without a reason", named.count(False)
+    yield f"classes above {MOST_METHODS} methods or {MOST_MEMBERS} members", sum(
+        methods > MOST_METHODS or members > MOST_MEMBERS for _, _, methods, members in largest)
+    yield "most methods of a class", max(methods for _, _, methods, _ in largest)
+    yield "most members of a class", max(members for _, _, _, members in largest)
+    yield "sources of src without a header of their name", sum(
+        not has_header(root, path) for path in sources(root, ("src",)))
+    yield "files without a sentence of purpose", sum(not has_purpose(path) for path in code_of(root))
+    yield "comments that begin with Of, By, As, To be, Those", sum(
+        len(riddles(path)) for path in code_of(root, ("include", "src", "apps", "bench", "tests", "python")))
+
+
 def table(root):
     code = code_of(root)
     lines = {path: path.read_text(encoding="utf-8").count("\n") for path in code}
@@ -84,7 +172,7 @@ def table(root):
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parents[2])
     print("| | |\n|---|---|")
-    for what, count in table(root):
+    for what, count in (*table(root), *house(root)):
         print(f"| {what} | {count} |")
 
 
