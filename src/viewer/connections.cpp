@@ -158,15 +158,21 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
         });
   }
 
+  // A read that finds a close frame at its start posts itself while there is a control callback. A
+  // close that begins meanwhile waits for that read, and the read for the close, for ever. So the
+  // close begins behind such a read, and without the callback.
   void close() {
     closing_ = true;
+    stream_.control_callback();
     progress_ = ServerContext::now();
     const std::string& words = session_.closing->reason;
     websocket::close_reason reason(session_.closing->code);
     std::size_t size = std::min(words.size(), kLongestReason);
     while (size < words.size() && (words[size] & 0xc0) == 0x80) --size;  // whole letters of UTF-8
     reason.reason.assign(words.data(), size);
-    stream_.async_close(reason, [self = shared_from_this()](const ErrorCode&) { self->leave(); });
+    net::post(stream_.get_executor(), [self = shared_from_this(), reason] {
+      self->stream_.async_close(reason, [self](const ErrorCode&) { self->leave(); });
+    });
   }
 
   void leave() {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <thread>
 
 #include "support/effort.hpp"
@@ -209,6 +210,27 @@ TEST(HostileClient, HundredsOfConnectionsOneAfterAnotherLeaveNothingBehind) {
 TEST(HostileClient, TenThousandConnectionsOneAfterAnotherLeaveNothingBehind) {
   if (test::effort(10) < 100) GTEST_SKIP() << "long; set PALPATE_TEST_EFFORT to 10 or more";
   expect_nothing_left(10'000);
+}
+
+// The program ends while a client's last messages and its close frame are there to be read: the two
+// sides' closes must not wait for each other.
+TEST(HostileClient, AViewerGoesWhileAClientCloses) {
+  std::promise<void> paused;
+  std::promise<void> ending;
+  ViewerControls controls;
+  controls.pause = [&](bool) {
+    paused.set_value();
+    ending.get_future().wait();
+  };
+  ViewerRig rig({}, controls);
+  auto client = rig.enter();
+  client->send(test::client_frame(1, R"({"type":"pause","on":true})") +
+               test::client_frame(1, R"({"type":"ping","id":5})") +
+               test::client_frame(8, "\x03\xe9"));
+  paused.get_future().wait();
+  std::jthread end([&] { rig.viewer.reset(); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // it asks for the end meanwhile
+  ending.set_value();
 }
 
 TEST(HostileClient, AViewerGoesWhileClientsAreThere) {

@@ -112,7 +112,7 @@ std::string RawClient::upgrade(const std::string& host, const std::string& origi
   return read_header();
 }
 
-void RawClient::send_frame(int opcode, std::string_view payload) {
+std::string client_frame(int opcode, std::string_view payload) {
   std::string frame{static_cast<char>(0x80 | opcode)};
   if (payload.size() < 126) {
     frame += static_cast<char>(0x80 | payload.size());
@@ -128,7 +128,7 @@ void RawClient::send_frame(int opcode, std::string_view payload) {
   for (std::size_t i = 0; i < payload.size(); ++i) {
     frame += static_cast<char>(payload[i] ^ kMask[i % kMask.size()]);
   }
-  send(frame);
+  return frame;
 }
 
 Frame RawClient::receive() {

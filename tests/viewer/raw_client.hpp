@@ -24,6 +24,9 @@ struct Frame {
   }
 };
 
+/// A frame as a client sends it.
+[[nodiscard]] std::string client_frame(int opcode, std::string_view payload);
+
 /// A client of its own making, so that it can misbehave: a TCP connection to a port of this
 /// machine. Waits up to 60 s for bytes; a test that comes so far has failed.
 class RawClient {
@@ -48,7 +51,7 @@ class RawClient {
   /// Asks for the socket; the answer's header.
   std::string upgrade(const std::string& host, const std::string& origin = "");
   void send_text(std::string_view text) { send_frame(1, text); }
-  void send_frame(int opcode, std::string_view payload);
+  void send_frame(int opcode, std::string_view payload) { send(client_frame(opcode, payload)); }
   /// The next message or close frame; pieces are put together.
   Frame receive();
   /// The next message for which `wanted` holds; a close frame ends in an exception.
