@@ -129,7 +129,10 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool an
   const Place proxy = judge(state.contact.proxy, now);
   if (proxy.source == nullptr) return without_view(state, now, anew);
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
-  const bool free = proxy.free() || (proxy.solid() && ahead <= allowed_ahead(state, proxy, dt));
+  // Only a surface that it has followed may lag behind the one that is seen.
+  const bool lags = place_ && (follows_ || now - followed_ <= kBlink);
+  const double allowed = allowed_ahead(state, proxy, dt);
+  const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
   if (proxy.solid() && !free) followed_ = -kNever;
   note(free, free && judge(state.hip, now).free(), now, anew);
   if (!follows_) return wait(proxy, now, dt);

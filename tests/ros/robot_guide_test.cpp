@@ -38,6 +38,15 @@ TEST_F(ARobot, WaitsBehindWhatTheCameraSeesUntilHandAndToolHaveBeenFreeForAWhile
   EXPECT_EQ(runs(0.1).target, Vector3d(0, 0, 0.05));
 }
 
+TEST_F(ARobot, DoesNotBeginALittleBehindWhatTheCameraSees) {
+  camera("camera", at_rest);
+  starts();
+  tool_at({0, 0, -0.006});
+  EXPECT_FALSE(runs(1).target);
+  tool_at({0, 0, 0.05});
+  EXPECT_TRUE(runs(0.6).target);
+}
+
 // Comes on from 1 s on, for 60 mm.
 double coming(double t) {
   constexpr double kSpeed = 0.1;  // m/s
