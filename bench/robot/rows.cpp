@@ -16,6 +16,15 @@ Trial comes_on(std::uint64_t seed) {
   return draft.trial;
 }
 
+// A wall comes or goes slowly, as what lies on a belt or breathes does: the robot is to follow.
+Trial comes_slowly(std::uint64_t seed) {
+  Draft draft(seed);
+  const double speed = draft.one_of({-0.02, -0.005, 0.002, 0.005, 0.01, 0.02, 0.03});
+  draft.moves(draft.floor(), speed * kUp, 1, kEnd - 1);
+  draft.hand();
+  return draft.trial;
+}
+
 Trial to_and_fro(std::uint64_t seed) {
   Draft draft(seed);
   const double speed = draft.between(0.05, 1);
@@ -174,6 +183,7 @@ Trial rests_with_size(std::uint64_t seed) {
 
 std::vector<Row> all_rows() {
   return {{"plane comes", comes_on},
+          {"plane comes slowly", comes_slowly},
           {"plane to and fro", to_and_fro},
           {"plane jumps", jumps},
           {"plate appears", plate_appears},
