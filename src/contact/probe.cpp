@@ -1,3 +1,4 @@
+// Friction's law, the relief, Newton's way onto the surface and the sweep through free space.
 #include "contact/probe.hpp"
 
 #include <algorithm>
@@ -77,13 +78,13 @@ bool Probe::is_free(const Ball& ball) noexcept {
 
 namespace {
 
-constexpr int kSteps = 10;
-constexpr double kClamp = 0.3;       // of R
-constexpr double kTolerance = 1e-6;  // of R
+constexpr int kSteps = 10;      // of Newton: near the surface each doubles the digits (judgement)
+constexpr double kClamp = 0.3;  // of R; f is nearly linear that far (judgement)
+constexpr double kTolerance = 1e-6;  // of R: nanometres, far below what a device resolves
 constexpr double kLastStep = 2e-4;  // of R: a step so short leaves its square, which needs no proof
 constexpr double kAccept = 1e-4;    // of R, when the steps have run out
-constexpr double kLeastGradient = 1e-8;
-constexpr double kLeastSupport = 1e-6;
+constexpr double kLeastGradient = 1e-8;  // of a unit slope: rounding decides below it
+constexpr double kLeastSupport = 1e-6;   // of weight: hardly a point reaches so far
 
 }  // namespace
 
@@ -119,7 +120,7 @@ std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
 
 namespace {
 
-constexpr int kBisections = 10;
+constexpr int kBisections = 10;    // a leaf of R / 16 becomes shorter than kBracket with six
 constexpr double kBracket = 1e-3;  // of R: short enough for Newton to do the rest
 
 struct Interval {
@@ -131,7 +132,7 @@ struct Interval {
 // Depth-first, near half first: each level leaves one interval behind.
 class Pending {
  public:
-  static constexpr int kDepth = 60;
+  static constexpr int kDepth = 60;  // halvings: more than a double's 53 bits tell apart
 
   explicit Pending(const Interval& whole) noexcept { items_[0] = whole; }
   [[nodiscard]] bool empty() const noexcept { return count_ == 0; }

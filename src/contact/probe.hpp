@@ -99,7 +99,7 @@ struct SurfacePoint {
 [[nodiscard]] std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
                                                   const Sample& first) noexcept;
 
-/// Of all sweeps in one step, in Probe::work().
+/// The most that all sweeps of one step spend, in Probe::work() (docs/method.md 3.6).
 inline constexpr int kSweepWork = 1000 * kEvaluationWork;
 
 /// Where the way from one place to another ends.

@@ -1,3 +1,4 @@
+// The proxy's public face, the tank that pays for stiffness, and springs that fade.
 #include "palpate/contact/proxy.hpp"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace palpate {
 namespace {
 
-constexpr int kMostIterations = 1000;
+constexpr int kMostIterations = 1000;  // fifty times the default; more is a mistake (judgement)
 
 const ProxyOptions& checked(const ProxyOptions& options) {
   const Requirement require{"proxy"};

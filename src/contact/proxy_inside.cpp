@@ -1,3 +1,4 @@
+// One step of the proxy: through free space, or along the surface, and what its spring does.
 #include "contact/proxy_inside.hpp"
 
 #include <algorithm>
@@ -8,20 +9,21 @@
 namespace palpate {
 namespace {
 
-constexpr double kLeastTime = 1e-9;    // s
-constexpr double kTextureStep = 0.25;  // of the wavelength, the longest sub-step
-constexpr double kMuchSofter = 0.95;   // of the stiffness that is wanted
-constexpr ContactNote kBehind = ContactNote::sweep_truncated | ContactNote::not_converged;
-constexpr double kFastest = 1;       // m/s: what moves faster has jumped
-constexpr double kFreeing = 0.5;     // s, in which its spring fades (judgement)
-constexpr double kFall = 0.5;        // of the stretch, the least that counts as a fall
+constexpr double kLeastTime = 1e-9;    // s; friction divides by the time of a step
+constexpr double kTextureStep = 0.25;  // of the wavelength, so that no sub-step skips a groove
+constexpr double kMuchSofter = 0.95;   // of the wanted stiffness; less is felt (judgement)
+// The proxy has not caught up with the hand.
+constexpr ContactNote kUnfinished = ContactNote::sweep_truncated | ContactNote::not_converged;
+constexpr double kFastest = 1;    // m/s: a surface that moves faster has jumped (judgement)
+constexpr double kFreeing = 0.5;  // s, in which its spring fades (judgement)
+constexpr double kFall = 0.5;     // of the stretch, the least that is noted as a fall (judgement)
 constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
 
 bool in_range(const Eigen::Vector3d& place) {
   return place.allFinite() && place.cwiseAbs().maxCoeff() <= Proxy::kLargestCoordinate;
 }
 
-// What a field says may be rounded, or wrong.
+// Clamps a share that a field gives: rounding or a wrong field may leave 0 to 1.
 double factor(double value) {
   return value >= 0 ? std::min(value, 1.0) : 0.0;
 }
@@ -60,19 +62,19 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   contact.proxy = position_;
   contact.touching = is_held();
   contact.evaluations = probe.evaluations();
-  const double jump = unexplained(before, hip, dt);
+  const double jump = unexplained_jump(before, hip, dt);
   if (held && jump > kFall * (before - hand_).norm()) contact.notes |= ContactNote::fell;
   if (changed && jump > std::max(probe.traits().reanchor_reach, kFastest * dt)) {
     if (held) fading_.take(before, tank.stiffness());
     take_over(held ? tank : tank_, hip, contact);
   } else if (!held && touching_ && !first && !changed) {
     // The surface may have come to the hand, and not the hand to it.
-    if (begun_stiffness(position_, hip) < tank_.stiffness()) take_over(tank_, hip, contact);
+    if (initial_stiffness(position_, hip) < tank_.stiffness()) take_over(tank_, hip, contact);
   }
   tank_.fill(fading_.fade(hip, dt));
   contact.force += fading_.force(hip);
   contact.stiffness += fading_.stiffness();
-  if (!has(contact.notes, kBehind)) hand_ = hip;
+  if (!has(contact.notes, kUnfinished)) hand_ = hip;
   if (contact.force.allFinite() && in_range(position_)) return contact;
   fault_ = true;
   release(hip);
@@ -81,8 +83,8 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
 
 // How far the proxy went beyond what motion of hand and surface explains, m: on a plane no farther
 // than the hand, on a bulge twice as far, up to half of its radius deep.
-double Proxy::Inside::unexplained(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
-                                  double dt) const noexcept {
+double Proxy::Inside::unexplained_jump(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
+                                       double dt) const noexcept {
   const double explained = 2 * (hip - hand_).norm() + surface_.velocity.norm() * dt;
   const double jump = ((waiting_ ? hip : position_) - before).norm() - explained;
   return jump > kLeastFall * step_length_ ? jump : 0;
@@ -92,7 +94,7 @@ double Proxy::Inside::unexplained(const Eigen::Vector3d& before, const Eigen::Ve
 void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
                               Contact& contact) noexcept {
   tank_ = before;
-  tank_.take_over(is_held() ? begun_stiffness(position_, hip) : 0);
+  tank_.take_over(is_held() ? initial_stiffness(position_, hip) : 0);
   contact.stiffness = tank_.stiffness();
   const double least = waiting_ ? 0 : kMuchSofter * wanted_stiffness();
   if (contact.stiffness < least) contact.notes |= ContactNote::softer;
@@ -118,8 +120,8 @@ void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& co
 }
 
 // A spring that is stretched by more than the hand has moved begins as much softer.
-double Proxy::Inside::begun_stiffness(const Eigen::Vector3d& place,
-                                      const Eigen::Vector3d& hip) const noexcept {
+double Proxy::Inside::initial_stiffness(const Eigen::Vector3d& place,
+                                        const Eigen::Vector3d& hip) const noexcept {
   const double stretch = (place - hip).norm();
   const double moved = (hip - hand_).norm() + kLeastFall * step_length_;
   return wanted_stiffness() * (stretch > moved ? moved / stretch : 1);
@@ -131,7 +133,7 @@ void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& place,
   touching_ = true;
   surface_ = probe.field().surface(place);
   step_length_ = probe.step_length();
-  tank_.restart(begun_stiffness(place, hip));
+  tank_.restart(initial_stiffness(place, hip));
 }
 
 void Proxy::Inside::release(const Eigen::Vector3d& place) noexcept {

@@ -103,10 +103,10 @@ class Proxy::Inside {
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
   void free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   [[nodiscard]] double wanted_stiffness() const noexcept;
-  [[nodiscard]] double begun_stiffness(const Eigen::Vector3d& place,
-                                       const Eigen::Vector3d& hip) const noexcept;
-  [[nodiscard]] double unexplained(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
-                                   double dt) const noexcept;
+  [[nodiscard]] double initial_stiffness(const Eigen::Vector3d& place,
+                                         const Eigen::Vector3d& hip) const noexcept;
+  [[nodiscard]] double unexplained_jump(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
+                                        double dt) const noexcept;
   void take_over(const EnergyTank& before, const Eigen::Vector3d& hip, Contact& contact) noexcept;
   [[nodiscard]] Contact faulted() noexcept;
 

@@ -1,3 +1,5 @@
+// The way along the surface to the place nearest the hand (docs/method.md 3.3), and how a surface
+// that moved is found again (3.4).
 #include "contact/slide.hpp"
 
 #include <algorithm>
@@ -8,19 +10,19 @@
 namespace palpate {
 namespace {
 
-constexpr double kStep = 0.25;  // of R, the longest sub-step
-constexpr double kReach = 0.5;  // of R, the farthest that a sub-step may end
-constexpr double kArmijo = 1e-3;
-constexpr double kNormalGate = 0.3;          // cosine: the surface may not turn over
-constexpr double kLift = 2e-3;               // of R, above the surface where a release begins
-constexpr double kStay = 1e-3;               // of R, a release that ends sooner is none
-constexpr double kFirstTolerance = 0.1;      // of the tangent tolerance: worth one cheap try
+constexpr double kStep = 0.25;           // of R, the longest sub-step: the surface is smooth over R
+constexpr double kReach = 0.5;           // of R, twice a sub-step: farther is another sheet
+constexpr double kArmijo = 1e-3;         // share of the expected decrease (Armijo 1966)
+constexpr double kNormalGate = 0.3;      // cosine of 72 degrees: the surface may not turn over
+constexpr double kLift = 2e-3;           // of R, above the surface where a release begins
+constexpr double kStay = 1e-3;           // of R, a release that ends sooner is none
+constexpr double kFirstTolerance = 0.1;  // of the tangent tolerance: worth one cheap try
 constexpr double kFrictionTolerance = 1e-5;  // of R
-constexpr double kMostPace = 4;
-constexpr double kLeastPace = 0.05;
-constexpr int kReleases = 3;
-constexpr int kHalvings = 6;
-constexpr int kWorkPerIteration = 20 * kEvaluationWork;
+constexpr double kMostPace = 4;              // a bulge of radius r felt 3/4 r deep: r / (r - depth)
+constexpr double kLeastPace = 0.05;          // a hollow of radius r felt 19 r deep: r / (r + depth)
+constexpr int kReleases = 3;                 // a corner has three faces
+constexpr int kHalvings = 6;                 // R / 256 is shorter than any feature that R keeps
+constexpr int kWorkPerIteration = 20 * kEvaluationWork;  // docs/method.md 3.6
 
 enum class Turn { stop, go_on };
 
@@ -203,12 +205,12 @@ Slide slide(Probe& probe, const SurfacePoint& start, const Eigen::Vector3d& hip,
 
 namespace {
 
-constexpr double kLeastNormal = 0.5;
-constexpr double kSameWay = 0.3;     // cosine between the old and the new normal
-constexpr double kLifted = 0.02;     // of R: the surface left the proxy
-constexpr double kSunk = 1e-3;       // of R: beyond Newton's rounding, the surface rose over it
-constexpr double kLeastReach = 0.5;  // of R
-constexpr int kRecoverySteps = 8;
+constexpr double kLeastNormal = 0.5;    // a unit normal is there; zero says that none is
+constexpr double kSameWay = 0.3;        // cosine between the old and the new normal
+constexpr double kLifted = 0.02;        // of R: the surface left the proxy
+constexpr double kSunk = 1e-3;          // of R: beyond Newton's rounding, the surface rose over it
+constexpr double kLeastReach = 0.5;     // of R
+constexpr int kRecoverySteps = 8;       // up to 2 R: beyond it the points weigh nothing
 constexpr double kRecoveryStep = 0.25;  // of R
 
 }  // namespace
