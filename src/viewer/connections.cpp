@@ -18,14 +18,12 @@
 #include "viewer/upload.hpp"
 
 namespace palpate::viewer {
-
 namespace {
 
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
 namespace websocket = boost::beast::websocket;
 using Request = http::request<http::empty_body>;
-
 constexpr std::string_view kPlain = "text/plain; charset=utf-8";
 constexpr const char* kPolicy =
     "default-src 'self'; connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; "
@@ -40,7 +38,6 @@ constexpr std::size_t kLongestReason = 123;
 std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};
 }
-
 std::string_view path_of(const Request& request) {
   const std::string_view target = view(request.target());
   return target.substr(0, target.find('?'));
@@ -158,9 +155,8 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
         });
   }
 
-  // A read that finds a close frame at its start posts itself while there is a control callback. A
-  // close that begins meanwhile waits for that read, and the read for the close, for ever. So the
-  // close begins behind such a read, and without the callback.
+  // With a control callback a read posts itself when it finds a close frame at once; it and a close
+  // that begins meanwhile wait for each other for ever. So the close comes later, and without.
   void close() {
     closing_ = true;
     stream_.control_callback();
