@@ -92,7 +92,7 @@ def riddles(path):
     """Numbers of the lines on which a comment begins with what no sentence begins with."""
     lines = lines_of(path)
     return [i + 1 for i, line in enumerate(lines)
-            if RIDDLE.match(line) and not lines[i - 1].lstrip().startswith("//")]
+            if RIDDLE.match(line) and not (i > 0 and lines[i - 1].lstrip().startswith("//"))]
 
 
 def constants(path):

@@ -45,6 +45,8 @@ PLATFORM_FILES = {"src/base/cpu.hpp"}
 
 SOURCE_FOLDERS = ("apps", "bench", "examples", "fuzz", "include", "python", "src", "tests")
 TEXT_SUFFIXES = {".cpp", ".hpp", ".inl", ".in", ".cmake", ".md", ".mjs", ".py", ".sh", ".ts", ".txt"}
+# Classes that were larger when this was first counted: (methods, members). They may only shrink.
+LARGE = {}
 LONGEST_FILE = 300  # lines
 LARGEST_MODULE = 250  # lines of a header and its sources, about
 
@@ -153,6 +155,40 @@ def functions(root):
                        f"{counts.LONGEST_FUNCTION}: {head}")
 
 
+def purpose(root):
+    """A file says first what it is for."""
+    for path in counts.code_of(root, ("include", "src", "apps", "bench")):
+        if not counts.has_purpose(path):
+            yield f"{path.relative_to(root)}: begins without a sentence that says what it is for"
+
+
+def riddles(root):
+    """Comments begin with their subject or their verb."""
+    for path in counts.code_of(root, ("include", "src", "apps", "bench", "python")):
+        for number in counts.riddles(path):
+            yield f"{path.relative_to(root)}:{number}: a comment that begins with Of, By, As, To be or Those"
+
+
+def reasons(root):
+    """Constants between a cloud and a force stand beside a unit and a reason."""
+    for path in counts.code_of(root, ("include", "src")):
+        if not set(counts.HEART) & set(path.parts):
+            continue
+        for name, number, told in counts.constants(path):
+            if not told:
+                yield f"{path.relative_to(root)}:{number}: {name} without a reason"
+
+
+def classes(root):
+    """Classes that fit into one head; those of LARGE are to become smaller, and no others larger."""
+    for path in counts.code_of(root):
+        for name, number, methods, members in counts.classes(path):
+            most_methods, most_members = LARGE.get(name, (counts.MOST_METHODS, counts.MOST_MEMBERS))
+            if methods > most_methods or members > most_members:
+                yield (f"{path.relative_to(root)}:{number}: {name} has {methods} methods and {members} members, "
+                       f"more than {most_methods} and {most_members}")
+
+
 def readers(root):
     """What one file alone reads belongs to that file, as long as both make one module."""
     users = {}
@@ -229,7 +265,8 @@ def text_lines(root):
 
 
 RULES = {rule.__name__: rule
-         for rule in (floors, rooms, public_headers, macros, marks, size, functions, readers,
+         for rule in (floors, rooms, public_headers, macros, marks, size, functions, purpose, riddles,
+                      reasons, classes, readers,
                       public_face, readme, links, documents)}
 
 

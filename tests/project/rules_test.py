@@ -80,6 +80,24 @@ class Rules(unittest.TestCase):
         self.assertEqual(len(self.found(rules.functions, {"src/io/a.cpp": function(38)})), 1)
         self.assertEqual(self.found(rules.functions, {"src/io/a.cpp": function(37)}), [])
 
+    def test_files_comments_and_constants_speak(self):
+        said = "// Adds numbers.\n#include <a>\n"
+        self.assertEqual(self.found(rules.purpose, {"src/io/a.cpp": said, "src/io/b.hpp": "#pragma once\n// A sum.\n"}), [])
+        self.assertEqual(len(self.found(rules.purpose, {"src/io/a.cpp": "#include <a>\nint a;\n"})), 1)
+        self.assertEqual(len(self.found(rules.riddles, {"src/io/a.cpp": "// Of what is no number.\n"})), 1)
+        self.assertEqual(self.found(rules.riddles, {"src/io/a.cpp": "// Number\n// Of things.\n"}), [])
+        constant = "constexpr int kMost = 3;"
+        self.assertEqual(len(self.found(rules.reasons, {"src/field/a.cpp": f"\n{constant}\n"})), 1)
+        self.assertEqual(self.found(rules.reasons, {"src/field/a.cpp": f"\n{constant}  // points\n"}), [])
+        self.assertEqual(self.found(rules.reasons, {"src/io/a.cpp": f"\n{constant}\n"}), [])
+
+    def test_a_class_fits_into_one_head(self):
+        def of(methods, members):
+            return ("class A {\n public:\n" + "  void act();\n" * methods + " private:\n"
+                    + "".join(f"  int a{i}_ = 0;\n" for i in range(members)) + "};\n")
+        for methods, members, count in ((20, 12, 0), (21, 0, 1), (0, 13, 1)):
+            self.assertEqual(len(self.found(rules.classes, {"src/io/a.hpp": of(methods, members)})), count)
+
     def test_a_header_that_one_file_reads_is_found(self):
         files = {"src/io/a.hpp": "int a;\n", "src/io/a.cpp": '#include "io/a.hpp"\n',
                  "src/io/b.cpp": '#include "io/a.hpp"\n'}
