@@ -101,7 +101,7 @@ void RosDriver::check_one_owner() const {
                           writers, link_.pose_topic));
 }
 
-// How often poses come, and how long it takes from a pose's stamp until its force is at the node.
+// Measures the rate of poses, and the delay from a pose's stamp until its force is at the node.
 void RosDriver::measure(const DeviceName& name) {
   std::vector<double> arrivals;
   std::vector<double> ages;
@@ -122,14 +122,14 @@ void RosDriver::measure(const DeviceName& name) {
     return;
   }
   check_clocks(ages);
-  // How long forces take nobody tells: no less than the quickest pose.
+  // Nothing measures how long forces take: assume as long as the quickest pose.
   info_.delay = *usual_age_ + std::max(0.0, std::ranges::min(ages));
 }
 
-// Nobody knows how old poses are that have no stamps, or those of another clock.
+// Throws if poses have no stamps, or stamps of another clock: then their age is unknown.
 void RosDriver::check_clocks(const std::vector<double>& ages) const {
   constexpr const char* kRemedy =
-      "so the delay, and with it the stiffness that is stable, cannot be told";
+      "so palpate cannot measure the delay and the stable stiffness";
   if (ages.empty()) {
     throw Error(
         fmt::format("{}: poses on {} have no stamps, {}; give delay=MS, from a pose until "
@@ -146,18 +146,24 @@ void RosDriver::check_clocks(const std::vector<double>& ages) const {
                   oldest > kOldest ? "past" : "future", kRemedy));
 }
 
-// By how much stamps are off now, beside how they were.
+// Throws if the age of stamps has drifted from the age measured at start.
 void RosDriver::check_age() const {
   if (!usual_age_) return;
-  const double off = told_.stamp ? age() - *usual_age_ : kOldest;
+  if (!told_.stamp) {
+    throw Error(
+        fmt::format("{}: a pose on {} has no stamp, though earlier ones had; have its node "
+                    "stamp every pose",
+                    info_.name, link_.pose_topic));
+  }
+  const double off = age() - *usual_age_;
   if (off > -kOldest && off < std::max(*info_.delay, kSilence)) return;
   throw Error(
       fmt::format("{}: a pose with a stamp {:.3g} s from now, when {:.3g} ms were usual; is the "
                   "network slow, or was a clock set?",
-                  info_.name, told_.stamp ? age() : 0, 1e3 * *usual_age_));
+                  info_.name, age(), 1e3 * *usual_age_));
 }
 
-// Everything that waits; false: no pose does.
+// Takes every message that waits; false if there is no pose among them.
 bool RosDriver::take() {
   told_.stamp.reset();
   told_.has_velocity = false;
