@@ -1,3 +1,4 @@
+// Fits a plane to each point's neighbours; its normal and planarity become normal and confidence.
 #include "geometry/normals.hpp"
 
 #include <fmt/core.h>

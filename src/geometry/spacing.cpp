@@ -1,3 +1,4 @@
+// Measures the distances between neighbouring points of a cloud.
 #include "palpate/geometry/spacing.hpp"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ std::uint32_t digit_at(const std::vector<std::uint32_t>& counts, std::size_t& pl
   return digit;
 }
 
-// By counting upper, then lower halves of ranks: no copy, and memory is read in order.
+// Counts upper, then lower halves of ranks: no copy, and memory is read in order.
 float select(std::span<const float> values, std::size_t place) {
   std::vector<std::uint32_t> counts(kDigits, 0);
   for (const float value : values) ++counts[rank_of(value) >> 16];
