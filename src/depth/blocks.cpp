@@ -1,3 +1,4 @@
+// Averages pixels into 2 x 2 blocks, rejects flying pixels, and fills gaps within one surface.
 #include "depth/blocks.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Fits a plane to the blocks of a window that lie within given halves of the image.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -22,7 +23,7 @@ struct Sums {
   double counts = 0;
 };
 
-// Of u^0 to u^4 over from ... to.
+// Sums of u^0 to u^4 over from ... to.
 std::array<double, 5> powers(int from, int to) {
   const double n = to - from + 1;
   const double c = 0.5 * (from + to);
@@ -57,7 +58,7 @@ void add_strip(const simd::WindowTable& table, int column, int row, const int (&
   }
 }
 
-// Of strips that are as wide as their first and last rows allow.
+// Sums over strips, each as wide as its first and last rows allow.
 Sums sum_strips(const simd::WindowTable& table, int column, int row, int reach_u, int reach_v,
                 std::span<const HalfImage> halves) {
   const int top = -std::min(reach_v, row);

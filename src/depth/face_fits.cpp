@@ -1,3 +1,4 @@
+// Refits blocks beside an edge, each from the blocks of its own face alone.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
@@ -31,7 +32,7 @@ FacePlane face_plane(const BlockFits& fits, int column, int row) {
           fits.variance[i], slope_variance};
 }
 
-// Of any length.
+// Normal of the plane, not normalised.
 Vector3d direction_of(const BlockGrid& grid, const FacePlane& plane) {
   const double x = plane.x / grid.step_x;
   const double y = plane.y / grid.step_y;
@@ -128,7 +129,7 @@ struct FaceFits::Search {
     return true;
   }
 
-  // What both planes leave of the blocks that were measured around one, cut off at four deviations.
+  // Residuals of both planes at the measured blocks around one, cut off at four deviations.
   struct Left {
     int count = 0;
     double sum = 0;

@@ -1,3 +1,4 @@
+// Fits the curve of noise over depth to measured samples, robustly.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Measures the noise of one frame from flat windows spread over the image.
 #include <algorithm>
 #include <cmath>
 
@@ -51,7 +52,7 @@ std::vector<NoiseWindow> lay_noise_windows(int width, int height) {
   return windows;
 }
 
-// Of orthonormal terms each takes the noise's power at its own wavelength.
+// Each orthonormal term takes the noise's power at its own wavelength.
 double NoiseSurvey::Level::missing(int size) const {
   return NoiseFit::kTerms * power / (size * size);
 }
@@ -98,7 +99,7 @@ void NoiseSurvey::find_power(std::span<const SeenNoise> windows, std::size_t lev
   levels_[level].power = *middle / kMedianOfFour;
 }
 
-// By how much variances are larger in windows of another size, where both are known; 0: nowhere.
+// Ratio of the variances in windows of two sizes, where both are known; 0: nowhere.
 double NoiseSurvey::growth(std::size_t from, std::size_t to) const {
   double sum = 0;
   double weights = 0;

@@ -1,3 +1,4 @@
+// Moves remembered planes into the view of a camera that has moved.
 #include <algorithm>
 #include <cmath>
 
@@ -42,7 +43,7 @@ float seen_at(const Vector3f& plane, float x, float y) {
   return clear ? rho : 0.0F;
 }
 
-/// How the slopes change from block to block: what keeps round things round when their pieces are
+/// Change of the slopes from block to block; it keeps curved surfaces curved when their pieces are
 /// cut beside their middles.
 struct Bend {
   float xx = 0, yy = 0, xy = 0;  // 1/m
@@ -98,7 +99,7 @@ void TemporalWarp::offer(const Claim& claim, std::size_t block) {
   held = claim;
 }
 
-// To the blocks next to its middle, at column c and row r.
+// Offers a piece to the blocks next to its middle, at column c and row r.
 void TemporalWarp::offer_around(const BlockGrid& grid, std::int32_t from, float rho, float c,
                                 float r) {
   const bool inside =
