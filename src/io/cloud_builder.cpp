@@ -1,3 +1,4 @@
+// Recognises columns by name and collects rows into a PointCloud.
 #include "io/cloud_builder.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Turns a depth image into points.
 #include "io/depth_image.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Reads whole files and standard input, and unpacks gzip, within limits.
 #include "io/file_bytes.hpp"
 
 #include <fcntl.h>
@@ -62,7 +63,7 @@ std::size_t read_some(int fd, std::span<std::byte> into, const std::string& name
   }
 }
 
-// As much as there is, up to the end of `bytes`.
+// Reads until `bytes` is full or the file ends.
 std::size_t read_full(int fd, std::span<std::byte> bytes, const std::string& name) {
   std::size_t done = 0;
   while (done < bytes.size()) {

@@ -1,3 +1,4 @@
+// Parses the header of PCD files.
 #include <fmt/format.h>
 
 #include <algorithm>

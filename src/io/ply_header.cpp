@@ -1,3 +1,4 @@
+// Parses the header of PLY files.
 #include <fmt/format.h>
 
 #include <algorithm>

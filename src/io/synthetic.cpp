@@ -1,3 +1,4 @@
+// Samples the surfaces of the synthetic clouds.
 #include "palpate/io/synthetic.hpp"
 
 #include <fmt/format.h>
