@@ -1,3 +1,4 @@
+// Keeps the tree of transforms from /tf and answers where one frame is in another.
 #include "message/transforms.hpp"
 
 #include <fmt/format.h>
