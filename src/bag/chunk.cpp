@@ -1,3 +1,4 @@
+// Packs and unpacks the chunks of MCAP files, within limits.
 #include "bag/chunk.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Writes MCAP files whose ending is complete after every chunk.
 #include "bag/mcap_writer.hpp"
 
 #include <fcntl.h>
@@ -126,7 +127,7 @@ void McapWriter::write_chunk() {
   std::uint64_t start = UINT64_MAX;
   std::uint64_t end = 0;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    // By time, and what came first of what has the same.
+    // Sorts by time, then by offset.
     std::ranges::sort(channels_[i].index);
     for (const auto& [time, offset] : channels_[i].index) {
       start = std::min(start, time);
@@ -236,7 +237,7 @@ void McapWriter::close() {
   if (::close(file) != 0) give_up(errno);
 }
 
-// What was written is on the disk, and the file is closed.
+// Writes the ending and flushes the file to disk.
 void McapWriter::sync() {
   if (!ended_ && !put(end_, ending(totals_, end_))) give_up(errno);
   ended_ = true;
