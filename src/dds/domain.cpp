@@ -1,3 +1,4 @@
+// Turns ROS's environment variables into Cyclone DDS's configuration.
 #include "dds/domain.hpp"
 
 #include <dds/dds.h>
