@@ -1,3 +1,4 @@
+// Adds frayed silhouettes and holes to simulated depths.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -71,7 +72,7 @@ void for_jumps(const DepthView& image, const F& f) {
   }
 }
 
-// How far rims go on over what is behind them, pixels.
+// Overhang of a rim over the background, pixels.
 int reach_at(std::uint64_t seed, int u, int v) {
   const auto window = static_cast<std::uint64_t>((v / kWindow << 16) + u / kWindow);
   return 1 + static_cast<int>(Random(seed ^ (kRimStream + window)).bits() % kRim);

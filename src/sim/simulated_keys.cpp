@@ -1,3 +1,4 @@
+// Parses the KEY=VALUE options of simulated cameras.
 #include <fmt/format.h>
 
 #include <algorithm>
