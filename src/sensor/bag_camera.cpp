@@ -103,7 +103,7 @@ BagRecording::BagRecording(const BagName& name)
   BagRecording::rewind();
 }
 
-// By the first images.
+// Measures the frame rate from the first images.
 void BagRecording::measure() {
   reader_.choose([&](const Channel& channel) { return is_image(channel); });
   std::uint64_t first = 0;

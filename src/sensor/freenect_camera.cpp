@@ -53,7 +53,7 @@ freenect_frame_mode best_mode() {
   return best;
 }
 
-// What libusb's numbers mean to a user.
+// Explains libusb's error codes to a user.
 std::string why_not(int code) {
   if (code == -3) {
     return "no permission to use it. Install libfreenect0.5 (its udev rules), join the group "

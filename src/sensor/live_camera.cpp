@@ -1,3 +1,4 @@
+// Converts raw Kinect disparities to metres, and device times to host times.
 #include "sensor/live_camera.hpp"
 
 #include <fmt/format.h>

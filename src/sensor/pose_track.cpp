@@ -1,3 +1,4 @@
+// Parses lists of frames and camera poses, and finds the pose at a time.
 #include "sensor/pose_track.hpp"
 
 #include <fmt/format.h>

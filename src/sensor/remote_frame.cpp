@@ -1,3 +1,4 @@
+// Parses depth frames that another program sends over a socket.
 #include "sensor/remote_frame.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +20,7 @@ constexpr unsigned kHasPose = 1;
 constexpr unsigned kHasStamp = 2;
 constexpr unsigned kFloats = 4;
 
-// What is filtered is blocks of 2 x 2 pixels and their neighbours.
+// Pixels: the filter needs 2 x 2 blocks and their neighbours, so three blocks (derived).
 constexpr std::uint32_t kSmallestSide = 6;
 constexpr std::uint32_t kLargestSide = 8192;
 constexpr double kFarthestPixel = 1e6;  // pixels

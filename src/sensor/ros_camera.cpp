@@ -63,7 +63,7 @@ CameraName parse(const std::string& name) {
   return parsed;
 }
 
-// What /tf and /tf_static have said so far.
+// Collects transforms from /tf and /tf_static.
 class TransformListener {
  public:
   explicit TransformListener(const dds::Participant& participant)

@@ -1,3 +1,4 @@
+// Turns ROS images and clouds into DepthFrames.
 #include "sensor/ros_frames.hpp"
 
 #include <fmt/format.h>

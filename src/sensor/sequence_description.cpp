@@ -1,3 +1,4 @@
+// Parses sequence.json, which describes a folder of depth images.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -157,7 +158,7 @@ std::vector<std::uint16_t> invalid_of(const Fields& fields) {
   return invalid;
 }
 
-// One of two words; false for the first and for none.
+// Reads one of two words: true for the second, false for the first or if absent.
 bool second_of(const Fields& fields, std::string_view field, std::string_view first,
                std::string_view second) {
   const std::string wanted = fmt::format("\"{}\" or \"{}\"", first, second);
