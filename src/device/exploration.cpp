@@ -1,3 +1,4 @@
+// Chooses scale, stiffness and region for exploring a scene by a simulated hand.
 #include "palpate/device/exploration.hpp"
 
 #include <algorithm>
@@ -88,7 +89,7 @@ double raw_weight(Kernel kernel, double multiple) {
   return multiple * multiple * integral;
 }
 
-// How far the felt surface lies above the points.
+// Height of the rendered surface above the points, m.
 double offset(const FieldOptions& field, const Union& all, double tool_radius) {
   if (field.kind != FieldOptions::Kind::metaball) return tool_radius;
   double level = field.threshold;
@@ -114,7 +115,7 @@ void validate(const ExplorationOptions& options) {
           "give one above 0; infinite: a hand that does not yield");
 }
 
-// What exploring and placing have in common.
+// Size of the patch and the scale that follows; exploring and placing share it.
 struct Extent {
   double patch = 0;  // m across
   double scale = 1;

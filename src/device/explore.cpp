@@ -1,3 +1,4 @@
+// Plans the strokes of an exploring hand.
 #include "device/explore.hpp"
 
 #include <fmt/format.h>
@@ -177,7 +178,7 @@ class Explorer {
     return fresh - way;
   }
 
-  // Of some places at random one that is far from all that was touched before but not from here.
+  // Draws random positions and picks one far from everything touched before but near `here`.
   MapSample next_start(const Vector3d& here) {
     MapSample best;
     double highest = -1e300;

@@ -51,7 +51,7 @@ std::vector<HaplyDevice> greet(TextSocket& socket) {
   return devices;
 }
 
-// What is still on its way would be taken for the answer to a command, and be old.
+// Drops frames that are still on their way: they would be mistaken for answers to later commands.
 void let_pass(TextSocket& socket) {
   std::uint64_t seen = socket.received();
   for (int i = 0; i < kFirstFrames && socket.wait(seen, kQuiet); ++i) seen = socket.received();
@@ -114,7 +114,7 @@ class HaplyDriver final : public DeviceDriver {
     if (!device.powered.value_or(true)) fail("it has no power. Plug in its power supply");
   }
 
-  // What the service answers, with words that say whose fault it is.
+  // Runs `question`; an Error then says that the service is at fault.
   template <class Question>
   auto ask(Question question) const -> decltype(question()) {
     try {

@@ -23,7 +23,7 @@ constexpr double kOldest = 1;           // s; a stamp further off is of another 
 constexpr double kClockError = 5e-4;    // s; clocks of one machine, read one after the other
 constexpr double kVelocitySpan = 0.01;  // s over which positions give a velocity
 
-// What 19 of 20 stay below.
+// The 95th percentile.
 double most_of(std::vector<double> values) {
   const auto at =
       values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
@@ -128,8 +128,7 @@ void RosDriver::measure(const DeviceName& name) {
 
 // Throws if poses have no stamps, or stamps of another clock: then their age is unknown.
 void RosDriver::check_clocks(const std::vector<double>& ages) const {
-  constexpr const char* kRemedy =
-      "so palpate cannot measure the delay and the stable stiffness";
+  constexpr const char* kRemedy = "so palpate cannot measure the delay and the stable stiffness";
   if (ages.empty()) {
     throw Error(
         fmt::format("{}: poses on {} have no stamps, {}; give delay=MS, from a pose until "

@@ -1,3 +1,4 @@
+// Indexes the region of a surface that is explored.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// Implements a WebSocket client whose every wait is limited.
 #include "device/text_socket.hpp"
 
 #include <fmt/format.h>
