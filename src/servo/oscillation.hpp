@@ -4,7 +4,7 @@
 
 namespace palpate {
 
-/// What a device that flew into the wall came out with.
+/// Result of a device's flight into the wall.
 struct Impact {
   double rebound = 0;  ///< speed out over speed in; 0: it stayed within the wall for 2 s
   double energy = 0;   ///< that the forces gave to the device in all, J; below zero: took

@@ -1,5 +1,4 @@
-// What a servo records, durations of steps and recent forces, and what its device makes of its
-// guard.
+// Records durations of steps and recent forces of a servo, and adapts its guard to the device.
 #include "servo/servo_inside.hpp"
 
 #include <algorithm>
@@ -56,7 +55,7 @@ Durations Durations::since(const Durations& earlier) const noexcept {
   return later;
 }
 
-// One thread adds: what it read cannot have changed when it writes.
+// Only one thread adds, so a relaxed load and store lose nothing.
 void Histogram::add(double duration) noexcept {
   if (std::isnan(duration)) return;
   constexpr auto kRelaxed = std::memory_order_relaxed;

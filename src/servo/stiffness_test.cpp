@@ -1,3 +1,4 @@
+// Tests how stiff a wall one device renders stably with the hand that holds it.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// Measures walls on a simulated device: the stiffest stable one, and the rebound of an impact.
 #include "palpate/servo/z_width.hpp"
 
 #include <algorithm>

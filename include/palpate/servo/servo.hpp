@@ -155,15 +155,15 @@ struct ServoOptions {
   Ring<StepTrace>* traces = nullptr;   ///< the same with what each was made of, while it accepts
 };
 
-/// What may change while a servo runs.
+/// Settings that may change while a servo runs.
 struct ContactSettings {
   double stiffness = 500;  ///< K, N/m
   Friction friction = {};
   Texture texture = {};
 };
 
-/// One hand in a scene: SceneField, Proxy and Guard between a device's position and its force. In
-/// palpate::live.
+/// Renders a scene to one hand: SceneField, Proxy and Guard between a device's position and its
+/// force. In palpate::live.
 ///
 /// Owns no thread: a device's callback or a ServoThread calls tick(), or the owner of a loop calls
 /// step() and show(). One thread steps; functions marked "any thread" may be called meanwhile.
@@ -175,7 +175,7 @@ struct ContactSettings {
 /// The guard's ledger counts the fading force on the hand's own displacement.
 class Servo {
  public:
-  /// Of a device's continuous maximum: what it is asked to hold (docs/method.md 8.6).
+  /// Share of a device's continuous maximum force that is used (docs/method.md 8.6).
   static constexpr double kForceShare = 0.8;
   static constexpr double kAddedForceFade = 0.1;      ///< s in which add_force()'s force fades
   static constexpr std::size_t kRecentForces = 1024;  ///< steps that forces_since() remembers
@@ -213,13 +213,13 @@ class Servo {
 
   /// The newest state. Any thread.
   [[nodiscard]] ServoState state() const noexcept;
-  /// How late steps began and what they took to compute, where it was measured. Any thread.
+  /// Lateness and computing time of steps, where measured. Any thread.
   [[nodiscard]] Durations lateness() const noexcept;
   [[nodiscard]] Durations computing() const noexcept;
 
-  /// What the guard let through in the steps after the first `seen`, oldest first, N, world frame;
-  /// `seen` becomes the number of steps shown. Holds the last kRecentForces steps: who asks more
-  /// rarely misses some. Any thread; allocates.
+  /// Forces that left the guard in the steps after the first `seen`, oldest first, N, world frame;
+  /// sets `seen` to the number of steps shown. Holds the last kRecentForces steps; rarer calls miss
+  /// some. Any thread; allocates.
   [[nodiscard]] std::vector<Eigen::Vector3f> forces_since(std::uint64_t& seen) const;
 
   /// Fades the force to zero at the guard's rate, and back. Any thread.
@@ -233,7 +233,7 @@ class Servo {
   /// real-time.
   /// @throws Error when a value is out of its range.
   void set_contact(const ContactSettings& contact);
-  /// What was set last, from the next step on at the latest. Any thread.
+  /// Settings set last; they act from the next step on at the latest. Any thread.
   [[nodiscard]] ContactSettings contact() const noexcept;
 
   /// A force from outside, such as what a robot's sensor feels, N, world frame: it goes through the
