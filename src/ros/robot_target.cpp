@@ -1,3 +1,4 @@
+// Sends a robot its target, or withholds it.
 #include "ros/robot_target.hpp"
 
 #include <fmt/format.h>
