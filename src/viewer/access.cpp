@@ -1,3 +1,4 @@
+// Decides which requests come from the viewer's own page.
 #include "viewer/access.hpp"
 
 #include <arpa/inet.h>

@@ -1,3 +1,4 @@
+// Serves HTTP files and WebSockets to browsers.
 #include "viewer/connections.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Listens for browsers and closes their connections at the end.
 #include "viewer/server.hpp"
 
 #include <fcntl.h>
@@ -130,7 +131,7 @@ void Server::State::repeat(Repeated& task) {
 void Server::State::check() {
   const double now = ServerContext::now();
   context.sessions.check(now);
-  // Those that are closed leave the set later, when their operations end.
+  // Closed connections leave the set later, when their operations end.
   for (Connection* connection : context.connections) connection->check(now);
 }
 

@@ -1,3 +1,4 @@
+// Parses the JSON that pages send and writes the JSON that they get.
 #include <fmt/core.h>
 
 #include <array>

@@ -1,3 +1,4 @@
+// Receives a file that a page uploads.
 #include "viewer/upload.hpp"
 
 #include <algorithm>

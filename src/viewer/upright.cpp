@@ -1,3 +1,4 @@
+// Guesses which axis of a scene points up.
 #include "viewer/upright.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Runs the viewer: settings, server thread, and periodic pictures and reports.
 #include "palpate/viewer/viewer.hpp"
 
 #include <fmt/core.h>
@@ -48,7 +49,7 @@ Box scene_box(const Scene& scene) {
   return box;
 }
 
-// Of all points; where there are none yet, of where the sensors stand.
+// Centre of all points or, while there are none, of the sensors.
 Eigen::Vector3d middle(const Scene& scene) {
   const Box box = scene_box(scene);
   if (!box.empty()) return box.center();
