@@ -1,3 +1,4 @@
+// Aligns sources and checks whether their overlap determines the poses.
 #include "palpate/align/align.hpp"
 
 #include <fmt/core.h>
@@ -32,8 +33,8 @@ void Aligner::tell_fits(const Poses& poses, double reach, AlignedSource::Fit Ali
   }
 }
 
-// What is known of a direction has to be more than errors of the normals feign: a plane whose
-// normals scatter seems to hold along itself, too.
+// Requires more information along each direction than errors of the normals alone produce: a
+// plane with scattered normals seems to hold along itself, too.
 void Aligner::check_held(const Equations& e) const {
   constexpr double kHeld = 2;  // as much again as is feigned
   const Index size = e.information.rows();

@@ -1,3 +1,4 @@
+// Samples surfaces, matches them, and solves for the poses of sources.
 #include "align/aligner.hpp"
 
 #include <fmt/core.h>
@@ -154,7 +155,7 @@ Equations Aligner::equations(const std::vector<Match>& matches, Moving moving, d
   const MatrixXd zero = MatrixXd::Zero(size, size);
   Equations e{zero, zero, zero, VectorXd::Zero(size)};
   limit = std::max({limit, kTukey * kGaussian * middle_height(matches), 1e-9 * size_});
-  // What is left over in one part of the scene errs together: four parts to its size.
+  // Residuals within one part of the scene are correlated; assume four parts to its size.
   std::map<std::array<int, 3>, VectorXd> parts;
   for (const Match& m : matches) {
     const double w = weight(m.height, limit);
@@ -184,7 +185,7 @@ Equations Aligner::equations(const std::vector<Match>& matches, Moving moving, d
   return {last(e.information), last(e.doubt), last(e.scatter), e.slope.tail(kept)};
 }
 
-// How far it moved, m.
+// Makes one step of the fit; returns how far the sources moved, m.
 double Aligner::step(Poses& poses, Moving moving, double reach, std::size_t stride) const {
   const Equations e =
       equations(matches(poses, moving, reach, stride), moving, reach > radius_ ? reach : 0);
