@@ -1,3 +1,4 @@
+// Binds depth cameras and their frames.
 #include <fmt/format.h>
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>

@@ -15,7 +15,7 @@
 
 namespace palpate::python {
 
-/// What a servo is made with, beside its scene.
+/// Options to make a servo with, beside its scene.
 struct ServoPlan {
   std::string device = "simulated";  ///< or remote[:PATH], or a name that open_device() knows
   Trajectory hand = {};              ///< of a simulated device, world frame
