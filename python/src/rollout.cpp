@@ -9,7 +9,7 @@
 namespace palpate::python {
 namespace {
 
-constexpr std::size_t kUninterrupted = 1 << 16;  // ticks
+constexpr std::size_t kUninterrupted = 1 << 16;  // ticks between checks for Ctrl-C (judgement)
 
 // Output memory of a rollout: plain pointers, since numpy may be asked for them only with the GIL.
 struct Rows {

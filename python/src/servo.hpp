@@ -52,7 +52,7 @@ class RunningServo {
   void open(const ServoPlan& plan);
   void simulate(const ServoPlan& plan);
 
-  static constexpr std::size_t kRoom = 16384;  // steps: 16 s at 1 kHz
+  static constexpr std::size_t kRoom = 16384;  // steps: 16 s at 1 kHz (judgement)
 
   std::shared_ptr<SharedScene> scene_;
   SteadyClock clock_;

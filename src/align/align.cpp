@@ -36,7 +36,7 @@ void Aligner::tell_fits(const Poses& poses, double reach, AlignedSource::Fit Ali
 // Requires more information along each direction than errors of the normals alone produce: a
 // plane with scattered normals seems to hold along itself, too.
 void Aligner::check_held(const Equations& e) const {
-  constexpr double kHeld = 2;  // as much again as is feigned
+  constexpr double kHeld = 2;  // times the information that scattered normals produce (judgement)
   const Index size = e.information.rows();
   const MatrixXd rounding = 1e-9 * e.information.trace() * MatrixXd::Identity(size, size);
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> held(e.information, e.doubt + rounding);

@@ -25,15 +25,16 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 namespace {
 
-constexpr std::size_t kSamples = 2000;  // of each source, up to twice as many
-constexpr std::size_t kStride = 8;      // samples are tried from all starts, one in so many
-constexpr std::size_t kEnough = 30;     // samples or matches
-constexpr float kTrusted = 0.5f;        // confidence of a normal
-constexpr double kAlike = 0.7071;       // cosine between normals of one surface
-constexpr double kTukey = 4.685;        // sigmas: 95 % as sharp as least squares on Gaussian noise
-constexpr double kGaussian = 1.4826;    // sigma over the median of absolute values
-constexpr double kTurn = 10 * std::numbers::pi / 180;  // that starts are apart
-constexpr double kShrink = 0.7;                        // reach, from step to step
+constexpr std::size_t kSamples = 2000;  // of each source, up to twice as many (judgement)
+constexpr std::size_t kStride = 8;   // one sample in so many is tried from all starts (judgement)
+constexpr std::size_t kEnough = 30;  // samples or matches (judgement)
+constexpr float kTrusted = 0.5f;     // confidence of a normal (judgement)
+// Cosine of 45 degrees between normals of one surface (docs/method.md 9)
+constexpr double kAlike = 0.7071;
+constexpr double kTukey = 4.685;  // sigmas: 95 % efficiency on Gaussian noise (docs/method.md 9)
+constexpr double kGaussian = 1.4826;  // sigma over the median of absolute values (derived)
+constexpr double kTurn = 10 * std::numbers::pi / 180;  // rad between starts (docs/method.md 9)
+constexpr double kShrink = 0.7;  // of the reach, from step to step (judgement)
 
 bool counts(const SurfacePoints& p, std::size_t i) {
   return newest(p.density_weights, p.end_density_weights)[i] > 0 &&
@@ -200,7 +201,7 @@ double Aligner::step(Poses& poses, Moving moving, double reach, std::size_t stri
 }
 
 void Aligner::refine(Poses& poses, Moving moving, double reach, std::size_t stride) const {
-  constexpr int kFine = 20;  // steps, at R
+  constexpr int kFine = 20;  // steps at R (judgement)
   for (int fine = 0; fine < kFine; fine += reach <= radius_ ? 1 : 0) {
     const double moved = step(poses, moving, reach, stride);
     if (reach <= radius_ && moved < 1e-3 * radius_) break;

@@ -13,7 +13,7 @@ namespace palpate::bag {
 
 namespace {
 
-constexpr std::uint64_t kMostLoaded = 1 << 30;  // bytes
+constexpr std::uint64_t kMostLoaded = 1 << 30;  // bytes of chunks in memory (judgement)
 
 }  // namespace
 

@@ -12,11 +12,11 @@ namespace palpate::bag {
 
 namespace {
 
-constexpr std::uint64_t kLargestNote = 16 << 20;  // bytes of a schema, a channel, metadata
-constexpr std::uint64_t kAllNotes = 256 << 20;    // bytes of all of them
-constexpr std::uint64_t kLargestRun = 1 << 20;    // bytes of messages without chunk, read at once
-constexpr std::uint64_t kAttachmentHead = 64 << 10;  // bytes, of names mostly
-constexpr std::size_t kMostLosses = 20;
+constexpr std::uint64_t kLargestNote = 16 << 20;  // bytes of a schema or metadata (judgement)
+constexpr std::uint64_t kAllNotes = 256 << 20;    // bytes of all of them (judgement)
+constexpr std::uint64_t kLargestRun = 1 << 20;    // bytes outside chunks read at once (judgement)
+constexpr std::uint64_t kAttachmentHead = 64 << 10;  // bytes, mostly names (judgement)
+constexpr std::size_t kMostLosses = 20;              // losses listed (judgement)
 
 class Walk {
  public:

@@ -15,9 +15,10 @@ namespace palpate::bag {
 
 namespace {
 
-constexpr std::size_t kSmallEnding = 256 << 10;  // bytes
+constexpr std::size_t kSmallEnding = 256 << 10;  // bytes (judgement)
+// Bytes; leaves 16 MiB of a chunk for the rest (judgement)
 constexpr std::size_t kLargestMessage = kLargestChunk - (16 << 20);
-constexpr std::size_t kMostChannels = 65535;
+constexpr std::size_t kMostChannels = 65535;  // ids have 16 bits (derived)
 
 // Whether `now` is `span` or more behind `since`; what was earlier is not.
 bool is_over(std::uint64_t span, std::uint64_t since, std::uint64_t now) {

@@ -24,9 +24,9 @@ namespace palpate {
 namespace {
 
 constexpr const char* kFolder = "the folder must exist and belong to you";
-constexpr std::chrono::milliseconds kTurn{20};
-constexpr int kTries = 50;
-constexpr int kBacklog = 8;  // connections that wait to be accepted
+constexpr std::chrono::milliseconds kTurn{20};  // between tries for the folder's lock (judgement)
+constexpr int kTries = 50;                      // for the folder's lock: 1 s in all (judgement)
+constexpr int kBacklog = 8;                     // connections that wait to be accepted (judgement)
 
 // Names the listener and its path, for messages.
 struct Place {

@@ -10,10 +10,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kStrips = 8;            // into which a window is cut
-constexpr double kFewestBlocks = 25;  // blocks
-constexpr double kExplained = 18;     // 2 x 3^2: three deviations of chi^2
-constexpr double kBent = 12;          // what noise makes of three terms, three deviations up
+constexpr int kStrips = 8;            // strips that a window is cut into (judgement)
+constexpr double kFewestBlocks = 25;  // blocks; fewer fit no plane (judgement)
+constexpr double kExplained = 18;     // 2 x 3^2: three deviations of chi^2 (docs/method.md 6.3)
+// Times what noise bends a plane, three deviations up (docs/method.md 6.3)
+constexpr double kBent = 12;
 
 // Sums over blocks of the products of 1, u, v, u^2, u v, v^2, and of these times inverse depth.
 struct Sums {

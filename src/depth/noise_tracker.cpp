@@ -12,11 +12,11 @@
 namespace palpate::depth {
 namespace {
 
-constexpr std::size_t kShares = 128;  // frames in which all windows are looked at
+constexpr std::size_t kShares = 128;  // frames in which all windows are visited once (judgement)
 constexpr std::size_t kPatience = 8;  // frames after which something is concluded
-constexpr double kNoteworthy = 0.1;   // relative change that is handed out
-constexpr double kPattern = 4;        // times what frames differ by; what is more is shape
-constexpr double kMoved = 1.25;       // times the noise: what frames differ by then is motion
+constexpr double kNoteworthy = 0.1;   // relative change that is reported (judgement)
+constexpr double kPattern = 4;  // times the frames' differences; more is shape (docs/method.md 6.2)
+constexpr double kMoved = 1.25;  // times the noise; larger differences are motion (judgement)
 // c, at least: windows grow in steps, and where pixels err alone some stop early by chance.
 constexpr double kLeastCorrelation = 1.15;
 constexpr float kSmallStep = 1e-6F;  // of the depth: rounding of floats is no step

@@ -9,10 +9,10 @@
 namespace palpate::depth {
 namespace {
 
-constexpr std::size_t kBlocksAtATime = 4096;
-constexpr float kLonger = 8;        // times the memory, at most
-constexpr int kCalmFrames = 2;      // after which a moving block stands still
-constexpr float kLearn = 1 / 16.F;  // share of a frame in the scatter that frames show
+constexpr std::size_t kBlocksAtATime = 4096;  // blocks that a thread takes at once (judgement)
+constexpr float kLonger = 8;                  // times the memory, at most (docs/method.md 6.6)
+constexpr int kCalmFrames = 2;  // calm frames after which a moving block rests (docs/method.md 6.6)
+constexpr float kLearn = 1 / 16.F;  // share of a frame in the learned scatter (docs/method.md 6.6)
 
 // Times a variance: five deviations above it, which scatter does not reach by chance. A product of
 // two moves has the variance 5 s^4, and s^4 in common with the next; the running mean has 1/31 of

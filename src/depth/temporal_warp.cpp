@@ -10,10 +10,13 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-constexpr float kWarpReach = 0.75F;  // blocks from a piece's middle to the blocks it is offered to
-constexpr float kInflation = 0.1F;   // share of the mean's variance that each move adds
-constexpr float kContinuous = 0.1F;  // of another surface's distance, between neighbours
-constexpr float kGrazing = 0.02F;    // n.ray / |ray|: planes seen closer to edge-on are given up
+// Blocks from a piece's middle to those it is offered to (judgement)
+constexpr float kWarpReach = 0.75F;
+constexpr float kInflation = 0.1F;  // share of the mean's variance that each move adds (judgement)
+// Share of another surface's distance, between neighbours (judgement)
+constexpr float kContinuous = 0.1F;
+// n.ray / |ray|; planes closer to edge-on are dropped (judgement)
+constexpr float kGrazing = 0.02F;
 
 /// A plane as the vector a with a.p = 1 for its points p.
 Vector3f plane_of(const BlockMemory& m, float x, float y) {

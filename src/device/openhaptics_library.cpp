@@ -10,7 +10,7 @@
 namespace palpate::device {
 namespace {
 
-constexpr double kLengthUnit = 1e-3;  // m
+constexpr double kLengthUnit = 1e-3;  // m; OpenHaptics measures in mm (the maker's)
 constexpr const char* kBroughtBy =
     "It is part of OpenHaptics 3 for Linux and the Touch Device Driver (3D Systems): run the "
     "installers of both; 'palpate doctor' shows what is missing";

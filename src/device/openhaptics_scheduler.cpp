@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 using std::chrono::steady_clock;
 
-constexpr double kMillimetre = 1e-3;                // m
+constexpr double kMillimetre = 1e-3;                // m; OpenHaptics measures in mm (the maker's)
 constexpr std::chrono::microseconds kTickNap{200};  // a frame comes each millisecond
 
 // The maker's x is to the right, y up, z towards the operator.

@@ -67,7 +67,7 @@ class OpenHapticsFrames {
                     const Clock& clock, OpenHapticsErrors& errors)
       : library_(library), device_(device), clock_(clock), errors_(errors) {}
 
-  // One other thread.
+  // For one other thread.
   /// Asks for a force, N, as the operator sits.
   void ask(const Eigen::Vector3d& force) noexcept;
   /// Waits for the frame that takes what was asked last, no longer than `patience` (s) while the

@@ -16,12 +16,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDiscovery = 3;        // s until a node that is there is heard
-constexpr double kMeasuring = 0.5;      // s of poses from which rate and delay are told
-constexpr double kSilence = 0.02;       // s without a pose: the node is gone, or hangs
-constexpr double kOldest = 1;           // s; a stamp further off is of another clock
-constexpr double kClockError = 5e-4;    // s; clocks of one machine, read one after the other
-constexpr double kVelocitySpan = 0.01;  // s over which positions give a velocity
+constexpr double kDiscovery = 3;        // s for a running node to be discovered (judgement)
+constexpr double kMeasuring = 0.5;      // s of poses that give rate and delay (judgement)
+constexpr double kSilence = 0.02;       // s without a pose: the node is gone, or hangs (judgement)
+constexpr double kOldest = 1;           // s; a stamp further off is from another clock (judgement)
+constexpr double kClockError = 5e-4;    // s between two readings of one machine's clock (judgement)
+constexpr double kVelocitySpan = 0.01;  // s over which positions give a velocity (judgement)
 
 // The 95th percentile.
 double most_of(std::vector<double> values) {

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::size_t kFitNeighbors = 12;
+constexpr std::size_t kFitNeighbors = 12;  // points in a fitted normal (judgement)
 
 Vector3f middle_of(std::span<const Vector3f> points) {
   Vector3f middle;

@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStaleExchanges = 2.5;
+constexpr double kStaleExchanges = 2.5;  // exchanges without a reading: silent (judgement)
 
 // No hand exceeds these: m from a device's origin, m/s (judgement).
 constexpr double kFarthestHand = 5;

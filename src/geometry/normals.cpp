@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-constexpr float kFewestPoints = 5;  // below: no confidence
+constexpr float kFewestPoints = 5;  // points; fewer give no confidence (judgement)
 
 // 0 at or below `from`, 1 at or above `to`.
 double ramp(double value, double from, double to) {

@@ -10,8 +10,10 @@ namespace {
 
 constexpr int kMaxDigitBits = 12;
 constexpr int kPartitionBits = 12;
-constexpr std::size_t kPartitionFrom = std::size_t{1} << 18;  // records; fewer fit the cache whole
-constexpr std::size_t kSortBlock = std::size_t{1} << 16;      // records that one thread counts
+constexpr std::size_t kPartitionFrom = std::size_t{1}
+                                       << 18;  // records; fewer fit the cache whole (judgement)
+constexpr std::size_t kSortBlock = std::size_t{1}
+                                   << 16;  // records that one thread counts (judgement)
 
 using Counts = std::array<std::uint32_t, std::size_t{1} << kMaxDigitBits>;
 

@@ -17,7 +17,7 @@ namespace palpate::message {
 namespace {
 
 constexpr double kMillimetre = 1e-3;               // m, of a step in 16UC1 (REP 118)
-constexpr std::uint32_t kLargestSide = 1U << 14U;  // pixels
+constexpr std::uint32_t kLargestSide = 1U << 14U;  // pixels (judgement)
 
 using Distortion = CameraModel::Distortion;
 

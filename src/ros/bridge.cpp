@@ -31,11 +31,11 @@ constexpr Quality kTold{.reliable = true, .depth = 1};
 constexpr Quality kTf{.reliable = true, .depth = 100};
 constexpr Quality kStays{.reliable = true, .depth = 1, .stays = true};
 constexpr Quality kHeard{.reliable = false, .depth = 1};
-constexpr std::size_t kSurfacePoints = 10'000;
-constexpr double kMarkerRate = 30;  // Hz
-constexpr double kSurfaceRate = 5;  // Hz
-constexpr double kFrameRate = 50;   // Hz
-constexpr double kReportRate = 1;   // Hz
+constexpr std::size_t kSurfacePoints = 10'000;  // points of a published surface at most (judgement)
+constexpr double kMarkerRate = 30;              // Hz, for a display (judgement)
+constexpr double kSurfaceRate = 5;              // Hz, for a display (judgement)
+constexpr double kFrameRate = 50;               // Hz of /tf (judgement)
+constexpr double kReportRate = 1;               // Hz of diagnostics, as is usual in ROS
 
 struct HandTopics {
   HandTopics(const Participant& with, const std::function<std::string(const std::string&)>& name)

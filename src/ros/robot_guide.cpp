@@ -33,11 +33,12 @@ constexpr Reason kApart = "the tool has to come back to where the robot is";
 
 constexpr double kBlink = 0.3;    // s without a sight of it that stop no robot for good (judgement)
 constexpr double kFreeFor = 0.5;  // s, so that a hand that passes does not start it (judgement)
-constexpr double kWayStep = 0.005;    // m between places that are looked at; a finger is thicker
-constexpr double kJoin = 0.02;        // m; a hand finds a place to that (judgement)
-constexpr double kJump = 0.01;        // m in one frame; hands and tools are thicker (judgement)
-constexpr double kLongestStep = 0.1;  // s; after a longer pause a retreat begins slowly again
-constexpr double kStays = 1;  // s; frames of living cameras are younger, others show what was once
+constexpr double kWayStep = 0.005;  // m between checked positions; a finger is thicker (judgement)
+constexpr double kJoin = 0.02;      // m; a hand finds a place to that (judgement)
+constexpr double kJump = 0.01;      // m in one frame; hands and tools are thicker (judgement)
+// s; after a longer pause a retreat starts slowly again (judgement)
+constexpr double kLongestStep = 0.1;
+constexpr double kStays = 1;  // s; frames of working cameras are younger (judgement)
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // Why the proxy's own path no longer proves that the robot can follow it; empty if it still does.

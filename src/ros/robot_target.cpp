@@ -12,7 +12,7 @@
 namespace palpate::ros {
 namespace {
 
-constexpr double kStill = 0.05;  // s without a step: nobody computes where the proxy is
+constexpr double kStill = 0.05;  // s without a step: the servo stands still (judgement)
 constexpr std::string_view kSlow = "the network is too slow";
 
 struct RobotPreset {
@@ -43,7 +43,7 @@ std::string robot_topic(const RosBridgeOptions::Robot& robot) {
 }  // namespace
 
 double look_rate(const RosBridgeOptions& options) {
-  constexpr double kGuide = 250;  // Hz
+  constexpr double kGuide = 250;  // Hz at which a guide checks the way (judgement)
   return options.robot ? std::max({options.rate, options.robot->rate, kGuide}) : options.rate;
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using namespace message;
 
-constexpr double kDiscovery = 1;  // s in which programs that are there find one another
+constexpr double kDiscovery = 1;  // s in which running programs find one another (judgement)
 
 // A type that palpate takes or gives, and how a topic of it is used.
 struct Known {

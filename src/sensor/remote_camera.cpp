@@ -20,7 +20,8 @@ namespace palpate::sensor {
 namespace {
 
 constexpr const char* kWhat = "remote camera";
-constexpr int kMostFrames = 8;  // that one look takes: a client without end does not hold it up
+// Frames a read takes at most, so that no client blocks it (judgement)
+constexpr int kMostFrames = 8;
 
 std::string words(int error) {
   return std::system_category().message(error);

@@ -19,7 +19,7 @@ namespace {
 using namespace sensor;
 namespace fs = std::filesystem;
 
-constexpr double kRate = 30;  // Hz, where nothing is said
+constexpr double kRate = 30;  // Hz, if the sequence gives none (judgement)
 
 std::string text_of(const fs::path& path) {
   const io::Bytes bytes = io::read_bytes(path);

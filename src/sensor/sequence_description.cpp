@@ -16,9 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kWidest = 65536;      // pixels
-constexpr double kLargestUnit = 1;  // m a step
-constexpr double kFastest = 1e5;    // Hz
+constexpr int kWidest = 65536;      // pixels (judgement)
+constexpr double kLargestUnit = 1;  // m a step (judgement)
+constexpr double kFastest = 1e5;    // Hz (judgement)
 
 constexpr std::array<std::string_view, 18> kFields{"width",
                                                    "height",

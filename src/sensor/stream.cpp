@@ -58,9 +58,9 @@ namespace {
 using namespace sensor;
 
 // A camera's clock may run ahead of the host's by so much before a stamp is thought senseless.
-constexpr double kAhead = 1;  // s
+constexpr double kAhead = 1;  // s (judgement)
 // No frame is on its way for so long: a first one that seems to be was stamped by another clock.
-constexpr double kOtherClock = 30;  // s
+constexpr double kOtherClock = 30;  // s (judgement)
 
 // Work left after preparation asked for a start is predicted from the longest so far, which decays
 // by kForget a frame and is capped at kLongestTail, so that one hiccup costs little (judgement).

@@ -18,8 +18,8 @@ struct Impact {
 /// points that lie less than 100 ms apart (5 Hz). Real-time.
 class OscillationDetector {
  public:
-  static constexpr double kSlowest = 0.1;    ///< s from one turning point to the next
-  static constexpr double kSmallest = 5e-5;  ///< m that it comes back where it has turned
+  static constexpr double kSlowest = 0.1;    ///< s from one turning point to the next (judgement)
+  static constexpr double kSmallest = 5e-5;  ///< m of return that count as a turn (judgement)
 
   /// A position (m), `dt` seconds after the one before. Returns the swing now, m; 0: no
   /// oscillation.

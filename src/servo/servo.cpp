@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kButtons = 32;
+constexpr int kButtons = 32;  // bits of DeviceState::buttons
 
 // Duration of the first step, s, for a device without a known rate: 1 kHz is usual (judgement).
 constexpr double kFirstStep = 1e-3;

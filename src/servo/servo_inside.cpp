@@ -9,9 +9,10 @@
 namespace palpate {
 namespace {
 
-constexpr double kShortest = 1.25e-7;  // s, the lower end of the first bin
-constexpr double kLongest = 1e6;       // s
+constexpr double kShortest = 1.25e-7;  // s; lower end of the first bin, 1/8 us (judgement)
+constexpr double kLongest = 1e6;       // s; longer durations count in the last bin
 
+// Device periods without data that count as silence (judgement)
 constexpr double kSilencePeriods = 2.5;
 
 std::size_t bin_of(double duration) noexcept {

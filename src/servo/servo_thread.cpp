@@ -26,10 +26,10 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kStack = 256 * 1024;  // bytes that a step may use
-constexpr std::size_t kPage = 4096;
-constexpr unsigned long kTimerSlack = 1;  // ns; 50000 for threads without real-time priority
-constexpr std::uint64_t kTurn = 100'000;  // ns; the least that the kernel grants
+constexpr std::size_t kStack = 256 * 1024;  // bytes that a step may use (judgement)
+constexpr std::size_t kPage = 4096;         // bytes; the kernel's usual page
+constexpr unsigned long kTimerSlack = 1;    // ns; the least that the kernel takes, 50000 is usual
+constexpr std::uint64_t kTurn = 100'000;    // ns; the least that the kernel grants
 
 std::string reason(int error) {
   return std::generic_category().message(error);

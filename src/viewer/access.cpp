@@ -17,7 +17,7 @@ namespace palpate::viewer {
 
 namespace {
 
-constexpr std::size_t kLongestHost = 128;
+constexpr std::size_t kLongestHost = 128;  // bytes of a Host header (judgement)
 constexpr std::uint16_t kHttpPort = 80;
 
 char lower(char c) {

@@ -28,7 +28,7 @@ void add_stream(const ViewedStream& stream, const Source& source, const Eigen::V
   report.pose = pose;
 }
 
-constexpr double kRateTime = 0.5;  // s that a rate is counted over
+constexpr double kRateTime = 0.5;  // s that a rate is counted over (judgement)
 
 std::array<float, 2> quantiles(const Durations& now, Durations& before) {
   const Durations since = now.since(before);

@@ -31,9 +31,9 @@ namespace {
 
 using namespace viewer;
 
-constexpr double kStatePeriod = 1.0 / 60;  // s
-constexpr double kReportPeriod = 0.5;      // s
-constexpr double kEmptyRadius = 1;         // m, shown where there is nothing yet
+constexpr double kStatePeriod = 1.0 / 60;  // s; a screen's frame
+constexpr double kReportPeriod = 0.5;      // s (judgement)
+constexpr double kEmptyRadius = 1;         // m, shown while there are no points (judgement)
 
 Message binary(std::string bytes) {
   return {std::make_shared<const std::string>(std::move(bytes)), false};

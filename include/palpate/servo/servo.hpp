@@ -119,8 +119,8 @@ struct ServoState {
   Timing timing;
 };
 
-/// How long things took, counted in bins that grow geometrically: eight to an octave, from 1/8 us
-/// to 17 s. What lies outside counts in the first or the last.
+/// Histogram of durations in geometric bins, eight to an octave, from 1/8 us to 17 s. The first and
+/// last bins also count everything outside.
 struct Durations {
   static constexpr std::size_t kPerOctave = 8;
   static constexpr std::size_t kBins = 27 * kPerOctave;
@@ -140,7 +140,7 @@ struct Durations {
     return count > 0 ? sum / static_cast<double>(count) : 0;
   }
 
-  /// What came after `earlier` was taken. `longest` stays that of all.
+  /// Durations added after `earlier` was taken. `longest` stays that of all.
   [[nodiscard]] Durations since(const Durations& earlier) const noexcept;
 };
 
@@ -177,8 +177,10 @@ class Servo {
  public:
   /// Share of a device's continuous maximum force that is used (docs/method.md 8.6).
   static constexpr double kForceShare = 0.8;
-  static constexpr double kAddedForceFade = 0.1;      ///< s in which add_force()'s force fades
-  static constexpr std::size_t kRecentForces = 1024;  ///< steps that forces_since() remembers
+  /// s in which add_force()'s force fades (judgement)
+  static constexpr double kAddedForceFade = 0.1;
+  /// Steps that forces_since() remembers, 1 s at 1 kHz (judgement)
+  static constexpr std::size_t kRecentForces = 1024;
 
   /// @throws Error when an option is out of its range or the scene has too many readers.
   Servo(Device& device, Scene& scene, const ServoOptions& options = {});
@@ -186,9 +188,9 @@ class Servo {
   Servo(const Servo&) = delete;
   Servo& operator=(const Servo&) = delete;
 
-  /// One step: reads the device, computes, writes the force, shows the state. `now`: s, on the
-  /// clock of the snapshots' times; it never decreases. noexcept, allocation-free, lock-free;
-  /// what the device does in read() and write() is the device's.
+  /// Makes a step: reads the device, computes, writes the force, shows the state. `now`: s, on the
+  /// clock of the snapshots' times; it never decreases. noexcept, allocation-free, lock-free, apart
+  /// from what the device does in read() and write().
   const ServoState& tick(double now) noexcept;
 
   /// A step at the device's own time: for simulated time.

@@ -22,7 +22,7 @@ struct RealtimeOptions {
 
 /// Results of those requests. A servo runs without any of them, but not always on time.
 struct RealtimeReport {
-  /// One request and its result.
+  /// Request and its result.
   struct Request {
     std::string what;  ///< "real-time priority 80 (SCHED_FIFO)"
     bool granted = false;
@@ -82,8 +82,8 @@ class ServoThread {
     std::uint64_t skipped_ = 0;
   };
 
-  static constexpr double kLeastRate = 500;    // Hz
-  static constexpr double kMostRate = 10'000;  // Hz
+  static constexpr double kLeastRate = 500;    // Hz (judgement)
+  static constexpr double kMostRate = 10'000;  // Hz (judgement)
 
   /// Starts, and returns when the system has answered what was asked for. Servo and clock outlive
   /// it, and nobody else steps the servo meanwhile. `rate`: steps a second, 500 to 10000 Hz; unset:
