@@ -40,8 +40,9 @@ McapWriter::McapWriter(std::string path, const Options& options)
     : path_(std::move(path)), options_(options) {
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file_ < 0) {
-    throw Error(fmt::format("{}: cannot be made: {}; name a file in a folder that can be written",
-                            path_, std::strerror(errno)));
+    throw Error(
+        fmt::format("{}: cannot be created: {}; name a file in a folder that can be written", path_,
+                    std::strerror(errno)));
   }
   Bytes data(kMagic.begin(), kMagic.end());
   Record(data, Op::header).text(options_.profile).text("palpate");

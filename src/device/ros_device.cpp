@@ -85,9 +85,9 @@ void RosDriver::connect() {
   while (link_.pose->writers() == 0 || !link_.listened()) {
     if (clock_.now() > end) {
       const bool silent = link_.pose->writers() == 0;
-      throw Error(fmt::format(
-          "{}: nobody {} {}; start its node, or see 'palpate ros' for what is there", info_.name,
-          silent ? "publishes" : "takes forces on", silent ? link_.pose_topic : link_.force_topic));
+      throw Error(fmt::format("{}: no node {} {}; start it, or see 'palpate ros' for what is there",
+                              info_.name, silent ? "publishes" : "subscribes to",
+                              silent ? link_.pose_topic : link_.force_topic));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
@@ -192,7 +192,7 @@ DeviceState RosDriver::exchange(const Vector3d& force) {
   }
   check_one_owner();
   if (!link_.listened())
-    throw Error(fmt::format("{}: nobody takes forces on {}", info_.name, link_.force_topic));
+    throw Error(fmt::format("{}: no node subscribes to {}", info_.name, link_.force_topic));
   check_age();
   if (const double now = clock_.now(); now - velocity_time_ > kSilence) estimate_velocity(now);
   return ours();

@@ -109,8 +109,8 @@ RosBridge::RobotState RobotTarget::state() const {
 
 // Why the hand lets no target be told; empty: it does.
 std::string_view RobotTarget::objection(const ServoState& state, double now) {
-  if (state.step == 0 || now - stepped_ > kStill) return "the servo stands still";
-  if (state.device == DeviceState::Status::silent) return "the hand is not heard";
+  if (state.step == 0 || now - stepped_ > kStill) return "the servo makes no steps";
+  if (state.device == DeviceState::Status::silent) return "no data from the hand";
   if (state.device != DeviceState::Status::ok) return "the hand has ended";
   if (state.guard.fault != Guard::Fault::none) return "the hand has a fault";
   if (state.paused) return "the hand is paused";

@@ -173,12 +173,13 @@ bool RosCamera::connect() {
     }
     other = there.type;
   }
-  reason_ = other.empty()
-                ? fmt::format("nobody publishes {}; 'palpate ros' lists what is there", name_.topic)
-                : fmt::format(
-                      "{} has type {}; depth comes as sensor_msgs Image, CompressedImage or "
-                      "PointCloud2",
-                      name_.topic, other);
+  reason_ =
+      other.empty()
+          ? fmt::format("no node publishes {}; 'palpate ros' lists what is there", name_.topic)
+          : fmt::format(
+                "{} has type {}; depth comes as sensor_msgs Image, CompressedImage or "
+                "PointCloud2",
+                name_.topic, other);
   return false;
 }
 
