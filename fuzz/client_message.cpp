@@ -1,4 +1,4 @@
-// What a viewer's page says: whatever comes is read or refused with words.
+// Gives messages of a viewer's page to their reader: it reads them or refuses them with words.
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>

@@ -84,7 +84,7 @@ void check(const TFMessage& told) {
   }
 }
 
-// What was decoded is the same after it was encoded and decoded again.
+// Checks that a decoded message is the same after encoding and decoding again.
 template <Message T>
 void check_type(Bytes bytes) {
   try {

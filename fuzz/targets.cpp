@@ -1,3 +1,4 @@
+// Gives bytes to each reader and checks its promises.
 #include "targets.hpp"
 
 #include <algorithm>

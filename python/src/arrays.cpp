@@ -1,3 +1,4 @@
+// Checks and reads numpy arrays without copying.
 #include "arrays.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Binds depth cameras and their frames.
 #include <fmt/format.h>
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
@@ -16,7 +17,8 @@
 namespace palpate::python {
 namespace {
 
-constexpr double kPatience = 0.1;  // s that one read may wait: Ctrl-C is looked for in between
+// s that one read may wait, so that Ctrl-C is noticed (judgement)
+constexpr double kPatience = 0.1;
 
 /// A driver of a camera. One thread reads at a time.
 struct OpenCamera {

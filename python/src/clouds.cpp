@@ -1,3 +1,4 @@
+// Binds point clouds and their preparation.
 #include "clouds.hpp"
 
 #include <fmt/format.h>

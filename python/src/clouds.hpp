@@ -16,7 +16,7 @@ namespace palpate::python {
 [[nodiscard]] std::shared_ptr<const PointCloud> cloud_of(const py::object& given,
                                                          Keywords& keywords);
 
-/// What Python holds of them cannot be changed there.
+/// Shares the points with Python, read-only.
 [[nodiscard]] py::object shared(const std::shared_ptr<const SurfacePoints>& points);
 
 }  // namespace palpate::python

@@ -17,7 +17,7 @@ class AnyField {
   AnyField& operator=(const AnyField&) = delete;
 
   [[nodiscard]] virtual const Field& field() const noexcept = 0;
-  /// As SceneField::update(), where there is a scene.
+  /// Calls SceneField::update() if there is a scene.
   virtual void update(double /*now*/, const Eigen::Vector3d& /*hip*/,
                       const Eigen::Vector3d& /*proxy*/) noexcept {}
   /// Null: it is a formula.

@@ -1,3 +1,4 @@
+// Binds the reading, writing and making of cloud files.
 #include "palpate/io/files.hpp"
 
 #include <pybind11/stl.h>

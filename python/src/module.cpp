@@ -1,3 +1,4 @@
+// Defines the Python module.
 #include "module.hpp"
 
 #include "palpate/base/error.hpp"

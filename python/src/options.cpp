@@ -1,3 +1,4 @@
+// Reads keyword arguments into option structs.
 #include "options.hpp"
 
 #include <fmt/format.h>

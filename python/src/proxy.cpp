@@ -1,3 +1,4 @@
+// Binds the proxy, contacts and rollouts.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pybind11/eigen.h>

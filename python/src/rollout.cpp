@@ -1,3 +1,4 @@
+// Runs all ticks of a hand without the GIL.
 #include "rollout.hpp"
 
 #include <fmt/format.h>
@@ -8,9 +9,9 @@
 namespace palpate::python {
 namespace {
 
-constexpr std::size_t kUninterrupted = 1 << 16;  // ticks
+constexpr std::size_t kUninterrupted = 1 << 16;  // ticks between checks for Ctrl-C (judgement)
 
-// Where a rollout writes: plain memory, since numpy may be asked for it with the GIL alone.
+// Output memory of a rollout: plain pointers, since numpy may be asked for them only with the GIL.
 struct Rows {
   explicit Rows(Rollout& out)
       : time(out.time.mutable_data()),

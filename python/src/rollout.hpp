@@ -31,7 +31,7 @@ struct TimedProxy {
   std::mutex mutex = {};
 };
 
-/// What the ticks of a hand gave, a row each.
+/// Results of a hand's ticks, a row each.
 struct Rollout {
   explicit Rollout(py::ssize_t ticks);
 

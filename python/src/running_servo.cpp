@@ -1,3 +1,4 @@
+// Runs a servo with its device in the background of a Python program.
 #include <utility>
 
 #include "palpate/base/error.hpp"

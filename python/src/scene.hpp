@@ -17,7 +17,7 @@ struct SharedScene {
   std::mutex mutex;  ///< of those who add sources or fields
 };
 
-/// One of its sources.
+/// Source of a shared scene.
 struct SharedSource {
   [[nodiscard]] std::string name() const { return source->name(); }
   [[nodiscard]] Eigen::Matrix4d pose() const { return source->pose().matrix(); }

@@ -15,8 +15,8 @@
 namespace palpate::python {
 namespace {
 
-/// What Python holds. It is stopped before the interpreter is: nothing may run on through its end,
-/// and a device is to get zero force.
+/// Handle that Python holds. It stops the servo before the interpreter ends: no thread may outlive
+/// that, and a device has to get zero force.
 class ServoHandle {
  public:
   ServoHandle(const std::shared_ptr<SharedScene>& scene, const ServoPlan& plan) {

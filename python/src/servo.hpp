@@ -15,7 +15,7 @@
 
 namespace palpate::python {
 
-/// What a servo is made with, beside its scene.
+/// Options to make a servo with, beside its scene.
 struct ServoPlan {
   std::string device = "simulated";  ///< or remote[:PATH], or a name that open_device() knows
   Trajectory hand = {};              ///< of a simulated device, world frame
@@ -52,7 +52,7 @@ class RunningServo {
   void open(const ServoPlan& plan);
   void simulate(const ServoPlan& plan);
 
-  static constexpr std::size_t kRoom = 16384;  // steps: 16 s at 1 kHz
+  static constexpr std::size_t kRoom = 16384;  // steps: 16 s at 1 kHz (judgement)
 
   std::shared_ptr<SharedScene> scene_;
   SteadyClock clock_;

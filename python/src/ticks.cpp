@@ -1,3 +1,4 @@
+// Turns servo states into rows of numpy record arrays.
 #include "ticks.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Aligns sources and checks whether their overlap determines the poses.
 #include "palpate/align/align.hpp"
 
 #include <fmt/core.h>
@@ -32,10 +33,10 @@ void Aligner::tell_fits(const Poses& poses, double reach, AlignedSource::Fit Ali
   }
 }
 
-// What is known of a direction has to be more than errors of the normals feign: a plane whose
-// normals scatter seems to hold along itself, too.
+// Requires more information along each direction than errors of the normals alone produce: a
+// plane with scattered normals seems to hold along itself, too.
 void Aligner::check_held(const Equations& e) const {
-  constexpr double kHeld = 2;  // as much again as is feigned
+  constexpr double kHeld = 2;  // times the information that scattered normals produce (judgement)
   const Index size = e.information.rows();
   const MatrixXd rounding = 1e-9 * e.information.trace() * MatrixXd::Identity(size, size);
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> held(e.information, e.doubt + rounding);

@@ -1,3 +1,4 @@
+// Samples surfaces, matches them, and solves for the poses of sources.
 #include "align/aligner.hpp"
 
 #include <fmt/core.h>
@@ -24,15 +25,16 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 namespace {
 
-constexpr std::size_t kSamples = 2000;  // of each source, up to twice as many
-constexpr std::size_t kStride = 8;      // samples are tried from all starts, one in so many
-constexpr std::size_t kEnough = 30;     // samples or matches
-constexpr float kTrusted = 0.5f;        // confidence of a normal
-constexpr double kAlike = 0.7071;       // cosine between normals of one surface
-constexpr double kTukey = 4.685;        // sigmas: 95 % as sharp as least squares on Gaussian noise
-constexpr double kGaussian = 1.4826;    // sigma over the median of absolute values
-constexpr double kTurn = 10 * std::numbers::pi / 180;  // that starts are apart
-constexpr double kShrink = 0.7;                        // reach, from step to step
+constexpr std::size_t kSamples = 2000;  // of each source, up to twice as many (judgement)
+constexpr std::size_t kStride = 8;   // one sample in so many is tried from all starts (judgement)
+constexpr std::size_t kEnough = 30;  // samples or matches (judgement)
+constexpr float kTrusted = 0.5f;     // confidence of a normal (judgement)
+// Cosine of 45 degrees between normals of one surface (docs/method.md 9)
+constexpr double kAlike = 0.7071;
+constexpr double kTukey = 4.685;  // sigmas: 95 % efficiency on Gaussian noise (docs/method.md 9)
+constexpr double kGaussian = 1.4826;  // sigma over the median of absolute values (derived)
+constexpr double kTurn = 10 * std::numbers::pi / 180;  // rad between starts (docs/method.md 9)
+constexpr double kShrink = 0.7;  // of the reach, from step to step (judgement)
 
 bool counts(const SurfacePoints& p, std::size_t i) {
   return newest(p.density_weights, p.end_density_weights)[i] > 0 &&
@@ -154,7 +156,7 @@ Equations Aligner::equations(const std::vector<Match>& matches, Moving moving, d
   const MatrixXd zero = MatrixXd::Zero(size, size);
   Equations e{zero, zero, zero, VectorXd::Zero(size)};
   limit = std::max({limit, kTukey * kGaussian * middle_height(matches), 1e-9 * size_});
-  // What is left over in one part of the scene errs together: four parts to its size.
+  // Residuals within one part of the scene are correlated; assume four parts to its size.
   std::map<std::array<int, 3>, VectorXd> parts;
   for (const Match& m : matches) {
     const double w = weight(m.height, limit);
@@ -184,7 +186,7 @@ Equations Aligner::equations(const std::vector<Match>& matches, Moving moving, d
   return {last(e.information), last(e.doubt), last(e.scatter), e.slope.tail(kept)};
 }
 
-// How far it moved, m.
+// Makes one step of the fit; returns how far the sources moved, m.
 double Aligner::step(Poses& poses, Moving moving, double reach, std::size_t stride) const {
   const Equations e =
       equations(matches(poses, moving, reach, stride), moving, reach > radius_ ? reach : 0);
@@ -199,7 +201,7 @@ double Aligner::step(Poses& poses, Moving moving, double reach, std::size_t stri
 }
 
 void Aligner::refine(Poses& poses, Moving moving, double reach, std::size_t stride) const {
-  constexpr int kFine = 20;  // steps, at R
+  constexpr int kFine = 20;  // steps at R (judgement)
   for (int fine = 0; fine < kFine; fine += reach <= radius_ ? 1 : 0) {
     const double moved = step(poses, moving, reach, stride);
     if (reach <= radius_ && moved < 1e-3 * radius_) break;

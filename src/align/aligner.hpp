@@ -25,7 +25,7 @@ struct Match {
   Vector6d doubt;  // what the row changes by with the normal of `from` in the other's stead
 };
 
-/// Of sources in their order: those before `begin` stay, those before `end` move, others wait.
+/// Range of sources that move: those before `begin` stay fixed, those from `end` on wait.
 struct Moving {
   std::size_t begin, end;
 };

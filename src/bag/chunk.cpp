@@ -1,3 +1,4 @@
+// Packs and unpacks the chunks of MCAP files, within limits.
 #include "bag/chunk.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +11,9 @@ namespace palpate::bag {
 
 namespace {
 
-constexpr std::uint64_t kHarmless = 16 << 20;  // bytes; an image of nothing packs well
-constexpr std::uint64_t kLargestRatio = 1000;
+// Bytes; an empty image may be packed any number of times (judgement)
+constexpr std::uint64_t kHarmless = 16 << 20;
+constexpr std::uint64_t kLargestRatio = 1000;  // unpacked over packed bytes (judgement)
 
 bool grows_beyond_reason(std::uint64_t size, std::uint64_t packed) {
   return size > kLargestChunk || (size > kHarmless && size / kLargestRatio > packed);

@@ -1,4 +1,4 @@
-// What stands behind the data of a file: all that a reader wants to know without reading them.
+// Writes the end of an MCAP file: the summary that a reader needs without reading the data.
 #include <algorithm>
 
 #include "bag/mcap_writer.hpp"

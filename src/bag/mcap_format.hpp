@@ -28,7 +28,7 @@ inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'M', 'C', 'A', 'P', '0
 inline constexpr std::size_t kRecordHead = 9;    ///< bytes
 inline constexpr std::size_t kMessageHead = 22;  ///< bytes of a message's content before its data
 inline constexpr std::size_t kFooter = kRecordHead + 20;   ///< bytes
-inline constexpr std::uint64_t kLargestChunk = 256 << 20;  ///< bytes before compression
+inline constexpr std::uint64_t kLargestChunk = 256 << 20;  ///< bytes before compression (judgement)
 
 enum class Op : std::uint8_t {
   header = 1,
@@ -48,7 +48,7 @@ enum class Op : std::uint8_t {
   data_end
 };
 
-/// How the messages of a channel are made up.
+/// Type of a channel's messages.
 struct Schema {
   std::string name;      ///< "sensor_msgs/msg/Image"; empty: a channel without schema
   std::string encoding;  ///< "ros2msg": `text` is what .msg files say
@@ -130,7 +130,7 @@ class Record {
   Record& text(std::string_view text) {
     return numbers(static_cast<std::uint32_t>(text.size())).bytes(view_of(text));
   }
-  /// What `fill` adds, behind its length.
+  /// Appends what `fill` writes, preceded by its length.
   Record& list(const std::function<void()>& fill) {
     numbers(std::uint32_t{0});
     const std::size_t begin = out_.size();

@@ -1,3 +1,4 @@
+// Merges the chunks of an MCAP file into one stream of messages in time order.
 #include "bag/mcap_reader.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace palpate::bag {
 
 namespace {
 
-constexpr std::uint64_t kMostLoaded = 1 << 30;  // bytes
+constexpr std::uint64_t kMostLoaded = 1 << 30;  // bytes of chunks in memory (judgement)
 
 }  // namespace
 
@@ -53,7 +54,7 @@ bool McapReader::next(Message& message) {
   return true;
 }
 
-// Of chunks that have the same time the one that comes first in the file, whichever began earlier.
+// Chunk with the earliest message; at equal times the one that comes first in the file.
 McapReader::Loaded* McapReader::soonest() {
   const auto time = [](const Loaded& chunk) {
     return std::pair(chunk.entries[chunk.next].time, chunk.place);

@@ -18,7 +18,7 @@ class McapReader {
   /// The same of a file that was looked at already: `contents` are a reader's of it.
   McapReader(std::string path, Contents contents);
 
-  /// What there is; `losses` grow as messages are read.
+  /// Contents of the file; `losses` grow as messages are read.
   [[nodiscard]] const Contents& contents() const { return contents_; }
 
   /// From now on next() gives only messages of channels that are `wanted`, from time `from` (ns)
@@ -34,7 +34,7 @@ class McapReader {
     return contents_.channels.at(message.channel);
   }
 
-  /// One of contents().attachments, with its data. @throws Error when it is damaged.
+  /// Reads one of contents().attachments with its data. @throws Error when it is damaged.
   [[nodiscard]] Attachment attachment(std::size_t index) const;
 
  private:

@@ -1,3 +1,4 @@
+// Finds the chunks, channels and schemas of an MCAP file, also of a damaged one.
 #include "bag/mcap_walk.hpp"
 
 #include <fmt/format.h>
@@ -11,11 +12,11 @@ namespace palpate::bag {
 
 namespace {
 
-constexpr std::uint64_t kLargestNote = 16 << 20;  // bytes of a schema, a channel, metadata
-constexpr std::uint64_t kAllNotes = 256 << 20;    // bytes of all of them
-constexpr std::uint64_t kLargestRun = 1 << 20;    // bytes of messages without chunk, read at once
-constexpr std::uint64_t kAttachmentHead = 64 << 10;  // bytes, of names mostly
-constexpr std::size_t kMostLosses = 20;
+constexpr std::uint64_t kLargestNote = 16 << 20;  // bytes of a schema or metadata (judgement)
+constexpr std::uint64_t kAllNotes = 256 << 20;    // bytes of all of them (judgement)
+constexpr std::uint64_t kLargestRun = 1 << 20;    // bytes outside chunks read at once (judgement)
+constexpr std::uint64_t kAttachmentHead = 64 << 10;  // bytes, mostly names (judgement)
+constexpr std::size_t kMostLosses = 20;              // losses listed (judgement)
 
 class Walk {
  public:
@@ -112,7 +113,7 @@ void Walk::take_summary(View summary) {
     if (op == Op::statistics) statistics = Fields(content);
   });
   if (statistics) take_statistics(*statistics);
-  // What nobody counted or described has to be looked at.
+  // Without statistics the summary is not trusted: scan the whole file.
   if (!counted_) known_.clear();
   sort_known();
 }
@@ -156,8 +157,7 @@ void Walk::take_statistics(Fields fields) {
   contents_.end = end;
 }
 
-// Those that lie one behind the other in the data. Others, which cannot all be true, are searched
-// for.
+// Keeps known chunks that do not overlap in the data; overlapping ones are searched for instead.
 void Walk::sort_known() {
   std::ranges::stable_sort(known_, {}, [](const Known& known) { return known.place.offset; });
   std::uint64_t at = kMagic.size();

@@ -9,7 +9,7 @@
 
 namespace palpate::bag {
 
-/// Where messages lie in a file: a chunk's record, or messages that stand in no chunk.
+/// Position of messages in a file: a chunk's record, or messages outside of chunks.
 struct ChunkPlace {
   std::uint64_t offset = 0;
   std::uint64_t length = 0;  ///< with the records' heads
@@ -26,7 +26,7 @@ struct AttachmentPlace {
   std::uint64_t size = 0;  ///< of its data, bytes
 };
 
-/// What a file says of itself.
+/// Contents of a file, as its records describe them.
 struct Contents {
   std::string profile;
   std::string library;

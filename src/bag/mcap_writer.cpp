@@ -1,3 +1,4 @@
+// Writes MCAP files whose ending is complete after every chunk.
 #include "bag/mcap_writer.hpp"
 
 #include <fcntl.h>
@@ -14,9 +15,10 @@ namespace palpate::bag {
 
 namespace {
 
-constexpr std::size_t kSmallEnding = 256 << 10;  // bytes
+constexpr std::size_t kSmallEnding = 256 << 10;  // bytes (judgement)
+// Bytes; leaves 16 MiB of a chunk for the rest (judgement)
 constexpr std::size_t kLargestMessage = kLargestChunk - (16 << 20);
-constexpr std::size_t kMostChannels = 65535;
+constexpr std::size_t kMostChannels = 65535;  // ids have 16 bits (derived)
 
 // Whether `now` is `span` or more behind `since`; what was earlier is not.
 bool is_over(std::uint64_t span, std::uint64_t since, std::uint64_t now) {
@@ -38,8 +40,9 @@ McapWriter::McapWriter(std::string path, const Options& options)
     : path_(std::move(path)), options_(options) {
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file_ < 0) {
-    throw Error(fmt::format("{}: cannot be made: {}; name a file in a folder that can be written",
-                            path_, std::strerror(errno)));
+    throw Error(
+        fmt::format("{}: cannot be created: {}; name a file in a folder that can be written", path_,
+                    std::strerror(errno)));
   }
   Bytes data(kMagic.begin(), kMagic.end());
   Record(data, Op::header).text(options_.profile).text("palpate");
@@ -126,7 +129,7 @@ void McapWriter::write_chunk() {
   std::uint64_t start = UINT64_MAX;
   std::uint64_t end = 0;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    // By time, and what came first of what has the same.
+    // Sorts by time, then by offset.
     std::ranges::sort(channels_[i].index);
     for (const auto& [time, offset] : channels_[i].index) {
       start = std::min(start, time);
@@ -236,7 +239,7 @@ void McapWriter::close() {
   if (::close(file) != 0) give_up(errno);
 }
 
-// What was written is on the disk, and the file is closed.
+// Writes the ending and flushes the file to disk.
 void McapWriter::sync() {
   if (!ended_ && !put(end_, ending(totals_, end_))) give_up(errno);
   ended_ = true;

@@ -10,8 +10,8 @@
 
 namespace palpate::bag {
 
-/// What a topic offers its readers when a bag is played, as rosbag2 writes it in YAML, in the
-/// numbers that all its versions read.
+/// Quality that a topic offers when the bag is played: rosbag2's YAML, in numbers that all its
+/// versions read.
 [[nodiscard]] std::string offered_qos(const message::Quality& quality);
 
 /// Writes a bag (profile ros2). After each chunk the file is closed with all that a reader wants to
@@ -80,11 +80,11 @@ class McapWriter {
     std::uint16_t schema = 0;
     std::uint64_t since = UINT64_MAX;  // the chunk that holds it
     std::uint32_t sequence = 0;
-    // Of the chunk that grows: log times and offsets of messages.
+    // Log times and offsets of messages in the growing chunk.
     std::vector<std::pair<std::uint64_t, std::uint64_t>> index;
   };
 
-  // What the file holds; of index_, so many bytes.
+  // Totals of the file so far; of index_, its length in bytes.
   struct Totals {
     std::uint64_t messages = 0;
     std::uint64_t start = UINT64_MAX;

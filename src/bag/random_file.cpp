@@ -1,3 +1,4 @@
+// Reads bytes at any offset of a regular file.
 #include "bag/random_file.hpp"
 
 #include <fcntl.h>

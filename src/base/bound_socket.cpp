@@ -1,3 +1,5 @@
+// Binds UNIX sockets that only their owner can use, and removes stale ones left by programs that
+// ended.
 #include "base/bound_socket.hpp"
 
 #include <fcntl.h>
@@ -22,11 +24,11 @@ namespace palpate {
 namespace {
 
 constexpr const char* kFolder = "the folder must exist and belong to you";
-constexpr std::chrono::milliseconds kTurn{20};
-constexpr int kTries = 50;
-constexpr int kBacklog = 8;  // connections that wait to be accepted
+constexpr std::chrono::milliseconds kTurn{20};  // between tries for the folder's lock (judgement)
+constexpr int kTries = 50;                      // for the folder's lock: 1 s in all (judgement)
+constexpr int kBacklog = 8;                     // connections that wait to be accepted (judgement)
 
-// Who wants to listen where.
+// Names the listener and its path, for messages.
 struct Place {
   std::string_view what;
   const std::string& path;
@@ -68,8 +70,7 @@ int open_socket(const Place& place, int type) {
   return handle;
 }
 
-// One program at a time may look whether a path is free and take it: a lock on its folder, which
-// leaves nothing behind.
+// Lets one program at a time check and take a path: locks its folder, which leaves nothing behind.
 class Turn {
  public:
   explicit Turn(const Place& place) {

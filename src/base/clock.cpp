@@ -1,3 +1,4 @@
+// Reads and waits on CLOCK_MONOTONIC, and reads a thread's CPU time.
 #include "palpate/base/clock.hpp"
 
 #include <cerrno>

@@ -43,8 +43,8 @@ class Latest {
 
   /// A copy of the newest value; none when the writer was faster than kTries looks. Wait-free.
   [[nodiscard]] std::optional<T> look() const noexcept {
-    // As in Handoff: the pin is visible before the second look at `newest_`, and the writer moves
-    // `newest_` on before it looks at pins; only sequential consistency orders the two.
+    // The pin is visible before the second look at `newest_`, and the writer moves `newest_` on
+    // before it looks at pins; only sequential consistency orders the two (as in Handoff).
     for (int i = 0; i < kTries; ++i) {
       const std::size_t at = newest_.load();
       const Slot& slot = slots_[at];
@@ -81,7 +81,8 @@ class Latest {
   std::atomic<std::uint64_t> generation_{0};
 };
 
-/// What was set since it was seen last; `seen` is what the caller keeps, from 0 on. Real-time.
+/// The newest value if it was set after generation `seen`, which the caller keeps, from 0 on.
+/// Real-time.
 template <class T>
 [[nodiscard]] std::optional<T> news(const Latest<T>& latest, std::uint64_t& seen) noexcept {
   const std::uint64_t generation = latest.generation();

@@ -1,3 +1,4 @@
+// Provides the degree, and random numbers that are the same on every platform.
 #pragma once
 
 #include <cmath>

@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// What the options of one thing have to be: `const Requirement require{"guard"};`, then a call for
-/// each number.
+/// Checks the options of one thing: `const Requirement require{"guard"};`, then a call for each
+/// number.
 struct Requirement {
   std::string_view what;  ///< the thing
 

@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-// What the loader says of a name that it does not find.
+// Recognises the loader's message for a library that does not exist.
 bool is_absent(const std::string& name, const std::string& reason) {
   return reason.starts_with(name + ": cannot open shared object file");
 }

@@ -17,8 +17,8 @@ struct Endpoint {
   bool stays = false;  ///< transient local
 };
 
-/// What is known by now, by topic: a participant learns it in the first second or so. Topics of
-/// ROS's services and actions are left out. Any thread but a servo's.
+/// Endpoints discovered so far, by topic; discovery takes a second or so. Leaves out the topics of
+/// ROS's services and actions. Any thread but a servo's.
 [[nodiscard]] std::vector<Endpoint> endpoints(const Participant& participant);
 
 }  // namespace palpate::dds

@@ -1,3 +1,4 @@
+// Turns ROS's environment variables into Cyclone DDS's configuration.
 #include "dds/domain.hpp"
 
 #include <dds/dds.h>
@@ -12,8 +13,10 @@
 namespace palpate::dds {
 namespace {
 
-constexpr std::uint32_t kLargestDomain = 232;    // whose ports are below 65536
-constexpr std::size_t kReceiveBuffer = 4 << 20;  // bytes; a depth image comes as a burst of packets
+// Ports of higher domains exceed 65535 (derived, DDSI-RTPS 9.6.1)
+constexpr std::uint32_t kLargestDomain = 232;
+// Bytes; a depth image is a burst of packets (judgement)
+constexpr std::size_t kReceiveBuffer = 4 << 20;
 // Participants of one machine that find one another without multicast.
 constexpr int kParticipants = 32;
 

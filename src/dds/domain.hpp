@@ -6,7 +6,7 @@
 
 namespace palpate::dds {
 
-/// Who is told of what palpate publishes and wants.
+/// Machines that can see palpate's topics.
 enum class Range {
   localhost,  ///< programs on this machine
   subnet,     ///< all that the network's multicast reaches
@@ -19,8 +19,8 @@ struct DomainOptions {
   bool own_settings = true;  ///< false: CYCLONEDDS_URI says how the domain is set up
 };
 
-/// As the environment says: ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE,
-/// ROS_STATIC_PEERS, CYCLONEDDS_URI.
+/// Reads options from the environment: ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY,
+/// ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, CYCLONEDDS_URI.
 /// @throws Error that names a variable whose value makes no sense.
 [[nodiscard]] DomainOptions options_from(
     const std::function<std::optional<std::string>(const char*)>& environment);

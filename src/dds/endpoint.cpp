@@ -79,7 +79,8 @@ RawReader::RawReader(const Participant& participant, const TopicType& topic, con
   dds_delete(made);  // the reader holds it
   if (reader_ < 0) throw failure(topic, reader_);
   waits_ = dds_create_waitset(participant.entity());
-  // As long as a message waits; the reader's own status would tell of each new one only.
+  // A read condition triggers while a message waits; the reader's status triggers only for new
+  // ones.
   dds_waitset_attach(waits_, dds_create_readcondition(reader_, DDS_ANY_STATE), 0);
 }
 

@@ -1,3 +1,4 @@
+// Implements a DDS type whose values are encoded bytes, as Cyclone wants it.
 #include "dds/payload.hpp"
 
 #include <dds/ddsi/q_radmin.h>

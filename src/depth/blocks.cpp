@@ -1,3 +1,4 @@
+// Averages pixels into 2 x 2 blocks, rejects flying pixels, and fills gaps within one surface.
 #include "depth/blocks.hpp"
 
 #include <algorithm>
@@ -8,10 +9,11 @@
 namespace palpate::depth {
 namespace {
 
-constexpr float kHalfDiagonal = .7F;  // pixels from a block's middle to its pixels'
-constexpr double kSteepest =
-    2.75;  // tangent of the incidence up to which neighbours count as close
-constexpr int kSupporters = 2;
+// Pixels from a block's middle to its pixels' middles: sqrt(2) / 2 (derived)
+constexpr float kHalfDiagonal = .7F;
+// Tangent of the incidence up to which neighbours count as close
+constexpr double kSteepest = 2.75;
+constexpr int kSupporters = 2;  // of eight neighbours; fewer: a flying pixel (docs/method.md 6.3)
 constexpr float kStraight = 7.3F;  // 3 sigma of a - 2 b + c
 
 simd::BlockLimits limits_of(const NoiseModel& noise, const BlockGrid& grid) {

@@ -13,7 +13,7 @@
 
 namespace palpate::depth {
 
-/// Where the 2x2 blocks of an undistorted image look: the block (column, row) looks along
+/// Rays of the 2x2 blocks of an undistorted image: block (column, row) looks along
 /// (x(column), y(row), 1).
 struct BlockGrid {
   int columns = 0;
@@ -66,8 +66,8 @@ void for_rows(const BlockGrid& grid, const Body& body) {
                         [&](std::size_t row) { body(static_cast<int>(row)); });
 }
 
-/// What depths of one surface may differ by: three deviations of a pixel, and what `pixels` between
-/// them make of a surface that is seen at an incidence of 72 degrees.
+/// Largest difference of depths on one surface: three deviations of a pixel, plus the slope over
+/// `pixels` of a surface seen at an incidence of 72 degrees.
 [[nodiscard]] inline simd::DepthGate depth_gate(const BlockGrid& grid, float pixels,
                                                 const NoiseModel& noise,
                                                 const DepthFilterOptions& range) {
@@ -112,7 +112,7 @@ void average_blocks(const float* image, int width, const NoiseModel& noise,
   return std::min(0.5 * correlation, 1.0);
 }
 
-/// By how much the variance of a mean of many blocks is larger than if they erred alone.
+/// Ratio of the variance of a mean of many blocks to that of independent blocks.
 [[nodiscard]] inline double shared_error(double correlation) {
   return std::max(0.25 * correlation * correlation, 1.0);
 }
@@ -130,9 +130,9 @@ void average_blocks(const float* image, int width, const NoiseModel& noise,
   return static_cast<float>(block_share(noise.correlation) * (pixel > 0 ? pixel : 0));
 }
 
-/// What is known of each block of one frame, in the sensor's frame, before it becomes points: what
-/// the fits write, the temporal filter changes and the output is made from. Row by row; all columns
-/// have grid.size() entries, those of empty blocks mean nothing.
+/// Results for each block of one frame, in the sensor's frame: the fits write them, the temporal
+/// filter changes them, the output is made from them. Row by row; all columns have grid.size()
+/// entries, those of empty blocks mean nothing.
 ///
 /// Along the ray (x, y, 1) of a block its inverse depth is `rho`; near it, it is
 /// rho + slope_x (x' - x) + slope_y (y' - y). A plane is exactly that: its points p keep
@@ -147,7 +147,7 @@ struct BlockFits {
   std::vector<float> slope_variance;  ///< of either slope (the larger one), 1/m^2
   std::vector<float> confidences;     ///< of the slopes, 0-1; 0: they are unknown and 0
 
-  // Of fitted blocks:
+  // Fitted blocks only:
   std::vector<std::uint8_t> flat;     ///< is it a plane over its window?
   std::vector<std::uint8_t> reach_u;  ///< blocks to the side of the largest window; 0: no edge near
   std::vector<std::uint8_t> reach_v;  ///< and to its top
@@ -165,7 +165,7 @@ struct BlockFits {
     }
   }
 
-  /// Where a row begins in each of the columns.
+  /// Pointers to the start of a row in each column.
   [[nodiscard]] simd::FitRow row(int row) {
     const std::size_t i = grid.index(0, row);
     return {reinterpret_cast<std::uint8_t*>(&states[i]),
@@ -181,7 +181,7 @@ struct BlockFits {
   }
 };
 
-/// How far a neighbouring block's inverse depth may differ on the same surface.
+/// Decides from inverse depths whether neighbouring blocks show the same surface.
 struct SameSurface {
   static constexpr float kClose = 4.3F;  ///< 3 sigma of the difference of two blocks
 

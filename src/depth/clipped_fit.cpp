@@ -1,3 +1,4 @@
+// Fits a plane to the blocks of a window that lie within given halves of the image.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -9,10 +10,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kStrips = 8;            // into which a window is cut
-constexpr double kFewestBlocks = 25;  // blocks
-constexpr double kExplained = 18;     // 2 x 3^2: three deviations of chi^2
-constexpr double kBent = 12;          // what noise makes of three terms, three deviations up
+constexpr int kStrips = 8;            // strips that a window is cut into (judgement)
+constexpr double kFewestBlocks = 25;  // blocks; fewer fit no plane (judgement)
+constexpr double kExplained = 18;     // 2 x 3^2: three deviations of chi^2 (docs/method.md 6.3)
+// Times what noise bends a plane, three deviations up (docs/method.md 6.3)
+constexpr double kBent = 12;
 
 // Sums over blocks of the products of 1, u, v, u^2, u v, v^2, and of these times inverse depth.
 struct Sums {
@@ -22,7 +24,7 @@ struct Sums {
   double counts = 0;
 };
 
-// Of u^0 to u^4 over from ... to.
+// Sums of u^0 to u^4 over from ... to.
 std::array<double, 5> powers(int from, int to) {
   const double n = to - from + 1;
   const double c = 0.5 * (from + to);
@@ -57,7 +59,7 @@ void add_strip(const simd::WindowTable& table, int column, int row, const int (&
   }
 }
 
-// Of strips that are as wide as their first and last rows allow.
+// Sums over strips, each as wide as its first and last rows allow.
 Sums sum_strips(const simd::WindowTable& table, int column, int row, int reach_u, int reach_v,
                 std::span<const HalfImage> halves) {
   const int top = -std::min(reach_v, row);

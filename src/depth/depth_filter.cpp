@@ -26,7 +26,7 @@ constexpr float kMostGrazing = 10;
 // A fit may leave the range of measured depths by this share.
 constexpr double kBeyond = 0.25;
 
-// What some blocks of a row become, in columns for the compiler to take several side by side.
+// Outputs of some blocks of a row, in columns so that the compiler can vectorise.
 struct Part {
   static constexpr int kMost = 64;
   float x[kMost], z[kMost], normal_x[kMost], normal_y[kMost], normal_z[kMost];

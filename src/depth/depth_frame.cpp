@@ -1,3 +1,4 @@
+// Converts 16-bit depths to metres, and recovers the camera of an organised cloud from its points.
 #include "palpate/depth/depth_frame.hpp"
 
 #include <fmt/format.h>
@@ -47,7 +48,7 @@ using Eigen::Vector3d;
 constexpr double kClose = 0.05;  // rms of an image's points, pixels; real ones have 4e-3 at most
 constexpr double kOutlying = 3;  // times the rms: such a point was moved
 constexpr double kFewestKept = 0.99;  // share of points that are where they were seen
-constexpr int kMostRounds = 10;
+constexpr int kMostRounds = 10;       // of the fit (judgement)
 
 // A point as the camera would see it.
 struct Sight {
@@ -116,7 +117,7 @@ Matrix3d turn_of(const std::vector<Sight>& sights, double size) {
   return turn;
 }
 
-// How far from its pixel the lens sees a point, pixels, squared.
+// Squared distance between a point's projection and its pixel, pixels^2.
 double squared_error(const Lens& lens, const Sight& s) {
   const Vector3d p = lens.turn * s.ray;
   if (!(p.z() > 0)) return std::numeric_limits<double>::infinity();

@@ -1,3 +1,4 @@
+// Refits blocks beside an edge, each from the blocks of its own face alone.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
@@ -11,16 +12,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kTile = 4;  // blocks; the middle one looks
+constexpr int kTile = 4;  // blocks; the middle one looks (docs/method.md 6.4)
 constexpr int kWays[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
-constexpr int kAround = 2;   // tiles to each side whose faces are shared
-constexpr int kBehind = 4;   // blocks from where a face ends to one that shows what is beyond
-constexpr int kLook = 2;     // blocks around where two faces meet that both have to explain
-constexpr int kFarLook = 6;  // and better than one bent surface does
-constexpr double kTurnedSquare = 0.5;  // of the cosine of 45 degrees: what turns less may be round
-constexpr double kSurelyAhead = 9;     // three deviations
-constexpr double kOffFace = 16;        // four
-constexpr double kLessSure = 2;  // a plane whose slopes vary so many times more tells nothing new
+constexpr int kAround = 2;  // tiles to each side that share faces: ten blocks (docs/method.md 6.4)
+constexpr int kBehind = 4;  // blocks from a face's end to one that shows what is beyond (judgement)
+constexpr int kLook = 2;    // blocks around the meeting line: 5 x 5 (docs/method.md 6.4)
+constexpr int kFarLook = 6;  // blocks; largest reach of the paraboloid (judgement)
+// Squared cosine of 45 degrees; less may be round (docs/method.md 6.4)
+constexpr double kTurnedSquare = 0.5;
+// Nine variances by which a paraboloid has to fit better (docs/method.md 6.4)
+constexpr double kSurelyAhead = 9;
+constexpr double kOffFace = 16;  // four deviations, squared (docs/method.md 6.4)
+// Ratio of slope variances; a plane this vague adds nothing (judgement)
+constexpr double kLessSure = 2;
 
 FacePlane face_plane(const BlockFits& fits, int column, int row) {
   const std::size_t i = fits.grid.index(column, row);
@@ -31,7 +35,7 @@ FacePlane face_plane(const BlockFits& fits, int column, int row) {
           fits.variance[i], slope_variance};
 }
 
-// Of any length.
+// Normal of the plane, not normalised.
 Vector3d direction_of(const BlockGrid& grid, const FacePlane& plane) {
   const double x = plane.x / grid.step_x;
   const double y = plane.y / grid.step_y;
@@ -128,7 +132,7 @@ struct FaceFits::Search {
     return true;
   }
 
-  // What both planes leave of the blocks that were measured around one, cut off at four deviations.
+  // Residuals of both planes at the measured blocks around one, cut off at four deviations.
   struct Left {
     int count = 0;
     double sum = 0;

@@ -1,3 +1,4 @@
+// Checks frames and options of the depth filter, and removes the lens's distortion from images.
 #include "depth/input.hpp"
 
 #include <fmt/format.h>

@@ -48,7 +48,7 @@ class Undistorter {
     float across = 0;         // to the pixel beside, pixels: 0 to 0.5
     float down = 0;
 
-    /// What it shows, m; 0: nothing in range.
+    /// Depth at this place of the image, m; 0: nothing in range.
     [[nodiscard]] float depth_in(const float* image, const simd::DepthGate& gate) const;
   };
 
@@ -64,7 +64,7 @@ class Undistorter {
 /// x, y? From where it does not, the model means nothing.
 [[nodiscard]] bool is_in_lens(const CameraModel::Distortion& distortion, double x, double y);
 
-/// Where a camera with `distortion` sees the normalised image coordinates x, y.
+/// Normalised image coordinates.
 struct ImagePoint {
   double x = 0;
   double y = 0;

@@ -1,3 +1,4 @@
+// Fits the curve of noise over depth to measured samples, robustly.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,10 +9,12 @@
 namespace palpate::depth {
 namespace {
 
-constexpr double kNarrow = 1.25;   // farthest over nearest: below, the prior's shape is kept
-constexpr int kCurveRounds = 5;    // of reweighting
-constexpr int kDescents = 200;     // of the terms, one after the other
-constexpr double kOutlier = 0.15;  // relative error from which on a sample counts less
+// Farthest over nearest; below, the prior's shape is kept (judgement)
+constexpr double kNarrow = 1.25;
+constexpr int kCurveRounds = 5;  // of reweighting (judgement)
+constexpr int kDescents = 200;   // of the terms, one after the other (judgement)
+// Relative error where a sample's weight halves (docs/method.md 6.2)
+constexpr double kOutlier = 0.15;
 
 using Curve = std::array<double, 3>;  // s0, s1, s2
 

@@ -1,3 +1,4 @@
+// Measures the noise of one frame from flat windows spread over the image.
 #include <algorithm>
 #include <cmath>
 
@@ -6,12 +7,13 @@
 namespace palpate::depth {
 namespace {
 
-constexpr double kWindows = 256;
-constexpr std::size_t kFewest = 4;       // windows that make a sample
-constexpr float kAlike = 1.4F;           // log of variances: half of them lie within a factor of 4
-constexpr float kFlat = 2;               // variances up to this times the sample's are noise
+constexpr double kWindows = 256;    // of one size in an image, about (judgement)
+constexpr std::size_t kFewest = 4;  // windows that make a sample (judgement)
+// Log of variances: half of them lie within a factor of 4 (judgement)
+constexpr float kAlike = 1.4F;
+constexpr float kFlat = 2;  // variances up to this times the sample's are noise (judgement)
 constexpr double kMedianOfFour = 0.839;  // of the mean of four squares that are 1 in the mean
-constexpr double kMissing = 0.125;       // share of the noise that a size may take for shape
+constexpr double kMissing = 0.125;  // share of the noise that a size may take for shape (judgement)
 
 // Windows of twice the size find more by some factor; infinite ones, by this power of it more. For
 // Gaussian correlation over up to a tenth of the size it leaves 6 % of n_c to be wished for at
@@ -51,7 +53,7 @@ std::vector<NoiseWindow> lay_noise_windows(int width, int height) {
   return windows;
 }
 
-// Of orthonormal terms each takes the noise's power at its own wavelength.
+// Each orthonormal term takes the noise's power at its own wavelength.
 double NoiseSurvey::Level::missing(int size) const {
   return NoiseFit::kTerms * power / (size * size);
 }
@@ -98,7 +100,7 @@ void NoiseSurvey::find_power(std::span<const SeenNoise> windows, std::size_t lev
   levels_[level].power = *middle / kMedianOfFour;
 }
 
-// By how much variances are larger in windows of another size, where both are known; 0: nowhere.
+// Ratio of the variances in windows of two sizes, where both are known; 0: nowhere.
 double NoiseSurvey::growth(std::size_t from, std::size_t to) const {
   double sum = 0;
   double weights = 0;

@@ -1,3 +1,4 @@
+// Learns a camera's noise model over many frames.
 #include "depth/noise_tracker.hpp"
 
 #include <algorithm>
@@ -11,11 +12,11 @@
 namespace palpate::depth {
 namespace {
 
-constexpr std::size_t kShares = 128;  // frames in which all windows are looked at
+constexpr std::size_t kShares = 128;  // frames in which all windows are visited once (judgement)
 constexpr std::size_t kPatience = 8;  // frames after which something is concluded
-constexpr double kNoteworthy = 0.1;   // relative change that is handed out
-constexpr double kPattern = 4;        // times what frames differ by; what is more is shape
-constexpr double kMoved = 1.25;       // times the noise: what frames differ by then is motion
+constexpr double kNoteworthy = 0.1;   // relative change that is reported (judgement)
+constexpr double kPattern = 4;  // times the frames' differences; more is shape (docs/method.md 6.2)
+constexpr double kMoved = 1.25;  // times the noise; larger differences are motion (judgement)
 // c, at least: windows grow in steps, and where pixels err alone some stop early by chance.
 constexpr double kLeastCorrelation = 1.15;
 constexpr float kSmallStep = 1e-6F;  // of the depth: rounding of floats is no step
@@ -124,7 +125,7 @@ void NoiseTracker::State::look(const DepthView& frame, std::size_t window) {
   to.noise = {noise.variance * square + more, noise.power * square + more, noise.mean};
 }
 
-// Where the scene stands still the difference of two frames is noise, whatever the shape.
+// In a static scene the difference of two frames is noise, whatever the shape.
 void NoiseTracker::State::compare(const DepthView& frame) {
   std::size_t at = 0;
   for (std::size_t w = turn; w < windows.size() && at < before.size(); w += kShares) {
@@ -145,14 +146,14 @@ void NoiseTracker::State::compare(const DepthView& frame) {
   }
 }
 
-// What the next frame will be compared with.
+// Keeps values to compare the next frame with.
 void NoiseTracker::State::keep(const DepthView& frame) {
   turn = (turn + 1) % kShares;
   before.clear();
   for (std::size_t w = turn; w < windows.size(); w += kShares) append(frame, windows[w], before);
 }
 
-// What differences of frames say; nothing, as long as too few of large windows are among them.
+// Samples from differences of frames; none while too few large windows are among them.
 std::span<const NoiseSample> NoiseTracker::State::changes() const {
   const SurveyedNoise& noise = of_differences.noise();
   return std::span(noise.samples).first(noise.whole ? noise.samples.size() : 0);

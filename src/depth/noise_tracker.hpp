@@ -20,7 +20,7 @@ inline constexpr int kNoiseBins = 32;
   return std::clamp(static_cast<int>(std::floor(4 * std::log2(z / 0.1))), 0, kNoiseBins - 1);
 }
 
-/// What is measured at one depth.
+/// Noise measured at one depth.
 struct NoiseSample {
   double z = 0;       ///< m
   double sigma = 0;   ///< m
@@ -34,7 +34,7 @@ struct NoiseSample {
 [[nodiscard]] NoiseModel fit_noise_curve(std::span<const NoiseSample> samples,
                                          const NoiseModel& prior);
 
-/// What a quadratic surface leaves of a square of values, in squares of their unit.
+/// Residual of a quadratic fit to a square of values, in squares of their unit.
 struct WindowNoise {
   float variance = 0;  ///< of one value; 0: they are too few, show no one surface, or do not vary
   /// Mean square of the four cubic terms' coefficients, orthonormal: the variance of one value if
@@ -89,14 +89,14 @@ inline constexpr std::array<int, 3> kNoiseSizes{10, 20, 40};
 /// Some 256 windows of each size, all over the image.
 [[nodiscard]] std::vector<NoiseWindow> lay_noise_windows(int width, int height);
 
-/// What one window showed.
+/// Noise measured in one window.
 struct SeenNoise {
   std::size_t level = 0;
   float z = 0;        ///< m; 0: no surface
   WindowNoise noise;  ///< of depths, m^2; variance 0: less than what the sensor can tell
 };
 
-/// What all of them say.
+/// Noise measured in all windows.
 struct SurveyedNoise {
   std::vector<NoiseSample> samples;  ///< by depth; none: too little could be used
   double shared = 1;                 ///< n_c: over how many pixels the noise's correlation sums up
@@ -112,7 +112,7 @@ class NoiseSurvey {
   [[nodiscard]] const SurveyedNoise& noise() const { return noise_; }
 
  private:
-  /// What windows of one size say.
+  /// Noise measured in windows of one size.
   struct Level {
     std::array<NoiseSample, kNoiseBins> bins{};  // weight 0: nothing
     double power = 0;  // of the cubic terms, over the variance; 0: nothing is known

@@ -1,3 +1,4 @@
+// Averages each block over time, and restarts it when the surface changes.
 #include "depth/temporal_filter.hpp"
 
 #include <algorithm>
@@ -8,20 +9,21 @@
 namespace palpate::depth {
 namespace {
 
-constexpr std::size_t kBlocksAtATime = 4096;
-constexpr float kLonger = 8;        // times the memory, at most
-constexpr int kCalmFrames = 2;      // after which a moving block stands still
-constexpr float kLearn = 1 / 16.F;  // share of a frame in the scatter that frames show
+constexpr std::size_t kBlocksAtATime = 4096;  // blocks that a thread takes at once (judgement)
+constexpr float kLonger = 8;                  // times the memory, at most (docs/method.md 6.6)
+constexpr int kCalmFrames = 2;  // calm frames after which a moving block rests (docs/method.md 6.6)
+constexpr float kLearn = 1 / 16.F;  // share of a frame in the learned scatter (docs/method.md 6.6)
 
-// Of a variance, what the scatter comes to by chance: five deviations more. A product of two moves
-// has the variance 5 s^4, and s^4 in common with the next; the running mean has 1/31 of the 7.
+// Times a variance: five deviations above it, which scatter does not reach by chance. A product of
+// two moves has the variance 5 s^4, and s^4 in common with the next; the running mean has 1/31 of
+// the 7 (derived).
 constexpr float kSure = 3.4F;
 
 float squared(float x) {
   return x * x;
 }
 
-/// One frame's block.
+/// Measurement of a block in one frame.
 struct Measured {
   float rho, variance, slope_x, slope_y, slope_variance, confidence;
   FilteredDepth::State state;
@@ -46,10 +48,9 @@ void restart(const Measured& now, BlockMemory& m) {
   m.state = now.state;
 }
 
-/// How far frames of one surface scatter, which is more than their variances say where the fit's
-/// window depends on the noise and where rims are seen now so and now so. Of what stands still
-/// under noise of variance s^2 two moves in a row have the mean product -s^2; of what moves on,
-/// v^2.
+/// Learns the scatter between frames of one surface. It exceeds their variances where the fit's
+/// window depends on the noise and where rims flicker. For a still surface under noise of variance
+/// s^2, two successive moves have the mean product -s^2; for one that moves by v, v^2.
 void learn_scatter(const Measured& now, BlockMemory& m) {
   const bool sloped = now.confidence > 0;
   const float values[] = {now.rho, sloped ? now.slope_x : m.last[1],
@@ -118,7 +119,7 @@ void average(const Measured& now, int memory, BlockMemory& m) {
 // Takes the frame as it is: whatever lags behind what moves is felt.
 void follow(const Measured& now, float gate2, BlockMemory& m) {
   const float d = now.rho - m.rho;
-  // Of what comes slowly, each frame alone looks calm.
+  // A surface that approaches slowly looks calm in each single frame.
   const float way = std::max(std::abs(d), std::abs(now.rho - m.calm_since));
   const bool calm = squared(way) <= gate2 * (m.variance + now.variance);
   const std::uint8_t calm_frames = calm ? m.calm + 1 : 0;
@@ -136,7 +137,7 @@ void step(Measured now, const TemporalOptions& options, float gate2, BlockMemory
   const float moves = another_surface(std::max(now.rho, m.rho));
   const bool another =
       m.count == 0 || squared(d) > std::max(squared(moves), gate2 * (m.variance + now.variance));
-  // What the gate lets through does not reach another surface.
+  // Caps the scatter, so that the gate does not admit another surface.
   now.variance = believed(now.variance, std::min(m.scatter, squared(moves) / (2 * gate2)));
   now.slope_variance = believed(now.slope_variance, m.slope_scatter);
   if (another || m.state != now.state) {

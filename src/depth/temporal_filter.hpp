@@ -10,7 +10,7 @@
 
 namespace palpate::depth {
 
-/// What the filter over time remembers of one block; see BlockFits for the columns.
+/// Memory of one block in the filter over time; see BlockFits for the columns.
 struct BlockMemory {
   float rho = 0;             ///< mean inverse depth, 1/m
   float variance = 0;        ///< of one frame's rho, 1/m^2: of the mean it is variance / count
@@ -79,8 +79,8 @@ struct TemporalOptions {
   int hold = 10;            ///< frames for which a block that is not measured is remembered
 };
 
-/// What suits a sensor: G = 5, and 7 where pixels err together (c > 2), since the variances of fits
-/// tell less then.
+/// Options that suit a sensor: G = 5, or 7 if pixels are correlated (c > 2), since the variances of
+/// fits tell less then.
 [[nodiscard]] TemporalOptions temporal_options(int memory, double correlation, double normal_error);
 
 /// The filter over time, after the fit, a block at a time: what stands
@@ -98,7 +98,7 @@ class TemporalFilter {
 
   void reset();
 
-  /// What is remembered, an entry a block; `missed` frames ago where that is not 0.
+  /// Memory of each block; seen `missed` frames ago if that is not 0.
   [[nodiscard]] std::span<const BlockMemory> memory() const { return memory_; }
 
  private:

@@ -1,3 +1,4 @@
+// Moves remembered planes into the view of a camera that has moved.
 #include <algorithm>
 #include <cmath>
 
@@ -9,10 +10,13 @@ namespace {
 using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
-constexpr float kWarpReach = 0.75F;  // blocks from a piece's middle to the blocks it is offered to
-constexpr float kInflation = 0.1F;   // share of the mean's variance that each move adds
-constexpr float kContinuous = 0.1F;  // of another surface's distance, between neighbours
-constexpr float kGrazing = 0.02F;    // n.ray / |ray|: planes seen closer to edge-on are given up
+// Blocks from a piece's middle to those it is offered to (judgement)
+constexpr float kWarpReach = 0.75F;
+constexpr float kInflation = 0.1F;  // share of the mean's variance that each move adds (judgement)
+// Share of another surface's distance, between neighbours (judgement)
+constexpr float kContinuous = 0.1F;
+// n.ray / |ray|; planes closer to edge-on are dropped (judgement)
+constexpr float kGrazing = 0.02F;
 
 /// A plane as the vector a with a.p = 1 for its points p.
 Vector3f plane_of(const BlockMemory& m, float x, float y) {
@@ -42,7 +46,7 @@ float seen_at(const Vector3f& plane, float x, float y) {
   return clear ? rho : 0.0F;
 }
 
-/// How the slopes change from block to block: what keeps round things round when their pieces are
+/// Change of the slopes from block to block; it keeps curved surfaces curved when their pieces are
 /// cut beside their middles.
 struct Bend {
   float xx = 0, yy = 0, xy = 0;  // 1/m
@@ -98,7 +102,7 @@ void TemporalWarp::offer(const Claim& claim, std::size_t block) {
   held = claim;
 }
 
-// To the blocks next to its middle, at column c and row r.
+// Offers a piece to the blocks next to its middle, at column c and row r.
 void TemporalWarp::offer_around(const BlockGrid& grid, std::int32_t from, float rho, float c,
                                 float r) {
   const bool inside =

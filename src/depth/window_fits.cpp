@@ -1,3 +1,4 @@
+// Fits a plane to each block's window, in the region that is asked for.
 #include "depth/window_fits.hpp"
 
 #include <algorithm>
@@ -109,7 +110,7 @@ namespace {
 
 constexpr std::size_t kRowsAtATime = 8;
 
-// How far windows beside a block may reach.
+// Largest reach, in blocks, of windows beside a block.
 constexpr int kBorder = 2 * simd::kLargestWindow;
 
 simd::BlockRows rows_of(const Blocks& blocks) {

@@ -19,7 +19,7 @@ struct HalfImage {
   double at, x, y;
 
   [[nodiscard]] double above(int u, int v) const { return at + x * u + y * v; }
-  /// By how much that changes across a block.
+  /// Change of that across a block.
   [[nodiscard]] double block() const { return std::abs(x) + std::abs(y); }
 };
 
@@ -47,8 +47,8 @@ struct FacePlane {
                                                    int reach_u, int reach_v,
                                                    std::span<const HalfImage> halves);
 
-/// What the paraboloid through all blocks up to `reach` around the middle of `near` leaves of them:
-/// a sum of squares, 1/m^2. None where one is a hole.
+/// Residual of the paraboloid through all blocks up to `reach` around the middle of `near`: a sum
+/// of squares, 1/m^2. nullopt if one is a hole.
 [[nodiscard]] std::optional<double> left_by_paraboloid(const simd::FitInput& input,
                                                        const FacePlane& near, int reach);
 
@@ -94,12 +94,12 @@ class FaceFits {
   std::vector<Face> faces_;
 };
 
-/// Which blocks are to be fitted: all, or those whose points lie in one of a few balls.
+/// Selects the blocks to fit: all, or those whose points lie in one of a few balls.
 class FitRegion {
  public:
   /// Everything.
   void set(const BlockGrid& grid);
-  /// What lies in the balls (world frame).
+  /// Selects the blocks in the balls (world frame).
   void set(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor,
            std::span<const Ball> balls);
 

@@ -1,3 +1,4 @@
+// Sends and receives datagrams over a UNIX socket without waiting.
 #include "device/datagram_socket.hpp"
 
 #include <sys/socket.h>

@@ -1,3 +1,4 @@
+// Chooses scale, stiffness and region for exploring a scene by a simulated hand.
 #include "palpate/device/exploration.hpp"
 
 #include <algorithm>
@@ -22,14 +23,15 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kReach = 0.3;          // m across that a hand on a desk reaches
-constexpr double kPatch = 0.6;          // m across that a hand explores in some seconds ...
-constexpr double kPatchRadii = 20;      // ... or, where that is more, as many R
-constexpr double kDepth = 0.75;         // R under the surface
-constexpr double kLargestForce = 4;     // N
-constexpr double kPaperMultiple = 2.5;  // m = R / s where s is not known
-constexpr float kUpward = 0.7F;         // of a normal's z: it looks up, give or take 45 degrees
-constexpr double kStandoff = 2e-3;      // m of the hand, from the surface to where a device is put
+constexpr double kReach = 0.3;          // m across; reach of a hand on a desk (judgement)
+constexpr double kPatch = 0.6;          // m across; explored in some seconds ... (judgement)
+constexpr double kPatchRadii = 20;      // ... or, if that is more, so many R (judgement)
+constexpr double kDepth = 0.75;         // R under the surface (judgement)
+constexpr double kLargestForce = 4;     // N (judgement)
+constexpr double kPaperMultiple = 2.5;  // m = R / s if s is unknown: the paper's
+constexpr float kUpward = 0.7F;         // of a normal's z: within 45 degrees of up (derived)
+// m of the hand from the surface to the device's origin (judgement)
+constexpr double kStandoff = 2e-3;
 
 // All sources' points, relative to one origin. A single source's are not copied: it may be large.
 struct Union {
@@ -88,7 +90,7 @@ double raw_weight(Kernel kernel, double multiple) {
   return multiple * multiple * integral;
 }
 
-// How far the felt surface lies above the points.
+// Height of the rendered surface above the points, m.
 double offset(const FieldOptions& field, const Union& all, double tool_radius) {
   if (field.kind != FieldOptions::Kind::metaball) return tool_radius;
   double level = field.threshold;
@@ -114,7 +116,7 @@ void validate(const ExplorationOptions& options) {
           "give one above 0; infinite: a hand that does not yield");
 }
 
-// What exploring and placing have in common.
+// Size of the patch and the scale that follows; exploring and placing share it.
 struct Extent {
   double patch = 0;  // m across
   double scale = 1;

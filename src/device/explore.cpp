@@ -1,3 +1,4 @@
+// Plans the strokes of an exploring hand.
 #include "device/explore.hpp"
 
 #include <fmt/format.h>
@@ -17,17 +18,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kClearance = 2.5;  // R above the felt surface where the hand moves freely
-constexpr double kStep = 0.25;      // R from one place of a stroke to the next
-constexpr double kStroke = 0.6;     // longest stroke, of the region's extent
-constexpr double kLongest = 1.2;    // s that one stroke may take
-constexpr double kDwell = 0.1;      // s at rest before and after a stroke
-constexpr double kRamp = 0.2;       // share of a move spent speeding up, and slowing down
-constexpr double kFresh = 0.3;      // of the extent from all that was touched is far enough ...
-constexpr double kNear = 0.3;       // ... and weighs against the way there
-constexpr int kCandidates = 24;     // places looked at for the beginning of a stroke
-constexpr int kTries = 8;           // of strokes to which no free way leads
-constexpr int kDirections = 4;      // directions tried there
+// R above the rendered surface where the hand moves freely (judgement)
+constexpr double kClearance = 2.5;
+constexpr double kStep = 0.25;    // R between positions of a stroke (judgement)
+constexpr double kStroke = 0.6;   // longest stroke, share of the region's extent (judgement)
+constexpr double kLongest = 1.2;  // s; longest stroke (judgement)
+constexpr double kDwell = 0.1;    // s at rest before and after a stroke (judgement)
+constexpr double kRamp = 0.2;     // share of a move spent speeding up, and slowing down (judgement)
+// Share of the extent; so far from all touched places is enough ... (judgement)
+constexpr double kFresh = 0.3;
+constexpr double kNear = 0.3;    // ... and its weight against the way there (judgement)
+constexpr int kCandidates = 24;  // start positions tried for a stroke (judgement)
+constexpr int kTries = 8;        // tries for a stroke with a free way (judgement)
+constexpr int kDirections = 4;   // directions tried from a start (judgement)
 
 // Share of a move's way that is done after share u of its time: speed rises and falls as a cosine.
 double progress(double u) {
@@ -177,7 +180,7 @@ class Explorer {
     return fresh - way;
   }
 
-  // Of some places at random one that is far from all that was touched before but not from here.
+  // Draws random positions and picks one far from everything touched before but near `here`.
   MapSample next_start(const Vector3d& here) {
     MapSample best;
     double highest = -1e300;

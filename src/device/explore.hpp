@@ -28,12 +28,12 @@ struct MapSample {
 /// obstacle: points with normals, indexed. Coordinates are relative to the surface's origin.
 class SurfaceMap {
  public:
-  /// What lies within patch / 2 of the median point, or everything if that is smaller.
+  /// Takes the points within patch / 2 of the median point, or all points if those are fewer.
   SurfaceMap(const ExploredSurface& surface, double patch, double radius);
 
   [[nodiscard]] std::size_t size() const { return grid_.size(); }
   [[nodiscard]] const Eigen::Vector3d& center() const { return center_; }
-  /// Of the region, along its longest axis, m.
+  /// Length of the region along its longest axis, m.
   [[nodiscard]] double extent() const { return extent_; }
   [[nodiscard]] bool inside(const Eigen::Vector3d& x) const {
     return (x - center_).squaredNorm() <= reach_ * reach_;
@@ -45,7 +45,7 @@ class SurfaceMap {
   /// The weighted mean plane of the points within R of `x`, at `x`.
   [[nodiscard]] MapSample at(const Eigen::Vector3d& x) const;
 
-  /// How far the nearest point is, m.
+  /// Distance to the nearest point, m.
   [[nodiscard]] double distance(const Eigen::Vector3d& x) const;
 
  private:
@@ -62,7 +62,7 @@ class SurfaceMap {
   mutable std::vector<CellGrid::Neighbor> nearest_;
 };
 
-/// How a hand explores. Lengths and speeds are the world's.
+/// Plan of an exploring hand. World frame.
 struct StrokeOptions {
   double duration = 10;        ///< s
   double period = 1e-3;        ///< s between rows

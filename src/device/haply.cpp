@@ -21,13 +21,13 @@ constexpr const char* kInstall =
     "Install Haply's Inverse Service and start it (sudo systemctl enable --now "
     "haply-inverse-service)";
 constexpr const char* kCheck = "Check its cable, its power and Haply's Inverse Service";
-constexpr double kConnecting = 1;   // s
-constexpr double kFirstFrame = 1;   // s until the service tells what it has
-constexpr int kFirstFrames = 3;     // of which one has to tell a device
-constexpr double kQuiet = 0.02;     // s after which no more of them come
-constexpr double kQuick = 5e-3;     // s for an answer; later the force goes
-constexpr double kPatience = 0.1;   // s for an answer; later the service is given up
-constexpr double kFarewell = 0.05;  // s for it to take the last force
+constexpr double kConnecting = 1;   // s to connect (judgement)
+constexpr double kFirstFrame = 1;   // s for the service's first frame (judgement)
+constexpr int kFirstFrames = 3;     // one of so many has to describe a device (judgement)
+constexpr double kQuiet = 0.02;     // s without a frame: no more are coming (judgement)
+constexpr double kQuick = 5e-3;     // s for an answer; later the force goes (docs/devices.md)
+constexpr double kPatience = 0.1;   // s for an answer; later the service is given up (judgement)
+constexpr double kFarewell = 0.05;  // s for it to take the last force (judgement)
 
 TextSocket connect(const std::string& url) {
   try {
@@ -51,7 +51,7 @@ std::vector<HaplyDevice> greet(TextSocket& socket) {
   return devices;
 }
 
-// What is still on its way would be taken for the answer to a command, and be old.
+// Drops frames that are still on their way: they would be mistaken for answers to later commands.
 void let_pass(TextSocket& socket) {
   std::uint64_t seen = socket.received();
   for (int i = 0; i < kFirstFrames && socket.wait(seen, kQuiet); ++i) seen = socket.received();
@@ -114,7 +114,7 @@ class HaplyDriver final : public DeviceDriver {
     if (!device.powered.value_or(true)) fail("it has no power. Plug in its power supply");
   }
 
-  // What the service answers, with words that say whose fault it is.
+  // Runs `question`; an Error then says that the service is at fault.
   template <class Question>
   auto ask(Question question) const -> decltype(question()) {
     try {

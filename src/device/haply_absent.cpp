@@ -1,3 +1,4 @@
+// Replaces the Haply driver in builds without Boost.
 #include "device/drivers.hpp"
 #include "palpate/base/error.hpp"
 

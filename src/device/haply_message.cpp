@@ -1,3 +1,4 @@
+// Parses and writes the JSON of Haply's Inverse Service.
 #include "device/haply_message.hpp"
 
 #include <array>
@@ -38,13 +39,13 @@ std::optional<Vector3d> vector(const Json& value, double largest) {
   return Vector3d(*x, *y, *z);
 }
 
-// What the hand holds.
+// Buttons and orientation of the grip in the hand.
 struct Grip {
   std::uint32_t buttons = 0;
   std::optional<Eigen::Quaterniond> orientation = {};
 };
 
-// None where it is not told, or is no rotation.
+// nullopt if the value is absent or not a rotation.
 std::optional<Eigen::Quaterniond> rotation(const Json& value) {
   constexpr double kLength = 0.01;  // by which a unit quaternion's may be off
   const std::optional<double> w = number(child(value, "w"), 2);
@@ -65,7 +66,7 @@ void add_buttons(const Json& state, std::uint32_t& buttons) {
   if (truth(child(state, "button")).value_or(false)) buttons |= 1;
 }
 
-// One with three buttons and a radio, or one with a cable.
+// Reads the wireless grip (three buttons) or the one with a cable.
 Grip grip_of(const Json& frame) {
   Grip grip;
   for (const char* kind : {"wireless_verse_grip", "verse_grip"}) {

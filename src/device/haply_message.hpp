@@ -12,7 +12,7 @@
 // per second and newtons.
 namespace palpate::device {
 
-/// One Inverse3 in a frame.
+/// State of an Inverse3 in one frame.
 struct HaplyDevice {
   std::string id;                           ///< "04EA"
   std::optional<DeviceState> reading = {};  ///< if position and velocity are given, and possible

@@ -1,3 +1,4 @@
+// Parses device names, lists drivers and opens a device by name.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,3 +1,4 @@
+// Drives 3D Systems' Touch devices through OpenHaptics.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ constexpr const char* kNotCalibrated =
     "is not calibrated. Put its stylus into the inkwell, or calibrate it with the vendor's "
     "Touch_Diagnostic (TouchCheckup in newer drivers)";
 
-// What a device's model may contain, the most exact first.
+// Maps a word in the model's name to a profile; the first match wins, so exact words come first.
 struct TouchModel {
   std::string_view word;
   const char* profile;
@@ -52,7 +53,7 @@ std::string title_of(const OpenHapticsFacts& facts) {
          (facts.serial_number.empty() ? "" : ", ") + facts.serial_number;
 }
 
-// What the device reports is better than its kind's profile, unless a profile was asked for.
+// Prefers the device's own report to its kind's profile, unless the user asked for a profile.
 DeviceInfo info_of_device(const DeviceName& name, const OpenHapticsFacts& facts,
                           const std::string& device) {
   const std::string title = fmt::format("{} ({})", device, title_of(facts));
@@ -87,7 +88,7 @@ std::string touch_failure(unsigned code, const std::string& told) {
   }
 }
 
-// Where the maker's drivers keep a file NAME.config for each device.
+// Folder where the maker's drivers keep NAME.config for each device.
 fs::path touch_configurations() {
   const char* given = std::getenv("GTDD_HOME");
   if (given != nullptr && *given != '\0') return fs::path(given) / "config";

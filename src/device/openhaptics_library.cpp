@@ -1,3 +1,4 @@
+// Loads OpenHaptics at run time and assigns its errors to devices.
 #include "device/openhaptics_library.hpp"
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@
 namespace palpate::device {
 namespace {
 
-constexpr double kLengthUnit = 1e-3;  // m
+constexpr double kLengthUnit = 1e-3;  // m; OpenHaptics measures in mm (the maker's)
 constexpr const char* kBroughtBy =
     "It is part of OpenHaptics 3 for Linux and the Touch Device Driver (3D Systems): run the "
     "installers of both; 'palpate doctor' shows what is missing";
@@ -119,8 +120,7 @@ OpenHapticsErrors::Entry* OpenHapticsErrors::find(OpenHapticsLibrary::Device dev
   return found == entries_.end() ? nullptr : found;
 }
 
-// One that was never used, rather than one whose device is closed: late errors of that one are to
-// be dropped.
+// Prefers an entry never used to one of a closed device, whose late errors have to be dropped.
 OpenHapticsErrors::Entry* OpenHapticsErrors::find_free() noexcept {
   for (Entry& entry : entries_) {
     if (entry.device == hd::kNoDevice) return &entry;

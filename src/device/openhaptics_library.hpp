@@ -11,7 +11,8 @@ namespace palpate::device {
 // Numbers of OpenHaptics' C interface to devices (HDAPI 3), as its header hdDefines.h gives them.
 namespace hd {
 
-// What can be asked for; positions in mm, forces in N.
+// Readable values (HD_CURRENT_BUTTONS ...), as the maker numbers them; positions in mm, forces in
+// N.
 inline constexpr unsigned kCurrentButtons = 0x2000;
 inline constexpr unsigned kCurrentPosition = 0x2050;
 inline constexpr unsigned kCurrentVelocity = 0x2051;  // mm/s
@@ -22,18 +23,17 @@ inline constexpr unsigned kMaximumStiffness = 0x2602;  // N/mm
 inline constexpr unsigned kContinuousForce = 0x2604;
 inline constexpr unsigned kMotorTemperature = 0x2605;  // of each motor; 1: as warm as allowed
 
-// What can be set, and what can be switched on.
+// Settable value and switch, as the maker numbers them.
 inline constexpr unsigned kCurrentForce = 0x2700;
 inline constexpr unsigned kForceOutput = 0x4000;
 
-// What a callback returns to be called in the next tick.
+// Return value of a callback that has to be called again in the next tick.
 inline constexpr unsigned kContinue = 1;
 inline constexpr unsigned short kDefaultPriority = 0x7fff;
 
 inline constexpr unsigned kNoDevice = 0xffffffff;
 
-// How a device is calibrated, as bits: by hand in a pose that it asks for; automatically; in its
-// inkwell.
+// Calibration styles, as bits: by hand in a given pose; automatic; in the inkwell.
 inline constexpr int kEncoderReset = 1;
 inline constexpr int kAutomatic = 2;
 inline constexpr int kInkwell = 4;
@@ -57,7 +57,7 @@ inline constexpr unsigned kTimer = 0x0304;
 
 }  // namespace hd
 
-/// What an open device reports about itself; 0 or empty: nothing.
+/// Facts that an open device reports about itself; 0 or empty: not reported.
 struct OpenHapticsFacts {
   std::string model;
   std::string serial_number;
@@ -90,7 +90,7 @@ struct OpenHapticsLibrary {
   /// work.
   [[nodiscard]] unsigned take_errors() const noexcept;
 
-  /// What the current device reports. Older libraries do not know all of it, and list errors then.
+  /// Reads the current device's facts. Older libraries lack some, and list errors then.
   [[nodiscard]] OpenHapticsFacts read_facts() const;
 
   /// The library's name for an error, and the code.

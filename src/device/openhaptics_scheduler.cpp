@@ -1,3 +1,4 @@
+// Opens, runs and closes devices in OpenHaptics' one scheduler.
 #include "device/openhaptics_scheduler.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 using std::chrono::steady_clock;
 
-constexpr double kMillimetre = 1e-3;                // m
+constexpr double kMillimetre = 1e-3;                // m; OpenHaptics measures in mm (the maker's)
 constexpr std::chrono::microseconds kTickNap{200};  // a frame comes each millisecond
 
 // The maker's x is to the right, y up, z towards the operator.
@@ -34,8 +35,7 @@ steady_clock::duration seconds(double duration) {
       std::chrono::duration<double>(duration));
 }
 
-// One of those that the device knows; never the reset of encoders, which takes this pose for
-// another.
+// Picks a style that the device knows; never the reset of encoders, which needs a certain pose.
 unsigned calibration_style(int known) {
   return (known & hd::kAutomatic) != 0 ? hd::kAutomatic : hd::kInkwell;
 }
@@ -47,8 +47,8 @@ const char* touch_opening_remedy(unsigned code) {
          "user access (udev rules; 'palpate doctor' explains)";
 }
 
-// What all devices of a program share. The mutex is for threads that open or close a device; frames
-// never take it, and use only `errors`.
+// Shared by all devices of a program. Threads that open or close a device take the mutex; frames
+// never do, and use only `errors`.
 struct Shared {
   struct Running {
     OpenHapticsFrames* frames = nullptr;

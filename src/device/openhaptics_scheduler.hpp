@@ -1,4 +1,4 @@
-// What runs in OpenHaptics' scheduler, which is one for all devices of a program.
+// Runs in OpenHaptics' scheduler, which is one for all devices of a program.
 #pragma once
 
 #include <semaphore.h>
@@ -42,8 +42,8 @@ class Wakeup {
   sem_t semaphore_{};
 };
 
-/// One device's frames: the scheduler calls tick() at 1 kHz on a thread of its own; each call reads
-/// where the hand is and applies the force that was asked for last.
+/// Frames of one device: the scheduler calls tick() at 1 kHz on its own thread; each call reads
+/// the hand's position and applies the force that was asked for last.
 ///
 /// A tick does constant work; it takes no lock and no memory and waits for nothing but the device.
 /// It keeps errors as numbers, for others to put into words. There is no force from the first error
@@ -67,7 +67,7 @@ class OpenHapticsFrames {
                     const Clock& clock, OpenHapticsErrors& errors)
       : library_(library), device_(device), clock_(clock), errors_(errors) {}
 
-  // One other thread.
+  // For one other thread.
   /// Asks for a force, N, as the operator sits.
   void ask(const Eigen::Vector3d& force) noexcept;
   /// Waits for the frame that takes what was asked last, no longer than `patience` (s) while the
@@ -88,7 +88,7 @@ class OpenHapticsFrames {
   /// began before this.
   void end() noexcept { over_ = true; }
 
-  /// One frame. The scheduler's thread.
+  /// Runs one frame. The scheduler's thread.
   void tick() noexcept;
 
  private:
@@ -111,7 +111,7 @@ class OpenHapticsFrames {
   const Clock& clock_;
   OpenHapticsErrors& errors_;
 
-  // Of the scheduler's thread.
+  // Used by the scheduler's thread alone.
   std::uint64_t frames_ = 0;
   Wanted taken_;
   Answer newest_;

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// One byte more than a valid packet has, so that longer ones are recognised.
+// Bytes: one more than a valid packet has, so that longer ones are recognised (derived).
 constexpr std::size_t kBuffer = kStatePacketSize + 1;
 
 RemoteDeviceOptions checked(RemoteDeviceOptions o) {
@@ -51,7 +51,7 @@ std::string default_remote_path() {
 }
 
 struct RemoteDevice::Inside {
-  // What others may know.
+  // State shown to other threads.
   struct Shown {
     RemoteDevice::Counts counts;
     PacketFlaw refused = PacketFlaw::none;  // the newest one

@@ -1,3 +1,4 @@
+// Implements the packets and states of the remote device's protocol.
 #include "device/remote_protocol.hpp"
 
 #include <algorithm>
@@ -167,8 +168,8 @@ void RemoteProtocol::take(const StatePacket& packet) noexcept {
   newest_ = packet;
 }
 
-// One packet is not enough: a program that hangs and repeats itself would count as a new client
-// after each silence. And the position is reported once before there may be a force.
+// Requires two packets: a program that hangs and repeats one would count as a new client after each
+// silence. And the position is reported once before there may be a force.
 DeviceState RemoteProtocol::state(double now) noexcept {
   move_limit(now);
   now_ = now;

@@ -35,7 +35,7 @@ struct StatePacket {
   static constexpr double kLargestVelocity = 1000;  ///< m/s along an axis
 };
 
-/// To the client: the force.
+/// Packet to the client: the force.
 struct ForcePacket {
   std::uint64_t sequence = 0;                       ///< grows from packet to packet
   std::uint64_t answered = 0;                       ///< sequence of the state that it answers
@@ -45,7 +45,7 @@ struct ForcePacket {
   bool closing = false;  ///< the last packet: zero force from now on
 };
 
-/// What is wrong with a datagram that should be a StatePacket.
+/// Fault of a datagram that should be a StatePacket.
 enum class PacketFlaw : std::uint8_t {
   none,
   length,
@@ -71,7 +71,7 @@ struct ParsedState {
 [[nodiscard]] std::array<std::byte, kStatePacketSize> encode(const StatePacket& packet) noexcept;
 [[nodiscard]] std::array<std::byte, kForcePacketSize> encode(const ForcePacket& packet) noexcept;
 
-/// What is wrong and what to do; empty for none.
+/// Says what is wrong and what to do; empty for none.
 [[nodiscard]] std::string_view explain(PacketFlaw flaw) noexcept;
 
 /// A RemoteDevice's side of the protocol: which client it listens to, the state that it reports,

@@ -1,3 +1,4 @@
+// Replaces the ROS device driver in builds without DDS.
 #include "device/drivers.hpp"
 #include "palpate/base/error.hpp"
 

@@ -16,14 +16,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDiscovery = 3;        // s until a node that is there is heard
-constexpr double kMeasuring = 0.5;      // s of poses from which rate and delay are told
-constexpr double kSilence = 0.02;       // s without a pose: the node is gone, or hangs
-constexpr double kOldest = 1;           // s; a stamp further off is of another clock
-constexpr double kClockError = 5e-4;    // s; clocks of one machine, read one after the other
-constexpr double kVelocitySpan = 0.01;  // s over which positions give a velocity
+constexpr double kDiscovery = 3;        // s for a running node to be discovered (judgement)
+constexpr double kMeasuring = 0.5;      // s of poses that give rate and delay (judgement)
+constexpr double kSilence = 0.02;       // s without a pose: the node is gone, or hangs (judgement)
+constexpr double kOldest = 1;           // s; a stamp further off is from another clock (judgement)
+constexpr double kClockError = 5e-4;    // s between two readings of one machine's clock (judgement)
+constexpr double kVelocitySpan = 0.01;  // s over which positions give a velocity (judgement)
 
-// What 19 of 20 stay below.
+// The 95th percentile.
 double most_of(std::vector<double> values) {
   const auto at =
       values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
@@ -85,9 +85,9 @@ void RosDriver::connect() {
   while (link_.pose->writers() == 0 || !link_.listened()) {
     if (clock_.now() > end) {
       const bool silent = link_.pose->writers() == 0;
-      throw Error(fmt::format(
-          "{}: nobody {} {}; start its node, or see 'palpate ros' for what is there", info_.name,
-          silent ? "publishes" : "takes forces on", silent ? link_.pose_topic : link_.force_topic));
+      throw Error(fmt::format("{}: no node {} {}; start it, or see 'palpate ros' for what is there",
+                              info_.name, silent ? "publishes" : "subscribes to",
+                              silent ? link_.pose_topic : link_.force_topic));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
@@ -101,7 +101,7 @@ void RosDriver::check_one_owner() const {
                           writers, link_.pose_topic));
 }
 
-// How often poses come, and how long it takes from a pose's stamp until its force is at the node.
+// Measures the rate of poses, and the delay from a pose's stamp until its force is at the node.
 void RosDriver::measure(const DeviceName& name) {
   std::vector<double> arrivals;
   std::vector<double> ages;
@@ -122,14 +122,13 @@ void RosDriver::measure(const DeviceName& name) {
     return;
   }
   check_clocks(ages);
-  // How long forces take nobody tells: no less than the quickest pose.
+  // Nothing measures how long forces take: assume as long as the quickest pose.
   info_.delay = *usual_age_ + std::max(0.0, std::ranges::min(ages));
 }
 
-// Nobody knows how old poses are that have no stamps, or those of another clock.
+// Throws if poses have no stamps, or stamps of another clock: then their age is unknown.
 void RosDriver::check_clocks(const std::vector<double>& ages) const {
-  constexpr const char* kRemedy =
-      "so the delay, and with it the stiffness that is stable, cannot be told";
+  constexpr const char* kRemedy = "so palpate cannot measure the delay and the stable stiffness";
   if (ages.empty()) {
     throw Error(
         fmt::format("{}: poses on {} have no stamps, {}; give delay=MS, from a pose until "
@@ -146,18 +145,24 @@ void RosDriver::check_clocks(const std::vector<double>& ages) const {
                   oldest > kOldest ? "past" : "future", kRemedy));
 }
 
-// By how much stamps are off now, beside how they were.
+// Throws if the age of stamps has drifted from the age measured at start.
 void RosDriver::check_age() const {
   if (!usual_age_) return;
-  const double off = told_.stamp ? age() - *usual_age_ : kOldest;
+  if (!told_.stamp) {
+    throw Error(
+        fmt::format("{}: a pose on {} has no stamp, though earlier ones had; have its node "
+                    "stamp every pose",
+                    info_.name, link_.pose_topic));
+  }
+  const double off = age() - *usual_age_;
   if (off > -kOldest && off < std::max(*info_.delay, kSilence)) return;
   throw Error(
       fmt::format("{}: a pose with a stamp {:.3g} s from now, when {:.3g} ms were usual; is the "
                   "network slow, or was a clock set?",
-                  info_.name, told_.stamp ? age() : 0, 1e3 * *usual_age_));
+                  info_.name, age(), 1e3 * *usual_age_));
 }
 
-// Everything that waits; false: no pose does.
+// Takes every message that waits; false if there is no pose among them.
 bool RosDriver::take() {
   told_.stamp.reset();
   told_.has_velocity = false;
@@ -187,7 +192,7 @@ DeviceState RosDriver::exchange(const Vector3d& force) {
   }
   check_one_owner();
   if (!link_.listened())
-    throw Error(fmt::format("{}: nobody takes forces on {}", info_.name, link_.force_topic));
+    throw Error(fmt::format("{}: no node subscribes to {}", info_.name, link_.force_topic));
   check_age();
   if (const double now = clock_.now(); now - velocity_time_ > kSilence) estimate_velocity(now);
   return ours();

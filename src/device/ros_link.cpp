@@ -79,7 +79,7 @@ Eigen::Matrix3d broadcast_rotation(const DeviceName& name) {
       .toRotationMatrix();
 }
 
-// How many numbers its controller of efforts takes: forces, then torques and the gripper's.
+// Count of numbers that the effort controller takes: forces, then torques and the gripper's.
 std::size_t joints_of(const DeviceName& name) {
   const std::string text = name.option("joints", "3");
   if (text.size() == 1 && text[0] >= '3' && text[0] <= '7')

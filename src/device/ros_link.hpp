@@ -20,7 +20,7 @@ struct RosAxes {
   Eigen::Matrix3d forces = Eigen::Matrix3d::Identity();
 };
 
-/// Where the hand is, in the node's axes.
+/// Newest reading of the hand, in the node's axes.
 struct RosReading {
   DeviceState state;
   std::optional<double> stamp;  // s, system time; unset: the message has none

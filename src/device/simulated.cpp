@@ -1,3 +1,4 @@
+// Integrates a simulated device and the hand that holds it.
 #include "palpate/device/simulated.hpp"
 
 #include <fmt/format.h>
@@ -13,11 +14,11 @@
 namespace palpate {
 namespace {
 
-constexpr int kParts = 16;         // of a step, for the direction of dry friction
-constexpr int kEvents = 4;         // stops and starts followed in one part
-constexpr int kBisections = 48;    // of a part, to find when the device stops
-constexpr double kAtRest = 1e-12;  // m/s
-constexpr int kMostDelay = 16;     // steps
+constexpr int kParts = 16;  // of a step; dry friction's direction is constant in each (judgement)
+constexpr int kEvents = 4;  // stops and starts followed in one part (judgement)
+constexpr int kBisections = 48;  // of a part, to find when the device stops; to rounding (derived)
+constexpr double kAtRest = 1e-12;  // m/s; slower counts as at rest (judgement)
+constexpr int kMostDelay = 16;     // steps; size of the force buffer (judgement)
 
 // e^A by Taylor's series of A / 2^n, squared n times: exact to rounding for these small matrices.
 Eigen::Matrix4d exponential(const Eigen::Matrix4d& a) {
@@ -66,7 +67,7 @@ DeviceInfo info_of(const SimulatedDeviceOptions& options) {
   return info;
 }
 
-// Of (x, v, push, push rate).
+// Matrix A of d/dt (x, v, push, push rate) = A (x, v, push, push rate).
 Eigen::Matrix4d generator_of(const SimulatedDeviceOptions& options) {
   Eigen::Matrix4d generator = Eigen::Matrix4d::Zero();
   generator(0, 1) = 1;
@@ -196,7 +197,6 @@ void SimulatedDevice::Inside::fail(const char* what) noexcept {
   state.status = DeviceState::Status::failed;
 }
 
-// Times are asked for once each, in growing order.
 TargetSource::Target SimulatedDevice::Inside::target_at(double time) noexcept {
   if (source != nullptr) return source->target(time, position);
   if (trajectory.empty()) return {options.position};
@@ -212,7 +212,7 @@ void SimulatedDevice::Inside::begin() noexcept {
   if (ask(0) && source != nullptr) position = target.position;
 }
 
-// For the target at `time`; false: it is none.
+// Fetches the target at `time`; false if it is not valid.
 bool SimulatedDevice::Inside::ask(double time) noexcept {
   target = target_at(time);
   if (!target.position.allFinite()) fail("the target of the hand was not finite");
@@ -229,7 +229,7 @@ void SimulatedDevice::Inside::advance() noexcept {
   const Eigen::Vector3d drive = options.hand.damping * goal_rate;
   Eigen::Vector3d push = held + options.hand.stiffness * from.position + drive;
   Eigen::Vector3d push_rate = options.hand.stiffness * goal_rate;
-  // The hand's own damper only brakes: all else that it does is its pull.
+  // The hand's own damper only brakes; the limit applies to the rest, its pull.
   const double most =
       std::min({options.hand.maximum_force, from.maximum_force, target.maximum_force});
   const Eigen::Vector3d pull = options.hand.stiffness * (from.position - position) + drive;
@@ -244,7 +244,7 @@ void SimulatedDevice::Inside::advance() noexcept {
     flow(whole_step, push, push_rate);
   }
   work += held.dot(position - before);
-  // A step without a write() goes on with the force before it.
+  // A step without a write() repeats the force before it.
   forces[(steps + 1) % forces.size()] = forces[steps % forces.size()];
   ++steps;
 }
@@ -255,7 +255,7 @@ void SimulatedDevice::Inside::advance_with_friction(const Eigen::Vector3d& push,
   for (int i = 0; i < kParts; ++i) slide(part, push + i * part * push_rate, push_rate);
 }
 
-// One part of a step. The device may stop in it, and start again.
+// Advances one part of a step. The device may stop in it, and start again.
 void SimulatedDevice::Inside::slide(double duration, Eigen::Vector3d push,
                                     const Eigen::Vector3d& push_rate) noexcept {
   const double whole = duration;

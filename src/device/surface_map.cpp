@@ -1,3 +1,4 @@
+// Indexes the region of a surface that is explored.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
@@ -12,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::size_t kFitNeighbors = 12;
+constexpr std::size_t kFitNeighbors = 12;  // points in a fitted normal (judgement)
 
 Vector3f middle_of(std::span<const Vector3f> points) {
   Vector3f middle;

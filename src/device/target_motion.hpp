@@ -7,8 +7,8 @@
 
 #include "palpate/io/trajectory.hpp"
 
-// How a hand's target moves between the positions that are given: along a trajectory, or after
-// commands that come one by one. One thread uses each; real-time but for construction.
+// Moves a hand's target between given positions: along a trajectory, or after commands that come
+// one by one. One thread uses each; real-time but for construction.
 namespace palpate {
 
 /// The position on a trajectory at times that grow: linear between rows, at rest before the first

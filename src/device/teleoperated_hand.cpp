@@ -1,3 +1,4 @@
+// Moves a simulated hand after remote commands, or along its trajectory when none come.
 #include <algorithm>
 #include <cmath>
 #include <utility>

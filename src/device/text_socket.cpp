@@ -1,3 +1,4 @@
+// Implements a WebSocket client whose every wait is limited.
 #include "device/text_socket.hpp"
 
 #include <fmt/format.h>
@@ -25,8 +26,9 @@ namespace websocket = boost::beast::websocket;
 using Tcp = net::ip::tcp;
 using Seconds = std::chrono::duration<double>;
 
-constexpr std::size_t kLongestText = 64 * 1024;
-constexpr double kSocketFarewell = 0.05;  // s for the other side to hear that it is over
+constexpr std::size_t kLongestText = 64 * 1024;  // bytes of a message (judgement)
+// s for the other side to read the close frame (judgement)
+constexpr double kSocketFarewell = 0.05;
 
 struct Url {
   std::string host;
@@ -91,7 +93,7 @@ struct TextSocket::Inside {
     if (!done) {
       resolver.cancel();
       beast::get_lowest_layer(socket).close();
-      // What is still under way refers to this function's names: it has to end before it does.
+      // Operations still under way refer to local variables: wait for their end.
       io.restart();
       while (!done && io.run_one() > 0) {
       }

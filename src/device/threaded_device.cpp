@@ -1,3 +1,4 @@
+// Runs a device driver on its own thread and checks what the driver reports.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,13 +21,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStaleExchanges = 2.5;
+constexpr double kStaleExchanges = 2.5;  // exchanges without a reading: silent (judgement)
 
-// Beyond what a hand does: m from a device's origin, m/s.
+// No hand exceeds these: m from a device's origin, m/s (judgement).
 constexpr double kFarthestHand = 5;
 constexpr double kFastestHand = 20;
 
-// From one position to the next: m/s, and what the steps of coarse encoders add, m.
+// Largest move between readings: m/s, plus the steps of coarse encoders, m (judgement).
 constexpr double kFastestMove = 10;
 constexpr double kCoarsestStep = 0.5e-3;
 
@@ -42,8 +43,7 @@ ThreadedDeviceOptions checked(ThreadedDeviceOptions options) {
   return options;
 }
 
-// A position waits for the servo, and its force for the next exchange: up to two exchanges more
-// than the hardware's own delay, which counts as one where it is not known.
+// Delay: the hardware's (unknown: one exchange) plus one each for readings and forces.
 DeviceInfo info_of(const DeviceDriver& driver) {
   DeviceInfo info = driver.info();
   info.keeps_time = false;
@@ -51,7 +51,7 @@ DeviceInfo info_of(const DeviceDriver& driver) {
   return info;
 }
 
-// False for what is not a number, too.
+// False for NaN, too.
 bool is_possible(const DeviceState& reading) {
   return reading.position.norm() <= kFarthestHand && reading.velocity.norm() <= kFastestHand;
 }
@@ -64,10 +64,10 @@ void check(const DeviceState& reading, const DeviceInfo& info) {
                   info.name, kDistrust));
 }
 
-// A device that became slower would get forces that are too stiff for it.
+// Ratio of delays; a device that became slower would get forces too stiff for it (judgement).
 constexpr double kSlower = 1.25;
 
-// Why what was opened again cannot take the place of what was there; empty: it can.
+// Why the reopened device cannot replace the lost one; empty if it can.
 std::string objection_to(const DeviceInfo& found, const DeviceInfo& expected) {
   if (found.name != expected.name) {
     return fmt::format("found {} instead of {}; restart to use it", found.name, expected.name);
@@ -76,7 +76,7 @@ std::string objection_to(const DeviceInfo& found, const DeviceInfo& expected) {
   return fmt::format("{}: slower than when it was opened; restart", found.name);
 }
 
-// A connection's number, from 1 on; each one that is opened has the next.
+// Number of a connection, counted from 1.
 using Connection = std::uint32_t;
 constexpr Connection kNone = 0;
 
@@ -118,19 +118,19 @@ struct ThreadedDevice::Inside {
   WaitingClock& clock;
   ThreadedDeviceOptions options;
 
-  // Of the thread that calls service().
+  // Used by the thread that calls service().
   std::unique_ptr<DeviceDriver> driver;  // null: lost
   DeviceInfo info;                       // does not change; both read it
   Reading newest;
   Connection connection = 1;
   double retry_at = 0;  // s
 
-  // Of the servo's thread.
+  // Used by the servo's thread.
   DeviceState state{.status = DeviceState::Status::silent};
   Reading seen;
   Connection located = kNone;  // the connection whose position the last step reported
 
-  // Between them.
+  // Shared by both.
   Latest<Reading> readings;
   Latest<Command> commands;
   std::atomic<DeviceState::Status> status{DeviceState::Status::silent};
@@ -200,9 +200,9 @@ void ThreadedDevice::Inside::exchange() noexcept {
   }
 }
 
-// A position may be sampled at any moment of its exchange. The longer one of the times between two
-// beginnings and two ends is at least half of what lies between two samples: however late either
-// came, no hand is refused that is slower than half of kFastestMove.
+// A position may be sampled at any moment of its exchange. The longer of the times between the two
+// begins and between the two ends is at least half the time between the samples: whatever the
+// delays, a hand slower than half of kFastestMove is never refused.
 void ThreadedDevice::Inside::check_move_to(const Reading& reading) const {
   if (newest.connection != reading.connection) return;
   const double time =
@@ -234,7 +234,7 @@ void ThreadedDevice::Inside::lose(const char* why) noexcept {
   loss = why;
 }
 
-// The reason stays that of the loss: that the hardware is not back yet is no news.
+// Keeps the reason of the loss: that the hardware is not back yet is no news.
 void ThreadedDevice::Inside::reopen() noexcept {
   try {
     std::unique_ptr<DeviceDriver> found = open();

@@ -1,3 +1,5 @@
+// Builds the cells of a CellGrid: bounds, Morton keys, sorting, and splits of cells that are too
+// full.
 #include "geometry/cell_builder.hpp"
 
 #include <fmt/core.h>

@@ -43,8 +43,8 @@ class CellBuilder {
   [[nodiscard]] Bounds bounds_of(const CellGrid::Cell& cell) const;
 
   std::span<const Eigen::Vector3f> positions_;
-  // One block for all that goes when the index is built: small indices built again and again then
-  // get the same warm memory each time, where freed pieces would go back to the system.
+  // Holds all temporary memory in one block: small indices that are rebuilt often then get the same
+  // warm memory each time, while freed pieces would go back to the system.
   std::pmr::monotonic_buffer_resource memory_;
   std::span<Record> records_;
   std::span<Record> scratch_;

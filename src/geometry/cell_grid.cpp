@@ -1,3 +1,4 @@
+// Builds a CellGrid and searches it: nearest neighbours, points within a radius.
 #include "palpate/geometry/cell_grid.hpp"
 
 #include <fmt/core.h>

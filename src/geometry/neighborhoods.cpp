@@ -1,3 +1,4 @@
+// Gathers the cells around blocks of points, so that one walk of the tree serves many points.
 #include "geometry/neighborhoods.hpp"
 
 #include <algorithm>

@@ -79,7 +79,7 @@ struct Block {
   return {grid.points().front().data(), first, count, runs.data(), runs.size()};
 }
 
-/// How far to look. Each is in metres, sorted, and may be empty for 0.
+/// Search radii. Each is in metres, sorted, and may be empty for 0.
 struct Reach {
   std::span<const float> of_points;  ///< a point asks for all candidates within its own radius ...
   float times = 1;                   ///< ... times this
@@ -172,7 +172,7 @@ class NearPairs {
 /// The points that are near each of a part's; keeps its memory in between.
 class NearLists {
  public:
-  /// Those within `reaches`, m, of each point of [first, first + count); none where that is 0.
+  /// Finds the points within `reaches`, m, of each point of [first, first + count); none for 0.
   void find(const CellGrid& grid, std::uint32_t first, std::uint32_t count,
             std::span<const simd::Run> runs, std::span<const float> reaches) {
     for (auto& list : lists_) list.clear();
@@ -183,7 +183,7 @@ class NearLists {
         [&](std::uint32_t i, std::uint32_t j) { lists_[i - first].push_back(j); });
   }
 
-  /// Of the point first + q, in rising order.
+  /// Neighbours of the point first + q, in rising order.
   [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t q) const { return lists_[q]; }
 
  private:

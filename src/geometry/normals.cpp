@@ -1,3 +1,4 @@
+// Fits a plane to each point's neighbours; its normal and planarity become normal and confidence.
 #include "geometry/normals.hpp"
 
 #include <fmt/core.h>
@@ -14,7 +15,7 @@
 namespace palpate {
 namespace {
 
-constexpr float kFewestPoints = 5;  // below: no confidence
+constexpr float kFewestPoints = 5;  // points; fewer give no confidence (judgement)
 
 // 0 at or below `from`, 1 at or above `to`.
 double ramp(double value, double from, double to) {

@@ -1,3 +1,4 @@
+// Sorts records by radix on several threads; the order does not depend on how many.
 #include "geometry/parallel.hpp"
 
 #include <algorithm>
@@ -9,8 +10,10 @@ namespace {
 
 constexpr int kMaxDigitBits = 12;
 constexpr int kPartitionBits = 12;
-constexpr std::size_t kPartitionFrom = std::size_t{1} << 18;  // records; fewer fit the cache whole
-constexpr std::size_t kSortBlock = std::size_t{1} << 16;      // records that one thread counts
+constexpr std::size_t kPartitionFrom = std::size_t{1}
+                                       << 18;  // records; fewer fit the cache whole (judgement)
+constexpr std::size_t kSortBlock = std::size_t{1}
+                                   << 16;  // records that one thread counts (judgement)
 
 using Counts = std::array<std::uint32_t, std::size_t{1} << kMaxDigitBits>;
 
@@ -18,7 +21,7 @@ std::size_t digit(Record record, int shift, std::size_t mask) {
   return (record >> shift) & mask;
 }
 
-// One stable counting pass over the digit at `shift`.
+// Makes one stable counting pass over the digit at `shift`.
 void scatter(std::span<const Record> from, std::span<Record> to, int shift, int digit_bits) {
   const std::size_t mask = (std::size_t{1} << digit_bits) - 1;
   Counts offsets;
@@ -53,7 +56,7 @@ void sort_by_digits(std::span<Record> records, std::span<Record> scratch, int sh
   if (passes % 2 != 0) std::copy(records.begin(), records.end(), scratch.begin());
 }
 
-// Where each block puts its first record of each digit: digits in order, blocks in order in them.
+// Output position of each block's first record of each digit: by digit, then by block.
 std::vector<std::uint32_t> block_offsets(std::span<const Record> records, int shift) {
   const std::size_t blocks = (records.size() + kSortBlock - 1) / kSortBlock;
   const std::size_t digits = std::size_t{1} << kPartitionBits;

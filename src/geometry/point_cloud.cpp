@@ -1,3 +1,4 @@
+// Selects, clips and voxel-filters point clouds.
 #include "palpate/geometry/point_cloud.hpp"
 
 #include <fmt/core.h>
@@ -55,7 +56,7 @@ using detail::Record;
 constexpr std::size_t kVoxelGrain = std::size_t{1} << 16;
 constexpr double kMaxCubes = 1 << 21;  // along an axis: three such numbers fit in 63 bits
 
-// Where the cubes are and how a cube's place becomes a number.
+// Grid of cubes, and the key of each cube.
 struct Lattice {
   double leaf = 0;                                  // m
   Eigen::Vector3d first = Eigen::Vector3d::Zero();  // lowest cube, in leaves
@@ -138,7 +139,7 @@ std::vector<std::uint32_t> sort_places(const PointCloud& cloud, const Lattice& l
   return sorted;
 }
 
-// Where each cube's points begin in `places`, and where the last one's end.
+// Index in `places` where each cube's points begin, and where the last cube's end.
 std::vector<std::uint32_t> find_cubes(const PointCloud& cloud, const Lattice& lattice,
                                       std::span<const std::uint32_t> places) {
   std::vector<std::uint32_t> starts;

@@ -1,3 +1,4 @@
+// Measures the distances between neighbouring points of a cloud.
 #include "palpate/geometry/spacing.hpp"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ std::uint32_t digit_at(const std::vector<std::uint32_t>& counts, std::size_t& pl
   return digit;
 }
 
-// By counting upper, then lower halves of ranks: no copy, and memory is read in order.
+// Counts upper, then lower halves of ranks: no copy, and memory is read in order.
 float select(std::span<const float> values, std::size_t place) {
   std::vector<std::uint32_t> counts(kDigits, 0);
   for (const float value : values) ++counts[rank_of(value) >> 16];
@@ -66,13 +67,14 @@ using detail::Surroundings;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kLargestFloat = std::numeric_limits<float>::max();
-constexpr std::size_t kNearest = 8;  // others that a spacing is measured from
-constexpr float kSmoothing = 2.5f;   // spacings that it is averaged over
-constexpr float kMinChange = 0.75f;  // of a spacing by averaging
-constexpr float kMaxChange = 1.5f;
-constexpr float kMaxRatio = 2;            // to the spacing around it
-constexpr float kLargestSpacing = 1e18f;  // m; its sums stay in float's range
-constexpr float kStray = 8;               // times the spacing of its block: a stray point
+// Other points that a spacing is measured from (docs/method.md 5.1)
+constexpr std::size_t kNearest = 8;
+constexpr float kSmoothing = 2.5f;   // spacings that it is averaged over (docs/method.md 5.1)
+constexpr float kMinChange = 0.75f;  // of a spacing by averaging, at least (docs/method.md 5.1)
+constexpr float kMaxChange = 1.5f;   // of a spacing by averaging, at most (docs/method.md 5.1)
+constexpr float kMaxRatio = 2;       // to the spacing around it (docs/method.md 5.1)
+constexpr float kLargestSpacing = 1e18f;  // m; its sums stay in float's range (derived)
+constexpr float kStray = 8;               // times its block's spacing: a stray point (judgement)
 // Fewer than eight others tell no area. A fifth of the way to the nearest makes R, which is 2.5
 // spacings, half of that gap.
 constexpr float kGapShare = 0.2f;

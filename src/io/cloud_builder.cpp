@@ -1,3 +1,4 @@
+// Recognises columns by name and collects rows into a PointCloud.
 #include "io/cloud_builder.hpp"
 
 #include <fmt/format.h>
@@ -85,8 +86,8 @@ double median(std::vector<double>& values) {
 Eigen::Vector3d choose_origin(std::size_t count,
                               const std::function<Eigen::Vector3d(std::size_t)>& point_at) {
   constexpr std::size_t kSample = 1000;
-  constexpr double kFarAway = 16;     // times the spread: four bits
-  constexpr double kTiniest = 1e-12;  // m; nothing is measured in less
+  constexpr double kFarAway = 16;     // times the spread: costs four bits (judgement)
+  constexpr double kTiniest = 1e-12;  // m; nothing is measured in less (judgement)
   std::vector<Eigen::Vector3d> sample;
   for (std::size_t i = 0; i < count; i += count / kSample + 1) {
     const Eigen::Vector3d point = point_at(i);

@@ -15,18 +15,18 @@
 
 namespace palpate::io {
 
-/// What a column of a file means to us.
+/// Meaning of a file's column.
 enum class Role { x, y, z, normal_x, normal_y, normal_z, red, green, blue, intensity };
 inline constexpr std::size_t kRoleCount = 10;
 
-/// One point as read: a value for each role; what the file lacks stays 0.
+/// Values of a point as read, one for each role; 0 for those that the file lacks.
 using Row = std::array<double, kRoleCount>;
 
 [[nodiscard]] constexpr std::size_t index_of(Role role) {
   return static_cast<std::size_t>(role);
 }
 
-/// Which optional columns a file has.
+/// Presence of each optional column in a file.
 struct Columns {
   bool normals = false;
   bool colors = false;
@@ -40,7 +40,7 @@ struct Columns {
 /// The roles of a file's columns, in their order.
 class Roles {
  public:
-  /// Of the next column; none when a column before has this role already.
+  /// Adds the next column's role; none if an earlier column has it already.
   void add(std::optional<Role> role);
 
   [[nodiscard]] std::size_t size() const { return roles_.size(); }

@@ -1,3 +1,4 @@
+// Turns a depth image into points.
 #include "io/depth_image.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::size_t kFarBeyond = 10;  // times the median depth
+constexpr std::size_t kFarBeyond = 10;  // times the median depth (judgement)
 
 // 0 when no pixel is valid.
 std::size_t median_depth(const DepthImage& image) {
@@ -88,8 +89,8 @@ CloudFile cloud_of(const Input& input, const DepthImage& image) {
 }
 
 void check_image_size(const Input& input, std::uint64_t width, std::uint64_t height) {
-  constexpr std::uint64_t kLargestRatio = 1032;  // of deflate
-  constexpr std::uint64_t kWidest = 65536;
+  constexpr std::uint64_t kLargestRatio = 1032;  // of deflate, at most (derived from its format)
+  constexpr std::uint64_t kWidest = 65536;       // pixels (judgement)
   const bool sane = width > 0 && height > 0 && width <= kWidest && height <= kWidest &&
                     2 * width * height / kLargestRatio <= input.bytes.size();
   if (sane) return;
@@ -101,10 +102,10 @@ void check_image_size(const Input& input, std::uint64_t width, std::uint64_t hei
 
 namespace {
 
-constexpr std::size_t kEveryRow = 4;  // one row in four tells enough
+constexpr std::size_t kEveryRow = 4;  // one row in four is enough (judgement)
 // Swapped images of real sensors are 20 to 100 times rougher than right ones.
-constexpr std::uint64_t kRougher = 4;
-constexpr std::uint64_t kFewest = 32;  // steps to judge by
+constexpr std::uint64_t kRougher = 4;  // times (judgement)
+constexpr std::uint64_t kFewest = 32;  // steps to judge by (judgement)
 
 std::uint16_t exchanged(std::uint16_t v) {
   return static_cast<std::uint16_t>((v >> 8U) | (v << 8U));
@@ -212,7 +213,8 @@ struct FreeContext {
   void operator()(spng_ctx* context) const { spng_ctx_free(context); }
 };
 
-constexpr std::size_t kLargestChunk = std::size_t{64} << 20U;  // bytes of text, profiles, ...
+constexpr std::size_t kLargestChunk = std::size_t{64}
+                                      << 20U;  // bytes of text, profiles, ... (judgement)
 
 void check(const Input& input, int status) {
   if (status == SPNG_OK) return;

@@ -1,3 +1,4 @@
+// Reads whole files and standard input, and unpacks gzip, within limits.
 #include "io/file_bytes.hpp"
 
 #include <fcntl.h>
@@ -18,8 +19,9 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::size_t kLongestStream = std::size_t{16} << 30U;  // bytes; a pipe may never end
-constexpr std::size_t kBlock = std::size_t{1} << 20U;
+constexpr std::size_t kLongestStream = std::size_t{16}
+                                       << 30U;         // bytes; a pipe may never end (judgement)
+constexpr std::size_t kBlock = std::size_t{1} << 20U;  // bytes read at once (judgement)
 
 class Descriptor {
  public:
@@ -62,7 +64,7 @@ std::size_t read_some(int fd, std::span<std::byte> into, const std::string& name
   }
 }
 
-// As much as there is, up to the end of `bytes`.
+// Reads until `bytes` is full or the file ends.
 std::size_t read_full(int fd, std::span<std::byte> bytes, const std::string& name) {
   std::size_t done = 0;
   while (done < bytes.size()) {

@@ -1,3 +1,4 @@
+// Reads cloud and depth image files of any supported kind, gzipped or not.
 #include "palpate/io/files.hpp"
 
 #include <fmt/format.h>
@@ -46,8 +47,8 @@ std::string name_inside(const std::string& name) {
   return extension(name) == ".gz" ? name.substr(0, name.size() - 3) : name;
 }
 
-// What is inside, by the name of `inside`. What is of no known kind is refused by its first bytes,
-// however much it unpacks to.
+// Unpacks the file named `inside`. Refuses an unknown kind by its first bytes, before unpacking
+// all.
 Bytes unpack(const Input& input, const std::string& inside) {
   constexpr std::size_t kStart = std::size_t{1} << 16U;
   const Bytes start = gunzip(input, kStart);

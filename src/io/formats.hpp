@@ -1,3 +1,4 @@
+// Declares the headers, readers and encoders of each file format.
 #pragma once
 
 #include <Eigen/Core>
@@ -83,7 +84,7 @@ inline constexpr std::size_t kLzfLargestRatio = 88;
 /// viewpoint is kept when the cloud is organised or the file sets one.
 [[nodiscard]] CloudFile read_pcd(const Input& input);
 
-/// What reading points needs of a LAS header (ASPRS LAS 1.0 - 1.4).
+/// Part of a LAS header that reading points needs (ASPRS LAS 1.0 - 1.4).
 struct LasHeader {
   int minor_version = 0;
   int format = 0;           ///< point format, 0 - 10

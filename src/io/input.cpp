@@ -1,3 +1,4 @@
+// Recognises the kind of a file and words the errors of readers.
 #include "io/input.hpp"
 
 #include <fmt/format.h>

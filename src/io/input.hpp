@@ -10,7 +10,7 @@
 
 namespace palpate::io {
 
-/// What every reader works on: bytes, the name to call them by, and the caller's wishes.
+/// Input of every reader: bytes, their name for messages, and the caller's options.
 struct Input {
   std::span<const std::byte> bytes;
   std::string name;
@@ -21,7 +21,7 @@ struct Input {
   }
 };
 
-/// How text of two bytes a letter begins, as some programs of Windows write it.
+/// Recognises UTF-16 by its byte order mark; some programs on Windows write it.
 [[nodiscard]] inline bool is_utf16(std::string_view text) {
   return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
 }
@@ -76,8 +76,7 @@ class Progress {
 
 enum class FileKind { ply, pcd, las, obj, text, png, pgm, gzip };
 
-/// What the bytes are: by their first bytes, for text also by its first words, and by the name
-/// last.
+/// Kind of the file: by its first bytes, for text also by its first words, and by the name last.
 /// @throws Error that says what to do about kinds that we know but do not read (xz, JPEG, E57, STL,
 ///   JSON, a web page, ...) and about bytes that are nothing we know.
 [[nodiscard]] FileKind kind_of(const Input& input);

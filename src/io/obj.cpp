@@ -1,3 +1,4 @@
+// Reads the vertices and normals of Wavefront OBJ files.
 #include <fmt/format.h>
 
 #include <algorithm>

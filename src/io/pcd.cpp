@@ -1,3 +1,4 @@
+// Reads the points of PCD files: ascii, binary and compressed.
 #include <fmt/format.h>
 
 #include <algorithm>

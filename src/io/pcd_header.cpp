@@ -1,3 +1,4 @@
+// Parses the header of PCD files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,8 +10,8 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::size_t kMostFields = 4096;
-constexpr std::size_t kLargestCount = 65536;  // numbers in one field of one point
+constexpr std::size_t kMostFields = 4096;     // fields; no honest file has more (judgement)
+constexpr std::size_t kLargestCount = 65536;  // numbers in one field of one point (judgement)
 
 std::vector<std::string_view> words_of(std::string_view rest) {
   std::vector<std::string_view> words;

@@ -1,3 +1,4 @@
+// Parses the header of PLY files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +22,8 @@ constexpr std::pair<std::string_view, NumberType> kTypes[] = {
     {"float32", NumberType::float32}, {"float64", NumberType::float64},
 };
 
-constexpr std::size_t kMostColumns = 4096;  // elements and properties: no honest file has more
+// Elements and properties; no honest file has more (judgement)
+constexpr std::size_t kMostColumns = 4096;
 
 class PlyHeaderParser {
  public:

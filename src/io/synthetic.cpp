@@ -1,3 +1,4 @@
+// Samples the surfaces of the synthetic clouds.
 #include "palpate/io/synthetic.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 constexpr double kPi = std::numbers::pi;
-constexpr double kJitter = 0.2;  // of the spacing
+constexpr double kJitter = 0.2;  // share of the spacing (judgement)
 
 constexpr std::array<SyntheticName, 7> kNames = {{
     {"bumps", "a 20 x 20 cm surface of rounded bumps, seen from above"},

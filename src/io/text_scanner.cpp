@@ -1,3 +1,4 @@
+// Scans numbers and words from text, and loads binary numbers of either byte order.
 #include "io/text_scanner.hpp"
 
 #include <fmt/format.h>

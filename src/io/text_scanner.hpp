@@ -13,7 +13,7 @@
 
 namespace palpate::io {
 
-/// How a number is kept in a binary file.
+/// Type of a number in a binary file.
 enum class NumberType {
   int8,
   uint8,

@@ -1,3 +1,4 @@
+// Reads trajectories from CSV.
 #include "palpate/io/trajectory.hpp"
 
 #include <fmt/format.h>
@@ -48,7 +49,7 @@ std::optional<double> number(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-// Where each of kColumns stands in the header.
+// Position of each of kColumns in the header.
 using Columns = std::array<std::size_t, kColumns.size()>;
 
 class Reader {

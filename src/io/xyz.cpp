@@ -92,7 +92,7 @@ Roles roles_from_names(const TextCells& names) {
   return roles;
 }
 
-// What follows x, y and z, from the number of columns and the first few rows of numbers.
+// Guesses the columns after x, y and z from their number and the first few rows.
 std::vector<Role> roles_behind(std::size_t count, const Rows& rows) {
   using enum Role;
   switch (count) {

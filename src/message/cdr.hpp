@@ -31,7 +31,7 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::size_t kHead = 4;  ///< bytes
 
-/// Where a value of `size` bytes begins that comes after byte `at`.
+/// Offset of a value of `size` bytes that follows byte `at`.
 constexpr std::size_t aligned(std::size_t at, std::size_t size) {
   return kHead + (at - kHead + size - 1) / size * size;
 }
@@ -165,7 +165,7 @@ class CdrReader {
     if (swap_) std::ranges::for_each(values, swap_bytes<T>);
   }
 
-  // Of a sequence whose elements take `least` bytes or more each.
+  // Reads the length of a sequence whose elements take `least` bytes or more each.
   std::size_t get_size(std::size_t least) {
     std::uint32_t size = 0;
     get(size);

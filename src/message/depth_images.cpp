@@ -1,3 +1,4 @@
+// Turns ROS camera descriptions and images into CameraModels and depths.
 #include "message/depth_images.hpp"
 
 #include <fmt/format.h>
@@ -16,11 +17,11 @@ namespace palpate::message {
 namespace {
 
 constexpr double kMillimetre = 1e-3;               // m, of a step in 16UC1 (REP 118)
-constexpr std::uint32_t kLargestSide = 1U << 14U;  // pixels
+constexpr std::uint32_t kLargestSide = 1U << 14U;  // pixels (judgement)
 
 using Distortion = CameraModel::Distortion;
 
-// How far a rational lens moves a ray away from the axis, at squared radius s.
+// Factor by which a rational lens moves a ray away from the axis, at squared radius s.
 double rational(const std::vector<double>& d, double s) {
   return (1 + s * (d[0] + s * (d[1] + s * d[4]))) / (1 + s * (d[5] + s * (d[6] + s * d[7])));
 }
@@ -129,7 +130,7 @@ CameraModel camera_of(const CameraInfo& info, bool rectified) {
 
 namespace {
 
-// Where the topic's own name begins, before "/compressed..." at its end.
+// Offset of the topic's own name, before "/compressed..." at its end.
 std::size_t name_in(const std::string& topic) {
   const std::size_t last = topic.rfind('/');
   if (last == std::string::npos) return topic.size();

@@ -1,3 +1,4 @@
+// Describes the ROS messages that show a run: diagnostics, markers, meshes.
 #pragma once
 
 #include "message/sensor_types.hpp"

@@ -74,7 +74,7 @@ struct Tick {
   }
 };
 
-/// What became of a camera's frame, and what that depended on besides the frame.
+/// Fate of a camera's frame, and what that depended on besides the frame.
 struct FrameUse {
   static constexpr auto kName = "palpate_msgs/FrameUse";
   static constexpr auto kHash = "";

@@ -1,3 +1,4 @@
+// Converts between PointCloud2 messages and PointClouds.
 #include "message/point_clouds.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ constexpr std::array kTypes{NumberType::int8,    NumberType::uint8,  NumberType:
                             NumberType::uint16,  NumberType::int32,  NumberType::uint32,
                             NumberType::float32, NumberType::float64};
 
-// What is read of a point: the number at `offset` is its `role` or, without one, its packed colour.
+// Column of a point: the number at `offset` is its `role` or, without one, its packed colour.
 struct Column {
   std::optional<Role> role;
   NumberType type = NumberType::float32;

@@ -12,7 +12,7 @@
 
 namespace palpate::message {
 
-/// What a topic asks of, or offers to, those at its other end (docs/ros2.md).
+/// Quality of service that a topic requests or offers (docs/ros2.md).
 struct Quality {
   bool reliable = false;  ///< lost messages are sent again
   int depth = 1;          ///< newest messages that are kept

@@ -1,3 +1,4 @@
+// Describes the ROS messages of sensors and of input devices.
 #pragma once
 
 #include "message/geometry_types.hpp"

@@ -1,3 +1,4 @@
+// Keeps the tree of transforms from /tf and answers where one frame is in another.
 #include "message/transforms.hpp"
 
 #include <fmt/format.h>
@@ -9,12 +10,12 @@
 namespace palpate::message {
 namespace {
 
-constexpr double kKept = 10;            // s of what moves
-constexpr double kGap = 0.25;           // s; what happened in a longer one is not known
-constexpr std::size_t kFrames = 4096;   // that a robot may have
-constexpr std::size_t kPoses = 20'000;  // of one frame: 2 kHz
+constexpr double kKept = 10;            // s of moving frames (judgement)
+constexpr double kGap = 0.25;           // s; motion in a longer gap is unknown (judgement)
+constexpr std::size_t kFrames = 4096;   // frames of a robot (judgement)
+constexpr std::size_t kPoses = 20'000;  // of one frame: kKept at 2 kHz (derived)
 constexpr double kNanoseconds = 1e9;
-constexpr double kOffUnit = 0.01;
+constexpr double kOffUnit = 0.01;  // deviation of a quaternion's length from 1 (judgement)
 
 // tf2 ignores a leading slash, and so must we.
 std::string plain(const std::string& frame) {

@@ -27,11 +27,11 @@ namespace palpate::message {
 [[nodiscard]] Vector3 vector_of(const Eigen::Vector3d& vector);
 [[nodiscard]] Eigen::Vector3d eigen(const Vector3& vector);
 
-/// Where frames of reference are in one another, from /tf and /tf_static: a tree, each frame with a
-/// parent. Keeps the last 10 s of what moves. Not thread-safe.
+/// Tree of frames of reference from /tf and /tf_static, each with a parent. Keeps the last 10 s of
+/// moving frames. Not thread-safe.
 class Transforms {
  public:
-  /// Those that are no pose, or make no tree, are left out.
+  /// Adds transforms; drops those that are no pose or make no tree.
   void add(const TFMessage& message, bool is_static);
 
   /// From the axes of `from` to those of `to` at `stamp` (s): straight and by slerp between two

@@ -1,3 +1,4 @@
+// Publishes hands, surfaces and reports to ROS 2 at their rates.
 #include "palpate/ros/bridge.hpp"
 
 #include <fmt/format.h>
@@ -30,13 +31,12 @@ constexpr Quality kTold{.reliable = true, .depth = 1};
 constexpr Quality kTf{.reliable = true, .depth = 100};
 constexpr Quality kStays{.reliable = true, .depth = 1, .stays = true};
 constexpr Quality kHeard{.reliable = false, .depth = 1};
-constexpr std::size_t kSurfacePoints = 10'000;
-constexpr double kMarkerRate = 30;  // Hz
-constexpr double kSurfaceRate = 5;  // Hz
-constexpr double kFrameRate = 50;   // Hz
-constexpr double kReportRate = 1;   // Hz
+constexpr std::size_t kSurfacePoints = 10'000;  // points of a published surface at most (judgement)
+constexpr double kMarkerRate = 30;              // Hz, for a display (judgement)
+constexpr double kSurfaceRate = 5;              // Hz, for a display (judgement)
+constexpr double kFrameRate = 50;               // Hz of /tf (judgement)
+constexpr double kReportRate = 1;               // Hz of diagnostics, as is usual in ROS
 
-// The topics of one hand.
 struct HandTopics {
   HandTopics(const Participant& with, const std::function<std::string(const std::string&)>& name)
       : pose(with, name("pose"), kTold),
@@ -94,7 +94,7 @@ const RosBridgeOptions& checked(const RosBridgeOptions& options,
   return options;
 }
 
-// Is a hand where its last step has it?
+// Is the hand's position in its last step valid?
 bool is_known(const ServoState& state) {
   return state.step > 0 && state.device == DeviceState::Status::ok;
 }
@@ -218,7 +218,7 @@ void RosBridge::Inside::look(double now) {
   if (diagnostics_due.due(now)) tell_diagnostics(header);
 }
 
-// What a sensor says may stop neither other hands nor what is told.
+// A bad message from one force sensor must not stop other hands or the publishing.
 void RosBridge::Inside::take_forces(std::size_t hand) {
   try {
     WrenchStamped told;
@@ -253,7 +253,7 @@ void RosBridge::Inside::tell_markers(const Header& header) {
   markers.write(message);
 }
 
-// A surface that did not change is not told again: who comes later gets the last one.
+// Publishes a surface only when it changes; late readers get the last one.
 void RosBridge::Inside::tell_surfaces(const Header& header) {
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     std::shared_ptr<const SurfacePoints> newest = scene.source(i).points();

@@ -1,3 +1,4 @@
+// Turns servo states into ROS messages and markers.
 #include "ros/hand_messages.hpp"
 
 #include <fmt/format.h>

@@ -8,11 +8,11 @@
 #include "palpate/sensor/stream.hpp"
 #include "palpate/servo/servo.hpp"
 
-/// What palpate tells of a run as messages of ROS 2, for a bridge and for recordings alike.
+/// Turns a run's states into ROS 2 messages, for the bridge and for recordings.
 /// `header`: stamp and the name of the world frame. Any thread.
 namespace palpate::ros {
 
-/// Where the hand has the tool, and where the proxy is; both with the tool's orientation.
+/// Poses of hand and proxy; both with the tool's orientation.
 [[nodiscard]] message::PoseStamped hand_pose(const message::Header& header,
                                              const ServoState& state);
 [[nodiscard]] message::PoseStamped proxy_pose(const message::Header& header,
@@ -46,7 +46,7 @@ void add_markers(const message::Header& header, const ServoState& state, int ind
                                                     const Durations& lateness);
 /// A stream's phase, ages and drops.
 [[nodiscard]] message::DiagnosticStatus stream_status(const StreamState& state);
-/// What a robot does, and how long it waited for what.
+/// Activity of a robot, and how long it waited for what.
 [[nodiscard]] message::DiagnosticStatus robot_status(const RosBridge::RobotState& state);
 
 }  // namespace palpate::ros

@@ -1,5 +1,4 @@
-// Where a robot is told to go follows from what the sources say of the proxy, the hand and its
-// place.
+// Decides where a robot is sent, from what the sources know about proxy, hand and robot position.
 #include "ros/robot_guide.hpp"
 
 #include <fmt/format.h>
@@ -34,14 +33,15 @@ constexpr Reason kApart = "the tool has to come back to where the robot is";
 
 constexpr double kBlink = 0.3;    // s without a sight of it that stop no robot for good (judgement)
 constexpr double kFreeFor = 0.5;  // s, so that a hand that passes does not start it (judgement)
-constexpr double kWayStep = 0.005;    // m between places that are looked at; a finger is thicker
-constexpr double kJoin = 0.02;        // m; a hand finds a place to that (judgement)
-constexpr double kJump = 0.01;        // m in one frame; hands and tools are thicker (judgement)
-constexpr double kLongestStep = 0.1;  // s; after a longer pause a retreat begins slowly again
-constexpr double kStays = 1;  // s; frames of living cameras are younger, others show what was once
+constexpr double kWayStep = 0.005;  // m between checked positions; a finger is thicker (judgement)
+constexpr double kJoin = 0.02;      // m; a hand finds a place to that (judgement)
+constexpr double kJump = 0.01;      // m in one frame; hands and tools are thicker (judgement)
+// s; after a longer pause a retreat starts slowly again (judgement)
+constexpr double kLongestStep = 0.1;
+constexpr double kStays = 1;  // s; frames of working cameras are younger (judgement)
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// What ended the way that the proxy proved by going it.
+// Why the proxy's own path no longer proves that the robot can follow it; empty if it still does.
 Reason broken_way(const ServoState& state) {
   if (has(state.field_notes, FieldNote::no_surface)) return "no source has a surface";
   if (has(state.field_notes, FieldNote::behind)) return kBehind;
@@ -97,9 +97,9 @@ RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now) {
   return place.free() && solid.source != nullptr && outdated ? solid : place;
 }
 
-// How far the surface that is felt may be behind the one that is seen: it goes on while a frame is
-// made into it, takes one frame's time to get there, and waits where the next frame is late. In one
-// frame that grows by one frame's way; more is something else.
+// Lag that the rendered surface may have behind the seen one, m: it keeps moving while a frame is
+// prepared, takes one frame interval to arrive, and waits if the next frame is late. In one frame
+// the lag grows by at most one frame's motion; more has another cause.
 double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, double dt) {
   const double interval = proxy.source->state().interval;
   const double speed = state.contact.touching ? state.contact.drift.dot(proxy.seen.towards) : 0;
@@ -140,8 +140,8 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool an
   return anew || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
 }
 
-// What is free decides whether it follows. Where the place was only not seen for a moment, it goes
-// on at once.
+// Lets the robot follow while proxy and hand are free. After a short loss of sight it resumes at
+// once.
 void RobotGuide::note(bool proxy_free, bool both_free, double now, bool anew) {
   free_since_ = both_free ? std::min(free_since_, now) : kNever;
   const bool may = follows_ || anew || now - free_since_ >= kFreeFor || now - followed_ <= kBlink;

@@ -1,3 +1,4 @@
+// Sends a robot its target, or withholds it.
 #include "ros/robot_target.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,7 @@
 namespace palpate::ros {
 namespace {
 
-constexpr double kStill = 0.05;  // s without a step: nobody computes where the proxy is
+constexpr double kStill = 0.05;  // s without a step: the servo stands still (judgement)
 constexpr std::string_view kSlow = "the network is too slow";
 
 struct RobotPreset {
@@ -42,7 +43,7 @@ std::string robot_topic(const RosBridgeOptions::Robot& robot) {
 }  // namespace
 
 double look_rate(const RosBridgeOptions& options) {
-  constexpr double kGuide = 250;  // Hz
+  constexpr double kGuide = 250;  // Hz at which a guide checks the way (judgement)
   return options.robot ? std::max({options.rate, options.robot->rate, kGuide}) : options.rate;
 }
 
@@ -108,8 +109,8 @@ RosBridge::RobotState RobotTarget::state() const {
 
 // Why the hand lets no target be told; empty: it does.
 std::string_view RobotTarget::objection(const ServoState& state, double now) {
-  if (state.step == 0 || now - stepped_ > kStill) return "the servo stands still";
-  if (state.device == DeviceState::Status::silent) return "the hand is not heard";
+  if (state.step == 0 || now - stepped_ > kStill) return "the servo makes no steps";
+  if (state.device == DeviceState::Status::silent) return "no data from the hand";
   if (state.device != DeviceState::Status::ok) return "the hand has ended";
   if (state.guard.fault != Guard::Fault::none) return "the hand has a fault";
   if (state.paused) return "the hand is paused";

@@ -27,7 +27,7 @@ class Every {
   double next_ = 0;
 };
 
-/// How often a bridge has to look at what there is to tell, Hz: often enough for the robot's guide.
+/// Rate at which a bridge has to check for news, Hz: enough for the robot's guide.
 [[nodiscard]] double look_rate(const RosBridgeOptions& options);
 
 /// Tells a robot where to go. While the hand is not known, its servo stands still, its button is

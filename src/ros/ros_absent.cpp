@@ -1,3 +1,4 @@
+// Replaces the ROS bridge in builds without DDS.
 #include "palpate/base/error.hpp"
 #include "palpate/ros/bridge.hpp"
 #include "palpate/ros/survey.hpp"

@@ -1,3 +1,4 @@
+// Lists the ROS topics that palpate can use.
 #include "palpate/ros/survey.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ namespace {
 
 using namespace message;
 
-constexpr double kDiscovery = 1;  // s in which programs that are there find one another
+constexpr double kDiscovery = 1;  // s in which running programs find one another (judgement)
 
 // A type that palpate takes or gives, and how a topic of it is used.
 struct Known {
@@ -45,7 +46,7 @@ const Known* known(const std::string& type) {
   return found == kKnown.end() ? nullptr : found;
 }
 
-// How palpate uses such a topic; null: it does not. What it says itself is for others.
+// Command that uses such a topic; null: none. Skips the topics that palpate publishes.
 const char* use_of(const dds::Endpoint& there, const Known& type) {
   if (there.topic.starts_with("/palpate/")) return nullptr;
   if (there.writes && there.topic.ends_with("/ee_pose")) return "--device ros:fd,ns=NAMESPACE";

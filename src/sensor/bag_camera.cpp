@@ -20,15 +20,16 @@ using message::Header;
 using message::TFMessage;
 using Status = DepthCamera::Status;
 
-constexpr std::uint64_t kLateTransform = 100'000'000;  // ns that an image waits for its transform
-constexpr std::size_t kMostWaiting = 64;               // images
-constexpr std::size_t kMostHeld = 256 << 20;           // bytes of them
-constexpr int kMeasured = 30;                          // images that tell their rate
-constexpr double kSlowestBag = 0.1;                    // Hz
-constexpr double kFastestBag = 1000;                   // Hz
-constexpr int kInfos = 10;                             // that are tried until one can be used
-constexpr int kStatics = 1000;                         // messages of what stands still
-constexpr double kStampJump = 1;      // s that stamps may run ahead of the recording
+// Ns that an image waits for its transform (judgement)
+constexpr std::uint64_t kLateTransform = 100'000'000;
+constexpr std::size_t kMostWaiting = 64;      // images that wait (judgement)
+constexpr std::size_t kMostHeld = 256 << 20;  // bytes of them (judgement)
+constexpr int kMeasured = 30;                 // images that give the rate (judgement)
+constexpr double kSlowestBag = 0.1;           // Hz (judgement)
+constexpr double kFastestBag = 1000;          // Hz (judgement)
+constexpr int kInfos = 10;            // camera infos tried until one can be used (judgement)
+constexpr int kStatics = 1000;        // messages of static transforms that are read (judgement)
+constexpr double kStampJump = 1;      // s that stamps may run ahead of the recording (judgement)
 constexpr double kNanosecond = 1e-9;  // s
 
 // Decodes a message of type T and makes a frame of it.
@@ -103,7 +104,7 @@ BagRecording::BagRecording(const BagName& name)
   BagRecording::rewind();
 }
 
-// By the first images.
+// Measures the frame rate from the first images.
 void BagRecording::measure() {
   reader_.choose([&](const Channel& channel) { return is_image(channel); });
   std::uint64_t first = 0;

@@ -1,3 +1,4 @@
+// Chooses the topics of a bag that hold depth frames and their camera.
 #include "sensor/bag_topics.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ bool is_there(const std::string& path) {
   return fs::exists(path, ignored);
 }
 
-// What ROS 2 records is a folder, mostly with one file.
+// Finds the file in a folder: ROS 2 records a folder, mostly with one file.
 std::string file_in(const std::string& folder) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) return folder;

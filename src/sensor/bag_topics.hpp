@@ -8,7 +8,7 @@
 
 namespace palpate::sensor {
 
-/// What "FILE[:TOPIC][,frame=FRAME]" names.
+/// Parts of "FILE[:TOPIC][,frame=FRAME]".
 struct BagName {
   std::string file;
   std::string topic;  ///< empty: the one that fits

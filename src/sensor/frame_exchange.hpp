@@ -9,8 +9,8 @@
 
 namespace palpate::sensor {
 
-/// Where a reading and a preparing thread meet: one frame waits at most. Frames change hands by
-/// swapping, so that their memory goes round.
+/// Passes frames from a reading to a preparing thread; at most one frame waits. Frames are swapped,
+/// so that their memory is reused.
 class FrameExchange {
  public:
   /// `lossless`: the reader waits until its last frame is taken instead of overtaking it.

@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kMissing = "USB is not accessible. Give this user access to /dev/bus/usb";
 constexpr const char* kSilence =
     "Is its power supply plugged in? A Kinect needs it in addition to USB.";
-constexpr double kTicks = 60e6;  // of the device's clock, a second
+constexpr double kTicks = 60e6;  // Hz of the device's clock (the maker's)
 constexpr std::uint16_t kNoMillimetres = 10'000;
 
 struct Shutdown {
@@ -53,7 +53,7 @@ freenect_frame_mode best_mode() {
   return best;
 }
 
-// What libusb's numbers mean to a user.
+// Explains libusb's error codes to a user.
 std::string why_not(int code) {
   if (code == -3) {
     return "no permission to use it. Install libfreenect0.5 (its udev rules), join the group "

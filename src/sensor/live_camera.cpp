@@ -1,3 +1,4 @@
+// Converts raw Kinect disparities to metres, and device times to host times.
 #include "sensor/live_camera.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ constexpr double kPixel = 1.042e-3;  // a pixel of the sensor (1280 x 960) on th
 constexpr double kBaseline = 0.075;  // from projector to camera, m
 constexpr double kShift = 200.375;   // of the reference plane's raw value, pixels of the sensor
 constexpr double kFarthest = 15;     // m; steps are above half a metre there
+// Raw value of a pixel without depth: 2^11 - 1 (the maker's)
 constexpr std::uint16_t kNoValue = 2047;
 
 }  // namespace
@@ -36,8 +38,8 @@ float kinect_metres(std::uint16_t raw) {
 
 namespace {
 
-constexpr double kDrift = 2e-4;  // s per s; crystals differ by less
-constexpr double kJump = 1;      // s; a device whose clock jumped so far was restarted
+constexpr double kDrift = 2e-4;  // s per s; crystals differ by less (judgement)
+constexpr double kJump = 1;      // s; a device whose clock jumped so far was restarted (judgement)
 
 }  // namespace
 
@@ -56,7 +58,7 @@ double HostStamps::host(double device, double arrival) {
 namespace {
 
 // Devices need a second or two after they are opened; a loose plug is silent for ever.
-constexpr double kLongSilence = 3;  // s
+constexpr double kLongSilence = 3;  // s (judgement)
 
 }  // namespace
 

@@ -89,7 +89,7 @@ class Connection {
   [[nodiscard]] virtual DepthCamera::Status fetch(DepthFrame& frame, double& device_time,
                                                   double timeout) = 0;
 
-  /// What was wrong with the frame that fetch() called `damaged`.
+  /// Says what was wrong with the frame that fetch() called `damaged`.
   [[nodiscard]] virtual std::string damage() const { return {}; }
 
  protected:
@@ -99,15 +99,15 @@ class Connection {
 /// @throws Error that says why the device cannot be opened.
 using Connect = std::function<std::unique_ptr<Connection>()>;
 
-/// What becomes of a device that is lost.
+/// Treatment of a device that is lost.
 enum class Lost {
   opened_again,  ///< when it is asked for the next frame; also when it is silent for long
   ended,         ///< a recording: opened again, it plays from its beginning
 };
 
-/// What all drivers of real devices have in common: stamps on the host's clock, and what to do when
-/// the device is lost. Where the device does not pace itself, stamps are its own times, from 0 on,
-/// that go on when a recording begins again.
+/// Shares what drivers of real devices have in common: stamps on the host's clock, and reopening of
+/// lost devices. If the device does not pace itself, stamps are its own times, from 0 on, and
+/// continue when a recording starts again.
 class LiveCamera final : public DepthCamera {
  public:
   /// Opens the device. `silence` tells what a device that is silent for long may lack. Without a

@@ -1,3 +1,4 @@
+// Lists camera drivers and opens a camera by name.
 #include <fmt/format.h>
 
 #include <string_view>

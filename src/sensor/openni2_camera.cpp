@@ -29,7 +29,7 @@ bool is_recording(std::string_view device) {
   return device.ends_with(".oni") || device.ends_with(".ONI");
 }
 
-// What a camera that cannot be opened may need.
+// Suggests what to do about a camera that cannot be opened.
 std::string remedy(const std::string& device) {
   if (is_recording(device)) {
     return "Check that it is a complete, readable OpenNI2 recording; OpenNI 1 recordings do not "

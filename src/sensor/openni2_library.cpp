@@ -1,3 +1,4 @@
+// Loads OpenNI2 at run time.
 #include "sensor/openni2_library.hpp"
 
 #include <OniVersion.h>

@@ -20,7 +20,7 @@ class OpenNi2Library {
   OpenNi2Library(const OpenNi2Library&) = delete;
   OpenNi2Library& operator=(const OpenNi2Library&) = delete;
 
-  /// What it says of its last error, on one line.
+  /// The library's text for its last error, on one line.
   [[nodiscard]] std::string last_words() const;
 
   decltype(&::oniGetDeviceList) get_device_list = nullptr;

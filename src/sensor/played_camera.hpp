@@ -33,7 +33,7 @@ class Recording {
 /// without a clock. A recording that loops begins again one image's time after its last.
 class PlayedCamera final : public DepthCamera {
  public:
-  /// Of `info`, `paces` is set here.
+  /// Sets `info.paces` itself.
   PlayedCamera(CameraInfo info, std::unique_ptr<Recording> recording, const CameraOptions& options);
 
   [[nodiscard]] const CameraInfo& info() const noexcept override { return info_; }

@@ -1,3 +1,4 @@
+// Parses lists of frames and camera poses, and finds the pose at a time.
 #include "sensor/pose_track.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@ namespace palpate::sensor {
 namespace {
 
 constexpr double kOff = 0.01;
-constexpr double kFarthestOrigin = 1e6;  // m
+constexpr double kFarthestOrigin = 1e6;  // m (judgement)
 
 bool is_place(const Eigen::Vector3d& place) {
   return place.allFinite() && place.cwiseAbs().maxCoeff() <= kFarthestOrigin;
@@ -103,8 +104,8 @@ using io::Input;
 using io::take_word;
 using io::TextScanner;
 
-constexpr double kWidestGap = 0.25;  // s; a person's hand moves a decimetre in it
-constexpr double kSame = 1e-3;       // s
+constexpr double kWidestGap = 0.25;  // s; a hand moves a decimetre in it (judgement)
+constexpr double kSame = 1e-3;       // s between a frame's stamp and its pose (judgement)
 constexpr std::string_view kPoseRemedy = "Correct this line, or export the poses again";
 
 bool is_comment(std::string_view line) {

@@ -20,7 +20,8 @@ namespace palpate::sensor {
 namespace {
 
 constexpr const char* kWhat = "remote camera";
-constexpr int kMostFrames = 8;  // that one look takes: a client without end does not hold it up
+// Frames a read takes at most, so that no client blocks it (judgement)
+constexpr int kMostFrames = 8;
 
 std::string words(int error) {
   return std::system_category().message(error);
@@ -166,7 +167,7 @@ bool RemoteCamera::take_whole(DepthFrame& frame) {
   return false;
 }
 
-// What is remembered of earlier frames is of that camera.
+// Refuses another camera: the memory of earlier frames belongs to the first one.
 void RemoteCamera::check_camera() {
   const std::string camera = words(assembler_.header().camera);
   if (camera_.empty()) camera_ = camera;
@@ -187,7 +188,7 @@ void RemoteCamera::part() {
   stamps_ = {};
 }
 
-// One program at a time. True: one came in.
+// Accepts one program at a time; true if one came in.
 bool RemoteCamera::let_in() {
   for (bool came = false;;) {
     Client next(::accept4(socket_.handle(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));

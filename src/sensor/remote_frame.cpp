@@ -1,3 +1,4 @@
+// Parses depth frames that another program sends over a socket.
 #include "sensor/remote_frame.hpp"
 
 #include <fmt/format.h>
@@ -19,12 +20,12 @@ constexpr unsigned kHasPose = 1;
 constexpr unsigned kHasStamp = 2;
 constexpr unsigned kFloats = 4;
 
-// What is filtered is blocks of 2 x 2 pixels and their neighbours.
+// Pixels: the filter needs 2 x 2 blocks and their neighbours, so three blocks (derived).
 constexpr std::uint32_t kSmallestSide = 6;
-constexpr std::uint32_t kLargestSide = 8192;
-constexpr double kFarthestPixel = 1e6;  // pixels
-constexpr double kMostBent = 1000;      // a coefficient of a lens
-constexpr double kLargestStamp = 1e10;  // s, either way
+constexpr std::uint32_t kLargestSide = 8192;  // pixels (judgement)
+constexpr double kFarthestPixel = 1e6;        // pixels (judgement)
+constexpr double kMostBent = 1000;            // largest coefficient of a lens (judgement)
+constexpr double kLargestStamp = 1e10;        // s, either sign (judgement)
 
 // A number from least to most; not for NaN.
 double within(double value, double least, double most, std::string_view name,

@@ -17,7 +17,7 @@ inline constexpr std::uint16_t kRemoteFrameVersion = 1;
 inline constexpr std::size_t kFrameHeaderSize = 160;                        ///< bytes
 inline constexpr std::uint32_t kMostFramePixels = std::uint32_t{1} << 24U;  ///< of a frame
 
-/// What is known of a frame before its pixels. All numbers are in range.
+/// Header of a frame, sent before its pixels. All numbers are in range.
 struct FrameHeader {
   CameraModel camera;
   double unit = 0;              ///< m a step of the pixels' values
@@ -25,7 +25,7 @@ struct FrameHeader {
   std::optional<double> stamp;  ///< s, on a clock of the client's; unset: it tells none
   std::optional<Eigen::Isometry3d> T_world_sensor;  ///< unset: where the source stands
 
-  /// Of all pixels, bytes.
+  /// Size of all pixels, bytes.
   [[nodiscard]] std::size_t pixel_bytes() const {
     return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height) *
            (floats ? 4 : 2);
@@ -40,7 +40,7 @@ struct FrameHeader {
 /// that was checked announces, and keeps it for the frames that follow. One thread.
 class FrameAssembler {
  public:
-  /// Where the next bytes belong; never empty.
+  /// Buffer for the next bytes; never empty.
   [[nodiscard]] std::span<std::byte> room() { return std::span(bytes_).subspan(used_); }
 
   /// The first `count` bytes of room() were put there. True: a frame is whole.

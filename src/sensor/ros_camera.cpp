@@ -27,10 +27,10 @@ using message::PointCloud2;
 using message::TFMessage;
 using message::Transforms;
 
-constexpr double kOldest = 10;          // s: older stamps are of another clock
-constexpr double kNewest = -0.5;        // s: so are those of the future (streams refuse 1 s)
-constexpr double kTransformWait = 0.1;  // s that a frame waits for its transform
-constexpr double kLook = 0.05;          // s between looks for a publisher
+constexpr double kOldest = 10;          // s; older stamps are from another clock (judgement)
+constexpr double kNewest = -0.5;        // s; so are later ones (streams refuse 1 s; judgement)
+constexpr double kTransformWait = 0.1;  // s that a frame waits for its transform (judgement)
+constexpr double kLook = 0.05;          // s between checks for a publisher (judgement)
 constexpr const char* kNoneArrived =
     " has a publisher, but none of its images arrives; where the network loses packets, take its "
     "compressedDepth topic (docs/ros2.md, \"Several machines\")";
@@ -63,7 +63,7 @@ CameraName parse(const std::string& name) {
   return parsed;
 }
 
-// What /tf and /tf_static have said so far.
+// Collects transforms from /tf and /tf_static.
 class TransformListener {
  public:
   explicit TransformListener(const dds::Participant& participant)
@@ -173,12 +173,13 @@ bool RosCamera::connect() {
     }
     other = there.type;
   }
-  reason_ = other.empty()
-                ? fmt::format("nobody publishes {}; 'palpate ros' lists what is there", name_.topic)
-                : fmt::format(
-                      "{} has type {}; depth comes as sensor_msgs Image, CompressedImage or "
-                      "PointCloud2",
-                      name_.topic, other);
+  reason_ =
+      other.empty()
+          ? fmt::format("no node publishes {}; 'palpate ros' lists what is there", name_.topic)
+          : fmt::format(
+                "{} has type {}; depth comes as sensor_msgs Image, CompressedImage or "
+                "PointCloud2",
+                name_.topic, other);
   return false;
 }
 

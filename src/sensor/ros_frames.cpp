@@ -1,3 +1,4 @@
+// Turns ROS images and clouds into DepthFrames.
 #include "sensor/ros_frames.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +28,7 @@ void RosFrames::fill_image(const auto& image, DepthFrame& frame) const {
   frame.camera = *camera_;
   read_depth(image, frame);
   if (frame.camera.width != camera_->width || frame.camera.height != camera_->height) {
-    throw Error(fmt::format("an image of {} x {} pixels, but {} tells of {} x {}",
+    throw Error(fmt::format("an image of {} x {} pixels, but {} describes {} x {}",
                             frame.camera.width, frame.camera.height, info_topic_, camera_->width,
                             camera_->height));
   }

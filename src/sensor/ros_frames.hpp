@@ -19,7 +19,7 @@ class RosFrames {
   [[nodiscard]] const std::string& topic() const { return topic_; }
   [[nodiscard]] const std::string& info_topic() const { return info_topic_; }
 
-  /// What holds for the images from now on. What of it cannot be used is said by fill().
+  /// Sets the camera of the images from now on. fill() throws if it cannot be used.
   void tell(const message::CameraInfo& info);
   /// There is no camera, for this reason.
   void lose_camera(std::string why);

@@ -1,3 +1,4 @@
+// Lists the frames of a folder of depth images or clouds.
 #include "sensor/sequence.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ namespace {
 using namespace sensor;
 namespace fs = std::filesystem;
 
-constexpr double kRate = 30;  // Hz, where nothing is said
+constexpr double kRate = 30;  // Hz, if the sequence gives none (judgement)
 
 std::string text_of(const fs::path& path) {
   const io::Bytes bytes = io::read_bytes(path);
@@ -56,8 +57,8 @@ std::vector<fs::path> frames_in(const fs::path& folder, const std::string& wante
   return frames;
 }
 
-// What TUM's benchmark says of its sequences: depth v / 5000 m, and one set of intrinsics that it
-// recommends for all of them.
+// Describes a sequence of TUM's benchmark: depth v / 5000 m, and the intrinsics that TUM recommends
+// for all of its sequences.
 SequenceDescription tum_layout(const fs::path& folder) {
   SequenceDescription sequence;
   sequence.camera.pinhole = {.fx = 525, .fy = 525, .cx = 319.5, .cy = 239.5};
@@ -88,7 +89,7 @@ SequenceDescription describe(const fs::path& folder) {
       folder.string()));
 }
 
-// Of a file that the description names in `field`.
+// Reads the file that the description names in `field`.
 std::string text_named(const fs::path& folder, const std::string& file, std::string_view field) {
   const fs::path path = folder / file;
   if (is_file(path)) return text_of(path);
@@ -198,7 +199,7 @@ void add_poses(const fs::path& folder, const SequenceDescription& description,
   }
 }
 
-// Where each frame has a time of its own: by the middle interval.
+// Takes the median interval if each frame has its own stamp.
 double rate_of(const SequenceDescription& description, const std::vector<SequenceFrame>& frames) {
   const bool told = description.rate && description.frames.empty() && description.stamps.empty();
   if (told || frames.size() < 2) return description.rate.value_or(kRate);

@@ -15,7 +15,7 @@
 
 namespace palpate::sensor {
 
-/// What a sequence.json says; docs/sequences.md tells of every field.
+/// Contents of a sequence.json; docs/sequences.md explains every field.
 struct SequenceDescription {
   CameraModel camera;        // fx 0: nothing is said of its lens, as clouds need none
   double depth_unit = 1e-3;  // m

@@ -1,3 +1,4 @@
+// Parses sequence.json, which describes a folder of depth images.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -15,9 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kWidest = 65536;      // pixels
-constexpr double kLargestUnit = 1;  // m a step
-constexpr double kFastest = 1e5;    // Hz
+constexpr int kWidest = 65536;      // pixels (judgement)
+constexpr double kLargestUnit = 1;  // m a step (judgement)
+constexpr double kFastest = 1e5;    // Hz (judgement)
 
 constexpr std::array<std::string_view, 18> kFields{"width",
                                                    "height",
@@ -157,7 +158,7 @@ std::vector<std::uint16_t> invalid_of(const Fields& fields) {
   return invalid;
 }
 
-// One of two words; false for the first and for none.
+// Reads one of two words: true for the second, false for the first or if absent.
 bool second_of(const Fields& fields, std::string_view field, std::string_view first,
                std::string_view second) {
   const std::string wanted = fmt::format("\"{}\" or \"{}\"", first, second);

@@ -1,3 +1,4 @@
+// Runs a camera and its source in simulated time.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -17,8 +17,7 @@
 namespace palpate {
 namespace sensor {
 
-// How long to wait before a camera that failed is asked again: not at all after one failure, then
-// ever longer.
+// Chooses the wait before a failed camera is asked again: none after one failure, then ever longer.
 class Retry {
  public:
   Retry(double first, double longest) : first_(first), longest_(longest) {}
@@ -59,12 +58,12 @@ namespace {
 using namespace sensor;
 
 // A camera's clock may run ahead of the host's by so much before a stamp is thought senseless.
-constexpr double kAhead = 1;  // s
+constexpr double kAhead = 1;  // s (judgement)
 // No frame is on its way for so long: a first one that seems to be was stamped by another clock.
-constexpr double kOtherClock = 30;  // s
+constexpr double kOtherClock = 30;  // s (judgement)
 
-// What preparation still does after it asked for a start is foreseen from the frames before: a
-// share of the longest of them, frame by frame, and no more than a hiccup should cost.
+// Work left after preparation asked for a start is predicted from the longest so far, which decays
+// by kForget a frame and is capped at kLongestTail, so that one hiccup costs little (judgement).
 constexpr double kForget = 0.9;
 constexpr double kLongestTail = 0.02;  // s
 

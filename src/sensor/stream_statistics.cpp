@@ -189,7 +189,7 @@ StreamStatistics::StreamStatistics(std::string source, std::string camera, doubl
 
 void StreamStatistics::frame_received(double now, const std::optional<Objection>& objection,
                                       std::uint64_t size_changes) {
-  // What the rate is a mean of: intervals at least, and the time that no bunch of frames fills.
+  // The rate is a mean over at least so many intervals and so long, as frames may come in bunches.
   constexpr std::size_t kIntervals = 8;
   constexpr double kTime = 1;  // s
   const std::lock_guard lock(mutex_);

@@ -89,12 +89,12 @@ class StreamStatistics {
   void failed(double now, const std::string& why, bool repeatedly);
   /// The camera is well and has no frame yet; `reason` says why, or is empty.
   void waiting(double now, const std::string& reason);
-  /// To be told, though nothing is dropped for it.
+  /// Notes a warning without a dropped frame.
   void warning(double now, const std::string& what);
   void retried();
   void ended();
 
-  /// How the stream fares at `now`. Notices silence, also that of a camera that never answers.
+  /// State of the stream at `now`. Notices silence, also that of a camera that never answers.
   [[nodiscard]] StreamState state(double now);
 
  private:

@@ -1,3 +1,4 @@
+// Limits, damps and slows the force between proxy and device.
 #include "palpate/servo/guard.hpp"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ Guard::Fault judge(const Guard::Input& input) noexcept {
   return Guard::Fault::none;
 }
 
-// What a spring holds that is stretched to `force`, J.
+// Energy of a spring stretched to `force`, J.
 double stored(const Vector3d& force, double stiffness) noexcept {
   return stiffness > 0 ? force.squaredNorm() / (2 * stiffness) : 0;
 }
@@ -63,7 +64,7 @@ Vector3d tangential(const Vector3d& v, const Vector3d& normal) noexcept {
 
 }  // namespace
 
-/// What a guard does and what it keeps from step to step.
+/// Steps of a guard, and what it keeps from one to the next.
 class Guard::Inside {
  public:
   explicit Inside(const GuardOptions& options) : options_(options), passivity_(options.passivity) {
@@ -77,7 +78,7 @@ class Guard::Inside {
   [[nodiscard]] const GuardOptions& options() const noexcept { return options_; }
 
  private:
-  /// How the hand moved against the surface since the step before.
+  /// Motion of the hand against the surface since the step before.
   struct Motion {
     Vector3d way;       // m
     Vector3d velocity;  // smoothed, m/s
@@ -185,8 +186,7 @@ Guard::Inside::Motion Guard::Inside::follow(const Guard::Input& input) const noe
           velocity_ + Guard::kSmoothing * (now - velocity_)};
 }
 
-// What the spring holds, or a force that fades after the surface has gone, as a spring let loose
-// slowly.
+// Energy in the spring, J, or in a force that still fades after the surface has gone.
 double Guard::Inside::held(const Guard::Input& input) const noexcept {
   return std::max(stored(input.force, input.stiffness), stored(slewed_, stiffness_));
 }
@@ -199,7 +199,7 @@ double Guard::Inside::sliding(const Guard::Input& input, const Motion& motion) c
   const double square = along.squaredNorm();
   if (!(square > 0)) return sliding_;
   const Vector3d proxy_way = motion.way + stretch(input) - stretch_;
-  // Of what is no number, as a spring of next to no stiffness makes it: 0.
+  // std::max turns NaN (0 / 0 at a tiny stiffness) into 0.
   const double share = std::min(1.0, std::max(0.0, proxy_way.dot(along) / square));
   return sliding_ + Guard::kSmoothing * (share - sliding_);
 }

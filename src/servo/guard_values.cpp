@@ -1,3 +1,4 @@
+// Scales guard options to the world and puts a guard's state into words.
 #include <fmt/core.h>
 
 #include "palpate/servo/guard.hpp"

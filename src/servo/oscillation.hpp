@@ -4,7 +4,7 @@
 
 namespace palpate {
 
-/// What a device that flew into the wall came out with.
+/// Result of a device's flight into the wall.
 struct Impact {
   double rebound = 0;  ///< speed out over speed in; 0: it stayed within the wall for 2 s
   double energy = 0;   ///< that the forces gave to the device in all, J; below zero: took
@@ -18,8 +18,8 @@ struct Impact {
 /// points that lie less than 100 ms apart (5 Hz). Real-time.
 class OscillationDetector {
  public:
-  static constexpr double kSlowest = 0.1;    ///< s from one turning point to the next
-  static constexpr double kSmallest = 5e-5;  ///< m that it comes back where it has turned
+  static constexpr double kSlowest = 0.1;    ///< s from one turning point to the next (judgement)
+  static constexpr double kSmallest = 5e-5;  ///< m of return that count as a turn (judgement)
 
   /// A position (m), `dt` seconds after the one before. Returns the swing now, m; 0: no
   /// oscillation.

@@ -1,3 +1,4 @@
+// Keeps the ledger of energy given to the hand and brakes when it is overdrawn.
 #include "servo/passivity.hpp"
 
 #include <algorithm>

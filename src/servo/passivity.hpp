@@ -34,9 +34,9 @@ class Passivity {
   void account(const Eigen::Vector3d& force, const Eigen::Vector3d& way, double stored,
                double dt) noexcept;
 
-  /// What has to be added to `force` (N), which is about to be sent, if the hand goes on by `way`
-  /// in each step: what is on its way to the hand counts already. Zero while nothing was given.
-  /// `damping` (N s/m): B, of a damper that is part of `force`.
+  /// Braking force (N) to add to `force` before it is sent, if the hand keeps moving by `way` (m)
+  /// per step. Counts the forces in the delay line. Zero while no energy was given. `damping` (N
+  /// s/m): B, of a damper that is part of `force`.
   [[nodiscard]] Eigen::Vector3d brake(const Eigen::Vector3d& force, const Eigen::Vector3d& way,
                                       double dt, double damping = 0) const noexcept;
 

@@ -1,3 +1,4 @@
+// Steps one hand through field, proxy and guard.
 #include "palpate/servo/servo.hpp"
 
 #include <algorithm>
@@ -19,9 +20,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kButtons = 32;
+constexpr int kButtons = 32;  // bits of DeviceState::buttons
 
-// Of a device that does not tell its rate: what the first step takes, s.
+// Duration of the first step, s, for a device without a known rate: 1 kHz is usual (judgement).
 constexpr double kFirstStep = 1e-3;
 
 ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
@@ -34,7 +35,7 @@ ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
   return options;
 }
 
-// What the hand may feel, as a stiffness in the world, where motion is magnified.
+// Stiffness limit in the world, N/m: the hand's limit divided by the magnification.
 double stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options) {
   const GuardOptions& guard = options.guard;
   if (!guard.on) return std::numeric_limits<double>::infinity();
@@ -195,7 +196,8 @@ Vector3d Servo::Inside::guarded() noexcept {
   input.velocity = state.velocity;
   input.dt = state.dt;
   if (state.clutched) {
-    // As in the air. A hand that goes out while its force fades loses it as it would from a spring.
+    // Clutched counts as not touching: a hand that leaves while its force fades loses it as it
+    // would from a spring.
     input.stiffness = proxy.options().stiffness;
   } else {
     input.force = state.contact.force;

@@ -1,5 +1,4 @@
-// What a servo records, durations of steps and recent forces, and what its device makes of its
-// guard.
+// Records durations of steps and recent forces of a servo, and adapts its guard to the device.
 #include "servo/servo_inside.hpp"
 
 #include <algorithm>
@@ -10,9 +9,10 @@
 namespace palpate {
 namespace {
 
-constexpr double kShortest = 1.25e-7;  // s, the lower end of the first bin
-constexpr double kLongest = 1e6;       // s
+constexpr double kShortest = 1.25e-7;  // s; lower end of the first bin, 1/8 us (judgement)
+constexpr double kLongest = 1e6;       // s; longer durations count in the last bin
 
+// Device periods without data that count as silence (judgement)
 constexpr double kSilencePeriods = 2.5;
 
 std::size_t bin_of(double duration) noexcept {
@@ -56,7 +56,7 @@ Durations Durations::since(const Durations& earlier) const noexcept {
   return later;
 }
 
-// One thread adds: what it read cannot have changed when it writes.
+// Only one thread adds, so a relaxed load and store lose nothing.
 void Histogram::add(double duration) noexcept {
   if (std::isnan(duration)) return;
   constexpr auto kRelaxed = std::memory_order_relaxed;

@@ -20,7 +20,7 @@ class Histogram {
   /// s; what is negative counts as 0, what is not a number is left out.
   void add(double duration) noexcept;
 
-  /// What was added until now; a step that is under way may be in some numbers and not in others.
+  /// Counts so far; a step under way may be in some numbers and not in others.
   [[nodiscard]] Durations look() const noexcept;
 
  private:
@@ -38,11 +38,11 @@ class RecentForces {
   /// N. One thread. Real-time.
   void add(const Eigen::Vector3f& force) noexcept;
 
-  /// How many were added until now. Any thread.
+  /// Number of forces added so far. Any thread.
   [[nodiscard]] std::uint64_t count() const noexcept { return count_.load(); }
 
-  /// What was added after the first `seen`, oldest first, as far as it is still there; `seen`
-  /// becomes count(). Any thread; allocates.
+  /// Forces added after the first `seen` that are still held, oldest first; sets `seen` to count().
+  /// Any thread; allocates.
   [[nodiscard]] std::vector<Eigen::Vector3f> since(std::uint64_t& seen) const;
 
  private:

@@ -1,3 +1,4 @@
+// Runs servos on a real-time thread and reports what the system granted.
 #include "palpate/servo/servo_thread.hpp"
 
 #include <fmt/core.h>
@@ -25,10 +26,10 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kStack = 256 * 1024;  // bytes that a step may use
-constexpr std::size_t kPage = 4096;
-constexpr unsigned long kTimerSlack = 1;  // ns; 50000 for threads without real-time priority
-constexpr std::uint64_t kTurn = 100'000;  // ns; the least that the kernel grants
+constexpr std::size_t kStack = 256 * 1024;  // bytes that a step may use (judgement)
+constexpr std::size_t kPage = 4096;         // bytes; the kernel's usual page
+constexpr unsigned long kTimerSlack = 1;    // ns; the least that the kernel takes, 50000 is usual
+constexpr std::uint64_t kTurn = 100'000;    // ns; the least that the kernel grants
 
 std::string reason(int error) {
   return std::generic_category().message(error);
@@ -52,7 +53,7 @@ RealtimeReport::Request ask_for_priority(int priority) {
   return request;
 }
 
-// As the kernel has it; the C library describes it only from version 2.41 on.
+// The kernel's sched_attr; the C library declares it only from version 2.41 on.
 struct SchedulingAttributes {
   std::uint32_t size = sizeof(SchedulingAttributes);
   std::uint32_t policy = 0;
@@ -64,8 +65,8 @@ struct SchedulingAttributes {
   std::uint64_t period = 0;
 };
 
-// Who asks for short turns waits less for others to end theirs, if there is no real-time priority.
-// Takes no rights; before Linux 6.12 it changes nothing.
+// Asks for short time slices, so that without real-time priority the thread waits less for others.
+// Needs no rights; has no effect before Linux 6.12.
 void take_short_turns() {
   SchedulingAttributes now;
   const bool known = syscall(SYS_sched_getattr, 0, &now, sizeof now, 0) == 0;
@@ -100,7 +101,7 @@ bool is_processor(int processor) {
   return processor >= 0 && processor < CPU_SETSIZE;
 }
 
-// Those that the calling thread may run on: "0-3, 6".
+// Processors that the calling thread may run on: "0-3, 6".
 std::string allowed_processors() {
   cpu_set_t set;
   CPU_ZERO(&set);

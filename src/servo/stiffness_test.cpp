@@ -1,3 +1,4 @@
+// Tests how stiff a wall one device renders stably with the hand that holds it.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,13 +45,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kGap = 5e-3;         // between a resting hand and the wall under it, m
-constexpr double kStillFor = 0.5;     // s
-constexpr double kStillSpeed = 0.02;  // m/s
-constexpr double kLift = 2e-3;        // off the wall, m
-constexpr double kLeastPress = 0.3;   // N
-constexpr double kShakenFor = 0.25;   // s
-constexpr double kMostForce = 4;      // N that a trial may ask for
+constexpr double kGap = 5e-3;         // m between a resting hand and the wall under it (judgement)
+constexpr double kStillFor = 0.5;     // s a hand has to rest (judgement)
+constexpr double kStillSpeed = 0.02;  // m/s; slower counts as rest (judgement)
+constexpr double kLift = 2e-3;        // m off the wall that end a lift (judgement)
+constexpr double kLeastPress = 0.3;   // N that count as a press (judgement)
+constexpr double kShakenFor = 0.25;   // s that shaking has to last (judgement)
+constexpr double kMostForce = 4;      // N that a trial may ask for (judgement)
 
 void validate(const StiffnessTestOptions& options) {
   const Requirement require{"stiffness test"};

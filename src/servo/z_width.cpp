@@ -1,3 +1,4 @@
+// Measures walls on a simulated device: the stiffest stable one, and the rebound of an impact.
 #include "palpate/servo/z_width.hpp"
 
 #include <algorithm>
@@ -10,10 +11,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTime = 2;          // s that a wall is watched
-constexpr double kPart = 0.25;       // of that time, at its beginning and at its end
-constexpr double kSoftest = 1;       // N/m
-constexpr double kPrecision = 1.01;  // of a stiffness that is looked for
+constexpr double kTime = 2;     // s that a wall is watched (judgement)
+constexpr double kPart = 0.25;  // share of that time, at its beginning and at its end (judgement)
+constexpr double kSoftest = 1;  // N/m; lower end of the search (judgement)
+constexpr double kPrecision = 1.01;  // ratio of stiffnesses at which the search ends (judgement)
 
 // A wall that fills z < 0, or a spring to z = 0.
 struct Wall {

@@ -1,3 +1,4 @@
+// Times simulated frames: rate, jitter, drops, repeats and jumps of the stamp.
 #include "sim/simulated_camera.hpp"
 
 #include <fmt/format.h>
@@ -14,13 +15,14 @@
 namespace palpate {
 namespace {
 
-constexpr double kLongestNap = 1e-3;  // s; a clock that is not the host's may jump at any time
+// s; a clock other than the host's may jump at any time (judgement)
+constexpr double kLongestNap = 1e-3;
 constexpr std::uint64_t kJitterStream = 0xa0761d6478bd642fu;
 constexpr std::uint64_t kDropStream = 0xe7037ed1a0b428dbu;
 constexpr std::uint64_t kRepeatStream = 0x8ebc6af09c88c6e3u;
-constexpr std::uint64_t kJumpAt = 100;  // frame, where no number of frames is told
+constexpr std::uint64_t kJumpAt = 100;  // frame, if the number of frames is unlimited (judgement)
 
-// One even number in [0, 1) for each frame.
+// Draws a uniform number in [0, 1) for each frame.
 double draw(std::uint64_t seed, std::uint64_t frame) {
   return Random(Random(seed).bits() + frame).uniform();
 }

@@ -1,3 +1,4 @@
+// Declares the simulated depth camera and its faults in time.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +53,7 @@ class SimulatedCamera final : public DepthCamera {
   /// The truth.
   [[nodiscard]] const SimulatedScene& scene() const { return scene_; }
   [[nodiscard]] double start() const { return start_; }  ///< stamp of the scene's time 0, s
-  /// Where the camera really is at the scene's time t.
+  /// True pose of the camera at the scene's time t.
   [[nodiscard]] Eigen::Isometry3d true_pose(double t) const;
   /// Exact depths of the frame rendered last, m; not kept up to date while frames are looped.
   [[nodiscard]] const std::vector<float>& exact_depth() const { return exact_; }

@@ -1,3 +1,4 @@
+// Renders exact depth images of scenes made of convex solids.
 #include "sim/simulated_depth.hpp"
 
 #include <fmt/format.h>
@@ -49,7 +50,7 @@ Stretch cut_slab(double from, double along, double half) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-// Where a t^2 + 2 b t + c <= 0.
+// Stretch where a t^2 + 2 b t + c <= 0.
 Stretch cut_quadric(double a, double b, double c) {
   if (a < kTiny) return c <= 0 ? Stretch{} : kNever;
   const double square = b * b - a * c;

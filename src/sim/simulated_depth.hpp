@@ -1,3 +1,4 @@
+// Declares scenes of convex solids with exact distances, and their rendering.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -31,8 +32,8 @@ struct Solid {
 /// seen from inside, the middle of a ball) one of its limits is taken.
 [[nodiscard]] Distance distance_and_normal(const Solid& solid, const Eigen::Vector3d& x);
 
-/// What a perfect depth camera sees of solids: rays are cut with them in closed form. One object
-/// may be used by several threads.
+/// Renders solids as a perfect depth camera sees them: rays are cut with them in closed form.
+/// Several threads may use one object.
 class DepthRenderer {
  public:
   /// @throws Error when the camera has no pixels, no focal length, or a distortion that cannot be

@@ -1,3 +1,4 @@
+// Adds frayed silhouettes and holes to simulated depths.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,13 +10,13 @@
 namespace palpate::sim {
 namespace {
 
-constexpr float kDepthJump = 0.02f;   // between pixels beside one another, m
-constexpr int kRim = 3;               // so far before and behind a jump, pixels
-constexpr int kWindow = 8;            // within which rims go equally far, pixels
-constexpr double kLeastRadius = 1.5;  // of holes, pixels
-constexpr double kMostRadius = 6;
-constexpr std::uint64_t kLeastLife = 2;  // of holes, frames
-constexpr std::uint64_t kMostLife = 8;
+constexpr float kDepthJump = 0.02f;      // m between neighbouring pixels (judgement)
+constexpr int kRim = 3;                  // pixels before and behind a jump (judgement)
+constexpr int kWindow = 8;               // pixels in which a rim's overhang is constant (judgement)
+constexpr double kLeastRadius = 1.5;     // of holes, pixels (judgement)
+constexpr double kMostRadius = 6;        // of holes, pixels (judgement)
+constexpr std::uint64_t kLeastLife = 2;  // of holes, frames (judgement)
+constexpr std::uint64_t kMostLife = 8;   // of holes, frames (judgement)
 constexpr std::uint64_t kRimStream = 0x27d4eb2f165667c5u;
 constexpr std::uint64_t kHoleStream = 0x85ebca77c2b2ae63u;
 
@@ -71,7 +72,7 @@ void for_jumps(const DepthView& image, const F& f) {
   }
 }
 
-// How far rims go on over what is behind them, pixels.
+// Overhang of a rim over the background, pixels.
 int reach_at(std::uint64_t seed, int u, int v) {
   const auto window = static_cast<std::uint64_t>((v / kWindow << 16) + u / kWindow);
   return 1 + static_cast<int>(Random(seed ^ (kRimStream + window)).bits() % kRim);

@@ -1,3 +1,4 @@
+// Parses the KEY=VALUE options of simulated cameras.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kMostWhole = 1e6;
+constexpr double kMostWhole = 1e6;  // largest whole number (judgement)
 
 double number(const std::string& text) {
   const std::optional<double> value = io::parse_number(text);

@@ -1,3 +1,4 @@
+// Adds sensor noise to simulated depths: quantised, patterned and Gaussian.
 #include "sim/simulated_noise.hpp"
 
 #include <fmt/format.h>
@@ -136,7 +137,7 @@ const std::vector<float>& SimulatedNoise::unit_noise(int width, int height, std:
   return noise_;
 }
 
-// One draw of 64 bits serves four pixels.
+// Uses each draw of 64 bits for four pixels.
 void SimulatedNoise::draw(std::uint64_t seed) {
   Random random(seed);
   std::uint64_t bits = 0;
@@ -173,7 +174,7 @@ void SimulatedNoise::blur(int width, int height) {
   }
 }
 
-// What happens where depths jump, to exact depths.
+// Applies the faults at depth jumps to exact depths.
 void SimulatedNoise::disturb_rims(int width, int height, std::uint64_t frame,
                                   std::vector<float>& depth) {
   const auto copy = [&] {

@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// How the errors of a simulated depth camera hang together from pixel to pixel. All kinds have the
-/// same standard deviation.
+/// Correlation of a simulated depth camera's errors from pixel to pixel. All kinds have the same
+/// standard deviation.
 enum class NoiseKind {
   none,         ///< exact depths, still rounded
   independent,  ///< in each pixel for itself
@@ -28,7 +28,7 @@ struct SimulatedNoiseOptions {
                              ///< lies between the two depths (flying)
   std::uint64_t seed = 0;
 
-  // What sensors do besides; docs/simulated_cameras.md says which. Without any by default.
+  // Further faults, all off by default; docs/simulated_cameras.md says which sensors have them.
   /// Disparities are whole multiples of it after the noise, pixels of a camera with 525 pixels of
   /// focal length and 75 mm of base line, 0-8; each row is off by up to a quarter of it before they
   /// are rounded, by the same in all frames.
@@ -96,7 +96,7 @@ struct DepthView {
   }
 };
 
-// What SimulatedNoiseOptions says, from `exact` into its copy `depth`.
+// Apply the faults of SimulatedNoiseOptions, from `exact` into its copy `depth`.
 void bend_rims(const DepthView& exact, const SimulatedNoiseOptions& options, float* depth);
 void mix_rims(const DepthView& exact, const SimulatedNoiseOptions& options, float* depth);
 void disturb_silhouettes(const DepthView& exact, std::uint64_t seed, bool far_side, float* depth);

@@ -90,7 +90,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kTableDistance = 0.7;  // along the optical axis, m
+constexpr double kTableDistance = 0.7;  // m along the optical axis (judgement)
 constexpr double kLookDown = 27 * kDegree;
 constexpr double kSphereRadius = 0.060;
 constexpr double kCylinderRadius = 0.035;

@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// How a solid or a camera moves: a straight line and a turn between two times, and a sine of
+/// Motion of a solid or a camera: a straight line and a turn between two times, and a sine of
 /// either, all added up. Turns are about the body's own origin.
 struct SimulatedMotion {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();       ///< m/s, from `begin` to `end`
@@ -23,12 +23,12 @@ struct SimulatedMotion {
   double phase = 0;                                         ///< of both sines, rad
 };
 
-/// Where a body that is at `pose` when nothing of its motion has happened is at time t (s). The
-/// straight line and the turn count from t = 0, or from `begin` where that is finite.
+/// Pose at time t (s) of a body that is at `pose` before its motion. The straight line and the turn
+/// count from t = 0, or from `begin` where that is finite.
 [[nodiscard]] Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const SimulatedMotion& motion,
                                       double t);
 
-/// How fast that body moves at time t where x is, m/s, world.
+/// Velocity of that body at time t and position x, m/s, world.
 [[nodiscard]] Eigen::Vector3d velocity(const Eigen::Isometry3d& pose, const SimulatedMotion& motion,
                                        const Eigen::Vector3d& x, double t);
 
@@ -46,13 +46,13 @@ struct SimulatedScene {
 /// The solids where they are at time t (s).
 [[nodiscard]] std::vector<Solid> solids_at(const SimulatedScene& scene, double t);
 
-/// To the nearest solid at time t: exact wherever x is outside of all of them. A scene without
-/// solids is infinitely far away.
+/// Distance to the nearest solid at time t; exact if x is outside of all. Infinite for a scene
+/// without solids.
 [[nodiscard]] Distance distance_and_normal(const SimulatedScene& scene, const Eigen::Vector3d& x,
                                            double t);
 
-/// How fast the nearest solid moves where x is, m/s, world. Its part along the normal is the speed
-/// of the surface.
+/// Velocity of the nearest solid at x, m/s, world. Its part along the normal is the speed of the
+/// surface.
 [[nodiscard]] Eigen::Vector3d surface_velocity(const SimulatedScene& scene,
                                                const Eigen::Vector3d& x, double t);
 
@@ -69,7 +69,7 @@ struct SimulatedTable {
   Eigen::Vector3d free_patch = Eigen::Vector3d::Zero();  ///< middle of table without objects, m
 };
 
-/// How many placements of the objects there are.
+/// Number of object placements (judgement).
 inline constexpr int kTableLayouts = 3;
 
 /// Everything stands still.

@@ -1,3 +1,4 @@
+// Decides which requests come from the viewer's own page.
 #include "viewer/access.hpp"
 
 #include <arpa/inet.h>
@@ -16,7 +17,7 @@ namespace palpate::viewer {
 
 namespace {
 
-constexpr std::size_t kLongestHost = 128;
+constexpr std::size_t kLongestHost = 128;  // bytes of a Host header (judgement)
 constexpr std::uint16_t kHttpPort = 80;
 
 char lower(char c) {

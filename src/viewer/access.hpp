@@ -6,7 +6,7 @@
 
 namespace palpate::viewer {
 
-/// Where a viewer listens.
+/// Address and port on which a viewer listens.
 struct Listening {
   std::string address;  ///< as text, without brackets
   std::uint16_t port = 0;

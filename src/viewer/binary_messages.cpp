@@ -1,3 +1,4 @@
+// Encodes states, clouds and surfaces for the page.
 #include <algorithm>
 #include <bit>
 #include <cassert>

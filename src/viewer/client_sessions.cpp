@@ -1,3 +1,4 @@
+// Handles what pages ask for and who holds which device.
 #include "viewer/client_sessions.hpp"
 
 #include <fmt/ranges.h>
@@ -11,7 +12,6 @@
 #include "viewer/access.hpp"
 
 namespace palpate::viewer {
-
 namespace {
 
 std::string why_not(const Setting& setting, double value) {
@@ -150,7 +150,7 @@ void ClientSessions::act(Session& session, const Hand& hand) {
   holders_[hand.device] = &session;
 }
 
-// Of another's tool: it was taken away in the meantime, and this client knows it now.
+// Releasing a tool that was taken away meanwhile only clears the client's notice of that.
 void ClientSessions::act(Session& session, const Release& wish) {
   if (wish.device >= holders_.size()) throw Error("unknown tool");
   session.lost.erase(wish.device);

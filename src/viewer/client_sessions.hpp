@@ -23,7 +23,7 @@ namespace palpate::viewer {
 
 using SharedBytes = std::shared_ptr<const std::string>;
 
-/// What a message is of: a newer one of the same topic takes an older one's place.
+/// Topic of a message: a newer message replaces an older one of the same topic.
 struct Topic {
   enum class Kind : std::uint8_t {
     state,
@@ -49,8 +49,8 @@ struct Message {
   bool text = false;
 };
 
-/// What waits to be sent to one client. Never more than one message a topic and kMostAnswers
-/// answers (which all count, up to there): what a client does not take is replaced, never queued.
+/// Messages that wait to be sent to one client: at most one a topic, and kMostAnswers answers. Any
+/// message but an answer is replaced by a newer one, never queued.
 class Outbox {
  public:
   static constexpr std::size_t kMostAnswers = 32;
@@ -110,7 +110,7 @@ constexpr std::uint16_t kRestart = 1012;  // of IANA's registry
 constexpr std::uint16_t kTryAgainLater = 1013;
 }  // namespace close_code
 
-/// One socket, as those who know nothing of sockets see it.
+/// State of one client, independent of its socket.
 struct Session {
   Session(const ViewerOptions::Limits& limits, double time)
       : opened(time),
@@ -130,7 +130,7 @@ struct Session {
   std::function<void()> wake = {};     ///< there is something in the outbox, or `closing` is set
 };
 
-/// What the program lets pages do.
+/// Permissions of pages.
 struct ClientSessionsOptions {
   std::string token;
   ViewerOptions::Limits limits = {};
@@ -161,17 +161,17 @@ class ClientSessions {
   /// Closes those who said no hello in time; lets go of tools whose holders have fallen silent.
   void check(double now);
 
-  /// To all who said hello.
+  /// Sends to all clients that said hello.
   void send_to_all(Topic topic, const Message& message);
   void send_settings();
   void send(const Notice& notice);
-  /// What was being recorded has ended by itself.
+  /// Tells the pages that the recording ended by itself.
   void end_record();
   /// Says of a time line what is shown now, if that is new.
   void send_moment();
   /// The envelope and the past of a time line.
   void send_time_line() { show_time_line(greeted()); }
-  /// To one client, unless it was shown these very bytes last.
+  /// Sends to one client, unless it was sent these same bytes last.
   static void show(Session& session, Topic topic, const SharedBytes& bytes);
 
   [[nodiscard]] const ClientSessionsOptions& options() const { return options_; }

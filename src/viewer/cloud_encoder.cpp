@@ -21,7 +21,7 @@ std::uint64_t scattered(std::uint64_t i) {
   return x ^ (x >> 29);
 }
 
-/// Of what has not faded away, in the grid's order.
+/// Indices of the points that have not faded away, in the grid's order.
 std::vector<std::uint32_t> felt(const SurfacePoints& points) {
   const auto& weights = newest(points.density_weights, points.end_density_weights);
   const auto& presences = newest(points.presences, points.end_presences);

@@ -1,3 +1,4 @@
+// Serves HTTP files and WebSockets to browsers.
 #include "viewer/connections.hpp"
 
 #include <algorithm>
@@ -32,8 +33,8 @@ constexpr const char* kPolicy =
 constexpr std::size_t kPiece = 64 * 1024;
 // The system keeps no more than this for a client that does not take it: what it kept is old.
 constexpr int kSystemBuffer = 256 * 1024;
-constexpr double kClosing = 2;  // s for the other side to close, too
-constexpr std::size_t kLongestReason = 123;
+constexpr double kClosing = 2;               // s for the other side to close, too (judgement)
+constexpr std::size_t kLongestReason = 123;  // bytes; a close frame's limit (RFC 6455, 5.5)
 
 std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};

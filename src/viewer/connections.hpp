@@ -1,3 +1,4 @@
+// Declares the connections of the viewer's server.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
@@ -22,7 +23,7 @@ inline std::chrono::nanoseconds nanoseconds(double seconds) {
 
 class Connection;
 
-/// What all connections of a server share; the network thread's.
+/// Shared by all connections of a server; network thread only.
 struct ServerContext {
   ViewerOptions::Limits limits;
   Listening listening;

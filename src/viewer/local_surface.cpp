@@ -28,7 +28,7 @@ class Lattice {
       : half_(half), cell_(2 * half / kCells), values_(kCount, kUnknown), supports_(kCount, 0) {}
 
   [[nodiscard]] double cell() const { return cell_; }
-  // Of a corner, m, relative to the centre.
+  // Position of a corner relative to the centre, m.
   [[nodiscard]] Eigen::Vector3d place(const Eigen::Vector3i& corner) const {
     return cell_ * corner.cast<double>() - Eigen::Vector3d::Constant(half_);
   }

@@ -24,7 +24,7 @@ using TimeLine = ViewerControls::TimeLine;
 
 struct Mesh;  // local_surface.hpp
 
-// What a page says. JSON.
+// Messages from a page. JSON.
 
 struct Hello {
   std::string token;
@@ -67,7 +67,7 @@ struct Ping {
   double id = 0;
 };
 
-/// What cannot be read, and why, in words.
+/// Reason, in words, why a message cannot be read.
 struct Unreadable {
   std::string text;
 };
@@ -82,7 +82,7 @@ constexpr double kFarthestHand = 1e6;            ///< m from the origin
 /// Never throws, whatever `text` is; takes memory in proportion to it.
 [[nodiscard]] ClientMessage read_message(std::string_view text);
 
-// What the program says. JSON, read at a human pace.
+// Messages to a page. JSON, read at a human pace.
 
 /// Something that a person should know now.
 struct Notice {
@@ -102,7 +102,7 @@ struct SourceLabel {
   bool camera = false;
 };
 
-/// What a page is told once.
+/// First message to a page, sent once.
 struct Welcome {
   std::string run;  ///< another at each start of a viewer
   std::string scene;
@@ -119,13 +119,13 @@ struct Welcome {
   std::vector<Notice> notices;      ///< what is wrong already; messages of their own
 };
 
-/// How a device is doing; `reason`: why it is silent or has failed, and what to do.
+/// State of a device; `reason`: why it is silent or has failed, and what to do.
 struct DeviceReport {
   DeviceState::Status status = DeviceState::Status::ok;
   std::string reason;
 };
 
-/// How a source fares. What is not set is left out.
+/// State of a source. Unset members are left out.
 struct SourceReport {
   std::string name;
   std::string_view phase;
@@ -153,7 +153,7 @@ struct SourceReport {
 [[nodiscard]] std::string lost_text(std::size_t device, std::string_view why);
 [[nodiscard]] std::string pong_text(double id);
 
-// What the program says many times a second. Binary.
+// Messages sent many times a second. Binary.
 
 namespace state_flag {
 constexpr std::uint32_t kTouching = 1;

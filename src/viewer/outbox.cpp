@@ -1,3 +1,4 @@
+// Keeps the newest message of each topic for a client that reads slowly.
 #include <algorithm>
 #include <optional>
 #include <utility>

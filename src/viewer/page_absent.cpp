@@ -1,3 +1,4 @@
+// Replaces the page in builds without npm.
 #include <array>
 
 #include "viewer/server.hpp"

@@ -1,3 +1,4 @@
+// Collects the reports of sources, streams and hands that the page shows.
 #include "viewer/reports.hpp"
 
 #include <fmt/core.h>
@@ -27,7 +28,7 @@ void add_stream(const ViewedStream& stream, const Source& source, const Eigen::V
   report.pose = pose;
 }
 
-constexpr double kRateTime = 0.5;  // s that a rate is counted over
+constexpr double kRateTime = 0.5;  // s that a rate is counted over (judgement)
 
 std::array<float, 2> quantiles(const Durations& now, Durations& before) {
   const Durations since = now.since(before);
@@ -110,7 +111,7 @@ double StateReporter::interval(const ServoState& state) {
   return known ? mean : state.dt;
 }
 
-// What was felt after the state was read waits for the next message.
+// Forces after `step` wait for the next message.
 std::vector<Eigen::Vector3f> StateReporter::forces_until(std::uint64_t step) {
   std::vector<Eigen::Vector3f> forces = servo_.forces_since(forces_seen_);
   if (forces_seen_ <= step) return forces;
@@ -120,7 +121,7 @@ std::vector<Eigen::Vector3f> StateReporter::forces_until(std::uint64_t step) {
   return forces;
 }
 
-// What the guard did in any step since the message before, not in the last one alone.
+// Flags what the guard did in any step since the last message, not only in the newest step.
 std::uint32_t StateReporter::flags(const ServoState& state, bool taken) {
   const Guard::State::Counts& counts = state.guard.counts;
   std::uint32_t flags = 0;

@@ -19,11 +19,11 @@
 
 namespace palpate::viewer {
 
-/// What each servo's tool is called: its device's name, with a number where several have that name:
-/// "simulated 1", "simulated 2".
+/// Names the servos' tools: the device's name, with a number if several share it: "simulated 1",
+/// "simulated 2".
 [[nodiscard]] std::vector<std::string> tool_names(const std::vector<Servo*>& servos);
 
-/// How every source of `scene` fares at `now` (s, on the snapshots' clock). Takes milliseconds; any
+/// State of every source of `scene` at `now` (s, on the snapshots' clock). Takes milliseconds; any
 /// thread but a servo's.
 [[nodiscard]] std::vector<SourceReport> source_reports(const Scene& scene,
                                                        std::span<const ViewedStream> streams,
@@ -63,18 +63,17 @@ struct DeviceFault {
   Guard::Fault fault = Guard::Fault::none;
 };
 
-/// What is wrong with streams and devices: tells what is new, and knows what lasts. One thread uses
-/// it.
+/// Reports new problems of streams and devices, and remembers lasting ones. One thread uses it.
 class FaultNotices {
  public:
   /// A problem that comes again after so long, in s of the stream's clock, is a new one.
   static constexpr double kPeace = 10;
 
-  /// What is new since the call before. Each index stands for the same device in every call.
+  /// Problems new since the last call. Each index stands for the same device in every call.
   [[nodiscard]] std::vector<Notice> update(std::span<const ViewedStream> streams,
                                            std::span<const DeviceFault> devices);
 
-  /// What was wrong at the last call and goes on, for those who come later.
+  /// Problems present at the last call, for pages that connect later.
   [[nodiscard]] const std::vector<Notice>& present() const { return present_; }
 
  private:

@@ -26,9 +26,9 @@ double least_support_of(const FieldOptions& options) {
   return ends ? 0.5 * (options.minimum_support + options.threshold) : 0;
 }
 
-constexpr double kPeriod = 0.1;         // s between pictures
-constexpr double kSourcesPeriod = 0.5;  // s between reports of the sources
-constexpr double kRest = 3;             // times what the last picture took
+constexpr double kPeriod = 0.1;         // s between pictures (judgement)
+constexpr double kSourcesPeriod = 0.5;  // s between reports of the sources (judgement)
+constexpr double kRest = 3;  // times the last picture's computing time, as a pause (judgement)
 
 double host_time() {
   return SteadyClock().now();

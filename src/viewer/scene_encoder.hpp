@@ -31,12 +31,12 @@ struct Mesh {
   std::vector<std::array<std::uint16_t, 3>> triangles;
 };
 
-/// Where a surface is to be meshed.
+/// Region in which a surface is meshed.
 struct LocalRegion {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
   double radius = 0;  ///< R, m; the mesh reaches kReach of it to every side
-  /// Where there is less support the surface is left out: the back of a sheet, where the solid
-  /// ends because nothing is known behind it.
+  /// Surface with less support is left out: the back of a sheet, where the solid ends because
+  /// nothing is known behind it.
   double least_support = 0;
 };
 
@@ -53,8 +53,7 @@ inline constexpr double kReach = 2.4;
 /// points did, and the same points stay from one call to the next.
 [[nodiscard]] std::vector<std::uint32_t> thinned(std::size_t count, std::size_t budget);
 
-/// How many points each of several clouds may show so that all show no more than `budget`: in
-/// proportion to their sizes.
+/// Divides `budget` points among clouds in proportion to their sizes.
 [[nodiscard]] std::vector<std::size_t> shares(const std::vector<std::size_t>& sizes,
                                               std::size_t budget);
 
@@ -96,7 +95,7 @@ class CloudEncoder {
   std::vector<Known> sources_;
 };
 
-/// What is around one tool.
+/// Surface around one tool.
 struct EncodedSurface {
   double radius = 0;  ///< R, m; 0: not known
   SharedBytes bytes;  ///< the newest; null: the servo made no step yet
@@ -130,7 +129,7 @@ class SceneEncoder {
   SceneEncoder(const SceneEncoder&) = delete;
   SceneEncoder& operator=(const SceneEncoder&) = delete;
 
-  /// How many points those who look draw, 0: they draw nothing now; empty: nobody looks. Any
+  /// Sets the point budgets of the clients; 0: that one draws nothing now; empty: no client. Any
   /// thread.
   void set_budgets(std::set<std::size_t> budgets);
 

@@ -1,3 +1,4 @@
+// Listens for browsers and closes their connections at the end.
 #include "viewer/server.hpp"
 
 #include <fcntl.h>
@@ -16,11 +17,12 @@
 namespace palpate::viewer {
 namespace {
 
-constexpr int kPortsTried = 10;
-constexpr double kCheck = 0.1;        // s between looks at waiting connections
-constexpr double kAcceptAgain = 0.2;  // s, after the system would not give a socket
-constexpr double kLastLook = 0.01;    // s between looks whether all have closed at the end
-constexpr int kLastLooks = 20;
+constexpr int kPortsTried = 10;       // ports from the first on (judgement)
+constexpr double kCheck = 0.1;        // s between checks of waiting connections (judgement)
+constexpr double kAcceptAgain = 0.2;  // s, after the system gave no socket (judgement)
+// s between checks at the end whether all have closed (judgement)
+constexpr double kLastLook = 0.01;
+constexpr int kLastLooks = 20;  // such checks (judgement)
 
 net::ip::address address_of(const std::string& text) {
   ErrorCode error;
@@ -130,7 +132,7 @@ void Server::State::repeat(Repeated& task) {
 void Server::State::check() {
   const double now = ServerContext::now();
   context.sessions.check(now);
-  // Those that are closed leave the set later, when their operations end.
+  // Closed connections leave the set later, when their operations end.
   for (Connection* connection : context.connections) connection->check(now);
 }
 

@@ -1,3 +1,4 @@
+// Parses the JSON that pages send and writes the JSON that they get.
 #include <fmt/core.h>
 
 #include <array>
@@ -14,14 +15,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kLargestId = 9007199254740992.0;  // 2^53
-constexpr double kMostDevices = 256;
-constexpr double kLongestTime = 1e9;  // s
-constexpr double kSlowest = 0.1;
-constexpr double kFastest = 4;
-constexpr double kAllButtons = 4294967295.0;  // 2^32 - 1
-constexpr double kLeastForce = 1e-3;          // N, of a hand's pull
-constexpr double kMostForce = 1e3;
+constexpr double kLargestId = 9007199254740992.0;  // 2^53: doubles are exact up to there (derived)
+constexpr double kMostDevices = 256;               // devices that a page may name (judgement)
+constexpr double kLongestTime = 1e9;               // s (judgement)
+constexpr double kSlowest = 0.1;                   // speed of a replay, s/s (judgement)
+constexpr double kFastest = 4;                     // speed of a replay, s/s (judgement)
+constexpr double kAllButtons = 4294967295.0;       // 2^32 - 1: 32 bits (derived)
+constexpr double kLeastForce = 1e-3;               // N of a hand's pull (judgement)
+constexpr double kMostForce = 1e3;                 // N of a hand's pull (judgement)
 
 // Thrown in here alone: becomes Unreadable.
 struct Unread {

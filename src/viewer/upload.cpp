@@ -1,3 +1,4 @@
+// Receives a file that a page uploads.
 #include "viewer/upload.hpp"
 
 #include <algorithm>
@@ -21,8 +22,8 @@ namespace http = boost::beast::http;
 
 constexpr std::string_view kPath = "/open/";
 constexpr std::string_view kBearer = "Bearer ";
-constexpr std::size_t kLongestName = 250;
-constexpr double kPatience = 5;  // s for an answer to go and the other side to close
+constexpr std::size_t kLongestName = 250;  // bytes; file systems take 255 (docs/viewer_protocol.md)
+constexpr double kPatience = 5;  // s for an answer to go and the other side to close (judgement)
 
 bool is_in_no_name(char c) {
   return (c >= 0 && c < 0x20) || c == 0x7f || c == '/';

@@ -1,3 +1,4 @@
+// Guesses which axis of a scene points up.
 #include "viewer/upright.hpp"
 
 #include <algorithm>
@@ -11,10 +12,12 @@ namespace palpate {
 
 namespace {
 
-constexpr std::size_t kEnough = 100'000;  // points, to know where many are
-constexpr std::size_t kFew = 1000;        // that say nothing: the foot has about 20 of them
-constexpr double kStray = 0.005;          // of the points at either end may be strays
-constexpr double kFoot = 0.02;            // of the height that counts as the foot
+constexpr std::size_t kEnough = 100'000;  // points; more are thinned out (judgement)
+// Points; fewer decide nothing, the foot has about 20 of them (derived)
+constexpr std::size_t kFew = 1000;
+// Share of the points at either end that may be strays (judgement)
+constexpr double kStray = 0.005;
+constexpr double kFoot = 0.02;  // share of the height that counts as the foot (judgement)
 // Times what an even spread has at the foot, as a ball has at any (Archimedes: the area between two
 // planes goes with their distance): then it is flat there.
 constexpr double kFlat = 2;

@@ -1,3 +1,4 @@
+// Runs the viewer: settings, server thread, and periodic pictures and reports.
 #include "palpate/viewer/viewer.hpp"
 
 #include <fmt/core.h>
@@ -30,9 +31,9 @@ namespace {
 
 using namespace viewer;
 
-constexpr double kStatePeriod = 1.0 / 60;  // s
-constexpr double kReportPeriod = 0.5;      // s
-constexpr double kEmptyRadius = 1;         // m, shown where there is nothing yet
+constexpr double kStatePeriod = 1.0 / 60;  // s; a screen's frame
+constexpr double kReportPeriod = 0.5;      // s (judgement)
+constexpr double kEmptyRadius = 1;         // m, shown while there are no points (judgement)
 
 Message binary(std::string bytes) {
   return {std::make_shared<const std::string>(std::move(bytes)), false};
@@ -48,7 +49,7 @@ Box scene_box(const Scene& scene) {
   return box;
 }
 
-// Of all points; where there are none yet, of where the sensors stand.
+// Centre of all points or, while there are none, of the sensors.
 Eigen::Vector3d middle(const Scene& scene) {
   const Box box = scene_box(scene);
   if (!box.empty()) return box.center();

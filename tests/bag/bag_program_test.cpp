@@ -83,7 +83,7 @@ TEST(BagProgram, RefusesWhatMakesNoSenseWithWords) {
   refuses("bag info cloud.xyz", 1, "is no MCAP file");
   refuses("bag info run.mcap --json run.mcap", 2, "same file");
   refuses("bag recover run.mcap run.mcap", 2, "already exists");
-  refuses("bag recover run.mcap no/such/new.mcap", 1, "cannot be made");
+  refuses("bag recover run.mcap no/such/new.mcap", 1, "cannot be created");
   EXPECT_EQ(McapReader(shell.path("run.mcap")).contents().messages, 500u) << "as it was";
 }
 

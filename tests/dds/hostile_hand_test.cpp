@@ -126,6 +126,14 @@ TEST_F(HostileHand, GetsNoForceWhilePosesAreNone) {
   }
 }
 
+TEST_F(HostileHand, WhoseStampsStopIsToldSo) {
+  ASSERT_TRUE(feels()) << device_->reason();
+  node_.send([] { return bytes_of(pose_at(0)); });
+  EXPECT_TRUE(press_until([&] {
+    return device_->reason().find("has no stamp, though earlier ones had") != std::string::npos;
+  })) << device_->reason();
+}
+
 TEST_F(HostileHand, GetsNoForceWhileItJumpsAbout) {
   ASSERT_TRUE(feels()) << device_->reason();
   int count = 0;

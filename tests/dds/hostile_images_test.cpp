@@ -179,7 +179,7 @@ TEST(HostileNode, WithAnotherTypeUnderTheTopicsNameIsNotHeard) {
       [&] {
         static_cast<void>(open_device("ros:generic,pose=/typed/pose,wrench=/typed/wrench", clock));
       },
-      testing::ThrowsMessage<std::exception>(testing::HasSubstr("nobody publishes /typed/pose")));
+      testing::ThrowsMessage<std::exception>(testing::HasSubstr("no node publishes /typed/pose")));
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ TEST(RosCamera, SaysWhatItWaitsForOrCannotUse) {
   const auto nobody = open_camera("ros:/nobody/image");
   DepthFrame frame;
   EXPECT_EQ(nobody->read(frame, 0.01), DepthCamera::Status::waiting);
-  EXPECT_THAT(nobody->reason(), testing::HasSubstr("nobody publishes /nobody/image"));
+  EXPECT_THAT(nobody->reason(), testing::HasSubstr("no node publishes /nobody/image"));
   const auto camera = open_camera("ros:/cam/image");
   EXPECT_EQ(answer(*camera, frame, [&] { node.send(now(), "rgb8"); }),
             DepthCamera::Status::damaged);

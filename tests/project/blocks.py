@@ -23,7 +23,7 @@ PROGRAMS = {"palpate", "build/release/apps/palpate/palpate"}
 # What a run is given so that it is short, opens no browser and disturbs no other; where its --help has it.
 SHORT = {"--duration": "0.3", "--jitter": "0.1", "--headless": None, "--port": "0"}
 # The answers to what this machine does not have: devices, cameras, a ROS 2 system.
-ABSENT = re.compile("cannot be loaded|no answer from|cannot be opened|none was found|nobody publishes|no images and no clouds on|"
+ABSENT = re.compile("cannot be loaded|no answer from|cannot be opened|none was found|no node publishes|no images and no clouds on|"
                     "this build (has no|cannot)")
 # A block between two fences: its indentation, its language and its text.
 FENCE = re.compile(r"^( *)```([^\n`]*)\n(.*?)^ *```$", re.MULTILINE | re.DOTALL)

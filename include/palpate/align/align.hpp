@@ -15,9 +15,9 @@ struct RoughSource {
   std::shared_ptr<const SurfacePoints> points;  ///< where it roughly stands
 };
 
-/// Where one source belongs.
+/// Aligned pose of one source, and how sure it is.
 struct AlignedSource {
-  /// How one surface lies on the others.
+  /// Fit of one surface to the others.
   struct Fit {
     double residual = 0;  ///< median distance along the normals where both are there, m
     double overlap = 0;   ///< share of its points that lie on another surface, 0-1
@@ -26,8 +26,8 @@ struct AlignedSource {
   Eigen::Isometry3d T_aligned_rough = Eigen::Isometry3d::Identity();  ///< both in the world frame
   Fit before;
   Fit after;
-  /// One sigma of where it is, m, in the worst direction, in the middle of what it shares with
-  /// others, and of how it is turned, rad, about the worst axis; 0: the first one.
+  /// Standard deviations of position (m, in the worst direction, in the middle of the overlap) and
+  /// of rotation (rad, about the worst axis); 0: the first source.
   double place_deviation = 0;
   double turn_deviation = 0;
 };

@@ -2,7 +2,7 @@
 
 namespace palpate {
 
-/// Where time comes from. Everything that needs the time of day of a run is given one.
+/// Tells the time of a run, s. Everything that needs the time is given one.
 class Clock {
  public:
   virtual ~Clock() = default;

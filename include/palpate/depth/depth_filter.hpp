@@ -14,8 +14,8 @@
 
 namespace palpate {
 
-/// How a depth camera errs: sigma(z) = s0 + s1 z + s2 z^2 along the optical axis for one pixel, and
-/// how much neighbouring pixels err together.
+/// Noise of a depth camera: sigma(z) = s0 + s1 z + s2 z^2 along the optical axis for one pixel, and
+/// the correlation of neighbouring pixels.
 struct NoiseModel {
   std::array<double, 3> coefficients{};  ///< s0 (m), s1, s2 (1/m)
   /// c: error of the mean of many neighbouring pixels over what independent pixels would have;
@@ -27,8 +27,8 @@ struct NoiseModel {
   }
 };
 
-/// Of a kind of sensor, before its first frame: kinect1, xtion, realsense or tof. Measured on
-/// recordings (docs/method.md 6.2).
+/// Noise assumed before the first frame for a kind of sensor: kinect1, xtion, realsense or tof.
+/// Measured on recordings (docs/method.md 6.2).
 /// @throws Error that lists the names when it is none of them.
 [[nodiscard]] NoiseModel sensor_noise(std::string_view sensor);
 
@@ -40,7 +40,7 @@ struct NoiseModel {
 /// points' identity from frame to frame as long as the camera stands still. All columns have
 /// columns * rows entries; those of empty blocks mean nothing.
 struct FilteredDepth {
-  /// What is known of one 2x2 block of pixels.
+  /// State of one 2x2 block of pixels.
   enum class State : std::uint8_t {
     empty,   ///< nothing measured, or rejected (flying pixels)
     plain,   ///< mean of its pixels, normal from its neighbours: outside the region to be fitted

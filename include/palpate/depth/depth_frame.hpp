@@ -22,7 +22,7 @@ struct Pinhole {
   double cy = 0;
 };
 
-/// How a depth camera maps its frame (x right, y down, z forward) to pixels.
+/// Maps a depth camera's frame (x right, y down, z forward) to pixels.
 struct CameraModel {
   /// Lens distortion after Brown and Conrady, on normalised image coordinates x, y with
   /// r^2 = x^2 + y^2: x' = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), and y'
@@ -43,7 +43,7 @@ struct CameraModel {
   Distortion distortion;
 };
 
-/// One image of a depth camera. Depth in 16 bits is put into it by to_metres().
+/// Image of a depth camera. to_metres() converts depths in 16 bits.
 struct DepthFrame {
   CameraModel camera;
   double stamp = 0;  ///< when it was taken, s, on the host's clock
@@ -51,7 +51,7 @@ struct DepthFrame {
       T_world_sensor;        ///< at the stamp; unset: where the source stands
   std::vector<float> depth;  ///< along the optical axis, m, row by row; 0: nothing measured
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< of the same pixels; may be empty
-  /// Of a sensor that delivers points: these, in its frame, in place of depths and camera.
+  /// Points in the sensor's frame, in place of depths and camera, if the sensor delivers points.
   std::shared_ptr<const PointCloud> cloud;
 };
 

@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// What one device can do.
+/// Abilities and limits of one device.
 struct DeviceInfo {
   std::string name;  ///< for messages
   /// N, continuous; infinite: any. 0: it renders no force, and a Servo sends it none.
@@ -29,7 +29,7 @@ struct DeviceInfo {
 
 /// A device at the beginning of a step, in its own frame.
 struct DeviceState {
-  /// How a device is doing.
+  /// State of the connection to the device.
   enum class Status {
     ok,
     silent,    ///< not latched: no data from the hand, so no force may be applied; the position is
@@ -123,7 +123,7 @@ struct DeviceProfile {
 /// @throws Error as parse_device_profiles(), or when the file cannot be read.
 [[nodiscard]] std::vector<DeviceProfile> read_device_profiles(const std::string& path);
 
-/// Where a device's frame is in the world and how much its motion is magnified.
+/// Maps a device's frame to the world, and magnifies its motion.
 ///
 /// Positions and velocities are rotated and multiplied by `scale`; positions are also translated.
 /// Forces are only rotated: a newton that a proxy computes is a newton that the hand feels. Hence

@@ -75,7 +75,7 @@ class ThreadedDevice final : public Device {
   /// Also why the device is silent. Any thread but the servo's.
   [[nodiscard]] std::string reason() const override;
 
-  /// One exchange with the hardware or, if it is lost and the interval is over, one attempt to
+  /// Makes one exchange with the hardware; if that is lost and the interval is over, tries once to
   /// reopen it. The device's own thread calls this; without one, the owner does.
   void service() noexcept;
 

@@ -1,3 +1,4 @@
+// Declares the device whose hardware another program owns.
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,7 @@ struct PointCloud {
   std::vector<float> intensities;                    ///< in the file's own scale
   std::optional<Eigen::Vector3d> viewpoint;          ///< where the sensor stood, m, if known
 
-  // Of an organised cloud, whose points are pixels of an image; else 0, 0 and empty.
+  // Image of an organised cloud, whose points are pixels; else 0, 0 and empty.
   std::size_t width = 0;              ///< columns of the image
   std::size_t height = 0;             ///< rows of the image
   std::vector<std::uint32_t> pixels;  ///< where each point was: row * width + column
@@ -44,11 +44,11 @@ struct PointCloud {
 /// The points inside `box`, its faces included (in the cloud's frame, m), in their order.
 [[nodiscard]] PointCloud clip(const PointCloud& cloud, const Box& box);
 
-/// One point for each occupied cube of side `leaf` (m): the mean of the points in it, of their
-/// normals (made unit again; zero where they cancel), colours and intensities. The cubes' corners
-/// lie at whole multiples of `leaf` from the cloud's origin, which is kept, as is the viewpoint.
-/// Points come in the order of their cubes, z slowest and x fastest. `counts`, where it is asked
-/// for: how many points each of them stands for.
+/// Replaces the points in each cube of side `leaf` (m) by their mean; normals (unit again; zero if
+/// they cancel), colours and intensities are averaged, too. Cubes start at whole multiples of
+/// `leaf` from the cloud's origin, which is kept, as is the viewpoint. Points come in the order of
+/// their cubes, z slowest and x fastest. `counts`, if given, gets the number of points behind each
+/// mean.
 /// @throws Error when the leaf is not positive and finite, or so small that the cloud is more than
 /// 2^21 cubes long (which is where 32-bit indices of other filters have long overflowed), or when a
 /// position is not finite.

@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// What spacings are when no two points differ: there is nothing to measure, m.
+/// Spacing when no two points differ, m: there is nothing to measure (judgement).
 inline constexpr double kLoneSpacing = 1e-3;
 
 /// The paper's s: the mean over all points of the mean distance to their three nearest other points

@@ -1,3 +1,4 @@
+// Declares the readers and writers of cloud and depth image files.
 #pragma once
 
 #include <cstddef>

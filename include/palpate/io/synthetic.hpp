@@ -1,3 +1,4 @@
+// Declares clouds made from formulas, for trials without a file.
 #pragma once
 
 #include <cstdint>

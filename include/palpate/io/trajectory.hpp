@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// Where something was at one time. The caller says in which frame.
+/// Position at one time. The caller knows the frame.
 struct TrajectoryRow {
   double time = 0;                                     ///< s
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m

@@ -1,3 +1,4 @@
+// Declares the bridge that publishes a run to ROS 2 and sends targets to robots.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@
 namespace palpate {
 
 struct RosBridgeOptions {
-  /// Where a robot is told to go, as a target that it follows (docs/ros2.md).
+  /// Robot that follows a hand's proxy (docs/ros2.md).
   struct Robot {
     /// "crisp", "cartesian", "servo", "crtk" or "generic": which topic takes the target.
     std::string preset;
@@ -32,7 +33,7 @@ struct RosBridgeOptions {
         {};  ///< targets are told only while this button of the hand is down, 0 to 31
     /// Names of the sources whose cameras say which places are free; empty: all.
     std::vector<std::string> sources = {};
-    /// How fast it goes back from where a surface came over it, m/s, 0 to 1; 0: it stands still.
+    /// Speed of retreat when a surface came over it, m/s, 0 to 1; 0: it stands still.
     double retreat = 0.05;
   };
 
@@ -65,7 +66,7 @@ class RosBridge {
   RosBridge(const RosBridge&) = delete;
   RosBridge& operator=(const RosBridge&) = delete;
 
-  /// What the robot was told.
+  /// Targets sent to the robot so far, and why others were withheld.
   struct RobotState {
     std::string topic;
     std::uint64_t told = 0;   ///< targets
@@ -77,10 +78,10 @@ class RosBridge {
     std::size_t readers = 0;                   ///< controllers that hear it
   };
 
-  /// What went wrong while it ran, if anything did: the last, in words. Any thread but a servo's.
+  /// Last problem while it ran, in words; empty if none. Any thread but a servo's.
   [[nodiscard]] std::string problem() const;
 
-  /// Of the robot, where there is one. Any thread but a servo's.
+  /// State of the robot, if there is one. Any thread but a servo's.
   [[nodiscard]] std::optional<RobotState> robot() const;
 
  private:

@@ -1,3 +1,4 @@
+// Declares what every depth camera offers, and how cameras are listed and opened.
 #pragma once
 
 #include <memory>
@@ -19,14 +20,14 @@ struct CameraInfo {
   bool repeats = false;
   /// Another program sends its frames and may come at any time: until then it waits.
   bool awaits_sender = false;
-  /// What was assumed of it because nothing said so, for people; empty: nothing was.
+  /// Assumptions made because the camera does not say, in words; empty: none.
   std::string assumed = {};
 };
 
 /// A source of depth frames. One thread uses it. Construction opens it and throws Error.
 class DepthCamera {
  public:
-  /// What came of asking a camera for a frame.
+  /// Result of read().
   enum class Status {
     frame,    ///< a new frame
     waiting,  ///< none within the time that was given
@@ -41,9 +42,9 @@ class DepthCamera {
 
   [[nodiscard]] virtual const CameraInfo& info() const noexcept = 0;
 
-  /// What can begin does so again with its first frame, which is taken at `start`, s on the clock
-  /// of the stamps: recordings, and simulations that wait for no clock. Cameras that see
-  /// what happens now go on. Streams call it, so that what was read before takes nothing from them.
+  /// Rewinds recordings, and simulations that wait for no clock: their first frame is then taken at
+  /// `start`, s on the clock of the stamps. No effect on live cameras. Streams call it, so that
+  /// frames read before are not lost to them.
   /// @throws Error when a recording cannot be opened again.
   virtual void begin(double /*start*/) {}
 

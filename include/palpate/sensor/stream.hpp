@@ -31,7 +31,7 @@ struct StreamState {
     }
   };
 
-  /// What a stream is doing.
+  /// State of a stream.
   enum class Phase {
     starting,  ///< no frame has come yet
     running,   ///< frames come

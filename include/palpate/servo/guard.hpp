@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// What the guard did to a step's force, as bits.
+/// Actions of the guard on a step's force, as bits.
 enum class GuardNote : std::uint32_t {
   none = 0,
   slewed = 1u << 0,    ///< the force changed faster than the hand explains; it follows more slowly
@@ -29,7 +29,7 @@ enum class GuardNote : std::uint32_t {
 }
 
 struct GuardOptions {
-  /// Of the brake that takes back what the hand was given.
+  /// Options of the brake that takes back energy given to the hand.
   struct Passivity {
     bool on = true;
     double mass = 0.1;     ///< moved with the hand, kg: bounds the brake
@@ -98,7 +98,7 @@ class Guard {
   };
 
   struct State {
-    /// How often each link stepped in, since construction.
+    /// Number of steps in which each link acted, since construction.
     struct Counts {
       std::uint64_t steps = 0;
       std::uint64_t slewed = 0;
@@ -113,7 +113,7 @@ class Guard {
     GuardNote notes = GuardNote::none;  ///< of the last step
     Fault fault = Fault::none;
     Counts counts;
-    /// Of the passivity ledger, J: above zero was given to the hand. Work in the world, which is
+    /// Passivity ledger, J: positive energy was given to the hand. Work in the world, which is
     /// Workspace::scale times that on the hand.
     double energy = 0;
   };
@@ -150,7 +150,7 @@ class Guard {
 /// Why the force stays at zero and what to do; empty for none.
 [[nodiscard]] std::string_view in_words(Guard::Fault fault) noexcept;
 
-/// What the guard did in the last step and why, in one line; empty when it did nothing.
+/// Describes what the guard did in the last step and why, in one line; empty if nothing.
 [[nodiscard]] std::string in_words(const Guard::State& state);
 
 }  // namespace palpate

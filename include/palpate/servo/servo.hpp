@@ -119,8 +119,8 @@ struct ServoState {
   Timing timing;
 };
 
-/// How long things took, counted in bins that grow geometrically: eight to an octave, from 1/8 us
-/// to 17 s. What lies outside counts in the first or the last.
+/// Histogram of durations in geometric bins, eight to an octave, from 1/8 us to 17 s. The first and
+/// last bins also count everything outside.
 struct Durations {
   static constexpr std::size_t kPerOctave = 8;
   static constexpr std::size_t kBins = 27 * kPerOctave;
@@ -140,7 +140,7 @@ struct Durations {
     return count > 0 ? sum / static_cast<double>(count) : 0;
   }
 
-  /// What came after `earlier` was taken. `longest` stays that of all.
+  /// Durations added after `earlier` was taken. `longest` stays that of all.
   [[nodiscard]] Durations since(const Durations& earlier) const noexcept;
 };
 
@@ -155,15 +155,15 @@ struct ServoOptions {
   Ring<StepTrace>* traces = nullptr;   ///< the same with what each was made of, while it accepts
 };
 
-/// What may change while a servo runs.
+/// Settings that may change while a servo runs.
 struct ContactSettings {
   double stiffness = 500;  ///< K, N/m
   Friction friction = {};
   Texture texture = {};
 };
 
-/// One hand in a scene: SceneField, Proxy and Guard between a device's position and its force. In
-/// palpate::live.
+/// Renders a scene to one hand: SceneField, Proxy and Guard between a device's position and its
+/// force. In palpate::live.
 ///
 /// Owns no thread: a device's callback or a ServoThread calls tick(), or the owner of a loop calls
 /// step() and show(). One thread steps; functions marked "any thread" may be called meanwhile.
@@ -175,10 +175,12 @@ struct ContactSettings {
 /// The guard's ledger counts the fading force on the hand's own displacement.
 class Servo {
  public:
-  /// Of a device's continuous maximum: what it is asked to hold (docs/method.md 8.6).
+  /// Share of a device's continuous maximum force that is used (docs/method.md 8.6).
   static constexpr double kForceShare = 0.8;
-  static constexpr double kAddedForceFade = 0.1;      ///< s in which add_force()'s force fades
-  static constexpr std::size_t kRecentForces = 1024;  ///< steps that forces_since() remembers
+  /// s in which add_force()'s force fades (judgement)
+  static constexpr double kAddedForceFade = 0.1;
+  /// Steps that forces_since() remembers, 1 s at 1 kHz (judgement)
+  static constexpr std::size_t kRecentForces = 1024;
 
   /// @throws Error when an option is out of its range or the scene has too many readers.
   Servo(Device& device, Scene& scene, const ServoOptions& options = {});
@@ -186,9 +188,9 @@ class Servo {
   Servo(const Servo&) = delete;
   Servo& operator=(const Servo&) = delete;
 
-  /// One step: reads the device, computes, writes the force, shows the state. `now`: s, on the
-  /// clock of the snapshots' times; it never decreases. noexcept, allocation-free, lock-free;
-  /// what the device does in read() and write() is the device's.
+  /// Makes a step: reads the device, computes, writes the force, shows the state. `now`: s, on the
+  /// clock of the snapshots' times; it never decreases. noexcept, allocation-free, lock-free, apart
+  /// from what the device does in read() and write().
   const ServoState& tick(double now) noexcept;
 
   /// A step at the device's own time: for simulated time.
@@ -213,13 +215,13 @@ class Servo {
 
   /// The newest state. Any thread.
   [[nodiscard]] ServoState state() const noexcept;
-  /// How late steps began and what they took to compute, where it was measured. Any thread.
+  /// Lateness and computing time of steps, where measured. Any thread.
   [[nodiscard]] Durations lateness() const noexcept;
   [[nodiscard]] Durations computing() const noexcept;
 
-  /// What the guard let through in the steps after the first `seen`, oldest first, N, world frame;
-  /// `seen` becomes the number of steps shown. Holds the last kRecentForces steps: who asks more
-  /// rarely misses some. Any thread; allocates.
+  /// Forces that left the guard in the steps after the first `seen`, oldest first, N, world frame;
+  /// sets `seen` to the number of steps shown. Holds the last kRecentForces steps; rarer calls miss
+  /// some. Any thread; allocates.
   [[nodiscard]] std::vector<Eigen::Vector3f> forces_since(std::uint64_t& seen) const;
 
   /// Fades the force to zero at the guard's rate, and back. Any thread.
@@ -233,7 +235,7 @@ class Servo {
   /// real-time.
   /// @throws Error when a value is out of its range.
   void set_contact(const ContactSettings& contact);
-  /// What was set last, from the next step on at the latest. Any thread.
+  /// Settings set last; they act from the next step on at the latest. Any thread.
   [[nodiscard]] ContactSettings contact() const noexcept;
 
   /// A force from outside, such as what a robot's sensor feels, N, world frame: it goes through the

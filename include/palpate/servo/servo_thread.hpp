@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// What a servo's thread asks the system for.
+/// Requests of a servo's thread to the system.
 struct RealtimeOptions {
   bool realtime_priority = true;      ///< SCHED_FIFO: before everything that is not real-time
   int priority = 80;                  ///< 1-99; above 50 it goes before most drivers' threads
@@ -20,9 +20,9 @@ struct RealtimeOptions {
   std::optional<int> processor = {};  ///< pin the thread to this one, from 0
 };
 
-/// What came of asking; nothing in it is needed for a servo to run, all of it is to run on time.
+/// Results of those requests. A servo runs without any of them, but not always on time.
 struct RealtimeReport {
-  /// One thing that was asked for.
+  /// Request and its result.
   struct Request {
     std::string what;  ///< "real-time priority 80 (SCHED_FIFO)"
     bool granted = false;
@@ -82,8 +82,8 @@ class ServoThread {
     std::uint64_t skipped_ = 0;
   };
 
-  static constexpr double kLeastRate = 500;    // Hz
-  static constexpr double kMostRate = 10'000;  // Hz
+  static constexpr double kLeastRate = 500;    // Hz (judgement)
+  static constexpr double kMostRate = 10'000;  // Hz (judgement)
 
   /// Starts, and returns when the system has answered what was asked for. Servo and clock outlive
   /// it, and nobody else steps the servo meanwhile. `rate`: steps a second, 500 to 10000 Hz; unset:
@@ -96,7 +96,7 @@ class ServoThread {
   ServoThread(const ServoThread&) = delete;
   ServoThread& operator=(const ServoThread&) = delete;
 
-  /// What the system granted.
+  /// Results of the requests to the system.
   [[nodiscard]] const RealtimeReport& realtime() const noexcept { return realtime_; }
   /// Steps a second, Hz.
   [[nodiscard]] double rate() const noexcept { return rate_; }

@@ -35,14 +35,14 @@ struct StiffnessTestOptions {
   double fastest = 0.5;      ///< m/s; a device that moves faster ends the test
 };
 
-/// How stiff may a wall be on this device with this hand? Walls under a hand, each stiffer than the
-/// one before, until one makes the device shake; the force goes away with that. The guard's links
-/// but those that would hide shaking (stiffness limit, passivity) stand between wall and hand.
+/// Tests how stiff a wall may be on this device with this hand: puts ever stiffer walls under the
+/// hand until the device shakes, then removes the force. The guard works as usual, except for the
+/// parts that would hide shaking (stiffness limit, passivity).
 ///
 /// Pure: a step's force out of a step's state, no clock, no device. Real-time.
 class StiffnessTest {
  public:
-  /// What the hand is to do, or why the test is over.
+  /// Next task of the hand, or why the test is over.
   enum class Phase {
     rest,         ///< hold the device still: the wall is put under it; after a silence, again
     press,        ///< press down on the wall
@@ -81,7 +81,7 @@ class StiffnessTest {
   std::unique_ptr<Inside> inside_;
 };
 
-/// What the hand is to do, or why it is over.
+/// Says what the hand has to do, or why the test is over.
 [[nodiscard]] std::string_view in_words(StiffnessTest::Phase phase) noexcept;
 
 /// A flat virtual wall that is rendered through a guard on a simulated device that nobody holds:

@@ -17,10 +17,10 @@
 
 namespace palpate {
 
-/// What a viewer's page may do to the program. All are called on the viewer's network thread, one
-/// at a time, and should return within a millisecond or so. An Error that they throw is reported to
-/// the page and changes nothing. Those that are empty are refused with words, unless it says
-/// otherwise.
+/// Callbacks for actions of a viewer's page. All are called on the viewer's network thread, one at
+/// a time, and should return within a millisecond or so. An Error that they throw is reported to
+/// the page and changes nothing. An empty callback means that the action is refused, unless its
+/// comment says otherwise.
 struct ViewerControls {
   /// Something that a viewer's page may change. The viewer knows no setting of its own: a program
   /// offers them.
@@ -45,7 +45,7 @@ struct ViewerControls {
     Value value = 0.0;  ///< the present one, of the kind
   };
 
-  /// What can be set, with present values.
+  /// Settings with their present values.
   std::function<std::vector<Setting>()> settings = {};
   /// `value` is of the setting's kind and in its range already.
   std::function<void(const std::string& key, const Setting::Value& value)> set = {};
@@ -55,12 +55,12 @@ struct ViewerControls {
   std::function<void(const std::string& name)> preset = {};
 
   std::function<void(bool on)> pause = {};  ///< empty: Servo::pause of every servo
-  /// Of one servo by its index or, unset, of all; empty: Servo::reset.
+  /// Resets one servo by its index or, unset, all; empty: Servo::reset.
   std::function<void(std::optional<std::size_t> hand)> reset = {};
 
   /// Begins or ends a recording. Returns the file's name.
   std::function<std::string(bool on)> record = {};
-  /// What is recorded already when the viewer begins; empty: nothing.
+  /// Recording that runs already when the viewer begins; empty: none.
   std::string recording = {};
 
   /// Takes a file that a person gave a page; its name has 1 to 250 bytes, no '/' and no control
@@ -69,7 +69,7 @@ struct ViewerControls {
 
   /// A recording that is shown in place of a run: servos show its states, and nobody steps them.
   struct TimeLine {
-    /// What is shown.
+    /// Moment of the recording that is shown.
     struct Moment {
       double time = 0;  ///< from 0 to `length`, s
       bool playing = false;
@@ -96,7 +96,7 @@ struct ViewerControls {
 
   /// Can a page move this device's hand? Empty: where `hand` is there, all.
   std::function<bool(std::size_t device)> takeable = {};
-  /// What a page's hand wants of a tool, in the world frame.
+  /// Moves a tool to the target of a page's hand, world frame.
   std::function<void(std::size_t device, const TargetSource::Target& target)> hand = {};
   /// The page let go of the tool, or went away.
   std::function<void(std::size_t device)> release = {};
@@ -105,7 +105,7 @@ struct ViewerControls {
 struct ViewerOptions {
   /// A stream as the page shows it.
   struct Stream {
-    /// What a camera sees: a pyramid along +z of its pose.
+    /// Field of view of a camera: a pyramid along +z of its pose.
     struct Frustum {
       double tan_half_width = 0;
       double tan_half_height = 0;
@@ -117,7 +117,7 @@ struct ViewerOptions {
     std::optional<Eigen::Isometry3d> T_world_sensor = {};  ///< unset: Source::pose()
   };
 
-  /// What a viewer bears from those who connect (docs/viewer_protocol.md). Times in s.
+  /// Limits on connections and their messages (docs/viewer_protocol.md). Times in s.
   struct Limits {
     std::size_t clients = 8;
     std::size_t connections = 64;     ///< open at a time, of clients and of others; more are closed
@@ -149,10 +149,10 @@ struct ViewerOptions {
   /// From where the scene is seen at first where no stream says where its sensor is, m, world;
   /// unset: from anywhere.
   std::optional<Eigen::Vector3d> eye = {};
-  /// How the streams fare; called about four times a second by two threads of the viewer, perhaps
-  /// at the same time.
+  /// States of the streams; two threads of the viewer call it about four times a second, perhaps at
+  /// the same time.
   std::function<std::vector<Stream>()> streams = {};
-  /// What a robot that follows a tool does, in words, as often; empty: there is none.
+  /// State of a robot that follows a tool, in words; called as often. Empty: there is none.
   std::function<std::string()> robot = {};
   Limits limits = {};
 
@@ -168,7 +168,7 @@ class Viewer {
  public:
   enum class NoticeLevel { info, warning, fault };
 
-  /// What came of those who connected, since construction.
+  /// Counts of connections since construction.
   struct Counts {
     std::size_t connections = 0;      ///< open now, clients among them
     std::size_t clients = 0;          ///< that said hello, now
@@ -190,7 +190,7 @@ class Viewer {
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  /// What a person opens: "http://127.0.0.1:8420/#token".
+  /// Address to open in a browser: "http://127.0.0.1:8420/#token".
   [[nodiscard]] std::string url() const;
   [[nodiscard]] std::uint16_t port() const noexcept;
   [[nodiscard]] Counts counts() const;
@@ -204,7 +204,7 @@ class Viewer {
   void settings_changed();
   /// There is another envelope or another past: tells every page. Any thread but a servo's.
   void time_line_changed();
-  /// What was being recorded has ended by itself: tells every page. Any thread but a servo's.
+  /// Tells every page that the recording ended by itself. Any thread but a servo's.
   void record_ended();
 
  private:

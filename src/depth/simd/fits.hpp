@@ -31,10 +31,10 @@ constexpr double kRhoUnits = 1 << 20;  // inverse depths are counted in 2^-20 / 
 constexpr int kSizes = 6;
 constexpr float kRatios[kSizes] = {.25F, .329877F, .435275F, .574349F, .757858F, 1};
 
-// What hangs together over a length that is not small beside a window is no error of slopes and
-// bends in it: over n blocks the error of a term of degree 0, 1, 2 varies shared / (1 + this
-// (shared - 1) / n) times more than if they erred alone. For Gaussian correlation over up to a
-// fifth of the window's side that is within a third.
+// Noise correlated over a length not small beside the window adds little error to slopes and
+// bends: over n blocks the variance of a term of degree 0, 1, 2 is shared / (1 + this (shared - 1)
+// / n) times that of independent blocks. Within a third for Gaussian correlation over up to a fifth
+// of the window's side.
 constexpr double kUnseenShare[] = {1.6, 5, 10};
 
 // Blocks in rows with a margin: pointers are to the block (0, 0).
@@ -53,7 +53,7 @@ struct WindowTable {
   int columns, rows;
 };
 
-// What fits need beside the table.
+// Inputs of fits beside the table.
 struct FitInput {
   WindowTable table;
   BlockRows blocks;       // measured only, nothing filled
@@ -80,9 +80,9 @@ extern const FitFunctions kFitsV3;  // x86-64-v3; the same numbers bit for bit
 // The better that this processor has.
 const FitFunctions& best_fits() noexcept;
 
-// What is done to every block of every frame: the code that is compiled once for each level of the
-// instruction set. Plain pointers and numbers alone cross this border. All functions do one row;
-// rows of blocks have at least kPlainLanes empty blocks before and behind them.
+// Functions that run on every block of every frame, compiled once for each level of the instruction
+// set. They take plain pointers and numbers only. Each does one row; rows of blocks have at least
+// kPlainLanes empty blocks before and behind them.
 
 constexpr int kPlainLanes = 8;
 
