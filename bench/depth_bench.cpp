@@ -10,7 +10,7 @@
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "peers/depth_peers.hpp"
+#include "peers/peers.hpp"
 #include "sim/simulated_camera.hpp"
 
 namespace palpate::bench {

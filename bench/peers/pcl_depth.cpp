@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "peers/depth_peers.hpp"
+#include "peers/peers.hpp"
 
 namespace palpate::bench {
 namespace {
