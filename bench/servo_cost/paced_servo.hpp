@@ -49,4 +49,8 @@ class PacedServo {
   Servo servo_;
 };
 
+/// A hand that explores what the first source of `scene` shows for `seconds`, always in the same
+/// way.
+[[nodiscard]] Trajectory hand_over(const Scene& scene, double seconds);
+
 }  // namespace palpate::servo_cost

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include "palpate/base/error.hpp"
-#include "servo_cost/hand_over.hpp"
 #include "servo_cost/measured.hpp"
+#include "servo_cost/paced_servo.hpp"
 #include "servo_cost/rises.hpp"
 #include "viewer/viewer_run.hpp"
-#include "viewer/watching.hpp"
 
 namespace {
 

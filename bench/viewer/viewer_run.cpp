@@ -9,7 +9,6 @@
 
 #include "clouds.hpp"
 #include "palpate/geometry/point_cloud.hpp"
-#include "viewer/watching.hpp"
 
 namespace palpate::viewer_bench {
 
