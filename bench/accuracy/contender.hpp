@@ -37,7 +37,7 @@ inline constexpr const char* kUnorganised = "balanced";
 /// What the contender's proxy does on a path.
 [[nodiscard]] Trace rendered_trace(Scene& scene, const Contender& contender, const Path& path);
 
-/// The same for any field that needs no update, such as TruthField.
+/// The same for any field that needs no update, such as an analytic one.
 [[nodiscard]] Trace rendered_trace(const Field& field, const ProxyOptions& options,
                                    const Path& path);
 
