@@ -6,14 +6,15 @@
 #include <numbers>
 #include <utility>
 
-#include "accuracy/draw.hpp"
 #include "accuracy/drawn_scene.hpp"
 #include "accuracy/strokes.hpp"
+#include "common/stage.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::accuracy {
 namespace {
 
+using bench::between;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 

@@ -5,14 +5,15 @@
 #include <optional>
 #include <string>
 
-#include "accuracy/draw.hpp"
 #include "accuracy/image_outline.hpp"
 #include "accuracy/strokes.hpp"
+#include "common/stage.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::accuracy {
 namespace {
 
+using bench::between;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 

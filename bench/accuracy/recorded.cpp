@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "accuracy/draw.hpp"
 #include "accuracy/flat_patch.hpp"
 #include "accuracy/score.hpp"
 #include "accuracy/strokes.hpp"
 #include "accuracy/table.hpp"
+#include "common/stage.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/scene/scene_field.hpp"
@@ -19,6 +19,7 @@
 namespace palpate::accuracy {
 namespace {
 
+using bench::between;
 using Eigen::Vector3d;
 
 constexpr double kLength = 0.08;   // m, of a slide on it

@@ -7,12 +7,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "accuracy/draw.hpp"
 #include "accuracy/strokes.hpp"
+#include "common/stage.hpp"
 
 namespace palpate::accuracy {
 namespace {
 
+using bench::between;
 using Eigen::Vector3d;
 
 constexpr std::array<double, 7> kDistances = {0.35, 0.5, 0.7, 1.0, 1.4, 1.9, 2.5};  // m
