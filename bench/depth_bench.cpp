@@ -16,10 +16,12 @@
 namespace palpate::bench {
 namespace {
 
-constexpr int kFrames = 16;
-constexpr float kLeaf = 0.003F;      // m, of the peers' voxel filters
-constexpr double kNearRadius = 0.1;  // m, around the tool
-constexpr int kWarmUp = 8;           // frames
+constexpr int kFrames = 16;  // judgement: about half a second
+// m, of the peers' voxel filters; judgement: as many points as palpate feels
+constexpr float kLeaf = 0.003F;
+// m, around the tool; judgement: the reach of a hand in a frame
+constexpr double kNearRadius = 0.1;
+constexpr int kWarmUp = 8;  // frames; judgement: the filter over time has filled
 
 std::vector<DepthFrame> record_frames() {
   const auto camera = open_simulated("still,noise=a,frames=" + std::to_string(kFrames), nullptr);

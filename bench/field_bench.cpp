@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using namespace palpate;
 
-constexpr double kRadiusOfSphere = 0.1;  // m
+constexpr double kRadiusOfSphere = 0.1;  // m; derived: that of bumpy_sphere()
 
 struct Cloud {
   std::vector<Vector3f> points;

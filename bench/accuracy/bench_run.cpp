@@ -1,3 +1,4 @@
+// Plays table A: every layout, frame, contender and row.
 #include "accuracy/bench_run.hpp"
 
 #include <algorithm>

@@ -8,6 +8,7 @@
 #include "accuracy/rows.hpp"
 #include "accuracy/truth_frame.hpp"
 
+/// Runs of table A: options, results and who plays them.
 namespace palpate::accuracy {
 
 struct BenchOptions {

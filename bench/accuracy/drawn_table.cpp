@@ -1,3 +1,4 @@
+// Writes the table of drawn layouts and its targets.
 #include "accuracy/drawn_table.hpp"
 
 #include <fmt/format.h>

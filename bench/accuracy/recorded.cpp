@@ -1,3 +1,4 @@
+// Touches flat parts of a real recording and scores them against averaged planes.
 #include "accuracy/recorded.hpp"
 
 #include <fmt/format.h>
@@ -22,12 +23,12 @@ namespace {
 using bench::between;
 using Eigen::Vector3d;
 
-constexpr double kLength = 0.08;   // m, of a slide on it
-constexpr int kTries = 20000;      // places that are looked at
-constexpr double kDepth = 0.01;    // m, of slides: the sensors err by some mm
-constexpr double kFree = 0.02;     // m, from any point
-constexpr double kWay = 0.15;      // m, at most, of a way
-constexpr double kWaySpeed = 0.5;  // m/s
+constexpr double kLength = 0.08;   // m, of a slide; derived: two thirds of a patch
+constexpr int kTries = 20000;      // places that are looked at; judgement
+constexpr double kDepth = 0.01;    // m, of slides; judgement: the sensors err by some mm
+constexpr double kFree = 0.02;     // m, from any point; judgement
+constexpr double kWay = 0.15;      // m, length of a way at most; judgement
+constexpr double kWaySpeed = 0.5;  // m/s; judgement: a fast hand
 
 std::vector<DepthFrame> frames_of(const RecordedOptions& options) {
   const auto camera = open_sequence(read_sequence(options.folder));

@@ -1,3 +1,4 @@
+// Writes table A as Markdown and as comma-separated values.
 #include "accuracy/table.hpp"
 
 #include <fmt/format.h>

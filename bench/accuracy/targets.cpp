@@ -1,3 +1,4 @@
+// Lists the targets of table A.
 #include "accuracy/table.hpp"
 
 namespace palpate::accuracy {

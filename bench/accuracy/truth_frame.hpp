@@ -4,6 +4,7 @@
 #include "palpate/geometry/point_cloud.hpp"
 #include "sim/simulated_noise.hpp"
 
+/// Frames of a scene with known truth, exact and noisy, and their points.
 namespace palpate::accuracy {
 
 struct TruthScene;

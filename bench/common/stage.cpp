@@ -1,3 +1,4 @@
+// Draws solids, their motions and the path of a hand.
 #include "common/stage.hpp"
 
 #include <algorithm>

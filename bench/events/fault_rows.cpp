@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBack = 0.3;  // s in which the force has to be back
+constexpr double kBack = 0.3;  // s in which the force has to be back; judgement
 
 bool is_within(double time, double from, double length) {
   return time >= from && time < from + length;
@@ -94,10 +94,10 @@ void unsure_pose(Event& event, double sigma) {
 
 // A fingertip that the camera sees comes up to a pressing hand and goes along 4 mm beside it.
 void finger(Event& event, bool seen) {
-  constexpr double kTip = 0.008;   // m, radius
-  constexpr double kGap = 0.004;   // m, between tip and tool
-  constexpr double kFrom = 0.15;   // m, where it comes from
-  constexpr double kAlong = 0.08;  // m
+  constexpr double kTip = 0.008;   // m, radius; judgement: a fingertip
+  constexpr double kGap = 0.004;   // m, between tip and tool; judgement: nearly touching
+  constexpr double kFrom = 0.15;   // m, where it comes from; judgement: out of reach
+  constexpr double kAlong = 0.08;  // m; judgement
   event.clear();
   event.press(event.place, kUp);
   const Vector3d way = event.level_direction();

@@ -1,3 +1,5 @@
+// Rows that nobody arranges for: other sensors and rates, things that touch the table at the hand,
+// cameras that look away, places that are hidden when a hand comes to them.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -5,9 +7,6 @@
 
 #include "events/event.hpp"
 #include "sim/simulated_camera.hpp"
-
-// What nobody arranges for: other sensors and rates, what touches the table at the hand, cameras
-// that look away, regions that are hidden when a hand comes to them.
 
 namespace palpate::events {
 namespace {
@@ -44,7 +43,7 @@ void passes(Event& event, double low, double high, const Change& change) {
 
 // An arm is put onto a table beside a hand or on it, and is lifted again.
 void lowered(Event& event, double aside) {
-  constexpr double kHeight = 0.06;  // m, half of the way
+  constexpr double kHeight = 0.06;  // m, half of the way; judgement: well above the hand
   event.press(event.place, kUp);
   const Vector3d side = event.level_direction();
   const double radius = event.between(0.02, 0.045);
@@ -113,7 +112,7 @@ void into_shadow(Event& event) {
 
 // A camera pans away from what is pressed and back.
 void pans(Event& event, bool error) {
-  constexpr double kError = 0.002;  // m, and 1/3 degree
+  constexpr double kError = 0.002;  // m, and 1/3 degree; judgement: a usual calibration
   if (error) event.camera.T_camera_told = calibration_error(kError, kDegree / 3, event.seed);
   SimulatedMotion& motion = event.camera.motion;
   motion.frequency = event.between(0.08, 0.12);

@@ -1,4 +1,4 @@
-// What is hidden, appears, vanishes, moves fast or ends.
+// Rows of things that are hidden, appear, vanish, move fast or end.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -87,7 +87,7 @@ void appears_on(Event& event, double before) {
 
 // What the hand presses goes to and fro along its normal, and the hand with what can be felt of it.
 void to_and_fro(Event& event, double speed, bool ball) {
-  constexpr double kDepth = 0.01;  // m
+  constexpr double kDepth = 0.01;  // m; judgement
   event.camera.rate = event.one_of({15, 30, 60, 90});
   const double swing = std::min(0.1, 0.3 * speed);
   const Vector3d place(event.place.x(), event.place.y(), 0);

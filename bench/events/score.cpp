@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kInside = 0.008;  // m
-constexpr double kHeld = 0.2;      // of the force that there should be
-constexpr std::size_t kMeanTicks = 50;
+constexpr double kInside = 0.008;  // m; judgement: deeper than noise and lag explain
+constexpr double kHeld = 0.2;      // of the force that there should be; judgement: as in table A
+constexpr std::size_t kMeanTicks = 50;  // derived: 50 ms, a period of 20 Hz
 
 double depth_of(const Event& event, std::size_t tick, const Vector3d& x) {
   const double t = static_cast<double>(tick) * kTick;

@@ -1,16 +1,15 @@
+// Rows of thin, slanted and rimmed things, as families of sensors see them.
 #include <numbers>
 
 #include "events/event.hpp"
 #include "sim/simulated_camera.hpp"
-
-// What is thin, slanted or has a rim, as families of sensors see it.
 
 namespace palpate::events {
 namespace {
 
 using Eigen::Vector3d;
 
-// As a family of sensors sees it: structured, stereo, tof.
+// Gives the camera the noise of a family of sensors: structured, stereo, tof.
 void seen_by(Event& event, const std::string& family) {
   SimulatedSetup setup;
   setup.camera.noise.seed = event.camera.noise.seed;

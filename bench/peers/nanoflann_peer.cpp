@@ -1,3 +1,4 @@
+// Measures nanoflann's kd-tree as a peer of the index.
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>

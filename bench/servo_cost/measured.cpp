@@ -1,3 +1,4 @@
+// Reads the options of programs that measure a servo's cost.
 #include "servo_cost/measured.hpp"
 
 #include "common/main.hpp"

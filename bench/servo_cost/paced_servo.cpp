@@ -1,3 +1,4 @@
+// Runs a servo in real time and collects the times of its steps.
 #include "servo_cost/paced_servo.hpp"
 
 #include <fmt/format.h>

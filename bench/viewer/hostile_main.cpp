@@ -25,8 +25,8 @@ using namespace palpate;
 using test::RawClient;
 
 constexpr const char* kToken = "bench";
-constexpr int kConnections = 10'000;
-constexpr int kSlow = 60;  // of the 64 that there may be
+constexpr int kConnections = 10'000;  // judgement: more than descriptors would last
+constexpr int kSlow = 60;             // derived: nearly all of the 64 that there may be
 
 double now() {
   return SteadyClock().now();

@@ -1,3 +1,4 @@
+// Speaks the viewer's protocol as a page that draws nothing.
 #include "viewer/viewer_client.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +20,10 @@ namespace net = boost::asio;
 namespace beast = boost::beast;
 using Tcp = net::ip::tcp;
 
-constexpr std::size_t kMostPoints = 1'000'000;  // that it asks for
-constexpr std::size_t kMostBytes = 64 << 20;    // of a message
+// that it asks for; judgement: more than the bench shows
+constexpr std::size_t kMostPoints = 1'000'000;
+// of a message; derived: above kMostPoints of 16 bytes
+constexpr std::size_t kMostBytes = 64 << 20;
 
 // docs/viewer_protocol.md
 enum Kind : std::uint8_t { kState = 1, kCloud = 2, kSurface = 3 };

@@ -41,7 +41,7 @@ class ViewerClient {
   std::unique_ptr<Connection> connection_;
 };
 
-constexpr int kClients = 8;
+constexpr int kClients = 8;  ///< judgement: more pages than one person opens
 
 /// Eight clients of a viewer, each on a thread of its own; the last says hello and never reads.
 class Watching {

@@ -1,3 +1,4 @@
+// Runs a servo beside a viewer with clients.
 #include "viewer/viewer_run.hpp"
 
 #include <chrono>
@@ -15,6 +16,7 @@ namespace palpate::viewer_bench {
 namespace {
 
 constexpr const char* kToken = "bench";
+// judgement: 10 Hz, faster than clouds are sent
 constexpr std::chrono::milliseconds kRenewal(100);
 
 void show(Source& source, std::shared_ptr<const SurfacePoints> points, double now) {
