@@ -46,7 +46,7 @@ class Ring {
   std::size_t count_ = 0;
 };
 
-// What the tool is near: the middle of the table that the camera looks at.
+// The place near the tool: the middle of the table that the camera looks at.
 const std::vector<Ball> kNear = {{Eigen::Vector3d::Zero(), kNearRadius}};
 
 template <class Push>

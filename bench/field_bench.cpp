@@ -1,4 +1,4 @@
-// What one evaluation of the metaball sum with its gradient costs, beside nanoflann's radius search
+// Measures one evaluation of the metaball sum with its gradient beside nanoflann's radius search
 // with the same sum (the seed's way: search in every tick, then add up).
 
 #include <benchmark/benchmark.h>

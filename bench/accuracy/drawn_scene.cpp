@@ -32,7 +32,7 @@ constexpr double kEdgeStrip = 0.07;
 constexpr int kPlaces = 200;   // that are tried for one object; judgement
 constexpr int kScenes = 5000;  // judgement
 
-// What is taken: its outline in the image, and a circle on the table.
+// An occupied place: its outline in the image, and a circle on the table.
 struct Place {
   Outline outline;
   Vector3d foot;

@@ -20,7 +20,7 @@ double angle(int i, int n) {
   return 2 * std::numbers::pi * i / n;
 }
 
-// Of all points of the outline, how far they reach along a direction.
+// The farthest that the outline reaches along a direction.
 double reach(const Outline& outline, const Vector2d& direction) {
   double most = direction.dot(outline.front());
   for (const Vector2d& point : outline) most = std::max(most, direction.dot(point));

@@ -44,7 +44,7 @@ std::vector<DepthFrame> frames_of(const RecordedOptions& options) {
   return frames;
 }
 
-// Of each pixel that most of the frames measured.
+// Averages each pixel that most of the frames measured.
 DepthFrame average(const std::vector<DepthFrame>& frames) {
   DepthFrame mean = frames.front();
   std::vector<float> depths;
@@ -100,14 +100,14 @@ void touch(Scene& scene, const Contender& contender, const Patch& patch, double 
   touched.lost.push_back(100 * score.lost);
 }
 
-// What a plane through all that one frame has of the patch would feel like.
+// Scores a plane through all pixels that one frame has of the patch.
 void touch_own_plane(const Patch& own, const Patch& patch, Touched& touched) {
   const double cosine = std::min(1.0, own.normal.dot(patch.normal));
   touched.normal.push_back(std::acos(cosine) / kDegree);
   touched.height.push_back(1e3 * patch.normal.dot(own.center - patch.center));
 }
 
-// How far a patch's frames are from their average, as a share of what the filter is told.
+// Deviation of a patch's frames from their average, over the noise that the filter reports.
 struct Noise {
   std::vector<double> pixel, mean;
 

@@ -12,7 +12,7 @@
 
 #include "palpate/base/error.hpp"
 
-/// What the main programs of benches have in common: options, errors and files.
+/// The common part of benches' main programs: options, errors and files.
 namespace palpate::bench {
 
 /// Which rows are played, and with which seeds.

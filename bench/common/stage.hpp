@@ -27,7 +27,7 @@ inline const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 /// Removes the measurements in a disc of `radius` (m) around a place of the sensor's frame.
 void punch_hole(const Eigen::Vector3d& seen, double radius, DepthFrame& frame);
 
-/// What a seed draws: solids that may move, and the path of a hand. World frame, m, s.
+/// A drawn scene: solids that may move, and the path of a hand. World frame, m, s.
 struct Stage {
   explicit Stage(std::uint64_t number) : seed(number), random(number) {}
 

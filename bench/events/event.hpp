@@ -61,16 +61,16 @@ struct Event : bench::Stage {
 
 using Row = bench::Row<Event>;
 
-/// What is hidden, appears, vanishes, moves fast or ends.
+/// Things are hidden, appear, vanish, move fast or end.
 [[nodiscard]] std::vector<Row> plain_rows();
-/// What is thin, slanted or has a rim, as families of sensors see it.
+/// Thin, slanted and rimmed things, as families of sensors see them.
 [[nodiscard]] std::vector<Row> sensor_rows();
-/// What touches, hides and passes close by, and other sensors, rates and views.
+/// Things touch, hide and pass close by; other sensors, rates and views.
 [[nodiscard]] std::vector<Row> hostile_rows();
 /// A sensor is at fault where a hand presses.
 [[nodiscard]] std::vector<Row> fault_rows();
 
-/// What a hand felt.
+/// Forces on a hand and positions of its proxy, tick by tick.
 struct Felt {
   std::vector<Eigen::Vector3d> force;  ///< N
   std::vector<Eigen::Vector3d> proxy;  ///< m
@@ -80,7 +80,7 @@ struct Felt {
 /// Plays the event in simulated time with the default way of feeling a depth stream.
 [[nodiscard]] Felt play(const Event& event);
 
-/// Of one event, from where it begins.
+/// The score of one event, from where it begins.
 struct Score {
   double step = 0;    ///< largest change of force from one tick to the next, N
   double most = 0;    ///< largest force, N

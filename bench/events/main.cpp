@@ -1,4 +1,4 @@
-// What comes, goes, is hidden, moves fast, is thin or ends, as a hand feels it.
+// Measures what a hand feels while things come, go, are hidden, move fast, are thin or end.
 #include "events/event.hpp"
 
 int main(int argc, char** argv) {

@@ -85,7 +85,7 @@ void appears_on(Event& event, double before) {
   event.hold(1.5);
 }
 
-// What the hand presses goes to and fro along its normal, and the hand with what can be felt of it.
+// The pressed surface goes to and fro along its normal; the hand follows the surface that is felt.
 void to_and_fro(Event& event, double speed, bool ball) {
   constexpr double kDepth = 0.01;  // m; judgement
   event.camera.rate = event.one_of({15, 30, 60, 90});

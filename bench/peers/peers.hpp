@@ -37,9 +37,9 @@ class PclCloud {
 /// Null in builds without PCL.
 [[nodiscard]] std::unique_ptr<PclCloud> make_pcl_cloud(std::span<const Eigen::Vector3f> points);
 
-/// What others need to make a depth frame touchable: points, normals and an index over them, and
-/// the mean distance to the three nearest others, on one thread. Returns the number of points, 0
-/// in builds without PCL.
+/// The peers' pipelines that make a depth frame touchable: points, normals and an index over them,
+/// and the mean distance to the three nearest others, on one thread. Returns the number of points,
+/// 0 in builds without PCL.
 
 /// Back-projection, VoxelGrid with this leaf (m), KdTreeFLANN, NormalEstimation within 2.5 s, s the
 /// leaf, and the k = 3 spacing.

@@ -1,4 +1,4 @@
-// What a robot is told while things move before its cameras, beside the truth.
+// Compares the targets that a robot receives while things move with the truth.
 #include "robot/trial.hpp"
 
 namespace {

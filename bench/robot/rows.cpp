@@ -1,4 +1,4 @@
-// What moves, comes, jumps, hides and falls silent before a robot's cameras.
+// Rows of things that move, come, jump, hide and fall silent before a robot's cameras.
 #include <algorithm>
 #include <numbers>
 

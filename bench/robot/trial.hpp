@@ -24,8 +24,8 @@ struct Watcher {
   std::function<bool(DepthFrame&)> fault = {};  ///< false: the frame never arrives
 };
 
-/// What a hand does before cameras while a robot follows its proxy: a floor z = 0 that cameras look
-/// at from 0.5 to 0.9 m, and a hand over it.
+/// A trial: a robot follows the proxy of a hand before cameras. It has a floor z = 0 that cameras
+/// look at from 0.5 to 0.9 m, and a hand over it.
 struct Trial : bench::Stage {
   /// Draws the floor and a camera.
   explicit Trial(std::uint64_t number);
@@ -53,7 +53,7 @@ struct Trial : bench::Stage {
 using Row = bench::Row<Trial>;
 [[nodiscard]] std::vector<Row> all_rows();
 
-/// What the robot was told in one trial. Depths are in solids of the truth, mm; 0: in front.
+/// The robot's targets in one trial. Depths are in solids of the truth, mm; 0: in front.
 struct Score {
   double told = 0;       ///< targets
   double waits = 0;      ///< share of the time

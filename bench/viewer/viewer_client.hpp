@@ -11,7 +11,7 @@
 
 namespace palpate::viewer_bench {
 
-/// What a client saw until its connection ended.
+/// Counts of a client until its connection ended.
 struct ClientReport {
   std::size_t points = 0;      ///< of the first cloud that was not empty
   double seconds_to_them = 0;  ///< from hello until that cloud was there whole
@@ -50,7 +50,7 @@ class Watching {
 
   /// Until each of those that read has its first cloud, or will have none.
   void wait_for_clouds() { arrived_.wait(); }
-  /// Of those that read, once the viewer is gone. Once.
+  /// Reports of the clients that read. Call it once, after the viewer is gone.
   [[nodiscard]] std::vector<ClientReport> reports();
 
  private:
