@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "accuracy/drawn_rows.hpp"
 #include "accuracy/drawn_scene.hpp"
 
 namespace palpate::accuracy {

@@ -1,5 +1,4 @@
 // Draws the paths of table A on a drawn scene.
-#include "accuracy/drawn_rows.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -13,6 +13,9 @@ struct Limit {
   double worst = -1;
 };
 
+/// The bounds as text, "median (worst)"; `none` without a target.
+[[nodiscard]] std::string limit_text(const Limit& limit, const char* none);
+
 /// One line of table A: a metric of a row, its targets for one raw frame, and what is
 /// quoted for the best of three tuned CHAI3D meshes.
 struct Target {
