@@ -1,3 +1,4 @@
+// Makes the cloud of the speed tables.
 #include "clouds.hpp"
 
 #include <cmath>
@@ -7,8 +8,8 @@
 namespace palpate::bench {
 namespace {
 
-constexpr double kRadius = 0.1;  // m
-constexpr double kBumps = 0.05;  // height of bumps / radius
+constexpr double kRadius = 0.1;  // m; judgement: a thing that fits a hand
+constexpr double kBumps = 0.05;  // height of bumps / radius; judgement
 
 // Uniform in [-1, 1) from the generator's bits: the same on every standard library.
 double uniform(std::mt19937_64& generator) {

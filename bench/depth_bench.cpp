@@ -10,16 +10,18 @@
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
-#include "peers/depth_peers.hpp"
+#include "peers/peers.hpp"
 #include "sim/simulated_camera.hpp"
 
 namespace palpate::bench {
 namespace {
 
-constexpr int kFrames = 16;
-constexpr float kLeaf = 0.003F;      // m, of the peers' voxel filters
-constexpr double kNearRadius = 0.1;  // m, around the tool
-constexpr int kWarmUp = 8;           // frames
+constexpr int kFrames = 16;  // judgement: about half a second
+// m, of the peers' voxel filters; judgement: as many points as palpate feels
+constexpr float kLeaf = 0.003F;
+// m, around the tool; judgement: the reach of a hand in a frame
+constexpr double kNearRadius = 0.1;
+constexpr int kWarmUp = 8;  // frames; judgement: the filter over time has filled
 
 std::vector<DepthFrame> record_frames() {
   const auto camera = open_simulated("still,noise=a,frames=" + std::to_string(kFrames), nullptr);
@@ -44,7 +46,7 @@ class Ring {
   std::size_t count_ = 0;
 };
 
-// What the tool is near: the middle of the table that the camera looks at.
+// The place near the tool: the middle of the table that the camera looks at.
 const std::vector<Ball> kNear = {{Eigen::Vector3d::Zero(), kNearRadius}};
 
 template <class Push>

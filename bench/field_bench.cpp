@@ -1,10 +1,9 @@
-// What one evaluation of the metaball sum with its gradient costs, beside nanoflann's radius search
+// Measures one evaluation of the metaball sum with its gradient beside nanoflann's radius search
 // with the same sum (the seed's way: search in every tick, then add up).
 
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <nanoflann.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "field/patch.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
+#include "peers/nanoflann_tree.hpp"
 
 namespace {
 
@@ -21,22 +21,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using namespace palpate;
 
-constexpr double kRadiusOfSphere = 0.1;  // m
-
-struct Cloud {
-  std::vector<Vector3f> points;
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-  [[nodiscard]] float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class BoundingBox>
-  bool kdtree_get_bbox(BoundingBox&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud,
-                                                 3, std::uint32_t>;
+constexpr double kRadiusOfSphere = 0.1;  // m; derived: that of bumpy_sphere()
 
 /// Where a proxy asks: along the surface at 10 cm/s, four evaluations in a step of 1 ms.
 std::vector<Vector3d> path() {
@@ -50,8 +35,9 @@ std::vector<Vector3d> path() {
 
 void nanoflann_sum(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
-  const Cloud cloud{bench::bumpy_sphere(count)};
-  const Tree tree(3, cloud, {10});
+  const std::vector<Vector3f> points = bench::bumpy_sphere(count);
+  const bench::NanoflannPoints cloud{points};
+  const bench::NanoflannTree tree(3, cloud, {10});
   const double radius = 2.5 * bench::bumpy_sphere_spacing(count);
   const auto places = path();
   nanoflann::SearchParams unsorted(32, 0, false);

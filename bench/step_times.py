@@ -5,7 +5,8 @@
 
 Explores each FILE for ten simulated seconds, N times (5), with `palpate touch FILE OPTION...`, and
 prints the medians over the runs. Step times are the processor time of SceneField::update and
-Proxy::step together; `patch` is the median number of points in the patch while touching.
+Proxy::step together; `patch` is the median number of points in the patch while touching. An organised
+cloud is prepared as a depth frame, which has no single R and no spacing.
 """
 
 import argparse
@@ -43,7 +44,7 @@ def summary(program, file, options, runs, folder):
     return [
         pathlib.Path(file).name,
         f"{cloud['points_felt']:,}".replace(",", " "),
-        f"{cloud['radius_m']['median'] / cloud['spacing_m']:.1f}",
+        f"{cloud['radius_m']['median'] / cloud['spacing_m']:.1f}" if "radius_m" in cloud else "depth frame",
         f"{found[0][1]:.0f}",
         f"{seconds:.2f}",
         *(f"{t:.1f}" for t in times),

@@ -1,8 +1,8 @@
+// Plays table A: every layout, frame, contender and row.
 #include "accuracy/bench_run.hpp"
 
 #include <algorithm>
 
-#include "accuracy/drawn_rows.hpp"
 #include "accuracy/drawn_scene.hpp"
 
 namespace palpate::accuracy {

@@ -8,6 +8,7 @@
 #include "accuracy/rows.hpp"
 #include "accuracy/truth_frame.hpp"
 
+/// Runs of table A: options, results and who plays them.
 namespace palpate::accuracy {
 
 struct BenchOptions {
@@ -31,7 +32,7 @@ struct Result {
   std::uint64_t layout = 0;
 };
 
-/// What preparation chose for a frame.
+/// The choices of preparation for a frame.
 struct Preparation {
   std::uint64_t seed = 0;
   std::string contender;
@@ -47,7 +48,7 @@ struct BenchResults {
 /// Does the row's name hold one of these parts, or are there none?
 [[nodiscard]] bool is_wanted(const std::string& row, const std::vector<std::string>& parts);
 
-/// What is done to the exact depths of a frame of a layout. Drawn layouts have noise of their own.
+/// The noise added to the exact depths of a frame. Each drawn layout has noise of its own.
 [[nodiscard]] SimulatedNoiseOptions noise_of(const BenchOptions& options, std::uint64_t layout,
                                              std::uint64_t seed);
 

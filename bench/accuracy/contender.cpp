@@ -1,3 +1,4 @@
+// Makes the contenders of table A, their scenes and their traces.
 #include "accuracy/contender.hpp"
 
 #include "palpate/scene/scene_field.hpp"
@@ -5,7 +6,7 @@
 namespace palpate::accuracy {
 namespace {
 
-constexpr double kForEver = 1e6;  // s
+constexpr double kForEver = 1e6;  // s; judgement: longer than any run
 
 ProxyOptions proxy_options(ProxyOptions::Method method) {
   ProxyOptions options;

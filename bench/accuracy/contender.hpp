@@ -34,10 +34,10 @@ inline constexpr const char* kUnorganised = "balanced";
 [[nodiscard]] std::unique_ptr<Scene> make_scene(const DepthFrame& frame, const TruthScene& truth,
                                                 const Contender& contender);
 
-/// What the contender's proxy does on a path.
+/// The trace of the contender's proxy on a path.
 [[nodiscard]] Trace rendered_trace(Scene& scene, const Contender& contender, const Path& path);
 
-/// The same for any field that needs no update, such as TruthField.
+/// The same for any field that needs no update, such as an analytic one.
 [[nodiscard]] Trace rendered_trace(const Field& field, const ProxyOptions& options,
                                    const Path& path);
 

@@ -1,4 +1,4 @@
-#include "accuracy/drawn_rows.hpp"
+// Draws the paths of table A on a drawn scene.
 
 #include <algorithm>
 #include <cmath>
@@ -6,26 +6,28 @@
 #include <numbers>
 #include <utility>
 
-#include "accuracy/draw.hpp"
 #include "accuracy/drawn_scene.hpp"
 #include "accuracy/strokes.hpp"
+#include "common/stage.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::accuracy {
 namespace {
 
+using bench::between;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kDraws = 20000;
-constexpr std::uint64_t kPathSeed = 0x9a7b5;  // scenes and paths draw from streams of their own
-constexpr double kSlideLength = 0.2;          // m
-constexpr double kRun = 0.05;                 // towards an edge of the box, m
-constexpr double kOff = 0.02;                 // and past it, m
-constexpr double kSteepestArc = 75 * kDegree;
-constexpr double kSteepestFace = 75 * kDegree;
-constexpr double kFromCorner = 0.012;  // m
-constexpr double kCrease = 0.04;       // m
+constexpr int kDraws = 20000;  // judgement: a path that needs more has no room
+// arbitrary: scenes and paths draw from streams of their own
+constexpr std::uint64_t kPathSeed = 0x9a7b5;
+constexpr double kSlideLength = 0.2;  // m; derived: as in the fixed rows
+constexpr double kRun = 0.05;  // m, towards an edge of the box; derived: as in the fixed rows
+constexpr double kOff = 0.02;  // m, and past it; derived: as in the fixed rows
+constexpr double kSteepestArc = 75 * kDegree;   // rad; judgement: beyond it little is measured
+constexpr double kSteepestFace = 75 * kDegree;  // rad; judgement: beyond it little is measured
+constexpr double kFromCorner = 0.012;           // m; judgement: a slide crosses one edge alone
+constexpr double kCrease = 0.04;                // m; derived: the length in the fixed rows
 
 // Draws until `found` says that it did.
 void draw_until(const char* what, const std::function<bool()>& found) {

@@ -1,3 +1,4 @@
+// Draws scenes whose objects are all seen and clear of one another.
 #include "accuracy/drawn_scene.hpp"
 
 #include <algorithm>
@@ -5,29 +6,33 @@
 #include <optional>
 #include <string>
 
-#include "accuracy/draw.hpp"
 #include "accuracy/image_outline.hpp"
 #include "accuracy/strokes.hpp"
+#include "common/stage.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::accuracy {
 namespace {
 
+using bench::between;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kRoot = 0.05;          // as in the fixed layouts, m
-constexpr double kBorder = 12;          // between what counts and the image's border, pixels
-constexpr double kBetween = 10;         // between outlines, pixels
-constexpr double kGap = 0.04;           // between objects on the table, m
-constexpr double kPatch = 0.12;         // radius of the free patch, m
-constexpr double kBesideSlide = 0.025;  // m
-constexpr double kFromSlide = 0.03;     // from a slide to any object, m
-constexpr double kEdgeStrip = 0.07;     // of table that paths at the cloud's edge go over, m
-constexpr int kPlaces = 200;            // that are tried for one object
-constexpr int kScenes = 5000;
+constexpr double kRoot = 0.05;  // m below the table; derived: as in the fixed layouts
+constexpr double kBorder = 12;  // pixels, between what counts and the image's border; judgement
+// pixels, between outlines; judgement: no flying pixels reach over
+constexpr double kBetween = 10;
+constexpr double kGap = 0.04;    // m, between objects on the table; judgement: more than two R
+constexpr double kPatch = 0.12;  // m, radius of the free patch; derived: a slide and 20 mm
+constexpr double kBesideSlide = 0.025;  // m; judgement: more than R at 0.7 m
+// m, from a slide to any object; judgement: more than R at 0.7 m
+constexpr double kFromSlide = 0.03;
+// m, of table that paths at the cloud's edge go over; judgement: 10 mm more than they need
+constexpr double kEdgeStrip = 0.07;
+constexpr int kPlaces = 200;   // that are tried for one object; judgement
+constexpr int kScenes = 5000;  // judgement
 
-// What is taken: its outline in the image, and a circle on the table.
+// An occupied place: its outline in the image, and a circle on the table.
 struct Place {
   Outline outline;
   Vector3d foot;

@@ -1,3 +1,4 @@
+// Writes the table of drawn layouts and its targets.
 #include "accuracy/drawn_table.hpp"
 
 #include <fmt/format.h>
@@ -35,19 +36,13 @@ Target metric_of_row(const std::string& row, const Metric& metric) {
   return {row, "", metric.of, {}, {}, ""};
 }
 
-std::string bounds(const Limit& limit) {
-  if (limit.median < 0) return "-";
-  if (limit.worst < 0) return fmt::format("{:g}", limit.median);
-  return fmt::format("{:g} ({:g})", limit.median, limit.worst);
-}
-
 void join(std::string& text, const std::string& part) {
   text += text.empty() ? part : " / " + part;
 }
 
 std::string targets_cell(const DrawnLimits& limits) {
   std::string text;
-  for (const Metric& metric : kMetrics) join(text, bounds(limits.*metric.limit));
+  for (const Metric& metric : kMetrics) join(text, limit_text(limits.*metric.limit, "-"));
   return text;
 }
 

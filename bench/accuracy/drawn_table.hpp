@@ -7,7 +7,7 @@
 
 namespace palpate::accuracy {
 
-/// What a row of drawn layouts is held to under a noise, taken as a depth frame.
+/// Targets of a row of drawn layouts under a noise, for depth frames.
 struct DrawnLimits {
   Limit normal;  ///< degrees
   Limit force;   ///< N

@@ -1,3 +1,4 @@
+// Finds flat parts of a depth frame and fits planes to them.
 #include "accuracy/flat_patch.hpp"
 
 #include <Eigen/Dense>
@@ -9,12 +10,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNearest = 0.3, kFarthest = 2.5;  // m, where flat parts are looked for
-constexpr double kHalf = 0.06;                     // m, of a patch
-constexpr double kMeasured = 0.9;                  // least share of a patch's pixels with a depth
-constexpr double kDeviations = 4;                  // farther off a plane lies another surface
-constexpr double kOnPlane = 0.97;                  // least share that lies on it
-constexpr double kSag = 5e-4;                      // m, that what is flat may bend by over a patch
+// m, where flat parts are looked for; judgement: the range of depth cameras
+constexpr double kNearest = 0.3, kFarthest = 2.5;
+constexpr double kHalf = 0.06;     // m, of a patch; judgement
+constexpr double kMeasured = 0.9;  // least share of pixels with a depth; judgement
+constexpr double kDeviations = 4;  // scales; judgement: what is farther off is another surface
+constexpr double kOnPlane = 0.97;  // least share that lies on it; judgement: 3 % may be outliers
+constexpr double kSag = 5e-4;      // m, that it may bend by; judgement: below the noise of a patch
 
 Vector3d ray(const CameraModel& camera, double u, double v) {
   const Pinhole& p = camera.pinhole;

@@ -1,3 +1,4 @@
+// Filters a signal forwards and backwards with a Butterworth section.
 #include "accuracy/high_pass.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Moves the ideal god-object on exact solids.
 #include "accuracy/ideal_proxy.hpp"
 
 #include <array>
@@ -10,10 +11,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStep = 5e-5;    // m
-constexpr double kRest = 1e-9;    // a shorter step means that the proxy has come to rest, m
-constexpr double kSlack = 1e-12;  // m
-constexpr int kMostSteps = 4000;  // 20 cm
+constexpr double kStep = 5e-5;    // m; derived: a tick at 5 cm/s
+constexpr double kRest = 1e-9;    // m; judgement: a shorter step is rest
+constexpr double kSlack = 1e-12;  // m; judgement: rounding of metres
+constexpr int kMostSteps = 4000;  // derived: 20 cm in steps of 0.05 mm
 
 // The half-space normal . x >= offset, relative to the proxy.
 struct Constraint {

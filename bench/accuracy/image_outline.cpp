@@ -1,3 +1,4 @@
+// Projects objects into the image and compares their outlines.
 #include "accuracy/image_outline.hpp"
 
 #include <algorithm>
@@ -10,15 +11,16 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kCirclePoints = 16;  // points of a circle
-constexpr int kDirections = 32;    // that two outlines are told apart along
-constexpr double kBulge = 1.06;  // points at this many radii hold a ball or a circle in their hull
+constexpr int kCirclePoints = 16;  // of a circle; judgement
+constexpr int kDirections = 32;    // that two outlines are told apart along; judgement
+// radii; derived: above 1 / cos(pi / 16) and what a ball's rings miss
+constexpr double kBulge = 1.06;
 
 double angle(int i, int n) {
   return 2 * std::numbers::pi * i / n;
 }
 
-// Of all points of the outline, how far they reach along a direction.
+// The farthest that the outline reaches along a direction.
 double reach(const Outline& outline, const Vector2d& direction) {
   double most = direction.dot(outline.front());
   for (const Vector2d& point : outline) most = std::max(most, direction.dot(point));

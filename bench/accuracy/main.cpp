@@ -1,15 +1,12 @@
 // Table A of the evaluation: raw depth frames with known truth, touched along known paths.
 
-#include <fmt/format.h>
+#include "common/main.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <fstream>
 
 #include "accuracy/drawn_table.hpp"
 #include "accuracy/recorded.hpp"
 #include "accuracy/sweep.hpp"
-#include "palpate/base/error.hpp"
 
 namespace {
 
@@ -80,12 +77,6 @@ std::vector<Contender> chosen(const Arguments& arguments) {
   return all;
 }
 
-void write_csv(const std::string& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw palpate::Error("cannot write " + file + "; is its folder there?");
-}
-
 std::string heading(const Arguments& arguments, const std::string& noise) {
   const BenchOptions& bench = arguments.bench;
   std::string frames = fmt::format("layout {}, {} frames", bench.layout, bench.seeds);
@@ -130,21 +121,15 @@ int run(Arguments& arguments) {
     fmt::print("{}{}", heading(arguments, noise), report(arguments, results, contenders));
     scores += csv(results, arguments.bench);
   }
-  if (!arguments.csv_file.empty()) write_csv(arguments.csv_file, scores);
+  if (!arguments.csv_file.empty()) palpate::bench::write_file(arguments.csv_file, scores);
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Accuracy on depth frames with known truth");
+  CLI::App app("Accuracy on depth frames with known truth", "accuracy_bench");
   Arguments arguments;
   add_options(app, arguments);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return run(arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "accuracy_bench: {}\n", error.what());
-    return 1;
-  }
+  return palpate::bench::run_main(app, argc, argv, [&] { return run(arguments); });
 }

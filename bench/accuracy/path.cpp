@@ -1,3 +1,4 @@
+// Builds the path of a hand from lines, curves and pauses.
 #include "accuracy/path.hpp"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 namespace palpate::accuracy {
 namespace {
 
-constexpr double kEase = 0.1;  // s, for speeding up and for slowing down
+constexpr double kEase = 0.1;  // s, for speeding up and for slowing down; judgement
 
 int ticks(double seconds) {
   return std::max(1, static_cast<int>(std::lround(seconds / kTick)));

@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
+/// Paths of a hand, tick by tick.
 namespace palpate::accuracy {
 
-inline constexpr double kTick = 1e-3;       ///< s
-inline constexpr double kStiffness = 500;   ///< N/m
-inline constexpr double kHandSpeed = 0.05;  ///< m/s, where a path says nothing else
+inline constexpr double kTick = 1e-3;      ///< s: the servo at 1 kHz
+inline constexpr double kStiffness = 500;  ///< N/m; judgement: a usual haptic device holds it
+/// m/s, where a path says nothing else; judgement: a hand that explores
+inline constexpr double kHandSpeed = 0.05;
 
 /// Where the hand is, tick by tick, whatever it feels. Ticks begin ... end - 1 are scored.
 struct Path {

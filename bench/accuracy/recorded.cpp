@@ -1,3 +1,4 @@
+// Touches flat parts of a real recording and scores them against averaged planes.
 #include "accuracy/recorded.hpp"
 
 #include <fmt/format.h>
@@ -6,11 +7,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "accuracy/draw.hpp"
 #include "accuracy/flat_patch.hpp"
 #include "accuracy/score.hpp"
 #include "accuracy/strokes.hpp"
 #include "accuracy/table.hpp"
+#include "common/stage.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/scene/scene_field.hpp"
@@ -19,14 +20,15 @@
 namespace palpate::accuracy {
 namespace {
 
+using bench::between;
 using Eigen::Vector3d;
 
-constexpr double kLength = 0.08;   // m, of a slide on it
-constexpr int kTries = 20000;      // places that are looked at
-constexpr double kDepth = 0.01;    // m, of slides: the sensors err by some mm
-constexpr double kFree = 0.02;     // m, from any point
-constexpr double kWay = 0.15;      // m, at most, of a way
-constexpr double kWaySpeed = 0.5;  // m/s
+constexpr double kLength = 0.08;   // m, of a slide; derived: two thirds of a patch
+constexpr int kTries = 20000;      // places that are looked at; judgement
+constexpr double kDepth = 0.01;    // m, of slides; judgement: the sensors err by some mm
+constexpr double kFree = 0.02;     // m, from any point; judgement
+constexpr double kWay = 0.15;      // m, length of a way at most; judgement
+constexpr double kWaySpeed = 0.5;  // m/s; judgement: a fast hand
 
 std::vector<DepthFrame> frames_of(const RecordedOptions& options) {
   const auto camera = open_sequence(read_sequence(options.folder));
@@ -42,7 +44,7 @@ std::vector<DepthFrame> frames_of(const RecordedOptions& options) {
   return frames;
 }
 
-// Of each pixel that most of the frames measured.
+// Averages each pixel that most of the frames measured.
 DepthFrame average(const std::vector<DepthFrame>& frames) {
   DepthFrame mean = frames.front();
   std::vector<float> depths;
@@ -98,14 +100,14 @@ void touch(Scene& scene, const Contender& contender, const Patch& patch, double 
   touched.lost.push_back(100 * score.lost);
 }
 
-// What a plane through all that one frame has of the patch would feel like.
+// Scores a plane through all pixels that one frame has of the patch.
 void touch_own_plane(const Patch& own, const Patch& patch, Touched& touched) {
   const double cosine = std::min(1.0, own.normal.dot(patch.normal));
   touched.normal.push_back(std::acos(cosine) / kDegree);
   touched.height.push_back(1e3 * patch.normal.dot(own.center - patch.center));
 }
 
-// How far a patch's frames are from their average, as a share of what the filter is told.
+// Deviation of a patch's frames from their average, over the noise that the filter reports.
 struct Noise {
   std::vector<double> pixel, mean;
 

@@ -7,6 +7,7 @@
 
 #include "accuracy/contender.hpp"
 
+/// Accuracy on real recordings, whose truth are planes of averaged frames.
 namespace palpate::accuracy {
 
 struct RecordedOptions {

@@ -1,3 +1,4 @@
+// Makes the paths of table A on a fixed layout.
 #include "accuracy/rows.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Scores a trace against the ideal one, tick by tick.
 #include "accuracy/score.hpp"
 
 #include <algorithm>
@@ -12,12 +13,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNoForce = 1e-6;  // N
-constexpr double kLostShare = 0.2;
-constexpr int kPopTicks = 3;
-constexpr double kRippleCutoff = 20;    // Hz
-constexpr std::size_t kTrim = 100;      // ticks at either end
-constexpr std::size_t kShortest = 300;  // ticks that a ripple can be told from
+constexpr double kNoForce = 1e-6;       // N; judgement: rounding
+constexpr double kLostShare = 0.2;      // of the ideal force; judgement: less is not held
+constexpr int kPopTicks = 3;            // judgement: a shorter gap is not felt
+constexpr double kRippleCutoff = 20;    // Hz; judgement: faster than a hand moves by will
+constexpr std::size_t kTrim = 100;      // ticks at either end; derived: two periods of the cut-off
+constexpr std::size_t kShortest = 300;  // ticks; derived: three times what is trimmed at one end
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;

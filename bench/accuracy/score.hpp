@@ -8,7 +8,7 @@
 
 namespace palpate::accuracy {
 
-/// What a proxy did on a path, tick by tick.
+/// Forces and positions of a proxy on a path, tick by tick.
 struct Trace {
   std::vector<Eigen::Vector3d> force;  ///< on the hand, K (p - h), N
   std::vector<Eigen::Vector3d> proxy;  ///< m

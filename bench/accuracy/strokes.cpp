@@ -1,3 +1,4 @@
+// Makes the single strokes that rows consist of.
 #include "accuracy/strokes.hpp"
 
 #include <cmath>

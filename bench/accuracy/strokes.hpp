@@ -2,11 +2,13 @@
 
 #include "accuracy/rows.hpp"
 
+/// The single strokes that rows of table A consist of.
 namespace palpate::accuracy {
 
-inline constexpr double kSlideDepth = 3e-3;     ///< m
-inline constexpr double kLightDepth = 5e-4;     ///< m
-inline constexpr double kPathClearance = 0.01;  ///< above the surface, where paths begin and end, m
+inline constexpr double kSlideDepth = 3e-3;  ///< m; derived: table A
+inline constexpr double kLightDepth = 5e-4;  ///< m; derived: table A
+/// m above the surface, where paths begin and end; judgement
+inline constexpr double kPathClearance = 0.01;
 
 /// Along one straight line at constant depth (m) below a plane of the given outward normal.
 [[nodiscard]] Path slide(const Eigen::Vector3d& from, const Eigen::Vector3d& to,

@@ -1,3 +1,4 @@
+// Sweeps a plane and a sphere over distance and incidence.
 #include "accuracy/sweep.hpp"
 
 #include <fmt/format.h>
@@ -7,18 +8,22 @@
 #include <cmath>
 #include <numbers>
 
-#include "accuracy/draw.hpp"
 #include "accuracy/strokes.hpp"
+#include "common/stage.hpp"
 
 namespace palpate::accuracy {
 namespace {
 
+using bench::between;
 using Eigen::Vector3d;
 
-constexpr std::array<double, 7> kDistances = {0.35, 0.5, 0.7, 1.0, 1.4, 1.9, 2.5};  // m
-constexpr std::array<double, 6> kIncidences = {0, 15, 30, 45, 60, 75};              // degrees
-constexpr double kBallRadius = 0.06;                                                // m
-constexpr double kSweepLength = 0.1;                                                // m
+// m; judgement: the range of table-top cameras
+constexpr std::array<double, 7> kDistances = {0.35, 0.5, 0.7, 1.0, 1.4, 1.9, 2.5};
+// degrees; judgement: beyond 75 little is measured
+constexpr std::array<double, 6> kIncidences = {0, 15, 30, 45, 60, 75};
+constexpr double kBallRadius = 0.06;  // m; derived: the fixed layouts' sphere
+constexpr double kSweepLength = 0.1;  // m; judgement: fits the nearest image
+// rad; judgement: half of the 30 degrees that the header says
 constexpr double kHalfArc = 15 * kDegree;
 
 struct Bin {

@@ -1,3 +1,4 @@
+// Writes table A as Markdown and as comma-separated values.
 #include "accuracy/table.hpp"
 
 #include <fmt/format.h>
@@ -28,12 +29,6 @@ std::string number(double value) {
   return fmt::format("{:.2f}", value);
 }
 
-std::string limit_text(const Limit& limit) {
-  if (limit.median < 0) return "";
-  if (limit.worst < 0) return fmt::format("{:g}", limit.median);
-  return fmt::format("{:g} ({:g})", limit.median, limit.worst);
-}
-
 std::string cell(const BenchResults& results, const std::string& contender, const Target& target) {
   const Spread s = spread(results, contender, target);
   const char* mark = met(results, contender, target) ? "" : " **missed**";
@@ -56,6 +51,12 @@ char letter(NoiseKind noise) {
 Limit limit_of(const Target& target, const std::string& contender) {
   if (contender == kOrganised) return target.organised;
   return contender == kUnorganised ? target.points : Limit{};
+}
+
+std::string limit_text(const Limit& limit, const char* none) {
+  if (limit.median < 0) return none;
+  if (limit.worst < 0) return fmt::format("{:g}", limit.median);
+  return fmt::format("{:g} ({:g})", limit.median, limit.worst);
 }
 
 Spread spread(std::vector<double> values) {
@@ -89,7 +90,7 @@ std::string markdown_table(const BenchResults& results, const std::vector<Conten
   for (const Target& target : targets(options.noise)) {
     if (!has_row(results, target.row)) continue;
     text += fmt::format("| {} | {} | {} | {} |", target.row, target.metric,
-                        limit_text(target.organised), limit_text(target.points));
+                        limit_text(target.organised, ""), limit_text(target.points, ""));
     for (const Contender& contender : contenders) {
       text += fmt::format(" {} |", cell(results, contender.name, target));
     }

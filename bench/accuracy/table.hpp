@@ -7,11 +7,14 @@
 
 namespace palpate::accuracy {
 
-/// What absolute values over several frames must not be above; < 0: no target.
+/// Upper bounds of absolute values over several frames; < 0: no target.
 struct Limit {
   double median = -1;
   double worst = -1;
 };
+
+/// The bounds as text, "median (worst)"; `none` without a target.
+[[nodiscard]] std::string limit_text(const Limit& limit, const char* none);
 
 /// One line of table A: a metric of a row, its targets for one raw frame, and what is
 /// quoted for the best of three tuned CHAI3D meshes.
@@ -24,7 +27,7 @@ struct Target {
   std::string quoted;  ///< empty: not quoted
 };
 
-/// What the contender of this name is held to: none but palpate's two defaults to anything.
+/// The target of a contender; only palpate's two defaults have any.
 [[nodiscard]] Limit limit_of(const Target& target, const std::string& contender);
 
 /// The targets that hold for this noise.
@@ -49,7 +52,7 @@ struct Spread {
                                          const std::vector<Contender>& contenders,
                                          const BenchOptions& options);
 
-/// What preparation chose, one line a contender and the first frame.
+/// The choices of preparation for the first frame, one line a contender.
 [[nodiscard]] std::string markdown_preparation(const BenchResults& results);
 
 /// The line above those of csv().

@@ -1,35 +1,20 @@
+// Lists the targets of table A.
 #include "accuracy/table.hpp"
 
 namespace palpate::accuracy {
 namespace {
 
-double normal(const Score& s) {
-  return s.normal;
-}
-double force(const Score& s) {
-  return s.force;
-}
-double ripple(const Score& s) {
-  return s.ripple;
-}
-double height(const Score& s) {
-  return s.height;
-}
-double lost(const Score& s) {
-  return 100 * s.lost;
-}
-double pops(const Score& s) {
-  return s.pops;
-}
-double step(const Score& s) {
-  return s.step;
-}
-double peak(const Score& s) {
-  return s.peak;
-}
-double energy(const Score& s) {
-  return 1e3 * s.energy;
-}
+using Metric = double (*)(const Score&);
+
+constexpr Metric normal = [](const Score& s) -> double { return s.normal; };
+constexpr Metric force = [](const Score& s) -> double { return s.force; };
+constexpr Metric ripple = [](const Score& s) -> double { return s.ripple; };
+constexpr Metric height = [](const Score& s) -> double { return s.height; };
+constexpr Metric lost = [](const Score& s) -> double { return 100 * s.lost; };
+constexpr Metric pops = [](const Score& s) -> double { return s.pops; };
+constexpr Metric step = [](const Score& s) -> double { return s.step; };
+constexpr Metric peak = [](const Score& s) -> double { return s.peak; };
+constexpr Metric energy = [](const Score& s) -> double { return 1e3 * s.energy; };
 
 constexpr Limit kNone;
 constexpr const char* kNormal = "normal, deg";

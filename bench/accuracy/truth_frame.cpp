@@ -1,3 +1,4 @@
+// Renders frames of a scene and makes points of them.
 #include "accuracy/truth_frame.hpp"
 
 #include "accuracy/truth_scene.hpp"

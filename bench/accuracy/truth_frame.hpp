@@ -4,14 +4,15 @@
 #include "palpate/geometry/point_cloud.hpp"
 #include "sim/simulated_noise.hpp"
 
+/// Frames of a scene with known truth, exact and noisy, and their points.
 namespace palpate::accuracy {
 
 struct TruthScene;
 
-/// What the scene's camera would see if it never erred.
+/// The frame of the scene's camera without any error.
 [[nodiscard]] DepthFrame exact_frame(const TruthScene& scene);
 
-/// What it sees.
+/// The same frame with the camera's errors.
 [[nodiscard]] DepthFrame noisy_frame(const DepthFrame& exact, const SimulatedNoiseOptions& noise);
 
 /// Every measured pixel as a point in the camera's frame, whose viewpoint is its origin.

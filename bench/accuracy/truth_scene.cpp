@@ -1,3 +1,4 @@
+// Makes scenes whose signed distance is known.
 #include "accuracy/truth_scene.hpp"
 
 namespace palpate::accuracy {

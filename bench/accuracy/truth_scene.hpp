@@ -5,6 +5,7 @@
 #include "palpate/depth/depth_frame.hpp"
 #include "sim/simulated_scene.hpp"
 
+/// Scenes whose signed distance is known, and the camera that sees them.
 namespace palpate::accuracy {
 
 struct TruthCamera {

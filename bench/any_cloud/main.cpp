@@ -1,15 +1,12 @@
 // Clouds of every kind that surfaces are hard to tell of: what is felt beside the exact truth.
 
-#include <fmt/format.h>
+#include "common/main.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <fstream>
 
 #include "any_cloud/file_row.hpp"
 #include "any_cloud/rows.hpp"
 #include "any_cloud/table.hpp"
-#include "palpate/base/error.hpp"
 
 namespace {
 
@@ -78,25 +75,16 @@ int run(const Arguments& arguments) {
     all.insert(all.end(), results.begin(), results.end());
   }
   if (arguments.csv_file.empty()) return 0;
-  std::ofstream out(arguments.csv_file);
-  out << csv(all);
-  if (!out.flush()) {
-    throw palpate::Error("cannot write " + arguments.csv_file + "; is its folder there?");
-  }
+  palpate::bench::write_file(arguments.csv_file, csv(all));
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What is felt of clouds that surfaces are hard to tell of, beside the truth");
+  CLI::App app("What is felt of clouds that surfaces are hard to tell of, beside the truth",
+               "any_cloud_bench");
   Arguments arguments;
   add_options(app, arguments);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return run(arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "any_cloud_bench: {}\n", error.what());
-    return 1;
-  }
+  return palpate::bench::run_main(app, argc, argv, [&] { return run(arguments); });
 }

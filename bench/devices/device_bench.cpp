@@ -1,7 +1,7 @@
-// How often drivers of hardware can exchange a force for a place, against the doubles that tests
-// use, and what a servo's step costs with everything between a surface and a hand. Rows of the
-// first kind say exchange/DRIVER, of the second step/SURFACE; those tell quantiles of the thread's
-// computing time, us.
+// Measures how often drivers of hardware can exchange a force for a place, against the doubles that
+// tests use, and what a servo's step costs with everything between a surface and a hand. Rows of
+// the first kind say exchange/DRIVER, of the second step/SURFACE; those tell quantiles of the
+// thread's computing time, us.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

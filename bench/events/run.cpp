@@ -1,3 +1,4 @@
+// Plays an event: one simulated camera, its source, a field and a proxy.
 #include "accuracy/truth_frame.hpp"
 #include "events/event.hpp"
 #include "palpate/contact/proxy.hpp"

@@ -1,19 +1,19 @@
-#include "events/score.hpp"
-
-#include <fmt/format.h>
+// Scores what a hand felt of an event, tick by tick against the truth.
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "events/event.hpp"
 
 namespace palpate::events {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kInside = 0.008;  // m
-constexpr double kHeld = 0.2;      // of the force that there should be
-constexpr std::size_t kMeanTicks = 50;
+constexpr double kInside = 0.008;  // m; judgement: deeper than noise and lag explain
+constexpr double kHeld = 0.2;      // of the force that there should be; judgement: as in table A
+constexpr std::size_t kMeanTicks = 50;  // derived: 50 ms, a period of 20 Hz
 
 double depth_of(const Event& event, std::size_t tick, const Vector3d& x) {
   const double t = static_cast<double>(tick) * kTick;
@@ -32,17 +32,14 @@ double rms_of(const Event& event, const Felt& felt) {
   return count > 0 ? std::sqrt(squares / count) : 0;
 }
 
-struct Column {
-  const char* name;
-  double Score::*of;
-  bool high;  ///< is bad
-  int digits;
-};
-constexpr Column kColumns[] = {
-    {"step N", &Score::step, true, 2},      {"most N", &Score::most, true, 1},
-    {"least", &Score::least, false, 2},     {"last", &Score::last, false, 2},
-    {"lost", &Score::lost, true, 3},        {"behind s", &Score::behind, true, 2},
-    {"beyond mm", &Score::beyond, true, 1}, {"rms N", &Score::rms, true, 3}};
+constexpr bench::Column<Score> kColumns[] = {{"step N", &Score::step, 2},
+                                             {"most N", &Score::most, 1},
+                                             {"least", &Score::least, 2, 1, false},
+                                             {"last", &Score::last, 2, 1, false},
+                                             {"lost", &Score::lost, 3},
+                                             {"behind s", &Score::behind, 2},
+                                             {"beyond mm", &Score::beyond, 1},
+                                             {"rms N", &Score::rms, 3}};
 
 }  // namespace
 
@@ -70,26 +67,8 @@ Score score(const Event& event, const Felt& felt) {
   return out;
 }
 
-std::string heading() {
-  std::string text = "| event | runs |";
-  std::string rule = "|---|---|";
-  for (const Column& column : kColumns) {
-    text += fmt::format(" {} |", column.name);
-    rule += "---|";
-  }
-  return text + "\n" + rule + "\n";
-}
-
-std::string line(const std::string& name, const std::vector<Score>& scores) {
-  std::string text = fmt::format("| {} | {} |", name, scores.size());
-  for (const Column& column : kColumns) {
-    std::vector<double> values;
-    for (const Score& s : scores) values.push_back(s.*column.of);
-    std::sort(values.begin(), values.end());
-    text += fmt::format(" {:.{}f} ({:.{}f}) |", values[values.size() / 2], column.digits,
-                        column.high ? values.back() : values.front(), column.digits);
-  }
-  return text + "\n";
+std::span<const bench::Column<Score>> columns() {
+  return kColumns;
 }
 
 }  // namespace palpate::events

@@ -1,3 +1,4 @@
+// Sets up four simulated cameras whose frames are looped.
 #include "four_cameras/camera_rig.hpp"
 
 #include <fmt/format.h>
@@ -9,9 +10,9 @@ namespace palpate::four_cameras {
 
 namespace {
 
-constexpr int kLoop = 32;        // frames
-constexpr double kRate = 30;     // Hz
-constexpr double kApart = 0.05;  // m from the middle of the four to each
+constexpr int kLoop = 32;        // frames; judgement: about a second
+constexpr double kRate = 30;     // Hz; judgement: the rate of most depth cameras
+constexpr double kApart = 0.05;  // m from the middle of the four to each; judgement
 
 SimulatedCameraOptions options_of(const SimulatedSetup& setup, int k, const Clock& clock) {
   SimulatedCameraOptions options = setup.camera;

@@ -7,9 +7,10 @@
 #include "palpate/scene/scene.hpp"
 #include "sim/simulated_camera.hpp"
 
+/// The four cameras that four_cameras_bench looks through.
 namespace palpate::four_cameras {
 
-constexpr int kCameras = 4;
+constexpr int kCameras = 4;  ///< judgement: a table-top seen from all sides
 
 /// Four simulated cameras at 30 Hz, out of step with each other, that look at the same table from
 /// places 10 cm apart. Their frames, 32 each, are made at once and shown over and over, so that

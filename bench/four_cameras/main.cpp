@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "four_cameras/servo_run.hpp"
-#include "servo_cost/hand_over.hpp"
 #include "servo_cost/measured.hpp"
 #include "servo_cost/rises.hpp"
 

@@ -1,3 +1,4 @@
+// Runs a servo beside cameras, or beside surfaces that move or rest.
 #include "four_cameras/servo_run.hpp"
 
 #include <algorithm>
@@ -10,9 +11,9 @@ namespace palpate::four_cameras {
 
 namespace {
 
-constexpr double kLongest = 3600;  // s; a moving surface moves all the while
-constexpr float kShift = 1e-4F;    // m, over that time
-constexpr double kWarm = 1;        // s that cameras run before the servo does, in every run
+constexpr double kLongest = 3600;  // s; judgement: a moving surface moves all the while
+constexpr float kShift = 1e-4F;    // m, over that time; judgement: too little to be felt
+constexpr double kWarm = 1;        // s that cameras run before the servo does; judgement: 30 frames
 
 // Frames of one camera that became touchable: when they were taken, and from when on they are felt.
 struct Lane {

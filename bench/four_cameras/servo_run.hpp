@@ -10,7 +10,7 @@
 
 namespace palpate::four_cameras {
 
-/// What else goes on while the servo runs.
+/// The load beside the servo.
 enum class Beside {
   still,    ///< nothing; surfaces stand still, so that patches last
   moving,   ///< nothing; surfaces move all the time, as between two frames of a camera

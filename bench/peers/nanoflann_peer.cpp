@@ -1,28 +1,14 @@
+// Measures nanoflann's kd-tree as a peer of the index.
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
-#include <nanoflann.hpp>
 #include <utility>
 
+#include "peers/nanoflann_tree.hpp"
 #include "peers/peers.hpp"
 
 namespace palpate::bench {
 namespace {
-
-struct Adaptor {
-  std::span<const Eigen::Vector3f> points;
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-  [[nodiscard]] float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>,
-                                                 Adaptor, 3, std::uint32_t>;
 
 class NanoflannPeer final : public Peer {
  public:
@@ -69,8 +55,8 @@ class NanoflannPeer final : public Peer {
     return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(covariance).eigenvectors().col(0);
   }
 
-  Adaptor adaptor_;
-  Tree tree_;
+  NanoflannPoints adaptor_;
+  NanoflannTree tree_;
 };
 
 }  // namespace

@@ -1,3 +1,4 @@
+// Makes depth frames touchable with PCL, as a peer of the depth path.
 #include <pcl/common/io.h>
 #include <pcl/features/integral_image_normal.h>
 #include <pcl/features/normal_3d.h>
@@ -10,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "peers/depth_peers.hpp"
+#include "peers/peers.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -46,7 +47,7 @@ typename pcl::PointCloud<Point>::Ptr thin(const typename pcl::PointCloud<Point>:
 
 template <class Point>
 double mean_spacing(const pcl::search::KdTree<Point>& tree, const pcl::PointCloud<Point>& cloud) {
-  constexpr int kNearest = 3;
+  constexpr int kNearest = 3;  // derived: as the row spacing_k3
   std::vector<int> indices(kNearest + 1);
   std::vector<float> squared(kNearest + 1);
   double sum = 0;

@@ -1,3 +1,4 @@
+// Measures PCL's kd-tree, octree and normals as peers of the index.
 #include <pcl/features/normal_3d.h>
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/octree/octree_search.h>

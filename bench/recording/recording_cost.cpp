@@ -1,5 +1,5 @@
-// What a recording costs a servo's step and what shows it, and what a recorder costs that records
-// nothing: runs at 1 kHz in real time over one way on a torus, in turns.
+// Measures what a recording costs a servo's step and what shows it, and what a recorder costs that
+// records nothing: runs at 1 kHz in real time over one way on a torus, in turns.
 //
 //   recording_cost [TURNS [SECONDS]]
 #include <fmt/format.h>
@@ -47,7 +47,7 @@ double median_of(std::vector<double> values) {
 enum class Kind { alone, idle, recorded };
 constexpr std::array<Kind, 3> kKinds{Kind::alone, Kind::idle, Kind::recorded};
 
-// Of each run, and how much more it is in one of another kind.
+// Prints the median of the runs, and how much more the runs of another kind take.
 void tell(const char* name, double Times::*which, const char* kind,
           const std::vector<Times>& without, const std::vector<Times>& with) {
   std::vector<double> alone;

@@ -1,5 +1,6 @@
-// How long it takes to show a moment of a recording, as palpate replay --view does: its steps, the
-// forces before it, and the frames that cameras had then. In one thread, at moments of chance.
+// Measures how long it takes to show a moment of a recording, as palpate replay --view does: its
+// steps, the forces before it, and the frames that cameras had then. In one thread, at moments of
+// chance.
 //
 //   seek_time FILE.mcap [SEEKS]
 #include <fmt/format.h>

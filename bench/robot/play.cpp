@@ -18,10 +18,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kTicksALook = 4;      // 250 Hz
-constexpr double kLate = 0.1;       // s
-constexpr double kNearby = 0.02;    // m; what is as near as that to the tool does not hide it
-constexpr double kStiffness = 500;  // N/m
+constexpr int kTicksALook = 4;      // derived: 250 Hz, a usual robot controller
+constexpr double kLate = 0.1;       // s; judgement: three frames at 30 Hz
+constexpr double kNearby = 0.02;    // m; judgement: what is as near to the tool does not hide it
+constexpr double kStiffness = 500;  // N/m; judgement: as in the other benches
 
 // When the newest frame that had arrived at some time was taken.
 class Arrivals {
@@ -125,7 +125,7 @@ class Judge {
       const Vector3d seen = pose.inverse() * x;
       const CameraModel& camera = watcher.options.camera;
       const Pinhole& p = camera.pinhole;
-      constexpr double kRim = 5;  // pixels
+      constexpr double kRim = 5;  // pixels; judgement: windows there are cut
       const double u = p.cx + p.fx * seen.x() / seen.z();
       const double v = p.cy + p.fy * seen.y() / seen.z();
       if (u < kRim || v < kRim || u > camera.width - kRim || v > camera.height - kRim) return false;

@@ -1,182 +1,152 @@
-// What moves, comes, jumps, hides and falls silent before a robot's cameras.
+// Rows of things that move, come, jump, hide and fall silent before a robot's cameras.
+#include <algorithm>
+#include <numbers>
 
-#include "robot/draft.hpp"
+#include "robot/trial.hpp"
 
 namespace palpate::robot {
 namespace {
 
 using Eigen::Vector3d;
 
-Trial comes_on(std::uint64_t seed) {
-  Draft draft(seed);
-  const double speed = draft.one_of({0.02, 0.1, 0.25, 0.5, 1});
-  draft.moves(draft.floor(), speed * kUp, kHappens,
-              std::min(draft.between(0.05, 0.25) / speed, 4.));
-  draft.hand();
-  return draft.trial;
+void comes_on(Trial& trial) {
+  const double speed = trial.one_of({0.02, 0.1, 0.25, 0.5, 1});
+  trial.moves(trial.floor(), speed * kUp, kHappens,
+              std::min(trial.between(0.05, 0.25) / speed, 4.));
+  trial.hand();
 }
 
 // A wall comes or goes slowly, as what lies on a belt or breathes does: the robot is to follow.
-Trial comes_slowly(std::uint64_t seed) {
-  Draft draft(seed);
-  const double speed = draft.one_of({-0.02, -0.005, 0.002, 0.005, 0.01, 0.02, 0.03});
-  draft.moves(draft.floor(), speed * kUp, 1, kEnd - 1);
-  draft.hand();
-  return draft.trial;
+void comes_slowly(Trial& trial) {
+  const double speed = trial.one_of({-0.02, -0.005, 0.002, 0.005, 0.01, 0.02, 0.03});
+  trial.moves(trial.floor(), speed * kUp, 1, kEnd - 1);
+  trial.hand();
 }
 
-Trial to_and_fro(std::uint64_t seed) {
-  Draft draft(seed);
-  const double speed = draft.between(0.05, 1);
-  draft.floor().motion.swing = draft.between(0.02, 0.1) * kUp;
-  draft.floor().motion.frequency =
-      speed / (2 * std::numbers::pi * draft.floor().motion.swing.norm());
-  draft.hand();
-  return draft.trial;
+void to_and_fro(Trial& trial) {
+  const double speed = trial.between(0.05, 1);
+  trial.floor().motion.swing = trial.between(0.02, 0.1) * kUp;
+  trial.floor().motion.frequency =
+      speed / (2 * std::numbers::pi * trial.floor().motion.swing.norm());
+  trial.hand();
 }
 
-Trial jumps(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.moves(draft.floor(), draft.between(0.005, 0.1) / 1e-6 * kUp, kHappens, 1e-6);
-  draft.hand();
-  return draft.trial;
+void jumps(Trial& trial) {
+  trial.moves(trial.floor(), trial.between(0.005, 0.1) / 1e-6 * kUp, kHappens, 1e-6);
+  trial.hand();
 }
 
-Trial plate_appears(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.hand();
-  const double thick = draft.between(0.005, 0.05);
-  const Vector3d at = draft.trial.hip[2500];
-  SimulatedSolid& plate = draft.add(
-      SolidKind::block, {at.x(), at.y(), std::max(at.z(), 0.) + draft.between(-0.01, 0.04)},
+void plate_appears(Trial& trial) {
+  trial.hand();
+  const double thick = trial.between(0.005, 0.05);
+  const Vector3d at = trial.hand_then();
+  SimulatedSolid& plate = trial.add(
+      SolidKind::block, {at.x(), at.y(), std::max(at.z(), 0.) + trial.between(-0.01, 0.04)},
       {0.1, 0.1, thick / 2});
-  draft.comes(plate, kHappens);
-  return draft.trial;
+  trial.comes(plate, kHappens);
 }
 
 // Something is laid between the camera and the tool; for one frame, nothing is measured.
-Trial laid_over(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.hand();
-  const Vector3d at = draft.trial.hip[2500];
-  const double above = std::max(at.z(), 0.) + draft.between(0.01, 0.06);
+void laid_over(Trial& trial) {
+  trial.hand();
+  const Vector3d at = trial.hand_then();
+  const double above = std::max(at.z(), 0.) + trial.between(0.01, 0.06);
   SimulatedSolid& thing =
-      draft.add(SolidKind::block, {at.x(), at.y(), above + 0.015}, {0.08, 0.08, 0.015});
-  draft.comes(thing, kHappens);
-  const double shadow = draft.one_of({0, 1}) / draft.trial.cameras.front().options.rate;
-  draft.trial.cameras.front().fault = [=](DepthFrame& frame) {
+      trial.add(SolidKind::block, {at.x(), at.y(), above + 0.015}, {0.08, 0.08, 0.015});
+  trial.comes(thing, kHappens);
+  const double shadow = trial.one_of({0, 1}) / trial.cameras.front().options.rate;
+  trial.cameras.front().fault = [=](DepthFrame& frame) {
     if (frame.stamp > kHappens && frame.stamp < kHappens + shadow)
       std::ranges::fill(frame.depth, 0.0f);
     return true;
   };
-  return draft.trial;
 }
 
-Trial ball_comes(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.hand();
-  const Vector3d at = draft.trial.hip[2500];
-  const Vector3d way = (draft.level() + draft.between(-0.5, 1) * kUp).normalized();
-  const double speed = draft.between(0.05, 1);
+void ball_comes(Trial& trial) {
+  trial.hand();
+  const Vector3d at = trial.hand_then();
+  const Vector3d way = (trial.level_direction() + trial.between(-0.5, 1) * kUp).normalized();
+  const double speed = trial.between(0.05, 1);
   const Vector3d goal(at.x(), at.y(), std::max(at.z(), 0.));
-  SimulatedSolid& ball = draft.add(SolidKind::ball, goal - 0.3 * way, {0.06, 0.06, 0.06});
-  draft.moves(ball, speed * way, kHappens, std::min(draft.between(0.2, 0.5) / speed, 4.));
-  return draft.trial;
+  SimulatedSolid& ball = trial.add(SolidKind::ball, goal - 0.3 * way, {0.06, 0.06, 0.06});
+  trial.moves(ball, speed * way, kHappens, std::min(trial.between(0.2, 0.5) / speed, 4.));
 }
 
-Trial box_slides(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.hand();
-  const Vector3d at = draft.trial.hip[2500];
-  const Vector3d way = draft.level();
-  const double speed = draft.between(0.05, 1);
+void box_slides(Trial& trial) {
+  trial.hand();
+  const Vector3d at = trial.hand_then();
+  const Vector3d way = trial.level_direction();
+  const double speed = trial.between(0.05, 1);
   SimulatedSolid& box =
-      draft.add(SolidKind::block, Vector3d(at.x(), at.y(), 0.04) - 0.35 * way, {0.05, 0.05, 0.04});
-  draft.moves(box, speed * way, kHappens, draft.between(0.25, 0.6) / speed);
-  return draft.trial;
+      trial.add(SolidKind::block, Vector3d(at.x(), at.y(), 0.04) - 0.35 * way, {0.05, 0.05, 0.04});
+  trial.moves(box, speed * way, kHappens, trial.between(0.25, 0.6) / speed);
 }
 
 // Something passes between the camera and the hand.
-Trial passes_before(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.hand();
-  const Vector3d eye = draft.trial.cameras.front().options.T_world_camera.translation();
-  const Vector3d way = draft.level();
-  const double speed = draft.between(0.1, 0.5);
-  SimulatedSolid& arm = draft.add(SolidKind::block, 0.5 * eye - 0.5 * way, {0.06, 0.06, 0.03});
-  draft.moves(arm, speed * way, kHappens, 1 / speed);
-  return draft.trial;
+void passes_before(Trial& trial) {
+  trial.hand();
+  const Vector3d eye = trial.cameras.front().options.T_world_camera.translation();
+  const Vector3d way = trial.level_direction();
+  const double speed = trial.between(0.1, 0.5);
+  SimulatedSolid& arm = trial.add(SolidKind::block, 0.5 * eye - 0.5 * way, {0.06, 0.06, 0.03});
+  trial.moves(arm, speed * way, kHappens, 1 / speed);
 }
 
-Trial hole(std::uint64_t seed) {
-  Draft draft(seed);
-  const double speed = draft.one_of({0, 0.05, 0.25});
-  draft.moves(draft.floor(), speed * kUp, kHappens + 0.2, speed > 0 ? 0.1 / speed : 0.);
-  draft.hand();
-  draft.hole(draft.trial.cameras.front(), kHappens, draft.between(0.3, 3));
-  return draft.trial;
+void hole(Trial& trial) {
+  const double speed = trial.one_of({0, 0.05, 0.25});
+  trial.moves(trial.floor(), speed * kUp, kHappens + 0.2, speed > 0 ? 0.1 / speed : 0.);
+  trial.hand();
+  trial.hole(trial.cameras.front(), kHappens, trial.between(0.3, 3));
 }
 
-Trial one_of_two_is_silent(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.camera().fault = [](DepthFrame& frame) { return frame.stamp < kHappens; };
-  draft.floor_rises(draft.between(0.02, 0.3), 0.1, kHappens + 0.5);
-  draft.hand();
-  return draft.trial;
+void one_of_two_is_silent(Trial& trial) {
+  trial.camera().fault = [](DepthFrame& frame) { return frame.stamp < kHappens; };
+  trial.floor_rises(trial.between(0.02, 0.3), 0.1, kHappens + 0.5);
+  trial.hand();
 }
 
-Trial two_cameras(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.camera();
-  draft.floor_rises(draft.between(0.05, 0.5), 0.15);
-  draft.hand();
-  return draft.trial;
+void two_cameras(Trial& trial) {
+  trial.camera();
+  trial.floor_rises(trial.between(0.05, 0.5), 0.15);
+  trial.hand();
 }
 
-Trial begins_behind(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.hand();
-  const double depth = draft.between(0.01, 0.05);
-  for (std::size_t i = 0; i < 2500; ++i) draft.trial.hip[i] = {0, 0, -depth};
-  return draft.trial;
+void begins_behind(Trial& trial) {
+  trial.hand();
+  const double depth = trial.between(0.01, 0.05);
+  for (std::size_t i = 0; i < 2500; ++i) trial.hip[i] = {0, 0, -depth};
 }
 
-Trial frames_are_lost(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.trial.cameras.front().options.dropped = 0.4;
-  draft.floor_rises(draft.between(0.05, 0.5), 0.15);
-  draft.hand();
-  return draft.trial;
+void frames_are_lost(Trial& trial) {
+  trial.cameras.front().options.dropped = 0.4;
+  trial.floor_rises(trial.between(0.05, 0.5), 0.15);
+  trial.hand();
 }
 
-Trial with_size(std::uint64_t seed) {
-  Trial trial = seed % 2 == 0 ? comes_on(seed) : ball_comes(seed);
+void with_size(Trial& trial) {
+  trial.seed % 2 == 0 ? comes_on(trial) : ball_comes(trial);
   trial.tool_radius = 0.004;
-  return trial;
 }
 
 // Everything stands still, and the hand presses, slides and is lifted in front of it.
-Trial rests(std::uint64_t seed) {
-  Draft draft(seed);
-  draft.trial.cameras.front().options.dropped = 0;
-  const Vector3d aside = 0.12 * draft.level();
-  draft.add(SolidKind::ball, aside, {0.05, 0.05, 0.05});
-  draft.add(SolidKind::block, -aside, {0.04, 0.04, 0.03});
-  draft.hand();
-  return draft.trial;
+void rests(Trial& trial) {
+  trial.cameras.front().options.dropped = 0;
+  const Vector3d aside = 0.12 * trial.level_direction();
+  trial.add(SolidKind::ball, aside, {0.05, 0.05, 0.05});
+  trial.add(SolidKind::block, -aside, {0.04, 0.04, 0.03});
+  trial.hand();
 }
 
-Trial rests_under_two(std::uint64_t seed) {
-  Trial trial = rests(seed);
-  Trial other = rests(seed + 1000003);
+void rests_under_two(Trial& trial) {
+  rests(trial);
+  Trial other(trial.seed + 1000003);
+  rests(other);
   trial.cameras.push_back(other.cameras.front());
-  return trial;
 }
 
-Trial rests_with_size(std::uint64_t seed) {
-  Trial trial = rests(seed);
+void rests_with_size(Trial& trial) {
+  rests(trial);
   trial.tool_radius = 0.004;
-  return trial;
 }
 
 }  // namespace

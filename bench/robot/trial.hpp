@@ -1,18 +1,21 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "common/rows.hpp"
+#include "common/stage.hpp"
 #include "sim/simulated_camera.hpp"
 
+/// Trials of what a robot that follows the proxy is told, and how they are scored.
 namespace palpate::robot {
 
-inline constexpr double kTick = 1e-3;    // s
-inline constexpr double kEnd = 8;        // s
-inline constexpr double kHappens = 2.5;  // s, when things begin to happen
+using bench::kTick;
+using bench::kUp;
+
+inline constexpr double kEnd = 8;        ///< s; judgement: long enough to come twice
+inline constexpr double kHappens = 2.5;  ///< s, when things begin to happen; judgement
 
 /// A camera, how long its frames are on their way, and what spoils them.
 struct Watcher {
@@ -21,24 +24,38 @@ struct Watcher {
   std::function<bool(DepthFrame&)> fault = {};  ///< false: the frame never arrives
 };
 
-/// What a hand does before cameras while a robot follows its proxy.
-struct Trial {
-  SimulatedScene scene;
+/// A trial: a robot follows the proxy of a hand before cameras. It has a floor z = 0 that cameras
+/// look at from 0.5 to 0.9 m, and a hand over it.
+struct Trial : bench::Stage {
+  /// Draws the floor and a camera.
+  explicit Trial(std::uint64_t number);
+
+  Watcher& camera();
+  SimulatedSolid& floor() { return scene.solids.front(); }
+  void floor_rises(double speed, double way, double begin = kHappens) {
+    moves(floor(), speed * kUp, begin, way / speed);
+  }
+  /// Where the hand is when things begin to happen.
+  [[nodiscard]] const Eigen::Vector3d& hand_then() const {
+    return hip[static_cast<std::size_t>(kHappens / kTick)];
+  }
+  /// The hand stays until then (s).
+  void hold_until(double time);
+  /// The hand hovers or presses when things happen; later it is lifted and comes again.
+  void hand();
+  /// Nothing is measured in a disc around where the hand is.
+  void hole(Watcher& watcher, double from, double lasts);
+
   std::vector<Watcher> cameras;
-  std::vector<Eigen::Vector3d> hip;  ///< m, tick by tick
-  double tool_radius = 0;            ///< m
+  double tool_radius = 0;  ///< m
 };
 
-/// One kind of trial; a seed says which one.
-struct Row {
-  std::string name;
-  std::function<Trial(std::uint64_t)> make;
-};
+using Row = bench::Row<Trial>;
 [[nodiscard]] std::vector<Row> all_rows();
 
-/// What the robot was told in one trial. Depths are in solids of the truth, mm; 0: in front.
+/// The robot's targets in one trial. Depths are in solids of the truth, mm; 0: in front.
 struct Score {
-  long told = 0;         ///< targets
+  double told = 0;       ///< targets
   double waits = 0;      ///< share of the time
   double needless = 0;   ///< share of it in waits that began with the tool in plain sight
   double deepest = 0;    ///< of targets

@@ -1,10 +1,7 @@
+// Reads the options of programs that measure a servo's cost.
 #include "servo_cost/measured.hpp"
 
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
-#include <exception>
-
+#include "common/main.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
 namespace palpate::servo_cost {
@@ -21,7 +18,7 @@ void give_processor(const CostOptions& options) {
 
 int run_measured(const std::string& name, const std::string& description, int argc, char** argv,
                  const std::function<bool(const CostOptions&)>& run) {
-  CLI::App app(description);
+  CLI::App app(description, name);
   CostOptions options;
   app.add_option("--seconds", options.seconds, "Of the run whose wall figures are told; 0: none")
       ->check(CLI::Range(0.0, 3600.0));
@@ -30,14 +27,11 @@ int run_measured(const std::string& name, const std::string& description, int ar
       ->check(CLI::Range(0.5, 60.0));
   app.add_option("--processor", options.processor,
                  "The servo is pinned to this one, and everything else leaves it");
-  CLI11_PARSE(app, argc, argv);
-  try {
+  const auto measure = [&] {
     give_processor(options);
     return run(options) ? 0 : 1;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", name, error.what());
-    return 2;
-  }
+  };
+  return bench::run_main(app, argc, argv, measure, 2);
 }
 
 }  // namespace palpate::servo_cost

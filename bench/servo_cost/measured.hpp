@@ -6,7 +6,7 @@
 
 namespace palpate::servo_cost {
 
-/// What the programs that measure a servo's cost have in common.
+/// Options of the programs that measure a servo's cost.
 struct CostOptions {
   double seconds = 60;
   int pairs = 9;

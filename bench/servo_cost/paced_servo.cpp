@@ -1,3 +1,4 @@
+// Runs a servo in real time and collects the times of its steps.
 #include "servo_cost/paced_servo.hpp"
 
 #include <fmt/format.h>
@@ -6,6 +7,7 @@
 #include <chrono>
 #include <thread>
 
+#include "device/explore.hpp"
 #include "palpate/servo/servo_thread.hpp"
 #include "servo_cost/rises.hpp"
 
@@ -13,7 +15,9 @@ namespace palpate::servo_cost {
 
 namespace {
 
-constexpr std::size_t kMostWaiting = 1 << 17;  // steps
+constexpr std::size_t kMostWaiting = 1 << 17;  // steps; derived: two minutes at 1 kHz
+constexpr double kPatch = 0.15;  // m, that the hand explores; judgement: in sight of all cameras
+constexpr double kDepth = 3e-3;  // m; judgement: as in table A
 
 ServoOptions noted_by(ServoState::Queue& steps) {
   ServoOptions options;
@@ -62,6 +66,16 @@ std::string in_words(const ServoRun& run) {
       run.skipped, 1e3 * late.quantile(0.5), 1e3 * late.quantile(0.99), 1e3 * late.longest,
       1e6 * quantile(run.computing, 0.5), 1e6 * quantile(run.computing, 0.99),
       1e6 * quantile(run.computing, 1), run.faults, run.lock_waits);
+}
+
+Trajectory hand_over(const Scene& scene, double seconds) {
+  const auto points = scene.source(0).points();
+  StrokeOptions options;
+  options.duration = seconds;
+  options.radius = points->radius;
+  options.depth = kDepth;
+  options.patch = kPatch;
+  return explore({points->origin, points->grid.points(), points->normals}, options);
 }
 
 }  // namespace palpate::servo_cost

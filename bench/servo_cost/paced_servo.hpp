@@ -13,9 +13,10 @@
 #include "palpate/servo/servo_thread.hpp"
 #include "servo_cost/counting_device.hpp"
 
+/// A servo in real time whose steps are timed, and the hand that it follows.
 namespace palpate::servo_cost {
 
-constexpr double kServoRate = 1000;  // Hz
+constexpr double kServoRate = 1000;  ///< Hz; judgement: the usual rate of haptics
 
 struct ServoRun {
   std::vector<double> computing;  ///< thread time of every step, s; in rising order
@@ -48,5 +49,9 @@ class PacedServo {
   ServoState::Queue steps_;
   Servo servo_;
 };
+
+/// A hand that explores what the first source of `scene` shows for `seconds`, always in the same
+/// way.
+[[nodiscard]] Trajectory hand_over(const Scene& scene, double seconds);
 
 }  // namespace palpate::servo_cost

@@ -1,3 +1,4 @@
+// Compares the times of steps of paired runs.
 #include "servo_cost/rises.hpp"
 
 #include <fmt/format.h>
@@ -9,8 +10,8 @@ namespace palpate::servo_cost {
 
 namespace {
 
-constexpr double kMostRiseP50 = 0.10;
-constexpr double kMostRiseP99 = 0.20;
+constexpr double kMostRiseP50 = 0.10;  // share; judgement
+constexpr double kMostRiseP99 = 0.20;  // share; judgement
 
 }  // namespace
 

@@ -9,12 +9,12 @@
 
 namespace palpate::servo_cost {
 
-/// Of values in rising order; 0 of none.
+/// The quantile of values in rising order; 0 of none.
 [[nodiscard]] double quantile(const std::vector<double>& values, double share);
 
 [[nodiscard]] double median(std::vector<double> values);
 
-/// How much longer a step computes with something beside it than without: ratios less 1, one of
+/// Rises of a step's computing time with something beside it over without: ratios less 1, one of
 /// each pair of runs that took turns.
 class Rises {
  public:

@@ -1,4 +1,4 @@
-// What clients may do wrong, and what comes of it: answers, times, descriptors, memory.
+// Lets clients misbehave and tells the consequences: answers, times, descriptors, memory.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -25,8 +25,8 @@ using namespace palpate;
 using test::RawClient;
 
 constexpr const char* kToken = "bench";
-constexpr int kConnections = 10'000;
-constexpr int kSlow = 60;  // of the 64 that there may be
+constexpr int kConnections = 10'000;  // judgement: more than descriptors would last
+constexpr int kSlow = 60;             // derived: nearly all of the 64 that there may be
 
 double now() {
   return SteadyClock().now();
@@ -171,7 +171,7 @@ class Attacks {
         viewer_->counts().turned_away, open, descriptors(), memory, megabytes());
   }
 
-  // Of every kind, left in every state.
+  // Opens a connection of each kind in turn and leaves it in its state.
   void leave(int i) {
     RawClient client(viewer_->port());
     if (i % 4 == 1) {

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include "palpate/base/error.hpp"
-#include "servo_cost/hand_over.hpp"
 #include "servo_cost/measured.hpp"
+#include "servo_cost/paced_servo.hpp"
 #include "servo_cost/rises.hpp"
 #include "viewer/viewer_run.hpp"
-#include "viewer/watching.hpp"
 
 namespace {
 
@@ -17,7 +16,7 @@ using servo_cost::CostOptions;
 using servo_cost::hand_over;
 using servo_cost::Rises;
 
-constexpr std::size_t kPoints = 300'000;
+constexpr std::size_t kPoints = 300'000;  // judgement: about a depth frame of 640x480
 
 void print_clients(const RunResult& run) {
   fmt::print("| client | points | all there after | MB/s | states | clouds | surfaces |\n");

@@ -1,3 +1,4 @@
+// Speaks the viewer's protocol as a page that draws nothing.
 #include "viewer/viewer_client.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +20,10 @@ namespace net = boost::asio;
 namespace beast = boost::beast;
 using Tcp = net::ip::tcp;
 
-constexpr std::size_t kMostPoints = 1'000'000;  // that it asks for
-constexpr std::size_t kMostBytes = 64 << 20;    // of a message
+// that it asks for; judgement: more than the bench shows
+constexpr std::size_t kMostPoints = 1'000'000;
+// of a message; derived: above kMostPoints of 16 bytes
+constexpr std::size_t kMostBytes = 64 << 20;
 
 // docs/viewer_protocol.md
 enum Kind : std::uint8_t { kState = 1, kCloud = 2, kSurface = 3 };
@@ -84,6 +87,23 @@ ClientReport ViewerClient::watch(const std::function<void()>& arrived) {
   if (report.points == 0) arrived();
   report.seconds = connection_->time();
   return report;
+}
+
+Watching::Watching(std::uint16_t port, const std::string& token) {
+  clients_.reserve(kClients);  // threads refer to them
+  for (int i = 0; i < kClients; ++i) clients_.emplace_back(port, token);
+  for (int i = 0; i + 1 < kClients; ++i) {
+    ViewerClient& client = clients_[static_cast<std::size_t>(i)];
+    reading_.push_back(std::async(std::launch::async, [this, &client] {
+      return client.watch([this] { arrived_.count_down(); });
+    }));
+  }
+}
+
+std::vector<ClientReport> Watching::reports() {
+  std::vector<ClientReport> reports;
+  for (auto& reading : reading_) reports.push_back(reading.get());
+  return reports;
 }
 
 }  // namespace palpate::viewer_bench

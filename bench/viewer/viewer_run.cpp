@@ -1,3 +1,4 @@
+// Runs a servo beside a viewer with clients.
 #include "viewer/viewer_run.hpp"
 
 #include <chrono>
@@ -9,13 +10,13 @@
 
 #include "clouds.hpp"
 #include "palpate/geometry/point_cloud.hpp"
-#include "viewer/watching.hpp"
 
 namespace palpate::viewer_bench {
 
 namespace {
 
 constexpr const char* kToken = "bench";
+// judgement: 10 Hz, faster than clouds are sent
 constexpr std::chrono::milliseconds kRenewal(100);
 
 void show(Source& source, std::shared_ptr<const SurfacePoints> points, double now) {

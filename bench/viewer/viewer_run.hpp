@@ -12,7 +12,7 @@
 
 namespace palpate::viewer_bench {
 
-/// What else goes on while the servo runs.
+/// The load beside the servo.
 struct Beside {
   bool clients = false;  ///< a viewer and eight of them
   bool renewed = false;  ///< the cloud comes anew ten times a second

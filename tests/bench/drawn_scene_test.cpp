@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "accuracy/drawn_rows.hpp"
 #include "accuracy/drawn_table.hpp"
 #include "accuracy/image_outline.hpp"
 #include "accuracy/strokes.hpp"

@@ -4,12 +4,37 @@
 
 #include "accuracy/contender.hpp"
 #include "accuracy/rows.hpp"
-#include "accuracy/truth_field.hpp"
+#include "palpate/field/field.hpp"
 
 namespace palpate::accuracy {
 namespace {
 
 using Eigen::Vector3d;
+
+// The exact signed distance as a Field: the errors with it are the proxy's and the bench's own.
+class TruthField final : public Field {
+ public:
+  explicit TruthField(const TruthScene& scene) : scene_(&scene) {}
+
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    const Distance found = distance_and_normal(*scene_, x);
+    return {found.value, found.gradient, 1, kScale};
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return distance_and_normal(*scene_, ball.center).value > ball.radius;
+  }
+  [[nodiscard]] Surface surface(const Vector3d& /*x*/) const noexcept override { return {}; }
+  [[nodiscard]] Traits traits() const noexcept override {
+    Traits traits;
+    traits.resolution = 0.002 * kScale;
+    return traits;
+  }
+
+ private:
+  static constexpr double kScale = 0.01;  // m, that steps are measured in; judgement
+
+  const TruthScene* scene_;
+};
 
 TEST(IdealProxy, RestsAtTheClosestPointOfAPlane) {
   const TruthScene scene = make_truth_scene();

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "servo_cost/hand_over.hpp"
-#include "viewer/watching.hpp"
+#include "servo_cost/paced_servo.hpp"
 
 namespace palpate::viewer_bench {
 namespace {
