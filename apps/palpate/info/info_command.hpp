@@ -5,7 +5,7 @@
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/options/source_options.hpp"
-#include "apps/palpate/report/report.hpp"
+#include "apps/palpate/report/source_report.hpp"
 #include "apps/palpate/sources/cloud_facts.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/depth/depth_frame.hpp"

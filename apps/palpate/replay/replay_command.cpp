@@ -32,25 +32,15 @@ Exit codes: 0 the forces are the same, 1 they differ or the file cannot be read,
 is wrong.)";
 
 Report report_of(const ForceDifference& found) {
+  const bool differs = found.differing > 0;
   Report report(found.topic, fmt::format("{} steps", grouped(found.steps)));
-  report.line("difference",
-              fmt::format("{} N at most, {:.3g} N rms, in {} steps", found.largest, found.rms(),
-                          grouped(found.differing)),
-              found.differing > 0 ? Mark::error : Mark::plain);
-  if (found.first > 0) {
-    report.line("first", fmt::format("step {}, {:.6g} s after the hand's first", found.first,
-                                     found.first_time));
-  }
-  if (!found.ended.empty()) report.line("ended", found.ended, Mark::error);
-  report.data = {{"topic", found.topic},
-                 {"steps", found.steps},
-                 {"exact", found.exact()},
-                 {"differing_steps", found.differing},
-                 {"largest_difference_N", found.largest},
-                 {"rms_difference_N", found.rms()},
-                 {"first_step", found.first > 0 ? Json(found.first) : Json()},
-                 {"first_time_s", found.first > 0 ? Json(found.first_time) : Json()},
-                 {"ended", found.ended}};
+  report.data = {{"topic", found.topic}, {"steps", found.steps}, {"exact", found.exact()}};
+  report.row({"difference", differs ? Mark::error : Mark::plain},
+             "{largest_difference_N} at most, {rms_difference_N} rms, in {differing_steps} steps",
+             found.largest, found.rms(), found.differing);
+  report.row("first", "[{?}step {first_step}, {first_time_s} after the hand's first]", differs,
+             differs ? Json(found.first) : Json(), differs ? Json(found.first_time) : Json());
+  report.row({"ended", Mark::error}, "[{ended}]", found.ended);
   return report;
 }
 
