@@ -10,8 +10,8 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/touch_options.hpp"
+#include "apps/palpate/replay/replay.hpp"
 #include "apps/palpate/replay/replay_view.hpp"
-#include "apps/palpate/replay/replayed_run.hpp"
 #include "apps/palpate/report/log.hpp"
 #include "apps/palpate/report/report.hpp"
 
@@ -44,15 +44,15 @@ Report report_of(const ForceDifference& found) {
   return report;
 }
 
-ForceDifference replay_hand(const ReplayedRun& run, std::size_t hand, const std::string& log) {
+ForceDifference replay_hand(const Replay& run, std::size_t hand, const std::string& log) {
   std::optional<TouchLog> steps;
   if (!log.empty()) steps.emplace(numbered_path(log, hand));
   const Waiting waiting(fmt::format("replaying hand {}", hand + 1));
   const auto add = [&](const ServoState& step, const DeviceInfo& device) {
     if (steps) steps->add(step, device);
   };
-  ForceDifference found = run.replay(hand, add);
-  if (found.steps == 0 && steps) run.recorded(hand, add);  // then as they were
+  ForceDifference found = run.run(hand, add);
+  if (found.steps == 0 && steps) run.show(hand, add);  // then as they were
   if (steps) steps->close();
   return found;
 }
@@ -102,7 +102,7 @@ int replay(const ReplayCommand& command) {
     view_recording(command.input, page);
     return kSuccess;
   }
-  const ReplayedRun run(command.input);
+  const Replay run(command.input);
   if (command.log == "-" && (command.json == "-" || run.hands() > 1)) {
     throw UsageError("--log cannot go to standard output beside --json or another hand's log");
   }

@@ -15,33 +15,33 @@ namespace {
 
 // How numbers with that end of a key are shown. The first that fits counts, so "_N_per_m" is before
 // "_m".
-struct Unit {
+struct UnitWords {
   std::string_view end;
   std::string (*words)(double value);
 };
 
-constexpr std::array kUnits = {
-    Unit{"_N_per_m", [](double x) { return fmt::format("{:.4g} N/m", x); }},
-    Unit{"_N_per_s", [](double x) { return fmt::format("{:.3g} N/s", x); }},
-    Unit{"_N", [](double x) { return fmt::format("{:.3g} N", x); }},
-    Unit{"_J", energy},
-    Unit{"_Hz", [](double x) { return fmt::format("{:.4g} Hz", x); }},
-    Unit{"_hz", [](double x) { return fmt::format("{:.4g} a second", x); }},
-    Unit{"_px", [](double x) { return fmt::format("{:.4g} px", x); }},
-    Unit{"_us", [](double x) { return fmt::format("{:.1f} us", x); }},
-    Unit{"_ms", [](double x) { return duration(1e-3 * x); }},
-    Unit{"_s", duration},
-    Unit{"seconds", duration},
-    Unit{"_m", length},
-    Unit{"_share", [](double x) { return fmt::format("{:.3g} %", 100 * x); }},
-    Unit{"overlap", [](double x) { return fmt::format("{:.3g} %", 100 * x); }},
-    Unit{"width", [](double x) { return fmt::format("{}", x); }},
-    Unit{"height", [](double x) { return fmt::format("{}", x); }},
+constexpr std::array kUnitWords = {
+    UnitWords{"_N_per_m", [](double x) { return fmt::format("{:.4g} N/m", x); }},
+    UnitWords{"_N_per_s", [](double x) { return fmt::format("{:.3g} N/s", x); }},
+    UnitWords{"_N", [](double x) { return fmt::format("{:.3g} N", x); }},
+    UnitWords{"_J", energy},
+    UnitWords{"_Hz", [](double x) { return fmt::format("{:.4g} Hz", x); }},
+    UnitWords{"_hz", [](double x) { return fmt::format("{:.4g} a second", x); }},
+    UnitWords{"_px", [](double x) { return fmt::format("{:.4g} px", x); }},
+    UnitWords{"_us", [](double x) { return fmt::format("{:.1f} us", x); }},
+    UnitWords{"_ms", [](double x) { return duration(1e-3 * x); }},
+    UnitWords{"_s", duration},
+    UnitWords{"seconds", duration},
+    UnitWords{"_m", length},
+    UnitWords{"_share", [](double x) { return fmt::format("{:.3g} %", 100 * x); }},
+    UnitWords{"overlap", [](double x) { return fmt::format("{:.3g} %", 100 * x); }},
+    UnitWords{"width", [](double x) { return fmt::format("{}", x); }},
+    UnitWords{"height", [](double x) { return fmt::format("{}", x); }},
 };
 
 // The unit may be that of an object that the value is in: "late_s/p50".
-const Unit* unit_of(std::string_view key) {
-  for (const Unit& unit : kUnits) {
+const UnitWords* unit_of(std::string_view key) {
+  for (const UnitWords& unit : kUnitWords) {
     if (key.ends_with(unit.end)) return &unit;
   }
   const std::size_t slash = key.rfind('/');
@@ -57,7 +57,7 @@ std::string in_words(std::string_view key, const Json& value) {
     for (const Json& each : value) text += (text.empty() ? "" : ", ") + in_words(key, each);
     return text;
   }
-  if (const Unit* const unit = unit_of(key)) return unit->words(value.get<double>());
+  if (const UnitWords* const unit = unit_of(key)) return unit->words(value.get<double>());
   if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
   return grouped(value.get<std::size_t>());
 }
