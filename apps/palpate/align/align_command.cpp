@@ -1,3 +1,4 @@
+// The command align: solves for poses, reports them, writes the set-up file and the picture.
 #include "apps/palpate/align/align_command.hpp"
 
 #include <fmt/format.h>
@@ -93,7 +94,7 @@ void insert(toml::table& part, const Registration& option, const std::string& te
   }
 }
 
-// What the command line says of sources stands above all that the file does.
+// Options for sources on the command line override those in the file.
 void insert_given(toml::table& file, toml::array& sources, const CLI::App& command) {
   CLI::App unused;
   OptionTable table(unused);
@@ -108,7 +109,7 @@ void insert_given(toml::table& file, toml::array& sources, const CLI::App& comma
   }
 }
 
-// As a set-up file in the folder of `output` names it.
+// The path relative to the folder of `output`, where the set-up file will be.
 std::string path_from(const std::string& output, const std::string& path) {
   std::string kind;
   for (const std::string_view recorded : {kSequence, kBag}) {

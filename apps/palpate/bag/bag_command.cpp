@@ -1,3 +1,4 @@
+// The command bag: reports what an MCAP file holds and recovers damaged ones.
 #include "apps/palpate/bag/bag_command.hpp"
 
 #include <fmt/chrono.h>

@@ -1,3 +1,4 @@
+// What is named on the command line: sources, poses, numbers.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -53,7 +54,7 @@ struct PoseArgument {
 inline constexpr const char* kPoseForm =
     "x,y,z,qx,qy,qz,qw: metres and a unit quaternion; or 12 or 16 numbers: a matrix row by row";
 
-/// Of x, y, z (m), qx, qy, qz, qw; the quaternion is normalised. Or of a 3 x 4 or 4 x 4 matrix.
+/// A pose from x, y, z (m), qx, qy, qz, qw (normalised here), or from a 3 x 4 or 4 x 4 matrix.
 /// @throws UsageError when these are no rotation and translation; `what` goes into the message.
 [[nodiscard]] Eigen::Isometry3d pose_of(const std::vector<double>& values, const std::string& what);
 

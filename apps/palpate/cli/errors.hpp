@@ -1,3 +1,4 @@
+// Exit codes and usage errors.
 #pragma once
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// Output files that appear only when they are complete.
 #include "apps/palpate/cli/output.hpp"
 
 #include <fcntl.h>

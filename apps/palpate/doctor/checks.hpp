@@ -1,3 +1,4 @@
+// The doctor's checks and their findings.
 #pragma once
 
 #include <cstdio>
@@ -49,7 +50,7 @@ struct KnownUsbDevice {
   DeviceModel model;
 };
 
-/// Those that palpate knows, in the order of their places.
+/// Known devices that are plugged in, sorted by their path on the bus.
 [[nodiscard]] std::vector<KnownUsbDevice> known_usb_devices(const System& system);
 
 /// Is one there that is reached by this driver or library?

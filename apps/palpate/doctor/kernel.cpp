@@ -1,3 +1,4 @@
+// Checks the kernel, real-time rights and the jitter of a servo.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -42,7 +43,7 @@ std::string rights_command(const System& system) {
       system.share.string());
 }
 
-// Of "Linux version 6.1.0-18-amd64 (debian-kernel@...": the third word.
+// The third word of "Linux version 6.1.0-18-amd64 (debian-kernel@...".
 std::string release_of(const std::string& version) {
   const std::size_t begin = version.find("version ");
   if (begin == std::string::npos) return "unknown";

@@ -1,3 +1,4 @@
+// Checks the settings of ROS 2.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The real system behind the doctor's checks.
 #include "apps/palpate/doctor/system.hpp"
 
 #include <arpa/inet.h>
@@ -139,7 +140,7 @@ constexpr unsigned kPatience = 10;  // s
 constexpr char kLoaded = 'l';       // the first character of what the other process tells
 constexpr char kNotLoaded = 'n';
 
-// Of "libHD.so.3.4.0", the file that was loaded: 3.4.0.
+// "3.4.0" where the loaded file is "libHD.so.3.4.0".
 std::string version_in_name(void* library) {
   link_map* map = nullptr;
   if (::dlinfo(library, RTLD_DI_LINKMAP, static_cast<void*>(&map)) != 0) return "";

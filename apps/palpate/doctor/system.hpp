@@ -68,7 +68,7 @@ struct System {
 [[nodiscard]] bool is_there(const System& system, const std::string& path);
 /// What a folder holds, sorted; nothing where there is none.
 [[nodiscard]] std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
-/// Of the environment; empty where it is not set.
+/// An environment variable; empty if it is not set.
 [[nodiscard]] std::string variable(const System& system, const std::string& name);
 
 /// The limits where logins read them; a package puts them there, or a command of the doctor's.

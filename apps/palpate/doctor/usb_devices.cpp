@@ -1,3 +1,4 @@
+// Finds known haptic devices and cameras on USB.
 #include <fmt/format.h>
 
 #include <algorithm>

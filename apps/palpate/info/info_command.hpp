@@ -1,3 +1,4 @@
+// The command info, and what it finds out.
 #pragma once
 
 #include <string>

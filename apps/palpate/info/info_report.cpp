@@ -1,3 +1,4 @@
+// Studies clouds and cameras for the command info and reports on them.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Options that may differ from hand to hand.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -30,7 +31,7 @@ struct PlacementOptions {
 /// One `--device`: what is at one hand.
 struct DevicePlan {
   DeviceKind kind = DeviceKind::simulated;
-  /// Of a remote one's socket, empty: default_remote_path(); of hardware what open_device() takes.
+  /// Socket of a remote device (empty: default_remote_path()), or what open_device() takes.
   std::string path = {};
   PlacementOptions placement = {};
 

@@ -75,7 +75,7 @@ struct Registration {
     scopes.push_back(scope);
     return *this;
   }
-  /// As a set-up file has it: "tool_radius".
+  /// The key in a set-up file: "tool_radius".
   [[nodiscard]] std::string key() const;
 };
 

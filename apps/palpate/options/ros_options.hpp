@@ -1,3 +1,4 @@
+// Options of ROS 2.
 #pragma once
 
 #include <string>

@@ -1,3 +1,4 @@
+// Reads set-up files (TOML) into the registered options.
 #include <fmt/format.h>
 #include <toml++/toml.h>
 

@@ -1,3 +1,4 @@
+// Options that may differ from source to source.
 #pragma once
 
 #include <optional>

@@ -1,3 +1,4 @@
+// The plan of a run: all options, read and checked.
 #pragma once
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+// Figure 5 of the paper: how long the preparation of clouds takes.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Records a run on a thread of its own.
 #include "apps/palpate/record/recorder.hpp"
 
 #include <fmt/chrono.h>
@@ -20,16 +21,15 @@ namespace palpate::app {
 
 namespace {
 
-constexpr std::size_t kSteps = 8192;     // that wait at most, of a hand
-constexpr std::size_t kMostFrames = 16;  // of all sources
-constexpr std::chrono::milliseconds kLook{5};
-
+constexpr std::size_t kSteps = 8192;     // queue of a hand: 8 s at 1 kHz; judgement
+constexpr std::size_t kMostFrames = 16;  // queue of all sources: half a second at 30 Hz; judgement
+constexpr std::chrono::milliseconds kLook{5};  // between two looks at the queues; judgement
 std::int64_t wall_clock() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
 
-// After the time of day, and of no file that is there.
+// A name after the time of day that no file has yet.
 std::string free_name() {
   const std::string stem =
       fmt::format("palpate-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));

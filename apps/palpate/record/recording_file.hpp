@@ -43,7 +43,7 @@ struct RecordedRobot {
 struct RecordedSetup {
   Json json;
   std::int64_t epoch = 0;  ///< when the run's clock was 0, ns since 1970
-  /// Of each source that stands still; of the others null.
+  /// One for each source; null for cameras.
   std::vector<std::shared_ptr<const PointCloud>> clouds;
   std::vector<std::shared_ptr<const DepthFrame>> images;
 };

@@ -15,9 +15,9 @@ namespace palpate::app {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPicture{8};
-constexpr std::chrono::milliseconds kFrame{25};
-constexpr double kNews = 0.5;  // s between two envelopes, while the file is read
+constexpr std::chrono::milliseconds kPicture{8};  // between shown steps: 125 Hz; judgement
+constexpr std::chrono::milliseconds kFrame{25};   // between looks for frames: 40 Hz; judgement
+constexpr double kNews = 0.5;  // s between two envelopes while the file is read; judgement
 
 }  // namespace
 

@@ -1,3 +1,4 @@
+// The command replay: compares forces or opens the page.
 #include "apps/palpate/replay/replay_command.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Serves the page of a recording.
 #include "apps/palpate/replay/replay_view.hpp"
 
 #include <fmt/format.h>

@@ -116,7 +116,7 @@ void ShownSource::show(double time) {
   shown_until_ = time;
 }
 
-// Of its own: neither what came before it nor where tools were is asked for.
+// Prepares the frame alone, without the frames before it and without where tools were.
 void ShownSource::prepare(const RecordedFrame& recorded) {
   const DepthFrame& frame = recorded.frame;
   Source prepared(source_->name(), source_->options());

@@ -56,7 +56,7 @@ class ShownSource {
   void show(double time);
 
   [[nodiscard]] bool lives() const { return origin_->lives; }
-  /// Of one that lives.
+  /// State and frustum of a camera.
   [[nodiscard]] Stream stream() const;
 
  private:

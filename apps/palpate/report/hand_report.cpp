@@ -1,3 +1,4 @@
+// Reports on one hand of a run.
 #include "apps/palpate/report/hand_report.hpp"
 
 #include <fmt/format.h>
@@ -142,7 +143,7 @@ void add_notes(Report& report, const TouchStatistics& s) {
   if (notes.empty()) report.note("notes", "none");
 }
 
-// Of a hand that felt nothing.
+// Advice for a hand that never touched the surface.
 std::string way_to_surface(const HandReport& report) {
   const Hand& hand = report.hand;
   if (hand.plan) return "give it more time (--duration)";

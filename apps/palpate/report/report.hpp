@@ -1,3 +1,4 @@
+// Reports for people and programs.
 #pragma once
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// Reports on a whole run and draws its picture.
 #include "apps/palpate/report/touch_report.hpp"
 
 #include <fmt/format.h>

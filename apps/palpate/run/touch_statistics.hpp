@@ -52,8 +52,7 @@ class TouchStatistics {
   [[nodiscard]] std::vector<CountedNote> notes() const;
   /// Steps that the proxy could not take.
   [[nodiscard]] std::size_t faults() const { return faults_; }
-  /// Of any number of steps in the same memory: to 5 %, and the maximum as it was. Zero without
-  /// steps.
+  /// Quantiles of computing times to 5 %, and the exact maximum; zero without steps.
   [[nodiscard]] StepTimes times() const;
 
  private:

@@ -31,7 +31,7 @@ struct LoadedSource {
   Prepared::Report prepared;  ///< of a cloud
   Source::State state;        ///< of a depth image; of a stream, after the run
 
-  // Of what stands still:
+  // Files:
   bool depth_image = false;  ///< or an organised cloud that is felt as one
   std::string format;
   std::size_t declared = 0;
@@ -42,7 +42,7 @@ struct LoadedSource {
   std::shared_ptr<const PointCloud> cloud;  ///< where it may have to be prepared again
   std::shared_ptr<const DepthFrame> image;  ///< the same of a depth image
 
-  // Of a stream:
+  // Streams:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
   CameraModel lens;                     ///< of its first frame; of an organised cloud, too
   bool posed = false;                   ///< its frames say where it stands
@@ -52,7 +52,7 @@ struct LoadedSource {
 /// What is touched: the scene, and everything that is known of it before the first step.
 struct LoadedScene {
   std::vector<LoadedSource> sources;
-  /// As prepared; of a camera its first frame, where `explored` was asked for, and its pose then.
+  /// Prepared surfaces; for cameras the first frame and its pose, if `explored` was asked for.
   Scene scene;
 };
 

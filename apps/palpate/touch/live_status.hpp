@@ -57,7 +57,7 @@ class LiveStatus {
   double next_;  // s
 };
 
-/// As much of `line` as fits into `columns`, in whole characters of UTF-8.
+/// The beginning of `line` that fits into `columns`, in whole characters of UTF-8.
 [[nodiscard]] std::string fitted(const std::string& line, std::size_t columns);
 
 }  // namespace palpate::app

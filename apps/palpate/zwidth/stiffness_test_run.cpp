@@ -1,3 +1,4 @@
+// Measures on a device which walls are stable for a person's hand.
 #include <fmt/format.h>
 #include <unistd.h>
 

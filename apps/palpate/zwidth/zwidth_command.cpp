@@ -1,3 +1,4 @@
+// The command zwidth: simulates how stiff a wall may be.
 #include "apps/palpate/zwidth/zwidth_command.hpp"
 
 #include <fmt/format.h>
@@ -163,7 +164,7 @@ std::string csv(const ZWidthMap& map) {
   return text;
 }
 
-// As data, and what figures.py is told.
+// The result as JSON, also the input of figures.py.
 Json facts(const ZWidthMap& map) {
   Json rows = Json::array();
   for (const ZWidthRow& row : map.rows) {

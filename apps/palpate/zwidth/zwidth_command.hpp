@@ -1,3 +1,4 @@
+// The command zwidth.
 #pragma once
 
 #include <string>
