@@ -153,7 +153,7 @@ namespace {
 Report report_of(const RosBridge::RobotState& robot) {
   Report part("robot", robot.topic);
   part.data = {{"topic", robot.topic}, {"waited_s", robot.waits}};
-  part.row("targets", "{told} told, {held_back} held back", robot.told, robot.held);
+  part.row("targets", "{told} sent, {held_back} held back", robot.told, robot.held);
   for (const auto& [reason, seconds] : robot.waits) part.row("waited", "{_s}: {}", seconds, reason);
   part.row({"at last", Mark::warning}, "[{held_back_at_last}]", robot.why);
   part.data["readers"] = robot.readers;
