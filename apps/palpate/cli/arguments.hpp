@@ -14,7 +14,7 @@
 
 namespace palpate::app {
 
-// What a source begins with that is no file.
+// Prefixes of sources that are no files.
 inline constexpr std::string_view kSynthetic = "synthetic:";
 inline constexpr std::string_view kCamera = "camera:";
 inline constexpr std::string_view kSequence = "sequence:";
@@ -98,7 +98,7 @@ void name_all(std::vector<CloudArgument>& sources);
 /// --json of a command whose report can be had as data.
 CLI::Option* add_json_option(CLI::App& command, std::string& path);
 
-/// What an error of an option says behind the option's name.
+/// The words behind the option's name in an error.
 [[nodiscard]] std::string without_option(const std::string& message);
 
 /// Help in lines that fit beside the options' names.

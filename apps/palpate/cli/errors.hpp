@@ -14,7 +14,7 @@ class App;
 
 namespace palpate::app {
 
-/// What the program returns.
+/// Exit codes of the program.
 enum ExitCode : int {
   kSuccess = 0,
   kFailure = 1,  ///< of the input or of the run

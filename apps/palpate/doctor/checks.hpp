@@ -35,7 +35,7 @@ enum class DeviceKind {
   part,  ///< of a camera: a motor, microphones
 };
 
-/// What a device is and how programs reach it.
+/// A model of device, and how programs reach it.
 struct DeviceModel {
   std::string_view name;
   DeviceKind kind;
@@ -92,7 +92,7 @@ struct Finding : Answer {
 };
 using Findings = std::vector<Finding>;
 
-/// What all checks may look at; measured and listed once.
+/// Input of all checks, measured and listed once.
 struct Machine {
   const System& system;
   RealtimeTrial trial;

@@ -100,7 +100,7 @@ Answer clock_source(const Machine& machine) {
   return warning(words + "; the kernel rejected tsc", "sudo dmesg | grep -iE 'tsc|clocksource'");
 }
 
-// One row an octave, from the first that holds a step to the last.
+// A histogram with one row an octave, from the first that holds a step to the last.
 std::vector<std::string> histogram(const Durations& lateness) {
   std::vector<std::uint64_t> rows;
   for (std::size_t bin = 0; bin < Durations::kBins; bin += Durations::kPerOctave) {

@@ -169,7 +169,7 @@ std::string loaded(const std::string& name) {
   return kNotLoaded + std::string(error == nullptr ? "no reason given" : error);
 }
 
-// What libraries print is not the doctor's.
+// Drops what libraries print.
 void be_silent() {
   const int nowhere = ::open("/dev/null", O_RDWR);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
@@ -194,7 +194,7 @@ std::string read_all(int pipe) {
   }
 }
 
-// What a process that told nothing died of.
+// Why a process died that reported nothing.
 std::string death(int status) {
   if (!WIFSIGNALED(status))
     return fmt::format("it exits the program (exit code {})", WEXITSTATUS(status));

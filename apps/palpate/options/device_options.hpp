@@ -19,7 +19,7 @@ enum class DeviceKind {
   hardware,   ///< what a driver reaches
 };
 
-/// What `--device NAME,KEY=VALUE...` says of where a device stands in the scene.
+/// Where a device is placed in the scene: `--device NAME,KEY=VALUE...`.
 struct PlacementOptions {
   std::optional<double> scale = {};                  ///< m in the world for one of the hand's
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< of its origin, m in the world, its axes

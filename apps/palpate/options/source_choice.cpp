@@ -37,7 +37,7 @@ bool is_depth_image(const std::string& path) {
   return name.ends_with(".png") || name.ends_with(".pgm") || begins_like_an_image(path);
 }
 
-// One that is not there, or a pipe, may be one.
+// True also for files that do not exist and for pipes.
 bool may_be_image(const std::string& path) {
   std::error_code ignored;
   return !path.starts_with(kSynthetic) &&

@@ -116,7 +116,7 @@ std::string csv(const Fig7& figure) {
   return fmt::to_string(text);
 }
 
-// What figures.py is told.
+// Input of figures.py.
 Json facts(const Fig5& figure, const std::string& source) {
   Json rows = Json::array();
   for (const Fig5Row& row : figure.rows) {

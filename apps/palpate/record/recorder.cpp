@@ -44,7 +44,7 @@ Recorder::Recorder(const std::string& path) : name_(path) {
   if (path.empty()) return;
   report_.path = path;
   takes_frames_ = true;
-  // What was recorded before is not overwritten by a run that does not begin.
+  // A run that fails to begin must not overwrite an older recording.
   if (!std::filesystem::is_regular_file(path)) file_ = std::make_unique<RecordingFile>(path);
 }
 
@@ -262,7 +262,7 @@ void Recorder::fail(const std::string& why) {
   if (broken_) broken_(why);
 }
 
-// What is recorded until now.
+// Writes what is queued and closes the file.
 void Recorder::close() {
   if (!file_) return;
   accept(false);

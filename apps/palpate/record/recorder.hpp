@@ -47,7 +47,7 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// One more hand: what its servo puts its steps into.
+  /// Adds a hand. Returns the queue that its servo puts its steps into.
   [[nodiscard]] StepTraces* add_hand();
 
   /// Writes what the run is made of into the first file and starts the thread. All hands are there,

@@ -90,7 +90,7 @@ class Recording::Steps {
   /// Last step at or before `time`, else the first; none if there is no step. next() continues
   /// after it.
   [[nodiscard]] std::optional<Step> at(double time);
-  /// What was found damaged so far.
+  /// Damage found so far.
   [[nodiscard]] const std::vector<std::string>& losses() const;
 
  private:

@@ -63,7 +63,7 @@ void Playback::stop() {
   threads_.clear();
 }
 
-// What is damaged ends its thread alone.
+// Damaged data end their thread alone.
 void Playback::guard(const std::function<void()>& work) {
   try {
     work();

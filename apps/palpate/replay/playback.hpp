@@ -26,7 +26,7 @@ class Playback {
  public:
   using TimeLine = ViewerControls::TimeLine;
 
-  /// What the player tells, on its threads.
+  /// Callbacks on the playback's threads.
   struct Listener {
     std::function<void()> changed;  ///< there is another envelope, or another past
     std::function<void(const std::string&)> complain;  ///< what is damaged

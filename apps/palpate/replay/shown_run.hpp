@@ -44,7 +44,7 @@ class ShownHand {
   Guard::State::Counts counts_;  // of what was shown
 };
 
-/// What a source of a recorded run showed. One thread shows, others may ask for the stream.
+/// Shows a source of a recorded run. One thread shows; others may ask for the stream.
 class ShownSource {
  public:
   using Stream = ViewerOptions::Stream;

@@ -11,7 +11,7 @@ namespace palpate::app {
 inline constexpr const char* kNoSurface =
     "all points are at one place or on a line, where no surface is";
 
-/// What a run knows of one of its sources and, of a camera, of what became of its frames.
+/// Report on a source of a run; for a camera also on its frames.
 [[nodiscard]] Report source_report(const LoadedSource& source);
 
 /// The same of a camera.

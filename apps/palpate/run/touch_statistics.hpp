@@ -48,7 +48,7 @@ class TouchStatistics {
   /// The integral of F . dh along the way by trapezoids, J, as if forces changed without steps. It
   /// shows whether the surface is passive, not whether a device is.
   [[nodiscard]] double path_energy() const { return path_energy_; }
-  /// What there was to note, of contacts and of the field.
+  /// Notes of contacts and of the field, counted.
   [[nodiscard]] std::vector<CountedNote> notes() const;
   /// Steps that the proxy could not take.
   [[nodiscard]] std::size_t faults() const { return faults_; }

@@ -19,7 +19,7 @@ namespace palpate::app {
 
 using Setting = ViewerControls::Setting;
 
-/// What a viewer's page may change while the tool feels.
+/// Settings that a page may change during a run.
 struct ViewSettings {
   /// How sources are prepared.
   struct Preparation {
@@ -36,7 +36,7 @@ struct ViewSettings {
   Preparation preparation;
 };
 
-/// What there is to set.
+/// What the settings of a run are limited by.
 struct ViewScope {
   double stiffest = 2000;      ///< N/m, in the world
   double deepest_texture = 0;  ///< amplitude, m

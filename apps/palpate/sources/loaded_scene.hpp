@@ -15,7 +15,7 @@
 
 namespace palpate::app {
 
-/// What a camera's run looked like.
+/// Timing and frames of a camera during a run.
 struct FeedReport {
   StreamState state;
   int width = 0;  ///< of the last frame, pixels
@@ -49,7 +49,7 @@ struct LoadedSource {
   FeedReport feed;                      ///< after the run
 };
 
-/// What is touched: the scene, and everything that is known of it before the first step.
+/// The scene, and all that is known of it before the first step.
 struct LoadedScene {
   std::vector<LoadedSource> sources;
   /// Prepared surfaces; for cameras the first frame and its pose, if `explored` was asked for.

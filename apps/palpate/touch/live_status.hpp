@@ -10,7 +10,7 @@
 
 namespace palpate::app {
 
-/// What is told of one hand while a run lasts.
+/// State of one hand during a run.
 struct HandMoment {
   std::string name;
   ServoState servo;    ///< its last step
@@ -22,7 +22,7 @@ struct HandMoment {
   bool ended = false;
 };
 
-/// What is told of a run while it lasts.
+/// State of a run, for its status line.
 struct LiveMoment {
   double time = 0;  ///< since the run began, s
   std::vector<HandMoment> hands;

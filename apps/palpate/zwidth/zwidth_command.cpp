@@ -89,7 +89,7 @@ ZWidthRow measure(WallOptions wall) {
   return row;
 }
 
-// What was not found below the stiffest wall that is tried.
+// "> N" where the limit is above the stiffest wall that is tried.
 std::string stiffness(double newtons_per_metre) {
   if (newtons_per_metre >= kStiffestWall) return fmt::format("> {:.0f}", kStiffestWall);
   return fmt::format("{:.0f}", newtons_per_metre);
